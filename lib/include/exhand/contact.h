@@ -1,0 +1,73 @@
+/* Contact law of one finger: F = b*qd + k*q + F0 past q_lim, F0 before (eq. 1).
+ *
+ * q is the string pulled out, so a finger that closes makes q grow and qd
+ * positive; F is the tension that pulls it back, never negative after drive.h.
+ * F0 pulls the slack string in: 0 while the string runs out, f0 while it runs
+ * in. The paper switches at qd = 0, where a quantised velocity chatters; here
+ * F0 has two states and a dead band in position, so noise within the band
+ * switches at most once per reversal.
+ */
+#ifndef EXHAND_CONTACT_H
+#define EXHAND_CONTACT_H
+
+#include "exhand/bytes.h"
+#include "exhand/signal.h"
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Parameters of one finger's law; rows in exh_contact_rows[]. May change between
+ * any two ticks. */
+struct exh_contact_par {
+    int32_t k_Npm_q10;    /* stiffness, N/m, 0 .. 10^6                          */
+    int32_t b_Nspm_q20;   /* damping, Ns/m, 0 .. 1000                           */
+    int32_t f0_N_q20;     /* pull-back force, N, 0 .. 20                        */
+    int32_t f0_band_m_q30; /* movement that reverses F0, m, 0 .. 10 mm          */
+    int32_t hyst_m_q30;   /* contact ends at q < q_lim - hyst, m, 0 .. 10 mm    */
+};
+#define EXH_CONTACT_ROWS 5
+extern const struct exh_signal exh_contact_rows[EXH_CONTACT_ROWS];
+
+struct exh_contact {
+    int32_t turn_m_q30; /* farthest position since the last reversal          */
+    uint8_t inward;     /* 1: string runs in, F0 acts                          */
+    uint8_t touching;   /* 1: the contact condition applies (the paper's c)    */
+    uint8_t started;
+};
+
+struct exh_contact_in {
+    int32_t pos_m_q30;   /* string position q, any int32_t                      */
+    int32_t vel_mps_q27; /* its velocity, any int32_t                          */
+    int32_t lim_m_q30;   /* virtual contact q_lim, any int32_t                 */
+};
+
+/* The force ledger: why there is each newton. The law fills the first three,
+ * drive.h the rest; force = spring + damper + pullback + passivity + clamp + slew,
+ * exactly, always. N, q20; the terms of the law are int64_t so that none of them
+ * ever saturates. */
+struct exh_force_ledger {
+    int64_t spring_N_q20;
+    int64_t damper_N_q20;
+    int64_t pullback_N_q20;
+    int64_t passivity_N_q20; /* 0 where that module is not linked             */
+    int64_t clamp_N_q20;     /* pull only, and the force limit                */
+    int64_t slew_N_q20;
+    int32_t force_N_q20;     /* the force commanded                           */
+};
+
+/* One tick. Fills spring, damper and pullback, zeroes the rest. Each term is
+ * rounded once: the sum is within 1 LSB (0.95 uN) of exact for every input;
+ * penetration q - q_lim saturates at +-2 m. Returns `touching`: it sets at
+ * q >= q_lim and clears at q < q_lim - hyst. */
+int exh_contact_law(struct exh_contact *s, const struct exh_contact_par *par,
+                    struct exh_contact_in in, struct exh_force_ledger *out);
+
+void exh_contact_bytes(struct exh_bytes *c, struct exh_contact *s);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,156 @@
+/* Drive: from a force ledger to a motor current, and from raw codes back to SI.
+ *
+ * Order, fixed: force limit, slew, force-to-current table, peak current, I2t.
+ * The code for the D/A is made by exh_gate() alone (safety.h).
+ */
+#ifndef EXHAND_DRIVE_H
+#define EXHAND_DRIVE_H
+
+#include "exhand/bytes.h"
+#include "exhand/contact.h"
+#include "exhand/fix.h"
+#include "exhand/signal.h"
+#include "exhand/units.h"
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define EXH_FINGERS 5 /* thumb, index, middle, ring, little                    */
+
+/* --- frames: raw codes of the device's own five axes, as a board moves them --- */
+
+enum exh_din { /* digital inputs; every contact is normally closed: 1 = healthy */
+    EXH_DIN_ESTOP = 1u << 0,   /* emergency-stop loop closed                   */
+    EXH_DIN_DEADMAN = 1u << 1, /* dead-man switch held                         */
+    EXH_DIN_DRIVE0 = 1u << 8   /* drive of finger i ready: EXH_DIN_DRIVE0 << i */
+};
+
+struct exh_drive_in {
+    uint32_t enc_raw[EXH_FINGERS]; /* counter value, the board's width, low bits */
+    int16_t mon_raw[EXH_FINGERS];  /* current monitor, two's complement        */
+    int16_t supply_raw;            /* supply monitor                           */
+    uint32_t din;                  /* enum exh_din                             */
+};
+
+struct exh_drive_out {
+    uint16_t dac_raw[EXH_FINGERS]; /* offset binary                            */
+    uint8_t enable;                /* bit i: drive of finger i enabled         */
+    uint8_t alive;                 /* changes once per completed tick: the watchdog's kick */
+};
+
+/* The first n fingers of a frame through a cursor. */
+void exh_drive_in_bytes(struct exh_bytes *c, struct exh_drive_in *in, unsigned n);
+void exh_drive_out_bytes(struct exh_bytes *c, struct exh_drive_out *out, unsigned n);
+
+/* --- limits: a limit acts and is reported, it is not a fault --- */
+
+enum exh_limit {
+    EXH_LIMIT_PULL = 1u << 0,  /* law asked to push: a string only pulls       */
+    EXH_LIMIT_FORCE = 1u << 1, /* above f_max                                  */
+    EXH_LIMIT_SLEW = 1u << 2,
+    EXH_LIMIT_PEAK = 1u << 3, /* above i_peak                                  */
+    EXH_LIMIT_I2T = 1u << 4,
+    EXH_LIMIT_DAC = 1u << 5, /* code at the end of its span                    */
+    EXH_LIMIT_GATE = 1u << 6 /* not in RUN: current held at zero               */
+};
+
+/* --- conversion tables: strictly rising, linear between knots --- */
+
+struct exh_knot {
+    int32_t x, y;
+    struct exh_gain slope; /* to the next knot; exh_table_set() fills it       */
+};
+struct exh_table {
+    const struct exh_knot *knot; /* n of them, the caller's; may live in ROM   */
+    uint8_t n;                   /* >= 2                                       */
+};
+
+/* Checks n knots and fills the slopes. -EXH_E_RANGE (n < 2, or x or y spans more
+ * than 2^31-1), -EXH_E_MONOTONE (x or y does not rise strictly). */
+int exh_table_set(struct exh_knot *knot, unsigned n);
+
+/* The inverse table: dst may be src. Errors as exh_table_set(). */
+int exh_table_invert(struct exh_knot *dst, const struct exh_knot *src, unsigned n);
+
+/* y at x: monotone, exact at every knot, within 1 LSB of y between them, and the
+ * end values outside. Cost depends on n alone, not on x. */
+int32_t exh_table_at(struct exh_table t, int32_t x);
+
+/* --- one axis --- */
+
+struct exh_drive_par {
+    int32_t f_max_N_q20;   /* force limit, N                                   */
+    int32_t slew_up_Nps;   /* rise of force, N/s                               */
+    int32_t slew_down_Nps; /* fall of force, N/s                               */
+    int32_t i_peak_A_q26;  /* never more than this, A                          */
+    int32_t i_cont_A_q26;  /* for ever, A                                      */
+    int32_t peak_ms;       /* how long i_peak from cold, ms                    */
+    int32_t dac_zero_raw;  /* code of 0 A                                      */
+    int32_t dac_span_raw;  /* codes either side of it that may be used         */
+    int32_t dac_rawpA_q16; /* codes per ampere                                 */
+    int32_t mon_zero_raw;  /* monitor code at 0 A                              */
+    int32_t mon_A_q40;     /* ampere per monitor code                          */
+};
+#define EXH_DRIVE_ROWS 11
+extern const struct exh_signal exh_drive_rows[EXH_DRIVE_ROWS];
+
+struct exh_drive_cfg {
+    const struct exh_drive_par *par; /* read at every tick                     */
+    struct exh_table force_to_cur;   /* N q20 -> A q26                         */
+    struct exh_table cur_to_force;   /* monitor: A q26 -> N q20                */
+    struct exh_gain tick_N_q20;      /* N q20 per tick, per N/s                */
+    int64_t i2t_budget_q32;          /* A^2 ticks above i_cont^2               */
+    struct exh_gain i2t_fold;        /* A q26 per (budget left >> i2t_shift)   */
+    uint8_t i2t_shift;
+    struct exh_gain dac_A_q26; /* A per code                                   */
+};
+
+struct exh_drive {
+    int32_t force_N_q20; /* last commanded                                     */
+    int64_t i2t_q32;     /* heat above continuous, A^2 ticks, 0 .. budget      */
+};
+
+/* The current ledger: coded = table + peak + i2t + gate + dac, exactly, always. */
+struct exh_current_ledger {
+    int64_t table_A_q26; /* what the force asks for                            */
+    int64_t peak_A_q26;  /* taken away by the peak limit                       */
+    int64_t i2t_A_q26;   /* by I2t                                             */
+    int64_t gate_A_q26;  /* by the gate                                        */
+    int64_t dac_A_q26;   /* rounding to a code, and the end of its span        */
+    int32_t coded_A_q26; /* what the code stands for                           */
+};
+
+/* Set-up (divides). Tables must have passed exh_table_set(); cur_to_force may be
+ * {NULL, 0} where no monitor is read; par must
+ * outlive cfg. -EXH_E_RANGE when i_peak < i_cont, or a scale is 0. */
+int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par,
+                    struct exh_period T, struct exh_table force_to_cur,
+                    struct exh_table cur_to_force);
+
+/* Completes the force ledger: 0 <= force <= f_max, |change| <= slew * T (at least
+ * 1 LSB). Returns limit bits. */
+uint32_t exh_drive_force(struct exh_drive *s, const struct exh_drive_cfg *cfg,
+                         struct exh_force_ledger *f);
+
+/* Fills table, peak and i2t for the force commanded; zeroes the rest. The I2t
+ * limit leaves the peak untouched while less than 3/4 of the budget is used,
+ * then folds back to i_cont without a step. Returns limit bits. */
+uint32_t exh_drive_current(struct exh_drive *s, const struct exh_drive_cfg *cfg,
+                           const struct exh_force_ledger *f, struct exh_current_ledger *i);
+
+/* Monitored current of a code, A q26 (saturating, error <= 1/2 LSB = 7.5 nA), and
+ * the string force that the monitor table gives for it, N q20. */
+int32_t exh_drive_monitor_A_q26(const struct exh_drive_cfg *cfg, int16_t mon_raw);
+int32_t exh_drive_monitor_N_q20(const struct exh_drive_cfg *cfg, int16_t mon_raw);
+
+/* The state of an axis at zero force, cold. The heat outlives a stop: zero only
+ * force_N_q20 to restart a warm axis. */
+void exh_drive_bytes(struct exh_bytes *c, struct exh_drive *s);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,50 @@
+/* Errors: what a call that may fail returns, and the assertion that stays on.
+ *
+ * Three lanes (docs/DESIGN.md 13): set-up, input and output return 0 or a
+ * negative -EXH_E…; the control path cannot fail, it saturates and sets a limit
+ * bit (safety.h); a programmer's mistake goes to EXH_ASSERT.
+ */
+#ifndef EXHAND_ERROR_H
+#define EXHAND_ERROR_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum exh_error {
+    EXH_OK = 0,
+    EXH_E_RANGE = 1,    /* a value lies outside its documented range           */
+    EXH_E_UNKNOWN = 2,  /* no such signal, record or command                   */
+    EXH_E_STATE = 3,    /* right call, wrong time (a set-up value while locked) */
+    EXH_E_CRC = 4,      /* bytes damaged                                       */
+    EXH_E_VERSION = 5,  /* another version or another table than ours          */
+    EXH_E_SHORT = 6,    /* bytes end too early, or a buffer is too small       */
+    EXH_E_MONOTONE = 7, /* a conversion table does not rise strictly           */
+    EXH_E_RATE = 8,     /* the loop rate cannot be had                         */
+    EXH_E_IO = 9,       /* a device answered wrongly or not in time            */
+    EXH_E_ABSENT = 10,  /* a device is not there                               */
+    EXH_E_COUNT = 11    /* how many there are; not an error                    */
+};
+
+/* One line of plain English for a returned code (sign ignored). Never NULL. */
+const char *exh_error_text(int code);
+
+/* The library's one hook besides mem*: makes the outputs safe, then stops.
+ * The program defines it (examples/loop.c does); it must not return. */
+void exh_assert_failed(const char *file, int line);
+
+/* On in release: a violated contract near a human finger is a reason to stop. */
+#define EXH_ASSERT(cond) \
+    do { \
+        if (!(cond)) { \
+            exh_assert_failed(__FILE__, __LINE__); \
+        } \
+    } while (0)
+
+/* Compile-time assertion in C99; name must be unique in its scope. */
+#define EXH_STATIC_ASSERT(name, cond) typedef char exh_static_##name[(cond) ? 1 : -1]
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,34 @@
+/* exhand: from 22 glove voltages and 5 encoder counts to 5 motor currents, in
+ * integers, without allocation, with the same bits on every machine.
+ *
+ *   fix units bytes error        below everything
+ *   signal                       one descriptor per value; parameters
+ *   quad -> velocity -> contact -> drive -> safety (the gate)      one tick
+ *   record                       log and replay
+ *   board                        what a port provides; only the loop calls it
+ *
+ * A scene is a pure function over these modules (examples/minimal is the
+ * shortest); examples/loop.c is the one loop around it. docs/DESIGN.md says why.
+ */
+#ifndef EXHAND_EXHAND_H
+#define EXHAND_EXHAND_H
+
+#define EXH_VERSION_MAJOR 0
+#define EXH_VERSION_MINOR 1
+#define EXH_VERSION_PATCH 0
+#define EXH_VERSION_NUMBER \
+    ((uint32_t)EXH_VERSION_MAJOR << 16 | (uint32_t)EXH_VERSION_MINOR << 8 | EXH_VERSION_PATCH)
+
+#include "exhand/bytes.h"
+#include "exhand/contact.h"
+#include "exhand/drive.h"
+#include "exhand/error.h"
+#include "exhand/fix.h"
+#include "exhand/quad.h"
+#include "exhand/record.h"
+#include "exhand/safety.h"
+#include "exhand/signal.h"
+#include "exhand/units.h"
+#include "exhand/velocity.h"
+
+#endif

@@ -1,0 +1,113 @@
+/* Fixed-point arithmetic: everything that can lose a bit or clip, in one place.
+ *
+ * Formats are written into names: x_m_q30 is x in metres times 2^30. 32-bit
+ * storage, 64-bit inside, one rounding (half up) and one saturation, at the end.
+ * docs/NUMERICS.md owns the table of formats, units.h its constants.
+ */
+#ifndef EXHAND_FIX_H
+#define EXHAND_FIX_H
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Audit: a test build counts every saturation; elsewhere the hook is nothing. */
+#ifdef EXH_FIX_AUDIT
+void exh_fix_saturated(const char *file, int line);
+#define EXH_SATURATED() exh_fix_saturated(__FILE__, __LINE__)
+#else
+#define EXH_SATURATED() ((void)0)
+#endif
+
+/* C99 leaves >> of a negative number to the compiler; we need the floor. */
+typedef char exh_needs_arithmetic_shift[((-3) >> 1) == -2 ? 1 : -1];
+
+/* v limited to int32_t; the sign is always kept. */
+static inline int32_t exh_sat32(int64_t v)
+{
+    if (v > INT32_MAX) {
+        EXH_SATURATED();
+        return INT32_MAX;
+    }
+    if (v < INT32_MIN) {
+        EXH_SATURATED();
+        return INT32_MIN;
+    }
+    return (int32_t)v;
+}
+
+/* v limited to lo..hi, lo <= hi. A limit that acts by design: not audited. */
+static inline int32_t exh_clamp(int64_t v, int32_t lo, int32_t hi)
+{
+    return v < lo ? lo : v > hi ? hi : (int32_t)v;
+}
+
+/* floor(v / 2^n + 1/2), 1 <= n <= 63; exact for every v. */
+static inline int64_t exh_shr_round(int64_t v, unsigned n)
+{
+    return (v >> n) + ((v >> (n - 1)) & 1);
+}
+
+/* a*b / 2^n rounded half up, 1 <= n <= 62; exact for every a and b. */
+static inline int64_t exh_mul_shr(int32_t a, int32_t b, unsigned n)
+{
+    return ((int64_t)a * b + (INT64_C(1) << (n - 1))) >> n;
+}
+
+/* a*b / 2^31 rounded half up, b >= 0; exact for every a. */
+static inline int64_t exh_mul64_q31(int64_t a, int32_t b)
+{
+    const int64_t hi = (a >> 32) * b;
+    const int64_t lo = (int64_t)(uint32_t)((uint64_t)a & UINT32_MAX) * b;
+    return 2 * hi + ((lo + (INT64_C(1) << 30)) >> 31);
+}
+
+/* The value of a 32-bit pattern read as two's complement, by arithmetic alone. */
+static inline int32_t exh_from_u32(uint32_t u)
+{
+    return u <= INT32_MAX ? (int32_t)u : -(int32_t)(UINT32_MAX - u) - 1;
+}
+
+/* now - before across any wrap of a 32-bit counter: the one place that wraps. */
+static inline int32_t exh_wrap_diff(int32_t now, int32_t before)
+{
+    return exh_from_u32((uint32_t)now - (uint32_t)before);
+}
+
+/* a + b modulo 2^32, for counters only. */
+static inline int32_t exh_wrap_add(int32_t a, int32_t b)
+{
+    return exh_from_u32((uint32_t)a + (uint32_t)b);
+}
+
+/* A positive factor mant * 2^-shift with 31 significant bits: what a division
+ * at set-up leaves behind for the tick. */
+struct exh_gain {
+    int32_t mant;  /* 2^30 .. 2^31-1, or 0                     */
+    uint8_t shift; /* 1 .. 62                                  */
+};
+
+/* x times the gain, rounded half up. Relative error of the gain <= 2^-31 (and
+ * half an LSB of the result); never overflows, the caller saturates. */
+static inline int64_t exh_gain_mul(struct exh_gain g, int32_t x)
+{
+    return exh_mul_shr(x, g.mant, g.shift);
+}
+
+/* Sets *g to num/den. 0, or -EXH_E_RANGE when den is 0 or >= 2^63, or when the
+ * quotient is >= 2^30 or > 0 and < 2^-32. Set-up only (long division). */
+int exh_gain_set(struct exh_gain *g, uint64_t num, uint64_t den);
+
+/* floor(num/den), den > 0, without the compiler's division helpers; the
+ * remainder goes to *rem unless NULL. Set-up only: 64 steps. */
+uint64_t exh_udiv64(uint64_t num, uint64_t den, uint64_t *rem);
+
+/* floor(sqrt(v)). Set-up only: 32 steps. */
+uint32_t exh_usqrt64(uint64_t v);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

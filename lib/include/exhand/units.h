@@ -1,0 +1,42 @@
+/* Units and formats: docs/NUMERICS.md as constants (a test asserts they agree).
+ *
+ *   quantity          unit    format  range       LSB
+ *   position          m       q30     +-2         0.93 nm
+ *   velocity          m/s     q27     +-16        7.5 nm/s
+ *   force             N       q20     +-2048      0.95 uN
+ *   current           A       q26     +-32        15 nA
+ *   stiffness k       N/m     q10     0..2.1e6    0.98 mN/m
+ *   damping b         Ns/m    q20     0..2048     0.95 uNs/m
+ *   encoder step      m/count q42     0..488 um   0.23 pm
+ *   D/A codes         1/A     q16     0..32767    1.5e-5
+ *   monitor           A/code  q40     0..1.95 mA  0.91 pA
+ *   force slew        N/s     q0      0..2.1e9    1
+ */
+#ifndef EXHAND_UNITS_H
+#define EXHAND_UNITS_H
+
+#include <stdint.h>
+
+#define EXH_Q_POS 30   /* m        */
+#define EXH_Q_VEL 27   /* m/s      */
+#define EXH_Q_FORCE 20 /* N        */
+#define EXH_Q_CUR 26   /* A        */
+#define EXH_Q_K 10     /* N/m      */
+#define EXH_Q_B 20     /* Ns/m     */
+#define EXH_Q_STEP 42  /* m/count  */
+#define EXH_Q_DAC 16   /* codes/A  */
+#define EXH_Q_MON 40   /* A/code   */
+
+/* num/den in format q, for initialisers: an integer constant expression,
+ * truncated towards zero. |num| * 2^q < 2^63 and the result fits int32_t.
+ * EXH_Q(20000, 1, EXH_Q_K) is 20 kN/m, EXH_Q(7, 100, EXH_Q_POS) is 7 cm. */
+#define EXH_Q(num, den, q) ((int32_t)((num) * (INT64_C(1) << (q)) / (den)))
+
+/* The loop's period as the exact ratio of two integers, in seconds. What a
+ * timer was programmed to, never a measurement (docs/DESIGN.md 4). */
+struct exh_period {
+    uint32_t num; /* 1 .. 2^32-1                                               */
+    uint32_t den; /* num/den within 50 us .. 1 s                               */
+};
+
+#endif

@@ -1,0 +1,122 @@
+/* Velocity of a counted position: five estimators, of which a scene links one.
+ *
+ * All take the extended count and return m/s in q27, saturated at +-16 m/s.
+ * T is the loop period, D the encoder step. Lag is the steady velocity error per
+ * acceleration. Table of noise, lag and instructions: docs/REPORT.md, made by
+ * `make bench`; formulas: Kikuuwe/Janabi-Sharifi for FOAW, the rest textbook.
+ *
+ *   difference  (y[k]-y[k-1])/T              error < D/T       lag T/2
+ *   window      (y[k]-y[k-n])/(nT), n = 2^p  error < D/(nT)    lag nT/2
+ *   pole        difference through 1 pole    lag T/2 + tau
+ *   foaw        longest line that fits       adaptive window, n <= 16
+ *   track       critically damped observer   lag T(alpha/beta - 1/2)
+ *
+ * The first call of each sets the position and returns 0. Count differences
+ * are exact across the wrap of the count.
+ */
+#ifndef EXHAND_VELOCITY_H
+#define EXHAND_VELOCITY_H
+
+#include "exhand/bytes.h"
+#include "exhand/fix.h"
+#include "exhand/signal.h"
+#include "exhand/units.h"
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define EXH_VELOCITY_N 16 /* longest window, ticks */
+
+/* What every estimator's set-up needs. */
+struct exh_velocity_scale {
+    int32_t step_m_q42; /* m per count, > 0                                    */
+    struct exh_period T;
+};
+
+/* --- difference and window: n = 2^p, p = 0 is the plain backward difference --- */
+struct exh_velocity_par {
+    int32_t p; /* 0 .. 4                                                       */
+};
+#define EXH_VELOCITY_ROWS 1
+extern const struct exh_signal exh_velocity_rows[EXH_VELOCITY_ROWS];
+
+struct exh_velocity_window_cfg {
+    struct exh_gain gain; /* m/s q27 per count over the window                 */
+    uint8_t n;            /* 1, 2, 4, 8 or 16                                  */
+};
+struct exh_velocity_window {
+    int32_t cnt[EXH_VELOCITY_N]; /* the last n counts                          */
+    uint8_t at;                  /* oldest of them                             */
+    uint8_t started;
+};
+/* -EXH_E_RANGE when p > 4 or one count per window is outside 2^-32..8 m/s. */
+int exh_velocity_window_setup(struct exh_velocity_window_cfg *cfg, struct exh_velocity_scale s,
+                              const struct exh_velocity_par *par);
+int32_t exh_velocity_window_mps_q27(struct exh_velocity_window *s,
+                                    const struct exh_velocity_window_cfg *cfg, int32_t cnt);
+void exh_velocity_window_bytes(struct exh_bytes *c, struct exh_velocity_window *s);
+
+/* --- pole: v += (diff - v) * T/(T + tau) --- */
+struct exh_velocity_pole_cfg {
+    struct exh_gain gain; /* m/s q27 per count                                 */
+    int32_t a_q31;        /* T/(T + tau), > 0 .. 1-2^-31                       */
+};
+struct exh_velocity_pole {
+    int64_t v_mps_q55; /* q27 plus 28 bits, so that it settles exactly         */
+    int32_t cnt;
+    uint8_t started;
+};
+/* tau_us: 0 .. 10^6. -EXH_E_RANGE as above. */
+int exh_velocity_pole_setup(struct exh_velocity_pole_cfg *cfg, struct exh_velocity_scale s,
+                            uint32_t tau_us);
+int32_t exh_velocity_pole_mps_q27(struct exh_velocity_pole *s,
+                                  const struct exh_velocity_pole_cfg *cfg, int32_t cnt);
+void exh_velocity_pole_bytes(struct exh_bytes *c, struct exh_velocity_pole *s);
+
+/* --- foaw: best fit (least squares) over the longest window whose samples all
+ * stay within tol counts of the line of that slope through the newest one; at
+ * least n = 1. The test is exact in integers; all windows are always tried, so the
+ * cost does not depend on the signal. Over 2.6e6 counts a tick reads as that. --- */
+struct exh_velocity_foaw_cfg {
+    struct exh_gain gain[EXH_VELOCITY_N]; /* [n-1]: m/s q27 per unit of n*S0-2*S1 */
+    uint8_t n;                            /* longest window, 1 .. 16            */
+    uint8_t tol_cnt;                      /* 1 .. 255, usually 1                */
+};
+struct exh_velocity_foaw {
+    int32_t cnt[EXH_VELOCITY_N + 1];
+    uint8_t at;   /* newest                                                    */
+    uint8_t have; /* samples held                                              */
+};
+int exh_velocity_foaw_setup(struct exh_velocity_foaw_cfg *cfg, struct exh_velocity_scale s,
+                            unsigned n, unsigned tol_cnt);
+int32_t exh_velocity_foaw_mps_q27(struct exh_velocity_foaw *s,
+                                  const struct exh_velocity_foaw_cfg *cfg, int32_t cnt);
+void exh_velocity_foaw_bytes(struct exh_bytes *c, struct exh_velocity_foaw *s);
+
+/* --- track: alpha-beta observer with a double pole theta = T_f/(T_f + T):
+ * alpha = 1-theta^2, beta = (1-theta)^2 --- */
+struct exh_velocity_track_cfg {
+    struct exh_gain gain; /* m/s q27 per count and tick                        */
+    int32_t alpha_q31;
+    int32_t beta_q31;
+};
+struct exh_velocity_track {
+    int64_t err_cnt_q32; /* estimated position minus the last count            */
+    int64_t vel_cnt_q32; /* counts per tick; both saturate at +-2^28 counts    */
+    int32_t cnt;
+    uint8_t started;
+};
+/* tf_us: time constant T_f of each pole, 0 .. 10^6. */
+int exh_velocity_track_setup(struct exh_velocity_track_cfg *cfg, struct exh_velocity_scale s,
+                             uint32_t tf_us);
+int32_t exh_velocity_track_mps_q27(struct exh_velocity_track *s,
+                                   const struct exh_velocity_track_cfg *cfg, int32_t cnt);
+void exh_velocity_track_bytes(struct exh_bytes *c, struct exh_velocity_track *s);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,66 @@
+#include "exhand/contact.h"
+
+#include "exhand/fix.h"
+#include "exhand/units.h"
+
+const struct exh_signal exh_contact_rows[EXH_CONTACT_ROWS] = {
+    {0x0401, EXH_Q_K, EXH_WHEN_ANY, 0, EXH_Q(1000000, 1, EXH_Q_K), EXH_Q(1500, 1, EXH_Q_K), "k",
+     "n_per_m", "stiffness of the virtual wall"},
+    {0x0402, EXH_Q_B, EXH_WHEN_ANY, 0, EXH_Q(1000, 1, EXH_Q_B), 0, "b", "ns_per_m",
+     "damping of the virtual wall"},
+    {0x0403, EXH_Q_FORCE, EXH_WHEN_ANY, 0, EXH_Q(20, 1, EXH_Q_FORCE),
+     EXH_Q(107, 1000, EXH_Q_FORCE), "f0", "n", "pull-back force while the string runs in"},
+    {0x0404, EXH_Q_POS, EXH_WHEN_ANY, 0, EXH_Q(1, 100, EXH_Q_POS), EXH_Q(2, 10000, EXH_Q_POS),
+     "f0_band", "m", "movement that reverses the pull-back force"},
+    {0x0405, EXH_Q_POS, EXH_WHEN_ANY, 0, EXH_Q(1, 100, EXH_Q_POS), 0, "hyst", "m",
+     "contact ends this far before q_lim"},
+};
+
+/* Two states: the farthest point since the last reversal moves along; a return of
+ * more than the band from it is the next reversal. */
+static void follow_reversals(struct exh_contact *s, int32_t pos, int32_t band)
+{
+    int64_t back;
+    if (!s->started) {
+        s->turn_m_q30 = pos;
+        s->started = 1;
+    }
+    back = s->inward ? (int64_t)pos - s->turn_m_q30 : (int64_t)s->turn_m_q30 - pos;
+    if (back > band) {
+        s->inward = !s->inward;
+        s->turn_m_q30 = pos;
+    } else if (back < 0) {
+        s->turn_m_q30 = pos;
+    }
+}
+
+int exh_contact_law(struct exh_contact *s, const struct exh_contact_par *par,
+                    struct exh_contact_in in, struct exh_force_ledger *out)
+{
+    const int64_t past = (int64_t)in.pos_m_q30 - in.lim_m_q30;
+    const int32_t pen = exh_sat32(past);
+
+    follow_reversals(s, in.pos_m_q30, par->f0_band_m_q30);
+    s->touching = past >= 0 || (s->touching && past >= -(int64_t)par->hyst_m_q30);
+
+    /* Both products in every tick: the cost must not depend on contact. */
+    out->spring_N_q20 = exh_mul_shr(par->k_Npm_q10, pen, EXH_Q_K + EXH_Q_POS - EXH_Q_FORCE) *
+                        s->touching;
+    out->damper_N_q20 =
+        exh_mul_shr(par->b_Nspm_q20, in.vel_mps_q27, EXH_Q_B + EXH_Q_VEL - EXH_Q_FORCE) *
+        s->touching;
+    out->pullback_N_q20 = (int64_t)par->f0_N_q20 * s->inward;
+    out->passivity_N_q20 = 0;
+    out->clamp_N_q20 = 0;
+    out->slew_N_q20 = 0;
+    out->force_N_q20 = 0;
+    return s->touching;
+}
+
+void exh_contact_bytes(struct exh_bytes *c, struct exh_contact *s)
+{
+    exh_bytes_i32(c, &s->turn_m_q30);
+    exh_bytes_u8(c, &s->inward);
+    exh_bytes_u8(c, &s->touching);
+    exh_bytes_u8(c, &s->started);
+}

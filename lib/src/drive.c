@@ -1,0 +1,205 @@
+#include "exhand/drive.h"
+
+#include "exhand/error.h"
+
+#include <stddef.h>
+
+const struct exh_signal exh_drive_rows[EXH_DRIVE_ROWS] = {
+    {0x0501, EXH_Q_FORCE, EXH_WHEN_ANY, 0, EXH_Q(100, 1, EXH_Q_FORCE), EXH_Q(40, 1, EXH_Q_FORCE),
+     "f_max", "n", "force limit"},
+    {0x0502, 0, EXH_WHEN_ANY, 1, 10000000, 200000, "slew_up", "n_per_s", "fastest rise of force"},
+    {0x0503, 0, EXH_WHEN_ANY, 1, 10000000, 200000, "slew_down", "n_per_s",
+     "fastest fall of force"},
+    /* Elmo Castanet: 6.6 A peak for about 2.7 s, 3.3 A for ever (hardware facts). */
+    {0x0504, EXH_Q_CUR, EXH_WHEN_SETUP, 0, EXH_Q(66, 10, EXH_Q_CUR), EXH_Q(66, 10, EXH_Q_CUR),
+     "i_peak", "a", "peak current of the drive"},
+    {0x0505, EXH_Q_CUR, EXH_WHEN_SETUP, 0, EXH_Q(66, 10, EXH_Q_CUR), EXH_Q(33, 10, EXH_Q_CUR),
+     "i_cont", "a", "continuous current of the drive"},
+    {0x0506, 0, EXH_WHEN_SETUP, 1, 10000, 2700, "peak_time", "ms", "peak current from cold"},
+    /* Sensoray 526: offset binary, 3249 codes/V; Castanet: 1.76 A/V, +-3.75 V. */
+    {0x0507, 0, EXH_WHEN_SETUP, 0, 65535, 32768, "dac_zero", "", "D/A code of no current"},
+    {0x0508, 0, EXH_WHEN_SETUP, 0, 32767, 12184, "dac_span", "", "codes used either side of it"},
+    {0x0509, EXH_Q_DAC, EXH_WHEN_SETUP, EXH_Q(1, 1, EXH_Q_DAC), INT32_MAX,
+     EXH_Q(324900, 176, EXH_Q_DAC), "dac_scale", "per_a", "D/A codes per ampere"},
+    {0x050A, 0, EXH_WHEN_SETUP, -32768, 32767, 0, "mon_zero", "", "monitor code of no current"},
+    /* 305.2 uV per code over 0.591 V/A. */
+    {0x050B, EXH_Q_MON, EXH_WHEN_SETUP, 1, INT32_MAX, EXH_Q(5164, 10000000, EXH_Q_MON), "mon_scale",
+     "a", "ampere per monitor code"},
+};
+
+/* --- frames --- */
+
+void exh_drive_in_bytes(struct exh_bytes *c, struct exh_drive_in *in, unsigned n)
+{
+    for (unsigned i = 0; i < n; i++) { exh_bytes_u32(c, &in->enc_raw[i]); }
+    for (unsigned i = 0; i < n; i++) { exh_bytes_i16(c, &in->mon_raw[i]); }
+    exh_bytes_i16(c, &in->supply_raw);
+    exh_bytes_u32(c, &in->din);
+}
+
+void exh_drive_out_bytes(struct exh_bytes *c, struct exh_drive_out *out, unsigned n)
+{
+    for (unsigned i = 0; i < n; i++) { exh_bytes_u16(c, &out->dac_raw[i]); }
+    exh_bytes_u8(c, &out->enable);
+    exh_bytes_u8(c, &out->alive);
+}
+
+/* --- tables --- */
+
+int exh_table_set(struct exh_knot *knot, unsigned n)
+{
+    if (n < 2 || n > 255) { return -EXH_E_RANGE; }
+    for (unsigned i = 0; i + 1 < n; i++) {
+        const int64_t dx = (int64_t)knot[i + 1].x - knot[i].x;
+        const int64_t dy = (int64_t)knot[i + 1].y - knot[i].y;
+        if (dx <= 0 || dy <= 0) { return -EXH_E_MONOTONE; }
+        if (exh_gain_set(&knot[i].slope, (uint64_t)dy, (uint64_t)dx) < 0) { return -EXH_E_RANGE; }
+    }
+    if ((int64_t)knot[n - 1].x - knot[0].x > INT32_MAX ||
+        (int64_t)knot[n - 1].y - knot[0].y > INT32_MAX) {
+        return -EXH_E_RANGE;
+    }
+    knot[n - 1].slope = knot[n - 2].slope; /* never used: the end clamps */
+    return 0;
+}
+
+int exh_table_invert(struct exh_knot *dst, const struct exh_knot *src, unsigned n)
+{
+    for (unsigned i = 0; i < n; i++) {
+        const int32_t x = src[i].x;
+        dst[i].x = src[i].y;
+        dst[i].y = x;
+    }
+    return exh_table_set(dst, n);
+}
+
+int32_t exh_table_at(struct exh_table t, int32_t x)
+{
+    const unsigned last = t.n - 1u;
+    const int32_t in = exh_clamp(x, t.knot[0].x, t.knot[last].x);
+    unsigned i = 0;
+    /* Every knot is looked at: the cost must not depend on the force. */
+    for (unsigned k = 1; k < last; k++) { i += in >= t.knot[k].x; }
+    return exh_clamp(t.knot[i].y + exh_gain_mul(t.knot[i].slope, in - t.knot[i].x), t.knot[i].y,
+                     t.knot[i + 1].y);
+}
+
+/* --- set-up --- */
+
+/* I2t: heat above i_cont^2, in A^2 ticks with 32 fraction bits, so that no
+ * multiplication by the period is needed in the tick. */
+static int setup_i2t(struct exh_drive_cfg *cfg, const struct exh_drive_par *par,
+                     struct exh_period T)
+{
+    const int64_t peak_A_q16 = par->i_peak_A_q26 >> (EXH_Q_CUR - 16);
+    const int64_t cont_A_q16 = par->i_cont_A_q26 >> (EXH_Q_CUR - 16);
+    const uint64_t ticks =
+        exh_udiv64((uint64_t)(uint32_t)par->peak_ms * T.den, UINT64_C(1000) * T.num, NULL) + 1;
+    const uint64_t excess_q32 = (uint64_t)(peak_A_q16 * peak_A_q16 - cont_A_q16 * cont_A_q16);
+    uint64_t knee;
+
+    cfg->i2t_budget_q32 = 0;
+    cfg->i2t_shift = 0;
+    cfg->i2t_fold.mant = 0;
+    cfg->i2t_fold.shift = 1;
+    if (excess_q32 == 0) { return 0; }
+    if (ticks > exh_udiv64(INT64_MAX / 2, excess_q32, NULL)) { return -EXH_E_RANGE; }
+    cfg->i2t_budget_q32 = (int64_t)(excess_q32 * ticks);
+    while (cfg->i2t_budget_q32 >> cfg->i2t_shift > INT32_MAX) { cfg->i2t_shift++; }
+    knee = (uint64_t)cfg->i2t_budget_q32 >> cfg->i2t_shift >> 2;
+    return exh_gain_set(&cfg->i2t_fold, (uint64_t)(par->i_peak_A_q26 - par->i_cont_A_q26),
+                        knee ? knee : 1);
+}
+
+int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par,
+                    struct exh_period T, struct exh_table force_to_cur,
+                    struct exh_table cur_to_force)
+{
+    int err;
+    if (par->i_cont_A_q26 < 0 || par->i_peak_A_q26 < par->i_cont_A_q26 || par->peak_ms < 1 ||
+        par->dac_rawpA_q16 <= 0 || T.num == 0 || T.den == 0) {
+        return -EXH_E_RANGE;
+    }
+    cfg->par = par;
+    cfg->force_to_cur = force_to_cur;
+    cfg->cur_to_force = cur_to_force;
+    err = exh_gain_set(&cfg->tick_N_q20, (uint64_t)T.num << EXH_Q_FORCE, T.den);
+    if (err == 0) {
+        err = exh_gain_set(&cfg->dac_A_q26, UINT64_C(1) << (EXH_Q_CUR + EXH_Q_DAC),
+                           (uint64_t)(uint32_t)par->dac_rawpA_q16);
+    }
+    return err == 0 ? setup_i2t(cfg, par, T) : err;
+}
+
+/* --- the tick --- */
+
+uint32_t exh_drive_force(struct exh_drive *s, const struct exh_drive_cfg *cfg,
+                         struct exh_force_ledger *f)
+{
+    const struct exh_drive_par *par = cfg->par;
+    const int64_t asked =
+        f->spring_N_q20 + f->damper_N_q20 + f->pullback_N_q20 + f->passivity_N_q20;
+    const int32_t held = exh_clamp(asked, 0, par->f_max_N_q20);
+    const int64_t up = exh_gain_mul(cfg->tick_N_q20, par->slew_up_Nps);
+    const int64_t down = exh_gain_mul(cfg->tick_N_q20, par->slew_down_Nps);
+    const int64_t top = s->force_N_q20 + (up > 0 ? up : 1);
+    const int64_t bottom = s->force_N_q20 - (down > 0 ? down : 1);
+    const int64_t slewed = held > top ? top : held < bottom ? bottom : held;
+    uint32_t limits = 0;
+
+    if (asked < 0) { limits |= EXH_LIMIT_PULL; }
+    if (asked > held && asked > 0) { limits |= EXH_LIMIT_FORCE; }
+    if (slewed != held) { limits |= EXH_LIMIT_SLEW; }
+    f->clamp_N_q20 = held - asked;
+    f->slew_N_q20 = slewed - held;
+    f->force_N_q20 = (int32_t)slewed; /* between held and the last force: both int32 */
+    s->force_N_q20 = f->force_N_q20;
+    return limits;
+}
+
+/* What I2t allows now: i_cont, plus a share of the peak while there is budget. */
+static int32_t i2t_limit(const struct exh_drive *s, const struct exh_drive_cfg *cfg)
+{
+    const int32_t span = cfg->par->i_peak_A_q26 - cfg->par->i_cont_A_q26;
+    const int64_t left = (cfg->i2t_budget_q32 - s->i2t_q32) >> cfg->i2t_shift;
+    const int64_t extra = exh_gain_mul(cfg->i2t_fold, exh_clamp(left, 0, INT32_MAX));
+    return cfg->par->i_cont_A_q26 + exh_clamp(extra, 0, span);
+}
+
+uint32_t exh_drive_current(struct exh_drive *s, const struct exh_drive_cfg *cfg,
+                           const struct exh_force_ledger *f, struct exh_current_ledger *i)
+{
+    const int32_t table = exh_table_at(cfg->force_to_cur, f->force_N_q20);
+    const int32_t peak = exh_clamp(table, -cfg->par->i_peak_A_q26, cfg->par->i_peak_A_q26);
+    const int32_t hot = i2t_limit(s, cfg);
+    const int32_t now = exh_clamp(peak, -hot, hot);
+    const int64_t now_A_q16 = now >> (EXH_Q_CUR - 16);
+    const int64_t cont_A_q16 = cfg->par->i_cont_A_q26 >> (EXH_Q_CUR - 16);
+    const int64_t heat = s->i2t_q32 + now_A_q16 * now_A_q16 - cont_A_q16 * cont_A_q16;
+
+    s->i2t_q32 = heat < 0 ? 0 : heat > cfg->i2t_budget_q32 ? cfg->i2t_budget_q32 : heat;
+    i->table_A_q26 = table;
+    i->peak_A_q26 = (int64_t)peak - table;
+    i->i2t_A_q26 = (int64_t)now - peak;
+    i->gate_A_q26 = 0;
+    i->dac_A_q26 = 0;
+    i->coded_A_q26 = 0;
+    return (peak != table ? EXH_LIMIT_PEAK : 0u) | (now != peak ? EXH_LIMIT_I2T : 0u);
+}
+
+int32_t exh_drive_monitor_A_q26(const struct exh_drive_cfg *cfg, int16_t mon_raw)
+{
+    return exh_sat32(exh_mul_shr((int32_t)mon_raw - cfg->par->mon_zero_raw, cfg->par->mon_A_q40,
+                                 EXH_Q_MON - EXH_Q_CUR));
+}
+
+int32_t exh_drive_monitor_N_q20(const struct exh_drive_cfg *cfg, int16_t mon_raw)
+{
+    return exh_table_at(cfg->cur_to_force, exh_drive_monitor_A_q26(cfg, mon_raw));
+}
+
+void exh_drive_bytes(struct exh_bytes *c, struct exh_drive *s)
+{
+    exh_bytes_i32(c, &s->force_N_q20);
+    exh_bytes_i64(c, &s->i2t_q32);
+}

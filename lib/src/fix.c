@@ -1,0 +1,65 @@
+#include "exhand/fix.h"
+
+#include "exhand/error.h"
+
+#include <stddef.h>
+
+uint64_t exh_udiv64(uint64_t num, uint64_t den, uint64_t *rem)
+{
+    uint64_t quot = 0;
+    uint64_t r = 0;
+    EXH_ASSERT(den != 0);
+    for (int i = 63; i >= 0; i--) {
+        const unsigned carry = (unsigned)(r >> 63); /* r < den, but 2r may need bit 64 */
+        r = r << 1 | (num >> i & 1);
+        quot <<= 1;
+        if (carry || r >= den) {
+            r -= den;
+            quot |= 1;
+        }
+    }
+    if (rem != NULL) { *rem = r; }
+    return quot;
+}
+
+uint32_t exh_usqrt64(uint64_t v)
+{
+    uint64_t root = 0;
+    for (int i = 31; i >= 0; i--) {
+        const uint64_t trial = root | UINT64_C(1) << i;
+        if (trial * trial <= v) { root = trial; }
+    }
+    return (uint32_t)root;
+}
+
+int exh_gain_set(struct exh_gain *g, uint64_t num, uint64_t den)
+{
+    uint64_t rem;
+    uint64_t mant;
+    unsigned shift = 0;
+
+    g->mant = 0;
+    g->shift = 1;
+    if (den == 0 || den >> 63) { return -EXH_E_RANGE; }
+    if (num == 0) { return 0; }
+    mant = exh_udiv64(num, den, &rem);
+    if (mant >> 30) { return -EXH_E_RANGE; }
+    while (mant >> 30 == 0) { /* one more quotient bit at a time */
+        rem <<= 1;
+        mant <<= 1;
+        if (rem >= den) {
+            rem -= den;
+            mant |= 1;
+        }
+        shift++;
+        if (shift > 62) { return -EXH_E_RANGE; }
+    }
+    if (rem >= den - rem) { mant++; } /* half up */
+    if (mant >> 31) {
+        mant >>= 1;
+        shift--;
+    }
+    g->mant = (int32_t)mant;
+    g->shift = (uint8_t)shift;
+    return shift >= 1 ? 0 : -EXH_E_RANGE;
+}

@@ -1,0 +1,68 @@
+#include "exhand/quad.h"
+
+#include "exhand/fix.h"
+#include "exhand/units.h"
+
+const struct exh_signal exh_quad_rows[EXH_QUAD_ROWS] = {
+    {0x0201, EXH_Q_STEP, EXH_WHEN_SETUP, EXH_Q(1, 1000000, EXH_Q_STEP), INT32_MAX,
+     EXH_Q(6632, 100000000, EXH_Q_STEP), "step", "m", "string per encoder count"},
+    {0x0202, 0, EXH_WHEN_SETUP, 16, 32, 24, "counter_bits", "", "width of the hardware counter"},
+};
+
+/* Step of each transition, index previous<<2 | now of A<<1 | B; ILL = both lines
+ * changed. Up is 00 01 11 10. x1 counts between 01 and 11 only, so that noise on
+ * B cannot move the count. */
+#define ILL 2
+static const int8_t step_of[3][16] = {
+    [EXH_QUAD_X1] = {0, 0, 0, ILL, 0, 0, ILL, 1, 0, ILL, 0, 0, ILL, -1, 0, 0},
+    [EXH_QUAD_X2] = {0, 0, -1, ILL, 0, 0, ILL, 1, 1, ILL, 0, 0, ILL, -1, 0, 0},
+    [EXH_QUAD_X4] = {0, 1, -1, ILL, -1, 0, ILL, 1, 1, ILL, 0, -1, ILL, -1, 1, 0},
+};
+
+void exh_quad_ab_step(struct exh_quad_ab *s, enum exh_quad_mode mode, unsigned a, unsigned b,
+                      unsigned index)
+{
+    const uint8_t now = (uint8_t)((a & 1) << 1 | (b & 1));
+    const uint8_t idx = (uint8_t)(index & 1);
+
+    if (s->started) {
+        const int8_t d = step_of[mode][s->ab << 2 | now];
+        if (d == ILL) {
+            s->illegal++;
+        } else {
+            s->edges += now != s->ab;
+            s->cnt = exh_wrap_add(s->cnt, d);
+        }
+        if (idx > s->index) {
+            s->index_cnt = s->cnt;
+            s->indices++;
+        }
+    }
+    s->ab = now;
+    s->index = idx;
+    s->started = 1;
+}
+
+int32_t exh_quad_extend(struct exh_quad *s, const struct exh_quad_par *par, uint32_t raw)
+{
+    const unsigned unused = 32u - (unsigned)par->bits;
+    /* At the top of the word the counter's own wrap is the word's. */
+    const int32_t moved = exh_from_u32((raw - s->raw) << unused) >> unused;
+
+    if (s->started) { s->cnt = exh_wrap_add(s->cnt, moved); }
+    s->raw = raw;
+    s->started = 1;
+    return s->cnt;
+}
+
+int32_t exh_quad_pos_m_q30(const struct exh_quad_par *par, int32_t cnt)
+{
+    return exh_sat32(exh_mul_shr(cnt, par->step_m_q42, EXH_Q_STEP - EXH_Q_POS));
+}
+
+void exh_quad_bytes(struct exh_bytes *c, struct exh_quad *s)
+{
+    exh_bytes_u32(c, &s->raw);
+    exh_bytes_i32(c, &s->cnt);
+    exh_bytes_u8(c, &s->started);
+}

@@ -1,0 +1,184 @@
+#include "exhand/velocity.h"
+
+#include "exhand/error.h"
+
+const struct exh_signal exh_velocity_rows[EXH_VELOCITY_ROWS] = {
+    {0x0301, 0, EXH_WHEN_SETUP, 0, 4, 1, "vel_p", "", "velocity window of 2^p ticks"},
+};
+
+/* Gain from m to m/s q27, when v = m * step / (T * n). n < 2^13. */
+static int scale(struct exh_gain *g, struct exh_velocity_scale s, uint32_t n)
+{
+    const uint64_t period = ((uint64_t)s.T.num * n) << (EXH_Q_STEP - EXH_Q_VEL);
+    if (s.step_m_q42 <= 0 || s.T.num == 0 || s.T.den == 0) { return -EXH_E_RANGE; }
+    return exh_gain_set(g, (uint64_t)(uint32_t)s.step_m_q42 * s.T.den, period);
+}
+
+/* T / (T + tau) in q31, at least 1 LSB, at most 1 - 2^-31. */
+static int32_t share_q31(struct exh_period T, uint32_t tau_us)
+{
+    const uint64_t t = (uint64_t)T.num * 1000000u;
+    struct exh_gain g;
+    if (exh_gain_set(&g, t, t + (uint64_t)T.den * tau_us) < 0) { return 1; }
+    if (g.shift < 31) { return INT32_MAX; }
+    return g.shift == 31 ? g.mant : exh_clamp(exh_shr_round(g.mant, g.shift - 31u), 1, INT32_MAX);
+}
+
+int exh_velocity_window_setup(struct exh_velocity_window_cfg *cfg, struct exh_velocity_scale s,
+                              const struct exh_velocity_par *par)
+{
+    if (par->p < 0 || par->p > 4) { return -EXH_E_RANGE; }
+    cfg->n = (uint8_t)(1u << par->p);
+    return scale(&cfg->gain, s, cfg->n);
+}
+
+int32_t exh_velocity_window_mps_q27(struct exh_velocity_window *s,
+                                    const struct exh_velocity_window_cfg *cfg, int32_t cnt)
+{
+    int32_t moved;
+    if (!s->started) {
+        for (unsigned i = 0; i < EXH_VELOCITY_N; i++) { s->cnt[i] = cnt; }
+        s->started = 1;
+    }
+    moved = exh_wrap_diff(cnt, s->cnt[s->at]);
+    s->cnt[s->at] = cnt;
+    s->at = (uint8_t)((s->at + 1u) & (cfg->n - 1u));
+    return exh_sat32(exh_gain_mul(cfg->gain, moved));
+}
+
+void exh_velocity_window_bytes(struct exh_bytes *c, struct exh_velocity_window *s)
+{
+    for (unsigned i = 0; i < EXH_VELOCITY_N; i++) { exh_bytes_i32(c, &s->cnt[i]); }
+    exh_bytes_u8(c, &s->at);
+    exh_bytes_u8(c, &s->started);
+}
+
+int exh_velocity_pole_setup(struct exh_velocity_pole_cfg *cfg, struct exh_velocity_scale s,
+                            uint32_t tau_us)
+{
+    if (tau_us > 1000000u) { return -EXH_E_RANGE; }
+    cfg->a_q31 = share_q31(s.T, tau_us);
+    return scale(&cfg->gain, s, 1);
+}
+
+int32_t exh_velocity_pole_mps_q27(struct exh_velocity_pole *s,
+                                  const struct exh_velocity_pole_cfg *cfg, int32_t cnt)
+{
+    const int32_t moved = s->started ? exh_wrap_diff(cnt, s->cnt) : 0;
+    const int64_t diff_q55 = (int64_t)exh_sat32(exh_gain_mul(cfg->gain, moved)) * (INT32_C(1) << 28);
+    s->cnt = cnt;
+    s->started = 1;
+    s->v_mps_q55 += exh_mul64_q31(diff_q55 - s->v_mps_q55, cfg->a_q31);
+    return exh_sat32(exh_shr_round(s->v_mps_q55, 28));
+}
+
+void exh_velocity_pole_bytes(struct exh_bytes *c, struct exh_velocity_pole *s)
+{
+    exh_bytes_i64(c, &s->v_mps_q55);
+    exh_bytes_i32(c, &s->cnt);
+    exh_bytes_u8(c, &s->started);
+}
+
+int exh_velocity_foaw_setup(struct exh_velocity_foaw_cfg *cfg, struct exh_velocity_scale s,
+                            unsigned n, unsigned tol_cnt)
+{
+    int err = n < 1 || n > EXH_VELOCITY_N || tol_cnt < 1 || tol_cnt > 255 ? -EXH_E_RANGE : 0;
+    uint32_t sum = 0, weight = 0; /* weight = m(m+1)(m+2)/6, summed up */
+    cfg->n = (uint8_t)n;
+    cfg->tol_cnt = (uint8_t)tol_cnt;
+    for (uint32_t m = 1; err == 0 && m <= n; m++) {
+        sum += m;
+        weight += sum;
+        err = scale(&cfg->gain[m - 1], s, weight);
+    }
+    return err;
+}
+
+/* d[j] = y[k-j] - y[k]: does every sample of the window of n lie within tol of the
+ * line through the newest whose slope per tick is 6*m / (n(n+1)(n+2))? */
+static int line_fits(const int32_t *d, int32_t n, int64_t m, int32_t tol)
+{
+    const int64_t den = (int64_t)n * (n + 1) * (n + 2);
+    int fits = 1;
+    for (int32_t j = 1; j <= n; j++) {
+        const int64_t off = d[j] * den + 6 * j * m;
+        fits &= off <= tol * den && off >= -tol * den;
+    }
+    return fits;
+}
+
+int32_t exh_velocity_foaw_mps_q27(struct exh_velocity_foaw *s,
+                                  const struct exh_velocity_foaw_cfg *cfg, int32_t cnt)
+{
+    int32_t d[EXH_VELOCITY_N + 1] = {0};
+    int64_t sum = 0, weighted = 0, best = 0;
+    int32_t best_n = 1;
+    unsigned at;
+    int good = 1;
+
+    s->at = (uint8_t)(s->at < EXH_VELOCITY_N ? s->at + 1 : 0);
+    s->cnt[s->at] = cnt;
+    if (s->have <= EXH_VELOCITY_N) { s->have++; }
+    at = s->at;
+    for (int32_t n = 1; n <= cfg->n; n++) {
+        int64_t m;
+        at = at > 0 ? at - 1 : EXH_VELOCITY_N;
+        d[n] = exh_wrap_diff(s->cnt[at], cnt);
+        sum += d[n];
+        weighted += (int64_t)n * d[n];
+        m = n * sum - 2 * weighted;
+        good &= n < s->have && (n == 1 || line_fits(d, n, m, cfg->tol_cnt));
+        if (good) {
+            best = m;
+            best_n = n;
+        }
+    }
+    return exh_sat32(exh_gain_mul(cfg->gain[best_n - 1], exh_sat32(best)));
+}
+
+void exh_velocity_foaw_bytes(struct exh_bytes *c, struct exh_velocity_foaw *s)
+{
+    for (unsigned i = 0; i <= EXH_VELOCITY_N; i++) { exh_bytes_i32(c, &s->cnt[i]); }
+    exh_bytes_u8(c, &s->at);
+    exh_bytes_u8(c, &s->have);
+}
+
+int exh_velocity_track_setup(struct exh_velocity_track_cfg *cfg, struct exh_velocity_scale s,
+                             uint32_t tf_us)
+{
+    const int32_t a_q31 = share_q31(s.T, tf_us); /* 1 - theta */
+    if (tf_us > 1000000u) { return -EXH_E_RANGE; }
+    cfg->beta_q31 = (int32_t)exh_mul_shr(a_q31, a_q31, 31);
+    cfg->alpha_q31 = exh_clamp(2 * (int64_t)a_q31 - cfg->beta_q31, 1, INT32_MAX);
+    return scale(&cfg->gain, s, 1);
+}
+
+#define TRACK_MAX_CNT_Q32 (INT64_C(1) << 60)
+
+static int64_t track_limit(int64_t v)
+{
+    return v > TRACK_MAX_CNT_Q32 ? TRACK_MAX_CNT_Q32 : v < -TRACK_MAX_CNT_Q32 ? -TRACK_MAX_CNT_Q32 : v;
+}
+
+int32_t exh_velocity_track_mps_q27(struct exh_velocity_track *s,
+                                   const struct exh_velocity_track_cfg *cfg, int32_t cnt)
+{
+    const int32_t moved = s->started ? exh_wrap_diff(cnt, s->cnt) : 0;
+    const int64_t moved_q32 = exh_clamp(moved, -(INT32_C(1) << 28), INT32_C(1) << 28) * (INT64_C(1) << 32);
+    const int64_t off = track_limit(s->err_cnt_q32 + s->vel_cnt_q32 - moved_q32);
+
+    s->cnt = cnt;
+    s->started = 1;
+    s->err_cnt_q32 = off - exh_mul64_q31(off, cfg->alpha_q31);
+    s->vel_cnt_q32 = track_limit(s->vel_cnt_q32 - exh_mul64_q31(off, cfg->beta_q31));
+    return exh_sat32(exh_shr_round(exh_mul64_q31(s->vel_cnt_q32, cfg->gain.mant),
+                                   cfg->gain.shift + 1u));
+}
+
+void exh_velocity_track_bytes(struct exh_bytes *c, struct exh_velocity_track *s)
+{
+    exh_bytes_i64(c, &s->err_cnt_q32);
+    exh_bytes_i64(c, &s->vel_cnt_q32);
+    exh_bytes_i32(c, &s->cnt);
+    exh_bytes_u8(c, &s->started);
+}
