@@ -1,0 +1,142 @@
+#include "drop.h"
+
+static const struct exh_signal own_rows[] = {
+    {0x8001, EXH_Q_POS, EXH_WHEN_ANY, -EXH_Q(1, 1, EXH_Q_POS), EXH_Q(1, 1, EXH_Q_POS),
+     EXH_Q(7, 100, EXH_Q_POS), "q_lim", "m", "virtual contact, from where the string starts"},
+    {0x8002, EXH_Q_FORCE, EXH_WHEN_SETUP, EXH_Q(1, 10, EXH_Q_FORCE), EXH_Q(100, 1, EXH_Q_FORCE),
+     EXH_Q(414, 100, EXH_Q_FORCE), "kf", "n_per_a", "string force per motor current"},
+};
+
+static const struct exh_signal paper_rows[] = {
+    {0x8101, EXH_Q_POS, EXH_WHEN_OUTPUT, INT32_MIN, INT32_MAX, 0, "q", "m", "position"},
+    {0x8102, EXH_Q_VEL, EXH_WHEN_OUTPUT, INT32_MIN, INT32_MAX, 0, "qd", "m_per_s", "velocity"},
+    {0x8103, EXH_Q_FORCE, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "f_des", "n", "force commanded"},
+    {0x8104, EXH_Q_CUR, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "i_des", "a", "current coded"},
+    {0x8105, 0, EXH_WHEN_OUTPUT, 0, 1, 0, "c", "", "contact condition applies"},
+    {0x8106, EXH_Q_FORCE, EXH_WHEN_OUTPUT, INT32_MIN, INT32_MAX, 0, "f_mon", "n",
+     "force by the current monitor"},
+};
+
+static const struct exh_signal more_rows[] = {
+    {0x8107, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "limits", "", "limits acting, bits"},
+    {0x8108, 0, EXH_WHEN_OUTPUT, 0, 2, 0, "state", "", "0 off, 1 run, 2 fault"},
+    {0x8109, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "faults", "", "fault causes latched, bits"},
+};
+
+#define ROWS(r) {(r), sizeof(r) / sizeof((r)[0]), 1}
+
+static const struct exh_signal_group param_groups[] = {
+    {exh_quad_rows, EXH_QUAD_ROWS, 1},       {exh_velocity_rows, EXH_VELOCITY_ROWS, 1},
+    {exh_contact_rows, EXH_CONTACT_ROWS, 1}, {exh_drive_rows, EXH_DRIVE_ROWS, 1},
+    {exh_safety_rows, EXH_SAFETY_ROWS, 1},   ROWS(own_rows),
+};
+static const struct exh_signal_table param_table = {param_groups, 6};
+
+/* The first group is the paper's, in its order: what a CSV holds. */
+static const struct exh_signal_group signal_groups[] = {ROWS(paper_rows), ROWS(more_rows)};
+static const struct exh_signal_table signal_table = {signal_groups, 2};
+
+#define PARAMS (sizeof(struct drop_par) / sizeof(int32_t))
+EXH_STATIC_ASSERT(drop_par_matches_rows,
+                  PARAMS == EXH_QUAD_ROWS + EXH_VELOCITY_ROWS + EXH_CONTACT_ROWS +
+                                EXH_DRIVE_ROWS + EXH_SAFETY_ROWS + 2);
+
+int drop_setup(struct drop_cfg *cfg, const struct drop_par *par, struct exh_period T)
+{
+    const struct exh_velocity_scale scale = {par->quad.step_m_q42, T};
+    const struct exh_table to_cur = {cfg->force_to_cur, 2};
+    const struct exh_table to_force = {cfg->cur_to_force, 2};
+    const int32_t peak_N_q20 =
+        exh_sat32(exh_mul_shr(par->own.kf_NpA_q20, par->drive.i_peak_A_q26, EXH_Q_CUR));
+    int err;
+
+    /* Straight lines until the box is calibrated; the monitor's also below zero. */
+    cfg->par = par;
+    cfg->force_to_cur[0] = (struct exh_knot){0, 0, {0, 0}};
+    cfg->force_to_cur[1] = (struct exh_knot){peak_N_q20, par->drive.i_peak_A_q26, {0, 0}};
+    cfg->cur_to_force[0] = (struct exh_knot){-par->drive.i_peak_A_q26, -peak_N_q20, {0, 0}};
+    cfg->cur_to_force[1] = (struct exh_knot){par->drive.i_peak_A_q26, peak_N_q20, {0, 0}};
+    err = exh_table_set(cfg->force_to_cur, 2);
+    if (err == 0) { err = exh_table_set(cfg->cur_to_force, 2); }
+    if (err == 0) { err = exh_velocity_window_setup(&cfg->velocity, scale, &par->velocity); }
+    if (err == 0) { err = exh_drive_setup(&cfg->drive, &par->drive, T, to_cur, to_force); }
+    return err;
+}
+
+void drop_tick(struct drop *s, const struct drop_cfg *cfg, const struct exh_scene_in *in,
+               struct exh_drive_out *out, struct drop_signals *sig)
+{
+    const struct drop_par *par = cfg->par;
+    const int32_t cnt = exh_quad_extend(&s->quad, &par->quad, in->drive.enc_raw[0]);
+    const struct exh_contact_in q = {
+        exh_quad_pos_m_q30(&par->quad, cnt),
+        exh_velocity_window_mps_q27(&s->velocity, &cfg->velocity, cnt), par->own.q_lim_m_q30};
+    const struct exh_safety_in box = {in->drive.din, 0, in->missed, in->command, 1};
+    struct exh_force_ledger f;
+    struct exh_current_ledger i;
+    uint32_t limits;
+
+    if (exh_safety_step(&s->safety, &par->safety, box) != EXH_STATE_RUN) {
+        s->drive.force_N_q20 = 0; /* so that force rises from zero when it runs again */
+    }
+    sig->c = exh_contact_law(&s->contact, &par->contact, q, &f);
+    limits = exh_drive_force(&s->drive, &cfg->drive, &f);
+    limits |= exh_drive_current(&s->drive, &cfg->drive, &f, &i);
+    exh_gate(&s->safety, &cfg->drive, 1, &i, &limits, out);
+
+    sig->q_m_q30 = q.pos_m_q30;
+    sig->qd_mps_q27 = q.vel_mps_q27;
+    sig->f_des_N_q20 = f.force_N_q20;
+    sig->i_des_A_q26 = i.coded_A_q26;
+    sig->f_mon_N_q20 = exh_drive_monitor_N_q20(&cfg->drive, in->drive.mon_raw[0]);
+    sig->limits = (int32_t)limits;
+    sig->state = s->safety.state;
+    sig->faults = (int32_t)s->safety.faults;
+}
+
+/* --- the one instance of this image --- */
+
+static struct drop_par active, staged;
+static struct exh_params params;
+static struct drop_signals signals;
+static struct drop_cfg cfg;
+static struct drop state;
+
+static void defaults(void)
+{
+    exh_params_init(&params, &param_table, (int32_t *)&active, (int32_t *)&staged);
+}
+
+static int setup(struct exh_period T)
+{
+    static const struct drop power_on;
+    state = power_on;
+    return drop_setup(&cfg, &active, T);
+}
+
+static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
+{
+    drop_tick(&state, &cfg, in, out, &signals);
+}
+
+static void state_bytes(struct exh_bytes *c)
+{
+    exh_quad_bytes(c, &state.quad);
+    exh_velocity_window_bytes(c, &state.velocity);
+    exh_contact_bytes(c, &state.contact);
+    exh_drive_bytes(c, &state.drive);
+    exh_safety_bytes(c, &state.safety);
+}
+
+const struct exh_scene exh_scene_drop = {
+    .name = "drop",
+    .rate_Hz = 2000,
+    .fingers = 1,
+    .params = &params,
+    .signals = &signal_table,
+    .signal = (int32_t *)&signals,
+    .defaults = defaults,
+    .setup = setup,
+    .tick = tick,
+    .state = state_bytes,
+};

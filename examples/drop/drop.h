@@ -1,0 +1,63 @@
+/* The identification controller of the paper (its Fig. 4) as a scene: one motor,
+ * a virtual wall at q_lim, everything tunable, everything logged. */
+#ifndef EXAMPLES_DROP_H
+#define EXAMPLES_DROP_H
+
+#include "../scene.h"
+
+#include "exhand/exhand.h"
+
+/* Rows of the scene's own parameters. */
+struct drop_own_par {
+    int32_t q_lim_m_q30; /* virtual contact, from the first count              */
+    int32_t kf_NpA_q20;  /* string force per motor ampere                      */
+};
+
+/* All parameters, in the order of the scene's signal table. */
+struct drop_par {
+    struct exh_quad_par quad;
+    struct exh_velocity_par velocity;
+    struct exh_contact_par contact;
+    struct exh_drive_par drive;
+    struct exh_safety_par safety;
+    struct drop_own_par own;
+};
+
+/* The paper's signals, then ours, in the order of the table. */
+struct drop_signals {
+    int32_t q_m_q30;
+    int32_t qd_mps_q27;
+    int32_t f_des_N_q20;
+    int32_t i_des_A_q26;
+    int32_t c;
+    int32_t f_mon_N_q20;
+    int32_t limits; /* enum exh_limit                                          */
+    int32_t state;  /* enum exh_state                                          */
+    int32_t faults; /* enum exh_fault                                          */
+};
+
+struct drop_cfg {
+    const struct drop_par *par;
+    struct exh_velocity_window_cfg velocity;
+    struct exh_drive_cfg drive;
+    struct exh_knot force_to_cur[2], cur_to_force[2];
+};
+
+struct drop {
+    struct exh_quad quad;
+    struct exh_velocity_window velocity;
+    struct exh_contact contact;
+    struct exh_drive drive;
+    struct exh_safety safety;
+};
+
+/* Configuration from parameters. 0 or -EXH_E…. */
+int drop_setup(struct drop_cfg *cfg, const struct drop_par *par, struct exh_period T);
+
+/* One tick. */
+void drop_tick(struct drop *s, const struct drop_cfg *cfg, const struct exh_scene_in *in,
+               struct exh_drive_out *out, struct drop_signals *sig);
+
+extern const struct exh_scene exh_scene_drop;
+
+#endif

@@ -1,0 +1,2 @@
+SCENE_DESC := falling-mass step response: one motor, no glove, no link
+SCENE_SRC  := examples/drop/drop.c

@@ -1,0 +1,150 @@
+#include "log.h"
+
+#include "exhand/board.h"
+#include "exhand/error.h"
+#include "exhand/exhand.h"
+
+static const struct exh_scene *scene;
+static uint8_t buf[EXH_LOG_RECORD_B];
+static uint32_t seq;
+static uint32_t lost;      /* in all                                           */
+static uint32_t lost_here; /* since the last record that was taken              */
+
+/* One record out, whole or not at all; lost ones are counted. */
+static int put(struct exh_bytes *c)
+{
+    const uint32_t len = exh_record_end(c);
+    EXH_ASSERT(len > 0);
+    return exh_board_log(buf, len) > 0;
+}
+
+static void put_count(uint8_t type, uint32_t tick, uint32_t count)
+{
+    struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
+    exh_record_begin(&c, type, seq, tick);
+    exh_bytes_u32(&c, &count);
+    if (put(&c)) {
+        seq++;
+        lost_here = 0;
+    }
+}
+
+static struct exh_bytes begin(uint8_t type, uint32_t tick)
+{
+    struct exh_bytes c;
+    if (lost_here > 0) { put_count(EXH_RECORD_DROPPED, tick, lost_here); }
+    c = exh_bytes_writer(buf, sizeof buf);
+    exh_record_begin(&c, type, seq, tick);
+    return c;
+}
+
+static void end(struct exh_bytes *c)
+{
+    seq++; /* a lost record leaves a gap in the sequence */
+    if (!put(c)) {
+        lost++;
+        lost_here++;
+    }
+}
+
+static void event(uint32_t tick, struct exh_event e)
+{
+    struct exh_bytes c = begin(EXH_RECORD_EVENT, tick);
+    exh_event_bytes(&c, &e);
+    end(&c);
+}
+
+static void copy_name(char to[16], const char *from)
+{
+    for (unsigned i = 0; i < 15 && from[i] != '\0'; i++) { to[i] = from[i]; }
+}
+
+void exh_log_start(const struct exh_scene *sc, struct exh_period T)
+{
+    struct exh_record_header h = {.lib_version = EXH_VERSION_NUMBER, .T = T};
+    struct exh_bytes c;
+
+    scene = sc;
+    seq = lost = lost_here = 0;
+    h.signal_crc = exh_signal_crc(sc->signals);
+    h.signals = (uint16_t)exh_signal_count(sc->signals);
+    h.fingers = sc->fingers;
+    copy_name(h.scene, sc->name);
+    copy_name(h.board, exh_board_info.name);
+    c = begin(EXH_RECORD_HEADER, 0);
+    exh_record_header_bytes(&c, &h);
+    if (sc->params) {
+        const int32_t n = exh_params_save(sc->params, buf + c.at, sizeof buf - c.at);
+        EXH_ASSERT(n > 0);
+        c.at += (uint32_t)n;
+    }
+    end(&c);
+}
+
+void exh_log_frame_bytes(struct exh_bytes *c, const struct exh_scene *sc, struct exh_scene_in *in,
+                         struct exh_drive_out *out, int32_t *signal)
+{
+    const uint32_t n = exh_signal_count(sc->signals);
+    exh_drive_in_bytes(c, &in->drive, sc->fingers);
+    exh_drive_out_bytes(c, out, sc->fingers);
+    for (uint32_t i = 0; i < n; i++) { exh_bytes_i32(c, &signal[i]); }
+}
+
+void exh_log_keyframe_bytes(struct exh_bytes *c, const struct exh_scene *sc)
+{
+    if (sc->params) {
+        const uint32_t n = exh_signal_count(sc->params->table);
+        for (uint32_t i = 0; i < n; i++) { exh_bytes_i32(c, &sc->params->active[i]); }
+    }
+    sc->state(c);
+}
+
+void exh_log_mark(uint32_t tick, int32_t value)
+{
+    event(tick, (struct exh_event){EXH_EVENT_MARK, 0, 0, value});
+}
+
+/* Staged parameters become events at the tick they will first act in. */
+static void log_params(uint32_t tick, const struct exh_params *p)
+{
+    const uint32_t n = exh_signal_count(p->table);
+    for (uint32_t i = 0; i < n; i++) {
+        if (p->staged[i] != p->active[i]) {
+            uint16_t instance;
+            const uint16_t id = exh_signal_at(p->table, i, &instance)->id;
+            event(tick, (struct exh_event){EXH_EVENT_PARAM, id, instance, p->staged[i]});
+        }
+    }
+}
+
+void exh_log_before(uint32_t tick, struct exh_scene_in *in)
+{
+    if (tick % EXH_LOG_KEYFRAME_TICKS == 0) {
+        struct exh_bytes c = begin(EXH_RECORD_KEYFRAME, tick);
+        exh_log_keyframe_bytes(&c, scene);
+        end(&c);
+    }
+    if (scene->params && scene->params->pending) { log_params(tick, scene->params); }
+    if (in->command != EXH_CMD_NONE) {
+        event(tick, (struct exh_event){EXH_EVENT_COMMAND, 0, 0, in->command});
+    }
+    if (in->missed != 0) {
+        event(tick, (struct exh_event){EXH_EVENT_MISSED, 0, 0,
+                                       exh_clamp(in->missed, 0, INT32_MAX)});
+    }
+}
+
+void exh_log_after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
+{
+    struct exh_scene_in i = *in; /* a cursor takes what it may also fill */
+    struct exh_drive_out o = *out;
+    struct exh_bytes c = begin(EXH_RECORD_FRAME, tick);
+    exh_log_frame_bytes(&c, scene, &i, &o, scene->signal);
+    end(&c);
+}
+
+uint32_t exh_log_end(uint32_t tick)
+{
+    put_count(EXH_RECORD_END, tick, lost);
+    return lost;
+}

@@ -1,0 +1,28 @@
+/* Log: everything that crosses inward, as records (exhand/record.h) to the board's
+ * log, so that a run can be replayed bit for bit. Hooks for the loop. */
+#ifndef EXAMPLES_LOG_H
+#define EXAMPLES_LOG_H
+
+#include "scene.h"
+
+#include "exhand/record.h"
+
+/* Ticks between keyframes: a replay may start at each. */
+#define EXH_LOG_KEYFRAME_TICKS 1024u
+/* The largest record: header or keyframe with all parameters of a scene. */
+#define EXH_LOG_RECORD_B 4096u
+
+void exh_log_start(const struct exh_scene *sc, struct exh_period T);
+void exh_log_before(uint32_t tick, struct exh_scene_in *in);
+void exh_log_after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out);
+/* The operator's own mark at the coming tick. */
+void exh_log_mark(uint32_t tick, int32_t value);
+/* Ends the log and tells how many records it lost. */
+uint32_t exh_log_end(uint32_t tick);
+
+/* Payloads, shared with the replay: what is written is what is read. */
+void exh_log_frame_bytes(struct exh_bytes *c, const struct exh_scene *sc, struct exh_scene_in *in,
+                         struct exh_drive_out *out, int32_t *signal);
+void exh_log_keyframe_bytes(struct exh_bytes *c, const struct exh_scene *sc);
+
+#endif

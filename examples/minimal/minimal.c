@@ -1,0 +1,59 @@
+/* The shortest complete scene: one finger against one virtual wall. */
+#include "../scene.h"
+
+#include "exhand/exhand.h"
+
+static const struct exh_quad_par quad_par = {EXH_Q(6632, 100000000, EXH_Q_STEP), 24};
+static const struct exh_velocity_par vel_par = {1};
+static const struct exh_contact_par contact_par = {
+    .k_Npm_q10 = EXH_Q(2000, 1, EXH_Q_K), .b_Nspm_q20 = EXH_Q(10, 1, EXH_Q_B)};
+static const struct exh_drive_par drive_par = {
+    .f_max_N_q20 = EXH_Q(5, 1, EXH_Q_FORCE), .slew_up_Nps = 1000, .slew_down_Nps = 1000,
+    .i_peak_A_q26 = EXH_Q(33, 10, EXH_Q_CUR), .i_cont_A_q26 = EXH_Q(33, 10, EXH_Q_CUR),
+    .peak_ms = 2700, .dac_zero_raw = 32768, .dac_span_raw = 12184,
+    .dac_rawpA_q16 = EXH_Q(324900, 176, EXH_Q_DAC), .mon_A_q40 = EXH_Q(5164, 10000000, EXH_Q_MON)};
+static const struct exh_safety_par safety_par = {1};
+static const int32_t wall_m_q30 = EXH_Q(2, 100, EXH_Q_POS);
+
+static struct exh_quad quad;
+static struct exh_velocity_window_cfg vel_cfg;
+static struct exh_velocity_window vel;
+static struct exh_contact contact;
+static struct exh_drive_cfg drive_cfg;
+static struct exh_drive drive;
+static struct exh_safety safety;
+static struct exh_knot knot[2] = {{0, 0, {0, 0}}, {EXH_Q(273, 10, EXH_Q_FORCE), EXH_Q(66, 10, EXH_Q_CUR), {0, 0}}};
+
+static int setup(struct exh_period T)
+{
+    const struct exh_velocity_scale scale = {quad_par.step_m_q42, T};
+    const struct exh_table force_to_cur = {knot, 2}, no_monitor = {0, 0};
+    int err = exh_table_set(knot, 2);
+    if (err == 0) { err = exh_velocity_window_setup(&vel_cfg, scale, &vel_par); }
+    if (err == 0) { err = exh_drive_setup(&drive_cfg, &drive_par, T, force_to_cur, no_monitor); }
+    return err;
+}
+
+static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
+{
+    struct exh_force_ledger f;
+    struct exh_current_ledger i;
+    uint32_t limits;
+    const int32_t cnt = exh_quad_extend(&quad, &quad_par, in->drive.enc_raw[0]);
+
+    if (exh_safety_step(&safety, &safety_par,
+                        (struct exh_safety_in){in->drive.din, 0, in->missed, in->command, 1}) !=
+        EXH_STATE_RUN) {
+        drive.force_N_q20 = 0; /* so that force rises from zero when it runs again */
+    }
+    exh_contact_law(&contact, &contact_par,
+                    (struct exh_contact_in){exh_quad_pos_m_q30(&quad_par, cnt),
+                                            exh_velocity_window_mps_q27(&vel, &vel_cfg, cnt),
+                                            wall_m_q30}, &f);
+    limits = exh_drive_force(&drive, &drive_cfg, &f);
+    limits |= exh_drive_current(&drive, &drive_cfg, &f, &i);
+    exh_gate(&safety, &drive_cfg, 1, &i, &limits, out);
+}
+
+const struct exh_scene exh_scene_minimal = {
+    .name = "minimal", .rate_Hz = 1000, .fingers = 1, .setup = setup, .tick = tick};

@@ -1,0 +1,2 @@
+SCENE_DESC := one finger against one virtual wall, constants in ROM, no log
+SCENE_SRC  := examples/minimal/minimal.c

@@ -1,0 +1,41 @@
+/* Scene: what the loop, the log and the replay need to know of one.
+ *
+ * A scene is a pure tick over the library's modules; this descriptor points to
+ * its one static instance, so that an image needs no allocation. Optional parts
+ * are NULL: a scene without parameters links no parameter code.
+ */
+#ifndef EXAMPLES_SCENE_H
+#define EXAMPLES_SCENE_H
+
+#include "exhand/bytes.h"
+#include "exhand/drive.h"
+#include "exhand/signal.h"
+
+#include <stdint.h>
+
+struct exh_scene_in {
+    struct exh_drive_in drive;
+    uint32_t missed; /* ticks missed before this one                          */
+    uint8_t command; /* enum exh_command                                      */
+};
+
+struct exh_scene {
+    const char *name; /* at most 15 characters                                */
+    uint32_t rate_Hz; /* when nobody asks for another                         */
+    uint8_t fingers;
+    struct exh_params *params;              /* NULL: constants in ROM         */
+    const struct exh_signal_table *signals; /* outputs per tick, or NULL      */
+    int32_t *signal;                        /* their values, or NULL          */
+
+    /* Parameters to their defaults and unlocked; NULL without parameters. Before
+     * staging any and before the loop. */
+    void (*defaults)(void);
+    /* Parameters into configuration, state to power-on. 0 or -EXH_E…. */
+    int (*setup)(struct exh_period T);
+    /* One tick. */
+    void (*tick)(const struct exh_scene_in *in, struct exh_drive_out *out);
+    /* The whole state through a cursor; NULL: not replayable. */
+    void (*state)(struct exh_bytes *c);
+};
+
+#endif
