@@ -1,0 +1,10 @@
+/* The subcommands of the host program: one file each. Each returns the exit status:
+ * 0 ok, 1 a check failed, 2 bad usage, 3 a tool or device is missing. */
+#ifndef CLI_CLI_H
+#define CLI_CLI_H
+
+int cli_drop(int argc, char **argv);
+int cli_csv(int argc, char **argv);
+int cli_replay(int argc, char **argv);
+
+#endif

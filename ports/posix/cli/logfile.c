@@ -1,0 +1,115 @@
+#include "logfile.h"
+
+#include "drop/drop.h"
+
+#include "exhand/error.h"
+#include "exhand/exhand.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const struct exh_scene *const scenes[] = {&exh_scene_drop};
+
+static const struct exh_scene *scene_by_name(const char *name)
+{
+    for (size_t i = 0; i < sizeof scenes / sizeof scenes[0]; i++) {
+        if (strncmp(scenes[i]->name, name, 16) == 0) { return scenes[i]; }
+    }
+    return NULL;
+}
+
+static int complain(const struct logfile *l, const char *what)
+{
+    fprintf(stderr, "%s: %s\n", l->path, what);
+    return 2;
+}
+
+static int read_file(struct logfile *l)
+{
+    FILE *f = fopen(l->path, "rb");
+    long len = -1;
+    if (f == NULL) { return complain(l, strerror(errno)); }
+    if (fseek(f, 0, SEEK_END) == 0) { len = ftell(f); }
+    rewind(f);
+    if (len >= 0 && len < 0x7FFFFFFF) { l->bytes = malloc((size_t)len + 1); }
+    if (l->bytes != NULL) { l->len = (uint32_t)fread(l->bytes, 1, (size_t)len, f); }
+    fclose(f);
+    return l->bytes != NULL && l->len == (uint32_t)len ? 0 : complain(l, "can't be read whole");
+}
+
+static int read_header(struct logfile *l)
+{
+    struct exh_record r;
+    struct exh_bytes c;
+    if (!logfile_next(l, &r) || r.type != EXH_RECORD_HEADER) {
+        return complain(l, "not a log: it does not start with a header: give a file made by "
+                           "`exhand drop --out DIR`");
+    }
+    c = exh_bytes_reader(r.payload, r.len_B);
+    exh_record_header_bytes(&c, &l->header);
+    if (!exh_bytes_ok(&c)) { return complain(l, "its header is too short"); }
+    l->params = r.payload + c.at;
+    l->params_len = r.len_B - c.at;
+    l->scene = scene_by_name(l->header.scene);
+    if (l->scene == NULL) { return complain(l, "made by a scene this program does not have"); }
+    if (l->header.lib_version != EXH_VERSION_NUMBER) {
+        fprintf(stderr, "%s: library version %lx, this program has %lx: results may differ\n",
+                l->path, (unsigned long)l->header.lib_version, (unsigned long)EXH_VERSION_NUMBER);
+    }
+    if (l->header.signal_crc != exh_signal_crc(l->scene->signals) ||
+        l->header.signals != exh_signal_count(l->scene->signals) ||
+        l->header.fingers != l->scene->fingers || l->header.T.num == 0 || l->header.T.den == 0) {
+        return complain(l, "its signal table is another than this program's");
+    }
+    return 0;
+}
+
+int logfile_open(struct logfile *l, const char *path)
+{
+    int err;
+    memset(l, 0, sizeof *l);
+    l->path = path;
+    err = read_file(l);
+    return err ? err : read_header(l);
+}
+
+void logfile_close(struct logfile *l)
+{
+    free(l->bytes);
+    l->bytes = NULL;
+}
+
+int logfile_next(struct logfile *l, struct exh_record *r)
+{
+    while (l->at < l->len) {
+        const int32_t n = exh_record_read(l->bytes + l->at, l->len - l->at, r);
+        if (n < 0) {
+            l->damaged++;
+            l->at++;
+            continue;
+        }
+        l->at += (uint32_t)n;
+        l->gaps += r->seq - l->next_seq;
+        l->next_seq = r->seq + 1;
+        if (r->type == EXH_RECORD_END) { l->ended = 1; }
+        if (r->type == EXH_RECORD_DROPPED) {
+            struct exh_bytes c = exh_bytes_reader(r->payload, r->len_B);
+            uint32_t lost = 0;
+            exh_bytes_u32(&c, &lost);
+            l->lost += lost;
+        }
+        return 1;
+    }
+    return 0;
+}
+
+int logfile_complain(const struct logfile *l)
+{
+    if (l->damaged == 0 && l->gaps == 0 && l->ended) { return 0; }
+    fprintf(stderr, "%s: %lu damaged bytes, %lu records missing (%lu reported lost by the writer), %s\n",
+            l->path, (unsigned long)l->damaged, (unsigned long)l->gaps, (unsigned long)l->lost,
+            l->ended ? "end reached" : "cut off before its end");
+    return 1;
+}

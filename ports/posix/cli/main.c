@@ -1,0 +1,49 @@
+#include "cli.h"
+
+#include "exhand/board.h"
+#include "exhand/exhand.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const struct {
+    const char *name, *what;
+    int (*run)(int argc, char **argv);
+} command[] = {
+    {"drop", "the paper's falling-mass experiment on the simulated device", cli_drop},
+    {"csv", "a log as comma-separated values", cli_csv},
+    {"replay", "the recorded inputs again, every output compared bit for bit", cli_replay},
+};
+#define COMMANDS (sizeof command / sizeof command[0])
+
+static void help(FILE *to)
+{
+    fprintf(to, "usage: exhand COMMAND [options]\n");
+    for (size_t i = 0; i < COMMANDS; i++) {
+        fprintf(to, "  %-10s %s\n", command[i].name, command[i].what);
+    }
+    fprintf(to, "  --version  versions of library, record, board and parameter image\n"
+                "`exhand COMMAND --help` lists the options of one.\n"
+                "Exit status: 0 ok, 1 a check failed, 2 bad usage, 3 something is missing.\n");
+}
+
+int main(int argc, char **argv)
+{
+    const char *name = argc > 1 ? argv[1] : "";
+    for (size_t i = 0; i < COMMANDS; i++) {
+        if (strcmp(name, command[i].name) == 0) { return command[i].run(argc - 1, argv + 1); }
+    }
+    if (strcmp(name, "--version") == 0) {
+        printf("exhand %d.%d.%d, record %d, board %d, parameters %d\n", EXH_VERSION_MAJOR,
+               EXH_VERSION_MINOR, EXH_VERSION_PATCH, EXH_RECORD_VERSION, EXH_BOARD_VERSION,
+               EXH_PARAMS_VERSION);
+        return 0;
+    }
+    if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) {
+        help(stdout);
+        return 0;
+    }
+    if (name[0] != '\0') { fprintf(stderr, "exhand: %s: no such command\n", name); }
+    help(stderr);
+    return 2;
+}

@@ -1,0 +1,101 @@
+#include "option.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void help(const struct cli_command *c)
+{
+    printf("exhand %s %s\n%s\n", c->name, c->args, c->what);
+    for (int i = 0; i < c->options; i++) {
+        const struct cli_option *o = &c->option[i];
+        char left[40];
+        snprintf(left, sizeof left, "--%s%s%s", o->name, o->arg ? " " : "", o->arg ? o->arg : "");
+        printf("  %-24s %s\n", left, o->help);
+    }
+    printf("  %-24s %s\n", "--help", "this");
+}
+
+static int bad(const struct cli_command *c, const char *what, const char *why)
+{
+    fprintf(stderr, "exhand %s: %s: %s: `exhand %s --help` lists the options\n", c->name, what, why,
+            c->name);
+    return 2;
+}
+
+static int take_number(const struct cli_command *c, const struct cli_option *o, const char *text)
+{
+    char *end;
+    const double v = o->kind == CLI_INT ? (double)strtol(text, &end, 10) : strtod(text, &end);
+    if (end == text || *end != '\0' || !(v >= o->min && v <= o->max)) {
+        fprintf(stderr, "exhand %s: --%s: %s (allowed %.10g..%.10g): give a number in that range\n",
+                c->name, o->name, text, o->min, o->max);
+        return 2;
+    }
+    if (o->kind == CLI_INT) {
+        *(long *)o->to = (long)v;
+    } else {
+        *(double *)o->to = v;
+    }
+    return 0;
+}
+
+static int take(const struct cli_command *c, const struct cli_option *o, const char *text)
+{
+    const struct cli_call *call = o->to;
+    switch (o->kind) {
+    case CLI_TEXT: *(const char **)o->to = text; return 0;
+    case CLI_CALL: return call->take(call->ctx, text);
+    case CLI_INT:
+    case CLI_REAL: return take_number(c, o, text);
+    case CLI_FLAG: break;
+    }
+    *(int *)o->to = 1;
+    return 0;
+}
+
+static const struct cli_option *find(const struct cli_command *c, const char *name, size_t len)
+{
+    for (int i = 0; i < c->options; i++) {
+        if (strlen(c->option[i].name) == len && strncmp(c->option[i].name, name, len) == 0) {
+            return &c->option[i];
+        }
+    }
+    return NULL;
+}
+
+/* One word that starts with --, and its value. *i moves past what was used. */
+static int take_word(const struct cli_command *c, int argc, char **argv, int *i)
+{
+    const char *word = argv[*i];
+    const char *equals = strchr(word, '=');
+    const size_t len = equals ? (size_t)(equals - word) : strlen(word);
+    const struct cli_option *o = find(c, word + 2, len - 2);
+
+    if (o == NULL) { return bad(c, word, "no such option"); }
+    if (o->kind == CLI_FLAG) { return equals ? bad(c, word, "takes no value") : take(c, o, NULL); }
+    if (equals) { return take(c, o, equals + 1); }
+    if (*i + 1 >= argc) { return bad(c, word, "its value is missing"); }
+    *i += 1;
+    return take(c, o, argv[*i]);
+}
+
+int cli_parse(const struct cli_command *c, int argc, char **argv, const char **operand)
+{
+    int n = 0;
+    for (int i = 1; i < argc; i++) {
+        if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
+            help(c);
+            return 1;
+        }
+        if (strncmp(argv[i], "--", 2) == 0) {
+            const int err = take_word(c, argc, argv, &i);
+            if (err) { return err; }
+        } else if (n < c->operands) {
+            operand[n++] = argv[i];
+        } else {
+            return bad(c, argv[i], "one word too many");
+        }
+    }
+    return n < c->operands ? bad(c, c->args, "a word is missing") : 0;
+}

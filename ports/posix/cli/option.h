@@ -1,0 +1,34 @@
+/* Options: one table per subcommand makes the parser and the --help. */
+#ifndef CLI_OPTION_H
+#define CLI_OPTION_H
+
+enum cli_kind { CLI_FLAG, CLI_INT, CLI_REAL, CLI_TEXT, CLI_CALL };
+
+struct cli_option {
+    const char *name; /* without the dashes                                    */
+    enum cli_kind kind;
+    void *to;         /* int, long, double, const char *; CALL: a cli_call      */
+    double min, max;  /* INT and REAL                                          */
+    const char *arg;  /* "HZ", shown in --help; NULL for a flag                 */
+    const char *help;
+};
+
+/* For options that may come more than once or have a syntax of their own; 0, or
+ * 2 after a line on stderr. */
+struct cli_call {
+    int (*take)(void *ctx, const char *text);
+    void *ctx;
+};
+
+struct cli_command {
+    const char *name, *args, *what; /* "drop", "[options]", one line            */
+    const struct cli_option *option;
+    int options;
+    int operands; /* how many operands it takes                                */
+};
+
+/* Parses; operands go to operand[]. 0 go on, 1 help was asked for and printed,
+ * 2 bad usage, said on stderr. */
+int cli_parse(const struct cli_command *c, int argc, char **argv, const char **operand);
+
+#endif

@@ -1,0 +1,60 @@
+#include "param.h"
+
+#include "exhand/error.h"
+
+#include <string.h>
+
+double cli_signal_value(const struct exh_signal *row, int32_t raw)
+{
+    return (double)raw / (double)(INT64_C(1) << row->frac);
+}
+
+const struct exh_signal *cli_signal_find(const struct exh_signal_table *t, const char *name,
+                                         uint32_t *index)
+{
+    const uint32_t n = exh_signal_count(t);
+    for (uint32_t i = 0; i < n; i++) {
+        const struct exh_signal *row = exh_signal_at(t, i, NULL);
+        if (strcmp(row->name, name) == 0) {
+            if (index != NULL) { *index = i; }
+            return row;
+        }
+    }
+    return NULL;
+}
+
+int cli_param_set(struct exh_params *p, const char *name, double value)
+{
+    const struct exh_signal *row = cli_signal_find(p->table, name, NULL);
+    double scaled;
+    int err = -EXH_E_RANGE;
+
+    if (row == NULL) {
+        fprintf(stderr, "%s: no such parameter: `exhand drop --params` lists them\n", name);
+        return -EXH_E_UNKNOWN;
+    }
+    scaled = value * (double)(INT64_C(1) << row->frac);
+    if (scaled >= -2147483648.0 && scaled <= 2147483647.0) {
+        err = exh_params_stage(p, row->id, 0, (int32_t)(scaled + (scaled < 0 ? -0.5 : 0.5)));
+    }
+    if (err == -EXH_E_RANGE) {
+        fprintf(stderr, "%s: %.9g (allowed %.9g..%.9g%s%s): choose a value in that range\n", name,
+                value, cli_signal_value(row, row->min), cli_signal_value(row, row->max),
+                row->unit[0] ? " " : "", row->unit);
+    } else if (err < 0) {
+        fprintf(stderr, "%s: %.9g: %s\n", name, value, exh_error_text(err));
+    }
+    return err;
+}
+
+void cli_signal_print(FILE *f, const struct exh_signal_table *t)
+{
+    static const char *const when[] = {"output", "set-up", "any time"};
+    const uint32_t n = exh_signal_count(t);
+    for (uint32_t i = 0; i < n; i++) {
+        const struct exh_signal *r = exh_signal_at(t, i, NULL);
+        fprintf(f, "  %-13s %-8s %12.7g  %12.7g .. %-12.7g %-8s %s\n", r->name, r->unit,
+                cli_signal_value(r, r->dflt), cli_signal_value(r, r->min),
+                cli_signal_value(r, r->max), when[r->when], r->help);
+    }
+}

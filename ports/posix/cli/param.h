@@ -1,0 +1,23 @@
+/* A scene's parameters by name and in SI, for options and printing. */
+#ifndef CLI_PARAM_H
+#define CLI_PARAM_H
+
+#include "exhand/signal.h"
+
+#include <stdio.h>
+
+/* raw * 2^-frac. */
+double cli_signal_value(const struct exh_signal *row, int32_t raw);
+
+/* The row called name (its index to *index unless NULL), or NULL. */
+const struct exh_signal *cli_signal_find(const struct exh_signal_table *t, const char *name,
+                                         uint32_t *index);
+
+/* Stages name = value, to the nearest raw value. 0, or -EXH_E… after a line on
+ * stderr that names the parameter, its range and what to do. */
+int cli_param_set(struct exh_params *p, const char *name, double value);
+
+/* Name, unit, range, default, help: one row a line. */
+void cli_signal_print(FILE *f, const struct exh_signal_table *t);
+
+#endif

@@ -1,0 +1,204 @@
+/* Replay: the recorded inputs through the scene again; every output must come out
+ * bit for bit, and every keyframe on the way must equal our state. */
+#include "cli.h"
+
+#include "logfile.h"
+#include "option.h"
+#include "param.h"
+
+#include "log.h"
+
+#include "exhand/error.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct replay {
+    struct logfile log;
+    struct exh_scene_in in;    /* what crosses inward at the coming tick        */
+    struct exh_drive_out out;
+    int running;               /* a start (tick 0 or a keyframe) was reached    */
+    uint32_t from, ticks, keyframes, first_tick, expect_tick;
+    uint32_t digest;           /* CRC of all outputs                           */
+    int32_t *recorded, *ours;  /* signals of one frame                         */
+    uint8_t *bytes;            /* a keyframe of ours                           */
+};
+
+static int start_scene(struct replay *p)
+{
+    const struct exh_scene *sc = p->log.scene;
+    uint32_t bad = 0;
+    int err = 0;
+    if (sc->params != NULL) {
+        sc->defaults();
+        err = exh_params_load(sc->params, p->log.params, p->log.params_len, &bad);
+        if (err < 0) {
+            const struct exh_signal *row = exh_signal_at(sc->params->table, bad, NULL);
+            fprintf(stderr, "%s: parameter image: %s%s%s\n", p->log.path, exh_error_text(err),
+                    err == -EXH_E_RANGE ? ": " : "", err == -EXH_E_RANGE ? row->name : "");
+            return 2;
+        }
+        exh_params_apply(sc->params);
+    }
+    err = sc->setup(p->log.header.T);
+    if (err < 0) {
+        fprintf(stderr, "%s: set-up: %s\n", p->log.path, exh_error_text(err));
+        return 2;
+    }
+    if (sc->params != NULL) { sc->params->locked = 1; }
+    return 0;
+}
+
+static int differs(uint32_t tick, const char *what, double recorded, double ours)
+{
+    printf("tick %lu: %s: recorded %.9g, replayed %.9g\n", (unsigned long)tick, what, recorded,
+           ours);
+    return 1;
+}
+
+/* The recorded frame against ours; 1 at the first difference. */
+static int compare(const struct replay *p, uint32_t tick, const struct exh_drive_out *rec)
+{
+    const struct exh_signal_table *t = p->log.scene->signals;
+    const uint32_t n = exh_signal_count(t);
+    for (unsigned i = 0; i < p->log.scene->fingers; i++) {
+        if (rec->dac_raw[i] != p->out.dac_raw[i]) {
+            return differs(tick, "dac_raw", rec->dac_raw[i], p->out.dac_raw[i]);
+        }
+    }
+    if (rec->enable != p->out.enable) {
+        return differs(tick, "enable", rec->enable, p->out.enable);
+    }
+    if (rec->alive != p->out.alive) { return differs(tick, "alive", rec->alive, p->out.alive); }
+    for (uint32_t i = 0; i < n; i++) {
+        if (p->recorded[i] != p->ours[i]) {
+            const struct exh_signal *r = exh_signal_at(t, i, NULL);
+            return differs(tick, r->name, cli_signal_value(r, p->recorded[i]),
+                           cli_signal_value(r, p->ours[i]));
+        }
+    }
+    return 0;
+}
+
+static int on_frame(struct replay *p, const struct exh_record *r)
+{
+    const struct exh_scene *sc = p->log.scene;
+    struct exh_bytes c = exh_bytes_reader(r->payload, r->len_B);
+    struct exh_drive_out rec;
+    if (!p->running) { return 0; }
+    if (p->ticks > 0 && r->tick != p->expect_tick) {
+        printf("tick %lu: %lu frames are missing before it: start behind them with --from\n",
+               (unsigned long)r->tick, (unsigned long)(r->tick - p->expect_tick));
+        return 1;
+    }
+    exh_log_frame_bytes(&c, sc, &p->in, &rec, p->recorded);
+    if (!exh_bytes_ok(&c)) { return differs(r->tick, "frame length", r->len_B, c.at); }
+    if (sc->params != NULL) { exh_params_apply(sc->params); }
+    sc->tick(&p->in, &p->out);
+    memcpy(p->ours, sc->signal, exh_signal_count(sc->signals) * sizeof(int32_t));
+    p->digest = exh_crc32(p->digest, r->payload, r->len_B);
+    if (p->ticks++ == 0) { p->first_tick = r->tick; }
+    p->expect_tick = r->tick + 1;
+    memset(&p->in, 0, sizeof p->in);
+    return compare(p, r->tick, &rec);
+}
+
+static int on_keyframe(struct replay *p, const struct exh_record *r)
+{
+    if (p->running) {
+        struct exh_bytes c = exh_bytes_writer(p->bytes, EXH_LOG_RECORD_B);
+        exh_log_keyframe_bytes(&c, p->log.scene);
+        p->keyframes++;
+        if (c.at != r->len_B || memcmp(p->bytes, r->payload, r->len_B) != 0) {
+            return differs(r->tick, "state (bytes of a keyframe)", r->len_B, c.at);
+        }
+    } else if (r->tick >= p->from) {
+        struct exh_bytes c = exh_bytes_reader(r->payload, r->len_B);
+        exh_log_keyframe_bytes(&c, p->log.scene);
+        if (!exh_bytes_ok(&c)) { return differs(r->tick, "keyframe length", r->len_B, c.at); }
+        if (p->log.scene->params != NULL) {
+            const struct exh_params *ps = p->log.scene->params;
+            memcpy(ps->staged, ps->active, exh_signal_count(ps->table) * sizeof(int32_t));
+        }
+        p->running = 1;
+    }
+    return 0;
+}
+
+static int on_event(struct replay *p, const struct exh_record *r)
+{
+    struct exh_bytes c = exh_bytes_reader(r->payload, r->len_B);
+    struct exh_event e;
+    int err = 0;
+    exh_event_bytes(&c, &e);
+    if (!p->running) { return 0; }
+    if (e.type == EXH_EVENT_COMMAND) { p->in.command = (uint8_t)e.value; }
+    if (e.type == EXH_EVENT_MISSED) { p->in.missed = (uint32_t)e.value; }
+    if (e.type == EXH_EVENT_PARAM && p->log.scene->params != NULL) {
+        err = exh_params_stage(p->log.scene->params, e.id, e.instance, e.value);
+    }
+    if (err < 0) {
+        printf("tick %lu: parameter %u: %s\n", (unsigned long)r->tick, e.id, exh_error_text(err));
+        return 1;
+    }
+    return 0;
+}
+
+static int replay(struct replay *p)
+{
+    struct exh_record r;
+    int err = start_scene(p);
+    p->running = p->from == 0;
+    while (err == 0 && logfile_next(&p->log, &r)) {
+        switch (r.type) {
+        case EXH_RECORD_FRAME: err = on_frame(p, &r); break;
+        case EXH_RECORD_KEYFRAME: err = on_keyframe(p, &r); break;
+        case EXH_RECORD_EVENT: err = on_event(p, &r); break;
+        default: break;
+        }
+    }
+    if (err == 0 && p->ticks == 0) {
+        fprintf(stderr, "%s: no keyframe at or after tick %lu: choose an earlier --from\n",
+                p->log.path, (unsigned long)p->from);
+        err = 2;
+    }
+    return err;
+}
+
+int cli_replay(int argc, char **argv)
+{
+    long from = 0;
+    const struct cli_option option[] = {
+        {"from", CLI_INT, &from, 0, 4294967295.0, "TICK", "start at the first keyframe not before it"},
+    };
+    const struct cli_command c = {"replay", "LOG [--from TICK]",
+                                  "Runs the recorded inputs again and compares every output bit.",
+                                  option, 1, 1};
+    struct replay p;
+    const char *path = NULL;
+    int err = cli_parse(&c, argc, argv, &path);
+
+    if (err) { return err == 1 ? 0 : err; }
+    memset(&p, 0, sizeof p);
+    p.from = (uint32_t)from;
+    err = logfile_open(&p.log, path);
+    if (err == 0) {
+        const uint32_t n = exh_signal_count(p.log.scene->signals);
+        p.recorded = calloc(n, sizeof *p.recorded);
+        p.ours = calloc(n, sizeof *p.ours);
+        p.bytes = malloc(EXH_LOG_RECORD_B);
+        err = p.recorded && p.ours && p.bytes ? replay(&p) : 1;
+        if (err == 0) { err = logfile_complain(&p.log); }
+        if (err == 0) {
+            printf("%s: %lu ticks from tick %lu and %lu keyframes identical, digest %08lx\n", path,
+                   (unsigned long)p.ticks, (unsigned long)p.first_tick, (unsigned long)p.keyframes,
+                   (unsigned long)p.digest);
+        }
+    }
+    free(p.recorded);
+    free(p.ours);
+    free(p.bytes);
+    logfile_close(&p.log);
+    return err;
+}

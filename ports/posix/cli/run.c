@@ -1,0 +1,147 @@
+#include "run.h"
+
+#include "param.h"
+
+#include "drop/drop.h"
+#include "log.h"
+#include "loop.h"
+
+#include "exhand/board.h"
+#include "exhand/error.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static struct {
+    struct run *r;
+    struct fall_sample *sample;
+    size_t *start;
+    size_t samples_cap, starts_cap;
+    int fall; /* under observation in the present tick, 0 = none */
+    int no_memory;
+    uint32_t last_tick;
+} run;
+
+static void *grow(void *p, size_t *cap, size_t n, size_t size)
+{
+    void *q;
+    if (n < *cap) { return p; }
+    *cap = *cap ? 2 * *cap : 1024;
+    q = realloc(p, *cap * size);
+    if (q == NULL) { run.no_memory = 1; }
+    return q ? q : p;
+}
+
+static void start(const struct exh_scene *sc, struct exh_period T)
+{
+    run.r->T = T;
+    exh_log_start(sc, T);
+}
+
+static void before(uint32_t tick, struct exh_scene_in *in)
+{
+    const int fall = posix_fall();
+    if (fall != run.fall) { exh_log_mark(tick, fall); }
+    if (fall != 0 && fall != run.fall) {
+        run.start = grow(run.start, &run.starts_cap, run.r->log.falls, sizeof *run.start);
+        if (!run.no_memory) { run.start[run.r->log.falls++] = run.r->log.samples; }
+    }
+    run.fall = fall;
+    exh_log_before(tick, in);
+}
+
+static double si(int32_t raw, int frac)
+{
+    return (double)raw / (double)(INT64_C(1) << frac);
+}
+
+static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
+{
+    struct drop_signals s;
+    memcpy(&s, exh_scene_drop.signal, sizeof s);
+    exh_log_after(tick, in, out);
+    run.last_tick = tick;
+    run.r->ticks++;
+    run.r->limited += (s.limits & ~(int32_t)EXH_LIMIT_PULL) != 0;
+    run.r->faults |= (uint32_t)s.faults;
+    if (run.fall == 0) { return; }
+    run.sample = grow(run.sample, &run.samples_cap, run.r->log.samples, sizeof *run.sample);
+    if (run.no_memory) {
+        posix_stop();
+        return;
+    }
+    run.sample[run.r->log.samples++] = (struct fall_sample){
+        .t_s = (double)tick * run.r->T.num / run.r->T.den,
+        .q_m = si(s.q_m_q30, EXH_Q_POS),
+        .qd_mps = si(s.qd_mps_q27, EXH_Q_VEL),
+        .f_des_N = si(s.f_des_N_q20, EXH_Q_FORCE),
+        .i_des_A = si(s.i_des_A_q26, EXH_Q_CUR),
+        .f_mon_N = si(s.f_mon_N_q20, EXH_Q_FORCE),
+        .c = s.c,
+    };
+}
+
+static int set_parameters(const struct run_cfg *c)
+{
+    const struct sim_device *d = &c->board.device;
+    const struct run_setting calibrated[] = {
+        {"step", d->step_m / d->decode}, {"kf", d->kf_npa},
+        {"dac_scale", d->dac_perA},      {"dac_zero", d->dac_zero},
+        {"mon_scale", d->mon_apc},       {"q_lim", d->height_m},
+        {"k", c->k_Npm},                 {"b", c->b_Nspm},
+    };
+    struct exh_params *p = exh_scene_drop.params;
+    int err = 0;
+    exh_scene_drop.defaults();
+    for (size_t i = 0; err == 0 && i < sizeof calibrated / sizeof calibrated[0]; i++) {
+        err = cli_param_set(p, calibrated[i].name, calibrated[i].value);
+    }
+    for (int i = 0; err == 0 && i < c->settings; i++) {
+        err = cli_param_set(p, c->setting[i].name, c->setting[i].value);
+    }
+    return err;
+}
+
+int run_drop(const struct run_cfg *c, struct run *r)
+{
+    static const struct exh_loop_hooks hooks = {start, before, after};
+    int err;
+
+    memset(r, 0, sizeof *r);
+    memset(&run, 0, sizeof run);
+    run.r = r;
+    err = set_parameters(c);
+    if (err == 0) {
+        posix_configure(&c->board);
+        err = exh_loop(&exh_scene_drop, c->rate_Hz, &hooks);
+        if (err == -EXH_E_RATE) {
+            fprintf(stderr, "rate: %lu Hz (allowed 1..%lu): choose one in that range\n",
+                    (unsigned long)c->rate_Hz, (unsigned long)exh_board_info.rate_max_Hz);
+        } else if (err < 0) {
+            fprintf(stderr, "drop: %s\n", exh_error_text(err));
+        } else {
+            r->lost = exh_log_end(run.last_tick + 1);
+        }
+    }
+    r->log.sample = run.sample;
+    r->log.start = run.start;
+    if (run.no_memory) {
+        fprintf(stderr, "drop: out of memory: fewer falls, or a lower rate\n");
+        err = err ? err : -EXH_E_SHORT;
+    }
+    return err;
+}
+
+void run_free(struct run *r)
+{
+    /* The log's view of its arrays is const; they are ours. */
+    union {
+        const void *view;
+        void *own;
+    } u;
+    u.view = r->log.sample;
+    free(u.own);
+    u.view = r->log.start;
+    free(u.own);
+    memset(r, 0, sizeof *r);
+}

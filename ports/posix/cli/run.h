@@ -1,0 +1,38 @@
+/* One run of the drop scene on the simulated device: the paper's ten falls. */
+#ifndef CLI_RUN_H
+#define CLI_RUN_H
+
+#include "analysis.h"
+#include "posix.h"
+
+#include "exhand/signal.h"
+
+struct run_setting { /* a parameter of the scene, by name, in SI */
+    const char *name;
+    double value;
+};
+
+struct run_cfg {
+    uint32_t rate_Hz;
+    double k_Npm, b_Nspm;
+    const struct run_setting *setting; /* further parameters                   */
+    int settings;
+    struct posix_config board; /* device, seed, falls, log, pace               */
+};
+
+struct run {
+    struct fall_log log; /* samples of the falls only, not of hold and lift    */
+    struct exh_period T;
+    uint64_t ticks;
+    uint64_t limited;    /* ticks in which a limit acted other than "pull only" */
+    uint32_t lost;       /* log records lost                                   */
+    uint32_t faults;     /* enum exh_fault                                     */
+};
+
+/* 0 or -EXH_E… after a line on stderr. The scene's encoder step and kf are taken
+ * from the device: the box is calibrated. The log in *r is the caller's to free,
+ * also after an error. */
+int run_drop(const struct run_cfg *c, struct run *r);
+void run_free(struct run *r);
+
+#endif

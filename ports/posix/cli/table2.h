@@ -1,0 +1,60 @@
+/* The paper's Table II: its six points, and how ours are judged and printed. */
+#ifndef CLI_TABLE2_H
+#define CLI_TABLE2_H
+
+#include "run.h"
+
+#include <stdio.h>
+
+struct table2_row {
+    double rate_Hz, k_Npm, b_Nspm, stiffness_Npm;
+};
+#define TABLE2_ROWS 6
+extern const struct table2_row table2_paper[TABLE2_ROWS];
+
+/* The paper's row at this rate, or NULL. */
+const struct table2_row *table2_at(double rate_Hz);
+/* The gains to start from at any rate: the row at or below it. */
+const struct table2_row *table2_gains(double rate_Hz);
+
+/* One run judged. B fits position over force and inverts, A fits force over
+ * position; aligned pairs F_mon(n) with q(n-1), same with q(n). */
+struct table2_result {
+    int error; /* exit status of the run                                        */
+    double rate_Hz, k_Npm, b_Nspm;
+    double b_Npm, a_Npm, r2, ci_low_Npm, ci_high_Npm; /* aligned; 0: no line      */
+    double b_same_Npm, a_same_Npm;
+    int ci_bounded;
+    int falls, oscillating, buzzing, incomplete;
+    double limited; /* share of ticks in which a limit acted                     */
+    double sim_s;
+    unsigned faults;
+    unsigned long lost;
+};
+
+/* Runs and judges; replicates 0: no interval. With a plot prefix also writes what
+ * the force-over-position picture needs. */
+struct table2_result table2_measure(const struct run_cfg *c, size_t replicates,
+                                    const char *plot_prefix);
+
+/* Many runs of one row, at its gains and at 1.5 times both. */
+struct table2_spread {
+    int runs;
+    double b_Npm, b_low_Npm, b_high_Npm; /* median, 5 % and 95 %                   */
+    double a_Npm, b_same_Npm, a_same_Npm;
+    double rest;       /* share of falls that come to rest                      */
+    double oscillates; /* share of falls that do not, at 1.5 times both gains    */
+};
+struct table2_spread table2_spread(const struct table2_result *at_1, const struct table2_result *at_15,
+                                   int runs);
+
+/* table2.csv and spread.csv: header and a line. */
+void table2_csv_header(FILE *f);
+void table2_csv_line(FILE *f, const struct table2_result *r);
+void table2_spread_csv_header(FILE *f);
+void table2_spread_csv_line(FILE *f, const struct table2_result *r, const struct table2_spread *s);
+
+/* For people. spread may be NULL. */
+void table2_print(FILE *f, const struct table2_result *r, const struct table2_spread *s, int rows);
+
+#endif

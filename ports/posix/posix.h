@@ -1,0 +1,40 @@
+/* The POSIX port's own controls: what a program may set before the loop starts and
+ * ask while it runs. The port simulates the device in virtual time. */
+#ifndef POSIX_H
+#define POSIX_H
+
+#include "sim/device.h"
+
+#include "exhand/units.h"
+
+#include <stdint.h>
+#include <stdio.h>
+
+struct posix_config {
+    struct sim_device device;
+    uint64_t seed;
+    int falls;               /* then the board says stop                        */
+    struct exh_period T;     /* num 0: 1 / rate                                 */
+    FILE *log;               /* records go here; NULL: taken and forgotten      */
+    int pace;                /* 1: follow the wall clock                        */
+    uint32_t max_ticks;      /* 0: no limit                                     */
+};
+
+/* Defaults: the committed device, seed 1, one fall. */
+struct posix_config posix_config_default(void);
+
+/* To be called before exh_board_init(). */
+void posix_configure(const struct posix_config *c);
+
+/* The fall under observation, 1…, or 0 while the mass is held or lifted. */
+int posix_fall(void);
+
+/* Ends the run: the next wait says stop. Safe in a signal handler. */
+void posix_stop(void);
+
+/* The instant of the present tick, s, and the plant as it is (tests, pictures). */
+double posix_time_s(void);
+struct plant;
+const struct plant *posix_plant(void);
+
+#endif

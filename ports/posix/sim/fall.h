@@ -1,0 +1,33 @@
+/* Fall: what the experimenter does. Holds the mass, lets go, watches, lifts again.
+ *
+ * While held or lifted, the hand guides mass and string together. */
+#ifndef SIM_FALL_H
+#define SIM_FALL_H
+
+#include "plant.h"
+#include "random.h"
+
+enum fall_phase { FALL_HOLD, FALL_FREE, FALL_LIFT, FALL_DONE };
+
+struct fall {
+    enum fall_phase phase;
+    int number;        /* the fall being prepared or watched, from 1           */
+    int falls;         /* how many are asked for                               */
+    double until_s;    /* end of the phase; FREE: known once contact is made   */
+    double contact_s;  /* first time past the virtual contact, < 0: not yet    */
+    double lift_s;     /* start of the lift                                    */
+    double from_x_m, from_q_m, to_m;
+};
+
+void fall_start(struct fall *f, struct plant *p, const struct sim_device *d,
+                struct sim_random *r, int falls);
+
+/* When the phase ends, if known; a time far away otherwise. */
+double fall_next_s(const struct fall *f);
+
+/* At time t, after the plant got there: moves the hand, changes phase when due.
+ * Returns 1 when the mass was let go at this moment. */
+int fall_step(struct fall *f, struct plant *p, const struct sim_device *d, struct sim_random *r,
+              double t_s);
+
+#endif

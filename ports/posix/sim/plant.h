@@ -1,0 +1,34 @@
+/* Plant: a mass on an elastic string that only pulls, wound on a motor's rotor.
+ *
+ *   T    = max(0, kc (x - q) + bc (x' - q')), 0 when x < q
+ *   m x''  = m g - T - dry(mu_mass T)
+ *   mr q'' = T - kf i - bv q' - dry(fc + mu_motor T)
+ *   i'   = 2 pi fbw (iref - i)            monitor' = (i - monitor) / lag
+ *
+ * dry() is Coulomb friction with stiction. Semi-implicit Euler, friction as an
+ * impulse that can only shrink a velocity towards zero (it cannot chatter), the two
+ * first-order lags exactly. + - x / only: the same digits on every machine.
+ */
+#ifndef SIM_PLANT_H
+#define SIM_PLANT_H
+
+#include "device.h"
+
+#define SIM_GRAVITY 9.81
+
+struct plant {
+    double x_m, v_mps; /* mass, down positive, 0 = virtual contact             */
+    double q_m, w_mps; /* string at the motor                                  */
+    double cur_A;      /* motor current                                        */
+    double mon_A;      /* behind the monitor's lag                             */
+};
+
+/* Advances by dt_s >= 0 with the current loop's reference held. held: the mass and
+ * the string are in the experimenter's hand and do not move. */
+void plant_advance(struct plant *p, const struct sim_device *d, double dt_s, double ref_A,
+                   int held);
+
+/* exp(-x) for x >= 0, from + - x /; relative error < 1e-12. */
+double sim_exp_neg(double x);
+
+#endif

@@ -1,0 +1,36 @@
+/* Random numbers of the simulation: seeded, the same on every machine. */
+#ifndef SIM_RANDOM_H
+#define SIM_RANDOM_H
+
+#include <stdint.h>
+
+struct sim_random {
+    uint64_t state;
+};
+
+/* splitmix64 (Steele, Lea, Flood 2014). */
+static inline uint64_t sim_random_u64(struct sim_random *r)
+{
+    uint64_t z = r->state += UINT64_C(0x9E3779B97F4A7C15);
+    z = (z ^ z >> 30) * UINT64_C(0xBF58476D1CE4E5B9);
+    z = (z ^ z >> 27) * UINT64_C(0x94D049BB133111EB);
+    return z ^ z >> 31;
+}
+
+/* Uniform in 0 <= u < 1, 53 bits. */
+static inline double sim_random_unit(struct sim_random *r)
+{
+    return (double)(sim_random_u64(r) >> 11) * (1.0 / 9007199254740992.0);
+}
+
+/* A bell over -1/2..1/2: the mean of four 16-bit uniforms, peak to peak 1, standard
+ * deviation 1/6.9. Noise that is known by its peak-to-peak value has bounds. */
+static inline double sim_random_bell(struct sim_random *r)
+{
+    const uint64_t u = sim_random_u64(r);
+    const int32_t sum = (int32_t)((u & 0xFFFF) + (u >> 16 & 0xFFFF) + (u >> 32 & 0xFFFF) +
+                                  (u >> 48));
+    return (double)(sum - 2 * 65535) * (1.0 / (4 * 65535.0));
+}
+
+#endif

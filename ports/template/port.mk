@@ -1,0 +1,8 @@
+# Variables a port may set; only PORT_DESC and PORT_SRC are needed on a hosted compiler.
+PORT_DESC := does nothing; the start of every new port
+PORT_SRC  := ports/template/board.c
+# CROSS         prefix of the compiler, e.g. arm-none-eabi-
+# PORT_CFLAGS   target and freestanding flags, for the library too
+# PORT_LDFLAGS  e.g. -nostdlib -static
+# PORT_LDSCRIPT one per memory map, in ldscripts/
+# PORT_RUN      program that runs an image: exit status 0 when it said "done"
