@@ -1,0 +1,171 @@
+# exhand: haptic-glove controller library, its ports, its experiments.
+# Variables for you: PORT SCENE B O V CC CROSS CFLAGS LDFLAGS DEPS ARGS. `make help` lists the targets.
+
+PORT   ?= posix
+SCENE  ?= drop
+B      ?= build
+O      ?= 2
+ARGS   ?=
+DEPS   ?= yes
+WERROR ?=
+
+include ports/$(PORT)/port.mk
+include examples/$(SCENE)/scene.mk
+
+ifeq ($(origin CC),default)
+CC := $(CROSS)gcc
+endif
+OBJCOPY ?= $(CROSS)objcopy
+Q       := $(if $(V),,@)
+out     := $(B)/$(PORT)
+
+# The library is C99 without extensions; the strictest warnings from day one.
+warn := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wcast-align -Wcast-qual \
+        -Wstrict-prototypes -Wmissing-prototypes -Wundef -Wwrite-strings -Wpointer-arith \
+        -Wdouble-promotion -Wformat=2 -Wvla -Wswitch-enum $(if $(WERROR),-Werror)
+base := -std=c99 -O$(O) -g $(warn) -ffunction-sections -fdata-sections -Ilib/include -Iexamples -MMD -MP
+
+lib_src := $(sort $(wildcard lib/src/*.c))
+lib_obj := $(lib_src:%.c=$(out)/%.o)
+lib     := $(out)/libexhand.a
+
+.DEFAULT_GOAL := all
+
+## Show this help
+.PHONY: help
+help:
+	@awk '/^## /{d=substr($$0,4); getline; while(/^\.PHONY/) getline; sub(/:.*/,""); \
+	     printf "  %-10s %s\n",$$0,d}' $(firstword $(MAKEFILE_LIST))
+	@echo "  PORT=$(PORT)    one of: $(notdir $(patsubst %/port.mk,%,$(wildcard ports/*/port.mk)))"
+	@echo "  SCENE=$(SCENE)    one of: $(notdir $(patsubst %/scene.mk,%,$(wildcard examples/*/scene.mk)))"
+
+$(out)/lib/%.o: lib/%.c
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(base) $(PORT_CFLAGS) $(CFLAGS) -c $< -o $@
+
+$(out)/%.o: %.c
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(base) $(PORT_CFLAGS) $(PORT_HOSTFLAGS) $(CFLAGS) -c $< -o $@
+
+$(lib): $(lib_obj)
+	$(Q)rm -f $@ && $(CROSS)ar rcD $@ $^
+
+
+# --- what is linked -----------------------------------------------------------
+
+image     := $(out)/$(SCENE).elf
+image_obj := $(patsubst %,$(out)/$(SCENE)/%.o,$(basename examples/image.c $(PORT_SRC))) \
+             $(out)/examples/loop.o $(SCENE_SRC:%.c=$(out)/%.o)
+
+# These know which scene they serve: one set of objects per scene.
+$(out)/$(SCENE)/%.o: %.c
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(base) $(PORT_CFLAGS) $(PORT_HOSTFLAGS) -DEXH_SCENE=exh_scene_$(SCENE) $(CFLAGS) -c $< -o $@
+$(out)/$(SCENE)/%.o: %.S
+	@mkdir -p $(@D)
+	$(Q)$(CC) -Ilib/include $(PORT_CFLAGS) -g -c $< -o $@
+
+$(image): $(image_obj) $(lib) $(PORT_LDSCRIPT)
+	$(Q)$(CC) $(PORT_LDFLAGS) $(LDFLAGS) -Wl,--gc-sections,-Map=$(@:.elf=.map) \
+	    $(PORT_LDSCRIPT:%=-T %) $(image_obj) $(lib) -o $@
+
+# The host program: every scene that has a subcommand, over the simulated device.
+cli_src := $(wildcard ports/posix/cli/*.c) examples/log.c examples/drop/drop.c
+cli_obj := $(cli_src:%.c=$(B)/posix/%.o)
+sim_obj := $(patsubst %.c,$(B)/posix/%.o,$(wildcard ports/posix/*.c ports/posix/sim/*.c)) \
+           $(B)/posix/examples/loop.o
+exhand  := $(B)/posix/exhand
+
+$(exhand): $(cli_obj) $(sim_obj) $(B)/posix/libexhand.a
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^
+
+ifeq ($(PORT),posix)
+products := $(exhand)
+else
+products := $(image)
+endif
+
+## Build the library, and the host program or the image of SCENE on PORT
+.PHONY: all
+all: $(lib) $(products)
+
+## The paper's drop experiment on the simulated device: table, plots, logs in build/demo
+.PHONY: demo
+demo: all
+	@.ci/deps "the pictures" gnuplot gnuplot-nox fonts-dejavu-core || true
+	@mkdir -p $(B)/demo
+	$(Q)$(exhand) drop --out $(B)/demo --spread 20 > $(B)/demo/table2.txt || { cat $(B)/demo/table2.txt; exit 1; }
+	@if command -v gnuplot >/dev/null; then \
+	    gnuplot -e "plots='ports/posix/cli/plot'" $(B)/demo/pictures.gp && \
+	    echo "pictures: $(B)/demo/force_position.png $(B)/demo/fall.png"; fi
+	@cat $(B)/demo/table2.txt
+
+## Run the host program (ARGS="drop --help") or the image of SCENE on PORT
+.PHONY: run
+run: all
+ifeq ($(PORT),posix)
+	$(Q)$(exhand) $(ARGS)
+else
+	$(Q)$(or $(PORT_RUN),$(error PORT=$(PORT) cannot run images)) $(image) $(ARGS)
+endif
+
+# --- tests ----------------------------------------------------------------------
+
+san       := -fsanitize=address,undefined -fno-sanitize-recover=all
+test_dirs := unit prop sim board
+test_src  := $(foreach d,$(test_dirs),$(wildcard test/$(d)/*_test.c))
+test_bin  := $(test_src:test/%_test.c=$(B)/test/%_test)
+tflags     = $(base) $(CFLAGS) -Itest -DEXH_FIX_AUDIT
+
+# Sanitized: library and tests of it.
+$(B)/test/san/%.o: %.c
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(tflags) $(san) -D_POSIX_C_SOURCE=200809L -c $< -o $@
+$(B)/test/unit/%_test $(B)/test/prop/%_test: $(B)/test/san/test/support.o $(lib_src:%.c=$(B)/test/san/%.o)
+$(B)/test/unit/%_test: $(B)/test/san/test/unit/%_test.o
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(san) -o $@ $^ -lcmocka
+$(B)/test/prop/%_test: $(B)/test/san/test/prop/%_test.o
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(san) -o $@ $^ -lcmocka
+
+# Closed loops: the port, the simulator and the subcommands as they are shipped.
+$(B)/test/sim/%_test: $(B)/posix/test/sim/%_test.o $(B)/posix/test/support.o \
+                      $(filter-out %/main.o %/loop.o,$(cli_obj) $(sim_obj)) $(B)/test/loop.o $(B)/posix/libexhand.a
+	@mkdir -p $(@D)
+	$(Q)$(CC) -o $@ $^ -lcmocka
+$(B)/posix/test/%.o: test/%.c
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(base) $(PORT_HOSTFLAGS) $(CFLAGS) -Itest -c $< -o $@
+# The loop without its assertion hook, which tests define themselves.
+$(B)/test/loop.o: examples/loop.c
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(base) $(CFLAGS) -Dexh_assert_failed=exh_loop_assert_failed -Wno-missing-prototypes -c $< -o $@
+# The port contract, on the port that runs here.
+$(B)/test/board/%_test: $(B)/posix/test/board/%_test.o $(B)/posix/test/support.o $(filter-out %/loop.o,$(sim_obj)) \
+                        $(B)/posix/libexhand.a
+	@mkdir -p $(@D)
+	$(Q)$(CC) -o $@ $^ -lcmocka
+
+## Every test that needs no more than a compiler and CMocka, in minutes
+.PHONY: test
+test:
+	@.ci/deps "the tests" "echo '#include <cmocka.h>' | $(CC) -include stdarg.h -include stddef.h -include setjmp.h -include stdint.h -fsyntax-only -xc -" libcmocka-dev || exit 3
+	@$(MAKE) --no-print-directory $(test_bin)
+	@test/run.sh $(test_bin)
+
+# --- figures ------------------------------------------------------------------------
+
+## What the library needs from outside, and that it holds no float instruction
+.PHONY: undef
+undef: $(lib)
+	$(Q)test/size/undef.sh $(lib) $(CROSS)nm $(PORT_HELPERS)
+	$(Q)test/size/float.sh $(lib) $(CROSS)objdump
+
+## Bytes, stack, instructions per tick and library symbols of each scene and port
+.PHONY: size
+size:
+	$(Q)MAKE="$(MAKE)" B=$(B) test/size/size.sh
+
+.SECONDARY:
+-include $(shell find $(B) -name '*.d' 2>/dev/null)

@@ -1,0 +1,180 @@
+#!/bin/sh
+# What a scene costs on a port: size.sh [--update] [SCENE...]
+# Refutes "a scene links only what it calls": prints bytes, worst-case stack, instructions per
+# tick and the library symbols of each scene x port, and compares the symbols with the committed
+# symbols-SCENE-PORT.txt. --update rewrites these.
+#
+#   posix  library and scene as this machine's compiler makes them, in an image linked against
+#          ports/template: the simulator around them would drown them. Instructions by callgrind,
+#          over 2000 ticks into the wall and back.
+#   pc104  the real image. Instructions by its own count under QEMU (time stamp counter, one per
+#          instruction); with nothing moving, as its cards are constants.
+#
+# Environment: MAKE (make), B (build). A missing cross compiler, emulator or valgrind
+# leaves "-" in the table and says so.
+# Exit status: 0 as committed, 1 not, 2 bad usage, 3 no compiler.
+set -eu
+
+make=${MAKE:-make}
+cc=gcc # the committed figures are its, whatever CC says
+b=${B:-build}/size
+here=test/size
+ticks=2000
+update=no
+failed=no
+MAKEFLAGS='' # what the caller's make was told (CC, O, ...) would change the figures
+export MAKEFLAGS
+
+[ -r "$here/size.sh" ] || { echo "$0: run it at the top of the tree" >&2; exit 2; }
+[ "${1:-}" = --update ] && { update=yes; shift; }
+command -v "$cc" >/dev/null 2>&1 || { echo "$cc: not found: install gcc" >&2; exit 3; }
+
+note() { echo "size: $*" >&2; }
+
+# build PORT SCENE [VARIABLE...]: the image and the call graphs beside its objects
+build()
+{
+    port=$1 scene=$2
+    shift 2
+    $make -s "PORT=$port" "SCENE=$scene" "B=$b" CFLAGS=-fcallgraph-info=su "$@" \
+        "$b/$port/$scene.elf"
+}
+
+# objects PORT SCENE: everything compiled from C for that image
+objects()
+{
+    find "$b/$1/lib" "$b/$1/examples/loop.ci" "$b/$1/examples/$2" "$b/$1/$2" -name '*.ci' |
+        sed 's/\.ci$/.o/' | sort
+}
+
+# library_symbols PORT SCENE NM: global symbols of the library that the image has
+library_symbols()
+{
+    "$3" -g -P "$b/$1/libexhand.a" | awk 'NF > 2 && $2 !~ /^[Uwv]$/ { print $1 }' | sort -u \
+        >"$b/library.txt"
+    "$3" -P "$b/$1/$2.elf" | awk '{ print $1 }' | sort -u | comm -12 - "$b/library.txt"
+}
+
+# compare_symbols PORT-as-named SCENE: $b/symbols.txt with the committed list
+compare_symbols()
+{
+    committed=$here/symbols-$2-$1.txt
+    if [ "$update" = yes ]; then
+        cp "$b/symbols.txt" "$committed"
+    elif [ ! -r "$committed" ]; then
+        note "$committed: missing: run $0 --update"
+        failed=yes
+    elif ! diff -u "$committed" "$b/symbols.txt" >&2; then
+        note "$2 on $1: other library symbols than committed: if intended, run $0 --update"
+        failed=yes
+    fi
+}
+
+# stack PORT SCENE OBJDUMP: bytes, and the path to stderr
+stack()
+{
+    # shellcheck disable=SC2046 # the names of our objects have no blanks
+    if python3 "$here/stack.py" --objdump "$3" $(objects "$1" "$2") >"$b/stack.txt"; then
+        note "$2 on $1: stack $(head -n 1 "$b/stack.txt")"
+        sed 's/ .*//;q' "$b/stack.txt"
+    else
+        echo "?"
+    fi
+}
+
+# linked_bytes SCENE: text, data, bss of library and scene in the image on the template port, out
+# of the linker's map. Long section names stand on a line of their own.
+linked_bytes()
+{
+    awk -v ours="libexhand\\.a\\(|/examples/$1/" '
+        function number(hex,  i, v) {
+            for (i = 3; i <= length(hex); i++) {
+                v = v * 16 + index("0123456789abcdef", substr(hex, i, 1)) - 1
+            }
+            return v
+        }
+        /^Linker script and memory map/ { mapped = 1 }
+        !mapped           { next }
+        /^ [.][^ ]+$/     { name = $1; next }
+        /^ [.]/           { name = $1; address = $2; size = $3; file = $4 }
+        /^  +0x/ && name  { address = $1; size = $2; file = $3 }
+        file ~ ours && number(address) > 0 {
+            if (name ~ /^\.bss/) { bss += number(size) }
+            else if (name ~ /^\.data($|\.)/ && name !~ /^\.data\.rel\.ro/) { data += number(size) }
+            else if (name ~ /^\.(text|rodata|data\.rel\.ro)/) { text += number(size) }
+        }
+        { name = file = "" }
+        END { printf "%d %d %d\n", text, data, bss }' "$b/template/$1.map"
+}
+
+# callgrind SCENE: instructions per tick on this machine, or -
+callgrind()
+{
+    tool=$b/ticks-$1
+    # shellcheck disable=SC2046 # the names of our objects have no blanks
+    "$cc" -std=c99 -O2 -g -Ilib/include -Iexamples "-DEXH_SCENE=exh_scene_$1" "$here/ticks.c" \
+        $(find "$b/template/examples/$1" -name '*.o') "$b/template/libexhand.a" -o "$tool"
+    "$tool" "$ticks"
+    if ! command -v valgrind >/dev/null 2>&1; then
+        note "valgrind: not found: no instructions for posix"
+        echo "-"
+        return
+    fi
+    tick=$(nm -P "$tool" | awk '$2 ~ /^[tT]$/ && $1 ~ /(^|_)tick$/ { print $1 }' | head -n 1)
+    valgrind --tool=callgrind --callgrind-out-file=/dev/null "--toggle-collect=$tick" "$tool" \
+        "$ticks" 2>&1 |
+        awk -v n="$ticks" '/Collected/ { per_tick = sprintf("%.1f", $NF / n) }
+            END { print per_tick ? per_tick : "-" }'
+}
+
+# counted SCENE: most instructions of one tick on pc104, or -
+counted()
+{
+    QEMU_FLAGS="-icount shift=0,sleep=off" ports/pc104/run.sh "$b/pc104/$1.elf" "ticks=$ticks" \
+        >"$b/run.txt" || note "$1 on pc104: did not run"
+    awk '/^cycles per tick/ { sub(/\r/, ""); n = $NF } END { print n ? n : "-" }' "$b/run.txt"
+}
+
+# row SCENE PORT TEXT DATA BSS STACK INSTRUCTIONS
+row()
+{
+    printf '%-12s %-8s %8s %6s %6s %8s %12s %8s\n' "$@" "$(wc -l <"$b/symbols.txt")"
+}
+
+posix_row()
+{
+    build template "$1" "CC=$cc"
+    library_symbols template "$1" nm >"$b/symbols.txt"
+    compare_symbols posix "$1"
+    bytes=$(linked_bytes "$1")
+    # shellcheck disable=SC2086 # three numbers
+    row "$1" posix $bytes "$(stack template "$1" objdump)" "$(callgrind "$1")"
+}
+
+pc104_row()
+{
+    cross=i686-linux-gnu-
+    if ! command -v "${cross}gcc" >/dev/null 2>&1; then
+        note "${cross}gcc: not found: no pc104 (package gcc-i686-linux-gnu)"
+        return
+    fi
+    build pc104 "$1" "CROSS=$cross" "CC=${cross}gcc"
+    library_symbols pc104 "$1" "${cross}nm" >"$b/symbols.txt"
+    compare_symbols pc104 "$1"
+    bytes=$("${cross}size" "$b/pc104/$1.elf" | awk 'NR == 2 { print $1, $2, $3 }')
+    # shellcheck disable=SC2086 # three numbers
+    row "$1" pc104 $bytes "$(stack pc104 "$1" "${cross}objdump")" "$(counted "$1")"
+}
+
+mkdir -p "$b"
+[ $# -gt 0 ] || set -- minimal drop
+: >"$b/table.txt"
+for scene in "$@"; do
+    [ -r "examples/$scene/scene.mk" ] || { note "$scene: no examples/$scene/scene.mk"; continue; }
+    posix_row "$scene" >>"$b/table.txt"
+    pc104_row "$scene" >>"$b/table.txt"
+done
+printf '%-12s %-8s %8s %6s %6s %8s %12s %8s\n' scene port text_B data_B bss_B stack_B \
+    insn/tick symbols
+cat "$b/table.txt"
+[ "$failed" = no ]

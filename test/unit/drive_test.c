@@ -1,0 +1,434 @@
+/* drive.h: tables, limits, I2t and slew, on numbers worked out by hand. */
+#include "exhand/drive.h"
+
+#include "exhand/error.h"
+
+#include "check.h"
+
+#define LEN(a) (sizeof(a) / sizeof((a)[0]))
+
+/* --- tables --- */
+
+#define KNOTS 5
+static void some_table(struct exh_knot *k)
+{
+    static const int32_t xy[KNOTS][2] = {
+        {-1000000, -70000}, {0, 0}, {3, 1000000}, {2000000, 1000001}, {1 << 30, 1 << 29}};
+    for (size_t i = 0; i < KNOTS; i++) {
+        k[i].x = xy[i][0];
+        k[i].y = xy[i][1];
+    }
+}
+
+TEST(table_is_exact_at_knots_and_clamps_outside)
+{
+    struct exh_knot k[KNOTS];
+    some_table(k);
+    CHECK_EQ_I64(exh_table_set(k, KNOTS), 0);
+    for (uint8_t n = 2; n <= KNOTS; n++) {
+        const struct exh_table t = {k, n};
+        for (size_t i = 0; i < n; i++) { CHECK_EQ_I64(exh_table_at(t, k[i].x), k[i].y); }
+        CHECK_EQ_I64(exh_table_at(t, INT32_MIN), k[0].y);
+        CHECK_EQ_I64(exh_table_at(t, k[0].x - 1), k[0].y);
+        CHECK_EQ_I64(exh_table_at(t, k[n - 1].x + 1), k[n - 1].y);
+        CHECK_EQ_I64(exh_table_at(t, INT32_MAX), k[n - 1].y);
+    }
+}
+
+TEST(table_between_knots)
+{
+    struct exh_knot k[3] = {{-10, -100, {0, 1}}, {10, 100, {0, 1}}, {30, 110, {0, 1}}};
+    const struct exh_table t = {k, 3};
+    CHECK_EQ_I64(exh_table_set(k, 3), 0);
+    CHECK_EQ_I64(exh_table_at(t, 0), 0);
+    CHECK_EQ_I64(exh_table_at(t, -9), -90);
+    CHECK_EQ_I64(exh_table_at(t, 9), 90);
+    CHECK_EQ_I64(exh_table_at(t, 12), 101);
+    CHECK_EQ_I64(exh_table_at(t, 28), 109);
+}
+
+TEST(table_is_monotone_around_every_knot)
+{
+    struct exh_knot k[KNOTS];
+    const struct exh_table t = {k, KNOTS};
+    some_table(k);
+    (void)exh_table_set(k, KNOTS);
+    for (size_t i = 0; i < KNOTS; i++) {
+        int32_t before = exh_table_at(t, k[i].x - 2000);
+        for (int32_t x = k[i].x - 1999; x <= k[i].x + 2000; x++) {
+            const int32_t y = exh_table_at(t, x);
+            CHECK(y >= before, "falls at %" PRId32, x);
+            before = y;
+        }
+    }
+}
+
+TEST(table_rejections)
+{
+    static const struct {
+        int32_t x0, y0, x1, y1, x2, y2;
+        unsigned n;
+        int want;
+    } row[] = {
+        {0, 0, 1, 1, 2, 2, 3, 0},
+        {0, 0, 1, 1, 2, 2, 1, -EXH_E_RANGE},
+        {0, 0, 1, 1, 2, 2, 0, -EXH_E_RANGE},
+        {0, 0, 0, 1, 2, 2, 3, -EXH_E_MONOTONE},
+        {0, 0, 1, 0, 2, 2, 3, -EXH_E_MONOTONE},
+        {0, 0, 1, 1, 2, 1, 3, -EXH_E_MONOTONE},
+        {0, 0, 1, 1, 0, 2, 3, -EXH_E_MONOTONE},
+        {0, 0, -1, 1, 2, 2, 3, -EXH_E_MONOTONE},
+        {-1, 0, 1, 1, INT32_MAX, 2, 3, -EXH_E_RANGE},
+        {0, -1, 1, 1, 2, INT32_MAX, 3, -EXH_E_RANGE},
+        {INT32_MIN, 0, 0, 1, 5, 2, 3, -EXH_E_RANGE},
+        {INT32_MIN, INT32_MIN, -2, -2, -1, -1, 3, 0}, /* spans 2^31-1 */
+        {0, 0, INT32_MAX - 1, 1, INT32_MAX, 2, 3, 0},
+    };
+    for (size_t i = 0; i < LEN(row); i++) {
+        struct exh_knot k[3] = {{row[i].x0, row[i].y0, {0, 1}},
+                                {row[i].x1, row[i].y1, {0, 1}},
+                                {row[i].x2, row[i].y2, {0, 1}}};
+        const int err = exh_table_set(k, row[i].n);
+        CHECK(err == row[i].want, "row %zu: %d, want %d", i, err, row[i].want);
+    }
+}
+
+/* Spans fit and x and y rise strictly: nothing in the contract refuses this. */
+TEST(steepest_table_is_accepted)
+{
+    struct exh_knot k[2] = {{0, 0, {0, 1}}, {1, INT32_MAX, {0, 1}}};
+    const struct exh_table t = {k, 2};
+    const int err = exh_table_set(k, 2);
+    CHECK(err == 0, "error %d", err);
+    CHECK_EQ_I64(exh_table_at(t, 1), INT32_MAX);
+}
+
+/* There and back, through the coarser side: within 1 LSB; in place, too. */
+TEST(inverse_round_trip)
+{
+    struct exh_knot k[3] = {{0, 0, {0, 1}}, {41943040, 442918502, {0, 1}}, {83886080, 469762048, {0, 1}}};
+    struct exh_knot inv[3];
+    const struct exh_table there = {k, 3}, back = {inv, 3};
+    CHECK_EQ_I64(exh_table_set(k, 3), 0);
+    CHECK_EQ_I64(exh_table_invert(inv, k, 3), 0);
+    for (int32_t x = 0; x <= 41943040; x += 4099) {
+        const int64_t err = (int64_t)exh_table_at(back, exh_table_at(there, x)) - x;
+        CHECK(err >= -1 && err <= 1, "steep part, %" PRId32 ": %" PRId64, x, err);
+    }
+    for (int32_t y = 442918502; y <= 469762048; y += 4099) {
+        const int64_t err = (int64_t)exh_table_at(there, exh_table_at(back, y)) - y;
+        CHECK(err >= -1 && err <= 1, "flat part, %" PRId32 ": %" PRId64, y, err);
+    }
+    CHECK_EQ_I64(exh_table_invert(inv, inv, 3), 0);
+    for (size_t i = 0; i < 3; i++) { CHECK(inv[i].x == k[i].x && inv[i].y == k[i].y, "knot %zu", i); }
+}
+
+TEST(inverse_refuses_what_set_refuses)
+{
+    const struct exh_knot flat[3] = {{0, 0, {0, 1}}, {1, 5, {0, 1}}, {2, 5, {0, 1}}};
+    struct exh_knot inv[3];
+    CHECK_EQ_I64(exh_table_invert(inv, flat, 3), -EXH_E_MONOTONE);
+    CHECK_EQ_I64(exh_table_invert(inv, flat, 1), -EXH_E_RANGE);
+}
+
+/* --- one axis: 10 N per A --- */
+
+struct axis {
+    struct exh_drive_par par;
+    struct exh_knot knot[2], inv[2];
+    struct exh_drive_cfg cfg;
+    struct exh_drive s;
+};
+
+static void axis_par(struct exh_drive_par *par)
+{
+    int32_t *field = &par->f_max_N_q20; /* all fields int32_t, in the order of the rows */
+    for (size_t i = 0; i < EXH_DRIVE_ROWS; i++) { field[i] = exh_drive_rows[i].dflt; }
+}
+
+static int axis_setup(struct axis *a, struct exh_period T)
+{
+    const struct exh_table none = {NULL, 0};
+    struct exh_table there, back;
+    a->knot[0] = (struct exh_knot){0, 0, {0, 1}};
+    a->knot[1] = (struct exh_knot){EXH_Q(100, 1, EXH_Q_FORCE), EXH_Q(10, 1, EXH_Q_CUR), {0, 1}};
+    if (exh_table_set(a->knot, 2) < 0 || exh_table_invert(a->inv, a->knot, 2) < 0) { return 1; }
+    there = (struct exh_table){a->knot, 2};
+    back = (struct exh_table){a->inv, 2};
+    a->s = (struct exh_drive){0, 0};
+    return exh_drive_setup(&a->cfg, &a->par, T, there, a->par.mon_zero_raw == 77 ? none : back);
+}
+
+TEST(setup_rejections)
+{
+    static const struct {
+        size_t field;
+        int32_t v;
+        const char *what;
+    } row[] = {
+        {3, EXH_Q(3, 1, EXH_Q_CUR), "i_peak below i_cont"},
+        {8, 0, "no D/A scale"},
+        {10, 0, "no monitor scale, though a monitor table is given"},
+    };
+    struct axis a;
+    axis_par(&a.par);
+    CHECK_EQ_I64(axis_setup(&a, (struct exh_period){1, 2000}), 0);
+    a.par.mon_zero_raw = 77; /* marks: no monitor table */
+    CHECK_EQ_I64(axis_setup(&a, (struct exh_period){1, 2000}), 0);
+    for (size_t i = 0; i < LEN(row); i++) {
+        axis_par(&a.par);
+        (&a.par.f_max_N_q20)[row[i].field] = row[i].v;
+        CHECK(axis_setup(&a, (struct exh_period){1, 2000}) == -EXH_E_RANGE, "%s", row[i].what);
+    }
+}
+
+TEST(setup_takes_every_documented_period)
+{
+    static const struct exh_period T[] = {{1, 20000}, {1, 1},           {65, 1193182},
+                                          {1, 90},    {4294967, 4294967295}, {214748, 4294967295},
+                                          {4294967295, 4294967295}};
+    for (size_t i = 0; i < LEN(T); i++) {
+        struct axis a;
+        axis_par(&a.par);
+        CHECK(axis_setup(&a, T[i]) == 0, "period %zu", i);
+    }
+}
+
+static uint32_t force(struct axis *a, int64_t spring, struct exh_force_ledger *f)
+{
+    const struct exh_force_ledger zero = {0, 0, 0, 0, 0, 0, 0};
+    *f = zero;
+    f->spring_N_q20 = spring;
+    return exh_drive_force(&a->s, &a->cfg, f);
+}
+
+/* f_max 40 N; slew 200 kN/s at 2 kHz: 100 N a tick, so not in the way. */
+TEST(force_limit_and_pull_only)
+{
+    static const struct {
+        int64_t asked_N;
+        int64_t want_N;
+        uint32_t limits;
+    } row[] = {{0, 0, 0},
+               {39, 39, 0},
+               {40, 40, 0},
+               {41, 40, EXH_LIMIT_FORCE},
+               {1000000, 40, EXH_LIMIT_FORCE},
+               {-1, 0, EXH_LIMIT_PULL},
+               {-1000000, 0, EXH_LIMIT_PULL},
+               {12, 12, 0}};
+    struct axis a;
+    axis_par(&a.par);
+    CHECK_EQ_I64(axis_setup(&a, (struct exh_period){1, 2000}), 0);
+    for (size_t i = 0; i < LEN(row); i++) {
+        struct exh_force_ledger f;
+        CHECK_EQ_I64(force(&a, row[i].asked_N << 20, &f), row[i].limits);
+        CHECK_EQ_I64(f.force_N_q20, row[i].want_N << 20);
+        CHECK_EQ_I64(f.clamp_N_q20, (row[i].want_N - row[i].asked_N) << 20);
+        CHECK_EQ_I64(f.slew_N_q20, 0);
+        CHECK_EQ_I64(a.s.force_N_q20, f.force_N_q20);
+    }
+}
+
+/* 2000 N/s up, 4000 N/s down, 2 kHz: 1 N a tick up, 2 N down. */
+TEST(slew_both_ways)
+{
+    struct axis a;
+    struct exh_force_ledger f;
+    axis_par(&a.par);
+    a.par.slew_up_Nps = 2000;
+    a.par.slew_down_Nps = 4000;
+    CHECK_EQ_I64(axis_setup(&a, (struct exh_period){1, 2000}), 0);
+    for (int64_t n = 1; n <= 10; n++) {
+        CHECK_EQ_I64(force(&a, 10 << 20, &f), n < 10 ? EXH_LIMIT_SLEW : 0);
+        CHECK_EQ_I64(f.force_N_q20, n << 20);
+        CHECK_EQ_I64(f.slew_N_q20, (n - 10) * 1048576);
+    }
+    for (int64_t n = 1; n <= 5; n++) {
+        CHECK_EQ_I64(force(&a, 0, &f), n < 5 ? EXH_LIMIT_SLEW : 0);
+        CHECK_EQ_I64(f.force_N_q20, (10 - 2 * n) << 20);
+    }
+}
+
+/* 1 N/s at 20 kHz is 52 LSB a tick; a slew that rounds to 0 would never arrive. */
+TEST(slowest_slew_still_moves)
+{
+    struct axis a;
+    struct exh_force_ledger f;
+    axis_par(&a.par);
+    a.par.slew_up_Nps = 1;
+    a.par.slew_down_Nps = 0;
+    CHECK_EQ_I64(axis_setup(&a, (struct exh_period){1, 20000}), 0);
+    (void)force(&a, 1 << 20, &f);
+    CHECK_EQ_I64(f.force_N_q20, 52);
+    (void)force(&a, 0, &f);
+    CHECK_EQ_I64(f.force_N_q20, 51); /* at least 1 LSB */
+}
+
+static uint32_t current(struct axis *a, int32_t force_N_q20, struct exh_current_ledger *i)
+{
+    struct exh_force_ledger f = {0, 0, 0, 0, 0, 0, 0};
+    f.force_N_q20 = force_N_q20;
+    return exh_drive_current(&a->s, &a->cfg, &f, i);
+}
+
+static int64_t allowed_A_q26(const struct exh_current_ledger *i)
+{
+    return i->table_A_q26 + i->peak_A_q26 + i->i2t_A_q26;
+}
+
+TEST(peak_limit)
+{
+    struct axis a;
+    struct exh_current_ledger i = {9, 9, 9, 9, 9, 9};
+    axis_par(&a.par);
+    CHECK_EQ_I64(axis_setup(&a, (struct exh_period){1, 2000}), 0);
+    CHECK_EQ_I64(current(&a, EXH_Q(80, 1, EXH_Q_FORCE), &i), EXH_LIMIT_PEAK);
+    CHECK_EQ_I64(i.table_A_q26, EXH_Q(8, 1, EXH_Q_CUR));
+    CHECK_EQ_I64(i.peak_A_q26, EXH_Q(66, 10, EXH_Q_CUR) - EXH_Q(8, 1, EXH_Q_CUR));
+    CHECK(i.i2t_A_q26 == 0 && i.gate_A_q26 == 0 && i.dac_A_q26 == 0, "rest of the ledger");
+    CHECK_EQ_I64(i.coded_A_q26, 0);
+    CHECK_EQ_I64(current(&a, EXH_Q(66, 1, EXH_Q_FORCE) - 1, &i), 0);
+}
+
+/* 6.6 A: untouched for at least 3/4 of 2.7 s and for less than 2.7 s; then down to
+ * 3.3 A without a step; cold again after rest. Same at every rate. */
+TEST(i2t_holds_folds_back_and_recovers)
+{
+    static const uint32_t rate[] = {10, 90, 100, 200, 500, 1000, 2000, 20000};
+    const int32_t peak = EXH_Q(66, 10, EXH_Q_CUR), cont = EXH_Q(33, 10, EXH_Q_CUR);
+    for (size_t r = 0; r < LEN(rate); r++) {
+        const int64_t hz = rate[r];
+        const int64_t step_max = 4 * (int64_t)(peak - cont) * 10 / (27 * hz) + 1024;
+        struct axis a;
+        struct exh_current_ledger i;
+        int64_t held = 0, before = peak;
+        axis_par(&a.par);
+        CHECK_EQ_I64(axis_setup(&a, (struct exh_period){1, rate[r]}), 0);
+        for (int64_t k = 0; k < 12 * hz; k++) {
+            const uint32_t limits = current(&a, EXH_Q(80, 1, EXH_Q_FORCE), &i);
+            const int64_t now = allowed_A_q26(&i);
+            held += now == peak;
+            CHECK(now <= before, "%" PRId64 " Hz tick %" PRId64 ": rises under load", hz, k);
+            CHECK(before - now <= step_max, "%" PRId64 " Hz tick %" PRId64 ": step", hz, k);
+            CHECK(((limits & EXH_LIMIT_I2T) != 0) == (now != peak), "limit bit");
+            CHECK(now >= cont, "below continuous: %" PRId64, now);
+            before = now;
+        }
+        CHECK(held * 40 >= 3 * 27 * hz, "%" PRId64 " Hz: held %" PRId64 " ticks", hz, held);
+        CHECK(held * 10 < 27 * hz, "%" PRId64 " Hz: held %" PRId64 " ticks", hz, held);
+        CHECK(before - cont < (peak - cont) / 200, "%" PRId64 " Hz: stays at %" PRId64, hz, before);
+        for (int64_t k = 0; k < 9 * hz; k++) { (void)current(&a, 0, &i); }
+        (void)current(&a, EXH_Q(80, 1, EXH_Q_FORCE), &i);
+        CHECK(allowed_A_q26(&i) == peak, "%" PRId64 " Hz: not recovered", hz);
+        CHECK(a.s.i2t_q32 * 3 < a.cfg.i2t_budget_q32, "%" PRId64 " Hz: still warm", hz);
+    }
+}
+
+TEST(continuous_current_is_for_ever)
+{
+    struct axis a;
+    struct exh_current_ledger i;
+    axis_par(&a.par);
+    CHECK_EQ_I64(axis_setup(&a, (struct exh_period){1, 1000}), 0);
+    for (int k = 0; k < 60000; k++) {
+        CHECK(current(&a, EXH_Q(33, 1, EXH_Q_FORCE), &i) == 0, "limited at tick %d", k);
+    }
+    CHECK_EQ_I64(a.s.i2t_q32, 0);
+}
+
+/* Bursts that spend no more than 3/4 of the budget leave the peak untouched; the
+ * heat of one burst is still there in the next. */
+TEST(bursts_add_up)
+{
+    struct axis a;
+    struct exh_current_ledger i;
+    uint32_t limits = 0;
+    axis_par(&a.par);
+    CHECK_EQ_I64(axis_setup(&a, (struct exh_period){1, 1000}), 0);
+    for (int k = 0; k < 1000; k++) { limits |= current(&a, EXH_Q(66, 1, EXH_Q_FORCE), &i); }
+    for (int k = 0; k < 100; k++) { limits |= current(&a, 0, &i); }
+    for (int k = 0; k < 1000; k++) { limits |= current(&a, EXH_Q(66, 1, EXH_Q_FORCE), &i); }
+    CHECK((limits & EXH_LIMIT_I2T) == 0, "limited within the budget");
+    for (int k = 0; k < 300; k++) { limits |= current(&a, EXH_Q(66, 1, EXH_Q_FORCE), &i); }
+    CHECK((limits & EXH_LIMIT_I2T) != 0, "the pause of 0.1 s gave all the budget back");
+}
+
+TEST(peak_equal_to_continuous)
+{
+    struct axis a;
+    struct exh_current_ledger i;
+    axis_par(&a.par);
+    a.par.i_cont_A_q26 = a.par.i_peak_A_q26;
+    CHECK_EQ_I64(axis_setup(&a, (struct exh_period){1, 1000}), 0);
+    for (int k = 0; k < 5000; k++) {
+        CHECK_EQ_I64(current(&a, EXH_Q(66, 1, EXH_Q_FORCE), &i) & EXH_LIMIT_I2T, 0);
+    }
+}
+
+TEST(monitor_by_hand)
+{
+    struct axis a;
+    axis_par(&a.par);
+    CHECK_EQ_I64(axis_setup(&a, (struct exh_period){1, 2000}), 0);
+    CHECK_EQ_I64(exh_drive_monitor_A_q26(&a.cfg, 0), 0);
+    /* 567788006 A/code q40: 516.4 uA; 12780 codes are 6.6 A */
+    CHECK_EQ_I64(exh_drive_monitor_A_q26(&a.cfg, 1), 34655);
+    CHECK_EQ_I64(exh_drive_monitor_A_q26(&a.cfg, -1), -34655);
+    CHECK_EQ_I64(exh_drive_monitor_A_q26(&a.cfg, 12780), 442889447);
+    a.par.mon_zero_raw = 100;
+    CHECK_EQ_I64(exh_drive_monitor_A_q26(&a.cfg, 100), 0);
+    CHECK_EQ_I64(exh_drive_monitor_N_q20(&a.cfg, 100), 0);
+    CHECK_EQ_I64(exh_drive_monitor_N_q20(&a.cfg, INT16_MIN), 0); /* the string only pulls */
+    CHECK_EQ_I64(exh_drive_monitor_N_q20(&a.cfg, 1100), 5414848);
+}
+
+/* --- frames and state --- */
+
+TEST(frames_round_trip)
+{
+    struct exh_drive_in in = {{1, 0xFFFFFF, 0x80000000u, 7, 9}, {INT16_MIN, -1, 0, 1, INT16_MAX},
+                              -12345, EXH_DIN_ESTOP | (EXH_DIN_DRIVE0 << 4)};
+    struct exh_drive_out out = {{0, 65535, 32768, 1, 2}, 0x1F, 200};
+    for (unsigned n = 0; n <= EXH_FINGERS; n++) {
+        struct exh_drive_in in2 = {{0}, {0}, 0, 0};
+        struct exh_drive_out out2 = {{0}, 0, 0};
+        uint8_t buf[64];
+        struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
+        exh_drive_in_bytes(&c, &in, n);
+        CHECK_EQ_I64(c.at, 6 * n + 6);
+        exh_drive_out_bytes(&c, &out, n);
+        CHECK_EQ_I64(c.at, 8 * n + 8);
+        c = exh_bytes_reader(buf, c.at);
+        exh_drive_in_bytes(&c, &in2, n);
+        exh_drive_out_bytes(&c, &out2, n);
+        CHECK(exh_bytes_ok(&c), "n %u", n);
+        CHECK(in2.supply_raw == in.supply_raw && in2.din == in.din, "n %u", n);
+        CHECK(out2.enable == out.enable && out2.alive == out.alive, "n %u", n);
+        for (unsigned k = 0; k < EXH_FINGERS; k++) {
+            CHECK(in2.enc_raw[k] == (k < n ? in.enc_raw[k] : 0), "n %u finger %u", n, k);
+            CHECK(in2.mon_raw[k] == (k < n ? in.mon_raw[k] : 0), "n %u finger %u", n, k);
+            CHECK(out2.dac_raw[k] == (k < n ? out.dac_raw[k] : 0), "n %u finger %u", n, k);
+        }
+    }
+}
+
+TEST(state_round_trip)
+{
+    struct exh_drive s = {-7, INT64_C(0x0123456789ABCDEF)}, back = {0, 0};
+    uint8_t buf[16];
+    struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
+    exh_drive_bytes(&c, &s);
+    CHECK_EQ_I64(c.at, 12);
+    c = exh_bytes_reader(buf, c.at);
+    exh_drive_bytes(&c, &back);
+    CHECK(back.force_N_q20 == s.force_N_q20 && back.i2t_q32 == s.i2t_q32, "state differs");
+}
+
+TEST_MAIN("unit/drive", table_is_exact_at_knots_and_clamps_outside, table_between_knots,
+          table_is_monotone_around_every_knot, table_rejections, steepest_table_is_accepted,
+          inverse_round_trip, inverse_refuses_what_set_refuses, setup_rejections,
+          setup_takes_every_documented_period, force_limit_and_pull_only, slew_both_ways,
+          slowest_slew_still_moves, peak_limit, i2t_holds_folds_back_and_recovers,
+          continuous_current_is_for_ever, bursts_add_up, peak_equal_to_continuous, monitor_by_hand,
+          frames_round_trip, state_round_trip);

@@ -1,0 +1,215 @@
+/* quad.h: all transitions of the two lines, and the counter across its wraps. */
+#include "exhand/quad.h"
+
+#include "check.h"
+
+#define LEN(a) (sizeof(a) / sizeof((a)[0]))
+#define ILL 99
+
+/* Place of A<<1|B in the upward sequence 00 01 11 10. */
+static const int place[4] = {0, 1, 3, 2};
+
+/* What the header says, from the geometry: a step up or down the sequence counts
+ * in x4 always, in x2 when A changes, in x1 when A changes at B = 1. */
+static int counts(int mode, unsigned from, unsigned to)
+{
+    const int moved = (place[to] - place[from] + 4) % 4;
+    const int sign = moved == 3 ? -1 : moved;
+    const int a_edge = ((from ^ to) & 2) != 0;
+    if (moved == 2) { return ILL; }
+    if (mode == EXH_QUAD_X4) { return sign; }
+    return a_edge && (mode == EXH_QUAD_X2 || (to & 1)) ? sign : 0;
+}
+
+static void feed(struct exh_quad_ab *s, enum exh_quad_mode mode, unsigned ab, unsigned index)
+{
+    exh_quad_ab_step(s, mode, ab >> 1, ab & 1, index);
+}
+
+TEST(all_transitions_in_all_modes)
+{
+    static const enum exh_quad_mode mode[] = {EXH_QUAD_X1, EXH_QUAD_X2, EXH_QUAD_X4};
+    for (size_t i = 0; i < 3 * 16; i++) {
+        const enum exh_quad_mode m = mode[i / 16];
+        const unsigned from = i / 4 % 4, to = i % 4;
+        const int want = counts((int)m, from, to);
+        struct exh_quad_ab s = {0};
+        feed(&s, m, from, 0);
+        CHECK(s.cnt == 0 && s.edges == 0 && s.illegal == 0, "first sample %u counted", from);
+        feed(&s, m, to, 0);
+        CHECK(s.cnt == (want == ILL ? 0 : want), "mode %d %u to %u: %" PRId32, (int)m, from, to,
+              s.cnt);
+        CHECK(s.illegal == (want == ILL), "mode %d %u to %u", (int)m, from, to);
+        CHECK(s.edges == (want != ILL && from != to), "mode %d %u to %u", (int)m, from, to);
+    }
+}
+
+TEST(a_turn_and_back)
+{
+    static const unsigned up[4] = {0, 1, 3, 2};
+    static const struct {
+        enum exh_quad_mode mode;
+        int per_line;
+    } row[] = {{EXH_QUAD_X1, 1}, {EXH_QUAD_X2, 2}, {EXH_QUAD_X4, 4}};
+    for (size_t i = 0; i < LEN(row); i++) {
+        struct exh_quad_ab s = {0};
+        for (int k = 0; k <= 4000; k++) { feed(&s, row[i].mode, up[k % 4], 0); }
+        CHECK_EQ_I64(s.cnt, 1000 * row[i].per_line);
+        CHECK_EQ_I64(s.edges, 4000);
+        for (int k = 3999; k >= -4000; k--) { feed(&s, row[i].mode, up[(k + 4000) % 4], 0); }
+        CHECK_EQ_I64(s.cnt, -1000 * row[i].per_line);
+        CHECK_EQ_I64(s.illegal, 0);
+    }
+}
+
+/* Chatter on one line moves no count away: x1 ignores B wholly. */
+TEST(chatter_does_not_drift)
+{
+    static const enum exh_quad_mode mode[] = {EXH_QUAD_X1, EXH_QUAD_X2, EXH_QUAD_X4};
+    for (size_t i = 0; i < 3; i++) {
+        for (unsigned line = 1; line <= 2; line++) {
+            for (unsigned from = 0; from < 4; from++) {
+                struct exh_quad_ab s = {0};
+                for (unsigned k = 0; k < 101; k++) { feed(&s, mode[i], k & 1 ? from ^ line : from, 0); }
+                CHECK(s.cnt == 0, "mode %zu line %u: %" PRId32, i, line, s.cnt);
+            }
+        }
+    }
+}
+
+TEST(count_wraps_without_a_jump)
+{
+    struct exh_quad_ab s = {0};
+    feed(&s, EXH_QUAD_X4, 0, 0);
+    s.cnt = INT32_MAX;
+    feed(&s, EXH_QUAD_X4, 1, 0);
+    CHECK_EQ_I64(s.cnt, INT32_MIN);
+    feed(&s, EXH_QUAD_X4, 0, 0);
+    CHECK_EQ_I64(s.cnt, INT32_MAX);
+}
+
+TEST(index_is_latched_after_the_step)
+{
+    struct exh_quad_ab s = {0};
+    feed(&s, EXH_QUAD_X4, 0, 1);
+    CHECK_EQ_I64(s.indices, 0); /* a level at the first sample is no edge */
+    feed(&s, EXH_QUAD_X4, 1, 0);
+    feed(&s, EXH_QUAD_X4, 3, 1);
+    CHECK_EQ_I64(s.indices, 1);
+    CHECK_EQ_I64(s.index_cnt, 2);
+    feed(&s, EXH_QUAD_X4, 2, 1);
+    CHECK_EQ_I64(s.index_cnt, 2); /* still high: no new edge */
+    feed(&s, EXH_QUAD_X4, 3, 0);
+    feed(&s, EXH_QUAD_X4, 0, 1); /* illegal step and an index at once */
+    CHECK_EQ_I64(s.illegal, 1);
+    CHECK_EQ_I64(s.indices, 2);
+    CHECK_EQ_I64(s.index_cnt, 2);
+}
+
+/* --- extension --- */
+
+TEST(first_value_is_count_zero)
+{
+    static const int32_t bits[] = {16, 24, 32};
+    for (size_t i = 0; i < LEN(bits); i++) {
+        const struct exh_quad_par par = {1, bits[i]};
+        for (size_t k = 0; k < CHECK_CORNERS; k++) {
+            struct exh_quad s = {0};
+            CHECK_EQ_I64(exh_quad_extend(&s, &par, (uint32_t)check_corner[k]), 0);
+            CHECK_EQ_I64(exh_quad_extend(&s, &par, (uint32_t)check_corner[k]), 0);
+        }
+    }
+}
+
+/* Largest moves either way from places next to both ends of the counter. */
+TEST(wraps_at_both_ends)
+{
+    static const int32_t bits[] = {16, 24, 32};
+    for (size_t i = 0; i < LEN(bits); i++) {
+        const struct exh_quad_par par = {1, bits[i]};
+        const uint32_t top = UINT32_MAX >> (32 - bits[i]);
+        const int64_t half = (int64_t)(top / 2) + 1;
+        const int64_t move[] = {1, -1, 2, -2, half - 1, -(half - 1), 1000, -1000};
+        const uint32_t start[] = {0, 1, top, top - 1, top / 2, top / 2 + 1};
+        for (size_t k = 0; k < LEN(move) * LEN(start); k++) {
+            const int64_t m = move[k / LEN(start)];
+            const uint32_t from = start[k % LEN(start)];
+            struct exh_quad s = {0};
+            (void)exh_quad_extend(&s, &par, from);
+            CHECK_EQ_I64(exh_quad_extend(&s, &par, ((uint32_t)(from + m)) & top), m);
+            CHECK_EQ_I64(exh_quad_extend(&s, &par, from), 0);
+        }
+    }
+}
+
+/* A board may hand over more bits than the counter has. */
+TEST(bits_above_the_counter_are_ignored)
+{
+    static const int32_t bits[] = {16, 24};
+    for (size_t i = 0; i < LEN(bits); i++) {
+        const struct exh_quad_par par = {1, bits[i]};
+        const uint32_t junk = UINT32_MAX << bits[i];
+        struct exh_quad s = {0};
+        (void)exh_quad_extend(&s, &par, 5 | junk);
+        CHECK_EQ_I64(exh_quad_extend(&s, &par, 9), 4);
+        CHECK_EQ_I64(exh_quad_extend(&s, &par, 7 | junk), 2);
+    }
+}
+
+/* Long walks, many wraps, against the position kept in 64 bits. */
+TEST(long_walks)
+{
+    static const int32_t bits[] = {16, 24, 32};
+    for (size_t i = 0; i < LEN(bits); i++) {
+        const struct exh_quad_par par = {1, bits[i]};
+        const int32_t half = (int32_t)((UINT32_MAX >> (32 - bits[i])) / 2);
+        const uint32_t mask = UINT32_MAX >> (32 - bits[i]);
+        struct exh_quad s = {0};
+        uint64_t pos = 12345; /* unsigned: the reference wraps by definition */
+        (void)exh_quad_extend(&s, &par, (uint32_t)pos & mask);
+        for (int k = 0; k < 20000; k++) {
+            const uint64_t moved = pos += (uint64_t)(int64_t)check_i32_in(-half, half);
+            const uint32_t want = (uint32_t)(moved - 12345);
+            const int32_t got = exh_quad_extend(&s, &par, (uint32_t)pos & mask);
+            CHECK((uint32_t)got == want, "bits %" PRId32 " step %d", bits[i], k);
+        }
+    }
+}
+
+TEST(position_by_hand)
+{
+    static const struct {
+        int32_t step_m_q42, cnt, want;
+    } row[] = {
+        {4096, 7, 7},                    {4096, -7, -7},
+        {2048, 1, 1},                    {2048, -1, 0}, /* halves go up */
+        {1, 2047, 0},                    {1, 2048, 1},
+        {INT32_MAX, 1, 524288},          {INT32_MAX, INT32_MAX, INT32_MAX},
+        {INT32_MAX, INT32_MIN, INT32_MIN}, {4096, INT32_MIN, INT32_MIN},
+        {4097, INT32_MIN, INT32_MIN},    {4097, INT32_MAX, INT32_MAX},
+        {43980465, 100000, 1073741821}, /* 10 um a count, 1 m */
+    };
+    for (size_t i = 0; i < LEN(row); i++) {
+        const struct exh_quad_par par = {row[i].step_m_q42, 24};
+        CHECK_EQ_I64(exh_quad_pos_m_q30(&par, row[i].cnt), row[i].want);
+    }
+}
+
+TEST(state_round_trip)
+{
+    struct exh_quad s = {0xDEADBEEFu, -123456789, 1};
+    struct exh_quad back = {0};
+    uint8_t buf[16];
+    struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
+    exh_quad_bytes(&c, &s);
+    CHECK_EQ_I64(c.at, 9);
+    c = exh_bytes_reader(buf, c.at);
+    exh_quad_bytes(&c, &back);
+    CHECK(exh_bytes_ok(&c), "reader");
+    CHECK(back.raw == s.raw && back.cnt == s.cnt && back.started == s.started, "state differs");
+}
+
+TEST_MAIN("unit/quad", all_transitions_in_all_modes, a_turn_and_back, chatter_does_not_drift,
+          count_wraps_without_a_jump, index_is_latched_after_the_step, first_value_is_count_zero,
+          wraps_at_both_ends, bits_above_the_counter_are_ignored, long_walks, position_by_hand,
+          state_round_trip);
