@@ -16,6 +16,7 @@ ifeq ($(origin CC),default)
 CC := $(CROSS)gcc
 endif
 OBJCOPY ?= $(CROSS)objcopy
+version := $(shell awk '/define EXH_VERSION_(MAJOR|MINOR|PATCH)/{v=v s $$3; s="."} END{print v}' lib/include/exhand/exhand.h)
 Q       := $(if $(V),,@)
 out     := $(B)/$(PORT)
 
@@ -121,7 +122,8 @@ tflags     = $(base) $(CFLAGS) -Itest -DEXH_FIX_AUDIT
 $(B)/test/san/%.o: %.c
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(tflags) $(san) -D_POSIX_C_SOURCE=200809L -c $< -o $@
-$(B)/test/unit/%_test $(B)/test/prop/%_test: $(B)/test/san/test/support.o $(lib_src:%.c=$(B)/test/san/%.o)
+lib_test_bin := $(filter $(B)/test/unit/% $(B)/test/prop/%,$(test_bin))
+$(lib_test_bin): $(B)/test/san/test/support.o $(lib_src:%.c=$(B)/test/san/%.o)
 $(B)/test/unit/%_test: $(B)/test/san/test/unit/%_test.o
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(san) -o $@ $^ -lcmocka
@@ -154,6 +156,51 @@ test:
 	@$(MAKE) --no-print-directory $(test_bin)
 	@test/run.sh $(test_bin)
 
+# --- the same bits everywhere -----------------------------------------------------------
+
+# Host programs by other compilers, optimisations and for 32 bits: name, CC, flags.
+v_gcc-O0   := CC=gcc O=0
+v_gcc-O3   := CC=gcc O=3
+v_clang-O0 := CC=clang O=0
+v_clang-O3 := CC=clang O=3
+v_i686-O0  := CC=i686-linux-gnu-gcc O=0 CFLAGS="-msse2 -mfpmath=sse" LDFLAGS=-static
+v_i686-O3  := CC=i686-linux-gnu-gcc O=3 CFLAGS="-msse2 -mfpmath=sse" LDFLAGS=-static
+clang_i686 := clang --target=i686-linux-gnu -isystem /usr/i686-linux-gnu/include
+v_i686-clang-O0 := CC="$(clang_i686)" O=0 CFLAGS="-msse2 -mfpmath=sse" LDFLAGS=-static
+v_i686-clang-O3 := CC="$(clang_i686)" O=3 CFLAGS="-msse2 -mfpmath=sse" LDFLAGS=-static
+variants   := $(patsubst v_%,%,$(filter v_%,$(.VARIABLES)))
+
+.PHONY: $(variants:%=variant-%)
+$(variants:%=variant-%): variant-%:
+	@$(MAKE) --no-print-directory B=$(B)/variant/$* $(v_$*) WERROR=1 all
+
+# The library alone for small CPUs: what it needs from outside.
+u_cortex-m3 := CROSS=arm-none-eabi- CFLAGS="-mcpu=cortex-m3 -mthumb -ffreestanding"
+u_cortex-m0 := CROSS=arm-none-eabi- CFLAGS="-mcpu=cortex-m0 -mthumb -ffreestanding" \
+               PORT_HELPERS="__aeabi_lmul __aeabi_llsl __aeabi_llsr __aeabi_lasr"
+
+.PHONY: undef-cortex-m3 undef-cortex-m0
+undef-cortex-m3 undef-cortex-m0: undef-%:
+	@$(MAKE) --no-print-directory PORT=template B=$(B)/$* $(u_$*) undef
+
+check_tools := clang i686-linux-gnu-gcc arm-none-eabi-gcc qemu-system-i386 valgrind python3
+check_pkgs  := clang gcc-i686-linux-gnu libc6-dev-i386-cross gcc-arm-none-eabi qemu-system-x86 valgrind python3
+
+## What CI runs: test, other compilers and CPUs, the pc104 image, sizes, costs
+.PHONY: check
+check:
+	@for t in $(check_tools); do .ci/deps "the checks" $$t $(check_pkgs) || exit 3; done
+	@$(MAKE) --no-print-directory WERROR=1 all test
+	@$(MAKE) --no-print-directory demo > $(B)/demo.txt && tail -n 40 $(B)/demo.txt
+	@$(MAKE) --no-print-directory $(variants:%=variant-%)
+	@test/sim/bits.sh $(B)/bits $(B)/demo $(variants:%=$(B)/variant/%/posix/exhand)
+	@$(MAKE) --no-print-directory undef undef-cortex-m3 undef-cortex-m0
+	@$(MAKE) --no-print-directory PORT=template SCENE=minimal WERROR=1 all
+	@$(MAKE) --no-print-directory PORT=pc104 SCENE=minimal WERROR=1 undef run
+	@$(MAKE) --no-print-directory PORT=pc104 SCENE=drop WERROR=1 run
+	@$(MAKE) --no-print-directory size
+	@$(MAKE) --no-print-directory bench
+
 # --- figures ------------------------------------------------------------------------
 
 ## What the library needs from outside, and that it holds no float instruction
@@ -166,6 +213,35 @@ undef: $(lib)
 .PHONY: size
 size:
 	$(Q)MAKE="$(MAKE)" B=$(B) test/size/size.sh
+
+# --- keeping house ------------------------------------------------------------------
+
+PREFIX  ?= /usr/local
+DESTDIR ?=
+
+## Install library, headers, host program and exhand.pc under DESTDIR/PREFIX
+.PHONY: install
+install: all
+	install -d $(DESTDIR)$(PREFIX)/lib/pkgconfig $(DESTDIR)$(PREFIX)/include/exhand $(DESTDIR)$(PREFIX)/bin
+	install -m 644 $(lib) $(DESTDIR)$(PREFIX)/lib
+	install -m 644 lib/include/exhand/*.h $(DESTDIR)$(PREFIX)/include/exhand
+	sed 's|@prefix@|$(PREFIX)|; s|@version@|$(version)|' lib/exhand.pc.in > $(DESTDIR)$(PREFIX)/lib/pkgconfig/exhand.pc
+	$(if $(filter posix,$(PORT)),install -m 755 $(exhand) $(DESTDIR)$(PREFIX)/bin)
+
+## Both README commands in a fresh Debian 12 with only git, make and a C compiler (root)
+.PHONY: fresh
+fresh:
+	test/fresh/fresh.sh
+
+## Lay out all C sources by .clang-format
+.PHONY: fmt
+fmt:
+	clang-format -i $(shell git ls-files '*.c' '*.h')
+
+## Remove everything that was built
+.PHONY: clean
+clean:
+	rm -rf $(B)
 
 .SECONDARY:
 -include $(shell find $(B) -name '*.d' 2>/dev/null)

@@ -12,11 +12,25 @@
 #ifndef TEST_CHECK_H
 #define TEST_CHECK_H
 
-#include <inttypes.h>
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __GNUC__
+#if __STDC_HOSTED__
+#include <inttypes.h>
+#include <string.h>
+#else /* without a C library: int has 32 bits, whichever of int and long int32_t is */
+#define PRId32 "d"
+#define PRIu32 "u"
+#define PRIx32 "x"
+#define PRId64 "lld"
+#define PRIu64 "llu"
+#define PRIx64 "llx"
+void *memcpy(void *dst, const void *src, size_t n);
+void *memset(void *dst, int c, size_t n);
+int memcmp(const void *a, const void *b, size_t n);
+#endif
+
+#if defined(__GNUC__) && __STDC_HOSTED__
 #define CHECK_PRINTF(fmt, args) __attribute__((format(printf, fmt, args)))
 #else
 #define CHECK_PRINTF(fmt, args)
@@ -52,6 +66,9 @@ typedef void (*check_fn)(void);
 
 extern uint64_t check_count;       /* checks made so far                       */
 extern uint32_t check_saturations; /* calls of the audit hook of fix.h so far  */
+
+/* 1 if two strings are equal; a target may have no strcmp. */
+int check_same_text(const char *a, const char *b);
 
 int check_main(const char *group, const char *names, const check_fn *list, size_t n);
 void check_failed(const char *file, int line, const char *cond, const char *fmt, ...)

@@ -67,7 +67,7 @@ static uint64_t env_u64(const char *name, uint64_t otherwise)
     return v;
 }
 
-static int same_text(const char *a, const char *b)
+int check_same_text(const char *a, const char *b)
 {
     while (*a != '\0' && *a == *b) {
         a++;
@@ -102,7 +102,7 @@ static void start_test(const char *name)
 static int wanted(const char *name)
 {
     const char *only = env("EXH_TEST");
-    return only == NULL || same_text(only, name);
+    return only == NULL || check_same_text(only, name);
 }
 
 #ifndef EXH_CHECK_PLAIN

@@ -2,9 +2,15 @@
 
 #include "exhand/fix.h"
 
+/* A cursor counts to UINT32_MAX, which must stay beyond every cap. */
+static uint32_t capacity(size_t B)
+{
+    return B < UINT32_MAX ? (uint32_t)B : UINT32_MAX - 1;
+}
+
 struct exh_bytes exh_bytes_writer(void *buf, size_t cap_B)
 {
-    const struct exh_bytes c = {buf, (uint32_t)cap_B, 0, EXH_BYTES_WRITE};
+    const struct exh_bytes c = {buf, capacity(cap_B), 0, EXH_BYTES_WRITE};
     return c;
 }
 
@@ -15,7 +21,7 @@ struct exh_bytes exh_bytes_reader(const void *buf, size_t len_B)
         const void *in;
         uint8_t *p;
     } u;
-    struct exh_bytes c = {NULL, (uint32_t)len_B, 0, EXH_BYTES_READ};
+    struct exh_bytes c = {NULL, capacity(len_B), 0, EXH_BYTES_READ};
     u.in = buf;
     c.p = u.p;
     return c;

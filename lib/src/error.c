@@ -15,6 +15,6 @@ const char *exh_error_text(int code)
         "device answered wrongly or too late",
         "device not found",
     };
-    const int i = code < 0 ? -(code + 1) + 1 : code;
-    return i >= 0 && i < EXH_E_COUNT ? text[i] : "unknown error";
+    if (code <= -EXH_E_COUNT || code >= EXH_E_COUNT) { return "unknown error"; }
+    return text[code < 0 ? -code : code];
 }

@@ -29,7 +29,7 @@ uint32_t exh_record_end(struct exh_bytes *c)
     c->at = LEN_AT;
     exh_bytes_u16(c, &len);
     c->at = end;
-    crc = exh_crc32(0, c->p, end);
+    crc = c->mode == EXH_BYTES_WRITE ? exh_crc32(0, c->p, end) : 0;
     exh_bytes_u32(c, &crc);
     return exh_bytes_ok(c) ? c->at : 0;
 }

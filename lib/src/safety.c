@@ -44,13 +44,14 @@ uint8_t exh_safety_step(struct exh_safety *s, const struct exh_safety_par *par,
     return s->state;
 }
 
-/* Codes from zero for one current, within the span. */
-static int32_t code_of(const struct exh_drive_par *par, int32_t cur_A_q26, uint32_t *limits)
+/* The code for one current: within the span of zero, and of 16 bits. */
+static uint16_t code_of(const struct exh_drive_par *par, int32_t cur_A_q26, uint32_t *limits)
 {
     const int64_t asked = exh_mul_shr(cur_A_q26, par->dac_rawpA_q16, EXH_Q_CUR + EXH_Q_DAC);
-    const int32_t code = exh_clamp(asked, -par->dac_span_raw, par->dac_span_raw);
-    if (code != asked) { *limits |= EXH_LIMIT_DAC; }
-    return code;
+    const int32_t spanned = exh_clamp(asked, -par->dac_span_raw, par->dac_span_raw);
+    const int32_t code = exh_clamp((int64_t)par->dac_zero_raw + spanned, 0, UINT16_MAX);
+    if (code != par->dac_zero_raw + asked) { *limits |= EXH_LIMIT_DAC; }
+    return (uint16_t)code;
 }
 
 void exh_gate(struct exh_safety *s, const struct exh_drive_cfg *cfg, unsigned n,
@@ -69,10 +70,9 @@ void exh_gate(struct exh_safety *s, const struct exh_drive_cfg *cfg, unsigned n,
         const struct exh_drive_par *par = cfg[k].par;
         const int64_t asked = i[k].table_A_q26 + i[k].peak_A_q26 + i[k].i2t_A_q26;
         const int32_t passed = open ? exh_sat32(asked) : 0;
-        const int32_t code = code_of(par, passed, &limits[k]);
 
         if (passed != asked) { limits[k] |= EXH_LIMIT_GATE; }
-        out->dac_raw[k] = (uint16_t)exh_clamp((int64_t)par->dac_zero_raw + code, 0, UINT16_MAX);
+        out->dac_raw[k] = code_of(par, passed, &limits[k]);
         i[k].coded_A_q26 = exh_sat32(
             exh_gain_mul(cfg[k].dac_A_q26, (int32_t)out->dac_raw[k] - par->dac_zero_raw));
         i[k].gate_A_q26 = passed - asked;

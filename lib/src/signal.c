@@ -47,6 +47,11 @@ uint32_t exh_signal_crc(const struct exh_signal_table *t)
 {
     uint32_t crc = 0;
     for (uint16_t g = 0; g < t->groups; g++) {
+        uint16_t rows = t->group[g].rows;
+        uint8_t head[2];
+        struct exh_bytes h = exh_bytes_writer(head, sizeof head);
+        exh_bytes_u16(&h, &rows); /* values are instance-major within a group */
+        crc = exh_crc32(crc, head, h.at);
         for (uint16_t r = 0; r < t->group[g].rows; r++) {
             struct exh_signal row = t->group[g].row[r];
             uint16_t instances = t->group[g].instances;

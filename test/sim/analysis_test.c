@@ -34,8 +34,7 @@ static void add(struct log_builder *b, double tick_s, double q_m, double f_N, in
         b->sample = realloc(b->sample, b->cap * sizeof *b->sample);
         if (!b->sample) { abort(); }
     }
-    b->sample[b->n++] =
-        (struct fall_sample){.t_s = b->t_s, .q_m = q_m, .f_mon_N = f_N, .c = c};
+    b->sample[b->n++] = (struct fall_sample){.t_s = b->t_s, .q_m = q_m, .f_mon_N = f_N, .c = c};
     b->t_s += tick_s;
 }
 
@@ -62,7 +61,9 @@ static double uniform(uint64_t *rng)
 static double normal(uint64_t *rng)
 {
     double sum = -6.0;
-    for (int i = 0; i < 12; i++) { sum += uniform(rng); }
+    for (int i = 0; i < 12; i++) {
+        sum += uniform(rng);
+    }
     return sum;
 }
 
@@ -83,7 +84,9 @@ static void ramp(struct log_builder *b, double k_Npm, size_t lag)
     for (int fall = 0; fall < 3; fall++) {
         double last[3] = {0.0, 0.0, 0.0};
         begin_fall(b);
-        for (int i = 0; i < 5; i++) { add(b, 1e-3, 0.07, 2.0, 0); }
+        for (int i = 0; i < 5; i++) {
+            add(b, 1e-3, 0.07, 2.0, 0);
+        }
         for (int i = 0; i < 300; i++) {
             const double q_m = 0.07 + 6.0 / k_Npm * i / 300.0 + 1e-3 / k_Npm * fall;
             memmove(last + 1, last, 2 * sizeof last[0]);
@@ -189,7 +192,9 @@ TEST(band_has_both_ends)
     const struct fall_pairs in = {at, 8};
     struct fall_pairs out;
 
-    for (size_t i = 0; i < in.n; i++) { at[i] = (struct fall_pair){(double)i, f_N[i], i}; }
+    for (size_t i = 0; i < in.n; i++) {
+        at[i] = (struct fall_pair){(double)i, f_N[i], i};
+    }
     CHECK(fall_band(&in, 0.8, 4.5, &out) == FALL_OK, "%zu", out.n);
     CHECK(out.n == 3, "%zu kept", out.n);
     CHECK(out.at[0].fall == 3 && out.at[1].fall == 4 && out.at[2].fall == 1, "order %zu %zu %zu",
@@ -258,11 +263,11 @@ TEST(contacts_are_cut)
     check_contacts("|###", 1, "0:0-3+ ");
     check_contacts("|.###|..##|....|#", 1, "0:1-4+ 1:6-8+ 3:12-13+ ");
     check_contacts("|.#.###.#", 1, "0:1-2 0:3-6 0:7-8+ ");
-    check_contacts("|.#.###.#", 2, "0:3-6 ");        /* glitches, also an open one */
+    check_contacts("|.#.###.#", 2, "0:3-6 "); /* glitches, also an open one */
     check_contacts("|.##.###", 3, "0:4-7+ ");
-    check_contacts("|###.###", 1, "0:0-3 0:4-7+ ");   /* a gap of one tick separates */
-    check_contacts("##|.##", 1, "0:3-5+ ");           /* before the first fall       */
-    check_contacts("|##|##", 0, "0:0-2+ 1:2-4+ ");    /* never across two falls      */
+    check_contacts("|###.###", 1, "0:0-3 0:4-7+ "); /* a gap of one tick separates */
+    check_contacts("##|.##", 1, "0:3-5+ ");         /* before the first fall       */
+    check_contacts("|##|##", 0, "0:0-2+ 1:2-4+ ");  /* never across two falls      */
     check_contacts("|##|##", 3, "");
 }
 
@@ -334,8 +339,8 @@ static void check_tally(const struct tally *t, const char *name)
 
     CHECK(mean > 0.99 && mean < 1.01, "%s: mean %g of the slope", name, mean);
     CHECK(ratio2 > 0.8 * 0.8 && ratio2 < 1.2 * 1.2, "%s: width^2 is %g of expected", name, ratio2);
-    CHECK(t->inside > 0.86 * t->runs && t->inside < 0.99 * t->runs, "%s: %d of %d contain it",
-          name, t->inside, t->runs);
+    CHECK(t->inside > 0.86 * t->runs && t->inside < 0.99 * t->runs, "%s: %d of %d contain it", name,
+          t->inside, t->runs);
 }
 
 TEST(bootstrap_width)
@@ -375,7 +380,9 @@ TEST(bootstrap_unbounded)
 
     for (size_t fall = 0; fall < 10; fall++) {
         begin_fall(&b);
-        for (int i = 0; i < 40; i++) { add(&b, 1e-3, uniform(&rng), 1.0 + uniform(&rng), 1); }
+        for (int i = 0; i < 40; i++) {
+            add(&b, 1e-3, uniform(&rng), 1.0 + uniform(&rng), 1);
+        }
     }
     const struct fall_log log = built(&b);
     opt.lag = 0;
@@ -415,10 +422,10 @@ TEST(kept_force_matters_little)
 
 static int all_finite(const struct fall_stiffness *s)
 {
-    const double v[] = {s->fit.a_Npm,  s->fit.b_Npm,  s->fit.r2,       s->fit.q_mean_m,
+    const double v[] = {s->fit.a_Npm,    s->fit.b_Npm,   s->fit.r2,      s->fit.q_mean_m,
                         s->fit.f_mean_N, s->fit.q_min_m, s->fit.q_max_m, s->fit.f_min_N,
-                        s->fit.f_max_N, s->a.lo_Npm,   s->a.mid_Npm,   s->a.hi_Npm,
-                        s->b.lo_Npm,   s->b.mid_Npm,  s->b.hi_Npm};
+                        s->fit.f_max_N,  s->a.lo_Npm,    s->a.mid_Npm,   s->a.hi_Npm,
+                        s->b.lo_Npm,     s->b.mid_Npm,   s->b.hi_Npm};
     for (size_t i = 0; i < sizeof v / sizeof v[0]; i++) {
         if (!(v[i] > -1e300 && v[i] < 1e300)) { return 0; }
     }
@@ -458,7 +465,7 @@ TEST(degenerate)
     check_degenerate(1, 11, 1e-4, 0.1, FALL_TOO_FEW);
     check_degenerate(1, 12, 1e-4, 0.1, FALL_OK);
     check_degenerate(2, 6, 1e-4, 0.1, FALL_OK);
-    check_degenerate(4, 3, 1e-4, 0.1, FALL_FLAT); /* twelve, but three kept forces are one */
+    check_degenerate(4, 3, 1e-4, 0.1, FALL_FLAT);       /* twelve, but three kept forces are one */
     check_degenerate(1, 1000, 1e-4, 1.0, FALL_TOO_FEW); /* out of the band */
     check_degenerate(3, 50, 0.0, 0.01, FALL_FLAT);
     check_degenerate(3, 50, 1e-4, 0.0, FALL_FLAT);
@@ -497,7 +504,9 @@ TEST(damaged_logs)
         b.sample[8].q_m = 1.0;
     }
     b.sample[6].t_s = 0.0; /* a new fall may begin at 0 again, if it goes on from there */
-    for (size_t i = 7; i < b.n; i++) { b.sample[i].t_s = (double)(i - 6) * 1e-3; }
+    for (size_t i = 7; i < b.n; i++) {
+        b.sample[i].t_s = (double)(i - 6) * 1e-3;
+    }
     CHECK(status_of(&log, &fall_opt_default) == FALL_OK, "%g", b.sample[7].t_s);
     b.sample[8].t_s = b.sample[7].t_s;
     CHECK(status_of(&log, &fall_opt_default) == FALL_BAD_LOG, "%g", b.sample[8].t_s);
@@ -554,10 +563,9 @@ TEST(same_digits)
 {
     /* Not an oracle: the other tests say the values are right. This line says that
      * another compiler, level or word size gives them to the last bit. */
-    static const char want[] =
-        "7778.3207706899457 8004.6724337967971 0.97172255767129656 | "
-        "7074.3961805961662 7645.507566040822 8006.9342424571414 | "
-        "7358.201505256422 8025.7680488431424 8566.146446966879";
+    static const char want[] = "7778.3207706899457 8004.6724337967971 0.97172255767129656 | "
+                               "7074.3961805961662 7645.507566040822 8006.9342424571414 | "
+                               "7358.201505256422 8025.7680488431424 8566.146446966879";
     char once[400], twice[400];
 
     digits(once, sizeof once);
@@ -596,7 +604,9 @@ TEST(plot_files)
     struct fall_stiffness s;
 
     CHECK(mkdtemp(dir) != NULL, "%s", dir);
-    for (int i = 0; i < 3; i++) { snprintf(path[i], sizeof path[i], "%s/%d.csv", dir, i); }
+    for (int i = 0; i < 3; i++) {
+        snprintf(path[i], sizeof path[i], "%s/%d.csv", dir, i);
+    }
     ramp(&b, 5000.0, 1);
     const struct fall_log log = built(&b);
     struct fall_plot_paths paths = {path[0], path[1], path[2]};
@@ -612,7 +622,9 @@ TEST(plot_files)
     CHECK(lines_of(path[2], "q_m,f_mon_n\n") == 1, "%s", path[2]);
     paths.line = dir;
     CHECK(fall_write_plot(&s, FALL_A, &paths) == FALL_IO, "%s", dir);
-    for (int i = 0; i < 3; i++) { remove(path[i]); }
+    for (int i = 0; i < 3; i++) {
+        remove(path[i]);
+    }
     rmdir(dir);
     fall_stiffness_free(&s);
     drop(&b);
@@ -627,13 +639,13 @@ TEST(plot_files)
 struct trace {
     const char *name;
     enum fall_rest_class label;
-    double swing_m, swing_N;   /* peak-to-peak                                  */
-    double from_s, until_s;    /* when they swing                               */
-    double decay_per_s;        /* relative loss of the swing, 1/s                */
+    double swing_m, swing_N; /* peak-to-peak                                  */
+    double from_s, until_s;  /* when they swing                               */
+    double decay_per_s;      /* relative loss of the swing, 1/s                */
     double creep_mps;
-    int counts;                /* random counts 0 .. counts on the position      */
-    double noise_N;            /* peak-to-peak of the monitor's noise            */
-    double length_s;           /* of the log, from the first contact             */
+    int counts;      /* random counts 0 .. counts on the position      */
+    double noise_N;  /* peak-to-peak of the monitor's noise            */
+    double length_s; /* of the log, from the first contact             */
 };
 
 static const struct trace traces[] = {
@@ -672,7 +684,9 @@ static void play(struct log_builder *b, const struct trace *tr, double rate_Hz, 
     double sin_t = 0.0, cos_t = 1.0, left = 1.0;
 
     begin_fall(b);
-    for (int i = 0; i < 20; i++) { add(b, 1.0 / rate_Hz, -0.01 + 5e-4 * i, 0.1, 0); }
+    for (int i = 0; i < 20; i++) {
+        add(b, 1.0 / rate_Hz, -0.01 + 5e-4 * i, 0.1, 0);
+    }
     for (size_t i = 0; i < ticks; i++) {
         const double t_s = ((double)i + 0.25) / rate_Hz;
         const double on = t_s >= tr->from_s && t_s < tr->until_s ? 0.5 * left : 0.0;
@@ -694,7 +708,9 @@ static void check_traces(double rate_Hz, double freq_Hz, uint64_t *rng)
     struct fall_contacts contacts;
     struct fall_rest rest[TRACES];
 
-    for (size_t i = 0; i < TRACES; i++) { play(&b, &traces[i], rate_Hz, freq_Hz, rng); }
+    for (size_t i = 0; i < TRACES; i++) {
+        play(&b, &traces[i], rate_Hz, freq_Hz, rng);
+    }
     const struct fall_log log = built(&b);
     opt.encoder_step_m = STEP_M;
     CHECK(fall_dissect(&log, 1, &contacts) == FALL_OK, "%g Hz", rate_Hz);
@@ -747,8 +763,7 @@ TEST(rest_at_the_limits)
     }
 }
 
-TEST_MAIN("analysis", line_is_exact, even_forces_are_exact, twelve_rows_by_hand,
-          band_has_both_ends, ties_keep_their_order, contacts_are_cut, lag_stays_in_the_contact,
-          bootstrap_width, bootstrap_unbounded, kept_force_matters_little, degenerate,
-          damaged_logs, bad_options, same_digits, plot_files, rest_is_never_mistaken,
-          rest_at_the_limits);
+TEST_MAIN("analysis", line_is_exact, even_forces_are_exact, twelve_rows_by_hand, band_has_both_ends,
+          ties_keep_their_order, contacts_are_cut, lag_stays_in_the_contact, bootstrap_width,
+          bootstrap_unbounded, kept_force_matters_little, degenerate, damaged_logs, bad_options,
+          same_digits, plot_files, rest_is_never_mistaken, rest_at_the_limits);

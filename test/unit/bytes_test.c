@@ -3,8 +3,6 @@
 
 #include "check.h"
 
-#include <string.h>
-
 struct all {
     uint8_t u8;
     uint16_t u16;

@@ -90,12 +90,12 @@ TEST(far_ends_do_not_wrap)
     struct exh_contact s = {0};
     struct exh_force_ledger f;
     const uint32_t before = check_saturations;
-    CHECK_EQ_I64(exh_contact_law(&s, &par_20k, (struct exh_contact_in){INT32_MAX, 0, INT32_MIN}, &f),
-                 1);
+    const struct exh_contact_in far_past = {INT32_MAX, 0, INT32_MIN};
+    const struct exh_contact_in far_before = {INT32_MIN, 0, INT32_MAX};
+    CHECK_EQ_I64(exh_contact_law(&s, &par_20k, far_past, &f), 1);
     CHECK(f.spring_N_q20 > 0, "spring %" PRId64, f.spring_N_q20);
     CHECK(check_saturations > before, "clipped in silence");
-    CHECK_EQ_I64(exh_contact_law(&s, &par_20k, (struct exh_contact_in){INT32_MIN, 0, INT32_MAX}, &f),
-                 0);
+    CHECK_EQ_I64(exh_contact_law(&s, &par_20k, far_before, &f), 0);
     CHECK_EQ_I64(f.spring_N_q20, 0);
 }
 
@@ -158,7 +158,9 @@ TEST(at_most_one_switch_per_reversal_under_noise)
             CHECK(w.inward == (dir < 0), "leg %d ends with the wrong pull-back", leg);
         }
         CHECK(w.switches <= reversals, "%d switches, %d reversals", w.switches, reversals);
-        for (int k = 0; k < 200; k++) { walk_to(&w, &par, (pos + (int32_t)(check_u64() % 3) - 1) * count); }
+        for (int k = 0; k < 200; k++) {
+            walk_to(&w, &par, (pos + (int32_t)(check_u64() % 3) - 1) * count);
+        }
         CHECK(w.switches <= reversals, "switched at rest");
     }
 }

@@ -106,7 +106,8 @@ TEST(steepest_table_is_accepted)
 /* There and back, through the coarser side: within 1 LSB; in place, too. */
 TEST(inverse_round_trip)
 {
-    struct exh_knot k[3] = {{0, 0, {0, 1}}, {41943040, 442918502, {0, 1}}, {83886080, 469762048, {0, 1}}};
+    struct exh_knot k[3] = {
+        {0, 0, {0, 1}}, {41943040, 442918502, {0, 1}}, {83886080, 469762048, {0, 1}}};
     struct exh_knot inv[3];
     const struct exh_table there = {k, 3}, back = {inv, 3};
     CHECK_EQ_I64(exh_table_set(k, 3), 0);
@@ -120,7 +121,9 @@ TEST(inverse_round_trip)
         CHECK(err >= -1 && err <= 1, "flat part, %" PRId32 ": %" PRId64, y, err);
     }
     CHECK_EQ_I64(exh_table_invert(inv, inv, 3), 0);
-    for (size_t i = 0; i < 3; i++) { CHECK(inv[i].x == k[i].x && inv[i].y == k[i].y, "knot %zu", i); }
+    for (size_t i = 0; i < 3; i++) {
+        CHECK(inv[i].x == k[i].x && inv[i].y == k[i].y, "knot %zu", i);
+    }
 }
 
 TEST(inverse_refuses_what_set_refuses)
@@ -132,6 +135,8 @@ TEST(inverse_refuses_what_set_refuses)
 }
 
 /* --- one axis: 10 N per A --- */
+
+#define NEWTON (1 << EXH_Q_FORCE)
 
 struct axis {
     struct exh_drive_par par;
@@ -222,9 +227,9 @@ TEST(force_limit_and_pull_only)
     CHECK_EQ_I64(axis_setup(&a, (struct exh_period){1, 2000}), 0);
     for (size_t i = 0; i < LEN(row); i++) {
         struct exh_force_ledger f;
-        CHECK_EQ_I64(force(&a, row[i].asked_N << 20, &f), row[i].limits);
-        CHECK_EQ_I64(f.force_N_q20, row[i].want_N << 20);
-        CHECK_EQ_I64(f.clamp_N_q20, (row[i].want_N - row[i].asked_N) << 20);
+        CHECK_EQ_I64(force(&a, row[i].asked_N * NEWTON, &f), row[i].limits);
+        CHECK_EQ_I64(f.force_N_q20, row[i].want_N * NEWTON);
+        CHECK_EQ_I64(f.clamp_N_q20, (row[i].want_N - row[i].asked_N) * NEWTON);
         CHECK_EQ_I64(f.slew_N_q20, 0);
         CHECK_EQ_I64(a.s.force_N_q20, f.force_N_q20);
     }
@@ -242,7 +247,7 @@ TEST(slew_both_ways)
     for (int64_t n = 1; n <= 10; n++) {
         CHECK_EQ_I64(force(&a, 10 << 20, &f), n < 10 ? EXH_LIMIT_SLEW : 0);
         CHECK_EQ_I64(f.force_N_q20, n << 20);
-        CHECK_EQ_I64(f.slew_N_q20, (n - 10) * 1048576);
+        CHECK_EQ_I64(f.slew_N_q20, (n - 10) * NEWTON);
     }
     for (int64_t n = 1; n <= 5; n++) {
         CHECK_EQ_I64(force(&a, 0, &f), n < 5 ? EXH_LIMIT_SLEW : 0);
@@ -372,15 +377,15 @@ TEST(monitor_by_hand)
     axis_par(&a.par);
     CHECK_EQ_I64(axis_setup(&a, (struct exh_period){1, 2000}), 0);
     CHECK_EQ_I64(exh_drive_monitor_A_q26(&a.cfg, 0), 0);
-    /* 567788006 A/code q40: 516.4 uA; 12780 codes are 6.6 A */
+    /* 567787804 A/code q40: 516.4 uA; 12780 codes are 6.6 A */
     CHECK_EQ_I64(exh_drive_monitor_A_q26(&a.cfg, 1), 34655);
     CHECK_EQ_I64(exh_drive_monitor_A_q26(&a.cfg, -1), -34655);
-    CHECK_EQ_I64(exh_drive_monitor_A_q26(&a.cfg, 12780), 442889447);
+    CHECK_EQ_I64(exh_drive_monitor_A_q26(&a.cfg, 12780), 442891122);
     a.par.mon_zero_raw = 100;
     CHECK_EQ_I64(exh_drive_monitor_A_q26(&a.cfg, 100), 0);
     CHECK_EQ_I64(exh_drive_monitor_N_q20(&a.cfg, 100), 0);
     CHECK_EQ_I64(exh_drive_monitor_N_q20(&a.cfg, INT16_MIN), 0); /* the string only pulls */
-    CHECK_EQ_I64(exh_drive_monitor_N_q20(&a.cfg, 1100), 5414848);
+    CHECK_EQ_I64(exh_drive_monitor_N_q20(&a.cfg, 1100), 5414846);
 }
 
 /* --- frames and state --- */

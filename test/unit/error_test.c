@@ -12,26 +12,17 @@ static int length(const char *s)
     return n;
 }
 
-static int same(const char *a, const char *b)
-{
-    while (*a != '\0' && *a == *b) {
-        a++;
-        b++;
-    }
-    return *a == *b;
-}
-
 TEST(every_code_has_its_own_line)
 {
     for (int i = 0; i < EXH_E_COUNT; i++) {
         const char *text = exh_error_text(-i);
         CHECK(text != NULL && length(text) > 0, "code %d", i);
-        CHECK(same(text, exh_error_text(i)), "the sign of %d matters", i);
+        CHECK(check_same_text(text, exh_error_text(i)), "the sign of %d matters", i);
         for (const char *p = text; *p != '\0'; p++) {
             CHECK(*p >= ' ' && *p <= '~', "code %d: not one line of ASCII", i);
         }
         for (int k = 0; k < i; k++) {
-            CHECK(!same(text, exh_error_text(k)), "%d and %d say the same", i, k);
+            CHECK(!check_same_text(text, exh_error_text(k)), "%d and %d say the same", i, k);
         }
     }
 }
@@ -42,7 +33,7 @@ TEST(unknown_codes_are_never_null)
     for (size_t i = 0; i < sizeof code / sizeof code[0]; i++) {
         const char *text = exh_error_text(code[i]);
         CHECK(text != NULL && length(text) > 0, "code %d", code[i]);
-        CHECK(!same(text, exh_error_text(0)), "code %d reads as success", code[i]);
+        CHECK(!check_same_text(text, exh_error_text(0)), "code %d reads as success", code[i]);
     }
 }
 

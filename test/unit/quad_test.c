@@ -70,7 +70,9 @@ TEST(chatter_does_not_drift)
         for (unsigned line = 1; line <= 2; line++) {
             for (unsigned from = 0; from < 4; from++) {
                 struct exh_quad_ab s = {0};
-                for (unsigned k = 0; k < 101; k++) { feed(&s, mode[i], k & 1 ? from ^ line : from, 0); }
+                for (unsigned k = 0; k < 101; k++) {
+                    feed(&s, mode[i], k & 1 ? from ^ line : from, 0);
+                }
                 CHECK(s.cnt == 0, "mode %zu line %u: %" PRId32, i, line, s.cnt);
             }
         }

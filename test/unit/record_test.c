@@ -5,8 +5,6 @@
 
 #include "check.h"
 
-#include <string.h>
-
 #define LEN(a) (sizeof(a) / sizeof((a)[0]))
 
 static const uint8_t all_types[] = {EXH_RECORD_HEADER,   EXH_RECORD_FRAME,   EXH_RECORD_EVENT,

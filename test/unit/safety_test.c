@@ -53,7 +53,7 @@ TEST(every_state_with_every_command)
     for (size_t i = 0; i < LEN(row); i++) {
         struct exh_safety s = {0};
         s.state = row[i].from;
-        CHECK(exh_safety_step(&s, &par, healthy(row[i].command)) == row[i].healthy_to, "row %zu", i);
+        CHECK_EQ_I64(exh_safety_step(&s, &par, healthy(row[i].command)), row[i].healthy_to);
         CHECK(s.state == row[i].healthy_to, "row %zu: state", i);
         for (size_t f = 0; f < LEN(fault_bits); f++) {
             struct exh_safety t = {0};

@@ -113,7 +113,8 @@ TEST(agrees_with_the_compiler)
     }
     while (check_case(1)) {
         const unsigned n = (unsigned)(check_u64() % 128);
-        against_compiler(check_i64(), check_i64(), check_i64(), n);
+        const int64_t a = check_i64(), b = check_i64(), c = check_i64();
+        against_compiler(a, b, c, n);
     }
 }
 #else

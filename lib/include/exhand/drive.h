@@ -69,14 +69,15 @@ struct exh_table {
 };
 
 /* Checks n knots and fills the slopes. -EXH_E_RANGE (n < 2, or x or y spans more
- * than 2^31-1), -EXH_E_MONOTONE (x or y does not rise strictly). */
+ * than 2^31-1, or a slope is 2^30 or more), -EXH_E_MONOTONE (x or y does not rise
+ * strictly). */
 int exh_table_set(struct exh_knot *knot, unsigned n);
 
 /* The inverse table: dst may be src. Errors as exh_table_set(). */
 int exh_table_invert(struct exh_knot *dst, const struct exh_knot *src, unsigned n);
 
-/* y at x: monotone, exact at every knot, within 1 LSB of y between them, and the
- * end values outside. Cost depends on n alone, not on x. */
+/* y at x: monotone, exact at every knot, within 1.5 LSB of y between them (1 LSB
+ * where a segment rises less than 2^30), and the end values outside. Cost depends on n alone, not on x. */
 int32_t exh_table_at(struct exh_table t, int32_t x);
 
 /* --- one axis --- */
@@ -125,7 +126,7 @@ struct exh_current_ledger {
 
 /* Set-up (divides). Tables must have passed exh_table_set(); cur_to_force may be
  * {NULL, 0} where no monitor is read; par must
- * outlive cfg. -EXH_E_RANGE when i_peak < i_cont, or a scale is 0. */
+ * outlive cfg. -EXH_E_RANGE when i_peak < i_cont, or a scale in use is not positive. */
 int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par,
                     struct exh_period T, struct exh_table force_to_cur,
                     struct exh_table cur_to_force);

@@ -97,7 +97,7 @@ static inline int64_t exh_gain_mul(struct exh_gain g, int32_t x)
 }
 
 /* Sets *g to num/den. 0, or -EXH_E_RANGE when den is 0 or >= 2^63, or when the
- * quotient is >= 2^30 or > 0 and < 2^-32. Set-up only (long division). */
+ * quotient rounds to 2^30 or more, or is > 0 and < 2^-32. Set-up only (long division). */
 int exh_gain_set(struct exh_gain *g, uint64_t num, uint64_t den);
 
 /* floor(num/den), den > 0, without the compiler's division helpers; the

@@ -32,16 +32,26 @@ const struct fall_rest_opt fall_rest_opt_default = {
 const char *fall_status_text(enum fall_status status)
 {
     switch (status) {
-    case FALL_OK: return "ok";
-    case FALL_NO_MEMORY: return "out of memory";
-    case FALL_BAD_LOG: return "log damaged: times or starts do not rise, or a value is no number";
-    case FALL_BAD_OPT: return "an option is out of range";
-    case FALL_TOO_FEW: return "too few pairs in the force band";
-    case FALL_FLAT: return "position or force does not vary";
-    case FALL_NO_RISE: return "force does not rise with position";
-    case FALL_UNBOUNDED: return "no upper end";
-    case FALL_FEW_FALLS: return "too few falls with a line";
-    case FALL_IO: return "cannot write the file";
+    case FALL_OK:
+        return "ok";
+    case FALL_NO_MEMORY:
+        return "out of memory";
+    case FALL_BAD_LOG:
+        return "log damaged: times or starts do not rise, or a value is no number";
+    case FALL_BAD_OPT:
+        return "an option is out of range";
+    case FALL_TOO_FEW:
+        return "too few pairs in the force band";
+    case FALL_FLAT:
+        return "position or force does not vary";
+    case FALL_NO_RISE:
+        return "force does not rise with position";
+    case FALL_UNBOUNDED:
+        return "no upper end";
+    case FALL_FEW_FALLS:
+        return "too few falls with a line";
+    case FALL_IO:
+        return "cannot write the file";
     }
     return "unknown status";
 }
@@ -49,11 +59,16 @@ const char *fall_status_text(enum fall_status status)
 const char *fall_rest_text(enum fall_rest_class rest)
 {
     switch (rest) {
-    case FALL_AT_REST: return "rest";
-    case FALL_BUZZ: return "buzz";
-    case FALL_OSCILLATES: return "oscillates";
-    case FALL_INCOMPLETE: return "incomplete";
-    case FALL_REST_CLASSES: break;
+    case FALL_AT_REST:
+        return "rest";
+    case FALL_BUZZ:
+        return "buzz";
+    case FALL_OSCILLATES:
+        return "oscillates";
+    case FALL_INCOMPLETE:
+        return "incomplete";
+    case FALL_REST_CLASSES:
+        break;
     }
     return "unknown";
 }
@@ -105,10 +120,14 @@ static int next_contact(const struct fall_log *log, size_t fall, size_t from,
     const size_t end = fall_end(log, fall);
     size_t i = from;
 
-    while (i < end && !log->sample[i].c) { i++; }
+    while (i < end && !log->sample[i].c) {
+        i++;
+    }
     if (i == end) { return 0; }
     out->first = i;
-    while (i < end && log->sample[i].c) { i++; }
+    while (i < end && log->sample[i].c) {
+        i++;
+    }
     out->end = i;
     out->fall = fall;
     out->open = i == end;
@@ -257,7 +276,9 @@ static void average_into(const struct fall_pairs *sorted, enum fall_force force,
                          struct fall_pairs *out)
 {
     out->n = sorted->n < FALL_WINDOW ? 0 : sorted->n - (FALL_WINDOW - 1);
-    for (size_t i = 0; i < out->n; i++) { out->at[i] = window(&sorted->at[i], force); }
+    for (size_t i = 0; i < out->n; i++) {
+        out->at[i] = window(&sorted->at[i], force);
+    }
 }
 
 enum fall_status fall_average(const struct fall_pairs *sorted, enum fall_force force,
@@ -443,7 +464,9 @@ static enum fall_status replicate(struct replicas *r, const struct fall_pairs *s
     uint64_t rng = opt->seed;
     struct fall_fit fit;
 
-    for (size_t i = 0; i < sorted->n; i++) { r->inside[sorted->at[i].fall]++; }
+    for (size_t i = 0; i < sorted->n; i++) {
+        r->inside[sorted->at[i].fall]++;
+    }
     for (size_t i = 0; i < opt->replicates; i++) {
         if (draw(r, sorted, falls, &rng) != FALL_OK) { return FALL_NO_MEMORY; }
         average_into(&r->drawn, opt->force, &r->averaged);
@@ -561,9 +584,7 @@ enum fall_status fall_write_plot(const struct fall_stiffness *s, enum fall_direc
         }
     }
     enum fall_status status = write_pairs(paths->raw, s->raw.at, s->raw.n);
-    if (status == FALL_OK) {
-        status = write_pairs(paths->averaged, s->averaged.at, s->averaged.n);
-    }
+    if (status == FALL_OK) { status = write_pairs(paths->averaged, s->averaged.at, s->averaged.n); }
     if (status == FALL_OK) { status = write_pairs(paths->line, end, ends); }
     return status;
 }
@@ -586,8 +607,7 @@ static void span_add(struct span *w, const struct fall_sample *s)
 
 /* A count reaches the log rounded: a quarter of a step tells 2 from 3 counts, and
  * 1 from none. */
-static enum fall_rest_class judge(double travel_m, double force_N,
-                                  const struct fall_rest_opt *opt)
+static enum fall_rest_class judge(double travel_m, double force_N, const struct fall_rest_opt *opt)
 {
     const double step = opt->encoder_step_m;
 

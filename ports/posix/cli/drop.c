@@ -290,7 +290,7 @@ static int write_pictures(const struct drop_options *o, const struct table2_resu
     if (f == NULL) { return 1; }
     fprintf(f, "# Made by exhand drop: gnuplot -e \"plots='ports/posix/cli/plot'\" %s/pictures.gp\n",
             o->out);
-    fprintf(f, "out='%s/force_position.png'\n", o->out);
+    fprintf(f, "out='%s/force_position.png'; fit='linear fit, position over force'\n", o->out);
     path(prefix, sizeof prefix, o, o->rate_Hz[0], "");
     panel(f, "a", &r[0], prefix, o->device.height_m);
     path(prefix, sizeof prefix, o, o->rate_Hz[last], "");

@@ -15,6 +15,7 @@
 #   observe_s    length of the observation, s             (5)
 #   q_top_mm, f_top_N   tops of the axes                  (from the data)
 
+reset # another script may have run in this session
 if (!exists("out")) out = 'fall.png'
 if (!exists("q_lim_m")) q_lim_m = 0
 if (!exists("zoom_s")) zoom_s = 0.3
@@ -67,8 +68,8 @@ set lmargin at screen 0; set rmargin at screen 1
 set tmargin at screen 1; set bmargin at screen 0
 unset border; unset tics
 set xrange [0:1]; set yrange [0:1]
-set key at screen 0.525, screen 1.0-26.0/px center top horizontal Left reverse maxrows 1 samplen 2.2 width 1 \
-    textcolor rgb ink
+set key at screen 0.525, screen 1.0-26.0/px center top horizontal Left reverse maxrows 1 \
+    samplen 2.2 width 1 textcolor rgb ink
 plot NaN with lines ls 1 title 'position q', NaN with lines ls 2 title 'virtual contact q_{lim}', \
      NaN with lines ls 3 title 'commanded force F_{des}', \
      NaN with lines ls 4 title 'monitored force F_{mon}'
@@ -80,7 +81,7 @@ set grid lc rgb '#dddddd' lw 0.6 lt 1
 do for [i = 1:rows] {
     FILE = word(files, i)
     stats FILE using (column('c') > 0 ? column('t_s') : NaN) name 'C' nooutput
-    T0 = C_min
+    T0 = exists("C_min") ? C_min : 0 # a mass that never touches keeps the log's time
     S = word(stiffnesses, i)
     HEAD = sprintf('{/:Bold %s Hz}   k = %s N/m, b = %s Ns/m,  %s', word(rates, i), word(ks, i), \
         word(bs, i), S eq '-' ? 'no stiffness' : 'measured stiffness '.S.' N/m')
@@ -93,13 +94,13 @@ do for [i = 1:rows] {
         unset xlabel; unset ylabel
         if (c % 2 == 0) {
             set xrange [-zoom_s/6.0:zoom_s]
-            set xtics zoom_s/3.0
+            set xtics nomirror zoom_s/3.0
         } else {
             set xrange [0:observe_s]
-            set xtics ceil(observe_s/3.0)
+            set xtics nomirror ceil(observe_s/3.0)
         }
         if (c < 2) { set yrange [q_bottom_mm:q_top_mm] } else { set yrange [f_bottom_N:f_top_N] }
-        if (c < 2) { set ytics q_step_mm } else { set ytics f_step_N }
+        if (c < 2) { set ytics nomirror q_step_mm } else { set ytics nomirror f_step_N }
         if (c % 2 == 0) { set format y '%g' } else { set format y '' }
         if (i < rows) { set format x '' } else { set format x '%g' }
         if (i == rows && c % 2 == 0) { set xlabel 'time since contact (s)' textcolor rgb ink }
@@ -117,3 +118,4 @@ do for [i = 1:rows] {
     }
 }
 unset multiplot
+unset output

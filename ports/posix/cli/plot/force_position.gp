@@ -14,6 +14,7 @@
 #   fit              which regression the line is        ('linear fit')
 #   a_q_hi_mm, b_q_hi_mm   right end of the panel, mm    (from the pairs in the band)
 
+reset # another script may have run in this session
 if (!exists("out")) out = 'force_position.png'
 if (!exists("a_q0")) a_q0 = 0
 if (!exists("b_q0")) b_q0 = 0
@@ -31,7 +32,9 @@ set style line 2 lc rgb '#b9c9e2' pt 2 ps 0.5 lw 0.6   # faint: pairs outside it
 set style line 3 lc rgb '#d62728' pt 6 ps 0.9 lw 0.9   # red circles: averaged positions
 set style line 4 lc rgb '#1a8f2e' lw 3.2               # green: the line
 
-inside(f) = f >= band_lo && f <= band_hi
+inside(f) = f >= band_lo && f <= band_hi ? f : NaN
+outside(f) = f >= band_lo && f <= band_hi ? NaN : f
+mm(q) = (q - Q0)*1e3
 
 set multiplot
 
@@ -40,10 +43,10 @@ set lmargin at screen 0; set rmargin at screen 1
 set tmargin at screen 1; set bmargin at screen 0
 unset border; unset tics
 set xrange [0:1]; set yrange [0:1]
-set key at screen 0.515,0.045 center bottom horizontal Left reverse maxrows 1 samplen 1.4 width 1 \
-    textcolor rgb ink
-plot NaN with points ls 1 ps 1.4 title sprintf('pairs in the band, %g to %g N', band_lo, band_hi), \
-     NaN with points ls 2 ps 1.4 title 'pairs outside', \
+set key at screen 0.515,0.02 center bottom horizontal Left reverse maxrows 1 samplen 1.4 width -1 \
+    font ',20' textcolor rgb ink
+plot NaN with points ls 1 ps 1.4 title sprintf('pairs, %g to %g N', band_lo, band_hi), \
+     NaN with points ls 2 ps 1.4 title 'other pairs', \
      NaN with points ls 3 ps 1.4 title 'mean of ten positions', \
      NaN with lines ls 4 title fit
 set key off
@@ -54,13 +57,14 @@ set grid lc rgb '#dddddd' lw 0.6 lt 1
 set tmargin at screen 0.855; set bmargin at screen 0.235
 set xlabel 'position past the virtual contact (mm)' textcolor rgb ink
 set yrange [0:band_hi + 1.0]
-set ytics 1
+set xtics nomirror; set ytics nomirror 1
 
 do for [panel in 'a b'] {
     RAW = value(panel.'_raw'); AVG = value(panel.'_avg'); LINE = value(panel.'_line')
     Q0 = value(panel.'_q0')
     S = ''.value(panel.'_stiffness')
-    stats RAW using ((inside(column('f_mon_n')) ? column('q_m') - Q0 : NaN)*1e3) name 'P' nooutput
+    stats RAW using (mm(column('q_m')) + 0*inside(column('f_mon_n'))) name 'P' nooutput
+    if (!exists("P_min")) { P_min = 0; P_max = 1 } # no pair in the band: an empty panel
     pad = 0.06 * (P_max - P_min) + 0.02
     right_mm = exists(panel.'_q_hi_mm') ? value(panel.'_q_hi_mm') : P_max + pad
     set xrange [P_min - pad : right_mm]
@@ -73,12 +77,11 @@ do for [panel in 'a b'] {
     if (panel eq 'b') { unset ylabel }
     set object 1 rectangle from graph 0, first band_lo to graph 1, first band_hi \
         fc rgb '#f4f7fb' fs solid noborder behind
-    plot RAW using ((column('q_m') - Q0)*1e3):(inside(column('f_mon_n')) ? NaN : column('f_mon_n')) \
-             with points ls 2, \
-         RAW using ((column('q_m') - Q0)*1e3):(inside(column('f_mon_n')) ? column('f_mon_n') : NaN) \
-             with points ls 1, \
-         AVG using ((column('q_m') - Q0)*1e3):(column('f_mon_n')) with points ls 3, \
-         LINE using ((column('q_m') - Q0)*1e3):(column('f_mon_n')) with lines ls 4
+    plot RAW using (mm(column('q_m'))):(outside(column('f_mon_n'))) with points ls 2, \
+         RAW using (mm(column('q_m'))):(inside(column('f_mon_n'))) with points ls 1, \
+         AVG using (mm(column('q_m'))):(column('f_mon_n')) with points ls 3, \
+         LINE using (mm(column('q_m'))):(column('f_mon_n')) with lines ls 4
     unset object 1
 }
 unset multiplot
+unset output

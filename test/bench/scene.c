@@ -1,0 +1,122 @@
+/* Whole ticks: from raw encoder count to D/A code, against the same chain in long
+ * double. The error is in codes, where half a code is the converter's own. */
+#include "path.h"
+
+#define TICKS 300000u
+
+extern const struct exh_scene exh_scene_minimal;
+
+static struct drop state;
+static struct drop_signals signals;
+static struct exh_scene_in in;
+static struct exh_drive_out out;
+
+static void input(uint32_t i, int32_t noise)
+{
+    in = (struct exh_scene_in){.command = i == 0 ? EXH_CMD_RUN : EXH_CMD_NONE};
+    in.drive.din = PATH_HEALTHY;
+    in.drive.enc_raw[0] = (uint32_t)(path_cnt(i) + noise) & 0xFFFFFF;
+    in.drive.mon_raw[0] = (int16_t)path_cnt(i);
+}
+
+static void drop_start(void)
+{
+    path_setup();
+    state = (struct drop){.quad = {0, 0, 0}};
+    input(0, 0);
+    drop_tick(&state, &path_cfg, &in, &out, &signals);
+}
+
+static void drop_op(uint32_t i)
+{
+    in.drive.enc_raw[0] = (uint32_t)path_cnt(i);
+    in.command = EXH_CMD_NONE;
+    drop_tick(&state, &path_cfg, &in, &out, &signals);
+    bench_sink = out.dac_raw[0];
+}
+
+static void minimal_start(void)
+{
+    const struct exh_period T = {1, 1000};
+    path_setup();
+    EXH_ASSERT(exh_scene_minimal.setup(T) == 0);
+    input(0, 0);
+    exh_scene_minimal.tick(&in, &out);
+}
+
+static void minimal_op(uint32_t i)
+{
+    in.drive.enc_raw[0] = (uint32_t)path_cnt(i);
+    in.command = EXH_CMD_NONE;
+    exh_scene_minimal.tick(&in, &out);
+    bench_sink = out.dac_raw[0];
+}
+
+/* What both scenes do, exactly. Velocity: window of two ticks. */
+struct exact {
+    long double step_m, T_s, k_Npm, b_Nspm, lim_m, f_max_N, slew_Nps, A_per_N, peak_A, code_per_A;
+    long double force_N;
+    int32_t cnt[3]; /* newest first */
+};
+
+static long double exact_code(struct exact *x, int32_t cnt, long double pullback_N)
+{
+    const long double q_m = cnt * x->step_m, v_mps = (cnt - x->cnt[1]) * x->step_m / (2 * x->T_s);
+    long double f = pullback_N;
+    x->cnt[1] = x->cnt[0];
+    x->cnt[0] = cnt;
+    if (q_m >= x->lim_m) { f += x->k_Npm * (q_m - x->lim_m) + x->b_Nspm * v_mps; }
+    f = bench_clamp(f, 0, x->f_max_N);
+    x->force_N = bench_clamp(f, x->force_N - x->slew_Nps * x->T_s, x->force_N + x->slew_Nps * x->T_s);
+    return bench_clamp(x->force_N * x->A_per_N, 0, x->peak_A) * x->code_per_A;
+}
+
+static void drop_error(struct error *e)
+{
+    const struct drop_par *p = &path_par;
+    struct exact x;
+    drop_start();
+    x = (struct exact){.step_m = path_step_m(&p->quad), .T_s = 1 / 2000.0L,
+                       .k_Npm = bench_q(p->contact.k_Npm_q10, EXH_Q_K),
+                       .b_Nspm = bench_q(p->contact.b_Nspm_q20, EXH_Q_B),
+                       .lim_m = bench_q(p->own.q_lim_m_q30, EXH_Q_POS),
+                       .f_max_N = bench_q(p->drive.f_max_N_q20, EXH_Q_FORCE),
+                       .slew_Nps = p->drive.slew_up_Nps,
+                       .A_per_N = 1 / bench_q(p->own.kf_NpA_q20, EXH_Q_FORCE),
+                       .peak_A = bench_q(p->drive.i_peak_A_q26, EXH_Q_CUR),
+                       .code_per_A = bench_q(p->drive.dac_rawpA_q16, EXH_Q_DAC)};
+    for (uint32_t i = 1; i < TICKS; i++) {
+        const int32_t noise = bench_in(-1, 1);
+        long double want;
+        input(i, noise);
+        drop_tick(&state, &path_cfg, &in, &out, &signals);
+        want = exact_code(&x, path_cnt(i) + noise,
+                          state.contact.inward ? bench_q(p->contact.f0_N_q20, EXH_Q_FORCE) : 0);
+        error_add(e, (long double)out.dac_raw[0] - p->drive.dac_zero_raw - want);
+    }
+}
+
+/* The scene's constants, as its source gives them. */
+static void minimal_error(struct error *e)
+{
+    struct exact x;
+    minimal_start();
+    x = (struct exact){.step_m = path_step_m(&path_par.quad), .T_s = 1 / 1000.0L, .k_Npm = 2000,
+                       .b_Nspm = 10, .lim_m = bench_q(EXH_Q(2, 100, EXH_Q_POS), EXH_Q_POS),
+                       .f_max_N = 5, .slew_Nps = 1000, .A_per_N = 6.6L / 27.3L, .peak_A = 3.3L,
+                       .code_per_A = 3249 / 1.76L};
+    for (uint32_t i = 1; i < TICKS; i++) {
+        const int32_t noise = bench_in(-1, 1);
+        input(i, noise);
+        exh_scene_minimal.tick(&in, &out);
+        error_add(e, (long double)out.dac_raw[0] - 32768 - exact_code(&x, path_cnt(i) + noise, 0));
+    }
+}
+
+static const struct kernel kernels[] = {
+    {"drop_tick", "code", 1, 0.501, 1, drop_start, drop_op, drop_error,
+     "half a code + all before it; 150 s at 2 kHz, k = 1997.3, b = 6.17", 0, NULL},
+    {"minimal_tick", "code", 1, 0.501, 1, minimal_start, minimal_op, minimal_error,
+     "half a code + all before it; 300 s at 1 kHz, force and slew limits act", 0, NULL},
+};
+const struct kernel_group scene_group = {kernels, sizeof kernels / sizeof kernels[0]};

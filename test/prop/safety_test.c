@@ -1,0 +1,159 @@
+/* safety.h: the gate with any current, any parameters in range, any state; the
+ * state machine under any sequence of inputs. */
+#include "exhand/safety.h"
+
+#include "check.h"
+#include "wide.h"
+
+static int32_t in_row(unsigned r)
+{
+    return check_i32_in(exh_drive_rows[r].min, exh_drive_rows[r].max);
+}
+
+struct box {
+    struct exh_drive_par par[EXH_FINGERS];
+    struct exh_drive_cfg cfg[EXH_FINGERS];
+    struct exh_current_ledger i[EXH_FINGERS];
+    uint32_t limits[EXH_FINGERS];
+    struct exh_drive_out out;
+};
+
+static int any_box(struct box *b, unsigned n)
+{
+    static struct exh_knot knot[2] = {{0, 0, {1 << 30, 30}}, {1, 1, {1 << 30, 30}}};
+    const struct exh_table t = {knot, 2}, none = {NULL, 0};
+    for (unsigned k = 0; k < n; k++) {
+        int32_t *field = &b->par[k].f_max_N_q20;
+        for (unsigned r = 0; r < EXH_DRIVE_ROWS; r++) { field[r] = exh_drive_rows[r].dflt; }
+        for (unsigned r = 6; r <= 8; r++) { /* zero, span, scale of the D/A */
+            if (check_u64() % 4) { field[r] = in_row(r); }
+        }
+        if (exh_drive_setup(&b->cfg[k], &b->par[k], (struct exh_period){1, 2000}, t, none) < 0) {
+            return 0;
+        }
+        b->i[k].table_A_q26 = check_i32();
+        b->i[k].peak_A_q26 = check_u64() % 2 ? 0 : check_i32();
+        b->i[k].i2t_A_q26 = check_u64() % 2 ? 0 : check_i32();
+        b->i[k].gate_A_q26 = b->i[k].dac_A_q26 = b->i[k].coded_A_q26 = 5;
+        b->limits[k] = 0;
+    }
+    return 1;
+}
+
+/* code/rawpA amperes, q26, rounded and limited: what the code stands for. */
+static int stands_for(const struct exh_drive_par *par, int32_t codes, int32_t coded)
+{
+    const struct wide exact = wide_shl(wide_of(codes), EXH_Q_CUR + EXH_Q_DAC);
+    const struct wide err = wide_sub(wide_mul(coded, par->dac_rawpA_q16), exact);
+    const struct wide slack = wide_add(wide_shr_floor(wide_abs(exact), 31),
+                                       wide_of((int64_t)par->dac_rawpA_q16 / 2 + 1));
+    if (coded == INT32_MAX && wide_negative(err)) { return 1; }
+    if (coded == INT32_MIN && !wide_negative(err)) { return 1; }
+    return wide_within(err, slack);
+}
+
+/* The code nearest to the current asked, unless an end is in the way. */
+static int nearest_code(const struct exh_drive_par *par, int64_t asked, int32_t codes)
+{
+    const int64_t lo = -(int64_t)par->dac_span_raw < -(int64_t)par->dac_zero_raw
+                           ? -(int64_t)par->dac_zero_raw : -(int64_t)par->dac_span_raw;
+    const int64_t hi = par->dac_span_raw < 65535 - par->dac_zero_raw ? par->dac_span_raw
+                                                                     : 65535 - par->dac_zero_raw;
+    const int32_t in = wide_sat32(wide_of(asked));
+    const int64_t want = wide_sat64(
+        wide_shr_half_up(wide_mul(in, par->dac_rawpA_q16), EXH_Q_CUR + EXH_Q_DAC));
+    return codes == (want < lo ? lo : want > hi ? hi : want);
+}
+
+static void check_finger(const struct box *b, unsigned k, int open, int64_t asked)
+{
+    const struct exh_drive_par *par = &b->par[k];
+    const struct exh_current_ledger *i = &b->i[k];
+    const int32_t codes = (int32_t)b->out.dac_raw[k] - par->dac_zero_raw;
+    CHECK(codes <= par->dac_span_raw && codes >= -par->dac_span_raw, "finger %u: %" PRId32
+          " codes, span %" PRId32, k, codes, par->dac_span_raw);
+    CHECK(i->coded_A_q26 == asked + i->gate_A_q26 + i->dac_A_q26, "finger %u: ledger", k);
+    CHECK(stands_for(par, codes, i->coded_A_q26), "finger %u: %" PRId32 " codes are not %" PRId32,
+          k, codes, i->coded_A_q26);
+    if (open) {
+        CHECK(nearest_code(par, asked, codes), "finger %u: %" PRId64 " A q26 became %" PRId32, k,
+              asked, codes);
+        CHECK(i->gate_A_q26 == 0 || asked > INT32_MAX || asked < INT32_MIN, "finger %u: gate", k);
+    } else {
+        CHECK(codes == 0 && i->coded_A_q26 == 0, "finger %u: %" PRId32 " codes outside RUN", k,
+              codes);
+        CHECK(i->gate_A_q26 == -asked && i->dac_A_q26 == 0, "finger %u: gate", k);
+    }
+}
+
+TEST(gate_holds_with_any_input)
+{
+    while (check_case(4)) {
+        const unsigned n = 1 + (unsigned)(check_u64() % EXH_FINGERS);
+        struct box b;
+        struct exh_safety s = {0};
+        int64_t asked[EXH_FINGERS];
+        uint8_t before;
+        int open;
+        if (!any_box(&b, n)) {
+            CHECK(0, "set-up refused parameters within range");
+            continue;
+        }
+        for (unsigned k = 0; k < n; k++) {
+            asked[k] = b.i[k].table_A_q26 + b.i[k].peak_A_q26 + b.i[k].i2t_A_q26;
+        }
+        s.state = (uint8_t)(check_u64() % 4);
+        s.alive = (uint8_t)(check_u64() & 0xFF);
+        open = s.state == EXH_STATE_RUN;
+        b.out.alive = before = s.alive;
+        exh_gate(&s, b.cfg, n, b.i, b.limits, &b.out);
+        CHECK(b.out.alive != before && s.alive == b.out.alive, "alive stands at %d", before);
+        CHECK(b.out.enable == (open ? (1u << n) - 1u : 0), "enable %x", b.out.enable);
+        for (unsigned k = 0; k < n; k++) { check_finger(&b, k, open, asked[k]); }
+        for (unsigned k = n; k < EXH_FINGERS; k++) {
+            CHECK(b.out.dac_raw[k] == b.par[0].dac_zero_raw, "unused finger %u: %d", k,
+                  b.out.dac_raw[k]);
+        }
+    }
+}
+
+/* Invariants that hold whatever comes: RUN only by command and without a cause; a
+ * fault is left by CLEAR alone, into OFF; the first cause does not change. */
+TEST(state_machine_under_any_input)
+{
+    struct exh_safety s = {0};
+    const struct exh_safety_par par = {3};
+    uint32_t ticks = 0;
+    while (check_case(1)) {
+        const struct exh_safety old = s;
+        struct exh_safety_in in;
+        int cause;
+        uint8_t now;
+        in.din = check_u64() % 4 ? UINT32_MAX : (uint32_t)(check_u64() & UINT32_MAX);
+        in.raised = check_u64() % 8 ? 0 : 1u << check_u64() % 6;
+        in.missed = (uint32_t)check_i32_in(0, check_u64() % 8 ? 3 : 5);
+        in.command = (uint8_t)(check_u64() % 5);
+        in.fingers = (uint8_t)(check_u64() % 6);
+        cause = in.raised != 0 || in.missed > 3 || !(in.din & EXH_DIN_ESTOP);
+        for (unsigned k = 0; k < in.fingers; k++) { cause |= !(in.din >> (8 + k) & 1); }
+        now = exh_safety_step(&s, &par, in);
+        ticks++;
+        CHECK(now == s.state && now <= EXH_STATE_FAULT, "state %d", now);
+        CHECK(now != EXH_STATE_RUN || !cause, "RUN with a cause");
+        CHECK(now != EXH_STATE_RUN || old.state == EXH_STATE_RUN ||
+                  (old.state == EXH_STATE_OFF && in.command == EXH_CMD_RUN),
+              "RUN from %d by command %d", old.state, in.command);
+        CHECK(now != EXH_STATE_FAULT || s.faults != 0, "fault without a cause");
+        CHECK(old.state != EXH_STATE_RUN || !cause || now == EXH_STATE_FAULT, "cause ignored");
+        if (old.state == EXH_STATE_FAULT && now != EXH_STATE_FAULT) {
+            CHECK(now == EXH_STATE_OFF && in.command == EXH_CMD_CLEAR && !cause, "left FAULT");
+        }
+        if (old.state == EXH_STATE_FAULT && now == EXH_STATE_FAULT) {
+            CHECK(s.first == old.first && s.first_tick == old.first_tick, "first cause changed");
+            CHECK((s.faults & old.faults) == old.faults, "a latched cause went away");
+        }
+        CHECK(s.tick == ticks, "tick %" PRIu32, s.tick);
+    }
+}
+
+TEST_MAIN("prop/safety", gate_holds_with_any_input, state_machine_under_any_input);

@@ -1,0 +1,33 @@
+#!/bin/sh
+# bits.sh DIR LOGS EXHAND...: every EXHAND (other compilers, optimisations, CPUs) must
+# make the same tables and logs as those in LOGS, and replay these bit for bit from
+# the start and from keyframes. Works in DIR; ends with `N passed, N failed`.
+dir=$1 logs=$2
+shift 2
+passed=0 failed=0
+verdict() { # NAME STATUS
+    if [ "$2" = 0 ]; then passed=$((passed + 1)); else failed=$((failed + 1)) && echo "FAIL $1"; fi
+}
+mkdir -p "$dir"
+for exe in "$@"; do
+    before=$passed
+    out=$dir/out
+    rm -rf "$out"
+    "$exe" drop --out "$out" >"$dir/table.txt" 2>&1
+    verdict "$exe: drop" $?
+    cmp "$logs/table2.csv" "$out/table2.csv"
+    verdict "$exe: table2.csv" $?
+    for log in "$logs"/*.exh; do
+        cmp "$log" "$out/${log##*/}"
+        verdict "$exe: ${log##*/} made" $?
+        for from in 0 1 3000; do
+            "$exe" replay "$log" --from $from >"$dir/replay.txt" 2>&1
+            status=$?
+            verdict "$exe: ${log##*/} replayed from $from" $status
+            [ $status = 0 ] || cat "$dir/replay.txt"
+        done
+    done
+    echo "$exe: $((passed - before)) of $((2 + 4 * $(ls "$logs"/*.exh | wc -l)))"
+done
+echo "$passed passed, $failed failed"
+[ "$failed" = 0 ]
