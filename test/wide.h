@@ -101,11 +101,11 @@ static inline struct wide wide_shr_floor(struct wide a, unsigned n)
     return w;
 }
 
-/* floor(a / 2^n + 1/2), 1 <= n <= 127. */
+/* floor(a / 2^n + 1/2), 0 <= n <= 127. */
 static inline struct wide wide_shr_half_up(struct wide a, unsigned n)
 {
     const struct wide one = {0, 1};
-    return wide_shr_floor(wide_add(a, wide_shl(one, n - 1)), n);
+    return n == 0 ? a : wide_shr_floor(wide_add(a, wide_shl(one, n - 1)), n);
 }
 
 /* a limited to int64_t or int32_t, the sign kept. */

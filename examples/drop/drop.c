@@ -4,7 +4,7 @@ static const struct exh_signal own_rows[] = {
     {0x8001, EXH_Q_POS, EXH_WHEN_ANY, -EXH_Q(1, 1, EXH_Q_POS), EXH_Q(1, 1, EXH_Q_POS),
      EXH_Q(7, 100, EXH_Q_POS), "q_lim", "m", "virtual contact, from where the string starts"},
     {0x8002, EXH_Q_FORCE, EXH_WHEN_SETUP, EXH_Q(1, 10, EXH_Q_FORCE), EXH_Q(100, 1, EXH_Q_FORCE),
-     EXH_Q(414, 100, EXH_Q_FORCE), "kf", "n_per_a", "string force per motor current"},
+     EXH_Q(3339, 1000, EXH_Q_FORCE), "kf", "n_per_a", "string force per motor current"},
 };
 
 static const struct exh_signal paper_rows[] = {

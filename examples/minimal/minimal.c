@@ -22,7 +22,7 @@ static struct exh_contact contact;
 static struct exh_drive_cfg drive_cfg;
 static struct exh_drive drive;
 static struct exh_safety safety;
-static struct exh_knot knot[2] = {{0, 0, {0, 0}}, {EXH_Q(273, 10, EXH_Q_FORCE), EXH_Q(66, 10, EXH_Q_CUR), {0, 0}}};
+static struct exh_knot knot[2] = {{0, 0, {0, 0}}, {EXH_Q(22, 1, EXH_Q_FORCE), EXH_Q(66, 10, EXH_Q_CUR), {0, 0}}};
 
 static int setup(struct exh_period T)
 {

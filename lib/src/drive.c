@@ -59,7 +59,7 @@ int exh_table_set(struct exh_knot *knot, unsigned n)
         (int64_t)knot[n - 1].y - knot[0].y > INT32_MAX) {
         return -EXH_E_RANGE;
     }
-    knot[n - 1].slope = knot[n - 2].slope; /* never used: the end clamps */
+    knot[n - 1].slope = knot[n - 2].slope; /* at the end it multiplies 0 */
     return 0;
 }
 
@@ -79,9 +79,9 @@ int32_t exh_table_at(struct exh_table t, int32_t x)
     const int32_t in = exh_clamp(x, t.knot[0].x, t.knot[last].x);
     unsigned i = 0;
     /* Every knot is looked at: the cost must not depend on the force. */
-    for (unsigned k = 1; k < last; k++) { i += in >= t.knot[k].x; }
+    for (unsigned k = 1; k <= last; k++) { i += in >= t.knot[k].x; }
     return exh_clamp(t.knot[i].y + exh_gain_mul(t.knot[i].slope, in - t.knot[i].x), t.knot[i].y,
-                     t.knot[i + 1].y);
+                     t.knot[i < last ? i + 1 : last].y);
 }
 
 /* --- set-up --- */

@@ -22,16 +22,6 @@ uint64_t exh_udiv64(uint64_t num, uint64_t den, uint64_t *rem)
     return quot;
 }
 
-uint32_t exh_usqrt64(uint64_t v)
-{
-    uint64_t root = 0;
-    for (int i = 31; i >= 0; i--) {
-        const uint64_t trial = root | UINT64_C(1) << i;
-        if (trial * trial <= v) { root = trial; }
-    }
-    return (uint32_t)root;
-}
-
 int exh_gain_set(struct exh_gain *g, uint64_t num, uint64_t den)
 {
     uint64_t rem;
@@ -43,7 +33,7 @@ int exh_gain_set(struct exh_gain *g, uint64_t num, uint64_t den)
     if (den == 0 || den >> 63) { return -EXH_E_RANGE; }
     if (num == 0) { return 0; }
     mant = exh_udiv64(num, den, &rem);
-    if (mant >> 30) { return -EXH_E_RANGE; }
+    if (mant >> 31) { return -EXH_E_RANGE; }
     while (mant >> 30 == 0) { /* one more quotient bit at a time */
         rem <<= 1;
         mant <<= 1;
@@ -55,11 +45,12 @@ int exh_gain_set(struct exh_gain *g, uint64_t num, uint64_t den)
         if (shift > 62) { return -EXH_E_RANGE; }
     }
     if (rem >= den - rem) { mant++; } /* half up */
-    if (mant >> 31) {
+    if (mant >> 31) { /* rounded up to 2^31 */
+        if (shift == 0) { return -EXH_E_RANGE; }
         mant >>= 1;
         shift--;
     }
     g->mant = (int32_t)mant;
     g->shift = (uint8_t)shift;
-    return shift >= 1 ? 0 : -EXH_E_RANGE;
+    return 0;
 }

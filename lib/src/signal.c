@@ -133,6 +133,7 @@ int32_t exh_params_save(const struct exh_params *p, void *buf, size_t cap_B)
     struct head h = {IMAGE_MAGIC, exh_signal_crc(p->table), EXH_PARAMS_VERSION, 0};
     struct exh_bytes c = exh_bytes_writer(buf, cap_B);
     uint32_t crc;
+    EXH_ASSERT(exh_signal_count(p->table) <= UINT16_MAX);
     h.count = (uint16_t)exh_signal_count(p->table);
     head_bytes(&c, &h);
     for (uint32_t i = 0; i < h.count; i++) {

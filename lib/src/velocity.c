@@ -107,6 +107,20 @@ static int line_fits(const int32_t *d, int32_t n, int64_t m, int32_t tol)
     return fits;
 }
 
+/* g*m rounded half up and saturated, for |m| < 2^42. Where m needs more than 32
+ * bits, a gain of 1 and more saturates anyway, and below the product is taken in
+ * two parts; the first shift is a floor, so only the last one rounds. */
+static int32_t wide_gain(struct exh_gain g, int64_t m)
+{
+    if (m == exh_clamp(m, INT32_MIN, INT32_MAX)) {
+        return exh_sat32(exh_gain_mul(g, (int32_t)m));
+    }
+    if (g.shift < 31) { return exh_sat32(m); }
+    if (g.shift == 31) { return exh_sat32(exh_mul64_q31(m, g.mant)); }
+    return exh_sat32(exh_shr_round((m >> 31) * g.mant + ((m & INT32_MAX) * g.mant >> 31),
+                                   g.shift - 31u));
+}
+
 int32_t exh_velocity_foaw_mps_q27(struct exh_velocity_foaw *s,
                                   const struct exh_velocity_foaw_cfg *cfg, int32_t cnt)
 {
@@ -133,7 +147,7 @@ int32_t exh_velocity_foaw_mps_q27(struct exh_velocity_foaw *s,
             best_n = n;
         }
     }
-    return exh_sat32(exh_gain_mul(cfg->gain[best_n - 1], exh_sat32(best)));
+    return wide_gain(cfg->gain[best_n - 1], best);
 }
 
 void exh_velocity_foaw_bytes(struct exh_bytes *c, struct exh_velocity_foaw *s)

@@ -202,6 +202,6 @@ static const struct kernel kernels[] = {
     {"velocity_foaw_16", "m/s", MPS, 1.5, 1, setup_1, foaw_op, foaw_error,
      "window chosen exactly, then as window; " HAND, 0, NULL},
     {"velocity_track", "m/s", MPS, 64, 1, setup_1, track_op, track_error,
-     "coefficients rounded at 2^-32; " HAND, 0, NULL},
+     "coefficients rounded at 2^-32, jumps of 2000 counts; " HAND, 0, NULL},
 };
 const struct kernel_group estimate_group = {kernels, sizeof kernels / sizeof kernels[0]};

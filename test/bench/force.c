@@ -136,11 +136,13 @@ static void law_error(struct error *e)
         note(&drift.law, i, off);
     }
     for (int i = 0; i < CASES; i++) {
-        const struct exh_contact_par p = {bench_in(0, INT32_MAX), bench_in(0, INT32_MAX),
-                                          bench_in(0, 20 << EXH_Q_FORCE), 0, 0};
+        /* One by one: a list's initialisers may be evaluated in any order. */
+        const int32_t k = bench_in(0, INT32_MAX), b = bench_in(0, INT32_MAX);
+        const int32_t f0 = bench_in(0, 20 << EXH_Q_FORCE);
+        const int32_t pos = bench_i32(), vel = bench_i32(), lim = bench_i32();
+        const struct exh_contact_par p = {k, b, f0, 0, 0};
         struct exh_contact fresh = {.started = 0};
-        const struct exh_contact_in in = {bench_i32(), bench_i32(), bench_i32()};
-        error_add(e, law_off(&fresh, &p, in));
+        error_add(e, law_off(&fresh, &p, (struct exh_contact_in){pos, vel, lim}));
     }
 }
 
@@ -175,6 +177,21 @@ static void float_error(struct error *e)
     }
 }
 
+/* Law, limits, slew: 100 N a tick, so that it never acts. */
+static void law_force_error(struct error *e)
+{
+    start();
+    for (uint32_t i = 0; i < HOUR; i++) {
+        const struct exh_contact_in in = hour_in(i);
+        struct exh_force_ledger l;
+        exh_contact_law(&contact[0], &path_par.contact, in, &l);
+        exh_drive_force(&drive[0], &path_cfg.drive, &l);
+        error_add(e, l.force_N_q20 -
+                         bench_clamp(exact_law(&path_par.contact, in, contact[0].inward), 0,
+                                     path_par.drive.f_max_N_q20));
+    }
+}
+
 struct force_drift force_drift(void)
 {
     return drift;
@@ -205,9 +222,10 @@ static void force_error(struct error *e)
     start();
     for (int i = 0; i < CASES; i++) {
         const long double last = drive[0].force_N_q20;
-        struct exh_force_ledger l = {bench_i32(), bench_i32(), bench_in(0, 1 << 22), 0, 0, 0, 0};
-        const long double asked = (long double)(l.spring_N_q20 + l.damper_N_q20 + l.pullback_N_q20);
-        const long double up = bench_q(1, 0) * p->slew_up_Nps * (1 << EXH_Q_FORCE) / 2000;
+        const int64_t spring = bench_i32(), damper = bench_i32(), pull = bench_in(0, 1 << 22);
+        struct exh_force_ledger l = {spring, damper, pull, 0, 0, 0, 0};
+        const long double asked = (long double)(spring + damper + pull);
+        const long double up = (long double)p->slew_up_Nps * (1 << EXH_Q_FORCE) / 2000;
         const long double down = (long double)p->slew_down_Nps * (1 << EXH_Q_FORCE) / 2000;
         long double want = bench_clamp(asked, 0, p->f_max_N_q20);
         exh_drive_force(&drive[0], &path_cfg.drive, &l);
@@ -257,11 +275,12 @@ static void monitor_op(uint32_t i)
 
 static void monitor_error(struct error *e)
 {
+    const struct exh_drive_par *p = &path_par.drive;
     start();
     for (int32_t raw = INT16_MIN; raw <= INT16_MAX; raw++) {
-        const long double cur_A_q26 = bench_q((long double)((int64_t)raw * path_par.drive.mon_A_q40),
-                                              EXH_Q_MON - EXH_Q_CUR);
-        const long double want = peak_N_q20() * bench_clamp(cur_A_q26 / path_par.drive.i_peak_A_q26, -1, 1);
+        const long double cur_A_q26 =
+            bench_q((long double)((int64_t)raw * p->mon_A_q40), EXH_Q_MON - EXH_Q_CUR);
+        const long double want = peak_N_q20() * bench_clamp(cur_A_q26 / p->i_peak_A_q26, -1, 1);
         error_add(e, exh_drive_monitor_N_q20(&path_cfg.drive, (int16_t)raw) - want);
     }
 }
@@ -323,12 +342,14 @@ static const struct kernel kernels[] = {
     {"contact_law_x5", "N", NEWTON, 1, 1, start, law_op, law_error,
      "contact.h; 1 h of 2 kHz ticks, then random gains at full scale", 104,
      "integer Q31 law with contact test, F0, clamp" HARNESS},
-    {"law_and_force_x5", "N", NEWTON, 1, 1, start, law_force_op, law_error,
-     "as above: limits add no error while they do not act", 123, "CMSIS-DSP arm_pid_q31, Ki = 0" HARNESS},
+    {"law_and_force_x5", "N", NEWTON, 1, 1, start, law_force_op, law_force_error,
+     "contact.h, limits exact; 1 h of 2 kHz ticks", 123,
+     "CMSIS-DSP arm_pid_q31, Ki = 0: no contact test, F0 or clamp" HARNESS},
     {"plain_double_law_x5", "N", NEWTON, 1, 1, start, double_op, double_error,
-     "ours, for the ratio: contact test, F0, clamp; the same hour", 97, "double law" HARNESS},
+     "for the ratio: contact test, F0, clamp; the same hour; exact, as inputs have few bits", 97,
+     "double law" HARNESS},
     {"plain_float_law_x5", "N", NEWTON, 64, 1, start, float_op, float_error,
-     "ours, for the ratio: contact test, F0, clamp; the same hour", 96, "float law" HARNESS},
+     "for the ratio: contact test, F0, clamp; the same hour", 96, "float law" HARNESS},
     {"drive_force", "N", NEWTON, 1, 1, force_setup, force_op, force_error,
      "one step; random slew limits, full-scale force", 0, NULL},
     {"drive_current", "A", AMPERE, 2.5, 1, force_setup, current_op, current_error,

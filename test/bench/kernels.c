@@ -6,11 +6,8 @@
 #include "bench.h"
 #include "force.h"
 
-#include "exhand/error.h"
-
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #ifndef BENCH_FLAGS
@@ -19,12 +16,6 @@
 
 static const struct kernel_group *const groups[] = {&number_group, &estimate_group, &force_group,
                                                     &scene_group};
-
-void exh_assert_failed(const char *file, int line)
-{
-    fprintf(stderr, "%s:%d: assertion\n", file, line);
-    exit(1);
-}
 
 static void for_each(void (*visit)(const struct kernel *k))
 {
@@ -39,7 +30,7 @@ static void print_error(const struct kernel *k)
     double rms;
     k->error(&e);
     rms = sqrt((double)(e.sum_squares / (long double)(e.n ? e.n : 1)));
-    printf("%s,%s,%.4g,%.4g,%.4f,%.4f,%g,%llu,%s\n", k->name, k->unit[0] ? k->unit : "-",
+    printf("%s,%s,%.4g,%.4g,%.4g,%.4g,%g,%llu,%s\n", k->name, k->unit[0] ? k->unit : "-",
            (double)e.max * k->lsb, rms * k->lsb, (double)e.max, rms, k->bound_lsb,
            (unsigned long long)e.n, k->why);
 }
@@ -94,7 +85,7 @@ static void anchors(void)
 static void build(void)
 {
 #if defined __clang__
-    printf("clang " __clang_version__ " " BENCH_FLAGS "\n");
+    printf("clang " __clang_version__ BENCH_FLAGS "\n"); /* the version ends in a space */
 #else
     printf("gcc " __VERSION__ " " BENCH_FLAGS "\n");
 #endif

@@ -1,7 +1,18 @@
 #include "bench.h"
 
+#include "exhand/error.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
 volatile int64_t bench_sink;
 static uint64_t state;
+
+void exh_assert_failed(const char *file, int line)
+{
+    fprintf(stderr, "%s:%d: assertion\n", file, line);
+    exit(1);
+}
 
 void bench_measure(void (*op)(uint32_t i), uint32_t n)
 {

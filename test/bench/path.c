@@ -33,8 +33,3 @@ struct exh_contact_in path_in(uint32_t i)
                                    (int32_t)(slope_q27 * (1024 - 2 * at) / 1024),
                                    path_par.own.q_lim_m_q30};
 }
-
-long double path_step_m(const struct exh_quad_par *p)
-{
-    return bench_q(p->step_m_q42, EXH_Q_STEP);
-}

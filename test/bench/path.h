@@ -20,7 +20,17 @@ int32_t path_cnt(uint32_t i);
 /* The same as inputs of the law, the velocity exact and rounded to its format. */
 struct exh_contact_in path_in(uint32_t i);
 
-/* Exact values of the configuration. */
-long double path_step_m(const struct exh_quad_par *p);
+/* What a scene does from count to D/A code, in SI. Velocity: window of two ticks. */
+struct exact {
+    long double step_m, T_s, k_Npm, b_Nspm, lim_m, f_max_N, slew_Nps, A_per_N, peak_A;
+    long double code_per_A, code_zero;
+    long double force_N; /* last */
+    int32_t cnt[2];      /* of the last two ticks, newest first */
+};
+
+/* Of the minimal scene, whose table has to be set up. */
+#define MINIMAL_RATE_HZ 1000
+struct exact minimal_exact(void);
+extern const struct exh_scene exh_scene_minimal;
 
 #endif

@@ -4,8 +4,6 @@
 
 #define TICKS 300000u
 
-extern const struct exh_scene exh_scene_minimal;
-
 static struct drop state;
 static struct drop_signals signals;
 static struct exh_scene_in in;
@@ -37,7 +35,7 @@ static void drop_op(uint32_t i)
 
 static void minimal_start(void)
 {
-    const struct exh_period T = {1, 1000};
+    const struct exh_period T = {1, MINIMAL_RATE_HZ};
     path_setup();
     EXH_ASSERT(exh_scene_minimal.setup(T) == 0);
     input(0, 0);
@@ -52,23 +50,18 @@ static void minimal_op(uint32_t i)
     bench_sink = out.dac_raw[0];
 }
 
-/* What both scenes do, exactly. Velocity: window of two ticks. */
-struct exact {
-    long double step_m, T_s, k_Npm, b_Nspm, lim_m, f_max_N, slew_Nps, A_per_N, peak_A, code_per_A;
-    long double force_N;
-    int32_t cnt[3]; /* newest first */
-};
-
+/* The D/A code that would be right, of what both scenes do. */
 static long double exact_code(struct exact *x, int32_t cnt, long double pullback_N)
 {
     const long double q_m = cnt * x->step_m, v_mps = (cnt - x->cnt[1]) * x->step_m / (2 * x->T_s);
+    const long double slew_N = x->slew_Nps * x->T_s;
     long double f = pullback_N;
     x->cnt[1] = x->cnt[0];
     x->cnt[0] = cnt;
     if (q_m >= x->lim_m) { f += x->k_Npm * (q_m - x->lim_m) + x->b_Nspm * v_mps; }
     f = bench_clamp(f, 0, x->f_max_N);
-    x->force_N = bench_clamp(f, x->force_N - x->slew_Nps * x->T_s, x->force_N + x->slew_Nps * x->T_s);
-    return bench_clamp(x->force_N * x->A_per_N, 0, x->peak_A) * x->code_per_A;
+    x->force_N = bench_clamp(f, x->force_N - slew_N, x->force_N + slew_N);
+    return x->code_zero + bench_clamp(x->force_N * x->A_per_N, 0, x->peak_A) * x->code_per_A;
 }
 
 static void drop_error(struct error *e)
@@ -76,7 +69,7 @@ static void drop_error(struct error *e)
     const struct drop_par *p = &path_par;
     struct exact x;
     drop_start();
-    x = (struct exact){.step_m = path_step_m(&p->quad), .T_s = 1 / 2000.0L,
+    x = (struct exact){.step_m = bench_q(p->quad.step_m_q42, EXH_Q_STEP), .T_s = 1 / 2000.0L,
                        .k_Npm = bench_q(p->contact.k_Npm_q10, EXH_Q_K),
                        .b_Nspm = bench_q(p->contact.b_Nspm_q20, EXH_Q_B),
                        .lim_m = bench_q(p->own.q_lim_m_q30, EXH_Q_POS),
@@ -84,7 +77,8 @@ static void drop_error(struct error *e)
                        .slew_Nps = p->drive.slew_up_Nps,
                        .A_per_N = 1 / bench_q(p->own.kf_NpA_q20, EXH_Q_FORCE),
                        .peak_A = bench_q(p->drive.i_peak_A_q26, EXH_Q_CUR),
-                       .code_per_A = bench_q(p->drive.dac_rawpA_q16, EXH_Q_DAC)};
+                       .code_per_A = bench_q(p->drive.dac_rawpA_q16, EXH_Q_DAC),
+                       .code_zero = p->drive.dac_zero_raw};
     for (uint32_t i = 1; i < TICKS; i++) {
         const int32_t noise = bench_in(-1, 1);
         long double want;
@@ -92,24 +86,19 @@ static void drop_error(struct error *e)
         drop_tick(&state, &path_cfg, &in, &out, &signals);
         want = exact_code(&x, path_cnt(i) + noise,
                           state.contact.inward ? bench_q(p->contact.f0_N_q20, EXH_Q_FORCE) : 0);
-        error_add(e, (long double)out.dac_raw[0] - p->drive.dac_zero_raw - want);
+        error_add(e, (long double)out.dac_raw[0] - want);
     }
 }
 
-/* The scene's constants, as its source gives them. */
 static void minimal_error(struct error *e)
 {
-    struct exact x;
+    struct exact x = minimal_exact();
     minimal_start();
-    x = (struct exact){.step_m = path_step_m(&path_par.quad), .T_s = 1 / 1000.0L, .k_Npm = 2000,
-                       .b_Nspm = 10, .lim_m = bench_q(EXH_Q(2, 100, EXH_Q_POS), EXH_Q_POS),
-                       .f_max_N = 5, .slew_Nps = 1000, .A_per_N = 6.6L / 27.3L, .peak_A = 3.3L,
-                       .code_per_A = 3249 / 1.76L};
     for (uint32_t i = 1; i < TICKS; i++) {
         const int32_t noise = bench_in(-1, 1);
         input(i, noise);
         exh_scene_minimal.tick(&in, &out);
-        error_add(e, (long double)out.dac_raw[0] - 32768 - exact_code(&x, path_cnt(i) + noise, 0));
+        error_add(e, (long double)out.dac_raw[0] - exact_code(&x, path_cnt(i) + noise, 0));
     }
 }
 

@@ -23,9 +23,9 @@ static void pos_case(int32_t step, int32_t cnt)
 
 TEST(position_is_within_half_an_lsb)
 {
-    static const int32_t step[] = {1, 2, 2047, 2048, 2049, 4096, 65535, 69049330, INT32_MAX};
-    for (size_t s = 0; s < sizeof step / sizeof step[0]; s++) {
-        for (size_t i = 0; i < CHECK_CORNERS; i++) { pos_case(step[s], check_corner[i]); }
+    static const int32_t edge[] = {1, 2, 2047, 2048, 2049, 4096, 65535, 69049330, INT32_MAX};
+    for (size_t s = 0; s < sizeof edge / sizeof edge[0]; s++) {
+        for (size_t i = 0; i < CHECK_CORNERS; i++) { pos_case(edge[s], check_corner[i]); }
     }
     while (check_case(1)) {
         const int32_t step = check_i32_in(1, INT32_MAX);

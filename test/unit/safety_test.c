@@ -90,6 +90,11 @@ TEST(each_fault_latches_with_cause_and_tick)
         CHECK_EQ_I64(s.tick, 13);
         CHECK_EQ_I64(exh_safety_step(&s, &par, healthy(EXH_CMD_CLEAR)), EXH_STATE_OFF);
         CHECK_EQ_I64(s.faults, 0);
+        /* the next fault is a new one, with its own first cause and tick */
+        (void)exh_safety_step(&s, &par, healthy(EXH_CMD_RUN));
+        (void)exh_safety_step(&s, &par, with_cause(fault_bits[(f + 2) % 6], EXH_CMD_NONE));
+        CHECK_EQ_I64(s.first, fault_bits[(f + 2) % 6]);
+        CHECK_EQ_I64(s.first_tick, 15);
     }
 }
 

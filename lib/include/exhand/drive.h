@@ -69,8 +69,7 @@ struct exh_table {
 };
 
 /* Checks n knots and fills the slopes. -EXH_E_RANGE (n < 2, or x or y spans more
- * than 2^31-1, or a slope is 2^30 or more), -EXH_E_MONOTONE (x or y does not rise
- * strictly). */
+ * than 2^31-1), -EXH_E_MONOTONE (x or y does not rise strictly). */
 int exh_table_set(struct exh_knot *knot, unsigned n);
 
 /* The inverse table: dst may be src. Errors as exh_table_set(). */
@@ -132,7 +131,8 @@ int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par,
                     struct exh_table cur_to_force);
 
 /* Completes the force ledger: 0 <= force <= f_max, |change| <= slew * T (at least
- * 1 LSB). Returns limit bits. */
+ * 1 LSB). Where the two disagree, because f_max was just lowered, slew wins: force
+ * comes down to the new limit at its rate. Returns limit bits. */
 uint32_t exh_drive_force(struct exh_drive *s, const struct exh_drive_cfg *cfg,
                          struct exh_force_ledger *f);
 

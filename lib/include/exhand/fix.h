@@ -86,26 +86,23 @@ static inline int32_t exh_wrap_add(int32_t a, int32_t b)
  * at set-up leaves behind for the tick. */
 struct exh_gain {
     int32_t mant;  /* 2^30 .. 2^31-1, or 0                     */
-    uint8_t shift; /* 1 .. 62                                  */
+    uint8_t shift; /* 0 .. 62                                  */
 };
 
 /* x times the gain, rounded half up. Relative error of the gain <= 2^-31 (and
  * half an LSB of the result); never overflows, the caller saturates. */
 static inline int64_t exh_gain_mul(struct exh_gain g, int32_t x)
 {
-    return exh_mul_shr(x, g.mant, g.shift);
+    return ((int64_t)x * g.mant + ((INT64_C(1) << g.shift) >> 1)) >> g.shift;
 }
 
 /* Sets *g to num/den. 0, or -EXH_E_RANGE when den is 0 or >= 2^63, or when the
- * quotient rounds to 2^30 or more, or is > 0 and < 2^-32. Set-up only (long division). */
+ * quotient rounds to 2^31 or more, or is > 0 and < 2^-32. Set-up only (long division). */
 int exh_gain_set(struct exh_gain *g, uint64_t num, uint64_t den);
 
 /* floor(num/den), den > 0, without the compiler's division helpers; the
  * remainder goes to *rem unless NULL. Set-up only: 64 steps. */
 uint64_t exh_udiv64(uint64_t num, uint64_t den, uint64_t *rem);
-
-/* floor(sqrt(v)). Set-up only: 32 steps. */
-uint32_t exh_usqrt64(uint64_t v);
 
 #ifdef __cplusplus
 }

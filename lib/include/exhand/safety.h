@@ -66,7 +66,8 @@ uint8_t exh_safety_step(struct exh_safety *s, const struct exh_safety_par *par,
 /* Last thing of a tick: the currents of fingers 0..n-1 into codes. Completes
  * each ledger (gate, dac, coded); fingers not in use, and all of them outside
  * RUN, get dac_zero and are disabled. No input makes a code beyond dac_zero +-
- * dac_span. n <= EXH_FINGERS; cfg, i and limits are arrays of n. */
+ * dac_span. 1 <= n <= EXH_FINGERS; cfg, i and limits are arrays of n. Adds
+ * EXH_LIMIT_DAC and EXH_LIMIT_GATE (current held back) to limits. */
 void exh_gate(struct exh_safety *s, const struct exh_drive_cfg *cfg, unsigned n,
               struct exh_current_ledger *i, uint32_t *limits, struct exh_drive_out *out);
 

@@ -81,7 +81,8 @@ void exh_params_init(struct exh_params *p, const struct exh_signal_table *table,
                      int32_t *active, int32_t *staged);
 
 /* Stages one raw value. -EXH_E_UNKNOWN, -EXH_E_RANGE (outside min..max), or
- * -EXH_E_STATE (a set-up value while locked); nothing is staged then. */
+ * -EXH_E_STATE (an output; another set-up value while locked, the same is
+ * accepted); nothing is staged then. */
 int exh_params_stage(struct exh_params *p, uint16_t id, uint16_t instance, int32_t raw);
 
 /* Copies what is staged; call between ticks only. 1 if anything was pending. */

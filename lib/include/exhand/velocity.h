@@ -52,7 +52,7 @@ struct exh_velocity_window {
     uint8_t at;                  /* oldest of them                             */
     uint8_t started;
 };
-/* -EXH_E_RANGE when p > 4 or one count per window is outside 2^-32..8 m/s. */
+/* -EXH_E_RANGE when p > 4 or one count per window is outside 2^-59..16 m/s. */
 int exh_velocity_window_setup(struct exh_velocity_window_cfg *cfg, struct exh_velocity_scale s,
                               const struct exh_velocity_par *par);
 int32_t exh_velocity_window_mps_q27(struct exh_velocity_window *s,
@@ -79,7 +79,7 @@ void exh_velocity_pole_bytes(struct exh_bytes *c, struct exh_velocity_pole *s);
 /* --- foaw: best fit (least squares) over the longest window whose samples all
  * stay within tol counts of the line of that slope through the newest one; at
  * least n = 1. The test is exact in integers; all windows are always tried, so the
- * cost does not depend on the signal. Over 2.6e6 counts a tick reads as that. --- */
+ * cost does not depend on the signal. --- */
 struct exh_velocity_foaw_cfg {
     struct exh_gain gain[EXH_VELOCITY_N]; /* [n-1]: m/s q27 per unit of n*S0-2*S1 */
     uint8_t n;                            /* longest window, 1 .. 16            */
@@ -97,7 +97,8 @@ int32_t exh_velocity_foaw_mps_q27(struct exh_velocity_foaw *s,
 void exh_velocity_foaw_bytes(struct exh_bytes *c, struct exh_velocity_foaw *s);
 
 /* --- track: alpha-beta observer with a double pole theta = T_f/(T_f + T):
- * alpha = 1-theta^2, beta = (1-theta)^2 --- */
+ * alpha = 1-theta^2, beta = (1-theta)^2. At rest it ends within (T_f/T + 1) * 2^-32
+ * counts a tick of 0; movements beyond 2^28 counts a tick read as that. --- */
 struct exh_velocity_track_cfg {
     struct exh_gain gain; /* m/s q27 per count and tick                        */
     int32_t alpha_q31;

@@ -4,16 +4,20 @@
 
 double sim_exp_neg(double x)
 {
-    /* e^-x = (e^-x/2^n)^(2^n), Pade (3,3) on x/2^n <= 1/16. */
-    int n = 0;
-    double e;
+    /* e^-x = e^-k (e^-f/4)^4, k whole, f < 1; Pade (5,5) on f/4. */
+    const int k = x < 700 ? (int)x : 700;
+    const double f = (x - k) / 4;
+    const double even = 30240 + f * f * (3360 + 30 * f * f);
+    const double odd = f * (15120 + f * f * (420 + f * f));
+    double e = (even - odd) / (even + odd);
+    double power = 0.36787944117144233; /* e^-1 */
     if (x > 700) { return 0; }
-    while (x > 0.0625) {
-        x *= 0.5;
-        n++;
+    e *= e;
+    e *= e;
+    for (int n = k; n > 0; n /= 2) {
+        if (n % 2) { e *= power; }
+        power *= power;
     }
-    e = (120 - x * (60 - x * (12 - x))) / (120 + x * (60 + x * (12 + x)));
-    while (n-- > 0) { e *= e; }
     return e;
 }
 

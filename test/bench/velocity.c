@@ -1,0 +1,195 @@
+/* Velocity estimators on a quantised position, at 2 kHz: noise at constant speed, lag
+ * under constant acceleration, error on a sine. One CSV line an estimator and encoder;
+ * the figures of theory come with it where there are any. bench.sh adds instructions.
+ */
+#include "exhand/exhand.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define RATE_HZ 2000
+#define SETTLE 400  /* ticks before anything is judged */
+#define TICKS 40000 /* 20 s */
+#define SPEEDS 4
+#define PHASES 16 /* of the encoder's grid: a sine of 5 Hz repeats every 400 ticks */
+
+static const double speed_mps[SPEEDS] = {0.001, 0.01, 0.1, 1};
+static const struct exh_period period = {1, RATE_HZ};
+
+struct figures {
+    double rms_mmps[SPEEDS], max_mmps[SPEEDS], lag_ms, sine_mmps;
+};
+
+/* --- the estimators, one interface --- */
+
+static struct exh_velocity_window_cfg window_cfg;
+static struct exh_velocity_window window;
+static struct exh_velocity_pole_cfg pole_cfg;
+static struct exh_velocity_pole pole;
+static struct exh_velocity_foaw_cfg foaw_cfg;
+static struct exh_velocity_foaw foaw;
+static struct exh_velocity_track_cfg track_cfg;
+static struct exh_velocity_track track;
+
+static int window_start(struct exh_velocity_scale s, int arg)
+{
+    const struct exh_velocity_par par = {arg};
+    window = (struct exh_velocity_window){.started = 0};
+    return exh_velocity_window_setup(&window_cfg, s, &par);
+}
+
+static int32_t window_step(int32_t cnt)
+{
+    return exh_velocity_window_mps_q27(&window, &window_cfg, cnt);
+}
+
+static int pole_start(struct exh_velocity_scale s, int arg)
+{
+    pole = (struct exh_velocity_pole){.started = 0};
+    return exh_velocity_pole_setup(&pole_cfg, s, (uint32_t)arg);
+}
+
+static int32_t pole_step(int32_t cnt)
+{
+    return exh_velocity_pole_mps_q27(&pole, &pole_cfg, cnt);
+}
+
+static int foaw_start(struct exh_velocity_scale s, int arg)
+{
+    foaw = (struct exh_velocity_foaw){.have = 0};
+    return exh_velocity_foaw_setup(&foaw_cfg, s, (unsigned)arg, 1);
+}
+
+static int32_t foaw_step(int32_t cnt)
+{
+    return exh_velocity_foaw_mps_q27(&foaw, &foaw_cfg, cnt);
+}
+
+static int track_start(struct exh_velocity_scale s, int arg)
+{
+    track = (struct exh_velocity_track){.started = 0};
+    return exh_velocity_track_setup(&track_cfg, s, (uint32_t)arg);
+}
+
+static int32_t track_step(int32_t cnt)
+{
+    return exh_velocity_track_mps_q27(&track, &track_cfg, cnt);
+}
+
+struct estimator {
+    const char *name;
+    const char *kernel; /* whose instructions it has */
+    int (*start)(struct exh_velocity_scale s, int arg);
+    int32_t (*step)(int32_t cnt);
+    int arg;
+    int has_theory;
+    struct figures theory; /* simulated apart from this library, D = 15.7 um, floats */
+};
+
+/* pole_100: the pole of exp(-2 pi 100 Hz T). track_0.9: theta = 0.9. */
+static const struct estimator estimators[] = {
+    {"difference", "velocity_window_1", window_start, window_step, 0, 1,
+     {{5.5, 14.6, 12.2, 11.3}, {30, 21, 26, 27}, 0.25, 13.1}},
+    {"window_2", "velocity_window_2", window_start, window_step, 1, 0, {{0}, {0}, 0, 0}},
+    {"window_4", "velocity_window_2", window_start, window_step, 2, 1,
+     {{2.6, 3.5, 3.5, 3.8}, {6.9, 5.7, 5.8, 4.8}, 1.00, 7.7}},
+    {"window_16", "velocity_window_16", window_start, window_step, 4, 1,
+     {{1.0, 0.58, 0.41, 0.98}, {1.0, 1.8, 1.9, 1.1}, 4.00, 27.9}},
+    {"pole_100", "velocity_pole", pole_start, pole_step, 1354, 1,
+     {{2.0, 2.7, 2.8, 2.7}, {7.5, 4.6, 4.9, 5.1}, 1.61, 11.5}},
+    {"foaw_16", "velocity_foaw_16", foaw_start, foaw_step, 16, 1,
+     {{1.1, 0.38, 0.28, 0.21}, {1.8, 0.62, 0.72, 0.49}, 1.97, 11.7}},
+    {"track_0.9", "velocity_track", track_start, track_step, 4500, 1,
+     {{0.33, 0.11, 0.10, 0.11}, {0.59, 0.25, 0.23, 0.27}, 9.25, 63}},
+};
+
+/* --- the movements --- */
+
+struct movement {
+    double v_mps, a_mps2;       /* constant speed and acceleration              */
+    double sine_m, sine_radps;
+};
+
+static double at_m(const struct movement *m, double t_s)
+{
+    return m->v_mps * t_s + m->a_mps2 * t_s * t_s / 2 + m->sine_m * sin(m->sine_radps * t_s);
+}
+
+static double at_mps(const struct movement *m, double t_s)
+{
+    return m->v_mps + m->a_mps2 * t_s + m->sine_m * m->sine_radps * cos(m->sine_radps * t_s);
+}
+
+struct moments {
+    double mean, rms, max;
+};
+
+/* Error of the estimate, m/s. The encoder's grid lies anywhere: phase 0..1. */
+static struct moments follow(const struct estimator *e, double step_m, double phase,
+                             const struct movement *m, int ticks)
+{
+    const struct exh_velocity_scale s = {(int32_t)(step_m * 4398046511104.0 + 0.5), period};
+    double sum = 0, squares = 0, max = 0;
+    if (e->start(s, e->arg) < 0) {
+        fprintf(stderr, "%s: set-up refused\n", e->name);
+        exit(1);
+    }
+    for (int i = 0; i < ticks; i++) {
+        const double t_s = (double)i / RATE_HZ;
+        const int32_t cnt = (int32_t)floor(at_m(m, t_s) / step_m + phase);
+        const double v = e->step(cnt) / (double)(1 << EXH_Q_VEL), off = v - at_mps(m, t_s);
+        if (i < SETTLE) { continue; }
+        sum += off;
+        squares += off * off;
+        max = fabs(off) > max ? fabs(off) : max;
+    }
+    ticks -= SETTLE;
+    return (struct moments){sum / ticks, sqrt(squares / ticks), max};
+}
+
+static struct figures judge(const struct estimator *e, double step_m)
+{
+    const struct movement fast = {0, 5, 0, 0}, sine = {0, 0, 0.01, 2 * 3.14159265358979 * 5};
+    struct figures f;
+    double squares = 0;
+    for (int k = 0; k < SPEEDS; k++) {
+        const struct movement even = {speed_mps[k], 0, 0, 0};
+        const struct moments m = follow(e, step_m, 0.37, &even, TICKS);
+        f.rms_mmps[k] = 1000 * m.rms;
+        f.max_mmps[k] = 1000 * m.max;
+    }
+    f.lag_ms = -1000 * follow(e, step_m, 0.37, &fast, 2 * RATE_HZ).mean / fast.a_mps2;
+    for (int k = 0; k < PHASES; k++) {
+        const double rms = follow(e, step_m, (k + 0.37) / PHASES, &sine, RATE_HZ).rms;
+        squares += rms * rms / PHASES;
+    }
+    f.sine_mmps = 1000 * sqrt(squares);
+    return f;
+}
+
+static void print(const char *who, const struct estimator *e, double step_um,
+                  const struct figures *f)
+{
+    printf("%s,%s,%s,%.4g", who, e->name, e->kernel, step_um);
+    for (int k = 0; k < SPEEDS; k++) { printf(",%.3g,%.3g", f->rms_mmps[k], f->max_mmps[k]); }
+    printf(",%.3g,%.3g\n", f->lag_ms, f->sine_mmps);
+}
+
+/* 66.32 um: the device's encoder, x1. 15.7 um: the one theory was simulated with. */
+int main(void)
+{
+    static const double step_um[] = {66.32, 15.7};
+    printf("source,estimator,kernel,step_um,rms_1mmps,max_1mmps,rms_10mmps,max_10mmps,"
+           "rms_100mmps,max_100mmps,rms_1mps,max_1mps,lag_ms,sine_rms_mmps\n");
+    for (size_t d = 0; d < 2; d++) {
+        for (size_t i = 0; i < sizeof estimators / sizeof estimators[0]; i++) {
+            const struct figures f = judge(&estimators[i], step_um[d] * 1e-6);
+            print("measured", &estimators[i], step_um[d], &f);
+            if (d == 1 && estimators[i].has_theory) {
+                print("theory", &estimators[i], step_um[d], &estimators[i].theory);
+            }
+        }
+    }
+    return 0;
+}

@@ -1,0 +1,435 @@
+/* The loop, its log and the replay, in one process: what crosses inward is in the log,
+ * acts at its tick, and comes out again bit for bit. */
+#include "check.h"
+
+#include "cli/cli.h"
+#include "cli/logfile.h"
+#include "cli/run.h"
+#include "posix.h"
+
+#include "drop/drop.h"
+#include "log.h"
+#include "scene.h"
+
+#include "exhand/board.h"
+#include "exhand/exhand.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* The simulated board is never late. So this is the loop itself, compiled once more
+ * over a wait that says what a test wants. */
+static int late_wait(void);
+void late_assert_failed(const char *file, int line);
+#define exh_loop late_loop
+#define exh_board_wait late_wait
+#define exh_assert_failed late_assert_failed
+#include "loop.c"
+#undef exh_loop
+#undef exh_board_wait
+#undef exh_assert_failed
+
+#define LEN(a) (sizeof(a) / sizeof((a)[0]))
+#define DAC_ZERO 32768
+#define ID_K 0x0401
+#define ID_STEP 0x0201
+#define ID_Q_LIM 0x8001
+
+/* ---- Scripted runs --------------------------------------------------------------- */
+
+/* What happens at a tick, before it. */
+struct act {
+    uint32_t tick;
+    enum { STAGE, COMMAND, MISS } what;
+    uint16_t id; /* STAGE: of the parameter                                     */
+    int32_t value;
+    int want; /* STAGE: what it must return                                     */
+};
+
+/* What the scene gave at a tick. */
+struct seen {
+    struct exh_drive_out out;
+    struct drop_signals sig;
+};
+#define TICKS_MAX 4000
+
+static struct {
+    const struct act *act;
+    unsigned acts;
+    uint32_t ticks;
+    struct seen at[TICKS_MAX];
+} script;
+
+static int late_wait(void)
+{
+    const int missed = exh_board_wait();
+    for (unsigned i = 0; missed == 0 && i < script.acts; i++) {
+        if (script.act[i].what == MISS && script.act[i].tick == script.ticks) {
+            return script.act[i].value;
+        }
+    }
+    return missed;
+}
+
+static void before(uint32_t tick, struct exh_scene_in *in)
+{
+    CHECK_EQ_I64(tick, script.ticks);
+    for (unsigned i = 0; i < script.acts; i++) {
+        const struct act *a = &script.act[i];
+        if (a->tick != tick) { continue; }
+        if (a->what == COMMAND) { in->command = (uint8_t)a->value; }
+        if (a->what == STAGE) {
+            const int err = exh_params_stage(exh_scene_drop.params, a->id, 0, a->value);
+            CHECK(err == a->want, "tick %lu, id %#x: %d, want %d", (unsigned long)tick,
+                  (unsigned)a->id, err, a->want);
+        }
+    }
+    exh_log_before(tick, in);
+}
+
+static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
+{
+    exh_log_after(tick, in, out);
+    if (tick < TICKS_MAX) {
+        script.at[tick].out = *out;
+        memcpy(&script.at[tick].sig, exh_scene_drop.signal, sizeof script.at[tick].sig);
+    }
+    script.ticks++;
+}
+
+/* A file of its own for each log; removed by remove_log(). */
+static const char *log_path(void)
+{
+    static char path[64];
+    int fd;
+    strcpy(path, "/tmp/exhand-loop-XXXXXX");
+    fd = mkstemp(path);
+    CHECK(fd >= 0, "no temporary file");
+    close(fd);
+    return path;
+}
+
+/* Runs the drop scene at 1 kHz for so many ticks over the script; the log to path. */
+static void run_script(const struct act *act, unsigned acts, uint32_t ticks, const char *path)
+{
+    static const struct exh_loop_hooks hooks = {exh_log_start, before, after};
+    struct posix_config c = posix_config_default();
+    memset(&script, 0, sizeof script);
+    script.act = act;
+    script.acts = acts;
+    c.max_ticks = ticks;
+    c.log = fopen(path, "wb");
+    CHECK(c.log != NULL, "%s", path);
+    posix_configure(&c);
+    exh_scene_drop.defaults();
+    CHECK_EQ_I64(late_loop(&exh_scene_drop, 1000, &hooks), 0);
+    CHECK_EQ_I64(exh_log_end(script.ticks), 0);
+    CHECK_EQ_I64(fclose(c.log), 0);
+    CHECK_EQ_I64(script.ticks, ticks);
+}
+
+/* The host program's own replay of a log: its exit status. */
+static int replay(const char *path, const char *from)
+{
+    char copy[4][64] = {"replay", "", "--from", ""};
+    char *argv[5] = {copy[0], copy[1], copy[2], copy[3], NULL};
+    snprintf(copy[1], sizeof copy[1], "%s", path);
+    snprintf(copy[3], sizeof copy[3], "%s", from ? from : "");
+    if (from == NULL) { argv[2] = NULL; }
+    return cli_replay(from ? 4 : 2, argv);
+}
+
+/* ---- A whole log -------------------------------------------------------------------- */
+
+struct counted { /* of a log read to its end                                      */
+    uint32_t frames, events, keyframes, last_tick, damaged, gaps;
+    int ended, complained;
+};
+
+static struct counted count_log(const char *path)
+{
+    struct counted n;
+    struct logfile l;
+    struct exh_record r;
+    memset(&n, 0, sizeof n);
+    CHECK_EQ_I64(logfile_open(&l, path), 0);
+    while (logfile_next(&l, &r)) {
+        n.frames += r.type == EXH_RECORD_FRAME;
+        n.events += r.type == EXH_RECORD_EVENT;
+        n.keyframes += r.type == EXH_RECORD_KEYFRAME;
+        if (r.type == EXH_RECORD_FRAME) { n.last_tick = r.tick; }
+    }
+    n.damaged = l.damaged;
+    n.gaps = l.gaps;
+    n.ended = l.ended;
+    n.complained = logfile_complain(&l);
+    logfile_close(&l);
+    return n;
+}
+
+struct text {
+    char *p;
+    size_t len;
+};
+
+static struct text slurp(const char *path)
+{
+    struct text t = {NULL, 0};
+    FILE *f = fopen(path, "rb");
+    CHECK(f != NULL, "%s", path);
+    CHECK_EQ_I64(fseek(f, 0, SEEK_END), 0);
+    t.len = (size_t)ftell(f);
+    rewind(f);
+    t.p = malloc(t.len);
+    CHECK(t.p != NULL && fread(t.p, 1, t.len, f) == t.len, "%s", path);
+    fclose(f);
+    return t;
+}
+
+static void spill(const char *path, const struct text *t, size_t len)
+{
+    FILE *f = fopen(path, "wb");
+    CHECK(f != NULL && fwrite(t->p, 1, len, f) == len, "%s", path);
+    CHECK_EQ_I64(fclose(f), 0);
+}
+
+/* Three falls as the host program runs them. */
+static void run_three_falls(const char *path)
+{
+    struct run_cfg c;
+    struct run r;
+    memset(&c, 0, sizeof c);
+    c.rate_Hz = 500;
+    c.k_Npm = 6000;
+    c.b_Nspm = 20;
+    c.board = posix_config_default();
+    c.board.falls = 3;
+    c.board.log = fopen(path, "wb");
+    CHECK(c.board.log != NULL, "%s", path);
+    CHECK_EQ_I64(run_drop(&c, &r), 0);
+    CHECK_EQ_I64(fclose(c.board.log), 0);
+    CHECK(r.log.falls == 3, "%zu falls", r.log.falls);
+    run_free(&r);
+}
+
+TEST(a_whole_log_reads_and_replays)
+{
+    const char *path = log_path();
+    struct counted n;
+    run_three_falls(path);
+    n = count_log(path);
+    CHECK_EQ_I64(n.frames, n.last_tick + 1);
+    CHECK_EQ_I64(n.keyframes, n.last_tick / EXH_LOG_KEYFRAME_TICKS + 1);
+    CHECK(n.frames > 7500 && n.events >= 7, "%lu frames, %lu events", (unsigned long)n.frames,
+          (unsigned long)n.events);
+    CHECK(n.ended && n.damaged == 0 && n.gaps == 0 && !n.complained, "%lu damaged, %lu gaps",
+          (unsigned long)n.damaged, (unsigned long)n.gaps);
+    CHECK_EQ_I64(replay(path, NULL), 0);
+    CHECK_EQ_I64(replay(path, "3000"), 0);
+    CHECK_EQ_I64(replay(path, "4000000"), 2); /* no keyframe there */
+    remove(path);
+}
+
+/* Where the record at or behind `at` starts and how long it is. */
+static uint32_t record_from(const struct text *t, uint32_t at, uint32_t *len_B)
+{
+    struct exh_record r;
+    int32_t n = 0;
+    for (; at < t->len; at++) {
+        n = exh_record_read(t->p + at, (uint32_t)t->len - at, &r);
+        if (n > 0 && r.type == EXH_RECORD_FRAME) { break; }
+    }
+    *len_B = (uint32_t)n;
+    return at;
+}
+
+TEST(a_damaged_record_is_skipped_and_counted)
+{
+    static const struct {
+        int32_t byte; /* of the record, from its end if negative                 */
+        uint8_t flip;
+    } row[] = {{0, 1}, {2, 4}, {4, 0xFF}, {5, 0xFF}, {10, 0x80}, {14, 1}, {-1, 1}, {-5, 0x10}};
+    const char *path = log_path();
+    struct text t;
+    uint32_t at, len_B, frames;
+    run_three_falls(path);
+    frames = count_log(path).frames;
+    t = slurp(path);
+    at = record_from(&t, (uint32_t)t.len / 2, &len_B);
+    for (size_t i = 0; i < LEN(row); i++) {
+        const uint32_t byte = at + (uint32_t)(row[i].byte < 0 ? (int32_t)len_B + row[i].byte
+                                                              : row[i].byte);
+        struct counted n;
+        t.p[byte] = (char)(t.p[byte] ^ row[i].flip);
+        spill(path, &t, t.len);
+        n = count_log(path);
+        CHECK(n.frames == frames - 1, "row %zu: %lu frames of %lu", i, (unsigned long)n.frames,
+              (unsigned long)frames);
+        CHECK(n.damaged == len_B && n.gaps == 1, "row %zu: %lu damaged, %lu gaps", i,
+              (unsigned long)n.damaged, (unsigned long)n.gaps);
+        CHECK(n.ended && n.complained, "row %zu: not reported", i);
+        CHECK(replay(path, NULL) == 1, "row %zu: replayed over a hole", i);
+        t.p[byte] = (char)(t.p[byte] ^ row[i].flip);
+    }
+    free(t.p);
+    remove(path);
+}
+
+TEST(a_cut_log_is_reported)
+{
+    const char *path = log_path();
+    struct text t;
+    run_three_falls(path);
+    t = slurp(path);
+    for (uint32_t i = 1; i <= 60; i++) { /* the end record, and into the last frame */
+        struct counted n;
+        spill(path, &t, t.len - i);
+        n = count_log(path);
+        CHECK(!n.ended && n.complained, "%lu bytes cut off: not reported", (unsigned long)i);
+        CHECK(replay(path, NULL) == 1, "%lu bytes cut off: replay is content", (unsigned long)i);
+    }
+    spill(path, &t, 100);
+    CHECK_EQ_I64(replay(path, NULL), 2); /* no header */
+    free(t.p);
+    remove(path);
+}
+
+/* ---- What is staged, commanded, missed ------------------------------------------------- */
+
+/* The events of a log must be these, in this order. */
+static void check_events(const char *path, const struct exh_event *want, const uint32_t *tick,
+                         size_t n)
+{
+    struct logfile l;
+    struct exh_record r;
+    size_t i = 0;
+    CHECK_EQ_I64(logfile_open(&l, path), 0);
+    while (logfile_next(&l, &r)) {
+        struct exh_bytes c = exh_bytes_reader(r.payload, r.len_B);
+        struct exh_event e;
+        if (r.type != EXH_RECORD_EVENT) { continue; }
+        exh_event_bytes(&c, &e);
+        CHECK(i < n, "event %zu too many: type %u at tick %lu", i, e.type, (unsigned long)r.tick);
+        CHECK(r.tick == tick[i] && e.type == want[i].type && e.id == want[i].id &&
+                  e.instance == want[i].instance && e.value == want[i].value,
+              "event %zu: type %u id %#x value %ld at tick %lu", i, e.type, (unsigned)e.id,
+              (long)e.value, (unsigned long)r.tick);
+        i++;
+    }
+    CHECK(i == n, "%zu events, want %zu", i, n);
+    logfile_close(&l);
+}
+
+/* The mass is held for 100 ms: position 0. A wall 1 mm before it makes k times 1 mm. */
+TEST(a_parameter_acts_at_the_tick_it_is_logged)
+{
+    static const int32_t lim = -EXH_Q(1, 1000, EXH_Q_POS);
+    static const struct act act[] = {
+        {30, STAGE, ID_Q_LIM, -EXH_Q(1, 1000, EXH_Q_POS), 0},
+        {40, STAGE, ID_K, EXH_Q(3000, 1, EXH_Q_K), 0},
+        {41, STAGE, ID_K, EXH_Q(9, 1, EXH_Q_K), 0},
+        {41, STAGE, ID_K, EXH_Q(4000, 1, EXH_Q_K), 0}, /* the last one counts */
+        {45, STAGE, ID_K, EXH_Q(4000, 1, EXH_Q_K), 0}, /* no change: no event */
+        {50, STAGE, ID_K, -1, -EXH_E_RANGE},
+        {50, STAGE, 0x7777, 0, -EXH_E_UNKNOWN},
+    };
+    static const struct exh_event event[] = {
+        {EXH_EVENT_COMMAND, 0, 0, EXH_CMD_RUN},
+        {EXH_EVENT_PARAM, ID_Q_LIM, 0, -EXH_Q(1, 1000, EXH_Q_POS)},
+        {EXH_EVENT_PARAM, ID_K, 0, EXH_Q(3000, 1, EXH_Q_K)},
+        {EXH_EVENT_PARAM, ID_K, 0, EXH_Q(4000, 1, EXH_Q_K)},
+    };
+    static const uint32_t tick[] = {0, 30, 40, 41};
+    const char *path = log_path();
+    run_script(act, LEN(act), 90, path);
+    check_events(path, event, tick, LEN(event));
+    for (uint32_t n = 0; n < 90; n++) {
+        const struct drop_signals *s = &script.at[n].sig;
+        const int32_t k = n < 40 ? 1500 : n < 41 ? 3000 : 4000;
+        const int64_t force = n < 30 ? 0 : exh_mul_shr(k << EXH_Q_K, s->q_m_q30 - lim,
+                                                       EXH_Q_K + EXH_Q_POS - EXH_Q_FORCE);
+        CHECK(s->c == (n >= 30), "tick %lu: c = %ld", (unsigned long)n, (long)s->c);
+        CHECK(s->f_des_N_q20 == force, "tick %lu: %.6f N, want %.6f", (unsigned long)n,
+              s->f_des_N_q20 / 1048576.0, (double)force / 1048576.0);
+    }
+    CHECK_EQ_I64(replay(path, NULL), 0);
+    remove(path);
+}
+
+TEST(setup_values_are_refused_while_locked)
+{
+    static const struct act act[] = {
+        {0, STAGE, ID_STEP, EXH_Q(50, 1000000, EXH_Q_STEP), -EXH_E_STATE},
+        {1, STAGE, 0x0301, 0, -EXH_E_STATE}, /* vel_p     */
+        {1, STAGE, 0x0504, 0, -EXH_E_STATE}, /* i_peak    */
+        {2, STAGE, 0x0507, 0, -EXH_E_STATE}, /* dac_zero  */
+        {3, STAGE, 0x8002, EXH_Q(5, 1, EXH_Q_FORCE), -EXH_E_STATE}, /* kf */
+    };
+    static const struct exh_event event[] = {{EXH_EVENT_COMMAND, 0, 0, EXH_CMD_RUN}};
+    static const uint32_t tick[] = {0};
+    const char *path = log_path();
+    struct exh_params *p = exh_scene_drop.params;
+    exh_scene_drop.defaults();
+    CHECK_EQ_I64(exh_params_stage(p, ID_STEP, 0, EXH_Q(50, 1000000, EXH_Q_STEP)), 0); /* before: fine */
+    run_script(act, LEN(act), 10, path);
+    CHECK_EQ_I64(exh_params_stage(p, ID_STEP, 0, EXH_Q(50, 1000000, EXH_Q_STEP)), -EXH_E_STATE);
+    check_events(path, event, tick, LEN(event));
+    remove(path);
+}
+
+/* missed_max is 1: one late tick is tolerated, two are a fault, with no current in that
+ * very tick and until somebody clears it. */
+TEST(missed_ticks_reach_safety)
+{
+    static const struct act act[] = {
+        {10, STAGE, ID_Q_LIM, -EXH_Q(1, 1000, EXH_Q_POS), 0}, /* so that there is force */
+        {20, MISS, 0, 1, 0},
+        {30, MISS, 0, 2, 0},
+        {40, COMMAND, 0, EXH_CMD_RUN, 0}, /* not from FAULT */
+        {45, MISS, 0, 7, 0},
+        {45, COMMAND, 0, EXH_CMD_CLEAR, 0}, /* not while the cause is there */
+        {50, COMMAND, 0, EXH_CMD_CLEAR, 0},
+        {60, COMMAND, 0, EXH_CMD_RUN, 0},
+        {70, COMMAND, 0, EXH_CMD_OFF, 0},
+    };
+    static const struct exh_event event[] = {
+        {EXH_EVENT_COMMAND, 0, 0, EXH_CMD_RUN},
+        {EXH_EVENT_PARAM, ID_Q_LIM, 0, -EXH_Q(1, 1000, EXH_Q_POS)},
+        {EXH_EVENT_MISSED, 0, 0, 1},
+        {EXH_EVENT_MISSED, 0, 0, 2},
+        {EXH_EVENT_COMMAND, 0, 0, EXH_CMD_RUN},
+        {EXH_EVENT_COMMAND, 0, 0, EXH_CMD_CLEAR},
+        {EXH_EVENT_MISSED, 0, 0, 7},
+        {EXH_EVENT_COMMAND, 0, 0, EXH_CMD_CLEAR},
+        {EXH_EVENT_COMMAND, 0, 0, EXH_CMD_RUN},
+        {EXH_EVENT_COMMAND, 0, 0, EXH_CMD_OFF},
+    };
+    static const uint32_t tick[] = {0, 10, 20, 30, 40, 45, 45, 50, 60, 70};
+    const char *path = log_path();
+    run_script(act, LEN(act), 90, path);
+    for (uint32_t n = 0; n < 90; n++) {
+        const struct seen *s = &script.at[n];
+        const int32_t state = n < 30 ? EXH_STATE_RUN : n < 50 ? EXH_STATE_FAULT
+                              : n < 60 ? EXH_STATE_OFF : n < 70 ? EXH_STATE_RUN : EXH_STATE_OFF;
+        CHECK(s->sig.state == state, "tick %lu: state %ld, want %ld", (unsigned long)n,
+              (long)s->sig.state, (long)state);
+        CHECK(s->sig.faults == (state == EXH_STATE_FAULT ? EXH_FAULT_OVERRUN : 0),
+              "tick %lu: faults %#lx", (unsigned long)n, (unsigned long)s->sig.faults);
+        CHECK(s->out.enable == (state == EXH_STATE_RUN), "tick %lu: enable %u", (unsigned long)n,
+              (unsigned)s->out.enable);
+        CHECK((s->out.dac_raw[0] > DAC_ZERO) == (state == EXH_STATE_RUN && n >= 10) &&
+                  (s->out.dac_raw[0] == DAC_ZERO) == (s->sig.i_des_A_q26 == 0),
+              "tick %lu: code %u, %ld", (unsigned long)n, (unsigned)s->out.dac_raw[0],
+              (long)s->sig.i_des_A_q26);
+        CHECK_EQ_I64(s->out.alive, (uint8_t)(n + 1));
+    }
+    check_events(path, event, tick, LEN(event));
+    CHECK_EQ_I64(replay(path, NULL), 0);
+    remove(path);
+}
+
+TEST_MAIN("loop", a_whole_log_reads_and_replays, a_damaged_record_is_skipped_and_counted,
+          a_cut_log_is_reported, a_parameter_acts_at_the_tick_it_is_logged,
+          setup_values_are_refused_while_locked, missed_ticks_reach_safety);

@@ -1,0 +1,411 @@
+/* The simulated plant against closed form: what it is sold for must be provable
+ * without the controller. References are computed in long double, by series. */
+#include "check.h"
+
+#include "sim/plant.h"
+
+#define LEN(a) (sizeof(a) / sizeof((a)[0]))
+#define TWO_PI_L 6.283185307179586476925286766559L
+
+static double size_of(double v)
+{
+    return v < 0 ? -v : v;
+}
+
+static double root_of(double v)
+{
+    double r = v > 1 ? v : 1;
+    for (int i = 0; i < 100; i++) { r = 0.5 * (r + v / r); }
+    return r;
+}
+
+/* exp(-x), x >= 0: Taylor up to 1/2, then squaring; relative error < 1e-15 up to 700
+ * (2^11 times some half LSBs of a long double with 64 bits). */
+static long double exp_neg(long double x)
+{
+    long double term = 1, sum = 1;
+    int n = 0;
+    for (; x > 0.5L; x /= 2) { n++; }
+    for (int i = 1; i < 24; i++) {
+        term *= -x / i;
+        sum += term;
+    }
+    while (n-- > 0) { sum *= sum; }
+    return sum;
+}
+
+/* A device without friction, noise or delay; a test adds what it looks at. */
+static struct sim_device smooth(void)
+{
+    struct sim_device d = sim_device_default();
+    d.mu_motor = d.mu_mass = d.coulomb_n = d.viscous_nspm = 0;
+    return d;
+}
+
+static uint64_t below(uint64_t n)
+{
+    return check_u64() % n;
+}
+
+/* Uniform between two ends. */
+static double between(double lo, double hi)
+{
+    return lo + (hi - lo) * (double)below(1u << 30) / (double)(1u << 30);
+}
+
+/* ---- Free fall --------------------------------------------------------------- */
+
+/* Speed with which a mass let go at -h crosses 0. */
+static double impact_mps(const struct sim_device *d, double h_m, double step_s)
+{
+    struct plant p = {-h_m, 0, -h_m, 0, 0, 0};
+    struct plant last = p;
+    while (p.x_m < 0) {
+        last = p;
+        plant_advance(&p, d, step_s, 0, 0);
+    }
+    return last.v_mps + (p.v_mps - last.v_mps) * (0 - last.x_m) / (p.x_m - last.x_m);
+}
+
+TEST(impact_speed_is_that_of_a_free_fall)
+{
+    static const struct {
+        double mass_kg, h_m, cable_npm, cable_nspm;
+    } row[] = {
+        {0.5, 0.07, 1e5, 1}, {0.5, 0.07, 1e6, 1},  {0.5, 0.07, 2302, 7}, {0.5, 0.5, 1e5, 1},
+        {5, 0.07, 1e5, 1},   {0.1, 0.001, 1e5, 1}, {0.02, 0.07, 1e5, 1},
+    };
+    for (size_t i = 0; i < LEN(row); i++) {
+        struct sim_device d = smooth();
+        double ideal, got;
+        d.rotor_kg = 0.0001; /* the lightest that may be set: dragged along */
+        d.substep_s = 1e-6;
+        d.mass_kg = row[i].mass_kg;
+        d.cable_npm = row[i].cable_npm;
+        d.cable_nspm = row[i].cable_nspm;
+        ideal = root_of(2 * SIM_GRAVITY * row[i].h_m);
+        got = impact_mps(&d, row[i].h_m, 1e-4);
+        CHECK(size_of(got - ideal) <= 0.005 * ideal, "row %zu: %.6f m/s, want %.6f", i, got, ideal);
+    }
+}
+
+/* The rotor's share of the inertia is not lost: both fall as one. */
+TEST(a_rotor_slows_the_fall_by_its_share)
+{
+    static const double rotor_kg[] = {0.0495, 0.5, 1};
+    for (size_t i = 0; i < LEN(rotor_kg); i++) {
+        struct sim_device d = smooth();
+        double ideal, got;
+        d.rotor_kg = rotor_kg[i];
+        d.cable_npm = 1e5;
+        d.substep_s = 1e-6;
+        ideal = root_of(2 * SIM_GRAVITY * 0.07 * d.mass_kg / (d.mass_kg + d.rotor_kg));
+        got = impact_mps(&d, 0.07, 1e-4);
+        CHECK(size_of(got - ideal) <= 0.005 * ideal, "rotor %.4f kg: %.6f m/s, want %.6f",
+              rotor_kg[i], got, ideal);
+    }
+}
+
+TEST(what_is_held_does_not_move)
+{
+    struct sim_device d = sim_device_default();
+    struct plant p = {-0.07, 0, -0.07, 0, 0, 0};
+    plant_advance(&p, &d, 1, 3.3, 1);
+    CHECK(p.x_m == -0.07 && p.q_m == -0.07 && p.v_mps == 0 && p.w_mps == 0, "x %.9g q %.9g", p.x_m,
+          p.q_m);
+    CHECK(size_of(p.cur_A - 3.3) < 1e-9, "its current flows all the same: %.12f A", p.cur_A);
+}
+
+/* ---- Stiction ---------------------------------------------------------------- */
+
+/* The mass hangs on a string stretched for `tension`, the rotor is stuck; the load of
+ * the mass is m g - tension, its friction mu times tension. */
+static struct plant hanging(struct sim_device *d, double tension_N, double mu)
+{
+    struct plant p = {0, 0, 0, 0, 0, 0};
+    *d = smooth();
+    d->coulomb_n = 10;
+    d->mu_mass = mu;
+    p.x_m = tension_N / d->cable_npm;
+    return p;
+}
+
+TEST(stiction_holds_without_creep)
+{
+    const double weight_N = 0.5 * SIM_GRAVITY;
+    static const struct {
+        double tension;  /* share of the weight                                */
+        double mu;       /* times the tension must be above the load           */
+        double substep_s;
+    } row[] = {
+        {0.90, 0.2, 25e-6}, {0.90, 0.1123, 25e-6},  {1.10, 0.0920, 25e-6},
+        {0.60, 0.7, 25e-6}, {0.90, 0.1123, 1e-3},   {0.90, 0.1123, 1e-6},
+        {1, 0.0001, 25e-6}, {0.999, 0.002, 100e-6},
+    };
+    for (size_t i = 0; i < LEN(row); i++) {
+        struct sim_device d;
+        struct plant p = hanging(&d, row[i].tension * weight_N, row[i].mu);
+        const double x = p.x_m;
+        d.substep_s = row[i].substep_s;
+        for (int ms = 0; ms < 10000; ms++) {
+            plant_advance(&p, &d, 1e-3, 0, 0);
+            CHECK(p.v_mps == 0 && p.x_m == x && p.w_mps == 0 && p.q_m == 0,
+                  "row %zu, %d ms: v %.3g w %.3g, crept %.3g", i, ms, p.v_mps, p.w_mps, p.x_m - x);
+        }
+    }
+}
+
+/* The other side of the same edge: one per cent less friction lets go. */
+TEST(stiction_lets_go_at_its_limit)
+{
+    static const double tension[] = {0.9, 1.1, 0.6};
+    for (size_t i = 0; i < LEN(tension); i++) {
+        const double load = size_of(1 - tension[i]) / tension[i];
+        for (int more = 0; more <= 1; more++) {
+            struct sim_device d;
+            struct plant p = hanging(&d, tension[i] * 0.5 * SIM_GRAVITY, load * (0.99 + 0.02 * more));
+            const double x = p.x_m;
+            plant_advance(&p, &d, 0.02, 0, 0);
+            CHECK((p.x_m == x) == more, "tension %.1f, friction %s its load: moved %.3g m", tension[i],
+                  more ? "above" : "below", p.x_m - x);
+        }
+    }
+}
+
+/* Coulomb friction alone stops a rotor after v m / F, never turns it, and keeps it. */
+TEST(friction_stops_in_closed_form)
+{
+    static const double speed_mps[] = {0.1, 1, -1, 0.003};
+    for (size_t i = 0; i < LEN(speed_mps); i++) {
+        struct sim_device d = smooth();
+        struct plant p = {-1, 0, 0, speed_mps[i], 0, 0}; /* the string is slack */
+        double stop_s, path_m, q_m;
+        d.coulomb_n = 0.05;
+        stop_s = size_of(speed_mps[i]) * d.rotor_kg / d.coulomb_n;
+        path_m = 0.5 * speed_mps[i] * stop_s;
+        for (double t = 0; t < 1.2 * stop_s; t += stop_s / 100) {
+            p.x_m = -1;
+            plant_advance(&p, &d, stop_s / 100, 0, 0);
+            CHECK(p.w_mps * speed_mps[i] >= 0, "turned at %.4f s: %.3g m/s", t, p.w_mps);
+        }
+        q_m = p.q_m;
+        CHECK(p.w_mps == 0, "still %.3g m/s", p.w_mps);
+        CHECK(size_of(q_m - path_m) <= size_of(speed_mps[i]) * d.substep_s, "path %.9f, want %.9f",
+              q_m, path_m);
+        p.x_m = -1;
+        p.v_mps = 0;
+        plant_advance(&p, &d, 0.1, 0, 0);
+        CHECK(p.q_m == q_m, "moved again by %.3g", p.q_m - q_m);
+    }
+}
+
+/* ---- String ------------------------------------------------------------------ */
+
+/* Tension as the mass and as the rotor felt it in one sub-step without friction. */
+TEST(the_string_only_pulls_and_pulls_both_ends_alike)
+{
+    while (check_case(10)) {
+        struct sim_device d = smooth();
+        struct plant p = {between(-0.05, 0.05), between(-10, 10), 0, between(-10, 10), 0, 0};
+        const double v = p.v_mps, w = p.w_mps;
+        const double slack_m = p.q_m - p.x_m;
+        const double h = d.substep_s * 0.999; /* one step */
+        double mass_N, rotor_N, law_N, tiny_N;
+        d.cable_npm = between(100, 1e6);
+        d.cable_nspm = between(0, 1000);
+        plant_advance(&p, &d, h, 0, 0);
+        mass_N = d.mass_kg * (SIM_GRAVITY - (p.v_mps - v) / h);
+        rotor_N = d.rotor_kg * (p.w_mps - w) / h;
+        law_N = -d.cable_npm * slack_m + d.cable_nspm * (v - w);
+        tiny_N = 1e-9 * (1 + size_of(law_N) + d.mass_kg * size_of(v) / h * 1e-6);
+        CHECK(mass_N >= -tiny_N && rotor_N >= -tiny_N, "pushes: %.9g N, %.9g N", mass_N, rotor_N);
+        CHECK(size_of(mass_N - rotor_N) <= tiny_N, "%.9g N at the mass, %.9g at the rotor", mass_N,
+              rotor_N);
+        if (slack_m > 0 || law_N < 0) { law_N = 0; }
+        CHECK(size_of(rotor_N - law_N) <= tiny_N, "%.9g N, law %.9g", rotor_N, law_N);
+        if (slack_m > 0) { CHECK(p.w_mps == w, "slack, yet the rotor feels %.3g N", rotor_N); }
+    }
+}
+
+/* ---- First-order lags ---------------------------------------------------------- */
+
+/* 1 ms of a 1 A step in pieces of every size: 1 - exp(-t/tau) at each. */
+TEST(current_loop_is_exact_at_any_substep)
+{
+    static const double substep_s[] = {1e-7, 1e-6, 7.3e-6, 25e-6, 100e-6, 1e-3};
+    static const double piece_s[] = {1e-3, 123.4e-6, 50e-6, 3e-6};
+    static const double band_hz[] = {50, 1154, 20000};
+    for (size_t i = 0; i < LEN(substep_s) * LEN(piece_s) * LEN(band_hz); i++) {
+        struct sim_device d = smooth();
+        struct plant p = {0};
+        const double piece = piece_s[i / LEN(substep_s) % LEN(piece_s)];
+        d.substep_s = substep_s[i % LEN(substep_s)];
+        d.current_hz = band_hz[i / LEN(substep_s) / LEN(piece_s)];
+        for (int n = 1; n * piece <= 1.0001e-3; n++) {
+            const long double x = TWO_PI_L * d.current_hz * n * piece;
+            const double want = (double)(1 - exp_neg(x));
+            plant_advance(&p, &d, piece, 1, 1);
+            CHECK(size_of(p.cur_A - want) <= 1e-9, "substep %.3g, %.1f Hz, %.3g s: %.12f, want %.12f",
+                  d.substep_s, d.current_hz, n * piece, p.cur_A, want);
+        }
+    }
+}
+
+/* Behind the loop, the monitor's lag: both poles in closed form. It takes the current at
+ * the end of each sub-step as its input, so its error is at most h over its lag. */
+TEST(monitor_lags_behind_the_current)
+{
+    static const double lag_s[] = {566e-6, 50e-6, 1e-5, 0.01};
+    for (size_t i = 0; i < LEN(lag_s); i++) {
+        struct sim_device d = smooth();
+        struct plant p = {0};
+        d.substep_s = 1e-6;
+        d.mon_lag_s = lag_s[i];
+        for (int n = 1; n <= 100; n++) {
+            const long double t = n * 50e-6L, b = lag_s[i];
+            const long double a = 1 / (TWO_PI_L * d.current_hz);
+            const double want = (double)(1 - (b * exp_neg(t / b) - a * exp_neg(t / a)) / (b - a));
+            plant_advance(&p, &d, 50e-6, 1, 1);
+            CHECK(size_of(p.mon_A - want) <= d.substep_s / lag_s[i], "lag %.3g s, %d: %.9f, want %.9f",
+                  lag_s[i], n, p.mon_A, want);
+        }
+        d.mon_lag_s = 0;
+        plant_advance(&p, &d, 50e-6, 2, 1);
+        CHECK(p.mon_A == p.cur_A, "without lag it is the current");
+    }
+}
+
+TEST(exp_neg_is_good_to_1e_12)
+{
+    double worst = 0, at = 0;
+    CHECK(exp_neg(1) - 0.367879441171442321595524L < 1e-18L &&
+              exp_neg(1) - 0.367879441171442321595524L > -1e-18L,
+          "the reference itself");
+    for (int i = 0; i <= 700000; i++) {
+        const double x = i < 350000 ? i * (1.0 / 350000) : (i - 350000) * (700.0 / 350000);
+        const long double want = exp_neg(x);
+        const double err = size_of((double)((sim_exp_neg(x) - want) / want));
+        if (err > worst) {
+            worst = err;
+            at = x;
+        }
+    }
+    CHECK(sim_exp_neg(0) == 1, "exp(0)");
+    CHECK(sim_exp_neg(1e9) == 0, "exp(-1e9)");
+    CHECK(worst <= 1e-12, "relative error %.3g at %.6g", worst, at);
+}
+
+/* ---- Energy ------------------------------------------------------------------ */
+
+/* Semi-implicit Euler does not keep the energy E but D = E - h/2 dU/dt, exactly where the
+ * force is linear. So D must not grow, except
+ *   by k (v h)^2 / 2 in the one sub-step in which the string goes slack or taut,
+ *   by h^2/2 (1/m + 1/mr) Fu Fl where losses Fl act on top of the conservative force Fu,
+ * and by rounding. E stays within h/2 |dU/dt| of D. */
+struct energy {
+    double e_J, d_J; /* energy, and the one that the method keeps              */
+    double may_J;    /* how much D may grow in the sub-step that begins here   */
+    int taut;
+};
+
+static struct energy energy_of(const struct plant *p, const struct sim_device *d, double h)
+{
+    const double s = p->x_m - p->q_m > 0 ? p->x_m - p->q_m : 0;
+    const double opening = p->v_mps - p->w_mps;
+    const double weight_N = d->mass_kg * SIM_GRAVITY, elastic_N = d->cable_npm * s;
+    const double damper_N = s > 0 ? d->cable_nspm * size_of(opening) : 0;
+    const double loss_N = damper_N + (d->mu_mass + d->mu_motor) * (elastic_N + damper_N) +
+                          d->coulomb_n + d->viscous_nspm * size_of(p->w_mps);
+    struct energy e;
+    e.e_J = 0.5 * (d->mass_kg * p->v_mps * p->v_mps + d->rotor_kg * p->w_mps * p->w_mps +
+                   elastic_N * s) - weight_N * p->x_m;
+    e.d_J = e.e_J - h / 2 * (elastic_N * opening - weight_N * p->v_mps);
+    e.may_J = h * h / 2 * (1 / d->mass_kg + 1 / d->rotor_kg) * (elastic_N + weight_N) * loss_N +
+              1e-13 * (1 + size_of(e.e_J));
+    e.taut = s > 0;
+    return e;
+}
+
+/* 2000 sub-steps; the worst growth of D beyond what it may, J, and E at both ends. */
+static void run_free(struct plant p, const struct sim_device *d, struct energy *first,
+                     struct energy *last)
+{
+    const double h = 0.999 * d->substep_s; /* one sub-step a call */
+    *first = *last = energy_of(&p, d, h);
+    for (int i = 0; i < 2000; i++) {
+        const double closing_m = (p.v_mps - p.w_mps) * h;
+        double may_J = last->may_J;
+        struct energy now;
+        plant_advance(&p, d, h, 0, 0);
+        now = energy_of(&p, d, h);
+        if (now.taut != last->taut) { may_J += 0.5 * d->cable_npm * closing_m * closing_m; }
+        CHECK(now.d_J - last->d_J <= may_J, "step %d: grew by %.3g J, may by %.3g", i,
+              now.d_J - last->d_J, may_J);
+        *last = now;
+    }
+}
+
+TEST(energy_never_grows_with_the_motor_off)
+{
+    int slack = 0;
+    while (check_case(5000)) {
+        const struct sim_device full = sim_device_default();
+        const struct plant p = {between(-0.01, 0.01), between(-1, 1), 0, between(-1, 1), 0, 0};
+        struct sim_device d = below(2) ? full : smooth();
+        struct energy first, last;
+        d.cable_nspm = below(2) ? full.cable_nspm : 0;
+        d.cable_npm = below(2) ? full.cable_npm : 1e5;
+        d.substep_s = below(2) ? 25e-6 : 5e-6;
+        run_free(p, &d, &first, &last);
+        CHECK(last.e_J <= first.e_J + 0.02 * size_of(first.e_J) + 1e-3, "from %.6f J to %.6f J",
+              first.e_J, last.e_J);
+        slack += !last.taut;
+    }
+    CHECK(slack > 0, "no case ended slack: the bound at the edge was not tried");
+}
+
+/* ---- Convergence --------------------------------------------------------------- */
+
+/* The mass on the damped string over a stuck rotor, as a linear flow: e^(At) of the
+ * offset from where it hangs. */
+static double swing_m(const struct sim_device *d, double x0_m, double t_s)
+{
+    const long double rest = (long double)d->mass_kg * SIM_GRAVITY / d->cable_npm;
+    const long double k = d->cable_npm / d->mass_kg, b = d->cable_nspm / d->mass_kg;
+    long double y = x0_m - rest, v = 0, y_sum = y, v_sum = v;
+    for (int i = 1; i < 100; i++) { /* Taylor; 7 rad, far below the cancellation that hurts */
+        const long double dy = v, dv = -k * y - b * v;
+        y = dy * t_s / i;
+        v = dv * t_s / i;
+        y_sum += y;
+        v_sum += v;
+    }
+    return (double)(rest + y_sum);
+}
+
+TEST(error_halves_with_the_substep)
+{
+    struct sim_device d = smooth();
+    double last = 0;
+    d.coulomb_n = 100; /* the rotor is stuck */
+    for (int i = 0; i < 6; i++) {
+        struct plant p = {0.0015, 0, 0, 0, 0, 0}; /* 2.1 mm is rest: it never goes slack */
+        double err;
+        d.substep_s = 1e-3 / (1 << i) * 1.0000001;
+        plant_advance(&p, &d, 0.1, 0, 0);
+        err = size_of(p.x_m - swing_m(&d, 0.0015, 0.1));
+        CHECK(err > 0 && err < 0.1 * d.substep_s, "substep %.3g s: error %.3g m", d.substep_s, err);
+        if (i > 0) {
+            CHECK(last / err > 1.8 && last / err < 2.2, "substep %.3g s: error falls by %.3f",
+                  d.substep_s, last / err);
+        }
+        last = err;
+    }
+}
+
+TEST_MAIN("plant", impact_speed_is_that_of_a_free_fall, a_rotor_slows_the_fall_by_its_share,
+          what_is_held_does_not_move, stiction_holds_without_creep, stiction_lets_go_at_its_limit,
+          friction_stops_in_closed_form, the_string_only_pulls_and_pulls_both_ends_alike,
+          current_loop_is_exact_at_any_substep, monitor_lags_behind_the_current,
+          exp_neg_is_good_to_1e_12, energy_never_grows_with_the_motor_off,
+          error_halves_with_the_substep);
