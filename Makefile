@@ -156,6 +156,17 @@ test:
 	@$(MAKE) --no-print-directory $(test_bin)
 	@test/run.sh $(test_bin)
 
+# The library's tests again for a 32-bit CPU, where there is no CMocka: own printer.
+plain_bin := $(patsubst test/%_test.c,$(B)/i686/%_test,$(filter test/unit/% test/prop/%,$(test_src)))
+$(plain_bin): $(B)/i686/%_test: test/%_test.c test/support.c $(lib_src) $(wildcard test/*.h lib/include/exhand/*.h)
+	@mkdir -p $(@D)
+	$(Q)i686-linux-gnu-gcc -static $(filter-out -MMD -MP,$(tflags)) -D_POSIX_C_SOURCE=200809L -DEXH_CHECK_PLAIN \
+	    -o $@ $(filter %.c,$^)
+
+.PHONY: test-i686
+test-i686: $(plain_bin)
+	@EXH_CASES=100000 test/run.sh $(plain_bin)
+
 # --- the same bits everywhere -----------------------------------------------------------
 
 # Host programs by other compilers, optimisations and for 32 bits: name, CC, flags.
@@ -191,6 +202,7 @@ check_pkgs  := clang gcc-i686-linux-gnu libc6-dev-i386-cross gcc-arm-none-eabi q
 check:
 	@for t in $(check_tools); do .ci/deps "the checks" $$t $(check_pkgs) || exit 3; done
 	@$(MAKE) --no-print-directory WERROR=1 all test
+	@$(MAKE) --no-print-directory WERROR=1 test-i686
 	@$(MAKE) --no-print-directory demo > $(B)/demo.txt && tail -n 40 $(B)/demo.txt
 	@$(MAKE) --no-print-directory $(variants:%=variant-%)
 	@test/sim/bits.sh $(B)/bits $(B)/demo $(variants:%=$(B)/variant/%/posix/exhand)
@@ -203,16 +215,35 @@ check:
 
 # --- figures ------------------------------------------------------------------------
 
-## What the library needs from outside, and that it holds no float instruction
+## What the library needs from outside; and it holds no float or divide instruction
 .PHONY: undef
 undef: $(lib)
 	$(Q)test/size/undef.sh $(lib) $(CROSS)nm $(PORT_HELPERS)
-	$(Q)test/size/float.sh $(lib) $(CROSS)objdump
+	$(Q)test/size/banned.sh $(lib) $(CROSS)objdump
 
 ## Bytes, stack, instructions per tick and library symbols of each scene and port
 .PHONY: size
 size:
 	$(Q)MAKE="$(MAKE)" B=$(B) test/size/size.sh
+
+# Objects as they are shipped: no sanitizer, no audit hook. Linked without debug information,
+# which not every valgrind reads of every compiler; its profile needs the symbols alone.
+bench_obj := $(patsubst %,$(B)/posix/test/bench/%.o,kernels measure number estimate force path law scene minimal)
+bench_bin := $(B)/bench/kernels $(B)/bench/velocity $(B)/bench/speed
+$(B)/posix/test/bench/kernels.o: PORT_HOSTFLAGS += -DBENCH_FLAGS='"-std=c99 -O$(O)$(if $(CFLAGS), $(CFLAGS))"'
+$(B)/bench/kernels: $(bench_obj) $(B)/posix/examples/drop/drop.o
+$(B)/bench/velocity: $(B)/posix/test/bench/velocity.o $(B)/posix/test/bench/measure.o
+$(B)/bench/speed: $(B)/posix/test/bench/speed.o $(B)/posix/examples/drop/drop.o $(sim_obj)
+$(bench_bin): $(B)/posix/libexhand.a
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $(filter %.o,$^) $(filter %.a,$^) -Wl,--strip-debug -lm
+
+## Error and instructions of every kernel, beside test/bench/baseline.csv (ARGS=--update)
+.PHONY: bench
+bench:
+	@.ci/deps "the benches" valgrind valgrind || exit 3
+	@$(MAKE) --no-print-directory $(bench_bin)
+	@B=$(B) test/bench/bench.sh $(ARGS)
 
 # --- keeping house ------------------------------------------------------------------
 

@@ -81,6 +81,14 @@ void logfile_close(struct logfile *l)
     l->bytes = NULL;
 }
 
+void logfile_rewind(struct logfile *l, uint32_t at)
+{
+    l->at = at;
+    l->next_seq = 1;
+    l->damaged = l->gaps = l->lost = 0;
+    l->ended = 0;
+}
+
 int logfile_next(struct logfile *l, struct exh_record *r)
 {
     while (l->at < l->len) {

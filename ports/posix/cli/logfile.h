@@ -28,6 +28,9 @@ struct logfile {
 int logfile_open(struct logfile *l, const char *path);
 void logfile_close(struct logfile *l);
 
+/* Back to just behind the header, where `at` was after opening. */
+void logfile_rewind(struct logfile *l, uint32_t at);
+
 /* The next good record; 0 at the end. */
 int logfile_next(struct logfile *l, struct exh_record *r);
 

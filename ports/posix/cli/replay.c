@@ -19,7 +19,9 @@ struct replay {
     struct exh_scene_in in;    /* what crosses inward at the coming tick        */
     struct exh_drive_out out;
     int running;               /* a start (tick 0 or a keyframe) was reached    */
-    uint32_t from, ticks, keyframes, first_tick, expect_tick;
+    uint32_t from;             /* asked for                                     */
+    uint32_t start;            /* the last keyframe not after it                */
+    uint32_t ticks, keyframes, first_tick, expect_tick;
     uint32_t digest;           /* CRC of all outputs                           */
     int32_t *recorded, *ours;  /* signals of one frame                         */
     uint8_t *bytes;            /* a keyframe of ours                           */
@@ -113,7 +115,7 @@ static int on_keyframe(struct replay *p, const struct exh_record *r)
         if (c.at != r->len_B || memcmp(p->bytes, r->payload, r->len_B) != 0) {
             return differs(r->tick, "state (bytes of a keyframe)", r->len_B, c.at);
         }
-    } else if (r->tick >= p->from) {
+    } else if (r->tick == p->start) {
         struct exh_bytes c = exh_bytes_reader(r->payload, r->len_B);
         exh_log_keyframe_bytes(&c, p->log.scene);
         if (!exh_bytes_ok(&c)) { return differs(r->tick, "keyframe length", r->len_B, c.at); }
@@ -145,11 +147,32 @@ static int on_event(struct replay *p, const struct exh_record *r)
     return 0;
 }
 
+/* The last keyframe at or before the tick asked for; 0 when there is none. */
+static int find_start(struct replay *p)
+{
+    const uint32_t begin = p->log.at;
+    struct exh_record r;
+    int found = 0;
+    while (logfile_next(&p->log, &r)) {
+        if (r.type == EXH_RECORD_KEYFRAME && r.tick <= p->from) {
+            p->start = r.tick;
+            found = 1;
+        }
+    }
+    logfile_rewind(&p->log, begin);
+    return found;
+}
+
 static int replay(struct replay *p)
 {
     struct exh_record r;
     int err = start_scene(p);
     p->running = p->from == 0;
+    if (err == 0 && !p->running && !find_start(p)) {
+        fprintf(stderr, "%s: no keyframe at or before tick %lu: choose a later --from\n", p->log.path,
+                (unsigned long)p->from);
+        return 2;
+    }
     while (err == 0 && logfile_next(&p->log, &r)) {
         switch (r.type) {
         case EXH_RECORD_FRAME: err = on_frame(p, &r); break;
@@ -159,8 +182,7 @@ static int replay(struct replay *p)
         }
     }
     if (err == 0 && p->ticks == 0) {
-        fprintf(stderr, "%s: no keyframe at or after tick %lu: choose an earlier --from\n",
-                p->log.path, (unsigned long)p->from);
+        fprintf(stderr, "%s: holds no frame\n", p->log.path);
         err = 2;
     }
     return err;
@@ -170,7 +192,7 @@ int cli_replay(int argc, char **argv)
 {
     long from = 0;
     const struct cli_option option[] = {
-        {"from", CLI_INT, &from, 0, 4294967295.0, "TICK", "start at the first keyframe not before it"},
+        {"from", CLI_INT, &from, 0, 4294967295.0, "TICK", "start at the last keyframe not after it"},
     };
     const struct cli_command c = {"replay", "LOG [--from TICK]",
                                   "Runs the recorded inputs again and compares every output bit.",

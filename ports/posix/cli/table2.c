@@ -219,18 +219,22 @@ void table2_spread_csv_header(FILE *f)
 
 void table2_spread_csv_line(FILE *f, const struct table2_result *r, const struct table2_spread *s)
 {
-    fprintf(f, "%.9g,%.9g,%.9g,%d,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,%.4f,%.4f\n", r->rate_Hz, r->k_Npm,
-            r->b_Nspm, s->runs, s->b_Npm, s->b_low_Npm, s->b_high_Npm, s->a_Npm, s->b_same_Npm,
-            s->a_same_Npm, s->rest, s->oscillates);
+    const double value[] = {s->b_Npm, s->b_low_Npm, s->b_high_Npm};
+    fprintf(f, "%.9g,%.9g,%.9g,%d", r->rate_Hz, r->k_Npm, r->b_Nspm, s->runs);
+    for (int i = 0; i < 3; i++) { field(f, value[i] > 0, value[i]); }
+    field(f, 1, s->a_Npm);
+    field(f, s->b_same_Npm > 0, s->b_same_Npm);
+    field(f, 1, s->a_same_Npm);
+    fprintf(f, ",%.4f,%.4f\n", s->rest, s->oscillates);
 }
 
 static void print_runs(FILE *f, const struct table2_result *r, int rows)
 {
     fprintf(f, "\nOne run of %d falls a rate, beside the paper's Table II "
                "(B: position over force, monitor paired to the tick it answers)\n\n"
-               "  rate      k      b   stiffness     95 %% interval      r2   oscillating   paper   "
+               "  rate      k      b   stiffness     95 %% interval      r2   oscillating  buzz   paper   "
                "ours/paper\n"
-               "    Hz    N/m   Ns/m         N/m               N/m                  falls     N/m\n",
+               "    Hz    N/m   Ns/m         N/m               N/m                  falls           N/m\n",
             r->falls);
     for (int i = 0; i < rows; i++, r++) {
         const struct table2_row *paper = table2_at(r->rate_Hz);
@@ -244,8 +248,9 @@ static void print_runs(FILE *f, const struct table2_result *r, int rows)
             snprintf(theirs, sizeof theirs, "%.0f", paper->stiffness_Npm);
             snprintf(ratio, sizeof ratio, "%.2f", r->b_Npm / paper->stiffness_Npm);
         }
-        fprintf(f, "%6.6g %6.6g %6.6g %11.0f %17s %7.2f %7d of %-3d %7s %12s\n", r->rate_Hz, r->k_Npm,
-                r->b_Nspm, r->b_Npm, interval, r->r2, r->oscillating, r->falls, theirs, ratio);
+        fprintf(f, "%6.6g %6.6g %6.6g %11.0f %17s %7.2f %7d of %-3d %5d %7s %12s\n", r->rate_Hz,
+                r->k_Npm, r->b_Nspm, r->b_Npm, interval, r->r2, r->oscillating, r->falls, r->buzzing,
+                theirs, ratio);
     }
 }
 
@@ -283,21 +288,19 @@ static void print_deviation(FILE *f, const struct table2_result *r)
     const struct table2_row *paper = table2_at(r->rate_Hz);
     const double ratio = paper ? r->b_Npm / paper->stiffness_Npm : 1;
     if (paper == NULL || (ratio > 0.9 && ratio < 1.1)) { return; }
-    fprintf(f, "  %g Hz: ", r->rate_Hz);
+    fprintf(f, "  %g Hz: ours %.2f k, the paper's %.2f k: ", r->rate_Hz, r->b_Npm / r->k_Npm,
+            paper->stiffness_Npm / paper->k_Npm);
     if (r->b_Npm <= 0) {
         fprintf(f, "no line could be fitted (too few pairs between 0.8 and 4.5 N).\n");
     } else if (r->b_Nspm == 0) {
         fprintf(f, "without damping the command is k q, so the fit returns k whatever the device; "
-                   "what made the paper's %.2f k is not in this model.\n",
-                paper->stiffness_Npm / paper->k_Npm);
+                   "what took the paper's below k is not in this model.\n");
     } else if (r->ci_bounded && paper->stiffness_Npm <= r->ci_high_Npm &&
                paper->stiffness_Npm >= r->ci_low_Npm) {
-        fprintf(f, "%.0f %% %s, inside our 95 %% interval: ten falls do not settle it.\n",
-                100 * (ratio > 1 ? ratio - 1 : 1 - ratio), ratio > 1 ? "above" : "below");
+        fprintf(f, "inside our 95 %% interval; ten falls do not settle it.\n");
     } else {
-        fprintf(f, "%.0f %% %s; the excess over k comes from damper force and ringing, which depend "
-                   "on friction, inertia and delay of a device nobody has published.\n",
-                100 * (ratio > 1 ? ratio - 1 : 1 - ratio), ratio > 1 ? "above" : "below");
+        fprintf(f, "the excess over k is damper force and ringing, and these hang on friction, inertia "
+                   "and delay of a device nobody has published.\n");
     }
 }
 

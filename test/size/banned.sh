@@ -1,9 +1,10 @@
 #!/bin/sh
-# No floating point in the library: float.sh ARCHIVE OBJDUMP
-# Refutes "integer only" on the object code: names every function that has an x87 instruction,
-# an SSE/AVX instruction that computes, compares or converts floats, or a VFP one. Registers of
+# No floating point and no division in the library: banned.sh ARCHIVE OBJDUMP
+# Refutes "integer only" and "divides nowhere" on the object code: names every function that has
+# a divide instruction, an x87 one, an SSE/AVX instruction that computes, compares or converts
+# floats, or a VFP one. Registers of
 # these units may move and combine integers (struct copies, memset). Software floating point
-# shows as undefined helpers, which undef.sh refuses.
+# and division show as undefined helpers, which undef.sh refuses.
 # Exit status: 0 none, 1 some, 2 bad usage or an unknown machine, 3 no such tool.
 set -eu
 
@@ -27,6 +28,7 @@ awk -v archive="$archive" '
     # movss and movsd are not: for integers compilers take movd and movq.
     function x86(op) {
         sub(/^v/, "", op)
+        if (op ~ /^i?div[bwlq]?$/) { return 1 }
         if (op ~ /^f/ || op == "wait" || op ~ /^(pf|pi2f)/) { return op != "fs" }
         if (op ~ /^p/) { return 0 }
         if (op ~ /^cvt/) { return 1 }
@@ -37,6 +39,7 @@ awk -v archive="$archive" '
     # Cortex-M: loads, stores and moves of the registers are tolerated, vmrs (flags of a
     # comparison) is not. Integer SIMD carries its type (.i32 .s16 .u8).
     function arm(op) {
+        if (op ~ /^[su]div/) { return 1 }
         if (op !~ /^v/) { return op ~ /^f(add|sub|mul|div|cmp|ld|st|si|ui|to|cp|neg|abs|sqrt|m)/ }
         if (op ~ /^v(mov|ldr|str|ldm|stm|ldmia|stmia|push|pop)(\.32|\.64|\.8|\.16)?$/) { return 0 }
         return op ~ /\.f(16|32|64)/ || op ~ /^(vmrs|vmsr|vcvt)/
@@ -57,7 +60,7 @@ awk -v archive="$archive" '
         if ((machine == "x86" && x86(op)) || (machine == "arm" && arm(op))) {
             if (!(name in seen)) {
                 seen[name] = 1
-                print archive ": " name " (no floating point): " op > "/dev/stderr"
+                print archive ": " name " (no floating point, no division): " op > "/dev/stderr"
                 bad = 1
             }
         }
@@ -69,7 +72,7 @@ awk -v archive="$archive" '
         }
         if (!instructions) { print archive ": no instructions" > "/dev/stderr"; exit 1 }
         if (!bad) {
-            print archive ": no floating point in " instructions " instructions of " functions \
+            print archive ": no floating point and no division in " instructions " instructions of " functions \
                   " functions"
         }
         exit bad
