@@ -156,6 +156,24 @@ test:
 	@$(MAKE) --no-print-directory $(test_bin)
 	@test/run.sh $(test_bin)
 
+# Stiff and extreme closed loops, under sanitizers: a build of its own.
+$(B)/test/sim/stress: $(B)/posix/test/sim/stress.o $(filter-out %/main.o %/loop.o,$(cli_obj) $(sim_obj)) \
+                      $(B)/test/loop.o $(B)/posix/libexhand.a
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^
+
+STRESS_CASES ?= 100000000
+prop_bin     := $(filter $(B)/test/prop/%,$(test_bin))
+
+## Stiff and extreme cases: what must hold and what held; laws at 10^8 random cases each
+.PHONY: stress
+stress:
+	@$(MAKE) --no-print-directory B=$(B)/san CFLAGS="$(san)" LDFLAGS="$(san)" $(B)/san/test/sim/stress
+	@$(B)/san/test/sim/stress
+	@$(MAKE) --no-print-directory $(prop_bin)
+	@echo "laws at $(STRESS_CASES) random cases each, under sanitizers:"
+	@EXH_CASES=$(STRESS_CASES) test/run.sh $(prop_bin)
+
 # The library's tests again for a 32-bit CPU, where there is no CMocka: own printer.
 plain_bin := $(patsubst test/%_test.c,$(B)/i686/%_test,$(filter test/unit/% test/prop/%,$(test_src)))
 $(plain_bin): $(B)/i686/%_test: test/%_test.c test/support.c $(lib_src) $(wildcard test/*.h lib/include/exhand/*.h)

@@ -178,7 +178,7 @@ uint32_t exh_drive_current(struct exh_drive *s, const struct exh_drive_cfg *cfg,
     const int64_t cont_A_q16 = cfg->par->i_cont_A_q26 >> (EXH_Q_CUR - 16);
     const int64_t heat = s->i2t_q32 + now_A_q16 * now_A_q16 - cont_A_q16 * cont_A_q16;
 
-    s->i2t_q32 = heat < 0 ? 0 : heat > cfg->i2t_budget_q32 ? cfg->i2t_budget_q32 : heat;
+    s->i2t_q32 = heat < 0 ? 0 : heat; /* a tick may overshoot the budget: it is not forgotten */
     i->table_A_q26 = table;
     i->peak_A_q26 = (int64_t)peak - table;
     i->i2t_A_q26 = (int64_t)now - peak;

@@ -11,11 +11,11 @@
 #define CONTRACT_RATE_HZ 1000
 #endif
 
-#define DAC_ZERO 32768 /* raw codes are the Sensoray's on every port                 */
-#define DAC_HALF_A 923 /* 3249 codes/V over 1.76 A/V                                 */
-#define MON_HALF_A 968 /* 305.2 uV a code at 0.591 V/A                               */
+#define DAC_ZERO    32768 /* raw codes are the Sensoray's on every port                 */
+#define DAC_HALF_A  923 /* 3249 codes/V over 1.76 A/V                                 */
+#define MON_HALF_A  968 /* 305.2 uV a code at 0.591 V/A                               */
 #define PULSE_TICKS (CONTRACT_RATE_HZ / 20)
-#define SAMPLES 16 /* averaged against the monitor's noise, 47 mA peak to peak         */
+#define SAMPLES     16 /* averaged against the monitor's noise, 47 mA peak to peak         */
 
 static struct exh_period period;
 static uint8_t alive;
@@ -179,7 +179,9 @@ TEST(safe_takes_the_current_away_and_repeats)
     int32_t code;
     ready();
     code = monitor_after(DAC_HALF_A, 1);
-    if (is_zero(code)) { check_note("monitor %d at 0.5 A: zero current can't be seen here", (int)code); }
+    if (is_zero(code)) {
+        check_note("monitor %d at 0.5 A: zero current can't be seen here", (int)code);
+    }
     exh_board_safe();
     code = monitor_alone();
     CHECK(is_zero(code), "monitor %d after safe", (int)code);
@@ -222,7 +224,8 @@ TEST(link_is_whole_packets_and_empty_at_first)
     CHECK_EQ_I64(exh_board_link_recv(buf, sizeof buf), 0);
     CHECK_EQ_I64(exh_board_link_recv(buf, 0), 0);
     n = exh_board_link_send(buf, sizeof buf);
-    CHECK(n == 0 || n == (int)sizeof buf || n == -EXH_E_IO, "sent %d of %u", n, (unsigned)sizeof buf);
+    CHECK(n == 0 || n == (int)sizeof buf || n == -EXH_E_IO, "sent %d of %u", n,
+          (unsigned)sizeof buf);
 }
 
 TEST(glove_is_read_or_absent)

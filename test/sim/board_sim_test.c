@@ -95,11 +95,14 @@ static double respond(struct step s)
 TEST(a_step_acts_at_the_first_sample_after_its_delay)
 {
     static const struct step row[] = {
-        {20000, 100, 0, 0},       {20000, 101, 0, 0},       {20000, 102, 0, 0},
-        {20000, 103, 0, 0},       {20000, 104, 0, 0},       {20000, 200, 3, 0},
-        {20000, 200, 0, 203e-6},  {20000, 201, 0.387, 203e-6}, {20000, 50, 3, 0.01},
-        {4000, 20, 0.387, 203e-6}, {2000, 10, 0.387, 203e-6}, {2000, 11, 1, 0},
-        {1000, 5, 0.5, 50e-6},    {2000, 0, 0, 0},          {500, 3, 0.387, 203e-6},
+        {20000, 100, 0, 0},        {20000, 101, 0, 0},
+        {20000, 102, 0, 0},        {20000, 103, 0, 0},
+        {20000, 104, 0, 0},        {20000, 200, 3, 0},
+        {20000, 200, 0, 203e-6},   {20000, 201, 0.387, 203e-6},
+        {20000, 50, 3, 0.01},      {4000, 20, 0.387, 203e-6},
+        {2000, 10, 0.387, 203e-6}, {2000, 11, 1, 0},
+        {1000, 5, 0.5, 50e-6},     {2000, 0, 0, 0},
+        {500, 3, 0.387, 203e-6},
     };
     const struct step first = {20000, 0, 0, 0};
     const double servo_s = 1 / sim_device_default().servo_hz;
@@ -111,23 +114,31 @@ TEST(a_step_acts_at_the_first_sample_after_its_delay)
         double got_s;
         while (want_s < due_s) { want_s += servo_s; }
         got_s = respond(row[i]);
-        CHECK(size_of(got_s - want_s) < 1e-9, "row %zu: due %.9f s, taken %.9f, want %.9f", i, due_s,
-              got_s, want_s);
+        CHECK(size_of(got_s - want_s) < 1e-9, "row %zu: due %.9f s, taken %.9f, want %.9f", i,
+              due_s, got_s, want_s);
     }
 }
 
-/* A nanosecond before the servo's sample is in time for it, one after is not. */
+/* A nanosecond before the servo's sample is in time for it, one after is not; both parts
+ * of the delay count. */
 TEST(the_edge_between_two_servo_samples_is_sharp)
 {
+    static const double rate_Hz[] = {20000, 500};
     const struct step first = {20000, 0, 0, 0};
     const double servo_s = 1 / sim_device_default().servo_hz;
     const double grid_s = respond(first);
-    for (int k = 1; k < 20; k++) {
-        const struct step early = {20000, 0, 0, grid_s + k * servo_s - 1e-9};
-        const struct step late = {20000, 0, 0, grid_s + k * servo_s + 1e-9};
-        const double early_s = respond(early), late_s = respond(late);
-        CHECK(size_of(early_s - grid_s - k * servo_s) < 1e-9, "early %d: taken at %.9f", k, early_s);
-        CHECK(size_of(late_s - grid_s - (k + 1) * servo_s) < 1e-9, "late %d: taken at %.9f", k, late_s);
+    for (int k = 1; k < 40; k++) {
+        const double rate = rate_Hz[k % 2], share = k % 3 * 0.5;
+        const double due_s = grid_s + k / 2 * servo_s;
+        const double late[] = {-1e-9, 1e-9};
+        for (int i = 0; i < 2; i++) {
+            const double delay_s = due_s + late[i];
+            const struct step s = {(uint32_t)rate, 0, share * delay_s * rate,
+                                   (1 - share) * delay_s};
+            const double got_s = respond(s), want_s = due_s + i * servo_s;
+            CHECK(size_of(got_s - want_s) < 1e-9, "%d: due %.9f s, %s: taken at %.9f", k, due_s,
+                  i ? "late" : "early", got_s);
+        }
     }
 }
 
@@ -203,8 +214,8 @@ TEST(monitor_code_is_the_nearest)
             code = read_codes().mon_raw[0];
             codes = posix_plant()->mon_A / scale_A[i];
             codes = codes > 32767 ? 32767 : codes < -32768 ? -32768 : codes;
-            CHECK(size_of(code - codes) <= 0.5 + 1e-9, "scale %.3g: %d, want %.6f", scale_A[i], code,
-                  codes);
+            CHECK(size_of(code - codes) <= 0.5 + 1e-9, "scale %.3g: %d, want %.6f", scale_A[i],
+                  code, codes);
             moved |= 1 << (code < 0) | 4 << (code > 100);
             write_code((n / 300 % 3 - 1) * 12000, 1);
         }
@@ -244,8 +255,11 @@ TEST(encoder_code_is_the_floor)
 {
     static const struct {
         double step_m, decode, start;
-    } row[] = {{66.32e-6, 1, 0},        {66.32e-6, 1, 8388608}, {66.32e-6, 4, 5},
-               {480e-6, 2, 16777215.0}, {10e-6, 1, 16776000}};
+    } row[] = {{66.32e-6, 1, 0},
+               {66.32e-6, 1, 8388608},
+               {66.32e-6, 4, 5},
+               {480e-6, 2, 16777215.0},
+               {10e-6, 1, 16776000}};
     for (size_t i = 0; i < LEN(row); i++) {
         struct posix_config c = short_fall();
         double lo = 0, hi = 1;
@@ -286,8 +300,8 @@ TEST(decoding_multiplies_the_counts)
         for (int k = 0; k < n; k++) {
             const int one = (int)(fall_raw[0][k] - fall_raw[0][0]);
             const int many = (int)(fall_raw[i][k] - fall_raw[i][0]);
-            CHECK(many > m * (one - 1) && many < m * (one + 1), "x%d, tick %d: %d counts, x1 %d", m, k,
-                  many, one);
+            CHECK(many > m * (one - 1) && many < m * (one + 1), "x%d, tick %d: %d counts, x1 %d", m,
+                  k, many, one);
         }
     }
     CHECK(fall_raw[0][n - 1] - fall_raw[0][0] > 1000, "hardly moved");
@@ -393,7 +407,8 @@ TEST(the_counters_wrap_is_nowhere_seen)
     static const struct {
         uint32_t start;
         int wraps; /* at least; -1 none at all                                   */
-    } row[] = {{0, 2}, {5, 2}, {0xFFFFFF, 2}, {0xFFFFFF - 10, 2}, {1000, 2}, {0x800000, -1}, {0x400000, -1}};
+    } row[] = {{0, 2},    {5, 2},         {0xFFFFFF, 2}, {0xFFFFFF - 10, 2},
+               {1000, 2}, {0x800000, -1}, {0x400000, -1}};
     struct sim_device d = sim_device_default();
     const struct bytes at_0 = logged_run(&d, 3, 2);
     for (size_t i = 0; i < LEN(row); i++) {
@@ -415,9 +430,9 @@ TEST(the_counters_wrap_is_nowhere_seen)
 /* n num/den rounded once; checked without dividing. */
 TEST(every_tick_lands_on_its_instant)
 {
-    static const struct exh_period T[] = {{597, 1193182}, {1, 1},     {1, 7},          {1, 90},
-                                          {1, 2000},      {1, 20000}, {13258, 1193182}, {60, 1193182},
-                                          {999999999, 2000000000}};
+    static const struct exh_period T[] = {{597, 1193182},   {1, 1},        {1, 7},
+                                          {1, 90},          {1, 2000},     {1, 20000},
+                                          {13258, 1193182}, {60, 1193182}, {999999999, 2000000000}};
     for (size_t i = 0; i < LEN(T); i++) {
         struct posix_config c = posix_config_default();
         uint64_t n = 0;
@@ -426,7 +441,7 @@ TEST(every_tick_lands_on_its_instant)
         start(&c, 1);
         for (; exh_board_wait() >= 0; n++) {
             const long double exact = (long double)n * T[i].num;
-            const long double off = (long double)posix_time_s() * T[i].den - exact;
+            const long double off = (long double)posix_time_s() * (long double)T[i].den - exact;
             CHECK((off < 0 ? -off : off) <= exact * 0x1p-53L, "%lu/%lu, tick %lu: off by %.3g s",
                   (unsigned long)T[i].num, (unsigned long)T[i].den, (unsigned long)n,
                   (double)(off / T[i].den));

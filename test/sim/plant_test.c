@@ -4,7 +4,7 @@
 
 #include "sim/plant.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
+#define LEN(a)   (sizeof(a) / sizeof((a)[0]))
 #define TWO_PI_L 6.283185307179586476925286766559L
 
 static double size_of(double v)
@@ -17,6 +17,11 @@ static double root_of(double v)
     double r = v > 1 ? v : 1;
     for (int i = 0; i < 100; i++) { r = 0.5 * (r + v / r); }
     return r;
+}
+
+static long double wide(double v)
+{
+    return (long double)v;
 }
 
 /* exp(-x), x >= 0: Taylor up to 1/2, then squaring; relative error < 1e-15 up to 700
@@ -134,13 +139,12 @@ TEST(stiction_holds_without_creep)
 {
     const double weight_N = 0.5 * SIM_GRAVITY;
     static const struct {
-        double tension;  /* share of the weight                                */
-        double mu;       /* times the tension must be above the load           */
+        double tension; /* share of the weight                                */
+        double mu; /* times the tension must be above the load           */
         double substep_s;
     } row[] = {
-        {0.90, 0.2, 25e-6}, {0.90, 0.1123, 25e-6},  {1.10, 0.0920, 25e-6},
-        {0.60, 0.7, 25e-6}, {0.90, 0.1123, 1e-3},   {0.90, 0.1123, 1e-6},
-        {1, 0.0001, 25e-6}, {0.999, 0.002, 100e-6},
+        {0.90, 0.2, 25e-6},   {0.90, 0.1123, 25e-6}, {1.10, 0.0920, 25e-6}, {0.60, 0.7, 25e-6},
+        {0.90, 0.1123, 1e-3}, {0.90, 0.1123, 1e-6},  {1, 0.0001, 25e-6},    {0.999, 0.002, 100e-6},
     };
     for (size_t i = 0; i < LEN(row); i++) {
         struct sim_device d;
@@ -163,11 +167,12 @@ TEST(stiction_lets_go_at_its_limit)
         const double load = size_of(1 - tension[i]) / tension[i];
         for (int more = 0; more <= 1; more++) {
             struct sim_device d;
-            struct plant p = hanging(&d, tension[i] * 0.5 * SIM_GRAVITY, load * (0.99 + 0.02 * more));
+            struct plant p =
+                hanging(&d, tension[i] * 0.5 * SIM_GRAVITY, load * (0.99 + 0.02 * more));
             const double x = p.x_m;
             plant_advance(&p, &d, 0.02, 0, 0);
-            CHECK((p.x_m == x) == more, "tension %.1f, friction %s its load: moved %.3g m", tension[i],
-                  more ? "above" : "below", p.x_m - x);
+            CHECK((p.x_m == x) == more, "tension %.1f, friction %s its load: moved %.3g m",
+                  tension[i], more ? "above" : "below", p.x_m - x);
         }
     }
 }
@@ -242,11 +247,12 @@ TEST(current_loop_is_exact_at_any_substep)
         d.substep_s = substep_s[i % LEN(substep_s)];
         d.current_hz = band_hz[i / LEN(substep_s) / LEN(piece_s)];
         for (int n = 1; n * piece <= 1.0001e-3; n++) {
-            const long double x = TWO_PI_L * d.current_hz * n * piece;
+            const long double x = TWO_PI_L * wide(d.current_hz) * n * wide(piece);
             const double want = (double)(1 - exp_neg(x));
             plant_advance(&p, &d, piece, 1, 1);
-            CHECK(size_of(p.cur_A - want) <= 1e-9, "substep %.3g, %.1f Hz, %.3g s: %.12f, want %.12f",
-                  d.substep_s, d.current_hz, n * piece, p.cur_A, want);
+            CHECK(size_of(p.cur_A - want) <= 1e-9,
+                  "substep %.3g, %.1f Hz, %.3g s: %.12f, want %.12f", d.substep_s, d.current_hz,
+                  n * piece, p.cur_A, want);
         }
     }
 }
@@ -262,12 +268,12 @@ TEST(monitor_lags_behind_the_current)
         d.substep_s = 1e-6;
         d.mon_lag_s = lag_s[i];
         for (int n = 1; n <= 100; n++) {
-            const long double t = n * 50e-6L, b = lag_s[i];
-            const long double a = 1 / (TWO_PI_L * d.current_hz);
+            const long double t = n * 50e-6L, b = wide(lag_s[i]);
+            const long double a = 1 / (TWO_PI_L * wide(d.current_hz));
             const double want = (double)(1 - (b * exp_neg(t / b) - a * exp_neg(t / a)) / (b - a));
             plant_advance(&p, &d, 50e-6, 1, 1);
-            CHECK(size_of(p.mon_A - want) <= d.substep_s / lag_s[i], "lag %.3g s, %d: %.9f, want %.9f",
-                  lag_s[i], n, p.mon_A, want);
+            CHECK(size_of(p.mon_A - want) <= d.substep_s / lag_s[i],
+                  "lag %.3g s, %d: %.9f, want %.9f", lag_s[i], n, p.mon_A, want);
         }
         d.mon_lag_s = 0;
         plant_advance(&p, &d, 50e-6, 2, 1);
@@ -283,8 +289,8 @@ TEST(exp_neg_is_good_to_1e_12)
           "the reference itself");
     for (int i = 0; i <= 700000; i++) {
         const double x = i < 350000 ? i * (1.0 / 350000) : (i - 350000) * (700.0 / 350000);
-        const long double want = exp_neg(x);
-        const double err = size_of((double)((sim_exp_neg(x) - want) / want));
+        const long double want = exp_neg(wide(x));
+        const double err = size_of((double)((wide(sim_exp_neg(x)) - want) / want));
         if (err > worst) {
             worst = err;
             at = x;
@@ -304,7 +310,7 @@ TEST(exp_neg_is_good_to_1e_12)
  * and by rounding. E stays within h/2 |dU/dt| of D. */
 struct energy {
     double e_J, d_J; /* energy, and the one that the method keeps              */
-    double may_J;    /* how much D may grow in the sub-step that begins here   */
+    double may_J; /* how much D may grow in the sub-step that begins here   */
     int taut;
 };
 
@@ -318,7 +324,8 @@ static struct energy energy_of(const struct plant *p, const struct sim_device *d
                           d->coulomb_n + d->viscous_nspm * size_of(p->w_mps);
     struct energy e;
     e.e_J = 0.5 * (d->mass_kg * p->v_mps * p->v_mps + d->rotor_kg * p->w_mps * p->w_mps +
-                   elastic_N * s) - weight_N * p->x_m;
+                   elastic_N * s) -
+            weight_N * p->x_m;
     e.d_J = e.e_J - h / 2 * (elastic_N * opening - weight_N * p->v_mps);
     e.may_J = h * h / 2 * (1 / d->mass_kg + 1 / d->rotor_kg) * (elastic_N + weight_N) * loss_N +
               1e-13 * (1 + size_of(e.e_J));
@@ -370,15 +377,15 @@ TEST(energy_never_grows_with_the_motor_off)
  * offset from where it hangs. */
 static double swing_m(const struct sim_device *d, double x0_m, double t_s)
 {
-    const long double rest = (long double)d->mass_kg * SIM_GRAVITY / d->cable_npm;
-    const long double k = d->cable_npm / d->mass_kg, b = d->cable_nspm / d->mass_kg;
-    long double y = x0_m - rest, v = 0, y_sum = y, v_sum = v;
+    const long double m = wide(d->mass_kg), t = wide(t_s);
+    const long double rest = m * wide(SIM_GRAVITY) / wide(d->cable_npm);
+    const long double k = wide(d->cable_npm) / m, b = wide(d->cable_nspm) / m;
+    long double y = wide(x0_m) - rest, v = 0, y_sum = y;
     for (int i = 1; i < 100; i++) { /* Taylor; 7 rad, far below the cancellation that hurts */
         const long double dy = v, dv = -k * y - b * v;
-        y = dy * t_s / i;
-        v = dv * t_s / i;
+        y = dy * t / i;
+        v = dv * t / i;
         y_sum += y;
-        v_sum += v;
     }
     return (double)(rest + y_sum);
 }

@@ -8,10 +8,10 @@
 
 #include <string.h>
 
-#define RUNS 20
-#define SEED 101
+#define RUNS  20
+#define SEED  101
 #define FALLS 10
-#define JOBS (TABLE2_ROWS * 2 * RUNS)
+#define JOBS  (TABLE2_ROWS * 2 * RUNS)
 
 static struct table2_result result[JOBS];
 
@@ -75,7 +75,8 @@ TEST(the_papers_points_come_to_rest)
     measure();
     for (int i = 0; i < TABLE2_ROWS; i++) {
         const double rest = spread_of(i).rest;
-        CHECK(rest >= 0.95 && rest <= 1, "%g Hz: %.1f %% at rest", table2_paper[i].rate_Hz, 100 * rest);
+        CHECK(rest >= 0.95 && rest <= 1, "%g Hz: %.1f %% at rest", table2_paper[i].rate_Hz,
+              100 * rest);
     }
 }
 
@@ -98,8 +99,8 @@ TEST(stiffness_is_k_or_above)
         const struct table2_row *row = &table2_paper[i];
         const double ratio = spread_of(i).b_Npm / row->k_Npm;
         const double lo = row->b_Nspm > 0 ? 1 : 0.95, hi = row->b_Nspm > 0 ? 4 : 1.05;
-        CHECK(ratio >= lo && ratio <= hi, "%g Hz: median B %.3f k, want %.2f..%.2f", row->rate_Hz, ratio,
-              lo, hi);
+        CHECK(ratio >= lo && ratio <= hi, "%g Hz: median B %.3f k, want %.2f..%.2f", row->rate_Hz,
+              ratio, lo, hi);
     }
 }
 

@@ -110,7 +110,7 @@ struct exh_drive_cfg {
 
 struct exh_drive {
     int32_t force_N_q20; /* last commanded                                     */
-    int64_t i2t_q32;     /* heat above continuous, A^2 ticks, 0 .. budget      */
+    int64_t i2t_q32;     /* heat above continuous, A^2 ticks, 0 .. budget + 1 tick at peak */
 };
 
 /* The current ledger: coded = table + peak + i2t + gate + dac, exactly, always. */
