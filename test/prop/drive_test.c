@@ -224,7 +224,9 @@ TEST(current_ledger_sums_and_limits_hold)
         CHECK(((bits & EXH_LIMIT_PEAK) != 0) == (i.peak_A_q26 != 0), "peak bit");
         CHECK(((bits & EXH_LIMIT_I2T) != 0) == (i.i2t_A_q26 != 0), "I2t bit");
         CHECK((bits & ~(uint32_t)(EXH_LIMIT_PEAK | EXH_LIMIT_I2T)) == 0, "foreign bits");
-        CHECK(s.i2t_q32 >= 0 && s.i2t_q32 <= a.cfg.i2t_budget_q32, "heat %" PRId64, s.i2t_q32);
+        /* one tick at 6.6 A may overshoot: 43.6 A^2 in q32 is below 44 * 2^32 */
+        CHECK(s.i2t_q32 >= 0 && s.i2t_q32 <= a.cfg.i2t_budget_q32 + 44 * (INT64_C(1) << 32),
+              "heat %" PRId64, s.i2t_q32);
         s.i2t_q32 = a.cfg.i2t_budget_q32 - (a.cfg.i2t_budget_q32 - heat) / 2;
         (void)exh_drive_current(&s, &a.cfg, &f, &hotter);
         CHECK(hotter.i2t_A_q26 <= 0 ? hotter.i2t_A_q26 <= i.i2t_A_q26 || i.i2t_A_q26 > 0
@@ -253,7 +255,7 @@ TEST(heat_is_what_was_spent)
         spent = wide_sat64(wide_shr_floor(wide_sub(wide_mul(spent, spent), cont2), 20));
         gained = s.i2t_q32 - a.cfg.i2t_budget_q32 / 2;
         /* 6.6 A is 432538 in q16; each of two squares is off by less than 2*432538 + 1 */
-        CHECK(s.i2t_q32 == 0 || s.i2t_q32 == a.cfg.i2t_budget_q32 ||
+        CHECK(s.i2t_q32 == 0 ||
                   (gained - spent < 1730154 && spent - gained < 1730154),
               "heat %" PRId64 ", spent %" PRId64, gained, spent);
     }
