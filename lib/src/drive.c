@@ -118,7 +118,12 @@ int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par,
     int err;
     if (par->i_cont_A_q26 < 0 || par->i_peak_A_q26 < par->i_cont_A_q26 || par->peak_ms < 1 ||
         par->dac_rawpA_q16 <= 0 || T.num == 0 || T.den == 0 ||
-        (cur_to_force.n > 0 && par->mon_A_q40 <= 0)) {
+        (cur_to_force.n > 0 && par->mon_A_q40 <= 0) || force_to_cur.n < 2) {
+        return -EXH_E_RANGE;
+    }
+    /* Parameters in ROM never passed their rows; a negative span would open the gate. */
+    if (par->dac_span_raw < 0 || par->dac_span_raw > 32767 || par->dac_zero_raw < 0 ||
+        par->dac_zero_raw > UINT16_MAX || par->f_max_N_q20 < 0) {
         return -EXH_E_RANGE;
     }
     cfg->par = par;

@@ -174,6 +174,9 @@ TEST(setup_rejections)
         {3, EXH_Q(3, 1, EXH_Q_CUR), "i_peak below i_cont"},
         {8, 0, "no D/A scale"},
         {10, 0, "no monitor scale, though a monitor table is given"},
+        {7, -12184, "a negative D/A span, which would code a current outside RUN"},
+        {6, 70000, "a D/A zero beyond 16 bits"},
+        {0, -1, "a negative force limit"},
     };
     struct axis a;
     axis_par(&a.par);
