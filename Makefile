@@ -9,6 +9,10 @@ ARGS   ?=
 DEPS   ?= yes
 WERROR ?=
 
+ifneq ($(words [$(B)]) $(words $(B)),1 1)
+$(error B="$(B)": the place to build in must be named, and without blanks)
+endif
+
 include ports/$(PORT)/port.mk
 include examples/$(SCENE)/scene.mk
 
@@ -26,6 +30,10 @@ warn := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wcast-
         -Wdouble-promotion -Wformat=2 -Wvla -Wswitch-enum $(if $(WERROR),-Werror)
 base := -std=c99 -O$(O) -g $(warn) -ffunction-sections -fdata-sections -Ilib/include -Iexamples -MMD -MP
 
+# What objects are compiled with, of every kind of them: another text, and all are compiled anew.
+stamp      := $(out)/flags
+flags_text := $(CC) | $(base) | $(PORT_CFLAGS) | $(PORT_HOSTFLAGS) | $(CFLAGS) | $(LDFLAGS)
+
 lib_src := $(sort $(wildcard lib/src/*.c))
 lib_obj := $(lib_src:%.c=$(out)/%.o)
 lib     := $(out)/libexhand.a
@@ -40,11 +48,17 @@ help:
 	@echo "  PORT=$(PORT)    one of: $(notdir $(patsubst %/port.mk,%,$(wildcard ports/*/port.mk)))"
 	@echo "  SCENE=$(SCENE)    one of: $(notdir $(patsubst %/scene.mk,%,$(wildcard examples/*/scene.mk)))"
 
-$(out)/lib/%.o: lib/%.c
+.PHONY: FORCE
+$(stamp): export flags = $(flags_text)
+$(stamp): FORCE
+	@mkdir -p $(@D)
+	@printf '%s\n' "$$flags" | cmp -s - $@ || printf '%s\n' "$$flags" > $@
+
+$(out)/lib/%.o: lib/%.c $(stamp)
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(base) $(PORT_CFLAGS) $(CFLAGS) -c $< -o $@
 
-$(out)/%.o: %.c
+$(out)/%.o: %.c $(stamp)
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(base) $(PORT_CFLAGS) $(PORT_HOSTFLAGS) $(CFLAGS) -c $< -o $@
 
@@ -59,10 +73,10 @@ image_obj := $(patsubst %,$(out)/$(SCENE)/%.o,$(basename examples/image.c $(PORT
              $(out)/examples/loop.o $(SCENE_SRC:%.c=$(out)/%.o)
 
 # These know which scene they serve: one set of objects per scene.
-$(out)/$(SCENE)/%.o: %.c
+$(out)/$(SCENE)/%.o: %.c $(stamp)
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(base) $(PORT_CFLAGS) $(PORT_HOSTFLAGS) -DEXH_SCENE=exh_scene_$(SCENE) $(CFLAGS) -c $< -o $@
-$(out)/$(SCENE)/%.o: %.S
+$(out)/$(SCENE)/%.o: %.S $(stamp)
 	@mkdir -p $(@D)
 	$(Q)$(CC) -Ilib/include $(PORT_CFLAGS) -g -c $< -o $@
 
@@ -119,7 +133,7 @@ test_bin  := $(test_src:test/%_test.c=$(B)/test/%_test)
 tflags     = $(base) $(CFLAGS) -Itest -DEXH_FIX_AUDIT
 
 # Sanitized: library and tests of it.
-$(B)/test/san/%.o: %.c
+$(B)/test/san/%.o: %.c $(stamp)
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(tflags) $(san) -D_POSIX_C_SOURCE=200809L -c $< -o $@
 lib_test_bin := $(filter $(B)/test/unit/% $(B)/test/prop/%,$(test_bin))
@@ -136,11 +150,11 @@ $(B)/test/sim/%_test: $(B)/posix/test/sim/%_test.o $(B)/posix/test/support.o \
                       $(filter-out %/main.o %/loop.o,$(cli_obj) $(sim_obj)) $(B)/test/loop.o $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) -o $@ $^ -lcmocka
-$(B)/posix/test/%.o: test/%.c
+$(B)/posix/test/%.o: test/%.c $(stamp)
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(base) $(PORT_HOSTFLAGS) $(CFLAGS) -Itest -c $< -o $@
 # The loop without its assertion hook, which tests define themselves.
-$(B)/test/loop.o: examples/loop.c
+$(B)/test/loop.o: examples/loop.c $(stamp)
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(base) $(CFLAGS) -Dexh_assert_failed=exh_loop_assert_failed -Wno-missing-prototypes -c $< -o $@
 # The port contract, on the port that runs here.
@@ -152,7 +166,7 @@ $(B)/test/board/%_test: $(B)/posix/test/board/%_test.o $(B)/posix/test/support.o
 ## Every test that needs no more than a compiler and CMocka, in minutes
 .PHONY: test
 test:
-	@.ci/deps "the tests" "echo '#include <cmocka.h>' | $(CC) -include stdarg.h -include stddef.h -include setjmp.h -include stdint.h -fsyntax-only -xc -" libcmocka-dev || exit 3
+	@.ci/deps "the tests" "$(CC) $(foreach h,stdarg stddef setjmp stdint cmocka,-include $h.h) -fsyntax-only -xc /dev/null" libcmocka-dev || exit 3
 	@$(MAKE) --no-print-directory $(test_bin)
 	@test/run.sh $(test_bin)
 
@@ -176,7 +190,8 @@ stress:
 
 # The library's tests again for a 32-bit CPU, where there is no CMocka: own printer.
 plain_bin := $(patsubst test/%_test.c,$(B)/i686/%_test,$(filter test/unit/% test/prop/%,$(test_src)))
-$(plain_bin): $(B)/i686/%_test: test/%_test.c test/support.c $(lib_src) $(wildcard test/*.h lib/include/exhand/*.h)
+$(plain_bin): $(B)/i686/%_test: test/%_test.c test/support.c $(lib_src) $(wildcard test/*.h lib/include/exhand/*.h) \
+              $(stamp)
 	@mkdir -p $(@D)
 	$(Q)i686-linux-gnu-gcc -static $(filter-out -MMD -MP,$(tflags)) -D_POSIX_C_SOURCE=200809L -DEXH_CHECK_PLAIN \
 	    -o $@ $(filter %.c,$^)
@@ -217,17 +232,18 @@ check_pkgs  := clang gcc-i686-linux-gnu libc6-dev-i386-cross gcc-arm-none-eabi q
 
 ## What CI runs: test, other compilers and CPUs, the pc104 image, sizes, costs
 .PHONY: check
+check: export WERROR = 1
 check:
 	@for t in $(check_tools); do .ci/deps "the checks" $$t $(check_pkgs) || exit 3; done
-	@$(MAKE) --no-print-directory WERROR=1 all test
-	@$(MAKE) --no-print-directory WERROR=1 test-i686
+	@$(MAKE) --no-print-directory all test
+	@$(MAKE) --no-print-directory test-i686
 	@$(MAKE) --no-print-directory demo > $(B)/demo.txt && tail -n 40 $(B)/demo.txt
 	@$(MAKE) --no-print-directory $(variants:%=variant-%)
 	@test/sim/bits.sh $(B)/bits $(B)/demo $(variants:%=$(B)/variant/%/posix/exhand)
 	@$(MAKE) --no-print-directory undef undef-cortex-m3 undef-cortex-m0
-	@$(MAKE) --no-print-directory PORT=template SCENE=minimal WERROR=1 all
-	@$(MAKE) --no-print-directory PORT=pc104 SCENE=minimal WERROR=1 undef run
-	@$(MAKE) --no-print-directory PORT=pc104 SCENE=drop WERROR=1 run
+	@$(MAKE) --no-print-directory PORT=template SCENE=minimal all
+	@$(MAKE) --no-print-directory PORT=pc104 SCENE=minimal undef run
+	@$(MAKE) --no-print-directory PORT=pc104 SCENE=drop run
 	@$(MAKE) --no-print-directory size
 	@$(MAKE) --no-print-directory bench
 
