@@ -1,5 +1,6 @@
 /* The contract of a port, against exhand/board.h alone: link it to any port and run it
- * there. Where a drive is connected, finger 0 gets 0.5 A for 50 ms, twice.
+ * there. Where a drive is connected, finger 0 is told 0.5 A for 50 ms and the samples
+ * behind them three times, the last time with its drive not enabled.
  *
  * A board is set up once a run, so the rate is one a build: -DCONTRACT_RATE_HZ. */
 #include "check.h"
