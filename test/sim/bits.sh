@@ -10,7 +10,7 @@ verdict() { # NAME STATUS
 }
 mkdir -p "$dir"
 for exe in "$@"; do
-    before=$passed
+    before=$passed of=2
     out=$dir/out
     rm -rf "$out"
     "$exe" drop --out "$out" >"$dir/table.txt" 2>&1
@@ -20,6 +20,7 @@ for exe in "$@"; do
     for log in "$logs"/*.exh; do
         cmp "$log" "$out/${log##*/}"
         verdict "$exe: ${log##*/} made" $?
+        of=$((of + 4))
         for from in 0 1 3000; do
             "$exe" replay "$log" --from $from >"$dir/replay.txt" 2>&1
             status=$?
@@ -27,7 +28,7 @@ for exe in "$@"; do
             [ $status = 0 ] || cat "$dir/replay.txt"
         done
     done
-    echo "$exe: $((passed - before)) of $((2 + 4 * $(ls "$logs"/*.exh | wc -l)))"
+    echo "$exe: $((passed - before)) of $of"
 done
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ]
