@@ -177,6 +177,7 @@ $(B)/test/sim/stress: $(B)/posix/test/sim/stress.o $(filter-out %/main.o %/loop.
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^
 
 STRESS_CASES ?= 100000000
+STRESS_PARTS := 8
 prop_bin     := $(filter $(B)/test/prop/%,$(test_bin))
 
 ## Stiff and extreme cases: what must hold and what held; laws at 10^8 random cases each
@@ -185,8 +186,8 @@ stress:
 	@$(MAKE) --no-print-directory B=$(B)/san CFLAGS="$(san)" LDFLAGS="$(san)" $(B)/san/test/sim/stress
 	@$(B)/san/test/sim/stress
 	@$(MAKE) --no-print-directory $(prop_bin)
-	@echo "laws at $(STRESS_CASES) random cases each, under sanitizers:"
-	@EXH_CASES=$(STRESS_CASES) test/run.sh $(prop_bin)
+	@echo "laws at $(STRESS_CASES) random cases each, under sanitizers, dealt to $(STRESS_PARTS) processes:"
+	@EXH_CASES=$(STRESS_CASES) PARTS=$(STRESS_PARTS) JOBS=$$(nproc) test/run.sh $(prop_bin)
 
 # The library's tests again for a 32-bit CPU, where there is no CMocka: own printer.
 plain_bin := $(patsubst test/%_test.c,$(B)/i686/%_test,$(filter test/unit/% test/prop/%,$(test_src)))

@@ -7,7 +7,8 @@
  * "N passed, N failed". Integers only, since a target may have no floats.
  *
  * Environment on hosts, -D on targets: EXH_SEED, EXH_CASES (cases of a property).
- * Hosts only: EXH_TEST=name runs one test, EXH_CASE=i one case of its properties.
+ * Hosts only: EXH_TEST=name runs one test, EXH_CASE=i one case of its properties,
+ * EXH_PART=k of EXH_PARTS=n those whose number is k modulo n.
  */
 #ifndef TEST_CHECK_H
 #define TEST_CHECK_H
@@ -74,7 +75,8 @@ int check_main(const char *group, const char *names, const check_fn *list, size_
 void check_failed(const char *file, int line, const char *cond, const char *fmt, ...)
     CHECK_PRINTF(4, 5);
 
-/* Prints a line that is no failure: what a test could not cover here, and why. */
+/* Prints a line that is no failure: what a test found, or could not cover here and why.
+ * It begins with "  | ", by which test/run.sh shows it of a test that passed. */
 void check_note(const char *fmt, ...) CHECK_PRINTF(1, 2);
 
 /* Properties: while (check_case(1)) { x = check_i32(); ... } runs EXH_CASES

@@ -1,12 +1,17 @@
 #!/bin/sh
-# run.sh BINARY...: runs each, shows what failed, ends with `N passed, N failed`.
-passed=0 failed=0
-log=$(mktemp) || exit 3
-trap 'rm -f "$log"' EXIT
-for t in "$@"; do
-    name=${t#*/} name=${name#test/}
+# run.sh BINARY...: runs each test, prints its result and its notes (lines that begin with "  | "),
+# of one that failed everything it said; ends with `N passed, N failed`.
+#
+# Environment: PARTS (1): the random cases of each are dealt to so many processes (EXH_PART,
+# EXH_PARTS), JOBS (1) of which run at a time; a line each, as it ends.
+
+# run_part BINARY PART: its line, and `PASSED FAILED` at the end of the file $TALLY
+run_part()
+{
+    name=${1#"${1%/*/*}"/} log=$(mktemp) || return 1
+    [ "$PARTS" = 1 ] || name="$name $(($2 + 1))/$PARTS"
     start=$(date +%s)
-    "$t" >"$log" 2>&1
+    EXH_PART=$2 EXH_PARTS=$PARTS "$1" >"$log" 2>&1
     status=$?
     p=$(sed -n 's/^\[  PASSED  \] \([0-9]*\) test.*/\1/p' "$log" | tail -n 1)
     f=$(sed -n 's/^\[  FAILED  \] \([0-9]*\) test.*/\1/p' "$log" | tail -n 1)
@@ -17,9 +22,28 @@ for t in "$@"; do
     p=${p:-0} f=${f:-0}
     [ "$status" != 0 ] && [ "$f" = 0 ] && f=1 # died before it could say
     [ "$p$f" = 00 ] && f=1                    # ran nothing
-    passed=$((passed + p)) failed=$((failed + f))
     printf '%-28s %4d passed %4d failed %4d s\n' "$name" "$p" "$f" $(($(date +%s) - start))
-    [ "$f" = 0 ] || cat "$log"
-done
-echo "$passed passed, $failed failed"
-[ "$failed" = 0 ] && [ "$passed" != 0 ]
+    if [ "$f" = 0 ]; then grep '^  | ' "$log"; else cat "$log"; fi
+    echo "$p $f" >>"$TALLY"
+    rm -f "$log"
+}
+
+if [ "${1:-}" = --part ]; then
+    run_part "$3" "$2"
+    exit 0
+fi
+
+[ $# -gt 0 ] || { echo "usage: $0 BINARY..." >&2; exit 2; }
+PARTS=${PARTS:-1} TALLY=$(mktemp) || exit 3
+export PARTS TALLY
+trap 'rm -f "$TALLY"' EXIT
+trap 'exit 3' HUP INT TERM
+part=0
+while [ "$part" -lt "$PARTS" ]; do
+    for t in "$@"; do echo "$part $t"; done
+    part=$((part + 1))
+done | xargs -n 2 -P "${JOBS:-1}" "$0" --part
+awk -v want=$(($# * PARTS)) '
+    { passed += $1; failed += $2 }
+    END { failed += want - NR # killed with their line unsaid
+          printf "%d passed, %d failed\n", passed, failed; exit failed || !passed }' "$TALLY"

@@ -42,9 +42,10 @@ const int32_t check_corner[CHECK_CORNERS] = {INT32_MIN, INT32_MIN + 1, -65536, -
 static struct {
     const char *test; /* the one that runs                                     */
     uint64_t seed, cases, only;
-    uint64_t next;  /* case after the one that runs, 0 outside a property       */
-    uint64_t state; /* of the generator                                        */
-} run = {"", EXH_SEED, EXH_CASES, NO_CASE, 0, 0};
+    uint64_t part, parts; /* of all cases, those that are part modulo parts        */
+    uint64_t next;        /* case after the one that runs, 0 outside a property    */
+    uint64_t state;       /* of the generator                                      */
+} run = {"", EXH_SEED, EXH_CASES, NO_CASE, 0, 1, 0, 0};
 
 /* --- what the environment asks for --- */
 
@@ -65,6 +66,15 @@ static uint64_t env_u64(const char *name, uint64_t otherwise)
     if (p == NULL || *p == '\0') { return otherwise; }
     for (; *p >= '0' && *p <= '9'; p++) { v = v * 10 + (uint64_t)(*p - '0'); }
     return v;
+}
+
+static void read_env(void)
+{
+    run.seed = env_u64("EXH_SEED", run.seed);
+    run.cases = env_u64("EXH_CASES", run.cases);
+    run.only = env_u64("EXH_CASE", NO_CASE);
+    run.part = env_u64("EXH_PART", run.part);
+    run.parts = env_u64("EXH_PARTS", run.parts);
 }
 
 int check_same_text(const char *a, const char *b)
@@ -123,10 +133,8 @@ int check_main(const char *group, const char *names, const check_fn *list, size_
     static size_t index_of[TESTS_MAX];
     size_t m = 0;
     int failed;
-    if (n > TESTS_MAX) { return 2; }
-    run.seed = env_u64("EXH_SEED", run.seed);
-    run.cases = env_u64("EXH_CASES", run.cases);
-    run.only = env_u64("EXH_CASE", NO_CASE);
+    read_env();
+    if (n > TESTS_MAX || run.part >= run.parts) { return 2; }
     split_names(names, n);
     for (size_t i = 0; i < n; i++) {
         fn_of[i] = list[i];
@@ -139,7 +147,7 @@ int check_main(const char *group, const char *names, const check_fn *list, size_
     }
     if (m == 0) { return 2; }
     failed = _cmocka_run_group_tests(group, test, m, NULL, NULL);
-    check_note("%s: %" PRIu64 " checks, seed %" PRIu64, group, check_count, run.seed);
+    print_message("%s: %" PRIu64 " checks, seed %" PRIu64 "\n", group, check_count, run.seed);
     return failed != 0;
 }
 
@@ -172,7 +180,7 @@ void check_note(const char *fmt, ...)
     va_start(ap, fmt);
     (void)vsnprintf(text, sizeof text, fmt, ap);
     va_end(ap);
-    print_message("%s\n", text);
+    print_message("  | %s\n", text);
 }
 
 void exh_assert_failed(const char *file, int line)
@@ -244,29 +252,44 @@ static void put_args(const char *fmt, va_list ap)
     }
 }
 
-void check_note(const char *fmt, ...)
+static void put_line_of(const char *fmt, va_list ap)
+{
+    put_args(fmt, ap);
+    (void)EXH_CHECK_PUTCHAR('\n');
+}
+
+static void put_line(const char *fmt, ...) CHECK_PRINTF(1, 2);
+
+static void put_line(const char *fmt, ...)
 {
     va_list ap;
     va_start(ap, fmt);
-    put_args(fmt, ap);
+    put_line_of(fmt, ap);
     va_end(ap);
-    (void)EXH_CHECK_PUTCHAR('\n');
+}
+
+void check_note(const char *fmt, ...)
+{
+    va_list ap;
+    put_text("  | ");
+    va_start(ap, fmt);
+    put_line_of(fmt, ap);
+    va_end(ap);
 }
 
 void check_failed(const char *file, int line, const char *cond, const char *fmt, ...)
 {
     va_list ap;
     if (++failures > SHOWN_MAX) { return; }
-    check_note("%s:%d: %s", file, line, cond);
+    put_line("%s:%d: %s", file, line, cond);
     va_start(ap, fmt);
-    put_args(fmt, ap);
+    put_line_of(fmt, ap);
     va_end(ap);
-    (void)EXH_CHECK_PUTCHAR('\n');
     if (run.next == 0) {
-        check_note("    again: EXH_TEST=%s", run.test);
+        put_line("    again: EXH_TEST=%s", run.test);
     } else {
-        check_note("    again: EXH_TEST=%s EXH_SEED=%" PRIu64 " EXH_CASE=%" PRIu64, run.test,
-                   run.seed, run.next - 1);
+        put_line("    again: EXH_TEST=%s EXH_SEED=%" PRIu64 " EXH_CASE=%" PRIu64, run.test,
+                 run.seed, run.next - 1);
     }
 }
 
@@ -274,10 +297,8 @@ int check_main(const char *group, const char *names, const check_fn *list, size_
 {
     unsigned passed = 0;
     unsigned failed = 0;
-    if (n > TESTS_MAX) { return 2; }
-    run.seed = env_u64("EXH_SEED", run.seed);
-    run.cases = env_u64("EXH_CASES", run.cases);
-    run.only = env_u64("EXH_CASE", NO_CASE);
+    read_env();
+    if (n > TESTS_MAX || run.part >= run.parts) { return 2; }
     split_names(names, n);
     for (size_t i = 0; i < n; i++) {
         if (!wanted(name_of[i])) { continue; }
@@ -288,17 +309,17 @@ int check_main(const char *group, const char *names, const check_fn *list, size_
             passed++;
         } else {
             failed++;
-            check_note("FAILED %s (%u)", name_of[i], failures);
+            put_line("FAILED %s (%u)", name_of[i], failures);
         }
     }
-    check_note("%s: %" PRIu64 " checks, seed %" PRIu64, group, check_count, run.seed);
-    check_note("%u passed, %u failed", passed, failed);
+    put_line("%s: %" PRIu64 " checks, seed %" PRIu64, group, check_count, run.seed);
+    put_line("%u passed, %u failed", passed, failed);
     return passed == 0 || failed != 0;
 }
 
 void exh_assert_failed(const char *file, int line)
 {
-    check_note("%s:%d: the library's assertion, in %s\n0 passed, 1 failed", file, line, run.test);
+    put_line("%s:%d: the library's assertion, in %s\n0 passed, 1 failed", file, line, run.test);
     for (;;) {
 #if __STDC_HOSTED__
         abort();
@@ -324,17 +345,23 @@ uint64_t check_u64(void)
     return z ^ z >> 31;
 }
 
+static uint64_t next_case(void)
+{
+    if (run.only != NO_CASE) { return run.next == 0 ? run.only : NO_CASE; }
+    return run.next == 0 ? run.part : run.next - 1 + run.parts;
+}
+
 int check_case(uint32_t slower)
 {
-    const uint64_t n = run.cases / slower;
-    if (run.only != NO_CASE && run.next <= run.only) { run.next = run.only; }
-    if (run.only != NO_CASE ? run.next > run.only : run.next >= (n > 0 ? n : 1)) {
+    const uint64_t share = run.cases / slower, n = share > 0 ? share : 1;
+    const uint64_t i = next_case();
+    if (i == NO_CASE || (i >= n && run.only == NO_CASE)) {
         run.next = 0;
         return 0;
     }
-    run.state = run.seed ^ run.next * UINT64_C(0xD1342543DE82EF95);
+    run.state = run.seed ^ i * UINT64_C(0xD1342543DE82EF95);
     run.state = check_u64(); /* neighbours must not share a stream */
-    run.next++;
+    run.next = i + 1;
     return 1;
 }
 
