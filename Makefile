@@ -167,12 +167,13 @@ $(B)/test/board/%_test: $(B)/posix/test/board/%_test.o $(B)/posix/test/support.o
 .PHONY: test
 test:
 	@.ci/deps "the tests" "$(CC) $(foreach h,stdarg stddef setjmp stdint cmocka,-include $h.h) -fsyntax-only -xc /dev/null" libcmocka-dev || exit 3
-	@$(MAKE) --no-print-directory $(test_bin)
+	@$(MAKE) --no-print-directory $(if $(V),,-s) $(test_bin)
 	@test/run.sh $(test_bin)
 
-# Stiff and extreme closed loops, under sanitizers: a build of its own.
-$(B)/test/sim/stress: $(B)/posix/test/sim/stress.o $(filter-out %/main.o %/loop.o,$(cli_obj) $(sim_obj)) \
-                      $(B)/test/loop.o $(B)/posix/libexhand.a
+# Stiff and extreme cases, under sanitizers: a build of its own.
+stress_obj := $(patsubst %.c,$(B)/posix/%.o,$(wildcard test/stress/*.c))
+$(B)/test/stress: $(stress_obj) $(filter-out %/main.o %/loop.o,$(cli_obj) $(sim_obj)) \
+                  $(B)/test/loop.o $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^
 
@@ -183,9 +184,9 @@ prop_bin     := $(filter $(B)/test/prop/%,$(test_bin))
 ## Stiff and extreme cases: what must hold and what held; laws at 10^8 random cases each
 .PHONY: stress
 stress:
-	@$(MAKE) --no-print-directory B=$(B)/san CFLAGS="$(san)" LDFLAGS="$(san)" $(B)/san/test/sim/stress
-	@$(B)/san/test/sim/stress
-	@$(MAKE) --no-print-directory $(prop_bin)
+	@$(MAKE) --no-print-directory B=$(B)/san CFLAGS="$(san)" LDFLAGS="$(san)" $(if $(V),,-s) $(B)/san/test/stress
+	@$(B)/san/test/stress
+	@$(MAKE) --no-print-directory $(if $(V),,-s) $(prop_bin)
 	@echo "laws at $(STRESS_CASES) random cases each, under sanitizers, dealt to $(STRESS_PARTS) processes:"
 	@EXH_CASES=$(STRESS_CASES) PARTS=$(STRESS_PARTS) JOBS=$$(nproc) test/run.sh $(prop_bin)
 

@@ -1,0 +1,137 @@
+/* The rig: set-up, inputs, and the table of what was seen. */
+#include "stress.h"
+
+#include "sim/random.h"
+
+#include "exhand/board.h"
+
+#include <stdarg.h>
+#include <stdlib.h>
+
+#define HEALTHY (EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_DRIVE0)
+
+struct rig rig;
+static struct sim_random rng = {1};
+static int failed;
+
+void exh_assert_failed(const char *file, int line)
+{
+    printf("%s:%d: the library's assertion\n", file, line);
+    abort();
+}
+
+#ifdef EXH_FIX_AUDIT
+void exh_fix_saturated(const char *file, int line)
+{
+    (void)file;
+    (void)line;
+}
+#endif
+
+void must(int holds, const char *rule, const char *fmt, ...)
+{
+    struct watch *w = &rig.w;
+    va_list ap;
+    int n;
+    if (holds) { return; }
+    if (w->broken++ > 0) { return; }
+    n = snprintf(w->first, sizeof w->first, "%s at tick %" PRIu64 ": ", rule, w->ticks);
+    va_start(ap, fmt);
+    vsnprintf(w->first + n, sizeof w->first - (size_t)n, fmt, ap);
+    va_end(ap);
+}
+
+/* --- set-up --- */
+
+void fresh(void)
+{
+    memset(&rig, 0, sizeof rig);
+    rig.w.q_min = INT32_MAX;
+    rig.w.q_max = INT32_MIN;
+    exh_params_init(&rig.params, exh_scene_drop.params->table, (int32_t *)&rig.active,
+                    (int32_t *)&rig.staged);
+}
+
+void set(uint16_t id, int32_t raw)
+{
+    const int err = exh_params_stage(&rig.params, id, 0, raw);
+    must(err == 0, "setting", "id %#x = %ld: %d", (unsigned)id, (long)raw, err);
+}
+
+void set_gains(double k_Npm, double b_Nspm)
+{
+    set(ID_K, (int32_t)(k_Npm * (1 << EXH_Q_K)));
+    set(ID_B, (int32_t)(b_Nspm * (1 << EXH_Q_B)));
+}
+
+int ready(struct exh_period T)
+{
+    exh_params_apply(&rig.params);
+    rig.params.locked = 1;
+    rig.T = T;
+    return drop_setup(&rig.cfg, &rig.active, T);
+}
+
+void start(struct exh_period T)
+{
+    must(ready(T) == 0, "set-up", "refused");
+}
+
+/* --- inputs --- */
+
+uint64_t any_u64(void)
+{
+    return sim_random_u64(&rng);
+}
+
+uint32_t any(uint32_t n)
+{
+    return (uint32_t)(any_u64() % n);
+}
+
+struct exh_scene_in idle_in(uint64_t n, uint32_t enc_raw)
+{
+    struct exh_scene_in in;
+    memset(&in, 0, sizeof in);
+    in.drive.enc_raw[0] = enc_raw;
+    in.drive.din = HEALTHY;
+    in.command = n == 0 ? EXH_CMD_RUN : EXH_CMD_NONE;
+    return in;
+}
+
+/* Ends and middles of 16, 24 and 32 bits. */
+static const uint32_t enc_extreme[] = {
+    0, 0x7FFF, 0x8000, 0xFFFF, 0x7FFFFF, 0x800000, 0xFFFFFF, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF, 1};
+static const int16_t mon_extreme[] = {INT16_MIN, INT16_MAX, 0, -1};
+
+struct exh_scene_in wild_in(uint64_t n)
+{
+    struct exh_scene_in in =
+        idle_in(n, enc_extreme[n % 2 ? n / 2 % LEN(enc_extreme) : any(LEN(enc_extreme))]);
+    if (n % 5 == 0) { in.drive.enc_raw[0] = (uint32_t)any_u64(); }
+    in.drive.mon_raw[0] = n % 3 ? mon_extreme[n % 4] : (int16_t)((int)any(65536) - 32768);
+    in.drive.supply_raw = mon_extreme[n % 4];
+    return in;
+}
+
+/* --- the table --- */
+
+void report(const char *name, const char *besides)
+{
+    const struct watch *w = &rig.w;
+    char held[160];
+    snprintf(held, sizeof held,
+             "%8" PRIu64 " ticks F %6.2f N slew %3.0f %% code %5d i %5.3f A heat %3.0f %% "
+             "q %+7.1f..%+7.1f mm",
+             w->ticks, w->force_max / 1048576.0, 100 * w->slew_share, w->code_max, w->cur_max_A,
+             100 * w->heat_share, w->q_min / 1073741.824, w->q_max / 1073741.824);
+    printf("%-38s | %-46s | %s | %s\n", name, besides, held, w->broken ? "FAIL" : "ok");
+    if (w->broken) { printf("    %" PRIu64 " broken, first %s\n", w->broken, w->first); }
+    fflush(stdout);
+    failed += w->broken != 0;
+}
+
+int failures(void)
+{
+    return failed;
+}
