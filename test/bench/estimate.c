@@ -3,7 +3,7 @@
  * another question: velocity.c. */
 #include "bench.h"
 
-#include "exhand/exhand.h"
+#include "estimators.h"
 
 #define TICKS 1000000
 #define TAU_US 1354 /* the pole at 100 Hz that exp(-2 pi 100 Hz T) has */
@@ -12,14 +12,6 @@
 static const struct exh_velocity_scale scale = {EXH_Q(6632, 100000000, EXH_Q_STEP), {1, 2000}};
 
 static int32_t hump[BENCH_OPS]; /* counts of a throw: up 70 mm and back in 0.5 s */
-static struct exh_velocity_window_cfg window_cfg;
-static struct exh_velocity_window window;
-static struct exh_velocity_pole_cfg pole_cfg;
-static struct exh_velocity_pole pole;
-static struct exh_velocity_foaw_cfg foaw_cfg;
-static struct exh_velocity_foaw foaw;
-static struct exh_velocity_track_cfg track_cfg;
-static struct exh_velocity_track track;
 
 /* m/s q27 of one count per tick. */
 static long double count_per_tick(void)
@@ -29,16 +21,11 @@ static long double count_per_tick(void)
 
 static void setup_all(int32_t p)
 {
-    const struct exh_velocity_par par = {p};
-    int err = exh_velocity_window_setup(&window_cfg, scale, &par);
-    err |= exh_velocity_pole_setup(&pole_cfg, scale, TAU_US);
-    err |= exh_velocity_foaw_setup(&foaw_cfg, scale, 16, 1);
-    err |= exh_velocity_track_setup(&track_cfg, scale, TF_US);
+    int err = window_start(scale, p);
+    err |= pole_start(scale, TAU_US);
+    err |= foaw_start(scale, 16);
+    err |= track_start(scale, TF_US);
     EXH_ASSERT(err == 0);
-    window = (struct exh_velocity_window){.started = 0};
-    pole = (struct exh_velocity_pole){.started = 0};
-    foaw = (struct exh_velocity_foaw){.have = 0};
-    track = (struct exh_velocity_track){.started = 0};
     for (int32_t i = 0; i < (int32_t)BENCH_OPS; i++) {
         hump[i] = (int32_t)(4 * 1056 * (int64_t)i * (1024 - i) / (1024 * 1024));
     }
@@ -62,22 +49,22 @@ static void setup_16(void)
 
 static void window_op(uint32_t i)
 {
-    bench_sink = exh_velocity_window_mps_q27(&window, &window_cfg, hump[i]);
+    bench_sink = window_step(hump[i]);
 }
 
 static void pole_op(uint32_t i)
 {
-    bench_sink = exh_velocity_pole_mps_q27(&pole, &pole_cfg, hump[i]);
+    bench_sink = pole_step(hump[i]);
 }
 
 static void foaw_op(uint32_t i)
 {
-    bench_sink = exh_velocity_foaw_mps_q27(&foaw, &foaw_cfg, hump[i]);
+    bench_sink = foaw_step(hump[i]);
 }
 
 static void track_op(uint32_t i)
 {
-    bench_sink = exh_velocity_track_mps_q27(&track, &track_cfg, hump[i]);
+    bench_sink = track_step(hump[i]);
 }
 
 /* A hand: up to +-12 m/s, +-1 count of noise, through the wrap of the count; now and
@@ -109,7 +96,7 @@ static void window_error(struct error *e, int32_t p)
     const int n = 1 << p;
     setup_all(p);
     for (int i = 0; i < TICKS; i++) {
-        const int32_t got = exh_velocity_window_mps_q27(&window, &window_cfg, move(&h));
+        const int32_t got = window_step(move(&h));
         const int64_t moved = h.cnt[0] - h.cnt[n];
         if (i > n) { judge(e, got, count_per_tick() * moved / n); }
     }
@@ -137,7 +124,7 @@ static void pole_error(struct error *e)
     long double v = 0;
     setup_all(0);
     for (int i = 0; i < TICKS; i++) {
-        const int32_t got = exh_velocity_pole_mps_q27(&pole, &pole_cfg, move(&h));
+        const int32_t got = pole_step(move(&h));
         const long double diff = i ? count_per_tick() * (h.cnt[0] - h.cnt[1]) : 0;
         v += a * (bench_clamp(diff, INT32_MIN, INT32_MAX) - v);
         judge(e, got, v);
@@ -163,7 +150,7 @@ static void foaw_error(struct error *e)
     struct hand h = {{0}, 0};
     setup_all(0);
     for (int i = 0; i < TICKS; i++) {
-        const int32_t got = exh_velocity_foaw_mps_q27(&foaw, &foaw_cfg, move(&h));
+        const int32_t got = foaw_step(move(&h));
         int64_t best = 0, m;
         int64_t n = 0;
         while (n < 16 && fit(h.cnt, n + 1, &m)) {
@@ -181,7 +168,7 @@ static void track_error(struct error *e)
     long double err = 0, v = 0;
     setup_all(0);
     for (int i = 0; i < TICKS; i++) {
-        const int32_t got = exh_velocity_track_mps_q27(&track, &track_cfg, move(&h));
+        const int32_t got = track_step(move(&h));
         const long double off = err + v - (i ? h.cnt[0] - h.cnt[1] : 0);
         err = theta * theta * off;
         v -= (1 - theta) * (1 - theta) * off;

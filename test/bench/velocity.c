@@ -2,7 +2,7 @@
  * under constant acceleration, error on a sine. One CSV line an estimator and encoder;
  * the figures of theory come with it where there are any. bench.sh adds instructions.
  */
-#include "exhand/exhand.h"
+#include "estimators.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -21,61 +21,7 @@ struct figures {
     double rms_mmps[SPEEDS], max_mmps[SPEEDS], lag_ms, sine_mmps;
 };
 
-/* --- the estimators, one interface --- */
-
-static struct exh_velocity_window_cfg window_cfg;
-static struct exh_velocity_window window;
-static struct exh_velocity_pole_cfg pole_cfg;
-static struct exh_velocity_pole pole;
-static struct exh_velocity_foaw_cfg foaw_cfg;
-static struct exh_velocity_foaw foaw;
-static struct exh_velocity_track_cfg track_cfg;
-static struct exh_velocity_track track;
-
-static int window_start(struct exh_velocity_scale s, int arg)
-{
-    const struct exh_velocity_par par = {arg};
-    window = (struct exh_velocity_window){.started = 0};
-    return exh_velocity_window_setup(&window_cfg, s, &par);
-}
-
-static int32_t window_step(int32_t cnt)
-{
-    return exh_velocity_window_mps_q27(&window, &window_cfg, cnt);
-}
-
-static int pole_start(struct exh_velocity_scale s, int arg)
-{
-    pole = (struct exh_velocity_pole){.started = 0};
-    return exh_velocity_pole_setup(&pole_cfg, s, (uint32_t)arg);
-}
-
-static int32_t pole_step(int32_t cnt)
-{
-    return exh_velocity_pole_mps_q27(&pole, &pole_cfg, cnt);
-}
-
-static int foaw_start(struct exh_velocity_scale s, int arg)
-{
-    foaw = (struct exh_velocity_foaw){.have = 0};
-    return exh_velocity_foaw_setup(&foaw_cfg, s, (unsigned)arg, 1);
-}
-
-static int32_t foaw_step(int32_t cnt)
-{
-    return exh_velocity_foaw_mps_q27(&foaw, &foaw_cfg, cnt);
-}
-
-static int track_start(struct exh_velocity_scale s, int arg)
-{
-    track = (struct exh_velocity_track){.started = 0};
-    return exh_velocity_track_setup(&track_cfg, s, (uint32_t)arg);
-}
-
-static int32_t track_step(int32_t cnt)
-{
-    return exh_velocity_track_mps_q27(&track, &track_cfg, cnt);
-}
+/* --- the estimators, and what is expected of them --- */
 
 struct estimator {
     const char *name;
