@@ -18,21 +18,21 @@ static int put(struct exh_bytes *c)
     return exh_board_log(buf, len) > 0;
 }
 
-static void put_count(uint8_t type, uint32_t tick, uint32_t count)
+static int put_count(uint8_t type, uint32_t tick, uint32_t count)
 {
     struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
     exh_record_begin(&c, type, seq, tick);
     exh_bytes_u32(&c, &count);
-    if (put(&c)) {
-        seq++;
-        lost_here = 0;
-    }
+    if (!put(&c)) { return 0; }
+    seq++;
+    lost_here = 0;
+    return 1;
 }
 
 static struct exh_bytes begin(uint8_t type, uint32_t tick)
 {
     struct exh_bytes c;
-    if (lost_here > 0) { put_count(EXH_RECORD_DROPPED, tick, lost_here); }
+    if (lost_here > 0) { (void)put_count(EXH_RECORD_DROPPED, tick, lost_here); }
     c = exh_bytes_writer(buf, sizeof buf);
     exh_record_begin(&c, type, seq, tick);
     return c;
@@ -54,20 +54,36 @@ static void event(uint32_t tick, struct exh_event e)
     end(&c);
 }
 
+/* State before `tick`: a replay may start here. */
+static void keyframe(uint32_t tick)
+{
+    struct exh_bytes c;
+    if (scene->state == NULL) { return; }
+    c = begin(EXH_RECORD_KEYFRAME, tick);
+    exh_log_keyframe_bytes(&c, scene);
+    end(&c);
+}
+
+static uint32_t signals(const struct exh_scene *sc)
+{
+    return sc->signals ? exh_signal_count(sc->signals) : 0;
+}
+
 static void copy_name(char to[16], const char *from)
 {
     for (unsigned i = 0; i < 15 && from[i] != '\0'; i++) { to[i] = from[i]; }
 }
 
-void exh_log_start(const struct exh_scene *sc, struct exh_period T)
+void exh_log_start(const struct exh_scene *sc, struct exh_scene_board board)
 {
-    struct exh_record_header h = {.lib_version = EXH_VERSION_NUMBER, .T = T};
+    struct exh_record_header h = {
+        .lib_version = EXH_VERSION_NUMBER, .T = board.T, .enc_bits = board.enc_bits};
     struct exh_bytes c;
 
     scene = sc;
     seq = lost = lost_here = 0;
-    h.signal_crc = exh_signal_crc(sc->signals);
-    h.signals = (uint16_t)exh_signal_count(sc->signals);
+    h.signal_crc = sc->signals ? exh_signal_crc(sc->signals) : 0;
+    h.signals = (uint16_t)signals(sc);
     h.fingers = sc->fingers;
     copy_name(h.scene, sc->name);
     copy_name(h.board, exh_board_info.name);
@@ -79,12 +95,13 @@ void exh_log_start(const struct exh_scene *sc, struct exh_period T)
         c.at += (uint32_t)n;
     }
     end(&c);
+    keyframe(0);
 }
 
 void exh_log_frame_bytes(struct exh_bytes *c, const struct exh_scene *sc, struct exh_scene_in *in,
                          struct exh_drive_out *out, int32_t *signal)
 {
-    const uint32_t n = exh_signal_count(sc->signals);
+    const uint32_t n = signals(sc);
     exh_drive_in_bytes(c, &in->drive, sc->fingers);
     exh_drive_out_bytes(c, out, sc->fingers);
     for (uint32_t i = 0; i < n; i++) { exh_bytes_i32(c, &signal[i]); }
@@ -92,10 +109,17 @@ void exh_log_frame_bytes(struct exh_bytes *c, const struct exh_scene *sc, struct
 
 void exh_log_keyframe_bytes(struct exh_bytes *c, const struct exh_scene *sc)
 {
-    if (sc->params) {
-        const uint32_t n = exh_signal_count(sc->params->table);
-        for (uint32_t i = 0; i < n; i++) { exh_bytes_i32(c, &sc->params->active[i]); }
+    const uint32_t n = sc->params ? exh_signal_count(sc->params->table) : 0;
+    for (uint32_t i = 0; i < n; i++) {
+        uint16_t instance;
+        const struct exh_signal *row = exh_signal_at(sc->params->table, i, &instance);
+        int32_t v = sc->params->active[i];
+        exh_bytes_i32(c, &v);
+        if (c->mode == EXH_BYTES_READ && exh_params_stage(sc->params, row->id, instance, v) < 0) {
+            exh_bytes_fail(c);
+        }
     }
+    if (n > 0 && c->mode == EXH_BYTES_READ) { exh_params_apply(sc->params); }
     sc->state(c);
 }
 
@@ -119,11 +143,6 @@ static void log_params(uint32_t tick, const struct exh_params *p)
 
 void exh_log_before(uint32_t tick, struct exh_scene_in *in)
 {
-    if (tick % EXH_LOG_KEYFRAME_TICKS == 0) {
-        struct exh_bytes c = begin(EXH_RECORD_KEYFRAME, tick);
-        exh_log_keyframe_bytes(&c, scene);
-        end(&c);
-    }
     if (scene->params && scene->params->pending) { log_params(tick, scene->params); }
     if (in->command != EXH_CMD_NONE) {
         event(tick, (struct exh_event){EXH_EVENT_COMMAND, 0, 0, in->command});
@@ -141,10 +160,11 @@ void exh_log_after(uint32_t tick, const struct exh_scene_in *in, const struct ex
     struct exh_bytes c = begin(EXH_RECORD_FRAME, tick);
     exh_log_frame_bytes(&c, scene, &i, &o, scene->signal);
     end(&c);
+    /* Here and not before the next tick, where it would delay the output. */
+    if ((tick + 1) % EXH_LOG_KEYFRAME_TICKS == 0) { keyframe(tick + 1); }
 }
 
 uint32_t exh_log_end(uint32_t tick)
 {
-    put_count(EXH_RECORD_END, tick, lost);
-    return lost;
+    return put_count(EXH_RECORD_END, tick, lost) ? lost : lost + 1;
 }

@@ -12,15 +12,17 @@
 /* The largest record: header or keyframe with all parameters of a scene. */
 #define EXH_LOG_RECORD_B 4096u
 
-void exh_log_start(const struct exh_scene *sc, struct exh_period T);
+void exh_log_start(const struct exh_scene *sc, struct exh_scene_board board);
 void exh_log_before(uint32_t tick, struct exh_scene_in *in);
 void exh_log_after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out);
 /* The operator's own mark at the coming tick. */
 void exh_log_mark(uint32_t tick, int32_t value);
-/* Ends the log and tells how many records it lost. */
+/* Ends the log and tells how many records it lost, this last one included. */
 uint32_t exh_log_end(uint32_t tick);
 
-/* Payloads, shared with the replay: what is written is what is read. */
+/* Payloads, shared with the replay: what is written is what is read. A keyframe that
+ * is read goes through the parameters' own checks; one that fails them is not ok.
+ * A scene without signals or state logs none. */
 void exh_log_frame_bytes(struct exh_bytes *c, const struct exh_scene *sc, struct exh_scene_in *in,
                          struct exh_drive_out *out, int32_t *signal);
 void exh_log_keyframe_bytes(struct exh_bytes *c, const struct exh_scene *sc);

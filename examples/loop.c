@@ -4,21 +4,33 @@
 #include "exhand/error.h"
 #include "exhand/safety.h"
 
+/* Board up, parameters in, scene ready. */
+static int set_up(const struct exh_scene *sc, uint32_t rate_Hz, struct exh_scene_board *board)
+{
+    int err;
+    if (exh_board_info.version != EXH_BOARD_VERSION) { return -EXH_E_VERSION; }
+    if (exh_board_info.fingers < sc->fingers) { return -EXH_E_ABSENT; }
+    board->enc_bits = exh_board_info.enc_bits;
+    err = exh_board_init(rate_Hz ? rate_Hz : sc->rate_Hz, &board->T);
+    if (err == 0 && !exh_period_ok(board->T)) { err = -EXH_E_RATE; }
+    if (sc->params) { exh_params_apply(sc->params); }
+    if (err == 0) { err = sc->setup(*board); }
+    if (err == 0 && sc->params) { sc->params->locked = 1; }
+    return err;
+}
+
 int exh_loop(const struct exh_scene *sc, uint32_t rate_Hz, const struct exh_loop_hooks *hooks)
 {
     static const struct exh_loop_hooks none;
     const struct exh_loop_hooks *h = hooks ? hooks : &none;
-    struct exh_scene_in in = {.command = EXH_CMD_RUN};
+    struct exh_scene_in in = {.command = EXH_CMD_NONE};
+    struct exh_scene_board board;
     struct exh_drive_out out;
-    struct exh_period T;
     uint32_t tick = 0;
     int missed;
 
-    int err = exh_board_init(rate_Hz ? rate_Hz : sc->rate_Hz, &T);
-    if (sc->params) { exh_params_apply(sc->params); }
-    if (err == 0) { err = sc->setup(T); }
-    if (err == 0 && sc->params) { sc->params->locked = 1; }
-    if (err == 0 && h->start) { h->start(sc, T); }
+    int err = set_up(sc, rate_Hz, &board);
+    if (err == 0 && h->start) { h->start(sc, board); }
     while (err == 0 && (missed = exh_board_wait()) >= 0) {
         in.missed = (uint32_t)missed;
         err = exh_board_read_drive(&in.drive);

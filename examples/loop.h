@@ -4,16 +4,18 @@
 
 #include "scene.h"
 
-/* What may hang on to the loop; each may be NULL. `before` may change in->command
- * and stage parameters; they are applied right after it, before the tick. */
+/* What may hang on to the loop; each may be NULL. `before` may set in->command (the
+ * loop itself commands nothing) and stage parameters, which are applied right after
+ * it. A hook that logs comes last in it: what is staged later is not on record. */
 struct exh_loop_hooks {
-    void (*start)(const struct exh_scene *sc, struct exh_period T);
+    void (*start)(const struct exh_scene *sc, struct exh_scene_board board);
     void (*before)(uint32_t tick, struct exh_scene_in *in);
     void (*after)(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out);
 };
 
-/* Runs the scene until the board says stop, then makes it safe. Commands RUN at
- * the first tick. 0, or the -EXH_E… of board or scene. rate_Hz 0: the scene's. */
+/* Runs the scene until the board says stop, then makes it safe. 0, or the -EXH_E… of
+ * board or scene: -EXH_E_VERSION for a board of another version, -EXH_E_ABSENT for
+ * one with fewer fingers than the scene's. rate_Hz 0: the scene's. */
 int exh_loop(const struct exh_scene *sc, uint32_t rate_Hz, const struct exh_loop_hooks *hooks);
 
 #endif

@@ -19,6 +19,12 @@ struct exh_scene_in {
     uint8_t command; /* enum exh_command                                      */
 };
 
+/* What set-up has to know of the board it runs on. */
+struct exh_scene_board {
+    struct exh_period T; /* what its timer was programmed to                  */
+    uint8_t enc_bits;    /* width of its counters                             */
+};
+
 struct exh_scene {
     const char *name; /* at most 15 characters                                */
     uint32_t rate_Hz; /* when nobody asks for another                         */
@@ -31,7 +37,7 @@ struct exh_scene {
      * staging any and before the loop. */
     void (*defaults)(void);
     /* Parameters into configuration, state to power-on. 0 or -EXH_E…. */
-    int (*setup)(struct exh_period T);
+    int (*setup)(struct exh_scene_board board);
     /* One tick. */
     void (*tick)(const struct exh_scene_in *in, struct exh_drive_out *out);
     /* The whole state through a cursor; NULL: not replayable. */

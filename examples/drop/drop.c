@@ -21,6 +21,7 @@ static const struct exh_signal more_rows[] = {
     {0x8107, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "limits", "", "limits acting, bits"},
     {0x8108, 0, EXH_WHEN_OUTPUT, 0, 2, 0, "state", "", "0 off, 1 run, 2 fault"},
     {0x8109, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "faults", "", "fault causes latched, bits"},
+    {0x810A, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "present", "", "fault causes now, bits"},
 };
 
 #define ROWS(r) {(r), sizeof(r) / sizeof((r)[0]), 1}
@@ -41,9 +42,9 @@ EXH_STATIC_ASSERT(drop_par_matches_rows,
                   PARAMS == EXH_QUAD_ROWS + EXH_VELOCITY_ROWS + EXH_CONTACT_ROWS +
                                 EXH_DRIVE_ROWS + EXH_SAFETY_ROWS + 2);
 
-int drop_setup(struct drop_cfg *cfg, const struct drop_par *par, struct exh_period T)
+int drop_setup(struct drop_cfg *cfg, const struct drop_par *par, struct exh_scene_board board)
 {
-    const struct exh_velocity_scale scale = {par->quad.step_m_q42, T};
+    const struct exh_velocity_scale scale = {par->quad.step_m_q42, board.T};
     const struct exh_table to_cur = {cfg->force_to_cur, 2};
     const struct exh_table to_force = {cfg->cur_to_force, 2};
     const int32_t peak_N_q20 =
@@ -58,8 +59,9 @@ int drop_setup(struct drop_cfg *cfg, const struct drop_par *par, struct exh_peri
     cfg->cur_to_force[1] = (struct exh_knot){par->drive.i_peak_A_q26, peak_N_q20, {0, 0}};
     err = exh_table_set(cfg->force_to_cur, 2);
     if (err == 0) { err = exh_table_set(cfg->cur_to_force, 2); }
+    if (err == 0) { err = exh_quad_setup(&cfg->quad, &par->quad, board.T, board.enc_bits); }
     if (err == 0) { err = exh_velocity_window_setup(&cfg->velocity, scale, &par->velocity); }
-    if (err == 0) { err = exh_drive_setup(&cfg->drive, &par->drive, T, to_cur, to_force); }
+    if (err == 0) { err = exh_drive_setup(&cfg->drive, &par->drive, board.T, to_cur, to_force); }
     return err;
 }
 
@@ -67,20 +69,19 @@ void drop_tick(struct drop *s, const struct drop_cfg *cfg, const struct exh_scen
                struct exh_drive_out *out, struct drop_signals *sig)
 {
     const struct drop_par *par = cfg->par;
-    const int32_t cnt = exh_quad_extend(&s->quad, &par->quad, in->drive.enc_raw[0]);
+    const int32_t cnt = exh_quad_extend(&s->quad, &cfg->quad, in->drive.enc_raw[0]);
     const struct exh_contact_in q = {
         exh_quad_pos_m_q30(&par->quad, cnt),
         exh_velocity_window_mps_q27(&s->velocity, &cfg->velocity, cnt), par->own.q_lim_m_q30};
-    const struct exh_safety_in box = {in->drive.din, 0, in->missed, in->command, 1};
+    const struct exh_safety_in box = {in->drive.din, s->quad.jumped ? EXH_FAULT_ENCODER : 0u,
+                                      in->missed, in->command, 1};
+    const int run = exh_safety_step(&s->safety, &par->safety, box) == EXH_STATE_RUN;
     struct exh_force_ledger f;
     struct exh_current_ledger i;
     uint32_t limits;
 
-    if (exh_safety_step(&s->safety, &par->safety, box) != EXH_STATE_RUN) {
-        s->drive.force_N_q20 = 0; /* so that force rises from zero when it runs again */
-    }
     sig->c = exh_contact_law(&s->contact, &par->contact, q, &f);
-    limits = exh_drive_force(&s->drive, &cfg->drive, &f);
+    limits = exh_drive_force(&s->drive, &cfg->drive, run, &f);
     limits |= exh_drive_current(&s->drive, &cfg->drive, &f, &i);
     exh_gate(&s->safety, &cfg->drive, 1, &i, &limits, out);
 
@@ -92,6 +93,7 @@ void drop_tick(struct drop *s, const struct drop_cfg *cfg, const struct exh_scen
     sig->limits = (int32_t)limits;
     sig->state = s->safety.state;
     sig->faults = (int32_t)s->safety.faults;
+    sig->present = (int32_t)s->safety.present;
 }
 
 /* --- the one instance of this image --- */
@@ -107,11 +109,11 @@ static void defaults(void)
     exh_params_init(&params, &param_table, (int32_t *)&active, (int32_t *)&staged);
 }
 
-static int setup(struct exh_period T)
+static int setup(struct exh_scene_board board)
 {
     static const struct drop power_on;
     state = power_on;
-    return drop_setup(&cfg, &active, T);
+    return drop_setup(&cfg, &active, board);
 }
 
 static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)

@@ -33,11 +33,13 @@ struct drop_signals {
     int32_t f_mon_N_q20;
     int32_t limits; /* enum exh_limit                                          */
     int32_t state;  /* enum exh_state                                          */
-    int32_t faults; /* enum exh_fault                                          */
+    int32_t faults;  /* enum exh_fault, latched                                 */
+    int32_t present; /* enum exh_fault: why RUN or CLEAR is refused             */
 };
 
 struct drop_cfg {
     const struct drop_par *par;
+    struct exh_quad_cfg quad;
     struct exh_velocity_window_cfg velocity;
     struct exh_drive_cfg drive;
     struct exh_knot force_to_cur[2], cur_to_force[2];
@@ -52,7 +54,7 @@ struct drop {
 };
 
 /* Configuration from parameters. 0 or -EXH_E…. */
-int drop_setup(struct drop_cfg *cfg, const struct drop_par *par, struct exh_period T);
+int drop_setup(struct drop_cfg *cfg, const struct drop_par *par, struct exh_scene_board board);
 
 /* One tick. */
 void drop_tick(struct drop *s, const struct drop_cfg *cfg, const struct exh_scene_in *in,

@@ -3,7 +3,7 @@
 
 #include "exhand/exhand.h"
 
-static const struct exh_quad_par quad_par = {EXH_Q(6632, 100000000, EXH_Q_STEP), 24};
+static const struct exh_quad_par quad_par = {EXH_Q(6632, 100000000, EXH_Q_STEP), EXH_Q(10, 1, EXH_Q_VEL)};
 static const struct exh_velocity_par vel_par = {1};
 static const struct exh_contact_par contact_par = {
     .k_Npm_q10 = EXH_Q(2000, 1, EXH_Q_K), .b_Nspm_q20 = EXH_Q(10, 1, EXH_Q_B)};
@@ -15,22 +15,27 @@ static const struct exh_drive_par drive_par = {
 static const struct exh_safety_par safety_par = {1};
 static const int32_t wall_m_q30 = EXH_Q(2, 100, EXH_Q_POS);
 
-static struct exh_quad quad;
+static struct exh_quad_cfg quad_cfg;
 static struct exh_velocity_window_cfg vel_cfg;
-static struct exh_velocity_window vel;
-static struct exh_contact contact;
 static struct exh_drive_cfg drive_cfg;
-static struct exh_drive drive;
-static struct exh_safety safety;
 static struct exh_knot knot[2] = {{0, 0, {0, 0}}, {EXH_Q(22, 1, EXH_Q_FORCE), EXH_Q(66, 10, EXH_Q_CUR), {0, 0}}};
+static struct state {
+    struct exh_quad quad;
+    struct exh_velocity_window vel;
+    struct exh_contact contact;
+    struct exh_drive drive;
+    struct exh_safety safety;
+} s;
 
-static int setup(struct exh_period T)
+static int setup(struct exh_scene_board board)
 {
-    const struct exh_velocity_scale scale = {quad_par.step_m_q42, T};
+    const struct exh_velocity_scale scale = {quad_par.step_m_q42, board.T};
     const struct exh_table force_to_cur = {knot, 2}, no_monitor = {0, 0};
     int err = exh_table_set(knot, 2);
+    s = (struct state){0};
+    if (err == 0) { err = exh_quad_setup(&quad_cfg, &quad_par, board.T, board.enc_bits); }
     if (err == 0) { err = exh_velocity_window_setup(&vel_cfg, scale, &vel_par); }
-    if (err == 0) { err = exh_drive_setup(&drive_cfg, &drive_par, T, force_to_cur, no_monitor); }
+    if (err == 0) { err = exh_drive_setup(&drive_cfg, &drive_par, board.T, force_to_cur, no_monitor); }
     return err;
 }
 
@@ -38,21 +43,18 @@ static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
 {
     struct exh_force_ledger f;
     struct exh_current_ledger i;
+    const int32_t cnt = exh_quad_extend(&s.quad, &quad_cfg, in->drive.enc_raw[0]);
+    const struct exh_contact_in q = {exh_quad_pos_m_q30(&quad_par, cnt),
+                                     exh_velocity_window_mps_q27(&s.vel, &vel_cfg, cnt), wall_m_q30};
+    const struct exh_safety_in box = {in->drive.din, s.quad.jumped ? EXH_FAULT_ENCODER : 0u,
+                                      in->missed, in->command, 1};
+    const int run = exh_safety_step(&s.safety, &safety_par, box) == EXH_STATE_RUN;
     uint32_t limits;
-    const int32_t cnt = exh_quad_extend(&quad, &quad_par, in->drive.enc_raw[0]);
 
-    if (exh_safety_step(&safety, &safety_par,
-                        (struct exh_safety_in){in->drive.din, 0, in->missed, in->command, 1}) !=
-        EXH_STATE_RUN) {
-        drive.force_N_q20 = 0; /* so that force rises from zero when it runs again */
-    }
-    exh_contact_law(&contact, &contact_par,
-                    (struct exh_contact_in){exh_quad_pos_m_q30(&quad_par, cnt),
-                                            exh_velocity_window_mps_q27(&vel, &vel_cfg, cnt),
-                                            wall_m_q30}, &f);
-    limits = exh_drive_force(&drive, &drive_cfg, &f);
-    limits |= exh_drive_current(&drive, &drive_cfg, &f, &i);
-    exh_gate(&safety, &drive_cfg, 1, &i, &limits, out);
+    exh_contact_law(&s.contact, &contact_par, q, &f);
+    limits = exh_drive_force(&s.drive, &drive_cfg, run, &f);
+    limits |= exh_drive_current(&s.drive, &drive_cfg, &f, &i);
+    exh_gate(&s.safety, &drive_cfg, 1, &i, &limits, out);
 }
 
 const struct exh_scene exh_scene_minimal = {

@@ -48,7 +48,6 @@ static uint64_t move(struct exh_bytes *c, uint64_t v, uint32_t n)
     }
     /* Counting past cap tells the size needed; saturate instead of wrapping. */
     c->at = c->at > UINT32_MAX - n ? UINT32_MAX : c->at + n;
-    if (!fits && c->mode != EXH_BYTES_MEASURE && c->at <= c->cap) { c->at = c->cap + 1; }
     return r;
 }
 

@@ -63,4 +63,6 @@ void exh_contact_bytes(struct exh_bytes *c, struct exh_contact *s)
     exh_bytes_u8(c, &s->inward);
     exh_bytes_u8(c, &s->touching);
     exh_bytes_u8(c, &s->started);
+    s->inward = s->inward != 0; /* factors of a force, from bytes */
+    s->touching = s->touching != 0;
 }

@@ -4,18 +4,28 @@
 
 #include <stddef.h>
 
+/* What a parameter may be, whether it comes from a table or from ROM. */
+#define F_MAX_N_Q20       EXH_Q(100, 1, EXH_Q_FORCE)
+#define SLEW_MAX_NPS      10000000
+#define SLEW_DOWN_MIN_NPS 1000
+#define I_PEAK_MIN_A_Q26  EXH_Q(1, 10, EXH_Q_CUR)
+#define I_PEAK_MAX_A_Q26  EXH_Q(66, 10, EXH_Q_CUR)
+#define I_CONT_MAX_A_Q26  EXH_Q(33, 10, EXH_Q_CUR)
+#define PEAK_MAX_MS       2700
+
 const struct exh_signal exh_drive_rows[EXH_DRIVE_ROWS] = {
-    {0x0501, EXH_Q_FORCE, EXH_WHEN_ANY, 0, EXH_Q(100, 1, EXH_Q_FORCE), EXH_Q(40, 1, EXH_Q_FORCE),
+    {0x0501, EXH_Q_FORCE, EXH_WHEN_ANY, 0, F_MAX_N_Q20, EXH_Q(40, 1, EXH_Q_FORCE),
      "f_max", "n", "force limit"},
-    {0x0502, 0, EXH_WHEN_ANY, 1, 10000000, 200000, "slew_up", "n_per_s", "fastest rise of force"},
-    {0x0503, 0, EXH_WHEN_ANY, 1, 10000000, 200000, "slew_down", "n_per_s",
+    {0x0502, 0, EXH_WHEN_ANY, 1, SLEW_MAX_NPS, 200000, "slew_up", "n_per_s", "fastest rise of force"},
+    /* At 1 kN/s the whole peak force is gone in 22 ms: letting go is never slow. */
+    {0x0503, 0, EXH_WHEN_ANY, SLEW_DOWN_MIN_NPS, SLEW_MAX_NPS, 200000, "slew_down", "n_per_s",
      "fastest fall of force"},
     /* Elmo Castanet: 6.6 A peak for about 2.7 s, 3.3 A for ever (hardware facts). */
-    {0x0504, EXH_Q_CUR, EXH_WHEN_SETUP, 0, EXH_Q(66, 10, EXH_Q_CUR), EXH_Q(66, 10, EXH_Q_CUR),
+    {0x0504, EXH_Q_CUR, EXH_WHEN_SETUP, I_PEAK_MIN_A_Q26, I_PEAK_MAX_A_Q26, I_PEAK_MAX_A_Q26,
      "i_peak", "a", "peak current of the drive"},
-    {0x0505, EXH_Q_CUR, EXH_WHEN_SETUP, 0, EXH_Q(66, 10, EXH_Q_CUR), EXH_Q(33, 10, EXH_Q_CUR),
+    {0x0505, EXH_Q_CUR, EXH_WHEN_SETUP, 0, I_CONT_MAX_A_Q26, I_CONT_MAX_A_Q26,
      "i_cont", "a", "continuous current of the drive"},
-    {0x0506, 0, EXH_WHEN_SETUP, 1, 10000, 2700, "peak_time", "ms", "peak current from cold"},
+    {0x0506, 0, EXH_WHEN_SETUP, 1, PEAK_MAX_MS, PEAK_MAX_MS, "peak_time", "ms", "peak current from cold"},
     /* Sensoray 526: offset binary, 3249 codes/V; Castanet: 1.76 A/V, +-3.75 V. */
     {0x0507, 0, EXH_WHEN_SETUP, 0, 65535, 32768, "dac_zero", "", "D/A code of no current"},
     {0x0508, 0, EXH_WHEN_SETUP, 0, 32767, 12184, "dac_span", "", "codes used either side of it"},
@@ -111,24 +121,39 @@ static int setup_i2t(struct exh_drive_cfg *cfg, const struct exh_drive_par *par,
                         knee ? knee : 1);
 }
 
+static int inside(int32_t v, int32_t lo, int32_t hi)
+{
+    return v >= lo && v <= hi;
+}
+
+/* Parameters in ROM never passed their rows, and a negative span would open the
+ * gate. The rows are not linked for this: they are names and help besides. */
+static int par_ok(const struct exh_drive_par *par, int monitor)
+{
+    return inside(par->f_max_N_q20, 0, F_MAX_N_Q20) &&
+           inside(par->slew_up_Nps, 1, SLEW_MAX_NPS) &&
+           inside(par->slew_down_Nps, SLEW_DOWN_MIN_NPS, SLEW_MAX_NPS) &&
+           inside(par->i_peak_A_q26, I_PEAK_MIN_A_Q26, I_PEAK_MAX_A_Q26) &&
+           inside(par->i_cont_A_q26, 0, I_CONT_MAX_A_Q26) &&
+           par->i_cont_A_q26 <= par->i_peak_A_q26 && inside(par->peak_ms, 1, PEAK_MAX_MS) &&
+           inside(par->dac_zero_raw, 0, UINT16_MAX) && inside(par->dac_span_raw, 0, INT16_MAX) &&
+           inside(par->dac_rawpA_q16, EXH_Q(1, 1, EXH_Q_DAC), INT32_MAX) &&
+           inside(par->mon_zero_raw, INT16_MIN, INT16_MAX) && (!monitor || par->mon_A_q40 > 0);
+}
+
 int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par,
                     struct exh_period T, struct exh_table force_to_cur,
                     struct exh_table cur_to_force)
 {
     int err;
-    if (par->i_cont_A_q26 < 0 || par->i_peak_A_q26 < par->i_cont_A_q26 || par->peak_ms < 1 ||
-        par->dac_rawpA_q16 <= 0 || T.num == 0 || T.den == 0 ||
-        (cur_to_force.n > 0 && par->mon_A_q40 <= 0) || force_to_cur.n < 2) {
-        return -EXH_E_RANGE;
-    }
-    /* Parameters in ROM never passed their rows; a negative span would open the gate. */
-    if (par->dac_span_raw < 0 || par->dac_span_raw > 32767 || par->dac_zero_raw < 0 ||
-        par->dac_zero_raw > UINT16_MAX || par->f_max_N_q20 < 0) {
+    if (!par_ok(par, cur_to_force.n > 0) || T.num == 0 || T.den == 0 || force_to_cur.n < 2 ||
+        cur_to_force.n == 1 || force_to_cur.knot[0].x > 0 || exh_table_at(force_to_cur, 0) != 0) {
         return -EXH_E_RANGE;
     }
     cfg->par = par;
     cfg->force_to_cur = force_to_cur;
     cfg->cur_to_force = cur_to_force;
+    cfg->f_top_N_q20 = force_to_cur.knot[force_to_cur.n - 1].x;
     err = exh_gain_set(&cfg->tick_N_q20, (uint64_t)T.num << EXH_Q_FORCE, T.den);
     if (err == 0) {
         err = exh_gain_set(&cfg->dac_A_q26, UINT64_C(1) << (EXH_Q_CUR + EXH_Q_DAC),
@@ -139,13 +164,24 @@ int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par,
 
 /* --- the tick --- */
 
-uint32_t exh_drive_force(struct exh_drive *s, const struct exh_drive_cfg *cfg,
+/* Not in RUN: nothing is left for the slew limit to remember. */
+static uint32_t no_force(struct exh_drive *s, int64_t asked_N_q20, struct exh_force_ledger *f)
+{
+    s->force_N_q20 = 0;
+    f->clamp_N_q20 = -asked_N_q20;
+    f->slew_N_q20 = 0;
+    f->force_N_q20 = 0;
+    return asked_N_q20 > 0 ? EXH_LIMIT_GATE : asked_N_q20 < 0 ? EXH_LIMIT_PULL : 0u;
+}
+
+uint32_t exh_drive_force(struct exh_drive *s, const struct exh_drive_cfg *cfg, int run,
                          struct exh_force_ledger *f)
 {
     const struct exh_drive_par *par = cfg->par;
     const int64_t asked =
         f->spring_N_q20 + f->damper_N_q20 + f->pullback_N_q20 + f->passivity_N_q20;
-    const int32_t held = exh_clamp(asked, 0, par->f_max_N_q20);
+    const int32_t most = par->f_max_N_q20 < cfg->f_top_N_q20 ? par->f_max_N_q20 : cfg->f_top_N_q20;
+    const int32_t held = exh_clamp(asked, 0, most);
     const int64_t up = exh_gain_mul(cfg->tick_N_q20, par->slew_up_Nps);
     const int64_t down = exh_gain_mul(cfg->tick_N_q20, par->slew_down_Nps);
     const int64_t top = s->force_N_q20 + (up > 0 ? up : 1);
@@ -153,6 +189,7 @@ uint32_t exh_drive_force(struct exh_drive *s, const struct exh_drive_cfg *cfg,
     const int64_t slewed = held > top ? top : held < bottom ? bottom : held;
     uint32_t limits = 0;
 
+    if (!run) { return no_force(s, asked, f); }
     if (asked < 0) { limits |= EXH_LIMIT_PULL; }
     if (asked > held && asked > 0) { limits |= EXH_LIMIT_FORCE; }
     if (slewed != held) { limits |= EXH_LIMIT_SLEW; }
@@ -201,11 +238,16 @@ int32_t exh_drive_monitor_A_q26(const struct exh_drive_cfg *cfg, int16_t mon_raw
 
 int32_t exh_drive_monitor_N_q20(const struct exh_drive_cfg *cfg, int16_t mon_raw)
 {
-    return exh_table_at(cfg->cur_to_force, exh_drive_monitor_A_q26(cfg, mon_raw));
+    return cfg->cur_to_force.n > 0
+               ? exh_table_at(cfg->cur_to_force, exh_drive_monitor_A_q26(cfg, mon_raw))
+               : 0;
 }
 
 void exh_drive_bytes(struct exh_bytes *c, struct exh_drive *s)
 {
     exh_bytes_i32(c, &s->force_N_q20);
     exh_bytes_i64(c, &s->i2t_q32);
+    /* From damaged bytes: no push, and no heat that a sum with it overflows. */
+    if (s->force_N_q20 < 0) { s->force_N_q20 = 0; }
+    if (s->i2t_q32 < 0 || s->i2t_q32 > INT64_MAX / 2) { s->i2t_q32 = INT64_MAX / 2; }
 }

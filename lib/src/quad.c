@@ -1,12 +1,15 @@
 #include "exhand/quad.h"
 
+#include "exhand/error.h"
 #include "exhand/fix.h"
 #include "exhand/units.h"
 
 const struct exh_signal exh_quad_rows[EXH_QUAD_ROWS] = {
     {0x0201, EXH_Q_STEP, EXH_WHEN_SETUP, EXH_Q(1, 1000000, EXH_Q_STEP), INT32_MAX,
      EXH_Q(6632, 100000000, EXH_Q_STEP), "step", "m", "string per encoder count"},
-    {0x0202, 0, EXH_WHEN_SETUP, 16, 32, 24, "counter_bits", "", "width of the hardware counter"},
+    /* A fast reach moves the hand at some 3 m/s; a lost or forged count moves it at any speed. */
+    {0x0202, EXH_Q_VEL, EXH_WHEN_SETUP, EXH_Q(1, 10, EXH_Q_VEL), INT32_MAX,
+     EXH_Q(10, 1, EXH_Q_VEL), "speed_max", "m_per_s", "faster is an encoder fault"},
 };
 
 /* Step of each transition, index previous<<2 | now of A<<1 | B; ILL = both lines
@@ -43,12 +46,30 @@ void exh_quad_ab_step(struct exh_quad_ab *s, enum exh_quad_mode mode, unsigned a
     s->started = 1;
 }
 
-int32_t exh_quad_extend(struct exh_quad *s, const struct exh_quad_par *par, uint32_t raw)
+int exh_quad_setup(struct exh_quad_cfg *cfg, const struct exh_quad_par *par, struct exh_period T,
+                   unsigned bits)
 {
-    const unsigned unused = 32u - (unsigned)par->bits;
-    /* At the top of the word the counter's own wrap is the word's. */
-    const int32_t moved = exh_from_u32((raw - s->raw) << unused) >> unused;
+    struct exh_gain per_tick; /* counts per m/s q27 */
+    int64_t jump;
+    if (bits < 16 || bits > 32 || par->step_m_q42 <= 0 || par->speed_max_mps_q27 <= 0 ||
+        exh_gain_set(&per_tick, (uint64_t)T.num << (EXH_Q_STEP - EXH_Q_VEL),
+                     (uint64_t)(uint32_t)par->step_m_q42 * T.den) < 0) {
+        return -EXH_E_RANGE;
+    }
+    jump = exh_gain_mul(per_tick, par->speed_max_mps_q27) + 1;
+    if (jump >= INT64_C(1) << (bits - 1)) { return -EXH_E_RANGE; }
+    cfg->par = par;
+    cfg->jump_cnt = (int32_t)jump;
+    cfg->unused = (uint8_t)(32u - bits);
+    return 0;
+}
 
+int32_t exh_quad_extend(struct exh_quad *s, const struct exh_quad_cfg *cfg, uint32_t raw)
+{
+    /* At the top of the word the counter's own wrap is the word's. */
+    const int32_t moved = exh_from_u32((raw - s->raw) << cfg->unused) >> cfg->unused;
+
+    s->jumped = s->started && (moved > cfg->jump_cnt || moved < -cfg->jump_cnt);
     if (s->started) { s->cnt = exh_wrap_add(s->cnt, moved); }
     s->raw = raw;
     s->started = 1;
@@ -65,4 +86,19 @@ void exh_quad_bytes(struct exh_bytes *c, struct exh_quad *s)
     exh_bytes_u32(c, &s->raw);
     exh_bytes_i32(c, &s->cnt);
     exh_bytes_u8(c, &s->started);
+    exh_bytes_u8(c, &s->jumped);
+}
+
+void exh_quad_ab_bytes(struct exh_bytes *c, struct exh_quad_ab *s)
+{
+    exh_bytes_i32(c, &s->cnt);
+    exh_bytes_u32(c, &s->edges);
+    exh_bytes_u32(c, &s->illegal);
+    exh_bytes_i32(c, &s->index_cnt);
+    exh_bytes_u32(c, &s->indices);
+    exh_bytes_u8(c, &s->ab);
+    exh_bytes_u8(c, &s->index);
+    exh_bytes_u8(c, &s->started);
+    s->ab &= 3; /* an index into a table, from bytes */
+    s->index &= 1;
 }

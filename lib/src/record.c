@@ -79,6 +79,7 @@ void exh_record_header_bytes(struct exh_bytes *c, struct exh_record_header *h)
     exh_bytes_u32(c, &h->T.num);
     exh_bytes_u32(c, &h->T.den);
     exh_bytes_u16(c, &h->fingers);
+    exh_bytes_u16(c, &h->enc_bits);
     exh_bytes_u16(c, &h->signals);
 }
 

@@ -3,27 +3,42 @@
 #include "exhand/error.h"
 #include "exhand/fix.h"
 
+#define MISSED_MAX 3
+
 const struct exh_signal exh_safety_rows[EXH_SAFETY_ROWS] = {
-    {0x0601, 0, EXH_WHEN_ANY, 0, 1000, 1, "missed_max", "", "ticks missed at once, tolerated"},
+    {0x0601, 0, EXH_WHEN_SETUP, 0, MISSED_MAX, 1, "missed_max", "", "ticks missed in a row, tolerated"},
 };
 
+static uint32_t add_sat(uint32_t a, uint32_t b)
+{
+    return a > UINT32_MAX - b ? UINT32_MAX : a + b;
+}
+
 /* Causes present in this tick. */
-static uint32_t causes(const struct exh_safety_par *par, struct exh_safety_in in)
+static uint32_t causes(uint32_t late, const struct exh_safety_par *par, struct exh_safety_in in)
 {
     const uint32_t drives = ((1u << in.fingers) - 1u) * EXH_DIN_DRIVE0;
+    const int in_range = par->missed_max >= 0 && par->missed_max <= MISSED_MAX;
     uint32_t c = in.raised;
     if (!(in.din & EXH_DIN_ESTOP)) { c |= EXH_FAULT_ESTOP; }
+    if (!(in.din & EXH_DIN_DEADMAN)) { c |= EXH_FAULT_DEADMAN; }
     if ((in.din & drives) != drives) { c |= EXH_FAULT_DRIVE; }
-    if (in.missed > (uint32_t)par->missed_max) { c |= EXH_FAULT_OVERRUN; }
+    if (late > (in_range ? (uint32_t)par->missed_max : 0)) { c |= EXH_FAULT_OVERRUN; }
     return c;
 }
 
 uint8_t exh_safety_step(struct exh_safety *s, const struct exh_safety_par *par,
                         struct exh_safety_in in)
 {
-    const uint32_t now = causes(par, in);
+    uint32_t now;
 
-    s->missed = s->missed > UINT32_MAX - in.missed ? UINT32_MAX : s->missed + in.missed;
+    EXH_ASSERT(in.fingers >= 1);
+    EXH_ASSERT(in.fingers <= EXH_FINGERS);
+    s->missed = add_sat(s->missed, in.missed);
+    /* Late at every wait is an overrun however short each delay is. */
+    s->late = in.missed > 0 ? add_sat(s->late, in.missed) : 0;
+    now = causes(s->late, par, in);
+    s->present = now;
     if (s->state == EXH_STATE_RUN && now != 0) {
         s->state = EXH_STATE_FAULT;
         s->first = now;
@@ -82,11 +97,13 @@ void exh_gate(struct exh_safety *s, const struct exh_drive_cfg *cfg, unsigned n,
 
 void exh_safety_bytes(struct exh_bytes *c, struct exh_safety *s)
 {
+    exh_bytes_u32(c, &s->present);
     exh_bytes_u32(c, &s->faults);
     exh_bytes_u32(c, &s->first);
     exh_bytes_u32(c, &s->first_tick);
     exh_bytes_u32(c, &s->tick);
     exh_bytes_u32(c, &s->missed);
+    exh_bytes_u32(c, &s->late);
     exh_bytes_u8(c, &s->state);
     exh_bytes_u8(c, &s->alive);
 }

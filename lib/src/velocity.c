@@ -6,6 +6,11 @@ const struct exh_signal exh_velocity_rows[EXH_VELOCITY_ROWS] = {
     {0x0301, 0, EXH_WHEN_SETUP, 0, 4, 1, "vel_p", "", "velocity window of 2^p ticks"},
 };
 
+static int64_t limit(int64_t v, int64_t most)
+{
+    return v > most ? most : v < -most ? -most : v;
+}
+
 /* Gain from m to m/s q27, when v = m * step / (T * n). n < 2^13. */
 static int scale(struct exh_gain *g, struct exh_velocity_scale s, uint32_t n)
 {
@@ -51,7 +56,10 @@ void exh_velocity_window_bytes(struct exh_bytes *c, struct exh_velocity_window *
     for (unsigned i = 0; i < EXH_VELOCITY_N; i++) { exh_bytes_i32(c, &s->cnt[i]); }
     exh_bytes_u8(c, &s->at);
     exh_bytes_u8(c, &s->started);
+    s->at %= EXH_VELOCITY_N; /* an index, from bytes */
 }
+
+#define POLE_MAX_MPS_Q55 (INT64_C(16) << 55)
 
 int exh_velocity_pole_setup(struct exh_velocity_pole_cfg *cfg, struct exh_velocity_scale s,
                             uint32_t tau_us)
@@ -75,6 +83,7 @@ int32_t exh_velocity_pole_mps_q27(struct exh_velocity_pole *s,
 void exh_velocity_pole_bytes(struct exh_bytes *c, struct exh_velocity_pole *s)
 {
     exh_bytes_i64(c, &s->v_mps_q55);
+    s->v_mps_q55 = limit(s->v_mps_q55, POLE_MAX_MPS_Q55);
     exh_bytes_i32(c, &s->cnt);
     exh_bytes_u8(c, &s->started);
 }
@@ -136,12 +145,14 @@ int32_t exh_velocity_foaw_mps_q27(struct exh_velocity_foaw *s,
     at = s->at;
     for (int32_t n = 1; n <= cfg->n; n++) {
         int64_t m;
+        int fits;
         at = at > 0 ? at - 1 : EXH_VELOCITY_N;
         d[n] = exh_wrap_diff(s->cnt[at], cnt);
         sum += d[n];
         weighted += (int64_t)n * d[n];
         m = n * sum - 2 * weighted;
-        good &= n < s->have && (n == 1 || line_fits(d, n, m, cfg->tol_cnt));
+        fits = n == 1 || line_fits(d, n, m, cfg->tol_cnt);
+        good &= n < s->have && fits;
         if (good) {
             best = m;
             best_n = n;
@@ -155,6 +166,7 @@ void exh_velocity_foaw_bytes(struct exh_bytes *c, struct exh_velocity_foaw *s)
     for (unsigned i = 0; i <= EXH_VELOCITY_N; i++) { exh_bytes_i32(c, &s->cnt[i]); }
     exh_bytes_u8(c, &s->at);
     exh_bytes_u8(c, &s->have);
+    if (s->at > EXH_VELOCITY_N) { s->at = EXH_VELOCITY_N; } /* an index, from bytes */
 }
 
 int exh_velocity_track_setup(struct exh_velocity_track_cfg *cfg, struct exh_velocity_scale s,
@@ -169,22 +181,17 @@ int exh_velocity_track_setup(struct exh_velocity_track_cfg *cfg, struct exh_velo
 
 #define TRACK_MAX_CNT_Q32 (INT64_C(1) << 60)
 
-static int64_t track_limit(int64_t v)
-{
-    return v > TRACK_MAX_CNT_Q32 ? TRACK_MAX_CNT_Q32 : v < -TRACK_MAX_CNT_Q32 ? -TRACK_MAX_CNT_Q32 : v;
-}
-
 int32_t exh_velocity_track_mps_q27(struct exh_velocity_track *s,
                                    const struct exh_velocity_track_cfg *cfg, int32_t cnt)
 {
     const int32_t moved = s->started ? exh_wrap_diff(cnt, s->cnt) : 0;
     const int64_t moved_q32 = exh_clamp(moved, -(INT32_C(1) << 28), INT32_C(1) << 28) * (INT64_C(1) << 32);
-    const int64_t off = track_limit(s->err_cnt_q32 + s->vel_cnt_q32 - moved_q32);
+    const int64_t off = limit(s->err_cnt_q32 + s->vel_cnt_q32 - moved_q32, TRACK_MAX_CNT_Q32);
 
     s->cnt = cnt;
     s->started = 1;
     s->err_cnt_q32 = off - exh_mul64_q31(off, cfg->alpha_q31);
-    s->vel_cnt_q32 = track_limit(s->vel_cnt_q32 - exh_mul64_q31(off, cfg->beta_q31));
+    s->vel_cnt_q32 = limit(s->vel_cnt_q32 - exh_mul64_q31(off, cfg->beta_q31), TRACK_MAX_CNT_Q32);
     return exh_sat32(exh_shr_round(exh_mul64_q31(s->vel_cnt_q32, cfg->gain.mant),
                                    cfg->gain.shift + 1u));
 }
@@ -193,6 +200,8 @@ void exh_velocity_track_bytes(struct exh_bytes *c, struct exh_velocity_track *s)
 {
     exh_bytes_i64(c, &s->err_cnt_q32);
     exh_bytes_i64(c, &s->vel_cnt_q32);
+    s->err_cnt_q32 = limit(s->err_cnt_q32, TRACK_MAX_CNT_Q32);
+    s->vel_cnt_q32 = limit(s->vel_cnt_q32, TRACK_MAX_CNT_Q32);
     exh_bytes_i32(c, &s->cnt);
     exh_bytes_u8(c, &s->started);
 }

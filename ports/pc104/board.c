@@ -10,6 +10,7 @@
 
 #define TICKS_DEFAULT 1000u /* an emulator has no other way to say "enough" */
 #define DAC_ZERO_RAW  32768u
+#define DEADMAN_TICK  10u
 /* Debug exit of emulators: status 2 * value + 1. Neither may look like a failure
  * of the emulator itself, which is 1. Real machines have nothing at this port. */
 enum { EXIT_PORT = 0xF4, EXIT_DONE = 0x10, EXIT_FAILED = 0x11 };
@@ -60,7 +61,8 @@ int exh_board_wait(void)
 
 int exh_board_read_drive(struct exh_drive_in *in)
 {
-    *in = (struct exh_drive_in){.din = EXH_DIN_ESTOP | EXH_DIN_DEADMAN};
+    /* A hand that takes hold of the dead-man switch after a while. */
+    *in = (struct exh_drive_in){.din = EXH_DIN_ESTOP | (run.run > DEADMAN_TICK ? EXH_DIN_DEADMAN : 0)};
     for (unsigned i = 0; i < EXH_FINGERS; i++) {
         in->din |= (uint32_t)EXH_DIN_DRIVE0 << i;
     }

@@ -66,7 +66,7 @@ static void law_force_op(uint32_t i)
 {
     for (uint32_t f = 0; f < FINGERS; f++) {
         exh_contact_law(&contact[f], &path_par.contact, at[f][i], &ledger[f]);
-        bench_sink = exh_drive_force(&drive[f], &path_cfg.drive, &ledger[f]);
+        bench_sink = exh_drive_force(&drive[f], &path_cfg.drive, 1, &ledger[f]);
     }
 }
 
@@ -177,6 +177,13 @@ static void float_error(struct error *e)
     }
 }
 
+/* The force limit, or the end of the table. */
+static int32_t most_q20(void)
+{
+    const int32_t f_max = path_par.drive.f_max_N_q20;
+    return f_max < path_cfg.drive.f_top_N_q20 ? f_max : path_cfg.drive.f_top_N_q20;
+}
+
 /* Law, limits, slew: 100 N a tick, so that it never acts. */
 static void law_force_error(struct error *e)
 {
@@ -185,10 +192,10 @@ static void law_force_error(struct error *e)
         const struct exh_contact_in in = hour_in(i);
         struct exh_force_ledger l;
         exh_contact_law(&contact[0], &path_par.contact, in, &l);
-        exh_drive_force(&drive[0], &path_cfg.drive, &l);
+        exh_drive_force(&drive[0], &path_cfg.drive, 1, &l);
         error_add(e, l.force_N_q20 -
                          bench_clamp(exact_law(&path_par.contact, in, contact[0].inward), 0,
-                                     path_par.drive.f_max_N_q20));
+                                     most_q20()));
     }
 }
 
@@ -205,17 +212,17 @@ static void force_setup(void)
     for (uint32_t i = 0; i < BENCH_OPS; i++) { mon[i] = (int16_t)bench_in(INT16_MIN, INT16_MAX); }
     law_op(0);
     for (uint32_t f = 0; f < FINGERS; f++) { ledger[f].spring_N_q20 = 20 << EXH_Q_FORCE; }
-    exh_drive_force(&drive[0], &path_cfg.drive, &ledger[0]);
+    exh_drive_force(&drive[0], &path_cfg.drive, 1, &ledger[0]);
     exh_drive_current(&drive[0], &path_cfg.drive, &ledger[0], &current);
 }
 
 static void force_op(uint32_t i)
 {
     ledger[0].spring_N_q20 = at[0][i].pos_m_q30;
-    bench_sink = exh_drive_force(&drive[0], &path_cfg.drive, &ledger[0]);
+    bench_sink = exh_drive_force(&drive[0], &path_cfg.drive, 1, &ledger[0]);
 }
 
-/* asked limited to 0..f_max, then to the last force +- slew * T. */
+/* asked limited to 0..most, then to the last force +- slew * T. */
 static void force_error(struct error *e)
 {
     const struct exh_drive_par *p = &path_par.drive;
@@ -227,8 +234,8 @@ static void force_error(struct error *e)
         const long double asked = (long double)(spring + damper + pull);
         const long double up = (long double)p->slew_up_Nps * (1 << EXH_Q_FORCE) / 2000;
         const long double down = (long double)p->slew_down_Nps * (1 << EXH_Q_FORCE) / 2000;
-        long double want = bench_clamp(asked, 0, p->f_max_N_q20);
-        exh_drive_force(&drive[0], &path_cfg.drive, &l);
+        long double want = bench_clamp(asked, 0, most_q20());
+        exh_drive_force(&drive[0], &path_cfg.drive, 1, &l);
         want = bench_clamp(want, last - down, last + up);
         error_add(e, l.force_N_q20 - want);
         path_par.drive.slew_up_Nps = bench_in(1, 100000);
@@ -326,6 +333,7 @@ static void safety_error(struct error *e)
         const uint32_t din = bench_in(0, 3) ? PATH_HEALTHY : (uint32_t)bench_in(0, 0x1FF);
         const struct exh_safety_in box = {din, 0, (uint32_t)bench_in(0, 2), EXH_CMD_NONE, 1};
         const uint32_t want = (din & EXH_DIN_ESTOP ? 0u : EXH_FAULT_ESTOP) |
+                              (din & EXH_DIN_DEADMAN ? 0u : EXH_FAULT_DEADMAN) |
                               (din & EXH_DIN_DRIVE0 ? 0u : EXH_FAULT_DRIVE) |
                               (box.missed > 1 ? EXH_FAULT_OVERRUN : 0u);
         struct exh_safety s = {.state = EXH_STATE_RUN};

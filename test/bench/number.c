@@ -172,7 +172,8 @@ static uint8_t ab[BENCH_OPS * 8]; /* A<<1 | B of a legal walk, with dwells and r
 static int32_t truth[BENCH_OPS * 8];
 static struct exh_quad_ab lines;
 static struct exh_quad counter;
-static const struct exh_quad_par encoder = {EXH_Q(6632, 100000000, EXH_Q_STEP), 24};
+static const struct exh_quad_par encoder = {EXH_Q(6632, 100000000, EXH_Q_STEP), INT32_MAX};
+static struct exh_quad_cfg encoder_cfg;
 
 static void lines_setup(void)
 {
@@ -216,13 +217,14 @@ static void lines_error(struct error *e)
 
 static void extend_setup(void)
 {
+    EXH_ASSERT(exh_quad_setup(&encoder_cfg, &encoder, (struct exh_period){1, 2000}, 24) == 0);
     counter = (struct exh_quad){0};
     setup_numbers();
 }
 
 static void extend_op(uint32_t i)
 {
-    bench_sink = exh_quad_extend(&counter, &encoder, (uint32_t)i * 8191u & 0xFFFFFF);
+    bench_sink = exh_quad_extend(&counter, &encoder_cfg, (uint32_t)i * 8191u & 0xFFFFFF);
 }
 
 /* Moves of up to half the counter's width, across its wrap and the wrap of 2^32. */
@@ -231,10 +233,10 @@ static void extend_error(struct error *e)
     uint32_t at = 0;
     counter = (struct exh_quad){0};
     bench_seed();
-    exh_quad_extend(&counter, &encoder, 0);
+    exh_quad_extend(&counter, &encoder_cfg, 0);
     for (int i = 0; i < CASES; i++) {
         at += (uint32_t)bench_in(-(1 << 23) + 1, (1 << 23) - 1);
-        error_add(e, (long double)exh_quad_extend(&counter, &encoder, at & 0xFFFFFF) -
+        error_add(e, (long double)exh_quad_extend(&counter, &encoder_cfg, at & 0xFFFFFF) -
                          exh_from_u32(at));
     }
 }
@@ -248,7 +250,7 @@ static void pos_error(struct error *e)
 {
     bench_seed();
     for (int i = 0; i < CASES; i++) {
-        const struct exh_quad_par p = {bench_in(1 << 22, INT32_MAX), 24};
+        const struct exh_quad_par p = {bench_in(1 << 22, INT32_MAX), INT32_MAX};
         const int32_t cnt = i & 1 ? bench_i32() : bench_in(-32768, 32767);
         const long double exact = bench_q((long double)((int64_t)cnt * p.step_m_q42), 12);
         error_add(e, exh_quad_pos_m_q30(&p, cnt) - bench_clamp(exact, INT32_MIN, INT32_MAX));

@@ -7,13 +7,13 @@ struct drop_cfg path_cfg;
 
 void path_setup(void)
 {
-    const struct exh_period T = {1, 2000};
+    const struct exh_scene_board board = {{1, 2000}, 24};
     exh_scene_drop.defaults();
     memcpy(&path_par, exh_scene_drop.params->active, sizeof path_par);
     path_par.contact.k_Npm_q10 = EXH_Q(19973, 10, EXH_Q_K);
     path_par.contact.b_Nspm_q20 = EXH_Q(617, 100, EXH_Q_B);
     path_par.own.q_lim_m_q30 = EXH_Q(62413, 1000000, EXH_Q_POS);
-    EXH_ASSERT(drop_setup(&path_cfg, &path_par, T) == 0);
+    EXH_ASSERT(drop_setup(&path_cfg, &path_par, board) == 0);
     bench_seed();
 }
 

@@ -20,7 +20,7 @@ static void input(uint32_t i, int32_t noise)
 static void drop_start(void)
 {
     path_setup();
-    state = (struct drop){.quad = {0, 0, 0}};
+    state = (struct drop){.quad = {0, 0, 0, 0}};
     input(0, 0);
     drop_tick(&state, &path_cfg, &in, &out, &signals);
 }
@@ -35,9 +35,9 @@ static void drop_op(uint32_t i)
 
 static void minimal_start(void)
 {
-    const struct exh_period T = {1, MINIMAL_RATE_HZ};
+    const struct exh_scene_board board = {{1, MINIMAL_RATE_HZ}, 24};
     path_setup();
-    EXH_ASSERT(exh_scene_minimal.setup(T) == 0);
+    EXH_ASSERT(exh_scene_minimal.setup(board) == 0);
     input(0, 0);
     exh_scene_minimal.tick(&in, &out);
 }

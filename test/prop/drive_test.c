@@ -119,15 +119,25 @@ static int any_axis(struct axis *a)
 {
     const struct exh_table t = {a->knot, 4}, none = {NULL, 0};
     int32_t *field = &a->par.f_max_N_q20;
+    struct exh_knot zero;
     for (unsigned r = 0; r < EXH_DRIVE_ROWS; r++) { field[r] = in_row(r); }
     if (a->par.i_peak_A_q26 < a->par.i_cont_A_q26) {
         const int32_t swap = a->par.i_peak_A_q26;
         a->par.i_peak_A_q26 = a->par.i_cont_A_q26;
         a->par.i_cont_A_q26 = swap;
     }
+    if (a->par.i_cont_A_q26 > exh_drive_rows[4].max) { a->par.i_cont_A_q26 = exh_drive_rows[4].max; }
+    if (a->par.i_peak_A_q26 < exh_drive_rows[3].min) { a->par.i_peak_A_q26 = exh_drive_rows[3].min; }
     a->T.num = 1;
     a->T.den = (uint32_t)check_i32_in(1, 20000);
-    if (!any_table(a->knot, 4, 28) || exh_table_set(a->knot, 4) < 0) { return 0; }
+    if (!any_table(a->knot, 4, 28)) { return 0; }
+    /* A drive's table goes through the origin: from one of the first three knots. */
+    zero = a->knot[check_u64() % 3];
+    for (unsigned i = 0; i < 4; i++) {
+        a->knot[i].x -= zero.x;
+        a->knot[i].y -= zero.y;
+    }
+    if (exh_table_set(a->knot, 4) < 0) { return 0; }
     return exh_drive_setup(&a->cfg, &a->par, a->T, t, check_u64() % 2 ? t : none) == 0;
 }
 
@@ -148,7 +158,8 @@ TEST(force_ledger_sums_and_limits_hold)
         struct exh_force_ledger f;
         int64_t asked;
         uint32_t bits;
-        int32_t last, slew;
+        int32_t last, slew, most;
+        int run;
         if (!any_axis(&a)) { continue; }
         f.spring_N_q20 = check_i64() >> 8;
         f.damper_N_q20 = check_i64();
@@ -157,18 +168,25 @@ TEST(force_ledger_sums_and_limits_hold)
         f.passivity_N_q20 = check_u64() % 2 ? check_i32() : 0;
         asked = f.spring_N_q20 + f.damper_N_q20 + f.pullback_N_q20 + f.passivity_N_q20;
         f.clamp_N_q20 = f.slew_N_q20 = f.force_N_q20 = 123;
-        last = s.force_N_q20 = check_i32_in(0, a.par.f_max_N_q20);
-        bits = exh_drive_force(&s, &a.cfg, &f);
+        most = a.par.f_max_N_q20 < a.knot[3].x ? a.par.f_max_N_q20 : a.knot[3].x;
+        last = s.force_N_q20 = check_i32_in(0, most);
+        run = check_u64() % 8 != 0;
+        bits = exh_drive_force(&s, &a.cfg, run, &f);
         CHECK(f.force_N_q20 == asked + f.clamp_N_q20 + f.slew_N_q20, "ledger: %" PRId32,
               f.force_N_q20);
         CHECK(s.force_N_q20 == f.force_N_q20, "state");
-        CHECK(f.force_N_q20 >= 0 && f.force_N_q20 <= a.par.f_max_N_q20, "force %" PRId32,
-              f.force_N_q20);
+        CHECK(f.force_N_q20 >= 0 && f.force_N_q20 <= most, "force %" PRId32, f.force_N_q20);
+        if (!run) {
+            CHECK(f.force_N_q20 == 0 && f.slew_N_q20 == 0, "force %" PRId32 " outside RUN",
+                  f.force_N_q20);
+            CHECK(((bits & EXH_LIMIT_GATE) != 0) == (asked > 0), "gate bit");
+            continue;
+        }
         slew = f.force_N_q20 >= last ? a.par.slew_up_Nps : a.par.slew_down_Nps;
         CHECK(within_slew(&a, (int64_t)f.force_N_q20 - last, slew),
               "from %" PRId32 " to %" PRId32, last, f.force_N_q20);
         CHECK(((bits & EXH_LIMIT_PULL) != 0) == (asked < 0), "pull bit, asked %" PRId64, asked);
-        CHECK(((bits & EXH_LIMIT_FORCE) != 0) == (asked > a.par.f_max_N_q20), "force bit");
+        CHECK(((bits & EXH_LIMIT_FORCE) != 0) == (asked > most), "force bit");
         CHECK(((bits & EXH_LIMIT_SLEW) != 0) == (f.slew_N_q20 != 0), "slew bit");
         CHECK((bits & ~7u) == 0, "foreign bits %" PRIx32, bits);
         CHECK(f.slew_N_q20 == 0 || f.force_N_q20 != last, "stuck at %" PRId32, last);
@@ -182,12 +200,13 @@ TEST(force_above_a_lowered_limit_comes_down)
         struct axis a;
         struct exh_drive s = {0, 0};
         struct exh_force_ledger f = {0, 0, 0, 0, 0, 0, 0};
-        int32_t last;
+        int32_t last, most;
         if (!any_axis(&a)) { continue; }
-        last = s.force_N_q20 = check_i32_in(a.par.f_max_N_q20, INT32_MAX);
+        most = a.par.f_max_N_q20 < a.knot[3].x ? a.par.f_max_N_q20 : a.knot[3].x;
+        last = s.force_N_q20 = check_i32_in(most, INT32_MAX);
         f.spring_N_q20 = check_i64() >> 2;
-        (void)exh_drive_force(&s, &a.cfg, &f);
-        CHECK(f.force_N_q20 <= a.par.f_max_N_q20 || f.force_N_q20 < last, "stays at %" PRId32,
+        (void)exh_drive_force(&s, &a.cfg, 1, &f);
+        CHECK(f.force_N_q20 <= most || f.force_N_q20 < last, "stays at %" PRId32,
               last);
         CHECK(within_slew(&a, (int64_t)f.force_N_q20 - last, a.par.slew_down_Nps), "snaps");
         CHECK(f.force_N_q20 == f.spring_N_q20 + f.clamp_N_q20 + f.slew_N_q20, "ledger");

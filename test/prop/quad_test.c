@@ -1,6 +1,7 @@
 /* quad.h against exact arithmetic: metres of a count, and the extension. */
 #include "exhand/quad.h"
 
+#include "exhand/fix.h"
 #include "exhand/units.h"
 
 #include "check.h"
@@ -8,7 +9,7 @@
 
 static void pos_case(int32_t step, int32_t cnt)
 {
-    const struct exh_quad_par par = {step, 32};
+    const struct exh_quad_par par = {step, INT32_MAX};
     const uint32_t before = check_saturations;
     const int32_t got = exh_quad_pos_m_q30(&par, cnt);
     const struct wide exact = wide_mul(step, cnt); /* q42 */
@@ -39,11 +40,11 @@ TEST(extension_is_congruent_and_shortest)
 {
     while (check_case(1)) {
         const int32_t bits = check_i32_in(1, 32);
-        const struct exh_quad_par par = {1, bits};
-        struct exh_quad s = {(uint32_t)check_i32(), check_i32(), 1};
+        const struct exh_quad_cfg cfg = {NULL, check_i32_in(0, INT32_MAX), (uint8_t)(32 - bits)};
+        struct exh_quad s = {(uint32_t)check_i32(), check_i32(), 1, 0};
         const struct exh_quad old = s;
         const uint32_t raw = (uint32_t)check_i32();
-        const int32_t cnt = exh_quad_extend(&s, &par, raw);
+        const int32_t cnt = exh_quad_extend(&s, &cfg, raw);
         const uint32_t moved = (uint32_t)cnt - (uint32_t)old.cnt;
         const uint32_t half = 1u << (bits - 1);
         CHECK(((moved ^ (raw - old.raw)) << (32 - bits)) == 0, "bits %" PRId32 ": not congruent",
@@ -51,6 +52,9 @@ TEST(extension_is_congruent_and_shortest)
         CHECK(bits == 32 || moved + half < 2 * half, "bits %" PRId32 ": moved %" PRIu32,
               bits, moved);
         CHECK(cnt == s.cnt && s.started, "state");
+        CHECK(s.jumped == (exh_wrap_diff(cnt, old.cnt) > cfg.jump_cnt ||
+                           exh_wrap_diff(cnt, old.cnt) < -cfg.jump_cnt),
+              "jump of %" PRId32, exh_wrap_diff(cnt, old.cnt));
     }
 }
 

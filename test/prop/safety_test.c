@@ -124,6 +124,7 @@ TEST(state_machine_under_any_input)
     struct exh_safety s = {0};
     const struct exh_safety_par par = {3};
     uint32_t ticks = 0;
+    uint64_t late = 0;
     while (check_case(1)) {
         const struct exh_safety old = s;
         struct exh_safety_in in;
@@ -133,8 +134,10 @@ TEST(state_machine_under_any_input)
         in.raised = check_u64() % 8 ? 0 : 1u << check_u64() % 6;
         in.missed = (uint32_t)check_i32_in(0, check_u64() % 8 ? 3 : 5);
         in.command = (uint8_t)(check_u64() % 5);
-        in.fingers = (uint8_t)(check_u64() % 6);
-        cause = in.raised != 0 || in.missed > 3 || !(in.din & EXH_DIN_ESTOP);
+        in.fingers = (uint8_t)(1 + check_u64() % 5);
+        late = in.missed > 0 ? late + in.missed : 0;
+        cause = in.raised != 0 || late > 3 || !(in.din & EXH_DIN_ESTOP) ||
+                !(in.din & EXH_DIN_DEADMAN);
         for (unsigned k = 0; k < in.fingers; k++) { cause |= !(in.din >> (8 + k) & 1); }
         now = exh_safety_step(&s, &par, in);
         ticks++;
@@ -152,6 +155,7 @@ TEST(state_machine_under_any_input)
             CHECK(s.first == old.first && s.first_tick == old.first_tick, "first cause changed");
             CHECK((s.faults & old.faults) == old.faults, "a latched cause went away");
         }
+        CHECK((s.present != 0) == cause, "present %" PRIx32, s.present);
         CHECK(s.tick == ticks, "tick %" PRIu32, s.tick);
     }
 }

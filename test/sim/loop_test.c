@@ -19,16 +19,22 @@
 #include <string.h>
 #include <unistd.h>
 
-/* The simulated board is never late. So this is the loop itself, compiled once more
- * over a wait that says what a test wants. */
+/* The simulated board is never late, nor broken. So this is the loop itself, compiled
+ * once more over a wait, inputs and a description that say what a test wants. */
 static int late_wait(void);
+static int odd_read(struct exh_drive_in *in);
+static struct exh_board_info odd_info;
 void late_assert_failed(const char *file, int line);
 #define exh_loop          late_loop
 #define exh_board_wait    late_wait
+#define exh_board_info    odd_info
+#define exh_board_read_drive odd_read
 #define exh_assert_failed late_assert_failed
 #include "loop.c"
 #undef exh_loop
 #undef exh_board_wait
+#undef exh_board_info
+#undef exh_board_read_drive
 #undef exh_assert_failed
 
 #define LEN(a)   (sizeof(a) / sizeof((a)[0]))
@@ -42,7 +48,7 @@ void late_assert_failed(const char *file, int line);
 /* What happens at a tick, before it. */
 struct act {
     uint32_t tick;
-    enum { STAGE, COMMAND, MISS } what;
+    enum { STAGE, COMMAND, MISS, OPEN, JUMP } what; /* OPEN: these inputs; JUMP: counts */
     uint16_t id; /* STAGE: of the parameter                                     */
     int32_t value;
     int want; /* STAGE: what it must return                                     */
@@ -71,6 +77,18 @@ static int late_wait(void)
         }
     }
     return missed;
+}
+
+/* OPEN lasts one tick, JUMP for good. */
+static int odd_read(struct exh_drive_in *in)
+{
+    const int err = exh_board_read_drive(in);
+    for (unsigned i = 0; i < script.acts; i++) {
+        const struct act *a = &script.act[i];
+        if (a->what == OPEN && a->tick == script.ticks) { in->din &= ~(uint32_t)a->value; }
+        if (a->what == JUMP && a->tick <= script.ticks) { in->enc_raw[0] += (uint32_t)a->value; }
+    }
+    return err;
 }
 
 static void before(uint32_t tick, struct exh_scene_in *in)
@@ -120,6 +138,7 @@ static void run_script(const struct act *act, unsigned acts, uint32_t ticks, con
     script.act = act;
     script.acts = acts;
     c.max_ticks = ticks;
+    odd_info = exh_board_info;
     c.log = fopen(path, "wb");
     CHECK(c.log != NULL, "%s", path);
     posix_configure(&c);
@@ -221,7 +240,7 @@ TEST(a_whole_log_reads_and_replays)
     run_three_falls(path);
     n = count_log(path);
     CHECK_EQ_I64(n.frames, n.last_tick + 1);
-    CHECK_EQ_I64(n.keyframes, n.last_tick / EXH_LOG_KEYFRAME_TICKS + 1);
+    CHECK_EQ_I64(n.keyframes, (n.last_tick + 1) / EXH_LOG_KEYFRAME_TICKS + 1);
     /* RUN, and a mark at the start of each fall and at the end of two of them */
     CHECK(n.frames > 7500 && n.events == 6, "%lu frames, %lu events", (unsigned long)n.frames,
           (unsigned long)n.events);
@@ -328,6 +347,7 @@ TEST(a_parameter_acts_at_the_tick_it_is_logged)
 {
     static const int32_t lim = -EXH_Q(1, 1000, EXH_Q_POS);
     static const struct act act[] = {
+        {0, COMMAND, 0, EXH_CMD_RUN, 0},
         {30, STAGE, ID_Q_LIM, -EXH_Q(1, 1000, EXH_Q_POS), 0},
         {40, STAGE, ID_K, EXH_Q(3000, 1, EXH_Q_K), 0},
         {41, STAGE, ID_K, EXH_Q(9, 1, EXH_Q_K), 0},
@@ -363,9 +383,10 @@ TEST(a_parameter_acts_at_the_tick_it_is_logged)
 TEST(setup_values_are_refused_while_locked)
 {
     static const struct act act[] = {
+        {0, COMMAND, 0, EXH_CMD_RUN, 0},
         {0, STAGE, ID_STEP, EXH_Q(50, 1000000, EXH_Q_STEP), -EXH_E_STATE},
         {1, STAGE, 0x0301, 0, -EXH_E_STATE}, /* vel_p     */
-        {1, STAGE, 0x0504, 0, -EXH_E_STATE}, /* i_peak    */
+        {1, STAGE, 0x0504, EXH_Q(5, 1, EXH_Q_CUR), -EXH_E_STATE}, /* i_peak */
         {2, STAGE, 0x0507, 0, -EXH_E_STATE}, /* dac_zero  */
         {3, STAGE, 0x8002, EXH_Q(5, 1, EXH_Q_FORCE), -EXH_E_STATE}, /* kf */
     };
@@ -387,6 +408,7 @@ TEST(setup_values_are_refused_while_locked)
 TEST(missed_ticks_reach_safety)
 {
     static const struct act act[] = {
+        {0, COMMAND, 0, EXH_CMD_RUN, 0},
         {10, STAGE, ID_Q_LIM, -EXH_Q(1, 1000, EXH_Q_POS), 0}, /* so that there is force */
         {20, MISS, 0, 1, 0},
         {30, MISS, 0, 2, 0},
@@ -436,6 +458,115 @@ TEST(missed_ticks_reach_safety)
     remove(path);
 }
 
+/* Each cause through the whole scene: no current in the very tick it is seen, the cause
+ * named, and nothing before somebody clears it. */
+TEST(causes_reach_the_gate)
+{
+    static const struct {
+        struct act act;
+        int32_t fault;
+    } row[] = {
+        {{30, OPEN, 0, EXH_DIN_ESTOP, 0}, EXH_FAULT_ESTOP},
+        {{30, OPEN, 0, EXH_DIN_DEADMAN, 0}, EXH_FAULT_DEADMAN},
+        {{30, OPEN, 0, EXH_DIN_DRIVE0, 0}, EXH_FAULT_DRIVE},
+        {{30, JUMP, 0, 200, 0}, EXH_FAULT_ENCODER}, /* 13 mm in 1 ms */
+        {{30, JUMP, 0, -200, 0}, EXH_FAULT_ENCODER},
+        {{30, JUMP, 0, 100, 0}, 0},
+    };
+    for (size_t i = 0; i < LEN(row); i++) {
+        const struct act act[] = {
+            {0, COMMAND, 0, EXH_CMD_RUN, 0},
+            {10, STAGE, ID_Q_LIM, -EXH_Q(20, 1000, EXH_Q_POS), 0}, /* so that there is force */
+            row[i].act,
+            {50, COMMAND, 0, EXH_CMD_CLEAR, 0},
+            {60, COMMAND, 0, EXH_CMD_RUN, 0},
+        };
+        const char *path = log_path();
+        run_script(act, LEN(act), 90, path);
+        for (uint32_t n = 11; n < 90; n++) {
+            const struct seen *s = &script.at[n];
+            const int faulty = row[i].fault != 0 && n >= 30 && n < 60;
+            CHECK((s->out.dac_raw[0] == DAC_ZERO) == faulty && (s->sig.f_des_N_q20 == 0) == faulty,
+                  "cause %zu, tick %lu: code %u", i, (unsigned long)n,
+                  (unsigned)s->out.dac_raw[0]);
+            CHECK(s->sig.faults == (faulty && n < 50 ? row[i].fault : 0), "cause %zu, tick %lu", i,
+                  (unsigned long)n);
+            CHECK(s->sig.present == (n == 30 ? row[i].fault : 0), "cause %zu, tick %lu: present", i,
+                  (unsigned long)n);
+        }
+        CHECK_EQ_I64(replay(path, NULL), 0);
+        remove(path);
+    }
+}
+
+/* Nobody commands RUN: the box stays off and says why not. */
+TEST(the_loop_commands_nothing_by_itself)
+{
+    const char *path = log_path();
+    run_script(NULL, 0, 20, path);
+    for (uint32_t n = 0; n < 20; n++) {
+        CHECK_EQ_I64(script.at[n].sig.state, EXH_STATE_OFF);
+        CHECK_EQ_I64(script.at[n].out.enable, 0);
+    }
+    remove(path);
+}
+
+TEST(a_board_that_does_not_fit_is_refused)
+{
+    static const struct {
+        struct exh_board_info info;
+        int want;
+    } row[] = {
+        {{"same", EXH_BOARD_VERSION, 1, 24, 20000}, 0},
+        {{"16 bit", EXH_BOARD_VERSION, 5, 16, 20000}, 0},
+        {{"other", EXH_BOARD_VERSION + 1, 1, 24, 20000}, -EXH_E_VERSION},
+        {{"no axis", EXH_BOARD_VERSION, 0, 24, 20000}, -EXH_E_ABSENT},
+        {{"8 bit", EXH_BOARD_VERSION, 1, 8, 20000}, -EXH_E_RANGE},
+    };
+    for (size_t i = 0; i < LEN(row); i++) {
+        struct posix_config c = posix_config_default();
+        c.max_ticks = 10;
+        posix_configure(&c);
+        memset(&script, 0, sizeof script);
+        odd_info = row[i].info;
+        exh_scene_drop.defaults();
+        CHECK(late_loop(&exh_scene_drop, 1000, NULL) == row[i].want, "board %s", row[i].info.name);
+    }
+}
+
+/* A keyframe with a sound CRC and a wrong content is refused, never acted on. */
+TEST(a_forged_keyframe_is_refused)
+{
+    const char *path = log_path();
+    struct text t;
+    struct exh_record r;
+    struct exh_bytes c;
+    uint8_t forged[EXH_LOG_RECORD_B];
+    uint32_t at = 0, len = 0;
+    run_three_falls(path);
+    t = slurp(path);
+    for (; at < t.len; at++) {
+        const int32_t n = exh_record_read(t.p + at, (uint32_t)t.len - at, &r);
+        if (n > 0 && r.type == EXH_RECORD_KEYFRAME && r.tick == 1024) { break; }
+    }
+    CHECK(at < t.len, "no keyframe at tick 1024");
+    c = exh_bytes_writer(forged, sizeof forged);
+    exh_record_begin(&c, r.type, r.seq, r.tick);
+    for (uint32_t i = 0; i < r.len_B; i++) {
+        uint8_t b = 0xFF; /* every parameter -1, every index and shift at its worst */
+        exh_bytes_u8(&c, &b);
+    }
+    len = exh_record_end(&c);
+    memcpy(t.p + at, forged, len);
+    spill(path, &t, t.len);
+    CHECK_EQ_I64(replay(path, "1024"), 1);
+    CHECK_EQ_I64(replay(path, NULL), 1);
+    free(t.p);
+    remove(path);
+}
+
 TEST_MAIN("loop", a_whole_log_reads_and_replays, a_damaged_record_is_skipped_and_counted,
           a_cut_log_is_reported, a_parameter_acts_at_the_tick_it_is_logged,
-          setup_values_are_refused_while_locked, missed_ticks_reach_safety);
+          setup_values_are_refused_while_locked, missed_ticks_reach_safety,
+          causes_reach_the_gate, the_loop_commands_nothing_by_itself,
+          a_board_that_does_not_fit_is_refused, a_forged_keyframe_is_refused);

@@ -22,12 +22,12 @@ void exh_assert_failed(const char *file, int line)
 /* As the loop does it. */
 static int set_up(void)
 {
-    const struct exh_period T = {1, 1000};
+    const struct exh_scene_board board = {{1, 1000}, 24};
     int err;
 
     if (EXH_SCENE.defaults) { EXH_SCENE.defaults(); }
     if (EXH_SCENE.params) { exh_params_apply(EXH_SCENE.params); }
-    err = EXH_SCENE.setup(T);
+    err = EXH_SCENE.setup(board);
     if (err < 0) { fprintf(stderr, "%s: %s\n", EXH_SCENE.name, exh_error_text(err)); }
     return err;
 }

@@ -177,6 +177,10 @@ TEST(state_round_trip)
     exh_contact_bytes(&c, &back);
     CHECK(exh_bytes_ok(&c) && back.turn_m_q30 == s.turn_m_q30, "turn");
     CHECK(back.inward == 1 && back.touching == 0 && back.started == 1, "flags");
+    memset(buf, 0xFE, sizeof buf); /* damaged: flags are factors of a force */
+    c = exh_bytes_reader(buf, sizeof buf);
+    exh_contact_bytes(&c, &back);
+    CHECK(back.inward == 1 && back.touching == 1, "damaged flags");
 }
 
 TEST_MAIN("unit/contact", truth_table, the_rest_of_the_ledger_is_zeroed,

@@ -177,6 +177,17 @@ TEST(setup_rejections)
         {7, -12184, "a negative D/A span, which would code a current outside RUN"},
         {6, 70000, "a D/A zero beyond 16 bits"},
         {0, -1, "a negative force limit"},
+        {0, EXH_Q(101, 1, EXH_Q_FORCE), "a force limit beyond its range"},
+        {1, 0, "no rise of force"},
+        {2, 999, "a release that takes longer than a finger bears"},
+        {2, -1, "a negative release"},
+        {3, 0, "no peak current"},
+        {3, EXH_Q(67, 10, EXH_Q_CUR), "a peak beyond the drive's"},
+        {4, EXH_Q(34, 10, EXH_Q_CUR), "a continuous current beyond the drive's"},
+        {4, -1, "a negative continuous current"},
+        {5, 0, "no peak time"},
+        {5, 2701, "a peak longer than the drive's"},
+        {9, 32768, "a monitor zero beyond 16 bits"},
     };
     struct axis a;
     axis_par(&a.par);
@@ -187,6 +198,32 @@ TEST(setup_rejections)
         axis_par(&a.par);
         (&a.par.f_max_N_q20)[row[i].field] = row[i].v;
         CHECK(axis_setup(&a, (struct exh_period){1, 2000}) == -EXH_E_RANGE, "%s", row[i].what);
+    }
+}
+
+/* A current at no force would hold the string without being asked. */
+TEST(setup_refuses_tables_that_pull_at_no_force)
+{
+    static const struct exh_knot row[][2] = {
+        {{1, 0, {0, 1}}, {9, 9, {0, 1}}},   /* begins above no force */
+        {{0, 1, {0, 1}}, {9, 9, {0, 1}}},   /* a current at no force */
+        {{-9, -9, {0, 1}}, {9, 5, {0, 1}}}, /* a push at no force */
+        {{-9, -9, {0, 1}}, {-1, -1, {0, 1}}},
+    };
+    const struct exh_table none = {NULL, 0};
+    struct exh_drive_par par;
+    struct exh_drive_cfg cfg;
+    axis_par(&par);
+    for (size_t i = 0; i < LEN(row); i++) {
+        struct exh_knot k[2] = {row[i][0], row[i][1]};
+        const struct exh_table t = {k, 2}, one = {k, 1};
+        CHECK_EQ_I64(exh_table_set(k, 2), 0);
+        CHECK(exh_drive_setup(&cfg, &par, (struct exh_period){1, 2000}, t, none) == -EXH_E_RANGE,
+              "table %zu", i);
+        CHECK_EQ_I64(exh_drive_setup(&cfg, &par, (struct exh_period){1, 2000}, one, none),
+                     -EXH_E_RANGE);
+        CHECK_EQ_I64(exh_drive_setup(&cfg, &par, (struct exh_period){1, 2000}, none, none),
+                     -EXH_E_RANGE);
     }
 }
 
@@ -207,7 +244,7 @@ static uint32_t force(struct axis *a, int64_t spring, struct exh_force_ledger *f
     const struct exh_force_ledger zero = {0, 0, 0, 0, 0, 0, 0};
     *f = zero;
     f->spring_N_q20 = spring;
-    return exh_drive_force(&a->s, &a->cfg, f);
+    return exh_drive_force(&a->s, &a->cfg, 1, f);
 }
 
 /* f_max 40 N; slew 200 kN/s at 2 kHz: 100 N a tick, so not in the way. */
@@ -238,6 +275,46 @@ TEST(force_limit_and_pull_only)
     }
 }
 
+/* The table ends at 22 N: a force beyond it can't be had, and is not claimed. */
+TEST(no_force_beyond_the_table)
+{
+    struct exh_knot k[2] = {{0, 0, {0, 1}},
+                            {EXH_Q(22, 1, EXH_Q_FORCE), EXH_Q(66, 10, EXH_Q_CUR), {0, 1}}};
+    const struct exh_table t = {k, 2}, none = {NULL, 0};
+    struct exh_force_ledger f = {30 * (int64_t)NEWTON, 0, 0, 0, 0, 0, 0};
+    struct axis a;
+    axis_par(&a.par);
+    a.s = (struct exh_drive){0, 0};
+    CHECK_EQ_I64(exh_table_set(k, 2), 0);
+    CHECK_EQ_I64(exh_drive_setup(&a.cfg, &a.par, (struct exh_period){1, 2000}, t, none), 0);
+    CHECK_EQ_I64(exh_drive_force(&a.s, &a.cfg, 1, &f), EXH_LIMIT_FORCE);
+    CHECK_EQ_I64(f.force_N_q20, 22 * NEWTON);
+    CHECK_EQ_I64(f.clamp_N_q20, -8 * NEWTON);
+    CHECK_EQ_I64(exh_drive_monitor_N_q20(&a.cfg, 1000), 0); /* no monitor, no force of it */
+}
+
+/* Outside RUN nothing is commanded and nothing is remembered. */
+TEST(not_running_is_no_force)
+{
+    struct axis a;
+    struct exh_force_ledger f;
+    axis_par(&a.par);
+    a.par.slew_up_Nps = 2000; /* 1 N a tick */
+    CHECK_EQ_I64(axis_setup(&a, (struct exh_period){1, 2000}), 0);
+    for (int n = 0; n < 5; n++) { (void)force(&a, 5 * NEWTON, &f); }
+    CHECK_EQ_I64(f.force_N_q20, 5 * NEWTON);
+    for (int sign = -1; sign <= 1; sign++) {
+        f = (struct exh_force_ledger){sign * (INT64_C(1) << 40), 0, 0, 0, 7, 7, 7};
+        CHECK_EQ_I64(exh_drive_force(&a.s, &a.cfg, 0, &f),
+                     sign > 0 ? EXH_LIMIT_GATE : sign < 0 ? EXH_LIMIT_PULL : 0);
+        CHECK(f.force_N_q20 == 0 && f.slew_N_q20 == 0 && f.clamp_N_q20 == -f.spring_N_q20,
+              "ledger");
+        CHECK_EQ_I64(a.s.force_N_q20, 0);
+    }
+    CHECK_EQ_I64(force(&a, 5 * NEWTON, &f), EXH_LIMIT_SLEW);
+    CHECK_EQ_I64(f.force_N_q20, NEWTON); /* rises from nothing */
+}
+
 /* 2000 N/s up, 4000 N/s down, 2 kHz: 1 N a tick up, 2 N down. */
 TEST(slew_both_ways)
 {
@@ -258,19 +335,16 @@ TEST(slew_both_ways)
     }
 }
 
-/* 1 N/s at 20 kHz is 52 LSB a tick; a slew that rounds to 0 would never arrive. */
+/* 1 N/s at 20 kHz is 52 LSB a tick. */
 TEST(slowest_slew_still_moves)
 {
     struct axis a;
     struct exh_force_ledger f;
     axis_par(&a.par);
     a.par.slew_up_Nps = 1;
-    a.par.slew_down_Nps = 0;
     CHECK_EQ_I64(axis_setup(&a, (struct exh_period){1, 20000}), 0);
     (void)force(&a, 1 << 20, &f);
     CHECK_EQ_I64(f.force_N_q20, 52);
-    (void)force(&a, 0, &f);
-    CHECK_EQ_I64(f.force_N_q20, 51); /* at least 1 LSB */
 }
 
 static uint32_t current(struct axis *a, int32_t force_N_q20, struct exh_current_ledger *i)
@@ -367,7 +441,7 @@ TEST(peak_equal_to_continuous)
     struct axis a;
     struct exh_current_ledger i;
     axis_par(&a.par);
-    a.par.i_cont_A_q26 = a.par.i_peak_A_q26;
+    a.par.i_peak_A_q26 = a.par.i_cont_A_q26;
     CHECK_EQ_I64(axis_setup(&a, (struct exh_period){1, 1000}), 0);
     for (int k = 0; k < 5000; k++) {
         CHECK_EQ_I64(current(&a, EXH_Q(66, 1, EXH_Q_FORCE), &i) & EXH_LIMIT_I2T, 0);
@@ -423,7 +497,7 @@ TEST(frames_round_trip)
 
 TEST(state_round_trip)
 {
-    struct exh_drive s = {-7, INT64_C(0x0123456789ABCDEF)}, back = {0, 0};
+    struct exh_drive s = {7, INT64_C(0x0123456789ABCDEF)}, back = {0, 0};
     uint8_t buf[16];
     struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
     exh_drive_bytes(&c, &s);
@@ -431,11 +505,17 @@ TEST(state_round_trip)
     c = exh_bytes_reader(buf, c.at);
     exh_drive_bytes(&c, &back);
     CHECK(back.force_N_q20 == s.force_N_q20 && back.i2t_q32 == s.i2t_q32, "state differs");
+    memset(buf, 0xFF, sizeof buf); /* damaged: no push, and as hot as can be */
+    c = exh_bytes_reader(buf, sizeof buf);
+    exh_drive_bytes(&c, &back);
+    CHECK(back.force_N_q20 == 0 && back.i2t_q32 == INT64_MAX / 2, "damaged state");
 }
 
 TEST_MAIN("unit/drive", table_is_exact_at_knots_and_clamps_outside, table_between_knots,
           table_is_monotone_around_every_knot, table_rejections, steepest_table_is_accepted,
           inverse_round_trip, inverse_refuses_what_set_refuses, setup_rejections,
+          setup_refuses_tables_that_pull_at_no_force, no_force_beyond_the_table,
+          not_running_is_no_force,
           setup_takes_every_documented_period, force_limit_and_pull_only, slew_both_ways,
           slowest_slew_still_moves, peak_limit, i2t_holds_folds_back_and_recovers,
           continuous_current_is_for_ever, bursts_add_up, peak_equal_to_continuous, monitor_by_hand,

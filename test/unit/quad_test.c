@@ -1,6 +1,9 @@
 /* quad.h: all transitions of the two lines, and the counter across its wraps. */
 #include "exhand/quad.h"
 
+#include "exhand/error.h"
+#include "exhand/units.h"
+
 #include "check.h"
 
 #define LEN(a) (sizeof(a) / sizeof((a)[0]))
@@ -110,15 +113,22 @@ TEST(index_is_latched_after_the_step)
 
 /* --- extension --- */
 
+/* A counter alone: no movement is too fast. */
+static struct exh_quad_cfg counter(int32_t bits)
+{
+    const struct exh_quad_cfg cfg = {NULL, INT32_MAX, (uint8_t)(32 - bits)};
+    return cfg;
+}
+
 TEST(first_value_is_count_zero)
 {
     static const int32_t bits[] = {16, 24, 32};
     for (size_t i = 0; i < LEN(bits); i++) {
-        const struct exh_quad_par par = {1, bits[i]};
+        const struct exh_quad_cfg cfg = counter(bits[i]);
         for (size_t k = 0; k < CHECK_CORNERS; k++) {
             struct exh_quad s = {0};
-            CHECK_EQ_I64(exh_quad_extend(&s, &par, (uint32_t)check_corner[k]), 0);
-            CHECK_EQ_I64(exh_quad_extend(&s, &par, (uint32_t)check_corner[k]), 0);
+            CHECK_EQ_I64(exh_quad_extend(&s, &cfg, (uint32_t)check_corner[k]), 0);
+            CHECK_EQ_I64(exh_quad_extend(&s, &cfg, (uint32_t)check_corner[k]), 0);
         }
     }
 }
@@ -128,7 +138,7 @@ TEST(wraps_at_both_ends)
 {
     static const int32_t bits[] = {16, 24, 32};
     for (size_t i = 0; i < LEN(bits); i++) {
-        const struct exh_quad_par par = {1, bits[i]};
+        const struct exh_quad_cfg cfg = counter(bits[i]);
         const uint32_t top = UINT32_MAX >> (32 - bits[i]);
         const int64_t half = (int64_t)(top / 2) + 1;
         const int64_t move[] = {1, -1, 2, -2, half - 1, -(half - 1), 1000, -1000};
@@ -137,9 +147,9 @@ TEST(wraps_at_both_ends)
             const int64_t m = move[k / LEN(start)];
             const uint32_t from = start[k % LEN(start)];
             struct exh_quad s = {0};
-            (void)exh_quad_extend(&s, &par, from);
-            CHECK_EQ_I64(exh_quad_extend(&s, &par, ((uint32_t)(from + m)) & top), m);
-            CHECK_EQ_I64(exh_quad_extend(&s, &par, from), 0);
+            (void)exh_quad_extend(&s, &cfg, from);
+            CHECK_EQ_I64(exh_quad_extend(&s, &cfg, ((uint32_t)(from + m)) & top), m);
+            CHECK_EQ_I64(exh_quad_extend(&s, &cfg, from), 0);
         }
     }
 }
@@ -149,12 +159,12 @@ TEST(bits_above_the_counter_are_ignored)
 {
     static const int32_t bits[] = {16, 24};
     for (size_t i = 0; i < LEN(bits); i++) {
-        const struct exh_quad_par par = {1, bits[i]};
+        const struct exh_quad_cfg cfg = counter(bits[i]);
         const uint32_t junk = UINT32_MAX << bits[i];
         struct exh_quad s = {0};
-        (void)exh_quad_extend(&s, &par, 5 | junk);
-        CHECK_EQ_I64(exh_quad_extend(&s, &par, 9), 4);
-        CHECK_EQ_I64(exh_quad_extend(&s, &par, 7 | junk), 2);
+        (void)exh_quad_extend(&s, &cfg, 5 | junk);
+        CHECK_EQ_I64(exh_quad_extend(&s, &cfg, 9), 4);
+        CHECK_EQ_I64(exh_quad_extend(&s, &cfg, 7 | junk), 2);
     }
 }
 
@@ -163,16 +173,16 @@ TEST(long_walks)
 {
     static const int32_t bits[] = {16, 24, 32};
     for (size_t i = 0; i < LEN(bits); i++) {
-        const struct exh_quad_par par = {1, bits[i]};
+        const struct exh_quad_cfg cfg = counter(bits[i]);
         const int32_t half = (int32_t)((UINT32_MAX >> (32 - bits[i])) / 2);
         const uint32_t mask = UINT32_MAX >> (32 - bits[i]);
         struct exh_quad s = {0};
         uint64_t pos = 12345; /* unsigned: the reference wraps by definition */
-        (void)exh_quad_extend(&s, &par, (uint32_t)pos & mask);
+        (void)exh_quad_extend(&s, &cfg, (uint32_t)pos & mask);
         for (int k = 0; k < 20000; k++) {
             const uint64_t moved = pos += (uint64_t)(int64_t)check_i32_in(-half, half);
             const uint32_t want = (uint32_t)(moved - 12345);
-            const int32_t got = exh_quad_extend(&s, &par, (uint32_t)pos & mask);
+            const int32_t got = exh_quad_extend(&s, &cfg, (uint32_t)pos & mask);
             CHECK((uint32_t)got == want, "bits %" PRId32 " step %d", bits[i], k);
         }
     }
@@ -192,26 +202,103 @@ TEST(position_by_hand)
         {43980465, 100000, 1073741821}, /* 10 um a count, 1 m */
     };
     for (size_t i = 0; i < LEN(row); i++) {
-        const struct exh_quad_par par = {row[i].step_m_q42, 24};
+        const struct exh_quad_par par = {row[i].step_m_q42, INT32_MAX};
         CHECK_EQ_I64(exh_quad_pos_m_q30(&par, row[i].cnt), row[i].want);
     }
 }
 
 TEST(state_round_trip)
 {
-    struct exh_quad s = {0xDEADBEEFu, -123456789, 1};
+    struct exh_quad s = {0xDEADBEEFu, -123456789, 1, 1};
     struct exh_quad back = {0};
     uint8_t buf[16];
     struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
     exh_quad_bytes(&c, &s);
-    CHECK_EQ_I64(c.at, 9);
+    CHECK_EQ_I64(c.at, 10);
     c = exh_bytes_reader(buf, c.at);
     exh_quad_bytes(&c, &back);
     CHECK(exh_bytes_ok(&c), "reader");
-    CHECK(back.raw == s.raw && back.cnt == s.cnt && back.started == s.started, "state differs");
+    CHECK(back.raw == s.raw && back.cnt == s.cnt && back.started == s.started &&
+              back.jumped == s.jumped,
+          "state differs");
+}
+
+TEST(lines_round_trip)
+{
+    struct exh_quad_ab s = {-5, 6, 7, -8, 9, 3, 1, 1}, back = {0};
+    uint8_t buf[32];
+    struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
+    exh_quad_ab_bytes(&c, &s);
+    CHECK_EQ_I64(c.at, 23);
+    c = exh_bytes_reader(buf, c.at);
+    exh_quad_ab_bytes(&c, &back);
+    CHECK(exh_bytes_ok(&c) && memcmp(&back, &s, sizeof s) == 0, "state differs");
+    buf[20] = 0xFF; /* damaged: the lines are an index into a table */
+    c = exh_bytes_reader(buf, sizeof buf);
+    exh_quad_ab_bytes(&c, &back);
+    exh_quad_ab_step(&back, EXH_QUAD_X4, 0, 1, 0);
+    CHECK_EQ_I64(back.ab, 1);
+}
+
+/* --- set-up: what no hand can do --- */
+
+/* 66.32 um a count, 10 m/s: 1 kHz 150.8 counts a tick, 2 kHz 75.4, 1 Hz 150784. */
+TEST(a_jump_is_told_at_every_rate)
+{
+    static const struct {
+        struct exh_period T;
+        int32_t jump;
+    } row[] = {{{1, 1000}, 152}, {{1, 2000}, 76}, {{1, 20000}, 9}, {{1, 1}, 150785}, {{597, 1193182}, 76}};
+    const struct exh_quad_par par = {EXH_Q(6632, 100000000, EXH_Q_STEP), EXH_Q(10, 1, EXH_Q_VEL)};
+    for (size_t i = 0; i < LEN(row); i++) {
+        struct exh_quad_cfg cfg;
+        CHECK_EQ_I64(exh_quad_setup(&cfg, &par, row[i].T, 24), 0);
+        CHECK(cfg.jump_cnt == row[i].jump, "row %zu: %" PRId32, i, cfg.jump_cnt);
+        for (int sign = -1; sign <= 1; sign += 2) {
+            struct exh_quad s = {0};
+            uint32_t raw = 0xFFFFF0; /* next to the wrap */
+            (void)exh_quad_extend(&s, &cfg, raw);
+            CHECK(!s.jumped, "the first sample");
+            raw += (uint32_t)(sign * cfg.jump_cnt);
+            (void)exh_quad_extend(&s, &cfg, raw);
+            CHECK(!s.jumped, "row %zu: as fast as allowed", i);
+            raw += (uint32_t)(sign * (cfg.jump_cnt + 1));
+            (void)exh_quad_extend(&s, &cfg, raw);
+            CHECK(s.jumped, "row %zu: faster", i);
+            (void)exh_quad_extend(&s, &cfg, raw);
+            CHECK(!s.jumped, "row %zu: at rest again", i);
+        }
+    }
+}
+
+TEST(setup_rejections)
+{
+    static const struct {
+        int32_t step, speed;
+        unsigned bits;
+        struct exh_period T;
+        const char *what;
+    } row[] = {
+        {69049330, INT32_MAX, 15, {1, 1000}, "a counter of 15 bits"},
+        {69049330, INT32_MAX, 33, {1, 1000}, "a counter of 33 bits"},
+        {0, INT32_MAX, 24, {1, 1000}, "no step"},
+        {-1, INT32_MAX, 24, {1, 1000}, "a negative step"},
+        {69049330, 0, 24, {1, 1000}, "no speed"},
+        {69049330, INT32_MIN, 24, {1, 1000}, "a negative speed"},
+        {69049330, INT32_MAX, 16, {1, 1}, "16 bits a second: direction can't be told"},
+        {69049330, INT32_MAX, 24, {1, 0}, "no period"},
+    };
+    struct exh_quad_cfg cfg;
+    const struct exh_quad_par good = {69049330, INT32_MAX};
+    CHECK_EQ_I64(exh_quad_setup(&cfg, &good, (struct exh_period){1, 1000}, 16), 0);
+    CHECK_EQ_I64(exh_quad_setup(&cfg, &good, (struct exh_period){1, 1}, 24), 0);
+    for (size_t i = 0; i < LEN(row); i++) {
+        const struct exh_quad_par par = {row[i].step, row[i].speed};
+        CHECK(exh_quad_setup(&cfg, &par, row[i].T, row[i].bits) == -EXH_E_RANGE, "%s", row[i].what);
+    }
 }
 
 TEST_MAIN("unit/quad", all_transitions_in_all_modes, a_turn_and_back, chatter_does_not_drift,
           count_wraps_without_a_jump, index_is_latched_after_the_step, first_value_is_count_zero,
           wraps_at_both_ends, bits_above_the_counter_are_ignored, long_walks, position_by_hand,
-          state_round_trip);
+          state_round_trip, lines_round_trip, a_jump_is_told_at_every_rate, setup_rejections);

@@ -171,7 +171,7 @@ TEST(any_bytes_are_safe_to_read)
 TEST(header_and_event_round_trip)
 {
     struct exh_record_header h = {"drop", "posix-sim-16ch!", 0x000100, 0xDEADBEEF,
-                                  {65, 1193182}, 5, 40000};
+                                  {65, 1193182}, 5, 24, 40000};
     struct exh_record_header h2;
     struct exh_event e = {EXH_EVENT_PARAM, 0x0401, 4, INT32_MIN}, e2;
     uint8_t buf[80];
@@ -179,9 +179,9 @@ TEST(header_and_event_round_trip)
     memset(&h2, 0xFF, sizeof h2);
     memset(&e2, 0xFF, sizeof e2);
     exh_record_header_bytes(&c, &h);
-    CHECK_EQ_I64(c.at, 52);
+    CHECK_EQ_I64(c.at, 54);
     exh_event_bytes(&c, &e);
-    CHECK_EQ_I64(c.at, 62);
+    CHECK_EQ_I64(c.at, 64);
     c = exh_bytes_reader(buf, c.at);
     exh_record_header_bytes(&c, &h2);
     exh_event_bytes(&c, &e2);
@@ -189,7 +189,7 @@ TEST(header_and_event_round_trip)
     CHECK(memcmp(h.scene, h2.scene, 16) == 0 && memcmp(h.board, h2.board, 16) == 0, "names");
     CHECK(h2.lib_version == h.lib_version && h2.signal_crc == h.signal_crc, "versions");
     CHECK(h2.T.num == 65 && h2.T.den == 1193182, "period");
-    CHECK(h2.fingers == 5 && h2.signals == 40000, "sizes");
+    CHECK(h2.fingers == 5 && h2.enc_bits == 24 && h2.signals == 40000, "sizes");
     CHECK(e2.type == e.type && e2.id == e.id && e2.instance == 4, "event");
     CHECK_EQ_I64(e2.value, INT32_MIN);
 }

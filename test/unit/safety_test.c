@@ -8,9 +8,12 @@
 #define ALL_DRIVES (31u * EXH_DIN_DRIVE0)
 #define HEALTHY (EXH_DIN_ESTOP | EXH_DIN_DEADMAN | ALL_DRIVES)
 
+/* A bit that another module raises, whatever it will be called. */
+#define EXH_FAULT_LATER (1u << 30)
+
 static const struct exh_safety_par par = {2};
 static const uint32_t fault_bits[] = {EXH_FAULT_ESTOP,   EXH_FAULT_DRIVE, EXH_FAULT_OVERRUN,
-                                      EXH_FAULT_ENCODER, EXH_FAULT_PARAM, EXH_FAULT_BOARD};
+                                      EXH_FAULT_ENCODER, EXH_FAULT_DEADMAN, EXH_FAULT_LATER};
 
 static struct exh_safety_in healthy(uint8_t command)
 {
@@ -25,7 +28,8 @@ static struct exh_safety_in with_cause(uint32_t fault, uint8_t command)
     if (fault == EXH_FAULT_ESTOP) { in.din &= ~(uint32_t)EXH_DIN_ESTOP; }
     if (fault == EXH_FAULT_DRIVE) { in.din &= ~((uint32_t)EXH_DIN_DRIVE0 << 3); }
     if (fault == EXH_FAULT_OVERRUN) { in.missed = 3; }
-    if (fault >= EXH_FAULT_ENCODER) { in.raised = fault; }
+    if (fault == EXH_FAULT_DEADMAN) { in.din &= ~(uint32_t)EXH_DIN_DEADMAN; }
+    if (fault == EXH_FAULT_ENCODER || fault == EXH_FAULT_LATER) { in.raised = fault; }
     return in;
 }
 
@@ -61,6 +65,7 @@ TEST(every_state_with_every_command)
             CHECK(exh_safety_step(&t, &par, with_cause(fault_bits[f], row[i].command)) ==
                       row[i].cause_to,
                   "row %zu with cause %zu", i, f);
+            CHECK(t.present == fault_bits[f], "row %zu: a refusal must tell its cause", i);
         }
     }
 }
@@ -106,8 +111,11 @@ TEST(missed_ticks_are_tolerated_up_to_the_limit)
         uint8_t want;
     } row[] = {{0, 0, EXH_STATE_RUN},       {0, 1, EXH_STATE_FAULT},
                {2, 2, EXH_STATE_RUN},       {2, 3, EXH_STATE_FAULT},
-               {1000, 1000, EXH_STATE_RUN}, {1000, 1001, EXH_STATE_FAULT},
-               {1000, UINT32_MAX, EXH_STATE_FAULT}};
+               {3, 3, EXH_STATE_RUN},       {3, 4, EXH_STATE_FAULT},
+               {3, UINT32_MAX, EXH_STATE_FAULT},
+               /* in ROM a value may be anything: out of range is none */
+               {4, 1, EXH_STATE_FAULT},     {-1, 1, EXH_STATE_FAULT},
+               {-1, 0, EXH_STATE_RUN},      {INT32_MIN, 1, EXH_STATE_FAULT}};
     for (size_t i = 0; i < LEN(row); i++) {
         const struct exh_safety_par p = {row[i].max};
         struct exh_safety_in in = healthy(EXH_CMD_NONE);
@@ -119,6 +127,26 @@ TEST(missed_ticks_are_tolerated_up_to_the_limit)
         in.missed = 3;
         (void)exh_safety_step(&s, &p, in);
         CHECK_EQ_I64(s.missed, row[i].missed > UINT32_MAX - 3 ? UINT32_MAX : row[i].missed + 3);
+    }
+}
+
+/* A loop that is late at every wait never sees many ticks missed at once. */
+TEST(late_in_a_row_is_an_overrun)
+{
+    for (uint32_t each = 1; each <= 2; each++) {
+        struct exh_safety s = {0};
+        struct exh_safety_in in = healthy(EXH_CMD_NONE);
+        s.state = EXH_STATE_RUN;
+        in.missed = each;
+        for (uint32_t n = 1; n <= 2 / each; n++) {
+            CHECK_EQ_I64(exh_safety_step(&s, &par, in), EXH_STATE_RUN);
+        }
+        CHECK_EQ_I64(exh_safety_step(&s, &par, healthy(EXH_CMD_NONE)), EXH_STATE_RUN);
+        for (uint32_t n = 1; n <= 2 / each; n++) {
+            CHECK_EQ_I64(exh_safety_step(&s, &par, in), EXH_STATE_RUN);
+        }
+        CHECK_EQ_I64(exh_safety_step(&s, &par, in), EXH_STATE_FAULT);
+        CHECK_EQ_I64(s.first, EXH_FAULT_OVERRUN);
     }
 }
 
@@ -253,20 +281,21 @@ TEST(alive_changes_at_every_tick_in_every_state)
 
 TEST(state_round_trip)
 {
-    struct exh_safety s = {1, 2, 0xFFFFFFFF, 4, 5, 2, 255}, back = {0};
+    struct exh_safety s = {6, 1, 2, 0xFFFFFFFF, 4, 5, 7, 2, 255}, back = {0};
     uint8_t buf[32];
     struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
     exh_safety_bytes(&c, &s);
-    CHECK_EQ_I64(c.at, 22);
+    CHECK_EQ_I64(c.at, 30);
     c = exh_bytes_reader(buf, c.at);
     exh_safety_bytes(&c, &back);
     CHECK(exh_bytes_ok(&c), "reader");
+    CHECK(back.present == 6 && back.late == 7, "causes now");
     CHECK(back.faults == 1 && back.first == 2 && back.first_tick == 0xFFFFFFFF, "causes");
     CHECK(back.tick == 4 && back.missed == 5 && back.state == 2 && back.alive == 255, "rest");
 }
 
 TEST_MAIN("unit/safety", every_state_with_every_command, power_on_is_off,
           each_fault_latches_with_cause_and_tick, missed_ticks_are_tolerated_up_to_the_limit,
-          only_drives_in_use_count, gate_in_every_state, span_is_never_exceeded,
+          late_in_a_row_is_an_overrun, only_drives_in_use_count, gate_in_every_state, span_is_never_exceeded,
           converter_end_is_reported, fingers_not_in_use_get_zero,
           alive_changes_at_every_tick_in_every_state, state_round_trip);

@@ -283,8 +283,26 @@ TEST(state_survives_a_round_trip)
     }
 }
 
+/* Bytes of any content leave a state that no index, sum or shift runs out of. */
+TEST(damaged_state_is_harmless)
+{
+    for (size_t i = 0; i < LEN(every); i++) {
+        for (int n = 0; n < 200; n++) {
+            struct any a;
+            uint8_t buf[128];
+            struct exh_bytes c = exh_bytes_reader(buf, sizeof buf);
+            for (size_t k = 0; k < sizeof buf; k++) {
+                buf[k] = n == 0 ? 0xFF : n == 1 ? 0x7F : (uint8_t)(check_u64() & 0xFF);
+            }
+            (void)any_setup(&a, every[i].kind, every[i].arg, scale_2k);
+            any_bytes(&c, &a);
+            for (int k = 0; k < 40; k++) { (void)any_step(&a, check_i32()); }
+        }
+    }
+}
+
 TEST_MAIN("unit/velocity", first_call_returns_zero, constant_velocity_is_exact_across_the_wrap,
           quantisation_error_stays_in_its_bound, lag_is_the_documented_one,
           saturates_with_the_right_sign, rest_returns_to_zero,
           slow_observer_rests_within_its_residual, foaw_acceptance_by_hand, setup_refuses,
-          state_survives_a_round_trip);
+          state_survives_a_round_trip, damaged_state_is_harmless);

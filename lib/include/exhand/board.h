@@ -1,8 +1,8 @@
 /* Board: the eleven functions a port provides. Included by the loop and the
  * ports, never by a module. Each is defined exactly once, at link time.
  *
- * Frames carry raw codes; all scaling is the library's. docs/PORTING.md walks
- * through a port; ports/template is one that does nothing.
+ * Frames carry raw codes; all scaling is the library's. ports/template is a port
+ * that does nothing and says what each function has to do.
  */
 #ifndef EXHAND_BOARD_H
 #define EXHAND_BOARD_H
@@ -23,7 +23,7 @@ struct exh_board_info {
     const char *name;     /* at most 15 characters                             */
     uint16_t version;     /* EXH_BOARD_VERSION it was written against          */
     uint8_t fingers;      /* axes present                                      */
-    uint8_t enc_bits;     /* width of its counters: 16, 24 or 32               */
+    uint8_t enc_bits;     /* width of its counters, 16 .. 32                   */
     uint32_t rate_max_Hz; /* highest rate it accepts                           */
 };
 extern const struct exh_board_info exh_board_info;
@@ -51,7 +51,7 @@ void exh_board_halt(const char *why);
 /* --- only where the scene calls them --- */
 
 struct exh_glove_in {
-    int16_t raw[22];     /* A/D codes, sensor order of docs/CARDS.md           */
+    int16_t raw[22];     /* A/D codes, in the order of the glove's sensors     */
     uint16_t age_ticks;  /* 0 = converted for this tick                        */
 };
 int exh_board_read_glove(struct exh_glove_in *in);

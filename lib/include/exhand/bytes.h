@@ -35,6 +35,12 @@ static inline int exh_bytes_ok(const struct exh_bytes *c)
     return c->mode == EXH_BYTES_MEASURE || c->at <= c->cap;
 }
 
+/* What was read makes no sense: not ok from now on. */
+static inline void exh_bytes_fail(struct exh_bytes *c)
+{
+    c->at = UINT32_MAX;
+}
+
 /* One field, little-endian, in the direction of the cursor. */
 void exh_bytes_u8(struct exh_bytes *c, uint8_t *v);
 void exh_bytes_u16(struct exh_bytes *c, uint16_t *v);

@@ -1,6 +1,7 @@
 /* Drive: from a force ledger to a motor current, and from raw codes back to SI.
  *
- * Order, fixed: force limit, slew, force-to-current table, peak current, I2t.
+ * Order, fixed: run or not, force limit, slew, force-to-current table, peak
+ * current, I2t.
  * The code for the D/A is made by exh_gate() alone (safety.h).
  */
 #ifndef EXHAND_DRIVE_H
@@ -49,12 +50,12 @@ void exh_drive_out_bytes(struct exh_bytes *c, struct exh_drive_out *out, unsigne
 
 enum exh_limit {
     EXH_LIMIT_PULL = 1u << 0,  /* law asked to push: a string only pulls       */
-    EXH_LIMIT_FORCE = 1u << 1, /* above f_max                                  */
+    EXH_LIMIT_FORCE = 1u << 1, /* above f_max, or the end of the table         */
     EXH_LIMIT_SLEW = 1u << 2,
     EXH_LIMIT_PEAK = 1u << 3, /* above i_peak                                  */
     EXH_LIMIT_I2T = 1u << 4,
     EXH_LIMIT_DAC = 1u << 5, /* code at the end of its span                    */
-    EXH_LIMIT_GATE = 1u << 6 /* not in RUN: current held at zero               */
+    EXH_LIMIT_GATE = 1u << 6 /* not in RUN: force and current held at zero     */
 };
 
 /* --- conversion tables: strictly rising, linear between knots --- */
@@ -68,31 +69,32 @@ struct exh_table {
     uint8_t n;                   /* >= 2                                       */
 };
 
-/* Checks n knots and fills the slopes. -EXH_E_RANGE (n < 2, or x or y spans more
- * than 2^31-1), -EXH_E_MONOTONE (x or y does not rise strictly). */
+/* Checks n knots and fills the slopes. -EXH_E_RANGE (n not 2 .. 255, x or y spans
+ * more than 2^31-1, or a slope is 2^31 or more or below 2^-32), -EXH_E_MONOTONE (x or y does not rise strictly). */
 int exh_table_set(struct exh_knot *knot, unsigned n);
 
 /* The inverse table: dst may be src. Errors as exh_table_set(). */
 int exh_table_invert(struct exh_knot *dst, const struct exh_knot *src, unsigned n);
 
 /* y at x: monotone, exact at every knot, within 1.5 LSB of y between them (1 LSB
- * where a segment rises less than 2^30), and the end values outside. Cost depends on n alone, not on x. */
+ * where a segment rises less than 2^30), and the end values outside. Cost depends
+ * on n alone, not on x. */
 int32_t exh_table_at(struct exh_table t, int32_t x);
 
 /* --- one axis --- */
 
 struct exh_drive_par {
-    int32_t f_max_N_q20;   /* force limit, N                                   */
-    int32_t slew_up_Nps;   /* rise of force, N/s                               */
-    int32_t slew_down_Nps; /* fall of force, N/s                               */
-    int32_t i_peak_A_q26;  /* never more than this, A                          */
-    int32_t i_cont_A_q26;  /* for ever, A                                      */
-    int32_t peak_ms;       /* how long i_peak from cold, ms                    */
-    int32_t dac_zero_raw;  /* code of 0 A                                      */
-    int32_t dac_span_raw;  /* codes either side of it that may be used         */
-    int32_t dac_rawpA_q16; /* codes per ampere                                 */
-    int32_t mon_zero_raw;  /* monitor code at 0 A                              */
-    int32_t mon_A_q40;     /* ampere per monitor code                          */
+    int32_t f_max_N_q20;   /* force limit, N, 0 .. 100                         */
+    int32_t slew_up_Nps;   /* rise of force, N/s, 1 .. 10^7                    */
+    int32_t slew_down_Nps; /* fall of force, N/s, 1000 .. 10^7                 */
+    int32_t i_peak_A_q26;  /* never more than this, A, 0.1 .. 6.6              */
+    int32_t i_cont_A_q26;  /* for ever, A, 0 .. 3.3 and <= i_peak              */
+    int32_t peak_ms;       /* how long i_peak from cold, ms, 1 .. 2700         */
+    int32_t dac_zero_raw;  /* code of 0 A, 0 .. 65535                          */
+    int32_t dac_span_raw;  /* codes either side of it that may be used, 0 .. 32767 */
+    int32_t dac_rawpA_q16; /* codes per ampere, 1 .. 32768                     */
+    int32_t mon_zero_raw;  /* monitor code at 0 A, -32768 .. 32767             */
+    int32_t mon_A_q40;     /* ampere per monitor code, > 0 .. 1.95 mA          */
 };
 #define EXH_DRIVE_ROWS 11
 extern const struct exh_signal exh_drive_rows[EXH_DRIVE_ROWS];
@@ -101,6 +103,7 @@ struct exh_drive_cfg {
     const struct exh_drive_par *par; /* read at every tick                     */
     struct exh_table force_to_cur;   /* N q20 -> A q26                         */
     struct exh_table cur_to_force;   /* monitor: A q26 -> N q20                */
+    int32_t f_top_N_q20;             /* end of that table: no force beyond it  */
     struct exh_gain tick_N_q20;      /* N q20 per tick, per N/s                */
     int64_t i2t_budget_q32;          /* A^2 ticks above i_cont^2               */
     struct exh_gain i2t_fold;        /* A q26 per (budget left >> i2t_shift)   */
@@ -123,17 +126,21 @@ struct exh_current_ledger {
     int32_t coded_A_q26; /* what the code stands for                           */
 };
 
-/* Set-up (divides). Tables must have passed exh_table_set(); cur_to_force may be
- * {NULL, 0} where no monitor is read; par must
- * outlive cfg. -EXH_E_RANGE when i_peak < i_cont, or a scale in use is not positive. */
+/* Set-up (divides). Tables must have passed exh_table_set() and outlive cfg, as
+ * must par; force_to_cur must give 0 A at 0 N; cur_to_force may be {NULL, 0} where
+ * no monitor is read. -EXH_E_RANGE when a table is not so, a parameter lies outside
+ * its range above (parameters in ROM have passed no other check), or
+ * i_peak < i_cont. */
 int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par,
                     struct exh_period T, struct exh_table force_to_cur,
                     struct exh_table cur_to_force);
 
-/* Completes the force ledger: 0 <= force <= f_max, |change| <= slew * T (at least
- * 1 LSB). Where the two disagree, because f_max was just lowered, slew wins: force
- * comes down to the new limit at its rate. Returns limit bits. */
-uint32_t exh_drive_force(struct exh_drive *s, const struct exh_drive_cfg *cfg,
+/* Completes the force ledger: 0 <= force <= f_max and the table's end, |change| <=
+ * slew * T (at least 1 LSB). Where the two disagree, because f_max was just lowered,
+ * slew wins: force comes down to the new limit at its rate. run 0 (the box is not
+ * in RUN): the force is zero and rises from there when it runs again. Returns
+ * limit bits. */
+uint32_t exh_drive_force(struct exh_drive *s, const struct exh_drive_cfg *cfg, int run,
                          struct exh_force_ledger *f);
 
 /* Fills table, peak and i2t for the force commanded; zeroes the rest. The I2t
@@ -143,12 +150,11 @@ uint32_t exh_drive_current(struct exh_drive *s, const struct exh_drive_cfg *cfg,
                            const struct exh_force_ledger *f, struct exh_current_ledger *i);
 
 /* Monitored current of a code, A q26 (saturating, error <= 1/2 LSB = 7.5 nA), and
- * the string force that the monitor table gives for it, N q20. */
+ * the string force that the monitor table gives for it, N q20 (0 without a table). */
 int32_t exh_drive_monitor_A_q26(const struct exh_drive_cfg *cfg, int16_t mon_raw);
 int32_t exh_drive_monitor_N_q20(const struct exh_drive_cfg *cfg, int16_t mon_raw);
 
-/* The state of an axis at zero force, cold. The heat outlives a stop: zero only
- * force_N_q20 to restart a warm axis. */
+/* State through a cursor. A state of zeros is an axis at rest and cold. */
 void exh_drive_bytes(struct exh_bytes *c, struct exh_drive *s);
 
 #ifdef __cplusplus

@@ -4,6 +4,7 @@
 
 #include "exhand/bytes.h"
 #include "exhand/signal.h"
+#include "exhand/units.h"
 
 #include <stdint.h>
 
@@ -13,8 +14,8 @@ extern "C" {
 
 /* Parameters of one encoder; rows in exh_quad_rows[]. */
 struct exh_quad_par {
-    int32_t step_m_q42; /* string per count, m, > 0 .. 488 um, LSB 0.23 pm     */
-    int32_t bits;       /* width of the hardware counter: 16, 24 or 32         */
+    int32_t step_m_q42;        /* string per count, m, 1 .. 488 um, LSB 0.23 pm */
+    int32_t speed_max_mps_q27; /* faster is no hand, m/s, 0.1 .. 16            */
 };
 #define EXH_QUAD_ROWS 2
 extern const struct exh_signal exh_quad_rows[EXH_QUAD_ROWS];
@@ -40,22 +41,36 @@ struct exh_quad_ab {
 void exh_quad_ab_step(struct exh_quad_ab *s, enum exh_quad_mode mode, unsigned a, unsigned b,
                       unsigned index);
 
-/* Extension of a 16-, 24- or 32-bit hardware counter across its wrap. */
+/* Extension of a hardware counter of 16 to 32 bits across its wrap. */
+struct exh_quad_cfg {
+    const struct exh_quad_par *par;
+    int32_t jump_cnt; /* what speed_max moves in one tick, rounded, plus 1     */
+    uint8_t unused;   /* 32 less the counter's width                           */
+};
 struct exh_quad {
     uint32_t raw;    /* last counter value, low bits                          */
     int32_t cnt;     /* counts since the first sample; wraps modulo 2^32       */
     uint8_t started; /* the first sample is count 0                            */
+    uint8_t jumped;  /* the last sample moved more than speed_max: a fault     */
 };
 
+/* Set-up (divides); par must outlive cfg. bits: the counter's width, from the
+ * board. -EXH_E_RANGE: bits not 16 .. 32, step or speed_max not positive, or
+ * speed_max moves the counter by half its width or more in one tick, so that
+ * direction could not be told. */
+int exh_quad_setup(struct exh_quad_cfg *cfg, const struct exh_quad_par *par, struct exh_period T,
+                   unsigned bits);
+
 /* The extended count. Right as long as the counter moves less than half its
- * width between two calls. bits: 1 .. 32. */
-int32_t exh_quad_extend(struct exh_quad *s, const struct exh_quad_par *par, uint32_t raw);
+ * width between two calls; bits of raw above the width are ignored. */
+int32_t exh_quad_extend(struct exh_quad *s, const struct exh_quad_cfg *cfg, uint32_t raw);
 
 /* Position of a count, m, q30; rounded half up, saturates at +-2 m with the
  * right sign. Error <= 1/2 LSB = 0.47 nm. */
 int32_t exh_quad_pos_m_q30(const struct exh_quad_par *par, int32_t cnt);
 
 /* State through a cursor (bytes.h). */
+void exh_quad_ab_bytes(struct exh_bytes *c, struct exh_quad_ab *s);
 void exh_quad_bytes(struct exh_bytes *c, struct exh_quad *s);
 
 #ifdef __cplusplus

@@ -55,6 +55,7 @@ struct exh_record_header {
     uint32_t signal_crc;   /* of the scene's output table                       */
     struct exh_period T;
     uint16_t fingers;
+    uint16_t enc_bits; /* width of the board's counters                        */
     uint16_t signals; /* int32 values in a frame after the raw codes           */
 };
 

@@ -29,26 +29,27 @@ enum exh_command {
 enum exh_fault {
     EXH_FAULT_ESTOP = 1u << 0,   /* emergency-stop loop open                    */
     EXH_FAULT_DRIVE = 1u << 1,   /* a drive in use is not ready                 */
-    EXH_FAULT_OVERRUN = 1u << 2, /* more ticks missed at once than allowed      */
+    EXH_FAULT_OVERRUN = 1u << 2, /* too many ticks missed without one in time   */
     EXH_FAULT_ENCODER = 1u << 3, /* movement no hand can make                   */
-    EXH_FAULT_PARAM = 1u << 4,   /* parameters or calibration not usable        */
-    EXH_FAULT_BOARD = 1u << 5    /* a card answered wrongly                     */
+    EXH_FAULT_DEADMAN = 1u << 4  /* dead-man switch released                    */
 };
 
 struct exh_safety_par {
-    int32_t missed_max; /* ticks missed at one wait that are tolerated, 0 .. 1000 */
+    int32_t missed_max; /* ticks missed in a row that are tolerated, 0 .. 3      */
 };
 #define EXH_SAFETY_ROWS 1
 extern const struct exh_signal exh_safety_rows[EXH_SAFETY_ROWS];
 
 struct exh_safety {
-    uint32_t faults;      /* latched causes                                    */
-    uint32_t first;       /* the first of them                                 */
-    uint32_t first_tick;  /* and when                                          */
-    uint32_t tick;        /* ticks since set-up, modulo 2^32                   */
-    uint32_t missed;      /* ticks missed since set-up, saturating             */
-    uint8_t state;        /* enum exh_state                                    */
-    uint8_t alive;
+    uint32_t present;    /* causes seen in the last tick: why RUN or CLEAR is refused */
+    uint32_t faults;     /* latched causes                                     */
+    uint32_t first;      /* the first of them; stays after CLEAR, for a report */
+    uint32_t first_tick; /* and when                                           */
+    uint32_t tick;       /* ticks since set-up, modulo 2^32                    */
+    uint32_t missed;     /* ticks missed since set-up, saturating              */
+    uint32_t late;       /* ticks missed since the last one in time, saturating */
+    uint8_t state;       /* enum exh_state                                     */
+    uint8_t alive;       /* completed ticks, modulo 256                        */
 };
 
 struct exh_safety_in {
@@ -56,10 +57,11 @@ struct exh_safety_in {
     uint32_t raised;  /* enum exh_fault: causes other modules see now           */
     uint32_t missed;  /* ticks missed before this one                          */
     uint8_t command;  /* enum exh_command                                      */
-    uint8_t fingers;  /* drives in use: 0 .. fingers-1                         */
+    uint8_t fingers;  /* drives in use: 0 .. fingers-1; 1 .. EXH_FINGERS       */
 };
 
-/* One tick, first thing. Returns the state, enum exh_state. */
+/* One tick, first thing. Returns the state, enum exh_state. A missed_max outside
+ * its range counts as 0. */
 uint8_t exh_safety_step(struct exh_safety *s, const struct exh_safety_par *par,
                         struct exh_safety_in in);
 

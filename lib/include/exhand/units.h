@@ -1,5 +1,7 @@
 /* Units and formats: docs/NUMERICS.md as constants (a test asserts they agree).
  *
+ * The ranges are the formats'; what a parameter may be is narrower, in its row.
+ *
  *   quantity          unit    format  range       LSB
  *   position          m       q30     +-2         0.93 nm
  *   velocity          m/s     q27     +-16        7.5 nm/s
@@ -38,5 +40,11 @@ struct exh_period {
     uint32_t num; /* 1 .. 2^32-1                                               */
     uint32_t den; /* num/den within 50 us .. 1 s                               */
 };
+
+/* 1 if it is within that range: what the loop and a replay ask before they start. */
+static inline int exh_period_ok(struct exh_period T)
+{
+    return T.num > 0 && T.num <= T.den && T.den <= UINT64_C(20000) * T.num;
+}
 
 #endif

@@ -43,7 +43,7 @@ static int start_scene(struct replay *p)
         }
         exh_params_apply(sc->params);
     }
-    err = sc->setup(p->log.header.T);
+    err = sc->setup((struct exh_scene_board){p->log.header.T, (uint8_t)p->log.header.enc_bits});
     if (err < 0) {
         fprintf(stderr, "%s: set-up: %s\n", p->log.path, exh_error_text(err));
         return 2;
@@ -119,10 +119,6 @@ static int on_keyframe(struct replay *p, const struct exh_record *r)
         struct exh_bytes c = exh_bytes_reader(r->payload, r->len_B);
         exh_log_keyframe_bytes(&c, p->log.scene);
         if (!exh_bytes_ok(&c)) { return differs(r->tick, "keyframe length", r->len_B, c.at); }
-        if (p->log.scene->params != NULL) {
-            const struct exh_params *ps = p->log.scene->params;
-            memcpy(ps->staged, ps->active, exh_signal_count(ps->table) * sizeof(int32_t));
-        }
         p->running = 1;
     }
     return 0;

@@ -32,15 +32,16 @@ static void *grow(void *p, size_t *cap, size_t n, size_t size)
     return q ? q : p;
 }
 
-static void start(const struct exh_scene *sc, struct exh_period T)
+static void start(const struct exh_scene *sc, struct exh_scene_board board)
 {
-    run.r->T = T;
-    exh_log_start(sc, T);
+    run.r->T = board.T;
+    exh_log_start(sc, board);
 }
 
 static void before(uint32_t tick, struct exh_scene_in *in)
 {
     const int fall = posix_fall();
+    if (tick == 0) { in->command = EXH_CMD_RUN; }
     if (fall != run.fall) { exh_log_mark(tick, fall); }
     if (fall != 0 && fall != run.fall) {
         run.start = grow(run.start, &run.starts_cap, run.r->log.falls, sizeof *run.start);
