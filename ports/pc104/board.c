@@ -120,38 +120,12 @@ void exh_board_halt(const char *why)
     }
 }
 
-/* --- only where the scene calls them --- */
-
-int exh_board_read_glove(struct exh_glove_in *in)
-{
-    *in = (struct exh_glove_in){.age_ticks = UINT16_MAX};
-    return -EXH_E_ABSENT;
-}
+/* --- only where the scene calls them; a scene that wants the glove, a log or the
+ * link does not link before their cards are here --- */
 
 uint32_t exh_board_cycles(void)
 {
     uint32_t low, high;
     __asm__ volatile("rdtsc" : "=a"(low), "=d"(high) : : "memory");
     return low;
-}
-
-int exh_board_log(const void *rec, size_t len_B)
-{
-    (void)rec;
-    (void)len_B;
-    return 0;
-}
-
-int exh_board_link_send(const void *buf, size_t len_B)
-{
-    (void)buf;
-    (void)len_B;
-    return 0;
-}
-
-int exh_board_link_recv(void *buf, size_t cap_B)
-{
-    (void)buf;
-    (void)cap_B;
-    return 0;
 }
