@@ -83,7 +83,12 @@ static void run_closed(const struct closed *c)
         in.drive.enc_raw[0] = (in.drive.enc_raw[0] + jump_at(c, rig.w.ticks)) & 0xFFFFFF;
         tick(&in, &out);
         exh_board_write_drive(&out);
-        if (c->tweak < HALF) { check_position(&p.device, start_m); }
+        if (c->tweak < HALF) {
+            check_position(&p.device, start_m);
+        } else { /* never a newton from a count that lies */
+            must(rig.w.ticks <= 97 || rig.sig.faults == EXH_FAULT_ENCODER, "fault", "%#lx",
+                 (unsigned long)rig.sig.faults);
+        }
         in.command = EXH_CMD_NONE;
     }
 }
@@ -132,7 +137,7 @@ void closed_loops(void)
         char besides[64];
         run_closed(c);
         snprintf(besides, sizeof besides, "%s",
-                 c->tweak < HALF ? "q is the plant's to 2 counts" : "");
+                 c->tweak < HALF ? "q is the plant's to 2 counts" : "an encoder fault at the first");
         if (c->hi_mm > c->lo_mm) {
             const double lo = rig.w.q_min / 1073741.824, hi = rig.w.q_max / 1073741.824;
             snprintf(besides + strlen(besides), sizeof besides - strlen(besides), ", %g..%g mm",

@@ -22,6 +22,7 @@ static const struct hot pulses[] = {
 /* All the force there is, at every tick that the string is out. */
 static void start_hot(const struct hot *c)
 {
+    rig.blind = 1;
     set(ID_K, EXH_Q(1000000, 1, EXH_Q_K));
     set(ID_PEAK_TIME, c->peak_ms);
     start(c->T);

@@ -31,6 +31,7 @@ static void parameters_every_tick(void)
 {
     struct exh_drive_out out;
     fresh();
+    rig.blind = 1;
     start((struct exh_period){1, 2000});
     for (uint64_t n = 0; n < 1000000; n++) {
         const struct exh_scene_in in = wild_in(n);
@@ -61,6 +62,8 @@ static void random_setups(void)
         struct exh_drive_out out;
         int err;
         fresh();
+        rig.blind = 1;
+        rig.enc_bits = (uint8_t)(15 + any(18)); /* 15: refused */
         stage_all(EXH_WHEN_SETUP);
         if (any(2)) { stage_all(EXH_WHEN_ANY); }
         if (any(4)) { /* most of all i_peak and i_cont in the order the scene asks for */

@@ -46,6 +46,7 @@ void must(int holds, const char *rule, const char *fmt, ...)
 void fresh(void)
 {
     memset(&rig, 0, sizeof rig);
+    rig.enc_bits = 24;
     rig.w.q_min = INT32_MAX;
     rig.w.q_max = INT32_MIN;
     exh_params_init(&rig.params, exh_scene_drop.params->table, (int32_t *)&rig.active,
@@ -66,10 +67,13 @@ void set_gains(double k_Npm, double b_Nspm)
 
 int ready(struct exh_period T)
 {
+    int err;
     exh_params_apply(&rig.params);
     rig.params.locked = 1;
     rig.T = T;
-    return drop_setup(&rig.cfg, &rig.active, T);
+    err = drop_setup(&rig.cfg, &rig.active, (struct exh_scene_board){T, rig.enc_bits});
+    if (rig.blind) { rig.cfg.quad.jump_cnt = INT32_MAX; }
+    return err;
 }
 
 void start(struct exh_period T)

@@ -7,7 +7,7 @@
  *
  *   output     the scene gives what its modules give in their documented order
  *   ledgers    force and current terms sum to the last bit
- *   force      0 <= F <= f_max (above f_max, after it was lowered, only on its way down)
+ *   force      0 outside RUN; 0 <= F <= f_max and the table's end (above f_max, after it was lowered, only on its way down)
  *   slew       |change of F| <= slew * T + 1 LSB
  *   code       dac_zero <= code <= dac_zero + dac_span: a string is never pushed; outside
  *              RUN, and on axes not in use, dac_zero and disabled

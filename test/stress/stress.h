@@ -15,7 +15,6 @@
 #define LEN(a) (sizeof(a) / sizeof((a)[0]))
 
 enum { /* parameters that cases set, by id */
-       ID_BITS = 0x0202,
        ID_K = 0x0401,
        ID_B = 0x0402,
        ID_F0 = 0x0403,
@@ -41,6 +40,8 @@ struct rig {
     struct drop state, shadow;
     struct drop_signals sig;
     struct exh_period T;
+    uint8_t enc_bits; /* of the board's counter, 24 unless a case says so       */
+    int blind;        /* 1: no movement is a fault, so that wild inputs act      */
     double heat; /* A^2 s above continuous, in doubles                       */
     struct watch w;
 };

@@ -44,13 +44,14 @@ static void tick_counter_wraps(void)
 static char *write_wrapping_log(uint32_t first, uint32_t ticks, size_t *len_B)
 {
     const struct exh_scene *sc = &exh_scene_drop;
+    const struct exh_scene_board board = {{1, 2000}, 24};
     struct posix_config p = posix_config_default();
     char *log = NULL;
     p.log = open_memstream(&log, len_B);
     posix_configure(&p);
     sc->defaults();
-    must(p.log != NULL && sc->setup((struct exh_period){1, 2000}) == 0, "set-up", "refused");
-    exh_log_start(sc, (struct exh_period){1, 2000});
+    must(p.log != NULL && sc->setup(board) == 0, "set-up", "refused");
+    exh_log_start(sc, board);
     for (uint32_t n = 0; n < ticks; n++) {
         struct exh_scene_in in = idle_in(n, n * 7 % 3000);
         struct exh_drive_out out;
@@ -71,7 +72,7 @@ static void read_back(const struct exh_record *r, uint32_t *next, int *running)
     struct exh_scene_in in = idle_in(1, 0);
     struct exh_drive_out rec, out;
     struct drop_signals sig;
-    if (r->type == EXH_RECORD_KEYFRAME && r->tick == 0) {
+    if (r->type == EXH_RECORD_KEYFRAME && r->tick == 0 && *next == 0) {
         exh_log_keyframe_bytes(&c, sc);
         *running = 1;
     }
@@ -119,6 +120,7 @@ static void count_wraps(int32_t step)
     uint32_t raw = 0;
     int32_t cnt = 0;
     fresh();
+    rig.blind = 1;
     start((struct exh_period){1, 2000});
     for (uint32_t n = 0; n < 2000; n++) {
         const struct exh_scene_in in = idle_in(n, raw & 0xFFFFFF);
