@@ -231,6 +231,7 @@ static void extend_op(uint32_t i)
 static void extend_error(struct error *e)
 {
     uint32_t at = 0;
+    extend_setup();
     counter = (struct exh_quad){0};
     bench_seed();
     exh_quad_extend(&counter, &encoder_cfg, 0);
