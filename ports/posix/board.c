@@ -42,7 +42,8 @@ static struct {
     int configured;
 } sim;
 
-static volatile sig_atomic_t stop;
+static int stop;                          /* this run */
+static volatile sig_atomic_t interrupted; /* and every later one: never cleared */
 
 struct posix_config posix_config_default(void)
 {
@@ -63,6 +64,16 @@ void posix_configure(const struct posix_config *c)
 void posix_stop(void)
 {
     stop = 1;
+}
+
+void posix_interrupt(void)
+{
+    interrupted = 1;
+}
+
+int posix_interrupted(void)
+{
+    return interrupted;
 }
 
 int posix_fall(void)
@@ -93,8 +104,8 @@ int exh_board_init(uint32_t rate_Hz, struct exh_period *achieved)
     } else {
         sim.T = (struct exh_period){1, rate_Hz};
     }
-    if (sim.T.den == 0 || sim.T.num > sim.T.den ||
-        sim.T.den / sim.T.num > exh_board_info.rate_max_Hz) {
+    if (sim.T.num == 0 || sim.T.num > sim.T.den ||
+        sim.T.den > (uint64_t)exh_board_info.rate_max_Hz * sim.T.num) {
         return -EXH_E_RATE;
     }
     sim.rng.state = sim.cfg.seed;
@@ -103,7 +114,8 @@ int exh_board_init(uint32_t rate_Hz, struct exh_period *achieved)
     sim.latched_A = sim.ref_A = 0;
     sim.head = sim.queued = 0;
     sim.grid = sim_random_unit(&sim.rng);
-    fall_start(&sim.fall, &sim.plant, &sim.cfg.device, &sim.rng, sim.cfg.falls);
+    fall_start(&sim.fall, &sim.plant, &sim.cfg.device, &sim.rng, sim.cfg.falls,
+               (double)sim.T.num / (double)sim.T.den);
     sim.servo_s = sim_random_unit(&sim.rng) / sim.cfg.device.servo_hz;
     stop = 0;
     *achieved = sim.T;
@@ -155,7 +167,7 @@ static void follow_wall_clock(double t_s)
         at.tv_nsec -= 1000000000L;
         at.tv_sec++;
     }
-    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &at, NULL) != 0 && !stop) {}
+    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &at, NULL) != 0 && !interrupted) {}
 }
 
 int exh_board_wait(void)
@@ -165,7 +177,7 @@ int exh_board_wait(void)
     if (sim.cfg.pace) { follow_wall_clock(at_s); }
     sim.tick++;
     if (sim.cfg.max_ticks && sim.tick > sim.cfg.max_ticks) { return -1; }
-    return stop || sim.fall.phase == FALL_DONE ? -1 : 0;
+    return stop || interrupted || sim.fall.phase == FALL_DONE ? -1 : 0;
 }
 
 static int64_t floor_count(double v)

@@ -29,8 +29,12 @@ void posix_configure(const struct posix_config *c);
 /* The fall under observation, 1…, or 0 while the mass is held or lifted. */
 int posix_fall(void);
 
-/* Ends the run: the next wait says stop. Safe in a signal handler. */
+/* Ends the run: the next wait says stop. */
 void posix_stop(void);
+
+/* Ends this run and every later one of the process. Safe in a signal handler. */
+void posix_interrupt(void);
+int posix_interrupted(void);
 
 /* The instant of the present tick, s, and the plant as it is (tests, pictures). */
 double posix_time_s(void);

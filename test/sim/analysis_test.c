@@ -763,7 +763,51 @@ TEST(rest_at_the_limits)
     }
 }
 
+/* A fall of 6 s at T_s whose position alternates between two places, judged. */
+static enum fall_rest_class rest_between(double T_s, double q0_m, double q1_m)
+{
+    struct log_builder b = {0};
+    struct fall_contacts contacts;
+    struct fall_rest rest;
+    begin_fall(&b);
+    for (int i = 0; i * T_s < 6; i++) { add(&b, T_s, i % 2 ? q1_m : q0_m, 5.0, 1); }
+    const struct fall_log log = built(&b);
+    CHECK(fall_dissect(&log, 1, &contacts) == FALL_OK, "%g s", T_s);
+    CHECK(fall_rest(&log, &contacts, &fall_rest_opt_default, &rest) == FALL_OK, "%g s", T_s);
+    fall_contacts_free(&contacts);
+    drop(&b);
+    return rest.rest;
+}
+
+/* Half a second holds no three samples of a rate below 6 Hz. */
+TEST(slow_rates_are_judged_too)
+{
+    static const double T_s[] = {1, 2 / 3.0, 0.5, 1 / 3.0, 0.2, 1 / 7.0, 1 / 9.0, 0.1};
+    for (size_t i = 0; i < sizeof T_s / sizeof T_s[0]; i++) {
+        const enum fall_rest_class still = rest_between(T_s[i], 0.08, 0.08);
+        const enum fall_rest_class swings = rest_between(T_s[i], 0.08, 0.081);
+        CHECK(still == FALL_AT_REST, "%g s: %s", T_s[i], fall_rest_text(still));
+        CHECK(swings == FALL_OSCILLATES, "%g s: %s", T_s[i], fall_rest_text(swings));
+    }
+}
+
+/* Position saturates at 2 m, where a mass that fell past it seems to stand still. */
+TEST(a_mass_that_ran_away_is_not_at_rest)
+{
+    static const struct {
+        double q0_m, q1_m;
+        enum fall_rest_class want;
+    } row[] = {{2 - 0x1p-30, 2 - 0x1p-30, FALL_INCOMPLETE}, {-2, -2, FALL_INCOMPLETE},
+               {2 - 0x1p-30, 1.2, FALL_OSCILLATES},         {1.98, 1.98, FALL_AT_REST},
+               {-1.98, -1.98, FALL_AT_REST},                {-2, -1.9999, FALL_INCOMPLETE}};
+    for (size_t i = 0; i < sizeof row / sizeof row[0]; i++) {
+        const enum fall_rest_class got = rest_between(0.002, row[i].q0_m, row[i].q1_m);
+        CHECK(got == row[i].want, "%g and %g m: %s", row[i].q0_m, row[i].q1_m, fall_rest_text(got));
+    }
+}
+
 TEST_MAIN("analysis", line_is_exact, even_forces_are_exact, twelve_rows_by_hand, band_has_both_ends,
           ties_keep_their_order, contacts_are_cut, lag_stays_in_the_contact, bootstrap_width,
           bootstrap_unbounded, kept_force_matters_little, degenerate, damaged_logs, bad_options,
-          same_digits, plot_files, rest_is_never_mistaken, rest_at_the_limits);
+          same_digits, plot_files, rest_is_never_mistaken, rest_at_the_limits,
+          slow_rates_are_judged_too, a_mass_that_ran_away_is_not_at_rest);

@@ -11,10 +11,12 @@
 #include "log.h"
 
 #include "exhand/board.h"
+#include "exhand/error.h"
 #include "exhand/exhand.h"
 
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #define LEN(a) (sizeof(a) / sizeof((a)[0]))
@@ -464,9 +466,82 @@ TEST(the_run_ends_where_it_was_told)
     CHECK(exh_board_wait() < 0, "goes on after posix_stop()");
 }
 
+/* Compared without a division, which would let 10/200009 s pass for 20000 Hz. */
+TEST(periods_outside_the_range_are_refused)
+{
+    static const struct {
+        struct exh_period T;
+        int ok;
+    } row[] = {{{1, 1}, 1},          {{1, 20000}, 1},           {{597, 1193182}, 1},
+               {{10, 200000}, 1},    {{214749, 4294967295u}, 1}, {{10, 200001}, 0},
+               {{10, 200009}, 0},    {{1, 20001}, 0},            {{214748, 4294967295u}, 0},
+               {{1, 4294967295u}, 0}, {{2, 1}, 0},               {{4294967295u, 4294967294u}, 0}};
+    for (size_t i = 0; i < LEN(row); i++) {
+        struct posix_config c = posix_config_default();
+        struct exh_period T;
+        c.T = row[i].T;
+        posix_configure(&c);
+        CHECK(exh_board_init(1000, &T) == (row[i].ok ? 0 : -EXH_E_RATE), "%lu/%lu",
+              (unsigned long)c.T.num, (unsigned long)c.T.den);
+    }
+}
+
+/* Whatever the rate: the controller sees the whole observation, and a tick between. */
+TEST(every_fall_is_watched_to_its_end)
+{
+    static const struct exh_period T[] = {{1, 1}, {3, 4}, {2, 3}, {1, 2},  {1, 3},  {2, 7},
+                                          {1, 5}, {1, 7}, {1, 9}, {1, 10}, {1, 90}, {1, 2000}};
+    for (size_t i = 0; i < LEN(T); i++) {
+        struct run_cfg c = {.rate_Hz = 1, .k_Npm = 1500};
+        struct fall_contacts contacts;
+        struct fall_rest rest[8];
+        struct run r;
+        c.board = posix_config_default();
+        c.board.falls = 8;
+        c.board.T = T[i];
+        CHECK_EQ_I64(run_drop(&c, &r), 0);
+        CHECK(r.log.falls == 8, "%zu falls", r.log.falls);
+        CHECK(fall_dissect(&r.log, 1, &contacts) == FALL_OK, "row %zu", i);
+        CHECK(fall_rest(&r.log, &contacts, &fall_rest_opt_default, rest) == FALL_OK, "row %zu", i);
+        for (size_t f = 0; f < 8; f++) {
+            const double gap_s =
+                f ? r.log.sample[r.log.start[f]].t_s - r.log.sample[r.log.start[f] - 1].t_s : 9;
+            CHECK(rest[f].rest != FALL_INCOMPLETE, "row %zu, fall %zu", i, f);
+            CHECK(gap_s * T[i].den > 1.5 * T[i].num, "row %zu, fall %zu: no tick before it", i, f);
+        }
+        fall_contacts_free(&contacts);
+        run_free(&r);
+    }
+}
+
+/* In a process of its own, since there is no way back. */
+TEST(an_interruption_outlasts_a_new_run)
+{
+    const pid_t pid = fork();
+    int status = 1;
+    CHECK(pid >= 0, "no process");
+    if (pid == 0) {
+        const struct posix_config c = posix_config_default();
+        struct exh_period T;
+        int bad = 0;
+        posix_configure(&c);
+        bad |= exh_board_init(2000, &T) != 0 || exh_board_wait() != 0;
+        posix_stop(); /* this run alone */
+        bad |= exh_board_wait() >= 0;
+        bad |= exh_board_init(2000, &T) != 0 || exh_board_wait() != 0 || posix_interrupted();
+        posix_interrupt();
+        bad |= exh_board_wait() >= 0;
+        bad |= exh_board_init(2000, &T) != 0 || exh_board_wait() >= 0 || !posix_interrupted();
+        _exit(bad);
+    }
+    CHECK(waitpid(pid, &status, 0) == pid && status == 0, "status %#x", (unsigned)status);
+}
+
 TEST_MAIN("board_sim", a_step_acts_at_the_first_sample_after_its_delay,
           the_edge_between_two_servo_samples_is_sharp, a_disabled_drive_gives_no_current,
           the_drive_limits_at_its_own_peak, monitor_noise_is_bounded_on_both_sides,
           monitor_code_is_the_nearest, encoder_code_is_the_floor, decoding_multiplies_the_counts,
           the_seed_decides_every_byte, the_counters_wrap_is_nowhere_seen,
-          every_tick_lands_on_its_instant, the_run_ends_where_it_was_told);
+          every_tick_lands_on_its_instant, the_run_ends_where_it_was_told,
+          periods_outside_the_range_are_refused, every_fall_is_watched_to_its_end,
+          an_interruption_outlasts_a_new_run);

@@ -27,6 +27,7 @@ const struct fall_rest_opt fall_rest_opt_default = {
     .travel_m = 0.25e-3,
     .force_N = 4.0,
     .encoder_step_m = 0.0,
+    .range_m = 1.99,
 };
 
 const char *fall_status_text(enum fall_status status)
@@ -627,22 +628,28 @@ static void rest_of_fall(const struct fall_log *log, const struct fall_contact *
     const double tick_s =
         (log->sample[end - 1].t_s - log->sample[first].t_s) / (double)(end - 1 - first);
     const double stop_s = out->t_contact_s + opt->observe_s - 0.5 * tick_s;
+    const double window_s = opt->window_s > 4 * tick_s ? opt->window_s : 4 * tick_s;
 
     if (log->sample[end - 1].t_s + tick_s <= stop_s) { return; }
     for (size_t i = contact->first; i < end && log->sample[i].t_s < stop_s; i++) {
-        if (log->sample[i].t_s >= stop_s - opt->window_s) { span_add(&w, &log->sample[i]); }
+        if (log->sample[i].t_s >= stop_s - window_s) { span_add(&w, &log->sample[i]); }
     }
-    if (w.n < 3 || (double)w.n * tick_s < 0.9 * opt->window_s) { return; }
+    /* A window is rarely a whole number of ticks: by one it may seem short. */
+    if (w.n < 3 || (double)w.n * tick_s < 0.9 * (opt->window_s - tick_s)) { return; }
+    const enum fall_rest_class rest = judge(w.q_hi - w.q_lo, w.f_hi - w.f_lo, opt);
+    /* A position that stands still at the end of its range says nothing of the mass. */
+    if (rest != FALL_OSCILLATES && (w.q_lo <= -opt->range_m || w.q_hi >= opt->range_m)) { return; }
     out->travel_m = w.q_hi - w.q_lo;
     out->force_N = w.f_hi - w.f_lo;
-    out->rest = judge(out->travel_m, out->force_N, opt);
+    out->rest = rest;
 }
 
 static int rest_opt_ok(const struct fall_rest_opt *o)
 {
     return o->window_s > 0.0 && o->window_s <= o->observe_s && sane(o->observe_s) &&
            o->travel_m >= 0.0 && sane(o->travel_m) && o->force_N >= 0.0 && sane(o->force_N) &&
-           o->encoder_step_m >= 0.0 && sane(o->encoder_step_m);
+           o->encoder_step_m >= 0.0 && sane(o->encoder_step_m) && o->range_m > 0.0 &&
+           sane(o->range_m);
 }
 
 enum fall_status fall_rest(const struct fall_log *log, const struct fall_contacts *contacts,

@@ -4,28 +4,34 @@
 #define LIFT_S 0.5
 #define HOLD_S 0.1
 #define GIVE_UP_S 3.0  /* a mass that has not reached the contact by then        */
-#define MARGIN_S 0.15  /* the log's contact comes up to some slow ticks later    */
+#define MARGIN_S 0.15  /* or two ticks: by so much may the log's contact be later */
 
 static double start_height(const struct sim_device *d, struct sim_random *r)
 {
     return -d->height_m + d->height_jitter_m * (2 * sim_random_unit(r) - 1);
 }
 
-/* The instant of release is not tied to the tick: up to 50 ms of chance. */
+static double longer(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+/* The instant of release is not tied to the tick: up to 50 ms of chance, or half a tick. */
 static void hold(struct fall *f, struct sim_random *r, double t_s)
 {
     f->phase = FALL_HOLD;
-    f->until_s = t_s + HOLD_S * (1 + 0.5 * sim_random_unit(r));
+    f->until_s = t_s + longer(HOLD_S, f->T_s) * (1 + 0.5 * sim_random_unit(r));
 }
 
 void fall_start(struct fall *f, struct plant *p, const struct sim_device *d,
-                struct sim_random *r, int falls)
+                struct sim_random *r, int falls, double T_s)
 {
     const struct plant rest = {0};
     *p = rest;
     p->x_m = p->q_m = start_height(d, r);
     f->number = 1;
     f->falls = falls;
+    f->T_s = T_s;
     hold(f, r, 0);
 }
 
@@ -71,7 +77,7 @@ int fall_step(struct fall *f, struct plant *p, const struct sim_device *d, struc
     const enum fall_phase before = f->phase;
     if (f->phase == FALL_FREE && f->contact_s < 0 && p->q_m >= 0) {
         f->contact_s = t_s;
-        f->until_s = t_s + d->observe_s + MARGIN_S;
+        f->until_s = t_s + d->observe_s + longer(MARGIN_S, 2 * f->T_s);
     }
     if (f->phase == FALL_LIFT) { lift(f, p, t_s); }
     if (t_s >= f->until_s && f->phase != FALL_DONE) { end_of_phase(f, p, d, r, t_s); }

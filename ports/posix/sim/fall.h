@@ -15,12 +15,15 @@ struct fall {
     int falls;         /* how many are asked for                               */
     double until_s;    /* end of the phase; FREE: known once contact is made   */
     double contact_s;  /* first time past the virtual contact, < 0: not yet    */
+    double T_s;        /* the controller's period                              */
     double lift_s;     /* start of the lift                                    */
     double from_x_m, from_q_m, to_m;
 };
 
+/* T_s: it holds for a tick and watches for two more than it must, whatever the rate,
+ * so that the controller sees every fall whole and a tick between any two. */
 void fall_start(struct fall *f, struct plant *p, const struct sim_device *d,
-                struct sim_random *r, int falls);
+                struct sim_random *r, int falls, double T_s);
 
 /* When the phase ends, if known; a time far away otherwise. */
 double fall_next_s(const struct fall *f);
