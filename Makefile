@@ -109,11 +109,13 @@ all: $(lib) $(products)
 demo: all
 	@.ci/deps "the pictures" gnuplot gnuplot-nox fonts-dejavu-core || true
 	@mkdir -p $(B)/demo
-	$(Q)$(exhand) drop --out $(B)/demo --spread 20 > $(B)/demo/table2.txt || { cat $(B)/demo/table2.txt; exit 1; }
-	@if command -v gnuplot >/dev/null; then \
-	    gnuplot -e "plots='ports/posix/cli/plot'" $(B)/demo/pictures.gp && \
-	    echo "pictures: $(B)/demo/force_position.png $(B)/demo/fall.png"; fi
-	@cat $(B)/demo/table2.txt
+	$(Q)$(exhand) drop --out $(B)/demo --spread 20 > $(B)/demo/table2.txt || \
+	    { s=$$?; cat $(B)/demo/table2.txt; exit $$s; }
+	@s=0; if command -v gnuplot >/dev/null; then \
+	    (cd $(B)/demo && gnuplot -c pictures.gp "$(CURDIR)/ports/posix/cli/plot") || s=1; fi; \
+	for p in $(B)/demo/force_position.png $(B)/demo/fall.png; do \
+	    if [ -s $$p ]; then echo "picture: $$p"; else echo "picture missing: $$p" >&2; fi; done; \
+	cat $(B)/demo/table2.txt; exit $$s
 
 ## Run the host program (ARGS="drop --help") or the image of SCENE on PORT
 .PHONY: run

@@ -38,7 +38,7 @@ static void work(const void *ctx, int i, void *to)
 static void measure(void)
 {
     static int done;
-    const struct jobs jobs = {JOBS, jobs_cores(), sizeof result[0], result, work, NULL, NULL};
+    const struct jobs jobs = {JOBS, jobs_cores(), sizeof result[0], result, work, NULL, NULL, NULL};
     if (done) { return; }
     CHECK_EQ_I64(jobs_run(&jobs), 0);
     done = 1;
@@ -55,7 +55,7 @@ TEST(every_run_is_complete)
     measure();
     for (int i = 0; i < JOBS; i++) {
         const struct table2_result *r = &result[i];
-        CHECK(r->error == 0 && r->faults == 0 && r->lost == 0 && r->falls == FALLS,
+        CHECK(r->done && r->error == 0 && r->faults == 0 && r->lost == 0 && r->falls == FALLS,
               "run %d, %g Hz: error %d, faults %#x, lost %lu, falls %d", i, r->rate_Hz, r->error,
               r->faults, r->lost, r->falls);
         CHECK(r->incomplete == 0, "run %d, %g Hz: %d falls not seen to their end", i, r->rate_Hz,

@@ -1,5 +1,5 @@
 /* The subcommands of the host program: one file each. Each returns the exit status:
- * 0 ok, 1 a check failed, 2 bad usage, 3 a tool or device is missing. */
+ * 0 ok, 1 a check failed, 2 bad usage, 3 a tool or device is missing, 130 interrupted. */
 #ifndef CLI_CLI_H
 #define CLI_CLI_H
 

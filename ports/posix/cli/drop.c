@@ -4,25 +4,25 @@
 #include "csv.h"
 #include "jobs.h"
 #include "option.h"
+#include "outdir.h"
 #include "param.h"
-#include "table2.h"
 
 #include "drop/drop.h"
 
 #include <errno.h>
-#include <signal.h>
+#include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #define RATES_MAX 64
 #define SETTINGS_MAX 64
 
 struct drop_options {
     double rate_Hz[RATES_MAX];
-    int rates;
+    int rates, rates_given;
     double k_Npm, b_Nspm, scale; /* < 0: the paper's at that rate                 */
-    long falls, seed, jobs, spread, replicates;
+    int64_t falls, seed, jobs, spread, replicates;
     int pace;
     const char *out;
     struct run_setting setting[SETTINGS_MAX];
@@ -33,69 +33,92 @@ struct drop_options {
 
 /* --- options with a syntax of their own --- */
 
+static int bad_rates(const char *text, const char *why)
+{
+    cli_complain("--rate: %s: %s (whole numbers 1..20000 Hz, each once, commas between, at most %d): "
+                 "e.g. --rate 90,2000", text, why, RATES_MAX);
+    return 2;
+}
+
 static int take_rates(void *ctx, const char *text)
 {
     struct drop_options *o = ctx;
-    char *end = NULL;
+    const char *at = text;
     o->rates = 0;
-    do {
-        const double v = strtod(end ? end + 1 : text, &end);
-        if (o->rates == RATES_MAX || !(v >= 1 && v <= 20000) || v != (double)(long)v) {
-            fprintf(stderr, "--rate: %s (whole numbers 1..20000 Hz, commas between, at most %d): "
-                            "e.g. --rate 90,2000\n", text, RATES_MAX);
-            return 2;
+    o->rates_given = 1;
+    for (;;) {
+        char *end;
+        const double v = strtod(at, &end);
+        if (end == at || !(v >= 1 && v <= 20000) || v != (double)(long)v) {
+            return bad_rates(text, "not a list of rates");
         }
+        for (int i = 0; i < o->rates; i++) {
+            if (o->rate_Hz[i] == v) { return bad_rates(text, "a rate comes twice"); }
+        }
+        if (o->rates == RATES_MAX) { return bad_rates(text, "too many"); }
         o->rate_Hz[o->rates++] = v;
-    } while (*end == ',');
-    return *end == '\0' ? 0 : take_rates(ctx, "?");
+        if (*end == '\0') { return 0; }
+        if (*end != ',') { return bad_rates(text, "not a list of rates"); }
+        at = end + 1;
+    }
+}
+
+static int is_digit(char c)
+{
+    return c >= '0' && c <= '9';
 }
 
 static int take_period(void *ctx, const char *text)
 {
     struct drop_options *o = ctx;
-    unsigned long num, den;
-    if (sscanf(text, "%lu/%lu", &num, &den) != 2 || num < 1 || den < num || den / num > 20000 ||
-        den > 0xFFFFFFFFul) {
-        fprintf(stderr, "--period: %s (N/D seconds, 1/20000..1): e.g. --period 597/1193182\n", text);
+    unsigned long long num = 0, den = 0;
+    char *end = NULL;
+    if (is_digit(text[0])) { num = strtoull(text, &end, 10); }
+    if (end && end[0] == '/' && is_digit(end[1])) { den = strtoull(end + 1, &end, 10); }
+    if (den == 0 || *end != '\0' || num < 1 || num > den || den > UINT32_MAX || den > 20000 * num) {
+        cli_complain("--period: %s (N/D seconds, 1/20000..1, both whole and below 2^32): "
+                     "e.g. --period 597/1193182", text);
         return 2;
     }
     o->T = (struct exh_period){(uint32_t)num, (uint32_t)den};
-    o->rate_Hz[0] = (double)((den + num / 2) / num);
-    o->rates = 1;
     return 0;
 }
 
-/* name=value; the name stays in argv's own memory. */
-static int split(const char *option, const char *text, char **name, double *value)
+#define NAME_B 32
+
+static int split(const char *option, const char *text, char name[NAME_B], double *value)
 {
     const char *equals = strchr(text, '=');
+    const size_t len = equals ? (size_t)(equals - text) : NAME_B;
     char *end = NULL;
-    *name = NULL;
     if (equals != NULL) { *value = strtod(equals + 1, &end); }
-    if (equals == NULL || end == equals + 1 || *end != '\0') {
-        fprintf(stderr, "--%s: %s: give NAME=VALUE\n", option, text);
+    if (len >= NAME_B || end == equals + 1 || *end != '\0') {
+        cli_complain("--%s: %s: give NAME=VALUE", option, text);
         return 2;
     }
-    *name = malloc((size_t)(equals - text) + 1);
-    if (*name == NULL) { return 2; }
-    memcpy(*name, text, (size_t)(equals - text));
-    (*name)[equals - text] = '\0';
+    memcpy(name, text, len);
+    name[len] = '\0';
     return 0;
 }
 
 static int take_setting(void *ctx, const char *text)
 {
     struct drop_options *o = ctx;
-    char *name;
+    char name[NAME_B];
     double value;
-    if (split("set", text, &name, &value)) { return 2; }
+    if (split("set", text, name, &value)) { return 2; }
     if (o->settings == SETTINGS_MAX) {
-        fprintf(stderr, "--set: at most %d\n", SETTINGS_MAX);
+        cli_complain("--set: at most %d", SETTINGS_MAX);
+        return 2;
+    }
+    if (strcmp(name, "k") == 0 || strcmp(name, "b") == 0) {
+        cli_complain("--set: %s: give --%s VALUE: the gains belong to the table", text, name);
         return 2;
     }
     exh_scene_drop.defaults();
     if (cli_param_set(exh_scene_drop.params, name, value) < 0) { return 2; }
-    o->setting[o->settings++] = (struct run_setting){name, value}; /* kept till exit */
+    o->setting[o->settings++] = (struct run_setting){
+        cli_signal_find(exh_scene_drop.params->table, name, NULL)->name, value};
     return 0;
 }
 
@@ -103,18 +126,17 @@ static int take_device(void *ctx, const char *text)
 {
     struct drop_options *o = ctx;
     const struct sim_device_row *row;
-    char *name;
+    char name[NAME_B];
     double value;
     int err;
-    if (split("device", text, &name, &value)) { return 2; }
+    if (split("device", text, name, &value)) { return 2; }
     err = sim_device_set(&o->device, name, value, &row);
     if (err && row) {
-        fprintf(stderr, "%s: %.9g (allowed %.9g..%.9g %s): choose a value in that range\n", name, value,
-                row->min, row->max, row->unit);
+        cli_complain("--device: %s: %.12g (allowed %.12g..%.12g%s%s): choose a value in that range", name,
+                     value, row->min, row->max, row->unit[0] ? " " : "", row->unit);
     } else if (err) {
-        fprintf(stderr, "%s: no such value of the device: `exhand drop --params` lists them\n", name);
+        cli_complain("--device: %s: no such value of the device: `exhand drop --params` lists them", name);
     }
-    free(name);
     return err ? 2 : 0;
 }
 
@@ -127,7 +149,7 @@ static void print_params(void)
            "scene\n");
     for (int i = 0; i < sim_device_rows; i++) {
         const struct sim_device_row *r = &sim_device_row[i];
-        printf("  %-13s %-8s %12.7g  %12.7g .. %-12.7g %-8s %s\n", r->name, r->unit, r->value, r->min,
+        printf("  %-13s %-8s %14.12g  %14.12g .. %-14.12g %-8s %s\n", r->name, r->unit, r->value, r->min,
                r->max, r->sure, r->help);
     }
 }
@@ -141,7 +163,7 @@ static struct run_cfg job_cfg(const struct drop_options *o, int rate_i, double s
     const struct table2_row *g = table2_gains(o->rate_Hz[rate_i]);
     struct run_cfg c;
     memset(&c, 0, sizeof c);
-    c.rate_Hz = (uint32_t)o->rate_Hz[rate_i];
+    c.rate_Hz = (uint32_t)(o->rate_Hz[rate_i] + 0.5);
     c.k_Npm = (o->k_Npm < 0 ? g->k_Npm : o->k_Npm) * o->scale * scale;
     c.b_Nspm = (o->b_Nspm < 0 ? g->b_Nspm : o->b_Nspm) * o->scale * scale;
     c.setting = o->setting;
@@ -155,45 +177,30 @@ static struct run_cfg job_cfg(const struct drop_options *o, int rate_i, double s
     return c;
 }
 
-static void path(char *to, size_t size, const struct drop_options *o, double rate_Hz,
-                 const char *suffix)
-{
-    snprintf(to, size, "%s/drop_%gHz%s", o->out, rate_Hz, suffix);
-}
-
-static int write_csv(const char *log, const char *csv)
-{
-    FILE *f = fopen(csv, "w");
-    int err;
-    if (f == NULL) {
-        fprintf(stderr, "%s: %s\n", csv, strerror(errno));
-        return 1;
-    }
-    err = csv_write(log, f, 0);
-    return fclose(f) != 0 || err;
-}
-
 static struct table2_result shown_run(const struct drop_options *o, int i)
 {
     struct run_cfg c = job_cfg(o, i, 1, (uint64_t)o->seed);
     struct table2_result r;
-    char log[512], csv[512], plot[512];
+    char log[TABLE2_PATH_B], csv[TABLE2_PATH_B], plot[TABLE2_PATH_B];
 
     if (o->out == NULL) { return table2_measure(&c, (size_t)o->replicates, NULL); }
-    path(log, sizeof log, o, o->rate_Hz[i], ".exh");
-    path(csv, sizeof csv, o, o->rate_Hz[i], ".csv");
-    path(plot, sizeof plot, o, o->rate_Hz[i], "");
+    outdir_path(log, o->out, o->rate_Hz[i], ".exh");
+    outdir_path(csv, o->out, o->rate_Hz[i], ".csv");
+    outdir_path(plot, o->out, o->rate_Hz[i], "");
     c.board.log = fopen(log, "wb");
     if (c.board.log == NULL) {
-        fprintf(stderr, "%s: %s\n", log, strerror(errno));
+        cli_complain("%s: %s", log, strerror(errno));
         memset(&r, 0, sizeof r);
         r.error = 1;
         return r;
     }
     r = table2_measure(&c, (size_t)o->replicates, plot);
-    if (fclose(c.board.log) != 0) { r.error = 1; }
-    if (r.lost) { fprintf(stderr, "%s: %lu records lost\n", log, r.lost); }
-    if (r.error == 0) { r.error = write_csv(log, csv); }
+    if (fclose(c.board.log) != 0 || r.lost) {
+        cli_complain("%s: can't be written: %lu records lost", log, r.lost);
+        r.error = 1;
+    } else if (r.done && csv_write(log, csv, CSV_FALLS) != 0) {
+        r.error = 1;
+    }
     return r;
 }
 
@@ -215,154 +222,101 @@ static void work(const void *ctx, int i, void *result)
     memcpy(result, &r, sizeof r);
 }
 
-static FILE *open_out(const struct drop_options *o, const char *name)
-{
-    char p[512];
-    FILE *f;
-    snprintf(p, sizeof p, "%s/%s", o->out, name);
-    f = fopen(p, "w");
-    if (f == NULL) { fprintf(stderr, "%s: %s\n", p, strerror(errno)); }
-    return f;
-}
+/* --- reporting --- */
 
-static int write_tables(const struct drop_options *o, const struct table2_result *r,
-                        const struct table2_spread *s)
-{
-    FILE *f = open_out(o, "table2.csv");
-    int err = f == NULL;
-    if (f) {
-        table2_csv_header(f);
-        for (int i = 0; i < o->rates; i++) { table2_csv_line(f, &r[i]); }
-        err |= fclose(f) != 0;
-    }
-    if (s == NULL) { return err; }
-    f = open_out(o, "spread.csv");
-    err |= f == NULL;
-    if (f) {
-        table2_spread_csv_header(f);
-        for (int i = 0; i < o->rates; i++) { table2_spread_csv_line(f, &r[i], &s[i]); }
-        err |= fclose(f) != 0;
-    }
-    return err;
-}
-
-/* Panel variables of plot/force_position.gp for one run. */
-static void panel(FILE *f, const char *name, const struct table2_result *r, const char *prefix,
-                  double q0_m)
-{
-    fprintf(f, "%s_raw='%s_raw.csv'; %s_avg='%s_averaged.csv'; %s_line='%s_line.csv'\n", name, prefix,
-            name, prefix, name, prefix);
-    fprintf(f, "%s_rate=%.6g; %s_k=%.6g; %s_b=%.6g; %s_stiffness='%.0f'; %s_q0=%.9g\n", name,
-            r->rate_Hz, name, r->k_Npm, name, r->b_Nspm, name, r->b_Npm, name, q0_m);
-}
-
-static void list(FILE *f, const char *name, const struct table2_result *r, int n,
-                 double (*value)(const struct table2_result *))
-{
-    fprintf(f, "%s='", name);
-    for (int i = 0; i < n; i++) { fprintf(f, "%s%.6g", i ? " " : "", value(&r[i])); }
-    fprintf(f, "'\n");
-}
-
-static double value_rate(const struct table2_result *r)
-{
-    return r->rate_Hz;
-}
-static double value_k(const struct table2_result *r)
-{
-    return r->k_Npm;
-}
-static double value_b(const struct table2_result *r)
-{
-    return r->b_Nspm;
-}
-static double value_stiffness(const struct table2_result *r)
-{
-    return (double)(long)(r->b_Npm + 0.5);
-}
-
-/* What gnuplot needs to draw the pictures: gnuplot -e "plots='DIR'" pictures.gp */
-static int write_pictures(const struct drop_options *o, const struct table2_result *r)
-{
-    const int last = o->rates - 1;
-    char prefix[512];
-    FILE *f = open_out(o, "pictures.gp");
-    if (f == NULL) { return 1; }
-    fprintf(f, "# Made by exhand drop: gnuplot -e \"plots='ports/posix/cli/plot'\" %s/pictures.gp\n",
-            o->out);
-    fprintf(f, "out='%s/force_position.png'; fit='linear fit, position over force'\n", o->out);
-    path(prefix, sizeof prefix, o, o->rate_Hz[0], "");
-    panel(f, "a", &r[0], prefix, o->device.height_m);
-    path(prefix, sizeof prefix, o, o->rate_Hz[last], "");
-    panel(f, "b", &r[last], prefix, o->device.height_m);
-    fprintf(f, "load plots.'/force_position.gp'\nreset\n");
-    fprintf(f, "out='%s/fall.png'; q_lim_m=%.9g\nfiles='", o->out, o->device.height_m);
-    for (int i = 0; i < o->rates; i++) {
-        path(prefix, sizeof prefix, o, o->rate_Hz[i], "_fall.csv");
-        fprintf(f, "%s%s", i ? " " : "", prefix);
-    }
-    fprintf(f, "'\n");
-    list(f, "rates", r, o->rates, value_rate);
-    list(f, "ks", r, o->rates, value_k);
-    list(f, "bs", r, o->rates, value_b);
-    list(f, "stiffnesses", r, o->rates, value_stiffness);
-    fprintf(f, "load plots.'/fall.gp'\n");
-    return fclose(f) != 0;
-}
-
-static void interrupted(int sig)
-{
-    (void)sig;
-    posix_stop();
-}
-
+/* What is wrong with the runs that were done: 1 if anything. */
 static int check(const struct drop_options *o, const struct table2_result *r, int n)
 {
     int err = 0;
     for (int i = 0; i < n; i++) {
         err |= r[i].error != 0;
+        if (!r[i].done) { continue; }
         if (r[i].faults) {
-            fprintf(stderr, "%g Hz: the box stopped with faults %#x\n", r[i].rate_Hz, r[i].faults);
+            cli_complain("%.6g Hz: the box stopped with faults %#x", r[i].rate_Hz, r[i].faults);
             err = 1;
         }
         if (i < o->rates && r[i].incomplete) {
-            fprintf(stderr, "%g Hz: %d of %d falls were not seen to their end\n", r[i].rate_Hz,
-                    r[i].incomplete, r[i].falls);
+            cli_complain("%.6g Hz: %d of %d falls were not seen to their end: no contact, or the mass ran "
+                         "away", r[i].rate_Hz, r[i].incomplete, r[i].falls);
             err = 1;
         }
     }
     return err;
 }
 
+static int count_done(const struct table2_result *r, int n)
+{
+    int done = 0;
+    for (int i = 0; i < n; i++) { done += r[i].done; }
+    return done;
+}
+
+/* The rows that were done, as tables and for people. 0, or 1 after a line on stderr. */
+static int report(const struct drop_options *o, const struct table2_result *r)
+{
+    struct table2_result row[RATES_MAX];
+    struct table2_spread spread[RATES_MAX];
+    const struct table2_spread *s = o->spread > 0 ? spread : NULL;
+    int rows = 0, err = 0;
+    for (int i = 0; i < o->rates; i++) {
+        const struct table2_result *first = r + o->rates + 2 * i * o->spread;
+        if (!r[i].done) { continue; }
+        row[rows] = r[i];
+        spread[rows++] = table2_spread(first, first + o->spread, (int)o->spread);
+    }
+    if (rows == 0) { return 0; }
+    if (o->out != NULL) {
+        err = outdir_tables(o->out, row, s, rows) | outdir_pictures(o->out, &o->device, row, rows);
+    }
+    table2_print(stdout, row, s, rows);
+    return err;
+}
+
 static int experiment(const struct drop_options *o)
 {
-    const int n = o->rates + 2 * o->rates * (int)o->spread;
+    const int further = 2 * o->rates * (int)o->spread, n = o->rates + further;
     struct table2_result *r = calloc((size_t)n, sizeof *r);
-    struct table2_spread s[RATES_MAX];
-    const struct jobs jobs = {n, (int)o->jobs, sizeof *r, r, work, o, "runs"};
-    int err;
+    const struct jobs jobs = {n, (int)o->jobs, sizeof *r, r, work, o, "runs", posix_interrupt};
+    int ran, err;
 
     if (r == NULL) {
-        fprintf(stderr, "drop: out of memory: a smaller --spread\n");
+        cli_complain("out of memory: a smaller --spread");
         return 1;
     }
-    if (o->out != NULL && mkdir(o->out, 0777) != 0 && errno != EEXIST) {
-        fprintf(stderr, "--out: %s: %s\n", o->out, strerror(errno));
-        free(r);
+    ran = jobs_run(&jobs);
+    err = check(o, r, n) | report(o, r);
+    if (ran == JOBS_INTERRUPTED) {
+        cli_complain("interrupted: %d of %d rates and %d of %d further runs were finished%s%s",
+                     count_done(r, o->rates), o->rates, count_done(r + o->rates, further), further,
+                     o->out ? ", what they wrote is kept in " : "", o->out ? o->out : "");
+    }
+    free(r);
+    return ran ? ran : err;
+}
+
+/* Whether what was asked for can be run at all: 0, or 2 after a line on stderr. */
+static int refuse(struct drop_options *o)
+{
+    if (o->T.num != 0 && o->rates_given) {
+        cli_complain("--period and --rate: a period is a rate: give one of them");
         return 2;
     }
-    signal(SIGINT, interrupted);
-    signal(SIGTERM, interrupted);
-    err = jobs_run(&jobs);
-    for (int i = 0; o->spread > 0 && i < o->rates; i++) {
-        const struct table2_result *first = r + o->rates + 2 * i * o->spread;
-        s[i] = table2_spread(first, first + o->spread, (int)o->spread);
+    if (o->T.num != 0) {
+        o->rate_Hz[0] = (double)o->T.den / o->T.num;
+        o->rates = 1;
     }
-    err |= check(o, r, n);
-    if (o->out != NULL) { err |= write_tables(o, r, o->spread ? s : NULL) | write_pictures(o, r); }
-    table2_print(stdout, r, o->spread ? s : NULL, o->rates);
-    free(r);
-    return err;
+    if (o->replicates > 0 && o->replicates < 40) {
+        cli_complain("--replicates: %d (allowed 0 and 40..100000): fewer have no 2.5 %% to cut off",
+                     (int)o->replicates);
+        return 2;
+    }
+    for (int i = 0; i < o->rates; i++) {
+        struct run_cfg c = job_cfg(o, i, 1, 1);
+        if (run_check(&c) < 0) { return 2; }
+        c = job_cfg(o, i, 1.5, 1);
+        if (o->spread > 0 && run_check(&c) < 0) { return 2; }
+    }
+    return o->out ? outdir_open(o->out) : 0;
 }
 
 int cli_drop(int argc, char **argv)
@@ -377,26 +331,30 @@ int cli_drop(int argc, char **argv)
     } u[4] = {{&rates}, {&period}, {&setting}, {&device}};
     const struct cli_option option[] = {
         {"rate", CLI_CALL, u[0].to, 0, 0, "HZ[,HZ...]", "loop rates, 1..20000 (the paper's six)"},
-        {"period", CLI_CALL, u[1].to, 0, 0, "N/D", "one exact period in s, as a timer makes it"},
+        {"period", CLI_CALL, u[1].to, 0, 0, "N/D", "one exact period in s, as a timer makes it; not with --rate"},
         {"k", CLI_REAL, &o.k_Npm, 0, 1e6, "N/M", "stiffness (the paper's at that rate)"},
         {"b", CLI_REAL, &o.b_Nspm, 0, 1e3, "NS/M", "damping (the paper's at that rate)"},
         {"scale", CLI_REAL, &o.scale, 0, 100, "G", "multiplies both (1)"},
         {"falls", CLI_INT, &o.falls, 1, 1000, "N", "falls a run (10)"},
         {"spread", CLI_INT, &o.spread, 0, 1000, "N", "further runs, at 1 and 1.5 times both gains (0)"},
         {"seed", CLI_INT, &o.seed, 0, 1e9, "N", "of all chance in the simulation (1)"},
-        {"out", CLI_TEXT, &o.out, 0, 0, "DIR", "write logs, CSVs and tables there"},
+        {"out", CLI_TEXT, &o.out, 0, 0, "DIR", "write logs, CSVs of the falls and tables there"},
         {"jobs", CLI_INT, &o.jobs, 1, 1024, "N", "processes at a time (one a core)"},
         {"pace", CLI_FLAG, &o.pace, 0, 0, NULL, "follow the wall clock, for people who watch"},
-        {"replicates", CLI_INT, &o.replicates, 0, 100000, "N", "of the bootstrap (1000)"},
+        {"replicates", CLI_INT, &o.replicates, 0, 100000, "N", "of the bootstrap, 0 or 40.. (1000)"},
         {"set", CLI_CALL, u[2].to, 0, 0, "NAME=VALUE", "a parameter of the scene"},
         {"device", CLI_CALL, u[3].to, 0, 0, "NAME=VALUE", "a value of the simulated device"},
         {"params", CLI_FLAG, &list, 0, 0, NULL, "list both, with units and ranges"},
     };
     const struct cli_command c = {
         "drop", "[options]",
-        "The paper's experiment: 0.5 kg falls 7 cm onto a virtual wall, ten times, at each rate.",
+        "The paper's experiment: 0.5 kg falls 7 cm onto a virtual wall, ten times, at each rate.\n"
+        "A fall oscillates when in the last 0.5 s of its observation position moves by more than\n"
+        "0.25 mm or the monitored force by more than 4 N; else it has come to rest. Buzz is rest\n"
+        "in which the encoder still moves, by one or two counts.",
         option, (int)(sizeof option / sizeof option[0]), 0};
 
+    memset(&o, 0, sizeof o);
     o.k_Npm = o.b_Nspm = -1;
     o.scale = 1;
     o.falls = 10;
@@ -413,5 +371,6 @@ int cli_drop(int argc, char **argv)
         print_params();
         return 0;
     }
-    return experiment(&o);
+    err = refuse(&o);
+    return err ? err : experiment(&o);
 }

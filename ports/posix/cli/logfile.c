@@ -1,5 +1,7 @@
 #include "logfile.h"
 
+#include "option.h"
+
 #include "drop/drop.h"
 
 #include "exhand/error.h"
@@ -22,7 +24,7 @@ static const struct exh_scene *scene_by_name(const char *name)
 
 static int complain(const struct logfile *l, const char *what)
 {
-    fprintf(stderr, "%s: %s\n", l->path, what);
+    cli_complain("%s: %s", l->path, what);
     return 2;
 }
 
@@ -37,6 +39,13 @@ static int read_file(struct logfile *l)
     if (l->bytes != NULL) { l->len = (uint32_t)fread(l->bytes, 1, (size_t)len, f); }
     fclose(f);
     return l->bytes != NULL && l->len == (uint32_t)len ? 0 : complain(l, "can't be read whole");
+}
+
+/* 50 us..1 s; a timer may miss the rate it was asked for by 1000 ppm. */
+static int period_ok(struct exh_period T)
+{
+    return T.num > 0 && UINT64_C(1000) * T.den <= UINT64_C(20020000) * T.num &&
+           UINT64_C(1000) * T.num <= UINT64_C(1001) * T.den;
 }
 
 static int read_header(struct logfile *l)
@@ -55,15 +64,15 @@ static int read_header(struct logfile *l)
     l->scene = scene_by_name(l->header.scene);
     if (l->scene == NULL) { return complain(l, "made by a scene this program does not have"); }
     if (l->header.lib_version != EXH_VERSION_NUMBER) {
-        fprintf(stderr, "%s: library version %lx, this program has %lx: results may differ\n",
-                l->path, (unsigned long)l->header.lib_version, (unsigned long)EXH_VERSION_NUMBER);
+        cli_complain("%s: library version %lx, this program has %lx: results may differ", l->path,
+                     (unsigned long)l->header.lib_version, (unsigned long)EXH_VERSION_NUMBER);
     }
     if (l->header.signal_crc != exh_signal_crc(l->scene->signals) ||
         l->header.signals != exh_signal_count(l->scene->signals) ||
-        l->header.fingers != l->scene->fingers || l->header.T.num == 0 || l->header.T.den == 0) {
+        l->header.fingers != l->scene->fingers) {
         return complain(l, "its signal table is another than this program's");
     }
-    return 0;
+    return period_ok(l->header.T) ? 0 : complain(l, "its period is outside 1/20000..1 s");
 }
 
 int logfile_open(struct logfile *l, const char *path)
@@ -86,7 +95,23 @@ void logfile_rewind(struct logfile *l, uint32_t at)
     l->at = at;
     l->next_seq = 1;
     l->damaged = l->gaps = l->lost = 0;
-    l->ended = 0;
+    l->ended = l->started = 0;
+}
+
+/* Forward or back by less than half a wrap. */
+static void follow_tick(struct logfile *l, const struct exh_record *r)
+{
+    const uint32_t step = r->tick - (uint32_t)l->tick;
+    if (r->type == EXH_RECORD_HEADER) { return; } /* it stands before all ticks */
+    if (!l->started) {
+        l->tick = r->tick;
+    } else if (step < UINT32_C(0x80000000)) {
+        l->tick += step;
+    } else {
+        const uint64_t back = UINT64_C(0x100000000) - step;
+        l->tick -= back < l->tick ? back : l->tick;
+    }
+    l->started = 1;
 }
 
 int logfile_next(struct logfile *l, struct exh_record *r)
@@ -101,6 +126,7 @@ int logfile_next(struct logfile *l, struct exh_record *r)
         l->at += (uint32_t)n;
         l->gaps += r->seq - l->next_seq;
         l->next_seq = r->seq + 1;
+        follow_tick(l, r);
         if (r->type == EXH_RECORD_END) { l->ended = 1; }
         if (r->type == EXH_RECORD_DROPPED) {
             struct exh_bytes c = exh_bytes_reader(r->payload, r->len_B);
@@ -116,8 +142,8 @@ int logfile_next(struct logfile *l, struct exh_record *r)
 int logfile_complain(const struct logfile *l)
 {
     if (l->damaged == 0 && l->gaps == 0 && l->ended) { return 0; }
-    fprintf(stderr, "%s: %lu damaged bytes, %lu records missing (%lu reported lost by the writer), %s\n",
-            l->path, (unsigned long)l->damaged, (unsigned long)l->gaps, (unsigned long)l->lost,
-            l->ended ? "end reached" : "cut off before its end");
+    cli_complain("%s: %lu damaged bytes, %lu records missing (%lu reported lost by the writer), %s",
+                 l->path, (unsigned long)l->damaged, (unsigned long)l->gaps, (unsigned long)l->lost,
+                 l->ended ? "end reached" : "cut off before its end");
     return 1;
 }

@@ -17,6 +17,8 @@ struct logfile {
     uint32_t lost;    /* records the writer said it lost                        */
     int ended;        /* the end record was seen                               */
     uint32_t next_seq;
+    uint64_t tick; /* of the last record: unlike a record's own it does not wrap */
+    int started;   /* `tick` is known                                          */
     struct exh_record_header header;
     const struct exh_scene *scene;
     const uint8_t *params; /* the parameter image of the header                 */

@@ -1,5 +1,7 @@
 #include "cli.h"
 
+#include "option.h"
+
 #include "exhand/board.h"
 #include "exhand/exhand.h"
 
@@ -24,24 +26,27 @@ static void help(FILE *to)
     }
     fprintf(to, "  --version  versions of library, record, board and parameter image\n"
                 "`exhand COMMAND --help` lists the options of one.\n"
-                "Exit status: 0 ok, 1 a check failed, 2 bad usage, 3 something is missing.\n");
+                "Exit status: 0 ok, 1 a check failed, 2 bad usage, 3 something is missing,\n"
+                "130 interrupted.\n");
 }
 
 int main(int argc, char **argv)
 {
     const char *name = argc > 1 ? argv[1] : "";
     for (size_t i = 0; i < COMMANDS; i++) {
-        if (strcmp(name, command[i].name) == 0) { return command[i].run(argc - 1, argv + 1); }
+        if (strcmp(name, command[i].name) == 0) {
+            return cli_finish(command[i].run(argc - 1, argv + 1));
+        }
     }
     if (strcmp(name, "--version") == 0) {
         printf("exhand %d.%d.%d, record %d, board %d, parameters %d\n", EXH_VERSION_MAJOR,
                EXH_VERSION_MINOR, EXH_VERSION_PATCH, EXH_RECORD_VERSION, EXH_BOARD_VERSION,
                EXH_PARAMS_VERSION);
-        return 0;
+        return cli_finish(0);
     }
     if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) {
         help(stdout);
-        return 0;
+        return cli_finish(0);
     }
     if (name[0] != '\0') { fprintf(stderr, "exhand: %s: no such command\n", name); }
     help(stderr);

@@ -1,8 +1,29 @@
 #include "option.h"
 
+#include <stdarg.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+static const char *command = ""; /* for cli_complain() */
+
+void cli_complain(const char *format, ...)
+{
+    va_list args;
+    fprintf(stderr, "exhand%s%s: ", command[0] ? " " : "", command);
+    va_start(args, format);
+    vfprintf(stderr, format, args);
+    va_end(args);
+    fputc('\n', stderr);
+}
+
+int cli_finish(int status)
+{
+    if (fflush(stdout) == 0 && !ferror(stdout)) { return status; }
+    cli_complain("standard output can't be written: is its disk full?");
+    return status ? status : 1;
+}
 
 static void help(const struct cli_command *c)
 {
@@ -18,36 +39,36 @@ static void help(const struct cli_command *c)
 
 static int bad(const struct cli_command *c, const char *what, const char *why)
 {
-    fprintf(stderr, "exhand %s: %s: %s: `exhand %s --help` lists the options\n", c->name, what, why,
-            c->name);
+    cli_complain("%s: %s: `exhand %s --help` lists the options", what, why, c->name);
     return 2;
 }
 
-static int take_number(const struct cli_command *c, const struct cli_option *o, const char *text)
+static int take_number(const struct cli_option *o, const char *text)
 {
+    const int whole = o->kind == CLI_INT;
     char *end;
-    const double v = o->kind == CLI_INT ? (double)strtol(text, &end, 10) : strtod(text, &end);
+    const double v = whole ? (double)strtoll(text, &end, 10) : strtod(text, &end);
     if (end == text || *end != '\0' || !(v >= o->min && v <= o->max)) {
-        fprintf(stderr, "exhand %s: --%s: %s (allowed %.10g..%.10g): give a number in that range\n",
-                c->name, o->name, text, o->min, o->max);
+        cli_complain("--%s: %s (allowed %.15g..%.15g): give a %snumber in that range", o->name, text,
+                     o->min, o->max, whole ? "whole " : "");
         return 2;
     }
-    if (o->kind == CLI_INT) {
-        *(long *)o->to = (long)v;
+    if (whole) {
+        *(int64_t *)o->to = (int64_t)v; /* every maximum is below 2^53 */
     } else {
         *(double *)o->to = v;
     }
     return 0;
 }
 
-static int take(const struct cli_command *c, const struct cli_option *o, const char *text)
+static int take(const struct cli_option *o, const char *text)
 {
     const struct cli_call *call = o->to;
     switch (o->kind) {
     case CLI_TEXT: *(const char **)o->to = text; return 0;
     case CLI_CALL: return call->take(call->ctx, text);
     case CLI_INT:
-    case CLI_REAL: return take_number(c, o, text);
+    case CLI_REAL: return take_number(o, text);
     case CLI_FLAG: break;
     }
     *(int *)o->to = 1;
@@ -73,16 +94,17 @@ static int take_word(const struct cli_command *c, int argc, char **argv, int *i)
     const struct cli_option *o = find(c, word + 2, len - 2);
 
     if (o == NULL) { return bad(c, word, "no such option"); }
-    if (o->kind == CLI_FLAG) { return equals ? bad(c, word, "takes no value") : take(c, o, NULL); }
-    if (equals) { return take(c, o, equals + 1); }
+    if (o->kind == CLI_FLAG) { return equals ? bad(c, word, "takes no value") : take(o, NULL); }
+    if (equals) { return take(o, equals + 1); }
     if (*i + 1 >= argc) { return bad(c, word, "its value is missing"); }
     *i += 1;
-    return take(c, o, argv[*i]);
+    return take(o, argv[*i]);
 }
 
 int cli_parse(const struct cli_command *c, int argc, char **argv, const char **operand)
 {
     int n = 0;
+    command = c->name;
     for (int i = 1; i < argc; i++) {
         if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
             help(c);

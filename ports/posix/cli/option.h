@@ -7,7 +7,7 @@ enum cli_kind { CLI_FLAG, CLI_INT, CLI_REAL, CLI_TEXT, CLI_CALL };
 struct cli_option {
     const char *name; /* without the dashes                                    */
     enum cli_kind kind;
-    void *to;         /* int, long, double, const char *; CALL: a cli_call      */
+    void *to;         /* int, int64_t, double, const char *; CALL: a cli_call   */
     double min, max;  /* INT and REAL                                          */
     const char *arg;  /* "HZ", shown in --help; NULL for a flag                 */
     const char *help;
@@ -30,5 +30,15 @@ struct cli_command {
 /* Parses; operands go to operand[]. 0 go on, 1 help was asked for and printed,
  * 2 bad usage, said on stderr. */
 int cli_parse(const struct cli_command *c, int argc, char **argv, const char **operand);
+
+/* A whole line on stderr, after "exhand " and the command that is parsed or runs. */
+#ifdef __GNUC__
+__attribute__((format(printf, 1, 2)))
+#endif
+void cli_complain(const char *format, ...);
+
+/* What a command's exit status becomes once stdout is written: 1 after a line on
+ * stderr if it was 0 and stdout could not be. */
+int cli_finish(int status);
 
 #endif

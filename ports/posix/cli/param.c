@@ -1,5 +1,7 @@
 #include "param.h"
 
+#include "option.h"
+
 #include "exhand/error.h"
 
 #include <string.h>
@@ -30,19 +32,20 @@ int cli_param_set(struct exh_params *p, const char *name, double value)
     int err = -EXH_E_RANGE;
 
     if (row == NULL) {
-        fprintf(stderr, "%s: no such parameter: `exhand drop --params` lists them\n", name);
+        cli_complain("%s: no such parameter: `exhand drop --params` lists them", name);
         return -EXH_E_UNKNOWN;
     }
     scaled = value * (double)(INT64_C(1) << row->frac);
-    if (scaled >= -2147483648.0 && scaled <= 2147483647.0) {
-        err = exh_params_stage(p, row->id, 0, (int32_t)(scaled + (scaled < 0 ? -0.5 : 0.5)));
+    scaled += scaled < 0 ? -0.5 : 0.5; /* the cast cuts it off */
+    if (scaled > -2147483649.0 && scaled < 2147483648.0) {
+        err = exh_params_stage(p, row->id, 0, (int32_t)scaled);
     }
-    if (err == -EXH_E_RANGE) {
-        fprintf(stderr, "%s: %.9g (allowed %.9g..%.9g%s%s): choose a value in that range\n", name,
-                value, cli_signal_value(row, row->min), cli_signal_value(row, row->max),
-                row->unit[0] ? " " : "", row->unit);
+    if (err == -EXH_E_RANGE) { /* 12 digits: the ends as they are printed are allowed */
+        cli_complain("%s: %.12g (allowed %.12g..%.12g%s%s): choose a value in that range", name, value,
+                     cli_signal_value(row, row->min), cli_signal_value(row, row->max),
+                     row->unit[0] ? " " : "", row->unit);
     } else if (err < 0) {
-        fprintf(stderr, "%s: %.9g: %s\n", name, value, exh_error_text(err));
+        cli_complain("%s: %.12g: %s", name, value, exh_error_text(err));
     }
     return err;
 }
@@ -53,7 +56,7 @@ void cli_signal_print(FILE *f, const struct exh_signal_table *t)
     const uint32_t n = exh_signal_count(t);
     for (uint32_t i = 0; i < n; i++) {
         const struct exh_signal *r = exh_signal_at(t, i, NULL);
-        fprintf(f, "  %-13s %-8s %12.7g  %12.7g .. %-12.7g %-8s %s\n", r->name, r->unit,
+        fprintf(f, "  %-13s %-8s %14.12g  %14.12g .. %-14.12g %-8s %s\n", r->name, r->unit,
                 cli_signal_value(r, r->dflt), cli_signal_value(r, r->min),
                 cli_signal_value(r, r->max), when[r->when], r->help);
     }

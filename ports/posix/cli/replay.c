@@ -10,6 +10,7 @@
 
 #include "exhand/error.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,9 +20,10 @@ struct replay {
     struct exh_scene_in in;    /* what crosses inward at the coming tick        */
     struct exh_drive_out out;
     int running;               /* a start (tick 0 or a keyframe) was reached    */
-    uint32_t from;             /* asked for                                     */
-    uint32_t start;            /* the last keyframe not after it                */
-    uint32_t ticks, keyframes, first_tick, expect_tick;
+    uint64_t from;             /* asked for                                     */
+    uint64_t start;            /* the last keyframe not after it                */
+    uint64_t first_tick, expect_tick;
+    uint32_t ticks, keyframes;
     uint32_t digest;           /* CRC of all outputs                           */
     int32_t *recorded, *ours;  /* signals of one frame                         */
     uint8_t *bytes;            /* a keyframe of ours                           */
@@ -37,46 +39,45 @@ static int start_scene(struct replay *p)
         err = exh_params_load(sc->params, p->log.params, p->log.params_len, &bad);
         if (err < 0) {
             const struct exh_signal *row = exh_signal_at(sc->params->table, bad, NULL);
-            fprintf(stderr, "%s: parameter image: %s%s%s\n", p->log.path, exh_error_text(err),
-                    err == -EXH_E_RANGE ? ": " : "", err == -EXH_E_RANGE ? row->name : "");
+            cli_complain("%s: parameter image: %s%s%s", p->log.path, exh_error_text(err),
+                         err == -EXH_E_RANGE ? ": " : "", err == -EXH_E_RANGE ? row->name : "");
             return 2;
         }
         exh_params_apply(sc->params);
     }
     err = sc->setup((struct exh_scene_board){p->log.header.T, (uint8_t)p->log.header.enc_bits});
     if (err < 0) {
-        fprintf(stderr, "%s: set-up: %s\n", p->log.path, exh_error_text(err));
+        cli_complain("%s: set-up: %s", p->log.path, exh_error_text(err));
         return 2;
     }
     if (sc->params != NULL) { sc->params->locked = 1; }
     return 0;
 }
 
-static int differs(uint32_t tick, const char *what, double recorded, double ours)
+static int differs(const struct replay *p, const char *what, double recorded, double ours)
 {
-    printf("tick %lu: %s: recorded %.9g, replayed %.9g\n", (unsigned long)tick, what, recorded,
-           ours);
+    printf("tick %" PRIu64 ": %s: recorded %.9g, replayed %.9g\n", p->log.tick, what, recorded, ours);
     return 1;
 }
 
 /* The recorded frame against ours; 1 at the first difference. */
-static int compare(const struct replay *p, uint32_t tick, const struct exh_drive_out *rec)
+static int compare(const struct replay *p, const struct exh_drive_out *rec)
 {
     const struct exh_signal_table *t = p->log.scene->signals;
     const uint32_t n = exh_signal_count(t);
     for (unsigned i = 0; i < p->log.scene->fingers; i++) {
         if (rec->dac_raw[i] != p->out.dac_raw[i]) {
-            return differs(tick, "dac_raw", rec->dac_raw[i], p->out.dac_raw[i]);
+            return differs(p, "dac_raw", rec->dac_raw[i], p->out.dac_raw[i]);
         }
     }
     if (rec->enable != p->out.enable) {
-        return differs(tick, "enable", rec->enable, p->out.enable);
+        return differs(p, "enable", rec->enable, p->out.enable);
     }
-    if (rec->alive != p->out.alive) { return differs(tick, "alive", rec->alive, p->out.alive); }
+    if (rec->alive != p->out.alive) { return differs(p, "alive", rec->alive, p->out.alive); }
     for (uint32_t i = 0; i < n; i++) {
         if (p->recorded[i] != p->ours[i]) {
             const struct exh_signal *r = exh_signal_at(t, i, NULL);
-            return differs(tick, r->name, cli_signal_value(r, p->recorded[i]),
+            return differs(p, r->name, cli_signal_value(r, p->recorded[i]),
                            cli_signal_value(r, p->ours[i]));
         }
     }
@@ -89,21 +90,28 @@ static int on_frame(struct replay *p, const struct exh_record *r)
     struct exh_bytes c = exh_bytes_reader(r->payload, r->len_B);
     struct exh_drive_out rec;
     if (!p->running) { return 0; }
-    if (p->ticks > 0 && r->tick != p->expect_tick) {
-        printf("tick %lu: %lu frames are missing before it: start behind them with --from\n",
-               (unsigned long)r->tick, (unsigned long)(r->tick - p->expect_tick));
+    if (p->ticks > 0 && p->log.tick < p->expect_tick) {
+        printf("tick %" PRIu64 ": a frame of it or of a later tick came before: the log is damaged\n",
+               p->log.tick);
+        return 1;
+    }
+    if (p->ticks > 0 && p->log.tick > p->expect_tick) {
+        printf("tick %" PRIu64 ": %" PRIu64 " frames are missing before it: start behind them with "
+               "--from\n", p->log.tick, p->log.tick - p->expect_tick);
         return 1;
     }
     exh_log_frame_bytes(&c, sc, &p->in, &rec, p->recorded);
-    if (!exh_bytes_ok(&c)) { return differs(r->tick, "frame length", r->len_B, c.at); }
+    if (!exh_bytes_ok(&c) || c.at != r->len_B) {
+        return differs(p, "frame length", r->len_B, c.at);
+    }
     if (sc->params != NULL) { exh_params_apply(sc->params); }
     sc->tick(&p->in, &p->out);
     memcpy(p->ours, sc->signal, exh_signal_count(sc->signals) * sizeof(int32_t));
     p->digest = exh_crc32(p->digest, r->payload, r->len_B);
-    if (p->ticks++ == 0) { p->first_tick = r->tick; }
-    p->expect_tick = r->tick + 1;
+    if (p->ticks++ == 0) { p->first_tick = p->log.tick; }
+    p->expect_tick = p->log.tick + 1;
     memset(&p->in, 0, sizeof p->in);
-    return compare(p, r->tick, &rec);
+    return compare(p, &rec);
 }
 
 static int on_keyframe(struct replay *p, const struct exh_record *r)
@@ -113,12 +121,14 @@ static int on_keyframe(struct replay *p, const struct exh_record *r)
         exh_log_keyframe_bytes(&c, p->log.scene);
         p->keyframes++;
         if (c.at != r->len_B || memcmp(p->bytes, r->payload, r->len_B) != 0) {
-            return differs(r->tick, "state (bytes of a keyframe)", r->len_B, c.at);
+            return differs(p, "state (bytes of a keyframe)", r->len_B, c.at);
         }
-    } else if (r->tick == p->start) {
+    } else if (p->log.tick == p->start) {
         struct exh_bytes c = exh_bytes_reader(r->payload, r->len_B);
         exh_log_keyframe_bytes(&c, p->log.scene);
-        if (!exh_bytes_ok(&c)) { return differs(r->tick, "keyframe length", r->len_B, c.at); }
+        if (!exh_bytes_ok(&c) || c.at != r->len_B) {
+            return differs(p, "keyframe length", r->len_B, c.at);
+        }
         p->running = 1;
     }
     return 0;
@@ -131,13 +141,16 @@ static int on_event(struct replay *p, const struct exh_record *r)
     int err = 0;
     exh_event_bytes(&c, &e);
     if (!p->running) { return 0; }
+    if (!exh_bytes_ok(&c) || c.at != r->len_B) {
+        return differs(p, "event length", r->len_B, c.at);
+    }
     if (e.type == EXH_EVENT_COMMAND) { p->in.command = (uint8_t)e.value; }
     if (e.type == EXH_EVENT_MISSED) { p->in.missed = (uint32_t)e.value; }
     if (e.type == EXH_EVENT_PARAM && p->log.scene->params != NULL) {
         err = exh_params_stage(p->log.scene->params, e.id, e.instance, e.value);
     }
     if (err < 0) {
-        printf("tick %lu: parameter %u: %s\n", (unsigned long)r->tick, e.id, exh_error_text(err));
+        printf("tick %" PRIu64 ": parameter %u: %s\n", p->log.tick, e.id, exh_error_text(err));
         return 1;
     }
     return 0;
@@ -150,8 +163,8 @@ static int find_start(struct replay *p)
     struct exh_record r;
     int found = 0;
     while (logfile_next(&p->log, &r)) {
-        if (r.type == EXH_RECORD_KEYFRAME && r.tick <= p->from) {
-            p->start = r.tick;
+        if (r.type == EXH_RECORD_KEYFRAME && p->log.tick <= p->from) {
+            p->start = p->log.tick;
             found = 1;
         }
     }
@@ -165,8 +178,8 @@ static int replay(struct replay *p)
     int err = start_scene(p);
     p->running = p->from == 0;
     if (err == 0 && !p->running && !find_start(p)) {
-        fprintf(stderr, "%s: no keyframe at or before tick %lu: choose a later --from\n", p->log.path,
-                (unsigned long)p->from);
+        cli_complain("%s: no keyframe at or before tick %" PRIu64 ": choose a later --from",
+                     p->log.path, p->from);
         return 2;
     }
     while (err == 0 && logfile_next(&p->log, &r)) {
@@ -178,7 +191,7 @@ static int replay(struct replay *p)
         }
     }
     if (err == 0 && p->ticks == 0) {
-        fprintf(stderr, "%s: holds no frame\n", p->log.path);
+        cli_complain("%s: holds no frame", p->log.path);
         err = 2;
     }
     return err;
@@ -186,9 +199,9 @@ static int replay(struct replay *p)
 
 int cli_replay(int argc, char **argv)
 {
-    long from = 0;
+    int64_t from = 0;
     const struct cli_option option[] = {
-        {"from", CLI_INT, &from, 0, 4294967295.0, "TICK", "start at the last keyframe not after it"},
+        {"from", CLI_INT, &from, 0, 1e15, "TICK", "start at the last keyframe not after it"},
     };
     const struct cli_command c = {"replay", "LOG [--from TICK]",
                                   "Runs the recorded inputs again and compares every output bit.",
@@ -199,7 +212,7 @@ int cli_replay(int argc, char **argv)
 
     if (err) { return err == 1 ? 0 : err; }
     memset(&p, 0, sizeof p);
-    p.from = (uint32_t)from;
+    p.from = (uint64_t)from;
     err = logfile_open(&p.log, path);
     if (err == 0) {
         const uint32_t n = exh_signal_count(p.log.scene->signals);
@@ -209,8 +222,8 @@ int cli_replay(int argc, char **argv)
         err = p.recorded && p.ours && p.bytes ? replay(&p) : 1;
         if (err == 0) { err = logfile_complain(&p.log); }
         if (err == 0) {
-            printf("%s: %lu ticks from tick %lu and %lu keyframes identical, digest %08lx\n", path,
-                   (unsigned long)p.ticks, (unsigned long)p.first_tick, (unsigned long)p.keyframes,
+            printf("%s: %lu ticks from tick %" PRIu64 " and %lu keyframes identical, digest %08lx\n",
+                   path, (unsigned long)p.ticks, p.first_tick, (unsigned long)p.keyframes,
                    (unsigned long)p.digest);
         }
     }

@@ -1,5 +1,6 @@
 #include "run.h"
 
+#include "option.h"
 #include "param.h"
 
 #include "drop/drop.h"
@@ -63,7 +64,6 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
     exh_log_after(tick, in, out);
     run.last_tick = tick;
     run.r->ticks++;
-    run.r->limited += (s.limits & ~(int32_t)EXH_LIMIT_PULL) != 0;
     run.r->faults |= (uint32_t)s.faults;
     if (run.fall == 0) { return; }
     run.sample = grow(run.sample, &run.samples_cap, run.r->log.samples, sizeof *run.sample);
@@ -103,6 +103,17 @@ static int set_parameters(const struct run_cfg *c)
     return err;
 }
 
+int run_check(const struct run_cfg *c)
+{
+    const struct exh_period T = c->board.T.num ? c->board.T : (struct exh_period){1, c->rate_Hz};
+    int err = set_parameters(c);
+    if (err < 0) { return err; }
+    exh_params_apply(exh_scene_drop.params);
+    err = exh_scene_drop.setup((struct exh_scene_board){T, exh_board_info.enc_bits});
+    if (err < 0) { cli_complain("these parameters together: %s", exh_error_text(err)); }
+    return err;
+}
+
 int run_drop(const struct run_cfg *c, struct run *r)
 {
     static const struct exh_loop_hooks hooks = {start, before, after};
@@ -116,10 +127,10 @@ int run_drop(const struct run_cfg *c, struct run *r)
         posix_configure(&c->board);
         err = exh_loop(&exh_scene_drop, c->rate_Hz, &hooks);
         if (err == -EXH_E_RATE) {
-            fprintf(stderr, "rate: %lu Hz (allowed 1..%lu): choose one in that range\n",
-                    (unsigned long)c->rate_Hz, (unsigned long)exh_board_info.rate_max_Hz);
+            cli_complain("rate: %lu Hz (allowed 1..%lu): choose one in that range",
+                         (unsigned long)c->rate_Hz, (unsigned long)exh_board_info.rate_max_Hz);
         } else if (err < 0) {
-            fprintf(stderr, "drop: %s\n", exh_error_text(err));
+            cli_complain("%lu Hz: %s", (unsigned long)c->rate_Hz, exh_error_text(err));
         } else {
             r->lost = exh_log_end(run.last_tick + 1);
         }
@@ -127,7 +138,7 @@ int run_drop(const struct run_cfg *c, struct run *r)
     r->log.sample = run.sample;
     r->log.start = run.start;
     if (run.no_memory) {
-        fprintf(stderr, "drop: out of memory: fewer falls, or a lower rate\n");
+        cli_complain("out of memory: fewer falls, or a lower rate");
         err = err ? err : -EXH_E_SHORT;
     }
     return err;

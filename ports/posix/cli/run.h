@@ -24,10 +24,13 @@ struct run {
     struct fall_log log; /* samples of the falls only, not of hold and lift    */
     struct exh_period T;
     uint64_t ticks;
-    uint64_t limited;    /* ticks in which a limit acted other than "pull only" */
     uint32_t lost;       /* log records lost                                   */
     uint32_t faults;     /* enum exh_fault                                     */
 };
+
+/* Whether the scene takes these parameters at this period: 0, or -EXH_E… after a
+ * line on stderr. */
+int run_check(const struct run_cfg *c);
 
 /* 0 or -EXH_E… after a line on stderr. The scene's encoder step and kf are taken
  * from the device: the box is calibrated. The log in *r is the caller's to free,

@@ -15,7 +15,7 @@
 #   observe_s    length of the observation, s             (5)
 #   q_top_mm, f_top_N   tops of the axes                  (from the data)
 
-reset # another script may have run in this session
+reset # another script may have run before
 if (!exists("out")) out = 'fall.png'
 if (!exists("q_lim_m")) q_lim_m = 0
 if (!exists("zoom_s")) zoom_s = 0.3

@@ -14,7 +14,7 @@
 #   fit              which regression the line is        ('linear fit')
 #   a_q_hi_mm, b_q_hi_mm   right end of the panel, mm    (from the pairs in the band)
 
-reset # another script may have run in this session
+reset # another script may have run before
 if (!exists("out")) out = 'force_position.png'
 if (!exists("a_q0")) a_q0 = 0
 if (!exists("b_q0")) b_q0 = 0

@@ -1,0 +1,338 @@
+/* exhand drop as people use and misuse it: what is refused by name, what is written
+ * where, what an interruption leaves. */
+#include "said.h"
+
+#include "cli/jobs.h"
+#include "cli/logfile.h"
+#include "cli/param.h"
+#include "cli/table2.h"
+
+#include "drop/drop.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <time.h>
+
+#define LEN(a) (sizeof(a) / sizeof((a)[0]))
+
+/* ---- What is refused ----------------------------------------------------------- */
+
+#define LONG_64  "0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef"
+#define LONG_512 LONG_64 LONG_64 LONG_64 LONG_64 LONG_64 LONG_64 LONG_64 LONG_64
+
+TEST(bad_usage_is_refused_by_name)
+{
+    static const struct {
+        const char *word[6];
+        const char *says;
+    } row[] = {
+        {{"--rate", "90x"}, "--rate: 90x: not a list"},
+        {{"--rate", ""}, "--rate: : not a list"},
+        {{"--rate", "90,"}, "--rate: 90,: not a list"},
+        {{"--rate", "0.5"}, "--rate: 0.5: not a list"},
+        {{"--rate", "90,500,90"}, "--rate: 90,500,90: a rate comes twice"},
+        {{"--rate", "500", "--period", "1/90"}, "--period and --rate"},
+        {{"--period", "1/90", "--rate", "500"}, "--period and --rate"},
+        {{"--period", "1/90x"}, "--period: 1/90x"},
+        {{"--period", "1/"}, "--period: 1/"},
+        {{"--period", "1"}, "--period: 1 "},
+        {{"--period", "-1/-90"}, "--period: -1/-90"},
+        {{"--period", "10/200009"}, "--period: 10/200009"},
+        {{"--period", "2/1"}, "--period: 2/1"},
+        {{"--period", "1/4294967296"}, "--period: 1/4294967296"},
+        {{"--period", "4294967297/4294967298"}, "--period: 4294967297"},
+        {{"--replicates", "1"}, "--replicates: 1 "},
+        {{"--replicates", "39"}, "--replicates: 39 "},
+        {{"--replicates", "100001"}, "--replicates: 100001"},
+        {{"--falls", "2.5"}, "whole number"},
+        {{"--seed", "99999999999999999999"}, "--seed: 99999999999999999999"},
+        {{"--k", "1e6", "--scale", "100"}, "k: 100000000 "},
+        {{"--k", "1e6", "--spread", "1"}, "k: 1500000 "},
+        {{"--b", "1000", "--scale", "3"}, "b: 3000 "},
+        {{"--set", "k=5"}, "give --k"},
+        {{"--set", "kf"}, "--set: kf: give NAME=VALUE"},
+        {{"--set", "none=1"}, "none: no such parameter"},
+        {{"--set", "q_lim=9"}, "q_lim: 9 (allowed"},
+        {{"--device", "mass=9"}, "--device: mass: 9 (allowed"},
+        {{"--device", "none=9"}, "--device: none: no such value"},
+        {{"--out", "/dev/null"}, "--out: /dev/null: Not a directory"},
+        {{"--out", "/nowhere/at/all"}, "--out: /nowhere/at/all: No such file"},
+        {{"--out", LONG_512 LONG_512}, "--out: 0123456789"},
+    };
+    const char *dir = said_dir();
+    for (size_t i = 0; i < LEN(row); i++) {
+        const char *const *w = row[i].word;
+        static struct said s;
+        said(&s, dir, cli_drop, WORDS("drop", w[0], w[1], w[2], w[3], w[4]));
+        CHECK(s.status == 2, "row %zu: status %d: %s", i, s.status, s.err);
+        CHECK(strstr(s.err, row[i].says) != NULL, "row %zu: %s", i, s.err);
+        CHECK(strncmp(s.err, "exhand drop: ", 13) == 0, "row %zu: %s", i, s.err);
+        CHECK(strchr(s.err, '\n') == s.err + strlen(s.err) - 1, "row %zu: %s", i, s.err);
+        CHECK(s.out[0] == '\0', "row %zu: %s", i, s.out);
+    }
+    said_clean(dir);
+}
+
+/* The ends of a range as a message prints them can be given back. */
+TEST(printed_ranges_are_the_true_ones)
+{
+    struct exh_params *p = exh_scene_drop.params;
+    exh_scene_drop.defaults();
+    for (uint32_t i = 0; i < exh_signal_count(p->table); i++) {
+        const struct exh_signal *row = exh_signal_at(p->table, i, NULL);
+        const int32_t end[] = {row->min, row->max};
+        for (int e = 0; e < 2; e++) {
+            char text[32];
+            snprintf(text, sizeof text, "%.12g", cli_signal_value(row, end[e]));
+            CHECK(cli_param_set(p, row->name, strtod(text, NULL)) == 0, "%s: %s", row->name, text);
+            CHECK_EQ_I64(p->staged[i], end[e]);
+        }
+    }
+    exh_scene_drop.defaults();
+}
+
+/* ---- The table ------------------------------------------------------------------ */
+
+TEST(gains_are_the_nearest_rows)
+{
+    static const struct {
+        double rate_Hz;
+        double row_Hz;
+        int at; /* it is the paper's rate */
+    } row[] = {{1193182 / 597.0, 2000, 1}, {2000, 2000, 1}, {1998, 2000, 1}, {1997, 1000, 0},
+               {2002, 2000, 1},            {2003, 2000, 0}, {90, 90, 1},     {89.92, 90, 1},
+               {3, 90, 0},                 {95, 90, 0},     {99.9, 100, 1},  {99.8, 90, 0},
+               {20000, 2000, 0}};
+    for (size_t i = 0; i < LEN(row); i++) {
+        const struct table2_row *at = table2_at(row[i].rate_Hz);
+        CHECK(table2_gains(row[i].rate_Hz)->rate_Hz == row[i].row_Hz, "%.3f Hz: %g",
+              row[i].rate_Hz, table2_gains(row[i].rate_Hz)->rate_Hz);
+        CHECK((at != NULL) == row[i].at && (at == NULL || at->rate_Hz == row[i].row_Hz), "%.3f Hz",
+              row[i].rate_Hz);
+    }
+}
+
+/* table2.csv's line of a result. */
+static void csv_line(char *to, size_t size, const struct table2_result *r)
+{
+    FILE *f = fmemopen(to, size, "w");
+    CHECK(f != NULL, "no memory stream");
+    table2_csv_line(f, r);
+    fclose(f);
+}
+
+TEST(the_paper_stands_beside_its_own_gains_alone)
+{
+    struct table2_result r = {.done = 1, .rate_Hz = 1193182 / 597.0, .falls = 10, .b_Npm = 25002,
+                              .a_Npm = 9000, .r2 = 0.5, .k_Npm = 20000, .b_Nspm = 60};
+    char text[256];
+    csv_line(text, sizeof text, &r);
+    CHECK(strstr(text, ",50004,0.5\n") != NULL, "%s", text);
+    r.k_Npm = 19999;
+    csv_line(text, sizeof text, &r);
+    CHECK(strstr(text, ",0,10,,\n") != NULL, "%s", text);
+    r.k_Npm = 20000;
+    r.rate_Hz = 1990;
+    csv_line(text, sizeof text, &r);
+    CHECK(strstr(text, ",0,10,,\n") != NULL, "%s", text);
+}
+
+static void check_no_zero_stiffness(const char *text)
+{
+    static const char *const bad[] = {"nan", "NaN", "inf", " 0..", "0.00", " 0 N/m", "'0'"};
+    for (size_t i = 0; i < LEN(bad); i++) {
+        CHECK(strstr(text, bad[i]) == NULL, "%s in %s", bad[i], text);
+    }
+}
+
+/* Without stiffness there is no force, so no pair in the band and no line. */
+TEST(no_line_is_no_number)
+{
+    char *dir = said_dir();
+    static struct said s;
+    static char text[SAID_B];
+    said(&s, dir, cli_drop,
+         WORDS("drop", "--rate", "90,2000", "--k", "0", "--b", "0", "--falls", "2", "--spread", "2",
+               "--out", dir));
+    CHECK(s.status == 1 && strstr(s.err, "not seen to their end"), "%d: %s", s.status, s.err);
+    check_no_zero_stiffness(s.out);
+    CHECK(strstr(s.out, "  2000      0      0           -                 -       -") != NULL, "%s",
+          s.out);
+    CHECK(strstr(s.out, "2000 Hz: no stiffness: too few pairs") != NULL, "%s", s.out);
+    CHECK(strstr(s.out, "2000 Hz: of 2 runs 0 gave a line, 0 at the same tick") != NULL, "%s", s.out);
+    said_read(text, said_path(dir, "table2.csv"));
+    CHECK(strstr(text, "\n2000,0,0,,,,,,0,2,,\n") != NULL, "%s", text);
+    said_read(text, said_path(dir, "spread.csv"));
+    CHECK(strstr(text, "\n2000,0,0,2,,,,,,,0.0000,0.0000,0,0\n") != NULL, "%s", text);
+    said_read(text, said_path(dir, "pictures.gp"));
+    check_no_zero_stiffness(text);
+    CHECK(strstr(text, "b_stiffness=''") && strstr(text, "stiffnesses='- -'"), "%s", text);
+    said_clean(dir);
+}
+
+TEST(medians_are_of_runs_with_a_line)
+{
+    static struct table2_result r[5], none[5];
+    struct table2_spread s;
+    for (int i = 0; i < 5; i++) {
+        r[i] = (struct table2_result){.done = i < 4, .falls = 10, .b_Npm = i < 3 ? 100 + i : 0,
+                                      .a_Npm = i < 3 ? 50 + i : 0,
+                                      .b_same_Npm = i < 2 ? 10 : 0, .a_same_Npm = i < 2 ? 5 : 0};
+    }
+    s = table2_spread(r, none, 5);
+    CHECK(s.runs == 4 && s.lines == 3 && s.lines_same == 2, "%d %d %d", s.runs, s.lines, s.lines_same);
+    CHECK(s.b_Npm == 101 && s.a_Npm == 51, "%g %g", s.b_Npm, s.a_Npm);
+    CHECK(s.b_same_Npm == 0 && s.a_same_Npm == 0, "of 2 in 4: %g", s.b_same_Npm);
+    CHECK(s.rest == 1 && s.oscillates < 0, "%g %g", s.rest, s.oscillates);
+}
+
+/* --device observe=... is how long the fall is seen; the judge must ask for no more. */
+TEST(the_judge_observes_as_long_as_the_device)
+{
+    static const double observe_s[] = {0.6, 1, 7};
+    for (size_t i = 0; i < LEN(observe_s); i++) {
+        struct run_cfg c = {.rate_Hz = 500, .k_Npm = 6000, .b_Nspm = 20};
+        struct table2_result r;
+        c.board = posix_config_default();
+        c.board.falls = 3;
+        c.board.device.observe_s = observe_s[i];
+        r = table2_measure(&c, 0, NULL);
+        CHECK(r.done && r.falls == 3 && r.incomplete == 0, "%g s: %d of %d incomplete", observe_s[i],
+              r.incomplete, r.falls);
+    }
+}
+
+/* ---- The directory ---------------------------------------------------------------- */
+
+TEST(any_directory_name_will_do)
+{
+    char *base = said_dir();
+    char dir[256];
+    static struct said s;
+    static char text[SAID_B];
+    snprintf(dir, sizeof dir, "%s/it's \"a b\"'; system('touch x'); '\n`y`", base);
+    for (int again = 0; again < 2; again++) {
+        said(&s, base, cli_drop, WORDS("drop", "--rate", "90", "--falls", "2", "--out", dir));
+        CHECK(s.status == 0, "%d: %s", s.status, s.err);
+        said_read(text, said_path(dir, "pictures.gp"));
+        CHECK(strstr(text, "system") == NULL && strstr(text, base) == NULL, "%s", text);
+        CHECK(said_size(said_path(dir, "fall.png")) < 0, "an earlier run's picture is left");
+        fclose(fopen(said_path(dir, "fall.png"), "w"));
+    }
+    said_clean(base);
+}
+
+TEST(what_cannot_be_written_is_named)
+{
+    static const char *const name[] = {"drop_90Hz.exh",      "drop_90Hz.csv", "drop_90Hz_fall.csv",
+                                       "drop_90Hz_line.csv", "said.out"};
+    for (size_t i = 0; i < LEN(name); i++) {
+        char *dir = said_dir();
+        static struct said s;
+        CHECK_EQ_I64(symlink("/dev/full", said_path(dir, name[i])), 0);
+        said(&s, dir, cli_drop, WORDS("drop", "--rate", "90", "--falls", "2", "--out", dir));
+        CHECK(s.status == 1, "%s: status %d", name[i], s.status);
+        CHECK(strstr(s.err, i == 4 ? "standard output" : i == 3 ? "_line.csv" : name[i]) != NULL,
+              "%s: %s", name[i], s.err);
+        said_clean(dir);
+    }
+}
+
+/* ---- Interruption ------------------------------------------------------------------- */
+
+static void nap_ms(long ms)
+{
+    const struct timespec t = {ms / 1000, ms % 1000 * 1000000};
+    nanosleep(&t, NULL);
+}
+
+/* Starts it, signals its first process once the log of `name` grows; what it said. */
+static void interrupt(struct said *s, char *dir, int sig, const char *name, const char *rates,
+                      const char *jobs)
+{
+    const pid_t pid = said_start(dir, cli_drop,
+                                 WORDS("drop", "--rate", rates, "--falls", "1000", "--jobs", jobs,
+                                       "--out", dir));
+    for (int i = 0; i < 2000 && said_size(said_path(dir, name)) <= 0; i++) { nap_ms(5); }
+    CHECK(said_size(said_path(dir, name)) > 0, "%s does not grow", name);
+    CHECK_EQ_I64(kill(pid, sig), 0);
+    said_end(s, dir, pid);
+    CHECK(kill(-pid, 0) != 0 && errno == ESRCH, "it left processes behind");
+}
+
+TEST(an_interruption_ends_all_runs)
+{
+    static const char *const jobs[] = {"1", "2", "3"};
+    for (int i = 0; i < 6; i++) {
+        char *dir = said_dir();
+        static struct said s;
+        struct logfile l;
+        struct exh_record r;
+        interrupt(&s, dir, i < 3 ? SIGINT : SIGTERM, "drop_20000Hz.exh", "20000,19999,19998,19997",
+                  jobs[i % 3]);
+        CHECK(s.status == 130, "jobs %s: status %d: %s", jobs[i % 3], s.status, s.err);
+        CHECK(s.out[0] == '\0', "a row of nothing: %s", s.out);
+        CHECK(strstr(s.err, "interrupted: 0 of 4 rates") != NULL, "%s", s.err);
+        CHECK(said_size(said_path(dir, "drop_19997Hz.exh")) < 0, "jobs %s: a new job began",
+              jobs[i % 3]);
+        CHECK_EQ_I64(logfile_open(&l, said_path(dir, "drop_20000Hz.exh")), 0);
+        while (logfile_next(&l, &r)) {}
+        CHECK_EQ_I64(logfile_complain(&l), 0); /* complete up to where it was stopped */
+        logfile_close(&l);
+        said_clean(dir);
+    }
+}
+
+TEST(what_was_finished_is_kept)
+{
+    static const char *const jobs[] = {"1", "2"};
+    for (int i = 0; i < 2; i++) {
+        char *dir = said_dir();
+        static struct said s;
+        static char text[SAID_B];
+        const pid_t pid = said_start(dir, cli_drop,
+                                     WORDS("drop", "--rate", "90,20000", "--falls", "200",
+                                           "--spread", "1000", "--jobs", jobs[i], "--out", dir));
+        for (int n = 0; n < 2000 && said_size(said_path(dir, "drop_90Hz.csv")) <= 0; n++) { nap_ms(5); }
+        nap_ms(300);
+        CHECK_EQ_I64(kill(pid, SIGINT), 0);
+        said_end(&s, dir, pid);
+        CHECK(s.status == 130, "jobs %s: status %d: %s", jobs[i], s.status, s.err);
+        CHECK(strstr(s.err, "interrupted: 1 of 2 rates") != NULL, "%s", s.err);
+        CHECK(strstr(s.out, "\n    90   1500 ") && !strstr(s.out, "\n     0 ") &&
+                  !strstr(s.out, "\n 20000 "), "%s", s.out);
+        said_read(text, said_path(dir, "table2.csv"));
+        CHECK(strstr(text, "\n90,1500,0,") && !strstr(text, "\n0,") && !strstr(text, "\n20000,"), "%s",
+              text);
+        said_clean(dir);
+    }
+}
+
+/* Job 3 dies, or is killed; what the others gave is there, and the loss is said. */
+static void work(const void *ctx, int i, void *result)
+{
+    const int how = *(const int *)ctx;
+    memcpy(result, &i, sizeof i);
+    if (i == 3 && how == 0) { _exit(3); }
+    if (i == 3 && how == 1) { raise(SIGKILL); }
+}
+
+TEST(a_job_that_dies_is_an_error)
+{
+    for (int how = 0; how < 3; how++) {
+        int result[8];
+        const struct jobs j = {8, 3, sizeof result[0], result, work, &how, NULL, NULL};
+        memset(result, 0xFF, sizeof result);
+        CHECK_EQ_I64(jobs_run(&j), how < 2);
+        for (int i = 0; i < 8; i++) {
+            CHECK(result[i] == (i == 3 && how < 2 ? -1 : i), "%d: job %d gave %d", how, i, result[i]);
+        }
+    }
+}
+
+TEST_MAIN("cli", bad_usage_is_refused_by_name, printed_ranges_are_the_true_ones,
+          gains_are_the_nearest_rows, the_paper_stands_beside_its_own_gains_alone,
+          no_line_is_no_number, medians_are_of_runs_with_a_line,
+          the_judge_observes_as_long_as_the_device, any_directory_name_will_do,
+          what_cannot_be_written_is_named, an_interruption_ends_all_runs, what_was_finished_is_kept,
+          a_job_that_dies_is_an_error);
