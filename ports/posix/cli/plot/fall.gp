@@ -80,6 +80,7 @@ set grid lc rgb '#dddddd' lw 0.6 lt 1
 
 do for [i = 1:rows] {
     FILE = word(files, i)
+    undefine C_* # of the row before
     stats FILE using (column('c') > 0 ? column('t_s') : NaN) name 'C' nooutput
     T0 = exists("C_min") ? C_min : 0 # a mass that never touches keeps the log's time
     S = word(stiffnesses, i)

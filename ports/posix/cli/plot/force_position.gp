@@ -63,6 +63,7 @@ do for [panel in 'a b'] {
     RAW = value(panel.'_raw'); AVG = value(panel.'_avg'); LINE = value(panel.'_line')
     Q0 = value(panel.'_q0')
     S = ''.value(panel.'_stiffness')
+    undefine P_* # of the panel before
     stats RAW using (mm(column('q_m')) + 0*inside(column('f_mon_n'))) name 'P' nooutput
     if (!exists("P_min")) { P_min = 0; P_max = 1 } # no pair in the band: an empty panel
     pad = 0.06 * (P_max - P_min) + 0.02
