@@ -73,7 +73,8 @@ struct exh_table {
  * more than 2^31-1, or a slope is 2^31 or more or below 2^-32), -EXH_E_MONOTONE (x or y does not rise strictly). */
 int exh_table_set(struct exh_knot *knot, unsigned n);
 
-/* The inverse table: dst may be src. Errors as exh_table_set(). */
+/* The inverse table: dst may be src. There and back, through the steeper first, comes
+ * within 1 LSB, 2 from spans of 2^30. Errors as exh_table_set(). */
 int exh_table_invert(struct exh_knot *dst, const struct exh_knot *src, unsigned n);
 
 /* y at x: monotone, exact at every knot, within 1.5 LSB of y between them (1 LSB
