@@ -131,9 +131,8 @@ int run_drop(const struct run_cfg *c, struct run *r)
                          (unsigned long)c->rate_Hz, (unsigned long)exh_board_info.rate_max_Hz);
         } else if (err < 0) {
             cli_complain("%lu Hz: %s", (unsigned long)c->rate_Hz, exh_error_text(err));
-        } else {
-            r->lost = exh_log_end(run.last_tick + 1);
         }
+        if (r->T.num != 0) { r->lost = exh_log_end(run.last_tick + 1); } /* it was started */
     }
     r->log.sample = run.sample;
     r->log.start = run.start;
