@@ -119,8 +119,13 @@ void exh_log_keyframe_bytes(struct exh_bytes *c, const struct exh_scene *sc)
             exh_bytes_fail(c);
         }
     }
-    if (n > 0 && c->mode == EXH_BYTES_READ) { exh_params_apply(sc->params); }
-    sc->state(c);
+    if (c->mode == EXH_BYTES_READ && n > 0) {
+        for (uint32_t i = 0; !exh_bytes_ok(c) && i < n; i++) {
+            sc->params->staged[i] = sc->params->active[i];
+        }
+        exh_params_apply(sc->params);
+    }
+    if (c->mode != EXH_BYTES_READ || exh_bytes_ok(c)) { sc->state(c); }
 }
 
 void exh_log_mark(uint32_t tick, int32_t value)
@@ -160,7 +165,7 @@ void exh_log_after(uint32_t tick, const struct exh_scene_in *in, const struct ex
     struct exh_bytes c = begin(EXH_RECORD_FRAME, tick);
     exh_log_frame_bytes(&c, scene, &i, &o, scene->signal);
     end(&c);
-    /* Here and not before the next tick, where it would delay the output. */
+    /* Here and not in exh_log_before(), where it would delay the output. */
     if ((tick + 1) % EXH_LOG_KEYFRAME_TICKS == 0) { keyframe(tick + 1); }
 }
 

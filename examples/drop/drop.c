@@ -73,7 +73,7 @@ void drop_tick(struct drop *s, const struct drop_cfg *cfg, const struct exh_scen
     const struct exh_contact_in q = {
         exh_quad_pos_m_q30(&par->quad, cnt),
         exh_velocity_window_mps_q27(&s->velocity, &cfg->velocity, cnt), par->own.q_lim_m_q30};
-    const struct exh_safety_in box = {in->drive.din, s->quad.jumped ? EXH_FAULT_ENCODER : 0u,
+    const struct exh_safety_in box = {in->drive.din, s->quad.lost ? EXH_FAULT_ENCODER : 0u,
                                       in->missed, in->command, 1};
     const int run = exh_safety_step(&s->safety, &par->safety, box) == EXH_STATE_RUN;
     struct exh_force_ledger f;

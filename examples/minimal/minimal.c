@@ -46,7 +46,7 @@ static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
     const int32_t cnt = exh_quad_extend(&s.quad, &quad_cfg, in->drive.enc_raw[0]);
     const struct exh_contact_in q = {exh_quad_pos_m_q30(&quad_par, cnt),
                                      exh_velocity_window_mps_q27(&s.vel, &vel_cfg, cnt), wall_m_q30};
-    const struct exh_safety_in box = {in->drive.din, s.quad.jumped ? EXH_FAULT_ENCODER : 0u,
+    const struct exh_safety_in box = {in->drive.din, s.quad.lost ? EXH_FAULT_ENCODER : 0u,
                                       in->missed, in->command, 1};
     const int run = exh_safety_step(&s.safety, &safety_par, box) == EXH_STATE_RUN;
     uint32_t limits;

@@ -17,7 +17,7 @@ const struct exh_signal exh_drive_rows[EXH_DRIVE_ROWS] = {
     {0x0501, EXH_Q_FORCE, EXH_WHEN_ANY, 0, F_MAX_N_Q20, EXH_Q(40, 1, EXH_Q_FORCE),
      "f_max", "n", "force limit"},
     {0x0502, 0, EXH_WHEN_ANY, 1, SLEW_MAX_NPS, 200000, "slew_up", "n_per_s", "fastest rise of force"},
-    /* At 1 kN/s the whole peak force is gone in 22 ms: letting go is never slow. */
+    /* At 1 kN/s the 22 N of a CyberGrasp motor are gone in 22 ms: letting go is never slow. */
     {0x0503, 0, EXH_WHEN_ANY, SLEW_DOWN_MIN_NPS, SLEW_MAX_NPS, 200000, "slew_down", "n_per_s",
      "fastest fall of force"},
     /* Elmo Castanet: 6.6 A peak for about 2.7 s, 3.3 A for ever (hardware facts). */
@@ -126,6 +126,15 @@ static int inside(int32_t v, int32_t lo, int32_t hi)
     return v >= lo && v <= hi;
 }
 
+/* exh_table_set() was here: slopes are filled, so knots rise. */
+static int table_ok(struct exh_table t)
+{
+    for (unsigned i = 0; i + 1 < t.n; i++) {
+        if (t.knot[i].slope.mant < INT32_C(1) << 30 || t.knot[i + 1].x <= t.knot[i].x) { return 0; }
+    }
+    return t.n != 1;
+}
+
 /* Parameters in ROM never passed their rows, and a negative span would open the
  * gate. The rows are not linked for this: they are names and help besides. */
 static int par_ok(const struct exh_drive_par *par, int monitor)
@@ -147,7 +156,11 @@ int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par,
 {
     int err;
     if (!par_ok(par, cur_to_force.n > 0) || T.num == 0 || T.den == 0 || force_to_cur.n < 2 ||
-        cur_to_force.n == 1 || force_to_cur.knot[0].x > 0 || exh_table_at(force_to_cur, 0) != 0) {
+        !table_ok(force_to_cur) || !table_ok(cur_to_force)) {
+        return -EXH_E_RANGE;
+    }
+    if (force_to_cur.knot[0].x > 0 || force_to_cur.knot[force_to_cur.n - 1].x <= 0 ||
+        exh_table_at(force_to_cur, 0) != 0) {
         return -EXH_E_RANGE;
     }
     cfg->par = par;
@@ -189,7 +202,7 @@ uint32_t exh_drive_force(struct exh_drive *s, const struct exh_drive_cfg *cfg, i
     const int64_t slewed = held > top ? top : held < bottom ? bottom : held;
     uint32_t limits = 0;
 
-    if (!run) { return no_force(s, asked, f); }
+    if (run != 1) { return no_force(s, asked, f); }
     if (asked < 0) { limits |= EXH_LIMIT_PULL; }
     if (asked > held && asked > 0) { limits |= EXH_LIMIT_FORCE; }
     if (slewed != held) { limits |= EXH_LIMIT_SLEW; }
@@ -220,7 +233,8 @@ uint32_t exh_drive_current(struct exh_drive *s, const struct exh_drive_cfg *cfg,
     const int64_t cont_A_q16 = cfg->par->i_cont_A_q26 >> (EXH_Q_CUR - 16);
     const int64_t heat = s->i2t_q32 + now_A_q16 * now_A_q16 - cont_A_q16 * cont_A_q16;
 
-    s->i2t_q32 = heat < 0 ? 0 : heat; /* a tick may overshoot the budget: it is not forgotten */
+    /* One tick may overshoot the budget, by no more than that again; it is not forgotten. */
+    s->i2t_q32 = heat < 0 ? 0 : heat > 2 * cfg->i2t_budget_q32 ? 2 * cfg->i2t_budget_q32 : heat;
     i->table_A_q26 = table;
     i->peak_A_q26 = (int64_t)peak - table;
     i->i2t_A_q26 = (int64_t)now - peak;
@@ -247,7 +261,7 @@ void exh_drive_bytes(struct exh_bytes *c, struct exh_drive *s)
 {
     exh_bytes_i32(c, &s->force_N_q20);
     exh_bytes_i64(c, &s->i2t_q32);
-    /* From damaged bytes: no push, and no heat that a sum with it overflows. */
-    if (s->force_N_q20 < 0) { s->force_N_q20 = 0; }
+    /* From damaged bytes: no force out of range, and no heat that a sum with it overflows. */
+    s->force_N_q20 = exh_clamp(s->force_N_q20, 0, F_MAX_N_Q20);
     if (s->i2t_q32 < 0 || s->i2t_q32 > INT64_MAX / 2) { s->i2t_q32 = INT64_MAX / 2; }
 }

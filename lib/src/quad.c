@@ -4,11 +4,14 @@
 #include "exhand/fix.h"
 #include "exhand/units.h"
 
+#define STEP_MIN_M_Q42    EXH_Q(1, 1000000, EXH_Q_STEP)
+#define SPEED_MIN_MPS_Q27 EXH_Q(1, 10, EXH_Q_VEL)
+
 const struct exh_signal exh_quad_rows[EXH_QUAD_ROWS] = {
-    {0x0201, EXH_Q_STEP, EXH_WHEN_SETUP, EXH_Q(1, 1000000, EXH_Q_STEP), INT32_MAX,
+    {0x0201, EXH_Q_STEP, EXH_WHEN_SETUP, STEP_MIN_M_Q42, INT32_MAX,
      EXH_Q(6632, 100000000, EXH_Q_STEP), "step", "m", "string per encoder count"},
-    /* A fast reach moves the hand at some 3 m/s; a lost or forged count moves it at any speed. */
-    {0x0202, EXH_Q_VEL, EXH_WHEN_SETUP, EXH_Q(1, 10, EXH_Q_VEL), INT32_MAX,
+    /* Beyond the fastest hand: what moves more is no movement. */
+    {0x0202, EXH_Q_VEL, EXH_WHEN_SETUP, SPEED_MIN_MPS_Q27, INT32_MAX,
      EXH_Q(10, 1, EXH_Q_VEL), "speed_max", "m_per_s", "faster is an encoder fault"},
 };
 
@@ -51,13 +54,14 @@ int exh_quad_setup(struct exh_quad_cfg *cfg, const struct exh_quad_par *par, str
 {
     struct exh_gain per_tick; /* counts per m/s q27 */
     int64_t jump;
-    if (bits < 16 || bits > 32 || par->step_m_q42 <= 0 || par->speed_max_mps_q27 <= 0 ||
+    if (bits < 16 || bits > 32 || par->step_m_q42 < STEP_MIN_M_Q42 ||
+        par->speed_max_mps_q27 < SPEED_MIN_MPS_Q27 ||
         exh_gain_set(&per_tick, (uint64_t)T.num << (EXH_Q_STEP - EXH_Q_VEL),
                      (uint64_t)(uint32_t)par->step_m_q42 * T.den) < 0) {
         return -EXH_E_RANGE;
     }
     jump = exh_gain_mul(per_tick, par->speed_max_mps_q27) + 1;
-    if (jump >= INT64_C(1) << (bits - 1)) { return -EXH_E_RANGE; }
+    if (jump >= INT64_C(1) << (bits - 2)) { return -EXH_E_RANGE; }
     cfg->par = par;
     cfg->jump_cnt = (int32_t)jump;
     cfg->unused = (uint8_t)(32u - bits);
@@ -69,8 +73,11 @@ int32_t exh_quad_extend(struct exh_quad *s, const struct exh_quad_cfg *cfg, uint
     /* At the top of the word the counter's own wrap is the word's. */
     const int32_t moved = exh_from_u32((raw - s->raw) << cfg->unused) >> cfg->unused;
 
-    s->jumped = s->started && (moved > cfg->jump_cnt || moved < -cfg->jump_cnt);
-    if (s->started) { s->cnt = exh_wrap_add(s->cnt, moved); }
+    const int jump = moved > cfg->jump_cnt || moved < -cfg->jump_cnt;
+
+    /* Where the string is after a jump nobody knows: that outlives the jump. */
+    if (s->started && jump) { s->lost = 1; }
+    if (s->started && !jump) { s->cnt = exh_wrap_add(s->cnt, moved); }
     s->raw = raw;
     s->started = 1;
     return s->cnt;
@@ -86,7 +93,7 @@ void exh_quad_bytes(struct exh_bytes *c, struct exh_quad *s)
     exh_bytes_u32(c, &s->raw);
     exh_bytes_i32(c, &s->cnt);
     exh_bytes_u8(c, &s->started);
-    exh_bytes_u8(c, &s->jumped);
+    exh_bytes_u8(c, &s->lost);
 }
 
 void exh_quad_ab_bytes(struct exh_bytes *c, struct exh_quad_ab *s)

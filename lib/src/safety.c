@@ -3,10 +3,10 @@
 #include "exhand/error.h"
 #include "exhand/fix.h"
 
-#define MISSED_MAX 3
+#define MISSED_MAX 1
 
 const struct exh_signal exh_safety_rows[EXH_SAFETY_ROWS] = {
-    {0x0601, 0, EXH_WHEN_SETUP, 0, MISSED_MAX, 1, "missed_max", "", "ticks missed in a row, tolerated"},
+    {0x0601, 0, EXH_WHEN_SETUP, 0, MISSED_MAX, 1, "missed_max", "", "missed ticks tolerated, in 64"},
 };
 
 static uint32_t add_sat(uint32_t a, uint32_t b)
@@ -23,7 +23,7 @@ static uint32_t causes(uint32_t late, const struct exh_safety_par *par, struct e
     if (!(in.din & EXH_DIN_ESTOP)) { c |= EXH_FAULT_ESTOP; }
     if (!(in.din & EXH_DIN_DEADMAN)) { c |= EXH_FAULT_DEADMAN; }
     if ((in.din & drives) != drives) { c |= EXH_FAULT_DRIVE; }
-    if (late > (in_range ? (uint32_t)par->missed_max : 0)) { c |= EXH_FAULT_OVERRUN; }
+    if (late > (in_range ? (uint32_t)par->missed_max * EXH_LATE_TICKS : 0)) { c |= EXH_FAULT_OVERRUN; }
     return c;
 }
 
@@ -35,8 +35,12 @@ uint8_t exh_safety_step(struct exh_safety *s, const struct exh_safety_par *par,
     EXH_ASSERT(in.fingers >= 1);
     EXH_ASSERT(in.fingers <= EXH_FINGERS);
     s->missed = add_sat(s->missed, in.missed);
-    /* Late at every wait is an overrun however short each delay is. */
-    s->late = in.missed > 0 ? add_sat(s->late, in.missed) : 0;
+    s->fingers = in.fingers;
+    /* A tick too long by half a period misses every other one: it must add up. */
+    if (s->late > 0) { s->late--; }
+    for (uint32_t k = 0; k < in.missed && k <= MISSED_MAX; k++) {
+        s->late = add_sat(s->late, EXH_LATE_TICKS);
+    }
     now = causes(s->late, par, in);
     s->present = now;
     if (s->state == EXH_STATE_RUN && now != 0) {
@@ -44,6 +48,7 @@ uint8_t exh_safety_step(struct exh_safety *s, const struct exh_safety_par *par,
         s->first = now;
         s->first_tick = s->tick;
     }
+    if (s->state > EXH_STATE_FAULT) { s->state = EXH_STATE_FAULT; }
     if (s->state == EXH_STATE_FAULT) {
         s->faults |= now;
         if (in.command == EXH_CMD_CLEAR && now == 0) {
@@ -75,7 +80,7 @@ void exh_gate(struct exh_safety *s, const struct exh_drive_cfg *cfg, unsigned n,
     const int open = s->state == EXH_STATE_RUN;
 
     EXH_ASSERT(n >= 1);
-    EXH_ASSERT(n <= EXH_FINGERS);
+    EXH_ASSERT(n <= s->fingers);
     out->enable = (uint8_t)(open ? (1u << n) - 1u : 0u);
     out->alive = ++s->alive;
     for (unsigned k = 0; k < EXH_FINGERS; k++) {
@@ -106,4 +111,6 @@ void exh_safety_bytes(struct exh_bytes *c, struct exh_safety *s)
     exh_bytes_u32(c, &s->late);
     exh_bytes_u8(c, &s->state);
     exh_bytes_u8(c, &s->alive);
+    /* Nothing that was damaged may leave a fault behind by itself. */
+    if (s->state > EXH_STATE_FAULT || s->faults != 0) { s->state = EXH_STATE_FAULT; }
 }

@@ -10,7 +10,7 @@
 
 #define TICKS_DEFAULT 1000u /* an emulator has no other way to say "enough" */
 #define DAC_ZERO_RAW  32768u
-#define DEADMAN_TICK  10u
+#define DEADMAN_TICK  200u
 /* Debug exit of emulators: status 2 * value + 1. Neither may look like a failure
  * of the emulator itself, which is 1. Real machines have nothing at this port. */
 enum { EXIT_PORT = 0xF4, EXIT_DONE = 0x10, EXIT_FAILED = 0x11 };

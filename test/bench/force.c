@@ -50,7 +50,7 @@ static void start(void)
     in_float = (struct law_float){(float)in_double.k_Npm, (float)in_double.b_Nspm,
                                   (float)in_double.f0_N, (float)in_double.lim_m,
                                   (float)in_double.f_max_N};
-    safety = (struct exh_safety){.state = EXH_STATE_RUN};
+    safety = (struct exh_safety){.state = EXH_STATE_RUN, .fingers = 1};
 }
 
 /* --- the law, five fingers an op --- */

@@ -102,6 +102,7 @@ TEST(gate_holds_with_any_input)
         for (unsigned k = 0; k < n; k++) {
             asked[k] = b.i[k].table_A_q26 + b.i[k].peak_A_q26 + b.i[k].i2t_A_q26;
         }
+        s.fingers = (uint8_t)(n + check_u64() % (EXH_FINGERS + 1 - n));
         s.state = (uint8_t)(check_u64() % 4);
         s.alive = (uint8_t)(check_u64() & 0xFF);
         open = s.state == EXH_STATE_RUN;
@@ -122,7 +123,7 @@ TEST(gate_holds_with_any_input)
 TEST(state_machine_under_any_input)
 {
     struct exh_safety s = {0};
-    const struct exh_safety_par par = {3};
+    const struct exh_safety_par par = {1};
     uint32_t ticks = 0;
     uint64_t late = 0;
     while (check_case(1)) {
@@ -132,11 +133,11 @@ TEST(state_machine_under_any_input)
         uint8_t now;
         in.din = check_u64() % 4 ? UINT32_MAX : (uint32_t)(check_u64() & UINT32_MAX);
         in.raised = check_u64() % 8 ? 0 : 1u << check_u64() % 6;
-        in.missed = (uint32_t)check_i32_in(0, check_u64() % 8 ? 3 : 5);
+        in.missed = (uint32_t)(check_u64() % 80 ? 0 : check_i32_in(0, 3));
         in.command = (uint8_t)(check_u64() % 5);
         in.fingers = (uint8_t)(1 + check_u64() % 5);
-        late = in.missed > 0 ? late + in.missed : 0;
-        cause = in.raised != 0 || late > 3 || !(in.din & EXH_DIN_ESTOP) ||
+        late = (late > 0 ? late - 1 : 0) + EXH_LATE_TICKS * (in.missed < 2 ? in.missed : 2);
+        cause = in.raised != 0 || late > EXH_LATE_TICKS || !(in.din & EXH_DIN_ESTOP) ||
                 !(in.din & EXH_DIN_DEADMAN);
         for (unsigned k = 0; k < in.fingers; k++) { cause |= !(in.din >> (8 + k) & 1); }
         now = exh_safety_step(&s, &par, in);

@@ -5,6 +5,7 @@
 #include "cli/run.h"
 #include "posix.h"
 
+#include "drop/drop.h"
 #include "log.h"
 
 #include "exhand/bytes.h"
@@ -166,8 +167,9 @@ TEST(a_cut_log_is_reported)
     remove(path);
 }
 
-/* A keyframe with a sound CRC and a wrong content is refused, never acted on. */
-TEST(a_forged_keyframe_is_refused)
+/* A keyframe with a sound CRC and wrong content: wrong parameters are refused, a wrong
+ * state is brought into its ranges and told by what comes out. */
+static void forge_keyframe(size_t sound_B)
 {
     const char *path = log_path();
     struct text t;
@@ -185,7 +187,7 @@ TEST(a_forged_keyframe_is_refused)
     c = exh_bytes_writer(forged, sizeof forged);
     exh_record_begin(&c, r.type, r.seq, r.tick);
     for (uint32_t i = 0; i < r.len_B; i++) {
-        uint8_t b = 0xFF; /* every parameter -1, every index and shift at its worst */
+        uint8_t b = i < sound_B ? r.payload[i] : 0xFF; /* every index, flag and sum at its worst */
         exh_bytes_u8(&c, &b);
     }
     len = exh_record_end(&c);
@@ -196,5 +198,38 @@ TEST(a_forged_keyframe_is_refused)
     free(t.p);
     remove(path);
 }
+TEST(a_keyframe_with_forged_parameters_is_refused)
+{
+    forge_keyframe(0);
+}
+
+TEST(a_keyframe_with_a_forged_state_is_harmless)
+{
+    forge_keyframe(exh_signal_count(exh_scene_drop.params->table) * sizeof(int32_t));
+}
+
+/* What was refused has changed nothing. */
+TEST(a_refused_keyframe_changes_nothing)
+{
+    const struct exh_scene *sc = &exh_scene_drop;
+    uint8_t forged[EXH_LOG_RECORD_B], before[EXH_LOG_RECORD_B], after[EXH_LOG_RECORD_B];
+    struct exh_bytes c;
+    sc->defaults();
+    CHECK_EQ_I64(sc->setup((struct exh_scene_board){{1, 1000}, 24}), 0);
+    c = exh_bytes_writer(before, sizeof before);
+    exh_log_keyframe_bytes(&c, sc);
+    memcpy(forged, before, sizeof forged);
+    forged[4 * (exh_signal_count(sc->params->table) - 1)] ^= 1; /* kf: sound, and another */
+    forged[3] = 0x80;                                         /* step: out of its range  */
+    c = exh_bytes_reader(forged, c.at);
+    exh_log_keyframe_bytes(&c, sc);
+    CHECK(!exh_bytes_ok(&c), "accepted");
+    c = exh_bytes_writer(after, sizeof after);
+    exh_log_keyframe_bytes(&c, sc);
+    CHECK(memcmp(before, after, c.at) == 0, "a refused keyframe acted");
+    CHECK(!sc->params->pending, "something is staged");
+}
+
 TEST_MAIN("log", a_whole_log_reads_and_replays, a_damaged_record_is_skipped_and_counted,
-          a_cut_log_is_reported, a_forged_keyframe_is_refused);
+          a_cut_log_is_reported, a_keyframe_with_forged_parameters_is_refused,
+          a_keyframe_with_a_forged_state_is_harmless, a_refused_keyframe_changes_nothing);

@@ -45,7 +45,7 @@ static void random_box(void)
         struct exh_scene_in in = wild_in(n);
         in.command = (uint8_t)(any(8) ? any(5) : any(256));
         if (any(50) == 0) { in.drive.din = (uint32_t)any_u64(); }
-        if (any(50) == 0) { in.missed = any(3) ? any(4) : (uint32_t)any_u64(); }
+        if (any(2000) == 0) { in.missed = any(3) ? any(4) : (uint32_t)any_u64(); }
         tick(&in, &out);
         seen[rig.sig.state]++;
     }

@@ -62,7 +62,7 @@ static void random_setups(void)
         struct exh_drive_out out;
         int err;
         fresh();
-        rig.blind = 1;
+        rig.blind = any(2) == 0;
         rig.enc_bits = (uint8_t)(15 + any(18)); /* 15: refused */
         stage_all(EXH_WHEN_SETUP);
         if (any(2)) { stage_all(EXH_WHEN_ANY); }

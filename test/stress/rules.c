@@ -21,7 +21,7 @@ static void shadow_tick(struct drop *s, const struct exh_scene_in *in, struct hi
     const int32_t pos = exh_quad_pos_m_q30(&par->quad, cnt);
     const int32_t vel = exh_velocity_window_mps_q27(&s->velocity, &rig.cfg.velocity, cnt);
     const struct exh_contact_in q = {pos, vel, par->own.q_lim_m_q30};
-    const uint32_t raised = s->quad.jumped ? EXH_FAULT_ENCODER : 0u;
+    const uint32_t raised = s->quad.lost ? EXH_FAULT_ENCODER : 0u;
     const struct exh_safety_in box = {in->drive.din, raised, in->missed, in->command, 1};
     const int run = exh_safety_step(&s->safety, &par->safety, box) == EXH_STATE_RUN;
     h->run = run;
@@ -101,6 +101,7 @@ static void check_codes(const struct exh_drive_out *out)
          (long)par->dac_span_raw);
     must(out->enable == open && (open || code == 0), "gate", "code %d, enable %u", code,
          (unsigned)out->enable);
+    must(!open || !rig.state.quad.lost, "gate", "open after a jump");
     for (unsigned k = 1; k < EXH_FINGERS; k++) {
         must(out->dac_raw[k] == par->dac_zero_raw, "code", "axis %u not in use: %u", k,
              (unsigned)out->dac_raw[k]);
@@ -135,6 +136,7 @@ void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
 {
     struct hidden h;
     memset(&h, 0, sizeof h);
+    if (rig.blind) { rig.state.quad.lost = rig.shadow.quad.lost = 0; }
     drop_tick(&rig.state, &rig.cfg, in, out, &rig.sig);
     shadow_tick(&rig.shadow, in, &h);
     must(memcmp(out->dac_raw, h.out.dac_raw, sizeof out->dac_raw) == 0 &&

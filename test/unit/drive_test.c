@@ -209,6 +209,8 @@ TEST(setup_refuses_tables_that_pull_at_no_force)
         {{0, 1, {0, 1}}, {9, 9, {0, 1}}},   /* a current at no force */
         {{-9, -9, {0, 1}}, {9, 5, {0, 1}}}, /* a push at no force */
         {{-9, -9, {0, 1}}, {-1, -1, {0, 1}}},
+        {{-9, -9, {0, 1}}, {0, 0, {0, 1}}}, /* ends there */
+        {{-9, -9, {0, 1}}, {-1, 0, {0, 1}}},
     };
     const struct exh_table none = {NULL, 0};
     struct exh_drive_par par;
@@ -291,6 +293,24 @@ TEST(no_force_beyond_the_table)
     CHECK_EQ_I64(f.force_N_q20, 22 * NEWTON);
     CHECK_EQ_I64(f.clamp_N_q20, -8 * NEWTON);
     CHECK_EQ_I64(exh_drive_monitor_N_q20(&a.cfg, 1000), 0); /* no monitor, no force of it */
+}
+
+/* Slopes not filled in, as in a table of one's own in ROM: 0 A up to its very end. */
+TEST(setup_refuses_a_table_that_was_not_set)
+{
+    const struct exh_knot k[2] = {{0, 0, {0, 1}},
+                                  {EXH_Q(22, 1, EXH_Q_FORCE), EXH_Q(66, 10, EXH_Q_CUR), {0, 1}}};
+    struct exh_knot good[2] = {k[0], k[1]};
+    const struct exh_table raw = {k, 2}, set = {good, 2}, none = {NULL, 0};
+    const struct exh_period T = {1, 2000};
+    struct exh_drive_par par;
+    struct exh_drive_cfg cfg;
+    axis_par(&par);
+    CHECK_EQ_I64(exh_table_set(good, 2), 0);
+    CHECK_EQ_I64(exh_drive_setup(&cfg, &par, T, set, none), 0);
+    CHECK_EQ_I64(exh_drive_setup(&cfg, &par, T, set, set), 0);
+    CHECK_EQ_I64(exh_drive_setup(&cfg, &par, T, raw, none), -EXH_E_RANGE);
+    CHECK_EQ_I64(exh_drive_setup(&cfg, &par, T, set, raw), -EXH_E_RANGE);
 }
 
 /* Outside RUN nothing is commanded and nothing is remembered. */
@@ -515,7 +535,7 @@ TEST_MAIN("unit/drive", table_is_exact_at_knots_and_clamps_outside, table_betwee
           table_is_monotone_around_every_knot, table_rejections, steepest_table_is_accepted,
           inverse_round_trip, inverse_refuses_what_set_refuses, setup_rejections,
           setup_refuses_tables_that_pull_at_no_force, no_force_beyond_the_table,
-          not_running_is_no_force,
+          setup_refuses_a_table_that_was_not_set, not_running_is_no_force,
           setup_takes_every_documented_period, force_limit_and_pull_only, slew_both_ways,
           slowest_slew_still_moves, peak_limit, i2t_holds_folds_back_and_recovers,
           continuous_current_is_for_ever, bursts_add_up, peak_equal_to_continuous, monitor_by_hand,

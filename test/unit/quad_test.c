@@ -219,7 +219,7 @@ TEST(state_round_trip)
     exh_quad_bytes(&c, &back);
     CHECK(exh_bytes_ok(&c), "reader");
     CHECK(back.raw == s.raw && back.cnt == s.cnt && back.started == s.started &&
-              back.jumped == s.jumped,
+              back.lost == s.lost,
           "state differs");
 }
 
@@ -257,16 +257,18 @@ TEST(a_jump_is_told_at_every_rate)
         for (int sign = -1; sign <= 1; sign += 2) {
             struct exh_quad s = {0};
             uint32_t raw = 0xFFFFF0; /* next to the wrap */
+            const int32_t far = sign * cfg.jump_cnt;
             (void)exh_quad_extend(&s, &cfg, raw);
-            CHECK(!s.jumped, "the first sample");
-            raw += (uint32_t)(sign * cfg.jump_cnt);
-            (void)exh_quad_extend(&s, &cfg, raw);
-            CHECK(!s.jumped, "row %zu: as fast as allowed", i);
-            raw += (uint32_t)(sign * (cfg.jump_cnt + 1));
-            (void)exh_quad_extend(&s, &cfg, raw);
-            CHECK(s.jumped, "row %zu: faster", i);
-            (void)exh_quad_extend(&s, &cfg, raw);
-            CHECK(!s.jumped, "row %zu: at rest again", i);
+            CHECK(!s.lost, "the first sample");
+            raw += (uint32_t)far;
+            CHECK_EQ_I64(exh_quad_extend(&s, &cfg, raw), far);
+            CHECK(!s.lost, "row %zu: as fast as allowed", i);
+            raw += (uint32_t)(far + sign);
+            CHECK_EQ_I64(exh_quad_extend(&s, &cfg, raw), far);
+            CHECK(s.lost, "row %zu: faster", i);
+            raw += (uint32_t)sign;
+            CHECK_EQ_I64(exh_quad_extend(&s, &cfg, raw), far + sign);
+            CHECK(s.lost, "row %zu: where it is now nobody knows", i);
         }
     }
 }
@@ -284,6 +286,9 @@ TEST(setup_rejections)
         {0, INT32_MAX, 24, {1, 1000}, "no step"},
         {-1, INT32_MAX, 24, {1, 1000}, "a negative step"},
         {69049330, 0, 24, {1, 1000}, "no speed"},
+        {4398045, INT32_MAX, 24, {1, 1000}, "a step below 1 um"},
+        {69049330, 13421771, 24, {1, 1000}, "a speed below 0.1 m/s"},
+        {69049330, INT32_MAX, 16, {1, 10}, "a quarter of 16 bits in a tick"},
         {69049330, INT32_MIN, 24, {1, 1000}, "a negative speed"},
         {69049330, INT32_MAX, 16, {1, 1}, "16 bits a second: direction can't be told"},
         {69049330, INT32_MAX, 24, {1, 0}, "no period"},

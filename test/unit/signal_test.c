@@ -379,7 +379,7 @@ TEST(library_rows_match_their_structs)
     CHECK_EQ_I64(exh_contact_rows[3].max, EXH_Q(1, 100, EXH_Q_POS));
     CHECK_EQ_I64(exh_contact_rows[4].max, EXH_Q(1, 100, EXH_Q_POS));
     CHECK_EQ_I64(exh_velocity_rows[0].max, 4);
-    CHECK_EQ_I64(exh_safety_rows[0].max, 3);
+    CHECK_EQ_I64(exh_safety_rows[0].max, 1);
 }
 
 TEST_MAIN("unit/signal", rows_and_instances_in_order, empty_table, crc_tells_tables_apart,

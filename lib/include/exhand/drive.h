@@ -73,8 +73,9 @@ struct exh_table {
  * more than 2^31-1, or a slope is 2^31 or more or below 2^-32), -EXH_E_MONOTONE (x or y does not rise strictly). */
 int exh_table_set(struct exh_knot *knot, unsigned n);
 
-/* The inverse table: dst may be src. There and back, through the steeper first, comes
- * within 1 LSB, 2 from spans of 2^30. Errors as exh_table_set(). */
+/* The inverse table: dst may be src. Where all segments are at least (or all at most)
+ * 1 steep, there and back, through the steeper first, comes within 1 LSB, 2 from
+ * spans of 2^30. Errors as exh_table_set(). */
 int exh_table_invert(struct exh_knot *dst, const struct exh_knot *src, unsigned n);
 
 /* y at x: monotone, exact at every knot, within 1.5 LSB of y between them (1 LSB
@@ -128,7 +129,7 @@ struct exh_current_ledger {
 };
 
 /* Set-up (divides). Tables must have passed exh_table_set() and outlive cfg, as
- * must par; force_to_cur must give 0 A at 0 N; cur_to_force may be {NULL, 0} where
+ * must par; force_to_cur must reach above 0 N and give 0 A there; cur_to_force may be {NULL, 0} where
  * no monitor is read. -EXH_E_RANGE when a table is not so, a parameter lies outside
  * its range above (parameters in ROM have passed no other check), or
  * i_peak < i_cont. */
@@ -138,9 +139,9 @@ int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par,
 
 /* Completes the force ledger: 0 <= force <= f_max and the table's end, |change| <=
  * slew * T (at least 1 LSB). Where the two disagree, because f_max was just lowered,
- * slew wins: force comes down to the new limit at its rate. run 0 (the box is not
- * in RUN): the force is zero and rises from there when it runs again. Returns
- * limit bits. */
+ * slew wins: force comes down to the new limit at its rate. run is 1 in RUN, 0 or any
+ * other value elsewhere: the force is zero and rises from there when it runs again.
+ * Returns limit bits. */
 uint32_t exh_drive_force(struct exh_drive *s, const struct exh_drive_cfg *cfg, int run,
                          struct exh_force_ledger *f);
 

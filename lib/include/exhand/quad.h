@@ -44,25 +44,28 @@ void exh_quad_ab_step(struct exh_quad_ab *s, enum exh_quad_mode mode, unsigned a
 /* Extension of a hardware counter of 16 to 32 bits across its wrap. */
 struct exh_quad_cfg {
     const struct exh_quad_par *par;
-    int32_t jump_cnt; /* what speed_max moves in one tick, rounded, plus 1     */
+    int32_t jump_cnt; /* what speed_max moves in one tick, rounded, plus 1; a
+                         smaller error of the encoder is not seen              */
     uint8_t unused;   /* 32 less the counter's width                           */
 };
 struct exh_quad {
     uint32_t raw;    /* last counter value, low bits                          */
     int32_t cnt;     /* counts since the first sample; wraps modulo 2^32       */
     uint8_t started; /* the first sample is count 0                            */
-    uint8_t jumped;  /* the last sample moved more than speed_max: a fault     */
+    uint8_t lost;    /* 1: a sample moved more than speed_max. cnt left it out and
+                        is not to be trusted until the next set-up: a fault    */
 };
 
 /* Set-up (divides); par must outlive cfg. bits: the counter's width, from the
- * board. -EXH_E_RANGE: bits not 16 .. 32, step or speed_max not positive, or
- * speed_max moves the counter by half its width or more in one tick, so that
- * direction could not be told. */
+ * board. -EXH_E_RANGE: bits not 16 .. 32, step or speed_max outside its range
+ * above, or speed_max moves the counter by a quarter of its width or more in one
+ * tick: so a movement of up to three times that speed is still told as too fast. */
 int exh_quad_setup(struct exh_quad_cfg *cfg, const struct exh_quad_par *par, struct exh_period T,
                    unsigned bits);
 
 /* The extended count. Right as long as the counter moves less than half its
- * width between two calls; bits of raw above the width are ignored. */
+ * width between two calls; bits of raw above the width are ignored. A movement
+ * of more than jump_cnt is not counted and sets `lost`. */
 int32_t exh_quad_extend(struct exh_quad *s, const struct exh_quad_cfg *cfg, uint32_t raw);
 
 /* Position of a count, m, q30; rounded half up, saturates at +-2 m with the

@@ -41,10 +41,12 @@ struct exh_period {
     uint32_t den; /* num/den within 50 us .. 1 s                               */
 };
 
-/* 1 if it is within that range: what the loop and a replay ask before they start. */
+/* 1 if it is within that range, but for the 1000 ppm by which a timer may miss it: what
+ * the loop and a replay ask before they start. */
 static inline int exh_period_ok(struct exh_period T)
 {
-    return T.num > 0 && T.num <= T.den && T.den <= UINT64_C(20000) * T.num;
+    return T.num > 0 && UINT64_C(1000) * T.num <= UINT64_C(1001) * T.den &&
+           UINT64_C(1000) * T.den <= UINT64_C(20020000) * T.num;
 }
 
 #endif

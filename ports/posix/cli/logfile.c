@@ -41,13 +41,6 @@ static int read_file(struct logfile *l)
     return l->bytes != NULL && l->len == (uint32_t)len ? 0 : complain(l, "can't be read whole");
 }
 
-/* 50 us..1 s; a timer may miss the rate it was asked for by 1000 ppm. */
-static int period_ok(struct exh_period T)
-{
-    return T.num > 0 && UINT64_C(1000) * T.den <= UINT64_C(20020000) * T.num &&
-           UINT64_C(1000) * T.num <= UINT64_C(1001) * T.den;
-}
-
 static int read_header(struct logfile *l)
 {
     struct exh_record r;
@@ -72,7 +65,8 @@ static int read_header(struct logfile *l)
         l->header.fingers != l->scene->fingers) {
         return complain(l, "its signal table is another than this program's");
     }
-    return period_ok(l->header.T) ? 0 : complain(l, "its period is outside 1/20000..1 s");
+    if (l->header.enc_bits > 32) { return complain(l, "its counters are wider than 32 bits"); }
+    return exh_period_ok(l->header.T) ? 0 : complain(l, "its period is outside 1/20000..1 s");
 }
 
 int logfile_open(struct logfile *l, const char *path)
