@@ -218,6 +218,7 @@ static void lines_error(struct error *e)
 static void extend_setup(void)
 {
     EXH_ASSERT(exh_quad_setup(&encoder_cfg, &encoder, (struct exh_period){1, 2000}, 24) == 0);
+    encoder_cfg.jump_cnt = INT32_MAX; /* the counter alone, at any speed */
     counter = (struct exh_quad){0};
     setup_numbers();
 }
