@@ -14,6 +14,7 @@ const char *exh_error_text(int code)
         "loop rate not possible",
         "device answered wrongly or too late",
         "device not found",
+        "calibration too old, or made before a change",
     };
     if (code <= -EXH_E_COUNT || code >= EXH_E_COUNT) { return "unknown error"; }
     return text[code < 0 ? -code : code];

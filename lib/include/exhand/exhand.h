@@ -4,6 +4,7 @@
  *   fix units bytes error        below everything
  *   signal                       one descriptor per value; parameters
  *   quad -> velocity -> contact -> drive -> safety (the gate)      one tick
+ *   calibrate, probe             tables of the box, and the motions that measure them
  *   record                       log and replay
  *   board                        what a port provides; only the loop calls it
  *
@@ -20,10 +21,12 @@
     ((uint32_t)EXH_VERSION_MAJOR << 16 | (uint32_t)EXH_VERSION_MINOR << 8 | EXH_VERSION_PATCH)
 
 #include "exhand/bytes.h"
+#include "exhand/calibrate.h"
 #include "exhand/contact.h"
 #include "exhand/drive.h"
 #include "exhand/error.h"
 #include "exhand/fix.h"
+#include "exhand/probe.h"
 #include "exhand/quad.h"
 #include "exhand/record.h"
 #include "exhand/safety.h"

@@ -1,0 +1,144 @@
+/* Calibration: what was measured on one finger, the tables made of it, its image.
+ *
+ * The paper's first step: known forces (masses, F = m g) give the table from force
+ * to current and the one from the current monitor to force. Stored are the measured
+ * points, not the tables: residuals and friction can be computed again, and both
+ * tables come from one source. probe.h has the motions that measure the points.
+ * A calibration that is damaged, old, another device's, or that does not rise is
+ * refused, and the name of what is wrong with it is told.
+ */
+#ifndef EXHAND_CALIBRATE_H
+#define EXHAND_CALIBRATE_H
+
+#include "exhand/drive.h"
+#include "exhand/fix.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* --- mean: exact sum, one rounding --- */
+
+struct exh_mean {
+    int64_t sum;
+    uint32_t n; /* < 2^31: |sum| stays below 2^62                              */
+};
+
+/* One value; after 2^31-1 of them further ones are ignored. */
+void exh_mean_add(struct exh_mean *m, int32_t v);
+
+/* floor(sum / n + 1/2), error <= 1/2 LSB, any unit; 0 of none. Divides: 64 steps. */
+int32_t exh_mean_value(const struct exh_mean *m);
+
+/* --- points --- */
+
+#define EXH_CALIB_POINTS_MAX 16 /* sums of squares stay below 2^62                 */
+
+struct exh_calib_point {
+    int32_t force_N_q20;    /* known force m g, N, > 0 .. 100                  */
+    int32_t cur_A_q26;      /* coded current that balances it, A, > 0 .. 6.6   */
+    int32_t mon_A_q26;      /* its mean by the monitor, A, > 0 .. 10           */
+    int32_t friction_A_q26; /* half of what friction holds, A, 0 .. 6.6        */
+};
+
+enum exh_calib_which { EXH_CALIB_CURRENT, EXH_CALIB_MONITOR };
+
+/* The straight line through the origin nearest to n points: least squares of force,
+ * N per A = sum(F I) / sum(I^2), relative error of the division 2^-31. */
+struct exh_calib_fit {
+    struct exh_gain gain; /* force raw per current raw                         */
+    int32_t kf_NpA_q20;   /* N/A; error <= 1 LSB                               */
+};
+
+/* -EXH_E_RANGE: n not 1 .. EXH_CALIB_POINTS_MAX, a value outside its range above, or
+ * more than 2047 N/A. Set-up only (divides). */
+int exh_calib_fit(struct exh_calib_fit *fit, const struct exh_calib_point *p, unsigned n,
+                  enum exh_calib_which which);
+
+/* F - kf I of one point, N q20, error <= 1 LSB + 2^-31 of F; saturates at +-2048 N. */
+int32_t exh_calib_residual_N_q20(const struct exh_calib_fit *fit, const struct exh_calib_point *p,
+                                 enum exh_calib_which which);
+
+/* --- a calibration of one finger --- */
+
+struct exh_calib {
+    uint32_t device_id; /* of the box, given by whoever calibrates            */
+    uint32_t finger;    /* 0 .. EXH_FINGERS - 1                                */
+    uint32_t day;       /* when: days since 1970-01-01, or any serial number that grows */
+    uint32_t valid_days; /* good on days day .. day + valid_days               */
+    int32_t dac_rawpA_q16; /* scales it was measured with: with others it is no  */
+    int32_t mon_A_q40;     /* longer true                                     */
+    int32_t mon_zero_raw;  /* monitor code at no current, -32768 .. 32767      */
+    int32_t f0_A_q26;   /* current at which the slack string returns, A, 0 .. 6.6 */
+    int32_t end_A_q26;  /* tables go on straight to here, A; at or below the last
+                         * point: they end there. 0 .. 6.6                    */
+    struct exh_calib_point *point; /* the caller's, in order of rising force  */
+    uint8_t points;     /* how many are used                                  */
+    uint8_t cap;        /* how many there is room for                         */
+};
+
+/* What an error is about. */
+enum exh_calib_what {
+    EXH_CALIB_IMAGE,   /* the bytes                                           */
+    EXH_CALIB_DEVICE,  /* it was made for another one                         */
+    EXH_CALIB_FINGER,
+    EXH_CALIB_AGE,     /* older than valid_days, or from the future            */
+    EXH_CALIB_SCALE,   /* D/A or monitor scale differ from those it was made with */
+    EXH_CALIB_VALUE,   /* zero, F0, end or number of points                   */
+    EXH_CALIB_FORCE_TABLE,   /* force -> current; at: the point               */
+    EXH_CALIB_MONITOR_TABLE, /* monitor -> force; at: the point               */
+    EXH_CALIB_WHATS
+};
+struct exh_calib_bad {
+    uint8_t what; /* enum exh_calib_what                                       */
+    uint8_t at;   /* point, from 0, for the tables                             */
+};
+
+/* "force-to-current table", ...; never NULL. */
+const char *exh_calib_what_text(unsigned what);
+
+/* Knots for exh_drive_setup(): through the origin and all points, and straight on to
+ * end_A (along the fitted line's slope) where that lies beyond them. The monitor's
+ * is odd: it reads through zero. Returns how many knots, or -EXH_E_MONOTONE,
+ * -EXH_E_RANGE (with *bad, may be NULL, the culprit), -EXH_E_SHORT (cap too small;
+ * points + 2 and 2 points + 3 always do). Exact at every point. Set-up only (divides). */
+int exh_calib_force_table(const struct exh_calib *c, struct exh_knot *knot, unsigned cap,
+                          struct exh_calib_bad *bad);
+int exh_calib_monitor_table(const struct exh_calib *c, struct exh_knot *knot, unsigned cap,
+                            struct exh_calib_bad *bad);
+
+/* All of it: values in range and both tables as above. 0 or the error. */
+int exh_calib_valid(const struct exh_calib *c, struct exh_calib_bad *bad);
+
+/* May it be used here and today? -EXH_E_VERSION (another device, another finger) or
+ * -EXH_E_STALE (age, scales); *bad tells which. */
+struct exh_calib_here {
+    uint32_t device_id, finger, day;
+    int32_t dac_rawpA_q16, mon_A_q40; /* of the drive parameters in use        */
+};
+int exh_calib_check(const struct exh_calib *c, const struct exh_calib_here *here,
+                    struct exh_calib_bad *bad);
+
+/* --- image: "EXHC", version u16, points u16, nine values of 4 bytes in the order
+ * above, points of four i32, CRC-32 of all before it; little-endian --- */
+
+#define EXH_CALIB_VERSION 1
+#define EXH_CALIB_IMAGE_B (8u + 36u + 16u * EXH_CALIB_POINTS_MAX + 4u) /* the largest */
+
+/* Bytes written, or -EXH_E_SHORT; or what exh_calib_valid() refuses: nothing that
+ * could not be read again is written. */
+int32_t exh_calib_save(const struct exh_calib *c, void *buf, size_t cap_B,
+                       struct exh_calib_bad *bad);
+
+/* Reads and checks a whole image; bytes behind it are ignored. c->point and c->cap
+ * are the caller's. -EXH_E_SHORT (also: more points than cap), -EXH_E_VERSION,
+ * -EXH_E_CRC, or what exh_calib_valid() refuses; then c->points is 0. */
+int exh_calib_load(struct exh_calib *c, const void *buf, size_t len_B, struct exh_calib_bad *bad);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,321 @@
+/* calibrate.h: means, tables out of points, what is refused and by which name, the image. */
+#include "exhand/calibrate.h"
+
+#include "exhand/error.h"
+
+#include "check.h"
+
+#define LEN(a) (sizeof(a) / sizeof((a)[0]))
+#define N(f)   EXH_Q(f, 1000, EXH_Q_FORCE) /* mN */
+#define A(i)   EXH_Q(i, 1000, EXH_Q_CUR)   /* mA */
+#define POINTS 4
+
+struct fixture {
+    struct exh_calib c;
+    struct exh_calib_point point[EXH_CALIB_POINTS_MAX];
+};
+
+/* 3.3 N/A, bent a little at the top; the monitor reads 1 % more. */
+static void set_up(struct fixture *f)
+{
+    static const struct exh_calib_point p[POINTS] = {
+        {N(990), A(300), A(303), A(30)},
+        {N(1980), A(600), A(606), A(60)},
+        {N(4950), A(1500), A(1515), A(150)},
+        {N(6500), A(2000), A(2020), A(200)},
+    };
+    memset(f, 0, sizeof *f);
+    memcpy(f->point, p, sizeof p);
+    f->c = (struct exh_calib){.device_id = 7, .finger = 1, .day = 20000, .valid_days = 30,
+                              .dac_rawpA_q16 = EXH_Q(324900, 176, EXH_Q_DAC),
+                              .mon_A_q40 = EXH_Q(5164, 10000000, EXH_Q_MON), .mon_zero_raw = -3,
+                              .f0_A_q26 = A(40), .end_A_q26 = A(6600), .point = f->point,
+                              .points = POINTS, .cap = EXH_CALIB_POINTS_MAX};
+}
+
+TEST(mean_rounds_half_up_once)
+{
+    static const struct {
+        int32_t v[4];
+        unsigned n;
+        int32_t want;
+    } row[] = {{{0}, 0, 0},
+               {{5}, 1, 5},
+               {{1, 2}, 2, 2},
+               {{-1, -2}, 2, -1},
+               {{1, 1, 2}, 3, 1},
+               {{-1, -1, -2}, 3, -1},
+               {{INT32_MAX, INT32_MAX, INT32_MAX, INT32_MAX}, 4, INT32_MAX},
+               {{INT32_MIN, INT32_MIN, INT32_MIN, INT32_MIN}, 4, INT32_MIN},
+               {{INT32_MIN, INT32_MAX}, 2, 0}};
+    for (size_t i = 0; i < LEN(row); i++) {
+        struct exh_mean m = {0, 0};
+        for (unsigned k = 0; k < row[i].n; k++) { exh_mean_add(&m, row[i].v[k]); }
+        CHECK(exh_mean_value(&m) == row[i].want, "row %zu: %" PRId32, i, exh_mean_value(&m));
+    }
+}
+
+TEST(mean_stops_before_it_overflows)
+{
+    struct exh_mean m = {(int64_t)INT32_MIN * (INT32_MAX - 1), INT32_MAX - 1};
+    exh_mean_add(&m, INT32_MIN);
+    CHECK_EQ_I64(exh_mean_value(&m), INT32_MIN);
+    exh_mean_add(&m, INT32_MIN);
+    CHECK_EQ_I64(m.n, INT32_MAX);
+    m = (struct exh_mean){(int64_t)INT32_MAX * INT32_MAX, INT32_MAX};
+    CHECK_EQ_I64(exh_mean_value(&m), INT32_MAX);
+}
+
+TEST(tables_meet_every_point_and_go_straight_on)
+{
+    struct exh_knot k[2 * EXH_CALIB_POINTS_MAX + 3];
+    struct fixture f;
+    struct exh_table t = {k, 0};
+    set_up(&f);
+    t.n = (uint8_t)exh_calib_force_table(&f.c, k, LEN(k), NULL);
+    CHECK_EQ_I64(t.n, POINTS + 2);
+    CHECK_EQ_I64(exh_table_at(t, 0), 0);
+    for (unsigned i = 0; i < POINTS; i++) {
+        CHECK_EQ_I64(exh_table_at(t, f.point[i].force_N_q20), f.point[i].cur_A_q26);
+    }
+    CHECK_EQ_I64(k[POINTS + 1].y, A(6600));
+    t.n = (uint8_t)exh_calib_monitor_table(&f.c, k, LEN(k), NULL);
+    CHECK_EQ_I64(t.n, 2 * POINTS + 3);
+    CHECK_EQ_I64(exh_table_at(t, 0), 0);
+    for (unsigned i = 0; i < POINTS; i++) { /* odd: the monitor's noise has both signs */
+        CHECK_EQ_I64(exh_table_at(t, f.point[i].mon_A_q26), f.point[i].force_N_q20);
+        CHECK_EQ_I64(exh_table_at(t, -f.point[i].mon_A_q26), -f.point[i].force_N_q20);
+    }
+    CHECK_EQ_I64(k[2 * POINTS + 2].x, A(2020) + A(6600) - A(2000));
+    f.c.end_A_q26 = f.point[POINTS - 1].cur_A_q26; /* not beyond what was measured */
+    CHECK_EQ_I64(exh_calib_force_table(&f.c, k, LEN(k), NULL), POINTS + 1);
+    CHECK_EQ_I64(exh_calib_monitor_table(&f.c, k, LEN(k), NULL), 2 * POINTS + 1);
+}
+
+TEST(tables_need_room)
+{
+    struct exh_knot k[2 * EXH_CALIB_POINTS_MAX + 3];
+    struct fixture f;
+    struct exh_calib_bad bad = {99, 99};
+    set_up(&f);
+    CHECK_EQ_I64(exh_calib_force_table(&f.c, k, POINTS + 1, &bad), -EXH_E_SHORT);
+    CHECK_EQ_I64(bad.what, EXH_CALIB_FORCE_TABLE);
+    CHECK_EQ_I64(exh_calib_monitor_table(&f.c, k, 2 * POINTS + 2, &bad), -EXH_E_SHORT);
+    CHECK_EQ_I64(bad.what, EXH_CALIB_MONITOR_TABLE);
+}
+
+/* Each spoiled value is refused with the table and the point that it spoils. */
+TEST(refusals_name_table_and_point)
+{
+    static const struct {
+        unsigned at, field; /* point; force, current, monitor, friction        */
+        int32_t v;
+        int err;
+        unsigned what;
+    } row[] = {
+        {0, 0, 0, -EXH_E_MONOTONE, EXH_CALIB_FORCE_TABLE},
+        {0, 0, -5, -EXH_E_MONOTONE, EXH_CALIB_FORCE_TABLE},
+        {2, 0, N(1980), -EXH_E_MONOTONE, EXH_CALIB_FORCE_TABLE},
+        {1, 1, A(300), -EXH_E_MONOTONE, EXH_CALIB_FORCE_TABLE},
+        {3, 1, A(1499), -EXH_E_MONOTONE, EXH_CALIB_FORCE_TABLE},
+        {0, 1, INT32_MIN, -EXH_E_MONOTONE, EXH_CALIB_FORCE_TABLE},
+        {3, 1, A(6601), -EXH_E_RANGE, EXH_CALIB_FORCE_TABLE},
+        {3, 0, N(100001), -EXH_E_RANGE, EXH_CALIB_FORCE_TABLE},
+        {1, 3, -1, -EXH_E_RANGE, EXH_CALIB_FORCE_TABLE},
+        {0, 2, 0, -EXH_E_MONOTONE, EXH_CALIB_MONITOR_TABLE},
+        {2, 2, A(606), -EXH_E_MONOTONE, EXH_CALIB_MONITOR_TABLE},
+        {3, 2, A(1), -EXH_E_MONOTONE, EXH_CALIB_MONITOR_TABLE},
+        {3, 2, A(10001), -EXH_E_RANGE, EXH_CALIB_MONITOR_TABLE},
+    };
+    for (size_t i = 0; i < LEN(row); i++) {
+        struct exh_calib_bad bad = {99, 99};
+        struct fixture f;
+        uint8_t buf[EXH_CALIB_IMAGE_B];
+        int32_t *field[4];
+        int err;
+        set_up(&f);
+        field[0] = &f.point[row[i].at].force_N_q20;
+        field[1] = &f.point[row[i].at].cur_A_q26;
+        field[2] = &f.point[row[i].at].mon_A_q26;
+        field[3] = &f.point[row[i].at].friction_A_q26;
+        *field[row[i].field] = row[i].v;
+        err = exh_calib_valid(&f.c, &bad);
+        CHECK(err == row[i].err, "row %zu: %d", i, err);
+        CHECK(bad.what == row[i].what && bad.at == row[i].at, "row %zu: %s, point %d", i,
+              exh_calib_what_text(bad.what), bad.at);
+        CHECK_EQ_I64(exh_calib_valid(&f.c, NULL), row[i].err);
+        CHECK_EQ_I64(exh_calib_save(&f.c, buf, sizeof buf, &bad), row[i].err);
+    }
+}
+
+TEST(values_out_of_range_are_refused)
+{
+    for (unsigned i = 0; i < 12; i++) {
+        struct exh_calib_bad bad = {99, 99};
+        struct fixture f;
+        set_up(&f);
+        if (i == 0) { f.c.points = 0; }
+        if (i == 1) { f.c.points = EXH_CALIB_POINTS_MAX + 1; }
+        if (i == 2) { f.c.finger = EXH_FINGERS; }
+        if (i == 3) { f.c.dac_rawpA_q16 = 0; }
+        if (i == 4) { f.c.mon_A_q40 = -1; }
+        if (i == 5) { f.c.mon_zero_raw = 32768; }
+        if (i == 6) { f.c.mon_zero_raw = -32769; }
+        if (i == 7) { f.c.f0_A_q26 = -1; }
+        if (i == 8) { f.c.f0_A_q26 = A(6601); }
+        if (i == 9) { f.c.end_A_q26 = -1; }
+        if (i == 10) { f.c.end_A_q26 = A(6601); }
+        CHECK(exh_calib_valid(&f.c, &bad) == (i < 11 ? -EXH_E_RANGE : 0), "value %u", i);
+        CHECK(bad.what == (i < 11 ? EXH_CALIB_VALUE : 99), "value %u: %d", i, bad.what);
+    }
+}
+
+TEST(another_device_and_stale_ones_are_refused)
+{
+    static const struct {
+        struct exh_calib_here here; /* scales: difference from the fixture's   */
+        int err;
+        unsigned what;
+    } row[] = {
+        {{7, 1, 20000, 0, 0}, 0, 99},
+        {{7, 1, 20030, 0, 0}, 0, 99},
+        {{7, 1, 20031, 0, 0}, -EXH_E_STALE, EXH_CALIB_AGE},
+        {{7, 1, 19999, 0, 0}, -EXH_E_STALE, EXH_CALIB_AGE}, /* a clock that was set back */
+        {{7, 1, UINT32_MAX, 0, 0}, -EXH_E_STALE, EXH_CALIB_AGE},
+        {{7, 1, 0, 0, 0}, -EXH_E_STALE, EXH_CALIB_AGE},
+        {{8, 1, 20000, 0, 0}, -EXH_E_VERSION, EXH_CALIB_DEVICE},
+        {{7, 0, 20000, 0, 0}, -EXH_E_VERSION, EXH_CALIB_FINGER},
+        {{7, 1, 20000, 1, 0}, -EXH_E_STALE, EXH_CALIB_SCALE},
+        {{7, 1, 20000, 0, -1}, -EXH_E_STALE, EXH_CALIB_SCALE},
+    };
+    struct fixture f;
+    set_up(&f);
+    for (size_t i = 0; i < LEN(row); i++) {
+        struct exh_calib_bad bad = {99, 99};
+        struct exh_calib_here here = row[i].here;
+        here.dac_rawpA_q16 += f.c.dac_rawpA_q16;
+        here.mon_A_q40 += f.c.mon_A_q40;
+        CHECK(exh_calib_check(&f.c, &here, &bad) == row[i].err, "row %zu", i);
+        CHECK(bad.what == row[i].what, "row %zu: %s", i, exh_calib_what_text(bad.what));
+        CHECK_EQ_I64(exh_calib_check(&f.c, &here, NULL), row[i].err);
+    }
+}
+
+/* --- image --- */
+
+static int32_t save(struct fixture *f, uint8_t *buf)
+{
+    const int32_t len = exh_calib_save(&f->c, buf, EXH_CALIB_IMAGE_B, NULL);
+    CHECK_EQ_I64(len, 8 + 36 + 16 * f->c.points + 4);
+    return len;
+}
+
+TEST(image_round_trip)
+{
+    struct fixture a, b;
+    uint8_t buf[EXH_CALIB_IMAGE_B], again[EXH_CALIB_IMAGE_B];
+    int32_t len;
+    set_up(&a);
+    memset(&b, 0, sizeof b);
+    b.c.point = b.point;
+    b.c.cap = EXH_CALIB_POINTS_MAX;
+    len = save(&a, buf);
+    CHECK(memcmp(buf, "EXHC\1\0\4\0\7\0\0\0\1\0\0\0", 16) == 0, "head");
+    CHECK_EQ_I64(exh_calib_load(&b.c, buf, (size_t)len, NULL), 0);
+    CHECK_EQ_I64(save(&b, again), len);
+    CHECK(memcmp(buf, again, (size_t)len) == 0, "what is loaded is what was saved");
+    CHECK(memcmp(a.point, b.point, sizeof a.point) == 0, "points");
+    CHECK(exh_calib_save(&a.c, again, (size_t)len - 1, NULL) == -EXH_E_SHORT, "short buffer");
+    b.c.cap = POINTS - 1;
+    CHECK_EQ_I64(exh_calib_load(&b.c, buf, (size_t)len, NULL), -EXH_E_SHORT);
+    CHECK_EQ_I64(b.c.points, 0);
+}
+
+TEST(any_bit_flipped_any_byte_missing_is_refused)
+{
+    struct fixture a, b;
+    struct exh_calib_bad bad;
+    uint8_t buf[EXH_CALIB_IMAGE_B];
+    int32_t len;
+    set_up(&a);
+    set_up(&b);
+    len = save(&a, buf);
+    for (int32_t i = 0; i < 8 * len; i++) {
+        int err;
+        bad.what = 99;
+        buf[i / 8] ^= (uint8_t)(1u << i % 8);
+        err = exh_calib_load(&b.c, buf, (size_t)len, &bad);
+        buf[i / 8] ^= (uint8_t)(1u << i % 8);
+        CHECK(err == (i < 48 ? -EXH_E_VERSION : i >= 64 ? -EXH_E_CRC : err) && err < 0,
+              "bit %" PRId32 ": %d", i, err);
+        CHECK(bad.what == EXH_CALIB_IMAGE && b.c.points == 0, "bit %" PRId32, i);
+    }
+    for (int32_t i = 0; i < len; i++) {
+        CHECK_EQ_I64(exh_calib_load(&b.c, buf, (size_t)i, &bad), -EXH_E_SHORT);
+        CHECK(bad.what == EXH_CALIB_IMAGE && b.c.points == 0, "%" PRId32 " bytes", i);
+    }
+    CHECK_EQ_I64(exh_calib_load(&b.c, buf, (size_t)len, &bad), 0);
+}
+
+/* Whole bytes around a table that does not rise: only another program writes that. */
+TEST(a_sound_image_of_a_bad_table_is_refused)
+{
+    struct fixture a, b;
+    struct exh_calib_bad bad = {99, 99};
+    uint8_t buf[EXH_CALIB_IMAGE_B];
+    const int32_t equal = A(600);
+    int32_t len;
+    struct exh_bytes c;
+    uint32_t crc;
+    set_up(&a);
+    set_up(&b);
+    len = save(&a, buf);
+    c = exh_bytes_writer(buf + 44 + 2 * 16 + 4, 4); /* current of the third point */
+    exh_bytes_i32(&c, &(int32_t){equal});
+    crc = exh_crc32(0, buf, (size_t)len - 4);
+    c = exh_bytes_writer(buf + len - 4, 4);
+    exh_bytes_u32(&c, &crc);
+    CHECK_EQ_I64(exh_calib_load(&b.c, buf, (size_t)len, &bad), -EXH_E_MONOTONE);
+    CHECK(bad.what == EXH_CALIB_FORCE_TABLE && bad.at == 2, "%s, point %d",
+          exh_calib_what_text(bad.what), bad.at);
+    CHECK_EQ_I64(b.c.points, 0);
+}
+
+TEST(every_name_has_its_text)
+{
+    for (unsigned i = 0; i <= EXH_CALIB_WHATS; i++) {
+        CHECK(exh_calib_what_text(i)[0] != '\0', "%u", i);
+        for (unsigned k = 0; k < i; k++) {
+            CHECK(!check_same_text(exh_calib_what_text(i), exh_calib_what_text(k)), "%u %u", i, k);
+        }
+    }
+}
+
+TEST(fit_by_hand)
+{
+    struct exh_calib_fit fit;
+    struct fixture f;
+    set_up(&f);
+    CHECK_EQ_I64(exh_calib_fit(&fit, f.point, 3, EXH_CALIB_CURRENT), 0);
+    CHECK(fit.kf_NpA_q20 - EXH_Q(33, 10, EXH_Q_FORCE) <= 1 &&
+              fit.kf_NpA_q20 - EXH_Q(33, 10, EXH_Q_FORCE) >= -1, "%" PRId32, fit.kf_NpA_q20);
+    /* the bent point lies 100 mN below that line */
+    CHECK((exh_calib_residual_N_q20(&fit, &f.point[3], EXH_CALIB_CURRENT) + N(100)) / 4 == 0,
+          "%" PRId32, exh_calib_residual_N_q20(&fit, &f.point[3], EXH_CALIB_CURRENT));
+    CHECK_EQ_I64(exh_calib_fit(&fit, f.point, 3, EXH_CALIB_MONITOR), 0);
+    CHECK((fit.kf_NpA_q20 - EXH_Q(330, 101, EXH_Q_FORCE)) / 2 == 0, "%" PRId32, fit.kf_NpA_q20);
+    CHECK_EQ_I64(exh_calib_fit(&fit, f.point, 0, EXH_CALIB_CURRENT), -EXH_E_RANGE);
+    CHECK_EQ_I64(exh_calib_fit(&fit, f.point, EXH_CALIB_POINTS_MAX + 1, EXH_CALIB_CURRENT),
+                 -EXH_E_RANGE);
+    f.point[0].cur_A_q26 = 0;
+    CHECK_EQ_I64(exh_calib_fit(&fit, f.point, 3, EXH_CALIB_CURRENT), -EXH_E_RANGE);
+    f.point[0] = (struct exh_calib_point){N(100000), 1, 1, 0}; /* 10^9 N/A and more */
+    CHECK_EQ_I64(exh_calib_fit(&fit, f.point, 1, EXH_CALIB_CURRENT), -EXH_E_RANGE);
+}
+
+TEST_MAIN("unit/calibrate", mean_rounds_half_up_once, mean_stops_before_it_overflows,
+          tables_meet_every_point_and_go_straight_on, tables_need_room,
+          refusals_name_table_and_point, values_out_of_range_are_refused,
+          another_device_and_stale_ones_are_refused, image_round_trip,
+          any_bit_flipped_any_byte_missing_is_refused,
+          a_sound_image_of_a_bad_table_is_refused, every_name_has_its_text, fit_by_hand);
