@@ -165,7 +165,7 @@ uint8_t exh_home_step(struct exh_home *s, const struct exh_home_cfg *cfg, int32_
     s->cur_A_q26 = cfg->cur_A_q26;
     if (far > cfg->most_cnt) {
         s->result = EXH_PROBE_TRAVEL;
-    } else if (-in >= cfg->move_cnt || -far >= cfg->move_cnt) {
+    } else if (-in >= cfg->move_cnt) {
         s->result = EXH_PROBE_WRONG_WAY;
     } else if (s->tick >= cfg->ticks) {
         s->result = EXH_PROBE_TIME;

@@ -199,6 +199,12 @@ TEST(another_device_and_stale_ones_are_refused)
         CHECK(bad.what == row[i].what, "row %zu: %s", i, exh_calib_what_text(bad.what));
         CHECK_EQ_I64(exh_calib_check(&f.c, &here, NULL), row[i].err);
     }
+    f.c.valid_days = UINT32_MAX; /* for ever, but not before it was made */
+    CHECK_EQ_I64(exh_calib_check(&f.c, &(struct exh_calib_here){7, 1, UINT32_MAX, f.c.dac_rawpA_q16,
+                                                                f.c.mon_A_q40}, NULL), 0);
+    CHECK_EQ_I64(exh_calib_check(&f.c, &(struct exh_calib_here){7, 1, 19999, f.c.dac_rawpA_q16,
+                                                                f.c.mon_A_q40}, NULL),
+                 -EXH_E_STALE);
 }
 
 /* --- image --- */

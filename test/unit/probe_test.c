@@ -325,6 +325,67 @@ TEST(what_stops_weighing)
           exh_probe_text(f.result));
 }
 
+/* Counts by script: how far the string goes in each phase. The limits are of all phases
+ * together, and of the last one too. */
+struct script {
+    struct exh_weigh_cfg cfg;
+    struct exh_weigh s;
+    int32_t cnt;
+};
+
+static void script(struct script *w)
+{
+    static const struct exh_weigh_par wp = {.probe = par, .slack_A_q26 = MA(20), .hold_ms = 100};
+    w->cnt = 0;
+    CHECK_EQ_I64(exh_weigh_setup(&w->cfg, &wp, scale), 0);
+    exh_weigh_start(&w->s, &w->cfg, 0);
+}
+
+static uint8_t move(struct script *w, int32_t by, unsigned ticks)
+{
+    uint8_t r = w->s.result;
+    for (unsigned n = 0; n < ticks && r == EXH_PROBE_BUSY; n++) {
+        w->cnt += by;
+        r = exh_weigh_step(&w->s, &w->cfg, w->cnt, 0, 0);
+    }
+    return r;
+}
+
+static void lifted(struct script *w, int32_t slack_cnt)
+{
+    script(w);
+    CHECK_EQ_I64(move(w, -2, (unsigned)slack_cnt / 2), EXH_PROBE_BUSY);
+    CHECK_EQ_I64(move(w, 0, 400), EXH_PROBE_BUSY);
+    CHECK_EQ_I64(move(w, -2, 6), EXH_PROBE_BUSY);
+    CHECK_EQ_I64(w->s.phase, 1);
+}
+
+TEST(travel_is_of_all_phases_together)
+{
+    struct script w;
+    lifted(&w, 300);
+    CHECK_EQ_I64(move(&w, -2, 1000), EXH_PROBE_TRAVEL);
+    CHECK(w.cnt >= -502, "%" PRId32, w.cnt);
+    for (int way = -2; way <= 2; way += 4) { /* while it should be held */
+        lifted(&w, 300);
+        CHECK_EQ_I64(move(&w, 2, 6), EXH_PROBE_BUSY);
+        CHECK_EQ_I64(w.s.phase, 2);
+        CHECK_EQ_I64(move(&w, way, 2000), EXH_PROBE_TRAVEL);
+        CHECK(w.cnt >= -502 && w.cnt <= 502 && w.s.cur_A_q26 == 0, "%" PRId32, w.cnt);
+    }
+}
+
+TEST(a_mass_that_swings_is_not_waited_for)
+{
+    struct script w;
+    unsigned n = 0;
+    lifted(&w, 0);
+    CHECK_EQ_I64(move(&w, 2, 6), EXH_PROBE_BUSY);
+    while (move(&w, n % 20 < 10 ? 2 : -2, 1) == EXH_PROBE_BUSY && n < 100000) { n++; }
+    CHECK(w.s.result == EXH_PROBE_TIME && w.s.cur_A_q26 == 0 && n < 5000, "%s after %u ticks",
+          exh_probe_text(w.s.result), n);
+}
+
 /* --- whatever the counts do --- */
 
 /* Never more current than the limit, an end within the time, no current after it, none in
@@ -385,4 +446,5 @@ TEST_MAIN("unit/probe", finds_the_current_that_moves_within_a_step,
           falling_finds_the_current_that_lets_go, slack_is_taken_up_first, what_stops_a_probe,
           set_up_refuses_what_is_out_of_range, home_is_the_end_of_the_string, what_stops_homing,
           homing_takes_no_longer_than_allowed, weighing_brackets_friction, what_stops_weighing,
+          travel_is_of_all_phases_together, a_mass_that_swings_is_not_waited_for,
           any_counts_stay_within_the_bounds, every_result_has_its_text);
