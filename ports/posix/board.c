@@ -3,6 +3,7 @@
  * between exactly (tick, D/A output, servo sample, what the experimenter does). */
 #include "posix.h"
 
+#include "sim/bench.h"
 #include "sim/fall.h"
 #include "sim/plant.h"
 #include "sim/random.h"
@@ -31,6 +32,7 @@ static struct {
     struct sim_random rng;
     struct plant plant;
     struct fall fall;
+    struct bench bench; /* instead of the fall, if configured */
     uint64_t tick;
     double now_s;
     double grid; /* encoder phase, counts */
@@ -114,17 +116,42 @@ int exh_board_init(uint32_t rate_Hz, struct exh_period *achieved)
     sim.latched_A = sim.ref_A = 0;
     sim.head = sim.queued = 0;
     sim.grid = sim_random_unit(&sim.rng);
-    fall_start(&sim.fall, &sim.plant, &sim.cfg.device, &sim.rng, sim.cfg.falls,
-               (double)sim.T.num / (double)sim.T.den);
+    if (sim.cfg.bench) {
+        bench_start(&sim.bench, &sim.plant, &sim.cfg.device, sim.cfg.wrong);
+        sim.fall.phase = FALL_HOLD; /* and stays so: the end comes by posix_stop() */
+    } else {
+        fall_start(&sim.fall, &sim.plant, &sim.cfg.device, &sim.rng, sim.cfg.falls,
+                   (double)sim.T.num / (double)sim.T.den);
+    }
     sim.servo_s = sim_random_unit(&sim.rng) / sim.cfg.device.servo_hz;
     stop = 0;
     *achieved = sim.T;
     return 0;
 }
 
+void posix_bench(enum bench_place place, double mass_kg)
+{
+    bench_prepare(&sim.bench, &sim.plant, &sim.rng, place, mass_kg);
+}
+
+int posix_bench_ready(void)
+{
+    return bench_ready(&sim.bench);
+}
+
 static double earlier(double a, double b)
 {
     return a < b ? a : b;
+}
+
+/* The plant by itself, up to the next event. */
+static void advance_plant(double dt_s)
+{
+    if (sim.cfg.bench) {
+        bench_advance(&sim.bench, &sim.plant, dt_s, sim.ref_A);
+    } else {
+        plant_advance(&sim.plant, &sim.cfg.device, dt_s, sim.ref_A, sim.fall.phase != FALL_FREE);
+    }
 }
 
 /* Everything that happens up to and at end_s. */
@@ -134,10 +161,9 @@ static void advance_to(double end_s)
     while (sim.now_s < end_s) {
         const double output_s = sim.queued ? sim.queue[sim.head].at_s : FAR_S;
         double next_s = earlier(end_s, earlier(sim.servo_s, output_s));
-        next_s = earlier(next_s, fall_next_s(&sim.fall));
+        if (!sim.cfg.bench) { next_s = earlier(next_s, fall_next_s(&sim.fall)); }
         if (next_s > sim.now_s) {
-            plant_advance(&sim.plant, d, next_s - sim.now_s, sim.ref_A,
-                          sim.fall.phase != FALL_FREE);
+            advance_plant(next_s - sim.now_s);
             sim.now_s = next_s;
         }
         if (output_s <= sim.now_s) {
@@ -149,7 +175,7 @@ static void advance_to(double end_s)
             sim.ref_A = sim.latched_A;
             sim.servo_s += 1 / d->servo_hz;
         }
-        if (fall_step(&sim.fall, &sim.plant, d, &sim.rng, sim.now_s)) {
+        if (!sim.cfg.bench && fall_step(&sim.fall, &sim.plant, d, &sim.rng, sim.now_s)) {
             /* The servo's clock is not ours: its phase is chance at each fall. */
             sim.servo_s = sim.now_s + sim_random_unit(&sim.rng) / d->servo_hz;
         }
@@ -191,7 +217,8 @@ int exh_board_read_drive(struct exh_drive_in *in)
     const struct sim_device *d = &sim.cfg.device;
     const double mon_A = sim.plant.mon_A + d->mon_noise_a * sim_random_bell(&sim.rng);
     const int64_t mon_raw = floor_count(mon_A / d->mon_apc + 0.5);
-    const int64_t cnt = floor_count(sim.plant.q_m * d->decode / d->step_m + sim.grid + d->enc_start);
+    const double q_m = sim.cfg.bench ? bench_encoder_m(&sim.bench, &sim.plant) : sim.plant.q_m;
+    const int64_t cnt = floor_count(q_m * d->decode / d->step_m + sim.grid + d->enc_start);
 
     memset(in, 0, sizeof *in);
     in->enc_raw[0] = (uint32_t)((uint64_t)cnt & 0xFFFFFF);

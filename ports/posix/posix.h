@@ -3,6 +3,7 @@
 #ifndef POSIX_H
 #define POSIX_H
 
+#include "sim/bench.h"
 #include "sim/device.h"
 
 #include "exhand/units.h"
@@ -18,6 +19,9 @@ struct posix_config {
     FILE *log;               /* records go here; NULL: taken and forgotten      */
     int pace;                /* 1: follow the wall clock                        */
     uint32_t max_ticks;      /* 0: no limit                                     */
+    int bench;               /* 1: a bench for calibration instead of falls; it goes
+                              * on until posix_stop()                          */
+    unsigned wrong;          /* enum bench_wrong: what is wrong with the bench    */
 };
 
 /* Defaults: the committed device, seed 1, one fall. */
@@ -28,6 +32,10 @@ void posix_configure(const struct posix_config *c);
 
 /* The fall under observation, 1…, or 0 while the mass is held or lifted. */
 int posix_fall(void);
+
+/* The person at the bench prepares a place; ready some time later. */
+void posix_bench(enum bench_place place, double mass_kg);
+int posix_bench_ready(void);
 
 /* Ends the run: the next wait says stop. */
 void posix_stop(void);
