@@ -1,0 +1,136 @@
+/* Calibration of one finger as a scene: the paper's first step, with a person who
+ * hangs masses on. Steps, in this order, each only after the person said that it is
+ * prepared (parameter `go`), each bounded in current, travel and time; the first that
+ * fails ends it, with no current from then on:
+ *
+ *   zero      no current: the monitor's zero
+ *   polarity  a small pull must move the slack string in
+ *   home      pulls it to its end
+ *   f0        the least current at which it returns at a given speed
+ *   mass i    a known force: a point of both tables
+ *
+ * There is no table yet that could tell a force: the drive's force stands for current
+ * here, 1 N for 1 A, in a table that ends at i_max. So all current goes through drive,
+ * safety and gate, and none goes beyond the end of that table.
+ */
+#ifndef EXAMPLES_CALIBRATE_H
+#define EXAMPLES_CALIBRATE_H
+
+#include "../scene.h"
+
+#include "exhand/exhand.h"
+
+#define CALIBRATE_MASSES 8
+
+enum calibrate_step {
+    CALIBRATE_ZERO,
+    CALIBRATE_POLARITY,
+    CALIBRATE_HOME,
+    CALIBRATE_F0,
+    CALIBRATE_MASS /* the first; one step a mass                               */
+};
+
+/* What the person has to do before a step. */
+enum calibrate_ask {
+    CALIBRATE_ASK_SLACK, /* draw the string out, take everything off it, let go  */
+    CALIBRATE_ASK_MASS   /* stand mass i on something, string taut above it      */
+};
+
+/* Why it ended: enum exh_probe_result (DONE: all of it is done), or */
+enum calibrate_result {
+    CALIBRATE_OFF = EXH_PROBE_RESULTS, /* the box left RUN: see faults         */
+    CALIBRATE_LIMITED, /* a limit of the drive acts: current is not what it should be */
+    CALIBRATE_NOBODY,  /* nobody prepared the step                             */
+    CALIBRATE_RESULTS
+};
+
+struct calibrate_own_par {
+    int32_t gravity_mps2_q20; /* where the masses hang                         */
+    int32_t i_max_A_q26;      /* no step goes beyond                           */
+    int32_t step_A_q26;       /* currents rise by this                         */
+    int32_t pol_max_A_q26;    /* polarity: no further than this                */
+    int32_t home_A_q26;
+    int32_t slack_A_q26;      /* makes the string of a standing mass taut      */
+    int32_t kf_min_NpA_q20;   /* no mass gets more current than its force over this */
+    int32_t end_A_q26;        /* tables go on straight to here                 */
+    int32_t move_m_q30;       /* within a dwell: it moves                      */
+    int32_t travel_m_q30;     /* limit of all steps but home                   */
+    int32_t home_min_m_q30, home_max_m_q30;
+    int32_t f0_speed_mps_q27;
+    int32_t dwell_ms, hold_ms, time_ms, wait_ms;
+    int32_t go; /* how many steps are prepared                                 */
+};
+
+struct calibrate_par {
+    struct exh_quad_par quad;
+    struct exh_drive_par drive;
+    struct exh_safety_par safety;
+    struct calibrate_own_par own;
+    int32_t mass_kg_q20[CALIBRATE_MASSES]; /* rising; the first 0 ends the list  */
+};
+
+struct calibrate_signals {
+    int32_t q_m_q30;
+    int32_t i_des_A_q26;
+    int32_t i_mon_A_q26;
+    int32_t step;    /* enum calibrate_step                                    */
+    int32_t waits;   /* 1: for the person                                      */
+    int32_t result;  /* why it ended; 0 while it goes on                       */
+    int32_t limits, state, faults, present; /* as in every scene               */
+};
+
+struct calibrate_cfg {
+    const struct calibrate_par *par;
+    struct exh_quad_cfg quad;
+    struct exh_drive_cfg drive;
+    struct exh_knot one_to_one[2];
+    struct exh_probe_cfg polarity, f0;
+    struct exh_home_cfg home;
+    struct exh_weigh_cfg weigh[CALIBRATE_MASSES];
+    uint32_t zero_ticks, wait_ticks;
+    uint8_t masses;
+};
+
+struct calibrate {
+    struct exh_quad quad;
+    struct exh_drive drive;
+    struct exh_safety safety;
+    struct exh_mean zero_raw;      /* monitor codes at no current              */
+    struct exh_probe polarity, f0;
+    struct exh_home home;
+    struct exh_weigh weigh[CALIBRATE_MASSES];
+    int32_t coded_A_q26; /* in the last tick                                   */
+    int32_t start_cnt;   /* of the step                                        */
+    uint32_t tick;       /* of the step or the wait                            */
+    uint8_t step, busy, result;
+};
+
+/* Configuration from parameters. 0 or -EXH_E…; -EXH_E_RATE: a dwell has less than two
+ * ticks; -EXH_E_MONOTONE: the masses don't rise; -EXH_E_RANGE: there is none, or a
+ * parameter is refused. Divides. */
+int calibrate_setup(struct calibrate_cfg *cfg, const struct calibrate_par *par,
+                    struct exh_scene_board board);
+
+/* One tick. */
+void calibrate_tick(struct calibrate *s, const struct calibrate_cfg *cfg,
+                    const struct exh_scene_in *in, struct exh_drive_out *out,
+                    struct calibrate_signals *sig);
+
+enum calibrate_ask calibrate_ask(unsigned step);
+
+/* "polarity", "mass"; "went the wrong way", "nobody prepared the step". Never NULL. */
+const char *calibrate_step_text(unsigned step);
+const char *calibrate_result_text(unsigned result);
+
+/* What was measured so far, into points of c (room: c->cap) and its values; whose,
+ * when and for how long is the caller's. Divides: not in a tick. */
+void calibrate_points(const struct calibrate *s, const struct calibrate_cfg *cfg,
+                      struct exh_calib *c);
+
+extern const struct exh_scene exh_scene_calibrate;
+
+/* The one instance, for whoever shows it. */
+const struct calibrate *calibrate_state(void);
+const struct calibrate_cfg *calibrate_config(void);
+
+#endif

@@ -1,0 +1,2 @@
+SCENE_DESC := calibration of one finger: zero, polarity, home, F0, masses
+SCENE_SRC  := examples/calibrate/calibrate.c
