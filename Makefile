@@ -85,7 +85,8 @@ $(image): $(image_obj) $(lib) $(PORT_LDSCRIPT)
 	    $(PORT_LDSCRIPT:%=-T %) $(image_obj) $(lib) -o $@
 
 # The host program: every scene that has a subcommand, over the simulated device.
-cli_src := $(wildcard ports/posix/cli/*.c) examples/log.c examples/drop/drop.c
+cli_src := $(wildcard ports/posix/cli/*.c) examples/log.c examples/drop/drop.c \
+           examples/calibrate/calibrate.c
 cli_obj := $(cli_src:%.c=$(B)/posix/%.o)
 sim_obj := $(patsubst %.c,$(B)/posix/%.o,$(wildcard ports/posix/*.c ports/posix/sim/*.c)) \
            $(B)/posix/examples/loop.o

@@ -3,6 +3,7 @@
 #ifndef CLI_CLI_H
 #define CLI_CLI_H
 
+int cli_calibrate(int argc, char **argv);
 int cli_drop(int argc, char **argv);
 int cli_csv(int argc, char **argv);
 int cli_replay(int argc, char **argv);

@@ -12,6 +12,7 @@ static const struct {
     const char *name, *what;
     int (*run)(int argc, char **argv);
 } command[] = {
+    {"calibrate", "known masses, F0 and home: the tables of force, current and monitor", cli_calibrate},
     {"drop", "the paper's falling-mass experiment on the simulated device", cli_drop},
     {"csv", "a log as comma-separated values", cli_csv},
     {"replay", "the recorded inputs again, every output compared bit for bit", cli_replay},
@@ -24,7 +25,7 @@ static void help(FILE *to)
     for (size_t i = 0; i < COMMANDS; i++) {
         fprintf(to, "  %-10s %s\n", command[i].name, command[i].what);
     }
-    fprintf(to, "  --version  versions of library, record, board and parameter image\n"
+    fprintf(to, "  --version  versions of library, record, board, parameter image, calibration\n"
                 "`exhand COMMAND --help` lists the options of one.\n"
                 "Exit status: 0 ok, 1 a check failed, 2 bad usage, 3 something is missing,\n"
                 "130 interrupted.\n");
@@ -39,9 +40,9 @@ int main(int argc, char **argv)
         }
     }
     if (strcmp(name, "--version") == 0) {
-        printf("exhand %d.%d.%d, record %d, board %d, parameters %d\n", EXH_VERSION_MAJOR,
+        printf("exhand %d.%d.%d, record %d, board %d, parameters %d, calibration %d\n", EXH_VERSION_MAJOR,
                EXH_VERSION_MINOR, EXH_VERSION_PATCH, EXH_RECORD_VERSION, EXH_BOARD_VERSION,
-               EXH_PARAMS_VERSION);
+               EXH_PARAMS_VERSION, EXH_CALIB_VERSION);
         return cli_finish(0);
     }
     if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) {

@@ -1,0 +1,379 @@
+/* exhand calibrate: the paper's first step, on the simulated device's bench. */
+#include "cli.h"
+
+#include "calibration.h"
+#include "option.h"
+#include "param.h"
+
+#include "calibrate/calibrate.h"
+
+#include "exhand/error.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+
+#define SETTINGS_MAX 64
+#define DAY_S 86400
+
+struct calibrate_options {
+    long rate_Hz, seed, id, finger, day, valid_days;
+    double residual_N;
+    double mass_kg[CALIBRATE_MASSES], hung_kg[CALIBRATE_MASSES];
+    int masses, hung, pace;
+    const char *out, *check;
+    struct calibration_setting setting[SETTINGS_MAX];
+    int settings;
+    struct sim_device device;
+    unsigned wrong;
+};
+
+static const struct {
+    const char *name, *what;
+    unsigned bit;
+} wrong[] = {
+    {"motor_reversed", "the motor's leads are exchanged", BENCH_MOTOR_REVERSED},
+    {"encoder_reversed", "the encoder's lines are exchanged", BENCH_ENCODER_REVERSED},
+    {"stuck", "the rotor does not turn", BENCH_STUCK},
+    {"caught", "the string is caught on its way home", BENCH_CAUGHT},
+    {"endless", "nothing stops the string at its end", BENCH_ENDLESS},
+    {"no_mass", "nothing hangs on the string", BENCH_NO_MASS},
+    {"fixed_mass", "what hangs on the string is fixed", BENCH_FIXED_MASS},
+    {"pulled", "somebody pulls the slack string", BENCH_PULLED},
+};
+#define WRONGS (sizeof wrong / sizeof wrong[0])
+
+/* --- options with a syntax of their own --- */
+
+/* Up to CALIBRATE_MASSES of them, kg. How many, or 0 after a line on stderr. */
+static int masses(const char *option, const char *text, double *kg, int rising)
+{
+    char *end = NULL;
+    int n = 0;
+    do {
+        const char *from = end ? end + 1 : text;
+        const double v = strtod(from, &end);
+        if (n == CALIBRATE_MASSES || end == from || !(v >= 0.001 && v <= 5) ||
+            (rising && n > 0 && v <= kg[n - 1]) || (*end != ',' && *end != '\0')) {
+            fprintf(stderr, "--%s: %s (0.001..5 kg%s, commas between, at most %d): e.g. --%s 0.1,0.5\n",
+                    option, text, rising ? ", rising" : "", CALIBRATE_MASSES, option);
+            return 0;
+        }
+        kg[n++] = v;
+    } while (*end == ',');
+    return n;
+}
+
+static int take_masses(void *ctx, const char *text)
+{
+    struct calibrate_options *o = ctx;
+    o->masses = masses("mass", text, o->mass_kg, 1);
+    return o->masses ? 0 : 2;
+}
+
+static int take_hung(void *ctx, const char *text)
+{
+    struct calibrate_options *o = ctx;
+    o->hung = masses("hung", text, o->hung_kg, 0);
+    return o->hung ? 0 : 2;
+}
+
+/* NAME=VALUE; the name is a copy that is kept till exit. NULL after a line on stderr. */
+static const char *assignment(const char *option, const char *text, double *value)
+{
+    const char *equals = strchr(text, '=');
+    char *end = NULL, *name = NULL;
+    if (equals != NULL) { *value = strtod(equals + 1, &end); }
+    if (equals != NULL && end != equals + 1 && *end == '\0') {
+        name = calloc((size_t)(equals - text) + 1, 1);
+        if (name != NULL) { memcpy(name, text, (size_t)(equals - text)); }
+    }
+    if (name == NULL) { fprintf(stderr, "--%s: %s: give NAME=VALUE\n", option, text); }
+    return name;
+}
+
+static int take_setting(void *ctx, const char *text)
+{
+    struct calibrate_options *o = ctx;
+    double value = 0;
+    const char *name = assignment("set", text, &value);
+    if (name == NULL) { return 2; }
+    if (o->settings == SETTINGS_MAX) {
+        fprintf(stderr, "--set: at most %d\n", SETTINGS_MAX);
+        return 2;
+    }
+    exh_scene_calibrate.defaults();
+    if (cli_param_set(exh_scene_calibrate.params, name, value) < 0) { return 2; }
+    o->setting[o->settings++] = (struct calibration_setting){name, value};
+    return 0;
+}
+
+static int take_device(void *ctx, const char *text)
+{
+    struct calibrate_options *o = ctx;
+    const struct sim_device_row *row;
+    double value = 0;
+    const char *name = assignment("device", text, &value);
+    if (name == NULL) { return 2; }
+    if (sim_device_set(&o->device, name, value, &row) == 0) { return 0; }
+    if (row) {
+        fprintf(stderr, "%s: %.9g (allowed %.9g..%.9g %s): choose a value in that range\n", name, value,
+                row->min, row->max, row->unit);
+    } else {
+        fprintf(stderr, "%s: no such value of the device: `exhand calibrate --params` lists them\n", name);
+    }
+    return 2;
+}
+
+static int take_wrong(void *ctx, const char *text)
+{
+    struct calibrate_options *o = ctx;
+    for (size_t i = 0; i < WRONGS; i++) {
+        if (strcmp(wrong[i].name, text) == 0) {
+            o->wrong |= wrong[i].bit;
+            return 0;
+        }
+    }
+    fprintf(stderr, "--wrong: %s (one of those that `exhand calibrate --params` lists)\n", text);
+    return 2;
+}
+
+static void print_params(void)
+{
+    exh_scene_calibrate.defaults();
+    printf("Parameters of the scene (--set NAME=VALUE; f_max and slew in A for N: there is no table yet)\n");
+    cli_signal_print(stdout, exh_scene_calibrate.params->table);
+    printf("\nThe simulated device (--device NAME=VALUE); step and the scales are known to the scene\n");
+    for (int i = 0; i < sim_device_rows; i++) {
+        const struct sim_device_row *r = &sim_device_row[i];
+        printf("  %-13s %-8s %12.7g  %12.7g .. %-12.7g %-8s %s\n", r->name, r->unit, r->value, r->min,
+               r->max, r->sure, r->help);
+    }
+    printf("\nWhat may be wrong at the bench (--wrong NAME)\n");
+    for (size_t i = 0; i < WRONGS; i++) { printf("  %-17s %s\n", wrong[i].name, wrong[i].what); }
+}
+
+/* --- files --- */
+
+static FILE *open_out(const char *dir, const char *name, const char *mode)
+{
+    char p[512];
+    FILE *f;
+    snprintf(p, sizeof p, "%s/%s", dir, name);
+    f = fopen(p, mode);
+    if (f == NULL) { fprintf(stderr, "%s: %s\n", p, strerror(errno)); }
+    return f;
+}
+
+static int complain(const char *what, int err, const struct exh_calib_bad *bad)
+{
+    fprintf(stderr, "%s: %s", what, exh_calib_what_text(bad->what));
+    if (bad->what == EXH_CALIB_FORCE_TABLE || bad->what == EXH_CALIB_MONITOR_TABLE) {
+        fprintf(stderr, ", point %d", bad->at + 1);
+    }
+    fprintf(stderr, ": %s: calibrate again\n", exh_error_text(err));
+    return 1;
+}
+
+static int write_files(const char *dir, const struct exh_calib *c, const struct calibration_lines *l)
+{
+    uint8_t image[EXH_CALIB_IMAGE_B];
+    struct exh_calib_bad bad;
+    const int32_t len = exh_calib_save(c, image, sizeof image, &bad);
+    FILE *f;
+    int err = len < 0 ? complain("calibration.bin", len, &bad) : 0;
+    if (err) { return err; }
+    f = open_out(dir, "calibration.bin", "wb");
+    err |= f == NULL || fwrite(image, 1, (size_t)len, f) != (size_t)len || fclose(f) != 0;
+    f = open_out(dir, "calibration.csv", "w");
+    if (f) { calibration_csv(f, c, l); }
+    err |= f == NULL || fclose(f) != 0;
+    f = open_out(dir, "table.csv", "w");
+    if (f) { err |= calibration_table_csv(f, c) < 0; }
+    err |= f == NULL || fclose(f) != 0;
+    f = open_out(dir, "pictures.gp", "w");
+    if (f) {
+        fprintf(f, "# Made by exhand calibrate: gnuplot -e \"plots='ports/posix/cli/plot'\" %s/pictures.gp\n"
+                   "out='%s/calibration.png'; points='%s/calibration.csv'; table='%s/table.csv'\n"
+                   "kf=%.9g; kf_mon=%.9g\nload plots.'/calibration.gp'\n", dir, dir, dir, dir,
+                (double)l->cur.kf_NpA_q20 / (1 << EXH_Q_FORCE),
+                (double)l->mon.kf_NpA_q20 / (1 << EXH_Q_FORCE));
+    }
+    return err | (f == NULL || fclose(f) != 0);
+}
+
+/* --- an image that is there --- */
+
+/* Whose, when, and the scales of the device as they are now. */
+static struct exh_calib_here here_and_now(const struct calibrate_options *o)
+{
+    struct exh_calib_here here = {(uint32_t)o->id, (uint32_t)o->finger, (uint32_t)o->day, 0, 0};
+    struct exh_params *p = exh_scene_calibrate.params;
+    uint32_t at;
+    exh_scene_calibrate.defaults();
+    (void)cli_param_set(p, "dac_scale", o->device.dac_perA);
+    (void)cli_param_set(p, "mon_scale", o->device.mon_apc);
+    if (cli_signal_find(p->table, "dac_scale", &at)) { here.dac_rawpA_q16 = p->staged[at]; }
+    if (cli_signal_find(p->table, "mon_scale", &at)) { here.mon_A_q40 = p->staged[at]; }
+    return here;
+}
+
+static int check_image(const struct calibrate_options *o)
+{
+    struct exh_calib_point point[EXH_CALIB_POINTS_MAX];
+    struct exh_calib c = {.point = point, .cap = EXH_CALIB_POINTS_MAX};
+    const struct exh_calib_here here = here_and_now(o);
+    struct calibration_lines l;
+    struct exh_calib_bad bad = {0, 0};
+    uint8_t image[EXH_CALIB_IMAGE_B];
+    size_t len;
+    int err;
+    FILE *f = fopen(o->check, "rb");
+    if (f == NULL) {
+        fprintf(stderr, "%s: %s\n", o->check, strerror(errno));
+        return 2;
+    }
+    len = fread(image, 1, sizeof image, f);
+    fclose(f);
+    err = exh_calib_load(&c, image, len, &bad);
+    if (err < 0) { return complain(o->check, err, &bad); }
+    err = exh_calib_check(&c, &here, &bad);
+    if (err < 0) { complain(o->check, err, &bad); }
+    printf("%s: device %lu, finger %lu, made on day %lu, good for %lu days; today is day %ld\n", o->check,
+           (unsigned long)c.device_id, (unsigned long)c.finger, (unsigned long)c.day,
+           (unsigned long)c.valid_days, o->day);
+    if (err == 0 && calibration_lines(&c, &l) == 0) { calibration_print(stdout, &c, &l); }
+    return err < 0;
+}
+
+/* --- a calibration --- */
+
+static void interrupted(int sig)
+{
+    (void)sig;
+    posix_stop();
+}
+
+/* Two checks besides the steps: all is a table, and its points lie on a line. */
+static int judge(const struct calibrate_options *o, struct calibration *r)
+{
+    struct calibration_lines l;
+    struct exh_calib_bad bad;
+    int err = exh_calib_valid(&r->c, &bad);
+    if (err < 0) { return complain("calibrate", err, &bad); }
+    if (calibration_lines(&r->c, &l) < 0) {
+        fprintf(stderr, "calibrate: no line through these points: calibrate again\n");
+        return 1;
+    }
+    calibration_print(stdout, &r->c, &l);
+    fflush(stdout);
+    err = l.cur_worst_N > o->residual_N || l.mon_worst_N > o->residual_N;
+    if (err) {
+        fprintf(stderr, "residual: %.4g N (allowed 0..%.4g): weigh that mass again, or --residual\n",
+                l.cur_worst_N > l.mon_worst_N ? l.cur_worst_N : l.mon_worst_N, o->residual_N);
+        return 1;
+    }
+    if (o->out != NULL) { err = write_files(o->out, &r->c, &l); }
+    printf("for the drop experiment, straight: exhand drop --set kf=%.6g --set f0=%.4g\n",
+           (double)l.cur.kf_NpA_q20 / (1 << EXH_Q_FORCE), l.f0_N);
+    return err;
+}
+
+static int calibrate(const struct calibrate_options *o)
+{
+    static struct calibration r;
+    struct calibration_cfg c;
+    int err;
+    memset(&c, 0, sizeof c);
+    c.rate_Hz = (uint32_t)o->rate_Hz;
+    c.mass_kg = o->mass_kg;
+    c.hung_kg = o->hung ? o->hung_kg : NULL;
+    c.masses = o->masses;
+    c.setting = o->setting;
+    c.settings = o->settings;
+    c.progress = stdout;
+    c.board = posix_config_default();
+    c.board.device = o->device;
+    c.board.seed = (uint64_t)o->seed;
+    c.board.pace = o->pace;
+    c.board.wrong = o->wrong;
+    if (o->out != NULL && mkdir(o->out, 0777) != 0 && errno != EEXIST) {
+        fprintf(stderr, "--out: %s: %s\n", o->out, strerror(errno));
+        return 2;
+    }
+    signal(SIGINT, interrupted);
+    signal(SIGTERM, interrupted);
+    err = calibration_run(&c, &r);
+    fflush(stdout); /* the steps before what is said of them */
+    if (err < 0) { return err == -EXH_E_STATE ? 1 : 2; }
+    if (r.result != EXH_PROBE_DONE) {
+        fprintf(stderr, "%s: %s after %.2f s at up to %.1f mA, %.1f mm: stopped, no current; "
+                        "put it right and calibrate again\n", calibrate_step_text(r.step),
+                calibrate_result_text(r.result), r.last_s, r.last_most_A * 1e3, r.last_travel_m * 1e3);
+        return 1;
+    }
+    r.c.device_id = (uint32_t)o->id;
+    r.c.finger = (uint32_t)o->finger;
+    r.c.day = (uint32_t)o->day;
+    r.c.valid_days = (uint32_t)o->valid_days;
+    return judge(o, &r);
+}
+
+int cli_calibrate(int argc, char **argv)
+{
+    static struct calibrate_options o;
+    static const double mass_kg[] = {0.1, 0.2, 0.3, 0.5, 0.7};
+    int list = 0, err;
+    const struct cli_call known = {take_masses, &o}, setting = {take_setting, &o};
+    const struct cli_call device = {take_device, &o}, fault = {take_wrong, &o};
+    const struct cli_call hung = {take_hung, &o};
+    union {
+        const struct cli_call *view;
+        void *to;
+    } u[5] = {{&known}, {&setting}, {&device}, {&fault}, {&hung}};
+    const struct cli_option option[] = {
+        {"mass", CLI_CALL, u[0].to, 0, 0, "KG[,KG...]", "known masses, rising (0.1,0.2,0.3,0.5,0.7)"},
+        {"hung", CLI_CALL, u[4].to, 0, 0, "KG[,KG...]", "what really hangs on the string, as many (the same)"},
+        {"rate", CLI_INT, &o.rate_Hz, 20, 20000, "HZ", "loop rate (2000)"},
+        {"out", CLI_TEXT, &o.out, 0, 0, "DIR", "write image, CSVs and a picture's script there"},
+        {"check", CLI_TEXT, &o.check, 0, 0, "FILE", "only say whether this image may be used here today"},
+        {"residual", CLI_REAL, &o.residual_N, 0, 100, "N", "no point farther from the line (0.1)"},
+        {"id", CLI_INT, &o.id, 0, 4294967295.0, "N", "of the device (1)"},
+        {"finger", CLI_INT, &o.finger, 0, EXH_FINGERS - 1, "N", "thumb 0 .. little 4 (0)"},
+        {"day", CLI_INT, &o.day, 0, 4294967295.0, "N", "today, in days since 1970 (the clock's)"},
+        {"valid", CLI_INT, &o.valid_days, 0, 36525, "DAYS", "stale after that (90)"},
+        {"seed", CLI_INT, &o.seed, 0, 1e9, "N", "of all chance in the simulation (1)"},
+        {"pace", CLI_FLAG, &o.pace, 0, 0, NULL, "follow the wall clock, for people who watch"},
+        {"set", CLI_CALL, u[1].to, 0, 0, "NAME=VALUE", "a parameter of the scene"},
+        {"device", CLI_CALL, u[2].to, 0, 0, "NAME=VALUE", "a value of the simulated device"},
+        {"wrong", CLI_CALL, u[3].to, 0, 0, "NAME", "something that is wrong at the bench"},
+        {"params", CLI_FLAG, &list, 0, 0, NULL, "list these three, with units and ranges"},
+    };
+    const struct cli_command c = {
+        "calibrate", "[options]",
+        "Polarity, home, F0, then masses: tables from force to current and from monitor to force.",
+        option, (int)(sizeof option / sizeof option[0]), 0};
+
+    o.rate_Hz = 2000;
+    o.seed = o.id = 1;
+    o.valid_days = 90;
+    o.residual_N = 0.1;
+    o.day = (long)(time(NULL) / DAY_S);
+    o.device = sim_device_default();
+    o.masses = (int)(sizeof mass_kg / sizeof mass_kg[0]);
+    memcpy(o.mass_kg, mass_kg, sizeof mass_kg);
+    err = cli_parse(&c, argc, argv, NULL);
+    if (err) { return err == 1 ? 0 : err; }
+    if (list) {
+        print_params();
+        return 0;
+    }
+    if (o.hung != 0 && o.hung != o.masses) {
+        fprintf(stderr, "--hung: %d masses (as many as --mass: %d): give that many\n", o.hung, o.masses);
+        return 2;
+    }
+    return o.check ? check_image(&o) : calibrate(&o);
+}

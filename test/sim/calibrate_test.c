@@ -1,0 +1,353 @@
+/* The calibration on the simulated bench: what it finds is the device's, within bounds on
+ * both sides, and whatever is wrong at the bench stops it before it is dangerous.
+ *
+ * A mass lifts at kf i = fc + (1 + a) m g / (1 - b) and sinks at (1 - a) m g / (1 + b) - fc
+ * (a: mu_motor, b: mu_mass, fc: coulomb). The middle is m g (1 + a b) / (1 - b^2): kf is
+ * found as kf (1 - b^2) / (1 + a b), 2.4 % low with the committed device. */
+#include "check.h"
+
+#include "cli/calibration.h"
+#include "posix.h"
+
+#include "calibrate/calibrate.h"
+
+#include "exhand/error.h"
+
+#include <string.h>
+
+#define LEN(a) (sizeof(a) / sizeof((a)[0]))
+
+static const double mass_kg[] = {0.1, 0.2, 0.3, 0.5, 0.7};
+
+static double size_of(double v)
+{
+    return v < 0 ? -v : v;
+}
+
+static struct calibration_cfg config(uint64_t seed)
+{
+    struct calibration_cfg c;
+    memset(&c, 0, sizeof c);
+    c.rate_Hz = 2000;
+    c.mass_kg = mass_kg;
+    c.masses = LEN(mass_kg);
+    c.board = posix_config_default();
+    c.board.seed = seed;
+    return c;
+}
+
+static struct calibration out;
+
+static const struct calibration *calibrate(const struct calibration_cfg *c)
+{
+    CHECK_EQ_I64(calibration_run(c, &out), 0);
+    return &out;
+}
+
+static const struct calibration *calibrated(const struct calibration_cfg *c,
+                                            struct calibration_lines *l)
+{
+    const struct calibration *r = calibrate(c);
+    struct exh_calib_bad bad = {99, 0};
+    CHECK(r->result == EXH_PROBE_DONE, "%s: %s", calibrate_step_text(r->step),
+          calibrate_result_text(r->result));
+    CHECK(exh_calib_valid(&r->c, &bad) == 0, "%s, point %d", exh_calib_what_text(bad.what), bad.at);
+    CHECK_EQ_I64(r->c.points, c->masses);
+    CHECK_EQ_I64(calibration_lines(&r->c, l), 0);
+    return r;
+}
+
+static double expected_kf(const struct sim_device *d)
+{
+    return d->kf_npa * (1 - d->mu_mass * d->mu_mass) / (1 + d->mu_motor * d->mu_mass);
+}
+
+static double si(int32_t raw, int frac)
+{
+    return (double)raw / (double)(INT64_C(1) << frac);
+}
+
+/* --- what it finds --- */
+
+static void check_found(const struct calibration_cfg *c, double kf_share)
+{
+    const struct sim_device *d = &c->board.device;
+    const double want = expected_kf(d), step_A = 0.005;
+    const double f0_A = (d->coulomb_n + d->viscous_nspm * 0.02) / d->kf_npa;
+    struct calibration_lines l;
+    const struct calibration *r = calibrated(c, &l);
+    const double kf = si(l.cur.kf_NpA_q20, EXH_Q_FORCE), mon = si(l.mon.kf_NpA_q20, EXH_Q_FORCE);
+    CHECK(size_of(kf / want - 1) < kf_share, "kf %.4f, want %.4f", kf, want);
+    CHECK(size_of(mon / want - 1) < kf_share + 0.004, "by monitor %.4f, want %.4f", mon, want);
+    for (int i = 0; i < c->masses; i++) { /* each point: within a step of its place */
+        const double at_A = c->mass_kg[i] * SIM_GRAVITY / want;
+        CHECK(size_of(si(r->point[i].cur_A_q26, EXH_Q_CUR) - at_A) < 1.2 * step_A,
+              "%g kg: %.4f A, want %.4f", c->mass_kg[i], si(r->point[i].cur_A_q26, EXH_Q_CUR), at_A);
+    }
+    CHECK(si(r->c.f0_A_q26, EXH_Q_CUR) > f0_A - step_A && si(r->c.f0_A_q26, EXH_Q_CUR) < f0_A + 2.5 * step_A,
+          "F0 %.4f A, want %.4f", si(r->c.f0_A_q26, EXH_Q_CUR), f0_A);
+    CHECK(size_of(r->home_m + 0.15) < 1.5 * d->step_m / d->decode, "home %.6f m", r->home_m);
+    CHECK(r->most_A < 3.3003, "%.4f A", r->most_A);
+}
+
+TEST(kf_f0_and_home_are_the_devices)
+{
+    for (uint64_t seed = 1; seed <= 8; seed++) {
+        const struct calibration_cfg c = config(seed);
+        check_found(&c, 0.003);
+    }
+}
+
+TEST(at_any_rate)
+{
+    static const uint32_t rate_Hz[] = {50, 90, 200, 500, 1000, 5000, 20000};
+    for (size_t i = 0; i < LEN(rate_Hz); i++) {
+        struct calibration_cfg c = config(3);
+        c.rate_Hz = rate_Hz[i];
+        check_found(&c, 0.005);
+    }
+}
+
+TEST(other_devices)
+{
+    static const struct {
+        const char *name;
+        double value;
+    } row[] = {{"kf", 2.8}, {"kf", 6}, {"mu_motor", 0}, {"mu_mass", 0}, {"mu_mass", 0.15},
+               {"coulomb", 0.2}, {"decode", 4}, {"cable_k", 20000}, {"rotor", 0.2},
+               {"delay_tick", 2}, {"enc_start", 16777000}, {"mon_scale", 1e-4}};
+    for (size_t i = 0; i < LEN(row); i++) {
+        const struct sim_device_row *r;
+        struct calibration_cfg c = config(i + 1);
+        CHECK_EQ_I64(sim_device_set(&c.board.device, row[i].name, row[i].value, &r), 0);
+        check_found(&c, 0.006);
+    }
+}
+
+/* A monitor whose zero lies elsewhere than the parameters say: measured, and taken off. */
+TEST(the_monitors_zero_is_found)
+{
+    static const struct calibration_setting zero[] = {{"mon_zero", 500}};
+    struct calibration_cfg c = config(4);
+    c.setting = zero;
+    c.settings = LEN(zero);
+    check_found(&c, 0.003);
+    CHECK(size_of(out.c.mon_zero_raw) <= 2, "%d codes", (int)out.c.mon_zero_raw);
+}
+
+/* Without friction at the mass the middle is exact: kf itself, within 0.3 %. */
+TEST(kf_itself_where_the_mass_has_no_friction)
+{
+    struct calibration_cfg c = config(2);
+    struct calibration_lines l;
+    c.board.device.mu_mass = 0;
+    calibrated(&c, &l);
+    CHECK(size_of(si(l.cur.kf_NpA_q20, EXH_Q_FORCE) / c.board.device.kf_npa - 1) < 0.003, "%.4f",
+          si(l.cur.kf_NpA_q20, EXH_Q_FORCE));
+}
+
+TEST(same_seed_same_image)
+{
+    uint8_t a[EXH_CALIB_IMAGE_B], b[EXH_CALIB_IMAGE_B];
+    const struct calibration_cfg one = config(1), two = config(2);
+    const int32_t len = exh_calib_save(&calibrate(&one)->c, a, sizeof a, NULL);
+    CHECK(len > 0, "not saved: %d", (int)len);
+    CHECK_EQ_I64(exh_calib_save(&calibrate(&one)->c, b, sizeof b, NULL), len);
+    CHECK(memcmp(a, b, (size_t)len) == 0, "the same seed gives another image");
+    CHECK_EQ_I64(exh_calib_save(&calibrate(&two)->c, b, sizeof b, NULL), len);
+    CHECK(memcmp(a, b, (size_t)len) != 0, "another seed gives the same image");
+}
+
+/* --- what stops it --- */
+
+TEST(whatever_is_wrong_stops_at_its_step)
+{
+    static const struct {
+        unsigned wrong, step, result;
+        double most_A, most_s, most_m; /* until it was seen                        */
+    } row[] = {
+        {BENCH_MOTOR_REVERSED, CALIBRATE_POLARITY, EXH_PROBE_WRONG_WAY, 0.030, 0.8, 0.0005},
+        {BENCH_ENCODER_REVERSED, CALIBRATE_POLARITY, EXH_PROBE_WRONG_WAY, 0.030, 0.8, 0.0005},
+        {BENCH_STUCK, CALIBRATE_POLARITY, EXH_PROBE_STILL, 0.301, 6.2, 0.0001},
+        {BENCH_CAUGHT, CALIBRATE_HOME, EXH_PROBE_JAM, 0.101, 2, 0.1},
+        {BENCH_ENDLESS, CALIBRATE_HOME, EXH_PROBE_TRAVEL, 0.101, 6, 0.3002},
+        {BENCH_NO_MASS, CALIBRATE_MASS, EXH_PROBE_TRAVEL, 0.06, 2, 0.0302},
+        {BENCH_FIXED_MASS, CALIBRATE_MASS, EXH_PROBE_STILL, 0.491, 10, 0.001},
+        {BENCH_PULLED, CALIBRATE_ZERO, EXH_PROBE_TRAVEL, 0, 0.1, 0.0005},
+        {BENCH_MOTOR_REVERSED | BENCH_ENCODER_REVERSED, CALIBRATE_HOME, EXH_PROBE_TRAVEL, 0.101, 6, 0.31},
+    };
+    for (size_t i = 0; i < LEN(row); i++) {
+        for (uint64_t seed = 1; seed <= 4; seed++) {
+            struct calibration_cfg c = config(seed);
+            const struct calibration *r;
+            c.board.wrong = row[i].wrong;
+            c.rate_Hz = seed == 4 ? 200 : 2000;
+            r = calibrate(&c);
+            CHECK(r->step == row[i].step && r->result == row[i].result, "row %zu: %s: %s", i,
+                  calibrate_step_text(r->step), calibrate_result_text(r->result));
+            CHECK(r->last_most_A <= row[i].most_A, "row %zu: %.4f A", i, r->last_most_A);
+            CHECK(r->last_s <= row[i].most_s, "row %zu: %.2f s", i, r->last_s);
+            CHECK(r->last_travel_m <= row[i].most_m + 0.001 * (seed == 4), "row %zu: %.5f m", i,
+                  r->last_travel_m);
+        }
+    }
+}
+
+/* Reversed, whatever the friction: seen within two steps of what overcomes it. */
+TEST(reversed_is_seen_at_the_least_current)
+{
+    static const double coulomb_N[] = {0, 0.02, 0.05, 0.2, 0.5};
+    for (size_t i = 0; i < LEN(coulomb_N); i++) {
+        struct calibration_cfg c = config(i + 1);
+        const struct calibration *r;
+        c.board.wrong = i % 2 ? BENCH_MOTOR_REVERSED : BENCH_ENCODER_REVERSED;
+        c.board.device.coulomb_n = coulomb_N[i];
+        r = calibrate(&c);
+        CHECK(r->step == CALIBRATE_POLARITY && r->result == EXH_PROBE_WRONG_WAY, "%s",
+              calibrate_result_text(r->result));
+        CHECK(r->last_most_A < coulomb_N[i] / c.board.device.kf_npa + 0.011, "%.4f A", r->last_most_A);
+        CHECK(r->most_A == r->last_most_A, "current before: %.4f A", r->most_A);
+    }
+}
+
+/* The person hangs on other masses than said: the table does not rise there. */
+TEST(exchanged_masses_are_refused_by_table_and_point)
+{
+    static const double said_kg[] = {0.1, 0.2, 0.22, 0.5}, hung_kg[] = {0.1, 0.22, 0.2, 0.5};
+    struct calibration_cfg c = config(1);
+    struct exh_calib_bad bad = {99, 99};
+    c.mass_kg = said_kg;
+    c.hung_kg = hung_kg;
+    c.masses = LEN(said_kg);
+    CHECK_EQ_I64(exh_calib_valid(&calibrate(&c)->c, &bad), -EXH_E_MONOTONE);
+    CHECK(bad.what == EXH_CALIB_FORCE_TABLE && bad.at == 2, "%s, point %d",
+          exh_calib_what_text(bad.what), bad.at);
+}
+
+TEST(set_up_refuses)
+{
+    struct calibrate_cfg cfg;
+    struct calibrate_par par;
+    struct calibration_cfg c = config(1);
+    const struct exh_scene_board board = {{1, 2000}, 24}, slow = {{1, 10}, 24};
+    calibrate(&c);
+    par = *calibrate_config()->par;
+    CHECK_EQ_I64(calibrate_setup(&cfg, &par, board), 0);
+    CHECK_EQ_I64(calibrate_setup(&cfg, &par, slow), -EXH_E_RATE);
+    par.mass_kg_q20[1] = par.mass_kg_q20[0];
+    CHECK_EQ_I64(calibrate_setup(&cfg, &par, board), -EXH_E_MONOTONE);
+    par.mass_kg_q20[0] = 0;
+    CHECK_EQ_I64(calibrate_setup(&cfg, &par, board), -EXH_E_RANGE);
+}
+
+/* --- tick by tick --- */
+
+struct rig {
+    struct calibrate_par par;
+    struct calibrate_cfg cfg;
+    struct calibrate s;
+    struct calibrate_signals sig;
+    struct exh_scene_in in;
+    struct exh_drive_out out;
+};
+
+/* On its way in the polarity check, with a current. */
+static void under_way(struct rig *r)
+{
+    struct calibration_cfg c = config(1);
+    memset(r, 0, sizeof *r);
+    calibrate(&c);
+    r->par = *calibrate_config()->par;
+    r->par.own.go = 2;
+    CHECK_EQ_I64(calibrate_setup(&r->cfg, &r->par, (struct exh_scene_board){{1, 2000}, 24}), 0);
+    r->in.drive.din = EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_DRIVE0;
+    r->in.command = EXH_CMD_RUN;
+    for (int n = 0; n < 20000 && r->sig.i_des_A_q26 < EXH_Q(1, 10, EXH_Q_CUR); n++) {
+        calibrate_tick(&r->s, &r->cfg, &r->in, &r->out, &r->sig);
+        r->in.command = EXH_CMD_NONE;
+    }
+    CHECK(r->sig.step == CALIBRATE_POLARITY && r->out.dac_raw[0] > 32768, "not under way");
+}
+
+TEST(a_fault_ends_it_in_its_tick_for_good)
+{
+    static const struct {
+        uint32_t din_off, missed, jump;
+        uint32_t fault;
+    } row[] = {{EXH_DIN_ESTOP, 0, 0, EXH_FAULT_ESTOP},
+               {EXH_DIN_DEADMAN, 0, 0, EXH_FAULT_DEADMAN},
+               {EXH_DIN_DRIVE0, 0, 0, EXH_FAULT_DRIVE},
+               {0, 10, 0, EXH_FAULT_OVERRUN},
+               {0, 0, 100000, EXH_FAULT_ENCODER}};
+    for (size_t i = 0; i < LEN(row); i++) {
+        struct rig r;
+        under_way(&r);
+        r.in.drive.din &= ~row[i].din_off;
+        r.in.missed = row[i].missed;
+        r.in.drive.enc_raw[0] += row[i].jump;
+        calibrate_tick(&r.s, &r.cfg, &r.in, &r.out, &r.sig);
+        CHECK(r.out.dac_raw[0] == 32768 && r.out.enable == 0, "row %zu: current in its tick", i);
+        CHECK(r.sig.result == CALIBRATE_OFF && r.sig.step == CALIBRATE_POLARITY, "row %zu", i);
+        CHECK_EQ_I64(r.sig.faults, row[i].fault);
+        r.in.drive.din |= row[i].din_off;
+        r.in.missed = 0;
+        for (int n = 0; n < 10000; n++) { /* cleared and in RUN again: nothing goes on */
+            r.in.command = (uint8_t)(n == 3 ? EXH_CMD_CLEAR : n == 5 ? EXH_CMD_RUN : EXH_CMD_NONE);
+            calibrate_tick(&r.s, &r.cfg, &r.in, &r.out, &r.sig);
+            CHECK(r.out.dac_raw[0] == 32768, "row %zu, tick %d: current", i, n);
+        }
+        CHECK(r.sig.state == EXH_STATE_RUN && r.sig.result == CALIBRATE_OFF, "row %zu", i);
+    }
+}
+
+/* The person's word alone moves nothing: the box must be in RUN. */
+TEST(nothing_begins_outside_run)
+{
+    static const struct calibrate power_on;
+    struct rig r;
+    under_way(&r);
+    r.s = power_on;
+    for (int n = 0; n < 3000; n++) {
+        r.in.command = n == 2000 ? EXH_CMD_RUN : EXH_CMD_NONE;
+        calibrate_tick(&r.s, &r.cfg, &r.in, &r.out, &r.sig);
+        CHECK(r.sig.result == 0 && (n >= 2000) == !r.sig.waits, "tick %d", n);
+        CHECK(r.out.dac_raw[0] == 32768, "tick %d: current", n);
+    }
+}
+
+TEST(an_acting_limit_ends_it)
+{
+    static const struct calibration_setting peak[] = {{"i_cont", 0.15}, {"i_peak", 0.2}};
+    struct calibration_cfg c = config(1);
+    const struct calibration *r;
+    c.setting = peak;
+    c.settings = LEN(peak);
+    r = calibrate(&c);
+    CHECK(r->step == CALIBRATE_MASS && r->result == CALIBRATE_LIMITED, "%s: %s",
+          calibrate_step_text(r->step), calibrate_result_text(r->result));
+    CHECK(r->most_A < 0.2003, "%.4f A", r->most_A);
+}
+
+/* Nobody says that the next step is prepared. */
+TEST(it_does_not_wait_for_ever)
+{
+    struct rig r;
+    int n = 0;
+    under_way(&r);
+    r.s.busy = 0;
+    r.s.tick = 0;
+    r.par.own.go = 0;
+    for (; r.sig.result == 0 && n < 2000000; n++) {
+        calibrate_tick(&r.s, &r.cfg, &r.in, &r.out, &r.sig);
+        CHECK(r.out.dac_raw[0] == 32768, "tick %d: current", n);
+    }
+    CHECK(r.sig.result == CALIBRATE_NOBODY && n == 1200000, "%s after %d ticks",
+          calibrate_result_text((unsigned)r.sig.result), n);
+}
+
+TEST_MAIN("sim/calibrate", kf_f0_and_home_are_the_devices, at_any_rate, other_devices, the_monitors_zero_is_found,
+          kf_itself_where_the_mass_has_no_friction, same_seed_same_image,
+          whatever_is_wrong_stops_at_its_step, reversed_is_seen_at_the_least_current,
+          exchanged_masses_are_refused_by_table_and_point, set_up_refuses,
+          a_fault_ends_it_in_its_tick_for_good, nothing_begins_outside_run,
+          an_acting_limit_ends_it, it_does_not_wait_for_ever);
