@@ -105,16 +105,18 @@ endif
 .PHONY: all
 all: $(lib) $(products)
 
-## The paper's drop experiment on the simulated device: table, plots, logs in build/demo
+## The paper's calibration and drop experiment on the simulated device: tables, plots, logs in build/demo
 .PHONY: demo
 demo: all
 	@.ci/deps "the pictures" gnuplot gnuplot-nox fonts-dejavu-core || true
 	@mkdir -p $(B)/demo
+	$(Q)$(exhand) calibrate --out $(B)/demo/calibration > $(B)/demo/calibration.txt || \
+	    { s=$$?; cat $(B)/demo/calibration.txt; exit $$s; }
 	$(Q)$(exhand) drop --out $(B)/demo --spread 20 > $(B)/demo/table2.txt || \
 	    { s=$$?; cat $(B)/demo/table2.txt; exit $$s; }
-	@s=0; if command -v gnuplot >/dev/null; then \
-	    (cd $(B)/demo && gnuplot -c pictures.gp "$(CURDIR)/ports/posix/cli/plot") || s=1; fi; \
-	for p in $(B)/demo/force_position.png $(B)/demo/fall.png; do \
+	@s=0; if command -v gnuplot >/dev/null; then for d in . calibration; do \
+	    (cd $(B)/demo/$$d && gnuplot -c pictures.gp "$(CURDIR)/ports/posix/cli/plot") || s=1; done; fi; \
+	for p in force_position fall calibration/calibration; do p=$(B)/demo/$$p.png; \
 	    if [ -s $$p ]; then echo "picture: $$p"; else echo "picture missing: $$p" >&2; fi; done; \
 	cat $(B)/demo/table2.txt; exit $$s
 

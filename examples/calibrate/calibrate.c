@@ -24,7 +24,7 @@ static const struct exh_signal own_rows[] = {
     ROW_M(0x8209, "travel", 100, 30000, "travel limit of all steps but home"),
     ROW_M(0x820A, "home_min", 500, 100000, "an end nearer than this is a jam"),
     ROW_M(0x820B, "home_max", 500, 300000, "travel limit of homing"),
-    {0x820C, EXH_Q_VEL, EXH_WHEN_SETUP, EXH_Q(1, 1000, EXH_Q_VEL), EXH_Q(1, 5, EXH_Q_VEL),
+    {0x820C, EXH_Q_VEL, EXH_WHEN_SETUP, EXH_Q(1, 1000, EXH_Q_VEL), EXH_Q(1, 4, EXH_Q_VEL),
      EXH_Q(2, 100, EXH_Q_VEL), "f0_speed", "m_per_s", "f0 returns the slack string so fast"},
     ROW_MS(0x820D, "dwell", 1000, 100, "time at each current"),
     ROW_MS(0x820E, "hold", 10000, 500, "means are taken over this"),

@@ -160,7 +160,7 @@ int exh_calib_monitor_table(const struct exh_calib *c, struct exh_knot *knot, un
                             struct exh_calib_bad *bad)
 {
     const unsigned last = c->points;
-    struct exh_knot end;
+    struct exh_knot end = {0, 0, {0, 1}};
     int err = rises(c, EXH_CALIB_MONITOR, EXH_CALIB_MONITOR_TABLE, bad);
     unsigned half;
     if (err < 0) { return err; }

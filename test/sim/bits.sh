@@ -10,13 +10,16 @@ verdict() { # NAME STATUS
 }
 mkdir -p "$dir"
 for exe in "$@"; do
-    before=$passed of=2
+    before=$passed of=3
     out=$dir/out
     rm -rf "$out"
     "$exe" drop --out "$out" >"$dir/table.txt" 2>&1
     verdict "$exe: drop" $?
     cmp "$logs/table2.csv" "$out/table2.csv"
     verdict "$exe: table2.csv" $?
+    "$exe" calibrate --out "$out/calibration" >"$dir/calibration.txt" 2>&1 &&
+        cmp "$logs/calibration/calibration.csv" "$out/calibration/calibration.csv"
+    verdict "$exe: calibration.csv" $?
     for log in "$logs"/*.exh; do
         cmp "$log" "$out/${log##*/}"
         verdict "$exe: ${log##*/} made" $?

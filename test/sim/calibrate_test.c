@@ -7,13 +7,17 @@
 #include "check.h"
 
 #include "cli/calibration.h"
+#include "cli/cli.h"
 #include "posix.h"
 
 #include "calibrate/calibrate.h"
 
 #include "exhand/error.h"
 
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #define LEN(a) (sizeof(a) / sizeof((a)[0]))
 
@@ -345,9 +349,83 @@ TEST(it_does_not_wait_for_ever)
           calibrate_result_text((unsigned)r.sig.result), n);
 }
 
+/* --- the command --- */
+
+/* `exhand calibrate` with these words, blanks between; @ is the directory. */
+static int command(const char *dir, const char *words)
+{
+    char text[600], *argv[20];
+    int argc = 1;
+    size_t n = 0;
+    argv[0] = text;
+    for (const char *w = words; *w != '\0' && n + 100 < sizeof text; w++) {
+        n += (size_t)snprintf(text + n, sizeof text - n, *w == '@' ? "%s" : "%.1s", *w == '@' ? dir : w);
+    }
+    text[n] = '\0';
+    for (char *word = strtok(text, " "); word != NULL && argc < 20; word = strtok(NULL, " ")) {
+        argv[argc++] = word;
+    }
+    argv[0] = text;
+    return cli_calibrate(argc, argv);
+}
+
+TEST(exit_status_says_what_happened)
+{
+    static const struct {
+        int status;
+        const char *words;
+    } row[] = {
+        {0, "--help"},
+        {0, "--params"},
+        {0, "--out @ --day 20000 --valid 30 --id 9 --finger 2"},
+        {0, "--check @/calibration.bin --day 20030 --id 9 --finger 2"},
+        {1, "--check @/calibration.bin --day 20031 --id 9 --finger 2"}, /* stale              */
+        {1, "--check @/calibration.bin --day 19999 --id 9 --finger 2"},
+        {1, "--check @/calibration.bin --day 20000 --id 8 --finger 2"},
+        {1, "--check @/calibration.bin --day 20000 --id 9"},
+        {1, "--check @/calibration.bin --day 20000 --id 9 --finger 2 --device dac_scale=1000"},
+        {1, "--check @/calibration.csv --day 20000"}, /* no image                              */
+        {2, "--check @/none"},
+        {1, "--wrong stuck"},
+        {1, "--wrong motor_reversed"},
+        {1, "--mass 0.1,0.2,0.22,0.5 --hung 0.1,0.22,0.2,0.5"}, /* does not rise               */
+        {1, "--mass 0.1,0.2,0.3 --hung 0.1,0.24,0.3"},          /* far from the line           */
+        {0, "--mass 0.1,0.2,0.3 --hung 0.1,0.24,0.3 --residual 1"},
+        {2, "--mass 0.2,0.1"},
+        {2, "--mass 0.2,"},
+        {2, "--mass 9"},
+        {2, "--hung 0.1"},
+        {2, "--wrong nothing"},
+        {2, "--rate 0"},
+        {2, "--rate 30 --set dwell=10"}, /* less than two ticks a dwell                       */
+        {2, "--set nothing=1"},
+        {2, "--set i_max=4"},
+        {2, "--set home_min=0.4"}, /* beyond home_max                                         */
+        {2, "--set f0_speed=0.25 --set dwell=1000"}, /* beyond the travel limit                */
+        {2, "--device kf=0"},
+        {2, "--device kf"},
+        {2, "--out @/calibration.bin/x"},
+        {2, "--nothing"},
+        {2, "word"},
+    };
+    char dir[] = "/tmp/exhand_calibrate_XXXXXX", path[64];
+    static const char *const made[] = {"calibration.bin", "calibration.csv", "table.csv", "pictures.gp"};
+    CHECK(mkdtemp(dir) != NULL, "no temporary directory");
+    for (size_t i = 0; i < LEN(row); i++) {
+        const int status = command(dir, row[i].words);
+        CHECK(status == row[i].status, "%s: exit status %d", row[i].words, status);
+    }
+    for (size_t i = 0; i < LEN(made); i++) {
+        snprintf(path, sizeof path, "%s/%s", dir, made[i]);
+        CHECK(remove(path) == 0, "%s was not written", made[i]);
+    }
+    CHECK_EQ_I64(rmdir(dir), 0);
+}
+
 TEST_MAIN("sim/calibrate", kf_f0_and_home_are_the_devices, at_any_rate, other_devices, the_monitors_zero_is_found,
           kf_itself_where_the_mass_has_no_friction, same_seed_same_image,
           whatever_is_wrong_stops_at_its_step, reversed_is_seen_at_the_least_current,
           exchanged_masses_are_refused_by_table_and_point, set_up_refuses,
           a_fault_ends_it_in_its_tick_for_good, nothing_begins_outside_run,
-          an_acting_limit_ends_it, it_does_not_wait_for_ever);
+          an_acting_limit_ends_it, it_does_not_wait_for_ever,
+          exit_status_says_what_happened);

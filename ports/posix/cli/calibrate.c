@@ -240,13 +240,14 @@ static int check_image(const struct calibrate_options *o)
     fclose(f);
     err = exh_calib_load(&c, image, len, &bad);
     if (err < 0) { return complain(o->check, err, &bad); }
-    err = exh_calib_check(&c, &here, &bad);
-    if (err < 0) { complain(o->check, err, &bad); }
     printf("%s: device %lu, finger %lu, made on day %lu, good for %lu days; today is day %ld\n", o->check,
            (unsigned long)c.device_id, (unsigned long)c.finger, (unsigned long)c.day,
            (unsigned long)c.valid_days, o->day);
-    if (err == 0 && calibration_lines(&c, &l) == 0) { calibration_print(stdout, &c, &l); }
-    return err < 0;
+    fflush(stdout);
+    err = exh_calib_check(&c, &here, &bad);
+    if (err < 0) { return complain(o->check, err, &bad); }
+    if (calibration_lines(&c, &l) == 0) { calibration_print(stdout, &c, &l); }
+    return 0;
 }
 
 /* --- a calibration --- */
@@ -357,6 +358,7 @@ int cli_calibrate(int argc, char **argv)
         "Polarity, home, F0, then masses: tables from force to current and from monitor to force.",
         option, (int)(sizeof option / sizeof option[0]), 0};
 
+    memset(&o, 0, sizeof o); /* a test calls more than once */
     o.rate_Hz = 2000;
     o.seed = o.id = 1;
     o.valid_days = 90;

@@ -156,6 +156,27 @@ static int set_parameters(const struct calibration_cfg *c)
     return err;
 }
 
+/* Set-up refused values that are each in their own range: which of them disagree? */
+static void say_pair(void)
+{
+    static const char *const pair[][2] = {{"home_min", "home_max"}, {"move", "travel"},
+                                          {"move", "home_max"},     {"slack_cur", "i_max"},
+                                          {"i_cont", "i_peak"}};
+    const struct exh_params *p = exh_scene_calibrate.params;
+    for (size_t i = 0; i < sizeof pair / sizeof pair[0]; i++) {
+        uint32_t a = 0, b = 0;
+        const struct exh_signal *row = cli_signal_find(p->table, pair[i][0], &a);
+        if (row == NULL || cli_signal_find(p->table, pair[i][1], &b) == NULL) { continue; }
+        if (p->active[a] <= p->active[b]) { continue; }
+        fprintf(stderr, "%s: %.9g (allowed up to %s: %.9g %s): choose a lower one\n", pair[i][0],
+                cli_signal_value(row, p->active[a]), pair[i][1], cli_signal_value(row, p->active[b]),
+                row->unit);
+        return;
+    }
+    fprintf(stderr, "calibrate: %s: `exhand calibrate --params` lists the ranges\n",
+            exh_error_text(-EXH_E_RANGE));
+}
+
 int calibration_run(const struct calibration_cfg *cfg, struct calibration *out)
 {
     static const struct exh_loop_hooks hooks = {start, before, after};
@@ -176,6 +197,8 @@ int calibration_run(const struct calibration_cfg *cfg, struct calibration *out)
     if (err == -EXH_E_RATE) {
         fprintf(stderr, "rate: %lu Hz (allowed 20..%lu, and two ticks a dwell): choose one in that range\n",
                 (unsigned long)cfg->rate_Hz, (unsigned long)exh_board_info.rate_max_Hz);
+    } else if (err == -EXH_E_RANGE) {
+        say_pair();
     } else if (err < 0) {
         fprintf(stderr, "calibrate: %s\n", exh_error_text(err));
     } else if (run.out->result == 0) {

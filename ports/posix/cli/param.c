@@ -32,7 +32,7 @@ int cli_param_set(struct exh_params *p, const char *name, double value)
     int err = -EXH_E_RANGE;
 
     if (row == NULL) {
-        cli_complain("%s: no such parameter: `exhand drop --params` lists them", name);
+        cli_complain("%s: no such parameter: the command's --params lists them", name);
         return -EXH_E_UNKNOWN;
     }
     scaled = value * (double)(INT64_C(1) << row->frac);
@@ -55,8 +55,7 @@ void cli_signal_print(FILE *f, const struct exh_signal_table *t)
     static const char *const when[] = {"output", "set-up", "any time"};
     const uint32_t n = exh_signal_count(t);
     for (uint32_t i = 0; i < n; i++) {
-        const struct exh_signal *r = exh_signal_at(t, i, NULL);
-        fprintf(f, "  %-13s %-8s %14.12g  %14.12g .. %-14.12g %-8s %s\n", r->name, r->unit,
+        cli_complain("%s: no such parameter: the command's --params lists them", name);
                 cli_signal_value(r, r->dflt), cli_signal_value(r, r->min),
                 cli_signal_value(r, r->max), when[r->when], r->help);
     }

@@ -17,7 +17,7 @@ const struct exh_signal *cli_signal_find(const struct exh_signal_table *t, const
  * stderr that names the parameter, its range and what to do. */
 int cli_param_set(struct exh_params *p, const char *name, double value);
 
-/* Name, unit, range, default, help: one row a line. */
+/* Name, unit, range, default, help: one row a line, whatever its instances. */
 void cli_signal_print(FILE *f, const struct exh_signal_table *t);
 
 #endif
