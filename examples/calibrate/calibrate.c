@@ -290,7 +290,7 @@ void calibrate_tick(struct calibrate *s, const struct calibrate_cfg *cfg,
     const int16_t mon_raw = in->drive.mon_raw[0];
     const struct view v = {exh_quad_extend(&s->quad, &cfg->quad, in->drive.enc_raw[0]),
                            exh_drive_monitor_A_q26(&cfg->drive, mon_raw), mon_raw};
-    const struct exh_safety_in box = {in->drive.din, s->quad.jumped ? EXH_FAULT_ENCODER : 0u,
+    const struct exh_safety_in box = {in->drive.din, s->quad.lost ? EXH_FAULT_ENCODER : 0u,
                                       in->missed, in->command, 1};
     const int run = exh_safety_step(&s->safety, &par->safety, box) == EXH_STATE_RUN;
     const int32_t cur_A_q26 = go_on(s, cfg, v, run);

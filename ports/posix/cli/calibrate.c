@@ -58,7 +58,7 @@ static int masses(const char *option, const char *text, double *kg, int rising)
         const double v = strtod(from, &end);
         if (n == CALIBRATE_MASSES || end == from || !(v >= 0.001 && v <= 5) ||
             (rising && n > 0 && v <= kg[n - 1]) || (*end != ',' && *end != '\0')) {
-            fprintf(stderr, "--%s: %s (0.001..5 kg%s, commas between, at most %d): e.g. --%s 0.1,0.5\n",
+            cli_complain("--%s: %s (0.001..5 kg%s, commas between, at most %d): e.g. --%s 0.1,0.5",
                     option, text, rising ? ", rising" : "", CALIBRATE_MASSES, option);
             return 0;
         }
@@ -91,7 +91,7 @@ static const char *assignment(const char *option, const char *text, double *valu
         name = calloc((size_t)(equals - text) + 1, 1);
         if (name != NULL) { memcpy(name, text, (size_t)(equals - text)); }
     }
-    if (name == NULL) { fprintf(stderr, "--%s: %s: give NAME=VALUE\n", option, text); }
+    if (name == NULL) { cli_complain("--%s: %s: give NAME=VALUE", option, text); }
     return name;
 }
 
@@ -102,7 +102,7 @@ static int take_setting(void *ctx, const char *text)
     const char *name = assignment("set", text, &value);
     if (name == NULL) { return 2; }
     if (o->settings == SETTINGS_MAX) {
-        fprintf(stderr, "--set: at most %d\n", SETTINGS_MAX);
+        cli_complain("--set: at most %d", SETTINGS_MAX);
         return 2;
     }
     exh_scene_calibrate.defaults();
@@ -120,10 +120,10 @@ static int take_device(void *ctx, const char *text)
     if (name == NULL) { return 2; }
     if (sim_device_set(&o->device, name, value, &row) == 0) { return 0; }
     if (row) {
-        fprintf(stderr, "%s: %.9g (allowed %.9g..%.9g %s): choose a value in that range\n", name, value,
+        cli_complain("%s: %.9g (allowed %.9g..%.9g %s): choose a value in that range", name, value,
                 row->min, row->max, row->unit);
     } else {
-        fprintf(stderr, "%s: no such value of the device: `exhand calibrate --params` lists them\n", name);
+        cli_complain("%s: no such value of the device: `exhand calibrate --params` lists them", name);
     }
     return 2;
 }
@@ -137,7 +137,7 @@ static int take_wrong(void *ctx, const char *text)
             return 0;
         }
     }
-    fprintf(stderr, "--wrong: %s (one of those that `exhand calibrate --params` lists)\n", text);
+    cli_complain("--wrong: %s (one of those that `exhand calibrate --params` lists)", text);
     return 2;
 }
 
@@ -164,17 +164,18 @@ static FILE *open_out(const char *dir, const char *name, const char *mode)
     FILE *f;
     snprintf(p, sizeof p, "%s/%s", dir, name);
     f = fopen(p, mode);
-    if (f == NULL) { fprintf(stderr, "%s: %s\n", p, strerror(errno)); }
+    if (f == NULL) { cli_complain("%s: %s", p, strerror(errno)); }
     return f;
 }
 
 static int complain(const char *what, int err, const struct exh_calib_bad *bad)
 {
-    fprintf(stderr, "%s: %s", what, exh_calib_what_text(bad->what));
+    char point[24] = "";
     if (bad->what == EXH_CALIB_FORCE_TABLE || bad->what == EXH_CALIB_MONITOR_TABLE) {
-        fprintf(stderr, ", point %d", bad->at + 1);
+        snprintf(point, sizeof point, ", point %d", bad->at + 1);
     }
-    fprintf(stderr, ": %s: calibrate again\n", exh_error_text(err));
+    cli_complain("%s: %s%s: %s: calibrate again", what, exh_calib_what_text(bad->what), point,
+                 exh_error_text(err));
     return 1;
 }
 
@@ -196,9 +197,10 @@ static int write_files(const char *dir, const struct exh_calib *c, const struct 
     err |= f == NULL || fclose(f) != 0;
     f = open_out(dir, "pictures.gp", "w");
     if (f) {
-        fprintf(f, "# Made by exhand calibrate: gnuplot -e \"plots='ports/posix/cli/plot'\" %s/pictures.gp\n"
-                   "out='%s/calibration.png'; points='%s/calibration.csv'; table='%s/table.csv'\n"
-                   "kf=%.9g; kf_mon=%.9g\nload plots.'/calibration.gp'\n", dir, dir, dir, dir,
+        fprintf(f, "# Made by exhand calibrate. In this directory: gnuplot -c pictures.gp PLOTS, where\n"
+                   "# PLOTS is the path of ports/posix/cli/plot.\n"
+                   "out='calibration.png'; points='calibration.csv'; table='table.csv'\n"
+                   "kf=%.9g; kf_mon=%.9g\nload ARG1.'/calibration.gp'\n",
                 (double)l->cur.kf_NpA_q20 / (1 << EXH_Q_FORCE),
                 (double)l->mon.kf_NpA_q20 / (1 << EXH_Q_FORCE));
     }
@@ -233,7 +235,7 @@ static int check_image(const struct calibrate_options *o)
     int err;
     FILE *f = fopen(o->check, "rb");
     if (f == NULL) {
-        fprintf(stderr, "%s: %s\n", o->check, strerror(errno));
+        cli_complain("%s: %s", o->check, strerror(errno));
         return 2;
     }
     len = fread(image, 1, sizeof image, f);
@@ -255,7 +257,7 @@ static int check_image(const struct calibrate_options *o)
 static void interrupted(int sig)
 {
     (void)sig;
-    posix_stop();
+    posix_interrupt();
 }
 
 /* Two checks besides the steps: all is a table, and its points lie on a line. */
@@ -266,14 +268,14 @@ static int judge(const struct calibrate_options *o, struct calibration *r)
     int err = exh_calib_valid(&r->c, &bad);
     if (err < 0) { return complain("calibrate", err, &bad); }
     if (calibration_lines(&r->c, &l) < 0) {
-        fprintf(stderr, "calibrate: no line through these points: calibrate again\n");
+        cli_complain("no line through these points: calibrate again");
         return 1;
     }
     calibration_print(stdout, &r->c, &l);
     fflush(stdout);
     err = l.cur_worst_N > o->residual_N || l.mon_worst_N > o->residual_N;
     if (err) {
-        fprintf(stderr, "residual: %.4g N (allowed 0..%.4g): weigh that mass again, or --residual\n",
+        cli_complain("residual: %.4g N (allowed 0..%.4g): weigh that mass again, or --residual",
                 l.cur_worst_N > l.mon_worst_N ? l.cur_worst_N : l.mon_worst_N, o->residual_N);
         return 1;
     }
@@ -286,6 +288,7 @@ static int judge(const struct calibrate_options *o, struct calibration *r)
 static int calibrate(const struct calibrate_options *o)
 {
     static struct calibration r;
+    struct sigaction stop = {.sa_handler = interrupted, .sa_flags = SA_RESTART};
     struct calibration_cfg c;
     int err;
     memset(&c, 0, sizeof c);
@@ -302,17 +305,17 @@ static int calibrate(const struct calibrate_options *o)
     c.board.pace = o->pace;
     c.board.wrong = o->wrong;
     if (o->out != NULL && mkdir(o->out, 0777) != 0 && errno != EEXIST) {
-        fprintf(stderr, "--out: %s: %s\n", o->out, strerror(errno));
+        cli_complain("--out: %s: %s", o->out, strerror(errno));
         return 2;
     }
-    signal(SIGINT, interrupted);
-    signal(SIGTERM, interrupted);
+    (void)sigaction(SIGINT, &stop, NULL);
+    (void)sigaction(SIGTERM, &stop, NULL);
     err = calibration_run(&c, &r);
     fflush(stdout); /* the steps before what is said of them */
     if (err < 0) { return err == -EXH_E_STATE ? 1 : 2; }
     if (r.result != EXH_PROBE_DONE) {
-        fprintf(stderr, "%s: %s after %.2f s at up to %.1f mA, %.1f mm: stopped, no current; "
-                        "put it right and calibrate again\n", calibrate_step_text(r.step),
+        cli_complain("%s: %s after %.2f s at up to %.1f mA, %.1f mm: stopped, no current; "
+                        "put it right and calibrate again", calibrate_step_text(r.step),
                 calibrate_result_text(r.result), r.last_s, r.last_most_A * 1e3, r.last_travel_m * 1e3);
         return 1;
     }
@@ -374,7 +377,7 @@ int cli_calibrate(int argc, char **argv)
         return 0;
     }
     if (o.hung != 0 && o.hung != o.masses) {
-        fprintf(stderr, "--hung: %d masses (as many as --mass: %d): give that many\n", o.hung, o.masses);
+        cli_complain("--hung: %d masses (as many as --mass: %d): give that many", o.hung, o.masses);
         return 2;
     }
     return o.check ? check_image(&o) : calibrate(&o);

@@ -1,5 +1,6 @@
 #include "calibration.h"
 
+#include "option.h"
 #include "param.h"
 
 #include "calibrate/calibrate.h"
@@ -168,12 +169,12 @@ static void say_pair(void)
         const struct exh_signal *row = cli_signal_find(p->table, pair[i][0], &a);
         if (row == NULL || cli_signal_find(p->table, pair[i][1], &b) == NULL) { continue; }
         if (p->active[a] <= p->active[b]) { continue; }
-        fprintf(stderr, "%s: %.9g (allowed up to %s: %.9g %s): choose a lower one\n", pair[i][0],
+        cli_complain("%s: %.9g (allowed up to %s: %.9g %s): choose a lower one", pair[i][0],
                 cli_signal_value(row, p->active[a]), pair[i][1], cli_signal_value(row, p->active[b]),
                 row->unit);
         return;
     }
-    fprintf(stderr, "calibrate: %s: `exhand calibrate --params` lists the ranges\n",
+    cli_complain("%s: `exhand calibrate --params` lists the ranges",
             exh_error_text(-EXH_E_RANGE));
 }
 
@@ -195,14 +196,14 @@ int calibration_run(const struct calibration_cfg *cfg, struct calibration *out)
     posix_configure(&board);
     err = exh_loop(&exh_scene_calibrate, cfg->rate_Hz, &hooks);
     if (err == -EXH_E_RATE) {
-        fprintf(stderr, "rate: %lu Hz (allowed 20..%lu, and two ticks a dwell): choose one in that range\n",
+        cli_complain("rate: %lu Hz (allowed 20..%lu, and two ticks a dwell): choose one in that range",
                 (unsigned long)cfg->rate_Hz, (unsigned long)exh_board_info.rate_max_Hz);
     } else if (err == -EXH_E_RANGE) {
         say_pair();
     } else if (err < 0) {
-        fprintf(stderr, "calibrate: %s\n", exh_error_text(err));
+        cli_complain("%s", exh_error_text(err));
     } else if (run.out->result == 0) {
-        fprintf(stderr, "calibrate: interrupted\n");
+        cli_complain("interrupted");
         err = -EXH_E_STATE;
     }
     return err;

@@ -55,7 +55,8 @@ void cli_signal_print(FILE *f, const struct exh_signal_table *t)
     static const char *const when[] = {"output", "set-up", "any time"};
     const uint32_t n = exh_signal_count(t);
     for (uint32_t i = 0; i < n; i++) {
-        cli_complain("%s: no such parameter: the command's --params lists them", name);
+        const struct exh_signal *r = exh_signal_at(t, i, NULL);
+        fprintf(f, "  %-13s %-8s %14.12g  %14.12g .. %-14.12g %-8s %s\n", r->name, r->unit,
                 cli_signal_value(r, r->dflt), cli_signal_value(r, r->min),
                 cli_signal_value(r, r->max), when[r->when], r->help);
     }

@@ -8,7 +8,7 @@
 #   kf, kf_mon   slopes of the lines, N/A
 # Optional: out, the PNG to write (calibration.png)
 
-reset # another script may have run in this session
+reset # another script may have run before
 if (!exists("out")) out = 'calibration.png'
 set terminal pngcairo size 1500,1300 font 'DejaVu Sans,20' linewidth 1.6 background '#ffffff'
 set output out
