@@ -310,6 +310,11 @@ fresh:
 fmt:
 	clang-format -i $(shell git ls-files '*.c' '*.h')
 
+## Draw the block diagrams in docs/ from the signal and device tables
+.PHONY: diagrams
+diagrams: all
+	$(Q)for d in overview setup identification; do $(exhand) diagram $$d > docs/$$d.svg || exit 1; done
+
 ## Remove everything that was built
 .PHONY: clean
 clean:

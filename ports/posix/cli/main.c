@@ -16,6 +16,7 @@ static const struct {
     {"drop", "the paper's falling-mass experiment on the simulated device", cli_drop},
     {"csv", "a log as comma-separated values", cli_csv},
     {"replay", "the recorded inputs again, every output compared bit for bit", cli_replay},
+    {"diagram", "a block diagram made from the signal and device tables", cli_diagram},
 };
 #define COMMANDS (sizeof command / sizeof command[0])
 
