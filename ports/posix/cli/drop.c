@@ -6,6 +6,7 @@
 #include "option.h"
 #include "outdir.h"
 #include "param.h"
+#include "sweep.h"
 
 #include "drop/drop.h"
 
@@ -23,8 +24,8 @@ struct drop_options {
     int rates, rates_given;
     double k_Npm, b_Nspm, scale; /* < 0: the paper's at that rate                 */
     int64_t falls, seed, jobs, spread, replicates;
-    int pace;
-    const char *out;
+    int pace, sweep;
+    const char *out, *grid, *shard;
     struct run_setting setting[SETTINGS_MAX];
     int settings;
     struct sim_device device;
@@ -310,13 +311,32 @@ static int refuse(struct drop_options *o)
                      (int)o->replicates);
         return 2;
     }
+    if (!o->sweep && (o->grid || o->shard)) {
+        cli_complain("--grid and --shard: only with --sweep");
+        return 2;
+    }
     for (int i = 0; i < o->rates; i++) {
         struct run_cfg c = job_cfg(o, i, 1, 1);
         if (run_check(&c) < 0) { return 2; }
         c = job_cfg(o, i, 1.5, 1);
         if (o->spread > 0 && run_check(&c) < 0) { return 2; }
     }
-    return o->out ? outdir_open(o->out) : 0;
+    return o->out && !o->sweep ? outdir_open(o->out) : 0;
+}
+
+static int sweep(const struct drop_options *o)
+{
+    struct sweep_opt s = {.rate_Hz = o->rate_Hz, .rates = o->rates, .jobs = (int)o->jobs,
+                          .base = job_cfg(o, 0, 1, (uint64_t)o->seed), .dir = o->out};
+    if (o->k_Npm >= 0 || o->b_Nspm >= 0 || o->scale != 1 || o->spread > 0 || o->pace) {
+        cli_complain("--sweep: chooses k and b itself: leave out --k, --b, --scale, --spread, --pace");
+        return 2;
+    }
+    if (sweep_take_grid(o->grid ? o->grid : "20x16", &s.columns, &s.rows) ||
+        sweep_take_shard(o->shard ? o->shard : "1/1", &s.shard, &s.shards)) {
+        return 2;
+    }
+    return sweep_run(&s);
 }
 
 int cli_drop(int argc, char **argv)
@@ -344,6 +364,9 @@ int cli_drop(int argc, char **argv)
         {"replicates", CLI_INT, &o.replicates, 0, 100000, "N", "of the bootstrap, 0 or 40.. (1000)"},
         {"set", CLI_CALL, u[2].to, 0, 0, "NAME=VALUE", "a parameter of the scene"},
         {"device", CLI_CALL, u[3].to, 0, 0, "NAME=VALUE", "a value of the simulated device"},
+        {"sweep", CLI_FLAG, &o.sweep, 0, 0, NULL, "the stability border in the k-b plane, in DIR/stability.csv"},
+        {"grid", CLI_TEXT, &o.grid, 0, 0, "KxB", "cells of the sweep at each rate (20x16)"},
+        {"shard", CLI_TEXT, &o.shard, 0, 0, "I/N", "the I-th of N parts of the sweep, in a file of its own"},
         {"params", CLI_FLAG, &list, 0, 0, NULL, "list both, with units and ranges"},
     };
     const struct cli_command c = {
@@ -372,5 +395,5 @@ int cli_drop(int argc, char **argv)
         return 0;
     }
     err = refuse(&o);
-    return err ? err : experiment(&o);
+    return err ? err : o.sweep ? sweep(&o) : experiment(&o);
 }

@@ -1,0 +1,46 @@
+/* Cells of the k-b plane in a file that grows as they come, so that a sweep that was
+ * interrupted goes on and the files of shards make one.
+ *
+ * stability.csv: a line `# settings`, a header, a line a cell. A last line that was cut
+ * off is dropped. Cells are judged the same wherever they are run, so the same cell
+ * may come from several files. */
+#ifndef CLI_CELLS_H
+#define CLI_CELLS_H
+
+struct cell {
+    double rate_Hz, k_Npm, b_Nspm;
+    int stable_falls, falls;
+    double stiffness_Npm; /* 0: none worth the name                             */
+    double rho;           /* of the linear test; < 0: not computed               */
+};
+
+/* Stable: at least nine falls in ten came to rest. */
+int cell_stable(const struct cell *c);
+
+struct cells {
+    struct cell *at; /* sorted by rate, k, b                                    */
+    int n, cap;
+    const char *settings; /* what a file must have been made with               */
+};
+
+/* Takes up the cells of a file; one that does not exist has none. 0, 1 after a line
+ * on stderr: it can't be read; 2 after such a line: made with other settings, or no file
+ * of a sweep. Files may be strung together. */
+int cells_load(struct cells *c, const char *path);
+
+/* NULL: not known. */
+const struct cell *cells_find(const struct cells *c, double rate_Hz, double k_Npm, double b_Nspm);
+
+/* 0, or 1 after a line on stderr: out of memory. A cell that is known is let be. */
+int cells_add(struct cells *c, const struct cell *add);
+
+/* All cells, sorted, in place of the file. 0, or 1 after a line on stderr. */
+int cells_save(const struct cells *c, const char *path);
+
+/* One line at the end of a file opened to append; whole or not at all even when
+ * several processes do it. 0, or 1 after a line on stderr. */
+int cells_append(int fd, const char *path, const struct cell *c);
+
+void cells_free(struct cells *c);
+
+#endif

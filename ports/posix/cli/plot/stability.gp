@@ -1,0 +1,98 @@
+# The k-b plane at each loop rate: which cells come to rest, the border found by
+# bisection, the border of the exact linear test, the paper's point.
+#
+#   gnuplot -e "cells='stability.csv'; border='border.csv'; rho='rho.csv'; ..." stability.gp
+#
+#   cells        rate_hz,k_n_per_m,b_ns_per_m,stable_falls,falls,...   (exhand drop --sweep)
+#   border       rate_hz,along,k_n_per_m,b_ns_per_m: points between stable and unstable
+#   rho          rate,k,b,rho on a grid; two empty lines between rates, in order of rates
+#   rates        Hz; k_tops, b_tops: ends of the axes, N/m and Ns/m, one per rate
+#   paper_ks, paper_bs   the paper's point at each rate; -1 for none
+# Lists have spaces between their words. Optional:
+#   out          PNG to write                            (stability.png)
+
+reset # another script may have run in this session
+if (!exists("out")) out = 'stability.png'
+
+panels = words(rates)
+across = panels < 3 ? panels : 3
+down = (panels + across - 1) / across
+width = 130.0 + 600*across
+height = 190.0 + 520*down
+set terminal pngcairo size width,height font 'DejaVu Sans,20' linewidth 1.6 background '#ffffff'
+set datafile separator ','
+
+ink = '#333333'
+set style line 1 lc rgb '#1f5fbf' pt 7 ps 1.1             # at rest
+set style line 2 lc rgb '#8fb2e0' pt 7 ps 0.9             # most of its falls at rest
+set style line 3 lc rgb '#e0a8a0' pt 2 ps 0.7 lw 1.0      # oscillates
+set style line 4 lc rgb '#333333' pt 7 ps 0.8 lw 1.6      # simulated border
+set style line 5 lc rgb '#d07800' lw 2.6 dt (9,4)         # rho = 1
+set style line 6 lc rgb '#1a8f2e' pt 3 ps 2.6 lw 2.4      # the paper's point
+
+# Contours first: they need a plot of their own.
+do for [i = 1:panels] {
+    set contour base; unset surface
+    set cntrparam levels discrete 1
+    set table sprintf('%s.%d.rho1', out, i)
+    splot rho index (i-1) using 2:3:4 with lines
+    unset table
+    unset contour; set surface
+}
+
+set output out
+set multiplot
+set lmargin at screen 0; set rmargin at screen 1
+set tmargin at screen 1; set bmargin at screen 0
+unset border; unset tics
+set xrange [0:1]; set yrange [0:1]
+set key at screen 0.52, screen 1.0-20.0/height center top horizontal Left reverse maxrows 2 \
+    samplen 2.4 width 1 textcolor rgb ink
+plot NaN with points ls 1 ps 1.6 title 'every fall comes to rest', \
+     NaN with points ls 2 ps 1.6 title 'some falls do', \
+     NaN with points ls 3 ps 1.2 title 'no fall does', \
+     NaN with linespoints ls 4 ps 1.2 title 'simulated border', \
+     NaN with lines ls 5 title 'linear border, {/Symbol r} = 1', \
+     NaN with points ls 6 title 'paper, Table II'
+set key off
+set border 3 lc rgb ink lw 0.8
+set tics nomirror out scale 0.5 textcolor rgb ink
+set grid lc rgb '#dddddd' lw 0.6 lt 1
+
+step(top) = (p = 10**floor(log10(top)), top/p > 5 ? 2*p : top/p > 2 ? p : p/2)
+do for [i = 1:panels] {
+    c = (i-1) % across; r = (i-1) / across
+    set lmargin at screen (130.0 + 600*c) / width
+    set rmargin at screen (130.0 + 600*c + 510) / width
+    set tmargin at screen 1.0 - (120.0 + 520*r + 40) / height
+    set bmargin at screen 1.0 - (120.0 + 520*r + 440) / height
+    k_top = real(word(k_tops, i)) / 1e3
+    b_top = real(word(b_tops, i))
+    RATE = real(word(rates, i))
+    set xrange [0:1.02*k_top]
+    set yrange [-0.03*b_top:1.03*b_top]
+    set xtics step(k_top); set ytics step(b_top)
+    set title '{/:Bold '.word(rates, i).' Hz}' textcolor rgb ink offset 0,-0.6
+    if (r == down - 1 || i + across > panels) { set xlabel 'stiffness k (kN/m)' textcolor rgb ink
+    } else { unset xlabel }
+    if (c == 0) { set ylabel 'damping b (Ns/m)' textcolor rgb ink } else { unset ylabel }
+    mine(v) = column('rate_hz') == RATE ? v : NaN
+    blank(n) = real(word(strcol(1), n)) # gnuplot's own tables have no commas
+    along(w) = strcol('along') eq w
+    all(v) = mine(column('stable_falls') == column('falls') ? v : NaN)
+    some(v) = mine(column('stable_falls') > 0 && column('stable_falls') < column('falls') ? v : NaN)
+    none(v) = mine(column('stable_falls') == 0 ? v : NaN)
+    pk = real(word(paper_ks, i)); pb = real(word(paper_bs, i))
+    set label 1 '' at (pk < 0 ? NaN : pk/1e3), pb point ls 6 front
+    plot cells using (column('k_n_per_m')/1e3):(none(column('b_ns_per_m'))) with points ls 3, \
+         cells using (column('k_n_per_m')/1e3):(some(column('b_ns_per_m'))) with points ls 2, \
+         cells using (column('k_n_per_m')/1e3):(all(column('b_ns_per_m'))) with points ls 1, \
+         sprintf('%s.%d.rho1', out, i) using (blank(1)/1e3):(blank(2)) with lines ls 5, \
+         border using (column('k_n_per_m')/1e3):(mine(column('b_ns_per_m'))) with points ls 4, \
+         border using (along('k') ? column('k_n_per_m')/1e3 : NaN):(mine(column('b_ns_per_m'))) \
+             with lines ls 4
+    unset label 1
+}
+unset multiplot
+unset output
+do for [i = 1:panels] { system sprintf("rm -f '%s.%d.rho1'", out, i) }

@@ -1,0 +1,232 @@
+/* exhand drop --sweep: whatever way its cells came about, the file is the same. */
+#include "said.h"
+
+#include "cli/cells.h"
+
+#include <signal.h>
+#include <time.h>
+
+#define LEN(a) (sizeof(a) / sizeof((a)[0]))
+
+/* A sweep of the smallest size: two rates, one fall a cell, watched for 1 s. */
+#define SMALL(dir)                                                                            \
+    "drop", "--sweep", "--rate", "90,500", "--falls", "1", "--grid", "3x3", "--jobs", "2",    \
+        "--device", "observe=1", "--out", dir
+
+static char whole[SAID_B], again[SAID_B];
+
+static void copy(const char *from, const char *to, long bytes)
+{
+    static char text[SAID_B];
+    FILE *f;
+    said_read(text, from);
+    f = fopen(to, "a");
+    CHECK(f != NULL && fwrite(text, 1, (size_t)bytes, f) == (size_t)bytes && fclose(f) == 0, "%s", to);
+}
+
+/* The sweep at one go, into `whole`; its directory. */
+static void one_go(const char *dir, struct said *s)
+{
+    said(s, dir, cli_drop, WORDS(SMALL(dir)));
+    CHECK(s->status == 0 && s->err[0] == '\0', "%d: %s", s->status, s->err);
+    said_read(whole, said_path(dir, "stability.csv"));
+    CHECK(strlen(whole) > 2000 && strlen(whole) < SAID_B - 1, "%zu bytes", strlen(whole));
+}
+
+static int lines(const char *text)
+{
+    int n = 0;
+    for (; *text; text++) { n += *text == '\n'; }
+    return n;
+}
+
+TEST(a_sweep_finds_a_border_and_says_so)
+{
+    const char *dir = said_dir();
+    static struct said s;
+    one_go(dir, &s);
+    CHECK(strncmp(whole, "# exhand drop --sweep version=1 falls=1 seed=1 columns=3 rows=3 ", 64) == 0, "%s",
+          whole);
+    CHECK(strstr(whole, "\nrate_hz,k_n_per_m,b_ns_per_m,stable_falls,falls,stiffness_n_per_m,rho\n90,"),
+          "%s", whole);
+    CHECK(strstr(s.out, "largest stable k") && strstr(s.out, "\n    90 |") && strstr(s.out, "\n   500 |"),
+          "%s", s.out);
+    said_read(again, said_path(dir, "border.csv"));
+    CHECK(strstr(again, "\n90,k,") && strstr(again, "\n90,b,") && strstr(again, "\n500,k,"), "%s", again);
+    CHECK(said_size(said_path(dir, "rho.csv")) > 100000 && said_size(said_path(dir, "sweep.gp")) > 100,
+          "pictures");
+    said_clean(dir);
+}
+
+/* Cut off anywhere: in the settings, in the header, in a cell, after one, before the last. */
+TEST(a_resumed_sweep_gives_the_same_file)
+{
+    char dir[64], rest[64];
+    static struct said s;
+    strcpy(dir, said_dir());
+    one_go(dir, &s);
+    for (size_t i = 0; i < 8; i++) {
+        const long size = (long)strlen(whole);
+        const long cut[] = {0, 30, (long)(strchr(whole, '\n') - whole) + 5, size / 3, size / 2, size - 1,
+                            size, (long)(strstr(whole, "\n500,") - whole) + 1};
+        strcpy(rest, said_dir());
+        copy(said_path(dir, "stability.csv"), said_path(rest, "stability.csv"), cut[i]);
+        said(&s, rest, cli_drop, WORDS(SMALL(rest)));
+        CHECK(s.status == 0, "cut at %ld: %d: %s", cut[i], s.status, s.err);
+        said_read(again, said_path(rest, "stability.csv"));
+        CHECK(strcmp(whole, again) == 0, "cut at %ld: another file", cut[i]);
+        CHECK(cut[i] < size / 3 || strstr(s.err, "goes on from"), "cut at %ld: %s", cut[i], s.err);
+        said_clean(rest);
+    }
+    said_clean(dir);
+}
+
+TEST(an_interrupted_sweep_keeps_its_cells)
+{
+    const struct timespec moment = {0, 2000000};
+    char dir[64];
+    static struct said s;
+    const char *path;
+    pid_t pid;
+    int known;
+    strcpy(dir, said_dir());
+    one_go(dir, &s);
+    remove(said_path(dir, "stability.csv"));
+    pid = said_start(dir, cli_drop, WORDS(SMALL(dir)));
+    path = said_path(dir, "stability.csv");
+    for (int ms = 0; ms < 20000 && said_size(path) < (long)strlen(whole) / 2; ms += 2) {
+        nanosleep(&moment, NULL);
+    }
+    CHECK(kill(pid, SIGINT) == 0, "gone");
+    said_end(&s, dir, pid);
+    CHECK(s.status == 130 && strstr(s.err, "the same command goes on"), "%d: %s", s.status, s.err);
+    said_read(again, said_path(dir, "stability.csv"));
+    known = lines(again) - 2;
+    CHECK(known > 10 && known < lines(whole) - 2, "%d cells", known);
+    said(&s, dir, cli_drop, WORDS(SMALL(dir)));
+    CHECK(s.status == 0 && strstr(s.err, "goes on from"), "%d: %s", s.status, s.err);
+    said_read(again, said_path(dir, "stability.csv"));
+    CHECK(strcmp(whole, again) == 0, "another file");
+    said_clean(dir);
+}
+
+TEST(shards_make_the_whole)
+{
+    static const char *const part[] = {"1/3", "2/3", "3/3"};
+    static const char *const file[] = {"stability.1-of-3.csv", "stability.2-of-3.csv",
+                                       "stability.3-of-3.csv"};
+    char dir[64], shards[64], strung[64];
+    static struct said s;
+    strcpy(dir, said_dir());
+    strcpy(shards, said_dir());
+    strcpy(strung, said_dir());
+    one_go(dir, &s);
+    for (int i = 0; i < 3; i++) {
+        said(&s, shards, cli_drop, WORDS(SMALL(shards), "--shard", part[i]));
+        CHECK(s.status == 0, "%d: %s", s.status, s.err);
+        said_read(again, said_path(shards, file[i]));
+        CHECK(lines(again) < lines(whole), "part %d has %d lines of %d", i, lines(again), lines(whole));
+        copy(said_path(shards, file[i]), said_path(strung, "stability.csv"),
+             said_size(said_path(shards, file[i])));
+    }
+    for (int i = 0; i < 2; i++) { /* beside each other, and strung together */
+        char goes_on[64];
+        const char *to = i ? strung : shards;
+        said(&s, to, cli_drop, WORDS(SMALL(to)));
+        CHECK(s.status == 0, "%d: %s", s.status, s.err);
+        said_read(again, said_path(to, "stability.csv"));
+        CHECK(strcmp(whole, again) == 0, "%d: another file", i);
+        snprintf(goes_on, sizeof goes_on, "goes on from %d cells", lines(whole) - 2);
+        CHECK(strstr(s.err, goes_on) != NULL, "something was left to run: %s, not %s", s.err, goes_on);
+    }
+    said_clean(dir);
+    said_clean(shards);
+    said_clean(strung);
+}
+
+/* ---- What is refused -------------------------------------------------------------- */
+
+TEST(a_file_of_other_settings_is_refused_by_name)
+{
+    static const struct {
+        const char *word[2], *says;
+    } row[] = {
+        {{"--seed", "2"}, "made with seed=1, not with seed=2"},
+        {{"--falls", "2"}, "made with falls=1, not with falls=2"},
+        {{"--grid", "3x4"}, "made with rows=3, not with rows=4"},
+        {{"--device", "mu_motor=0"}, "made with mu_motor=0.1297, not with mu_motor=0:"},
+        {{"--seed", "12"}, "made with seed=1, not with seed=12:"},
+        {{"--set", "f0=0"}, "made with nothing further, not with f0=0: "},
+        {{"--device", "substep=0.000026"}, "made with substep=2.5e-05, not with substep=2.6e-05:"},
+        {{"--set", "f0=0"}, "not with f0=0: choose another --out"},
+    };
+    const char *dir = said_dir();
+    static struct said s;
+    one_go(dir, &s);
+    for (size_t i = 0; i < LEN(row); i++) {
+        said(&s, dir, cli_drop, WORDS(SMALL(dir), row[i].word[0], row[i].word[1]));
+        CHECK(s.status == 2 && strstr(s.err, row[i].says), "row %zu: %d: %s", i, s.status, s.err);
+        said_read(again, said_path(dir, "stability.csv"));
+        CHECK(strcmp(whole, again) == 0, "row %zu: touched", i);
+    }
+    said_clean(dir);
+}
+
+TEST(a_damaged_file_is_refused_by_line)
+{
+    static const struct {
+        const char *text, *says;
+    } row[] = {
+        {"rate,k\n1,2\n", "stability.csv: not a file of a sweep"},
+        {"90,1000,abc,1,1,,\n", "stability.csv:3: 90,1000,abc"},
+        {"90,1000,0,2,1,,0.9\n", "stability.csv:3: 90,1000,0,2,1"}, /* two of one fall */
+        {"90,1000,0,1,1,0.9\n", "stability.csv:3: "},                /* a field is missing */
+        {"90,1000,0,1,1,,0.9,\n", "stability.csv:3: "},
+        {"90,nan,0,1,1,,0.9\n", "stability.csv:3: "},
+        {"\n", "stability.csv:3: "},
+    };
+    static struct said s;
+    const char *dir = said_dir();
+    one_go(dir, &s);
+    for (size_t i = 0; i < LEN(row); i++) {
+        FILE *f = fopen(said_path(dir, "stability.csv"), "w");
+        const char *cells = strchr(strchr(whole, '\n') + 1, '\n') + 1;
+        CHECK(f != NULL, "row %zu", i);
+        if (i > 0) { fwrite(whole, 1, (size_t)(cells - whole), f); }
+        fputs(row[i].text, f);
+        fclose(f);
+        said(&s, dir, cli_drop, WORDS(SMALL(dir)));
+        CHECK(s.status == 2 && strstr(s.err, row[i].says), "row %zu: %d: %s", i, s.status, s.err);
+    }
+    said_clean(dir);
+}
+
+TEST(bad_usage_is_refused_by_name)
+{
+    static const struct {
+        const char *word[4], *says;
+    } row[] = {
+        {{"--grid", "20"}, "--grid: 20 (KxB"},         {{"--grid", "1x5"}, "--grid: 1x5"},
+        {{"--grid", "5x201"}, "--grid: 5x201"},        {{"--grid", "5x5x"}, "--grid: 5x5x"},
+        {{"--shard", "0/2"}, "--shard: 0/2 (I/N"},     {{"--shard", "3/2"}, "--shard: 3/2"},
+        {{"--shard", "1"}, "--shard: 1 "},             {{"--k", "500"}, "--sweep: chooses k and b"},
+        {{"--spread", "3"}, "--sweep: chooses k and b"}, {{"--pace"}, "--sweep: chooses k and b"},
+        {{"--out", "/dev/null"}, "--out: /dev/null: "}, {{"--out", "/nowhere/at/all"}, "--out: /nowhere"},
+    };
+    const char *dir = said_dir();
+    static struct said s;
+    for (size_t i = 0; i < LEN(row); i++) {
+        said(&s, dir, cli_drop, WORDS(SMALL(dir), row[i].word[0], row[i].word[1]));
+        CHECK(s.status == 2 && strstr(s.err, row[i].says), "row %zu: %d: %s", i, s.status, s.err);
+    }
+    said(&s, dir, cli_drop, WORDS("drop", "--sweep"));
+    CHECK(s.status == 2 && strstr(s.err, "--sweep: needs --out DIR"), "%d: %s", s.status, s.err);
+    said(&s, dir, cli_drop, WORDS("drop", "--grid", "5x5"));
+    CHECK(s.status == 2 && strstr(s.err, "--grid and --shard: only with --sweep"), "%d: %s", s.status, s.err);
+    said_clean(dir);
+}
+
+TEST_MAIN("sweep", a_sweep_finds_a_border_and_says_so, a_resumed_sweep_gives_the_same_file,
+          an_interrupted_sweep_keeps_its_cells, shards_make_the_whole,
+          a_file_of_other_settings_is_refused_by_name, a_damaged_file_is_refused_by_line,
+          bad_usage_is_refused_by_name);
