@@ -162,6 +162,28 @@ TEST(slow_rates_are_judged_too)
     }
 }
 
+/* Thrown up it leaves the string slack and the motor still, for longer than the window. */
+TEST(a_mass_in_flight_is_not_at_rest)
+{
+    for (int lands = 0; lands < 2; lands++) {
+        struct log_builder b = {0};
+        struct fall_contacts contacts;
+        struct fall_rest rest;
+        begin_fall(&b);
+        for (int i = 0; i < 3000; i++) {
+            const int up = i * 0.002 > 4.3 && !(lands && i * 0.002 > 4.9);
+            add(&b, 0.002, up || i * 0.002 > 4.9 ? 0.0698 : 0.08, up ? 0.1 : 1.0, !up);
+        }
+        const struct fall_log log = built(&b);
+        CHECK(fall_dissect(&log, 1, &contacts) == FALL_OK, "%d", lands);
+        CHECK(fall_rest(&log, &contacts, &fall_rest_opt_default, &rest) == FALL_OK, "%d", lands);
+        CHECK(rest.rest == (lands ? FALL_AT_REST : FALL_INCOMPLETE), "%d: %s", lands,
+              fall_rest_text(rest.rest));
+        fall_contacts_free(&contacts);
+        drop(&b);
+    }
+}
+
 /* Position saturates at 2 m, where a mass that fell past it seems to stand still. */
 TEST(a_mass_that_ran_away_is_not_at_rest)
 {
@@ -178,4 +200,4 @@ TEST(a_mass_that_ran_away_is_not_at_rest)
 }
 
 TEST_MAIN("rest", rest_is_never_mistaken, rest_at_the_limits, slow_rates_are_judged_too,
-          a_mass_that_ran_away_is_not_at_rest);
+          a_mass_that_ran_away_is_not_at_rest, a_mass_in_flight_is_not_at_rest);

@@ -207,8 +207,9 @@ enum fall_rest_class {
                         than a position on the edge of a count does by itself. Counts
                         as rest; three counts, below travel_m, are slow creep: rest  */
     FALL_OSCILLATES,
-    FALL_INCOMPLETE, /* no contact, the log ends before the observation does, or
-                        the mass ran away to where position is no longer measured */
+    FALL_INCOMPLETE, /* no contact, the log ends before the observation does, or the
+                        mass is in flight through the whole window, or ran away to
+                        where position is no longer measured                       */
     FALL_REST_CLASSES
 };
 

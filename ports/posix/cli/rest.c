@@ -28,7 +28,7 @@ const char *fall_rest_text(enum fall_rest_class rest)
 
 struct span {
     double q_lo, q_hi, f_lo, f_hi;
-    size_t n;
+    size_t n, touching;
 };
 
 static void span_add(struct span *w, const struct fall_sample *s)
@@ -37,6 +37,7 @@ static void span_add(struct span *w, const struct fall_sample *s)
     if (w->n == 0 || s->q_m > w->q_hi) { w->q_hi = s->q_m; }
     if (w->n == 0 || s->f_mon_N < w->f_lo) { w->f_lo = s->f_mon_N; }
     if (w->n == 0 || s->f_mon_N > w->f_hi) { w->f_hi = s->f_mon_N; }
+    w->touching += s->c != 0;
     w->n++;
 }
 
@@ -55,7 +56,7 @@ static void rest_of_fall(const struct fall_log *log, const struct fall_contact *
                          const struct fall_rest_opt *opt, struct fall_rest *out)
 {
     const size_t first = log->start[contact->fall], end = part_fall_end(log, contact->fall);
-    struct span w = {0.0, 0.0, 0.0, 0.0, 0};
+    struct span w = {0.0, 0.0, 0.0, 0.0, 0, 0};
 
     out->t_contact_s = log->sample[contact->first].t_s;
     if (end - first < 2) { return; }
@@ -71,8 +72,12 @@ static void rest_of_fall(const struct fall_log *log, const struct fall_contact *
     /* A window is rarely a whole number of ticks: by one it may seem short. */
     if (w.n < 3 || (double)w.n * tick_s < 0.9 * (opt->window_s - tick_s)) { return; }
     const enum fall_rest_class rest = judge(w.q_hi - w.q_lo, w.f_hi - w.f_lo, opt);
-    /* A position that stands still at the end of its range says nothing of the mass. */
-    if (rest != FALL_OSCILLATES && (w.q_lo <= -opt->range_m || w.q_hi >= opt->range_m)) { return; }
+    /* A position that stands still at the end of its range says nothing of the mass, and
+     * that of a slack string neither: the mass may be in flight. */
+    if (rest != FALL_OSCILLATES &&
+        (w.q_lo <= -opt->range_m || w.q_hi >= opt->range_m || w.touching == 0)) {
+        return;
+    }
     out->travel_m = w.q_hi - w.q_lo;
     out->force_N = w.f_hi - w.f_lo;
     out->rest = rest;
