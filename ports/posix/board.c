@@ -123,6 +123,10 @@ int exh_board_init(uint32_t rate_Hz, struct exh_period *achieved)
         fall_start(&sim.fall, &sim.plant, &sim.cfg.device, &sim.rng, sim.cfg.falls,
                    (double)sim.T.num / (double)sim.T.den);
     }
+    if (sim.cfg.from_here) {
+        sim.plant.x_m = sim.cfg.from_x_m;
+        sim.plant.q_m = sim.cfg.from_q_m;
+    }
     sim.servo_s = sim_random_unit(&sim.rng) / sim.cfg.device.servo_hz;
     stop = 0;
     *achieved = sim.T;

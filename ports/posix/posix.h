@@ -22,6 +22,8 @@ struct posix_config {
     int bench;               /* 1: a bench for calibration instead of falls; it goes
                               * on until posix_stop()                          */
     unsigned wrong;          /* enum bench_wrong: what is wrong with the bench    */
+    int from_here;           /* 1: the first fall begins at from_x_m, from_q_m   */
+    double from_x_m, from_q_m; /* mass and string, 0 = virtual contact           */
 };
 
 /* Defaults: the committed device, seed 1, one fall. */

@@ -91,14 +91,17 @@ TEST(an_interrupted_sweep_keeps_its_cells)
     int known;
     strcpy(dir, said_dir());
     one_go(dir, &s);
-    remove(said_path(dir, "stability.csv"));
-    pid = said_start(dir, cli_drop, WORDS(SMALL(dir)));
     path = said_path(dir, "stability.csv");
-    for (int ms = 0; ms < 20000 && said_size(path) < (long)strlen(whole) / 2; ms += 2) {
-        nanosleep(&moment, NULL);
+    for (int i = 0; i < 10; i++) { /* a busy machine may let it end first: again */
+        remove(path);
+        pid = said_start(dir, cli_drop, WORDS(SMALL(dir)));
+        for (int ms = 0; ms < 20000 && said_size(path) < (long)strlen(whole) / 3; ms += 2) {
+            nanosleep(&moment, NULL);
+        }
+        CHECK(kill(pid, SIGINT) == 0, "gone");
+        said_end(&s, dir, pid);
+        if (s.status != 0) { break; }
     }
-    CHECK(kill(pid, SIGINT) == 0, "gone");
-    said_end(&s, dir, pid);
     CHECK(s.status == 130 && strstr(s.err, "the same command goes on"), "%d: %s", s.status, s.err);
     said_read(again, said_path(dir, "stability.csv"));
     known = lines(again) - 2;
@@ -226,7 +229,54 @@ TEST(bad_usage_is_refused_by_name)
     said_clean(dir);
 }
 
+/* ---- Border check and friction ------------------------------------------------------- */
+
+TEST(the_simulated_border_is_the_linear_one)
+{
+    char dir[64];
+    static struct said s;
+    int cells = 0, agree = 0;
+    strcpy(dir, said_dir());
+    said(&s, dir, cli_drop, WORDS("drop", "--border-check", "--rate", "500,2000", "--grid", "8x6", "--out", dir));
+    CHECK(s.status == 0 && s.err[0] == '\0', "%d: %s", s.status, s.err);
+    for (const char *at = strstr(s.out, "   all |"); at != NULL; at = NULL) {
+        CHECK(sscanf(at, "   all | | %d of %d", &agree, &cells) == 2, "%s", at);
+    }
+    CHECK(cells > 70 && agree == cells, "%d of %d agree", agree, cells);
+    CHECK(strstr(s.out, "\ndry friction ") && strstr(s.out, "\nall: the device "), "%s", s.out);
+    check_note("500 and 2000 Hz: simulated and linear border agree in %d of %d cells", agree, cells);
+    CHECK(said_size(said_path(dir, "check.csv")) > 10000, "check.csv");
+    said_clean(dir);
+}
+
+TEST(friction_moves_the_border_outwards)
+{
+    char dir[64];
+    static struct said s;
+    double most[3][3];
+    const char *at;
+    strcpy(dir, said_dir());
+    said(&s, dir, cli_drop, WORDS("drop", "--friction", "3", "--falls", "1", "--rate", "200", "--out", dir));
+    CHECK(s.status == 0 && s.err[0] == '\0', "%d: %s", s.status, s.err);
+    said_read(again, said_path(dir, "friction.csv"));
+    at = again;
+    for (int i = 0; i < 9; i++) {
+        at = strchr(at, '\n') + 1;
+        CHECK(sscanf(at, "%*[^,],200,%*[^,],%lf,", &most[i / 3][i % 3]) == 1, "%s", at);
+    }
+    for (int i = 0; i < 3; i++) {
+        CHECK(most[i][0] < most[i][1] && most[i][1] < most[i][2], "%d: %g %g %g", i, most[i][0],
+              most[i][1], most[i][2]);
+    }
+    said(&s, dir, cli_drop, WORDS("drop", "--friction", "3"));
+    CHECK(s.status == 2 && strstr(s.err, "--friction: needs --out DIR"), "%d: %s", s.status, s.err);
+    said(&s, dir, cli_drop, WORDS("drop", "--friction", "3", "--sweep", "--out", dir));
+    CHECK(s.status == 2 && strstr(s.err, "one at a time"), "%d: %s", s.status, s.err);
+    said_clean(dir);
+}
+
 TEST_MAIN("sweep", a_sweep_finds_a_border_and_says_so, a_resumed_sweep_gives_the_same_file,
           an_interrupted_sweep_keeps_its_cells, shards_make_the_whole,
           a_file_of_other_settings_is_refused_by_name, a_damaged_file_is_refused_by_line,
-          bad_usage_is_refused_by_name);
+          bad_usage_is_refused_by_name, the_simulated_border_is_the_linear_one,
+          friction_moves_the_border_outwards);

@@ -1,7 +1,9 @@
 /* exhand drop: the paper's falling-mass experiment, run, judged, written. */
 #include "cli.h"
 
+#include "border.h"
 #include "csv.h"
+#include "friction.h"
 #include "jobs.h"
 #include "option.h"
 #include "outdir.h"
@@ -23,8 +25,8 @@ struct drop_options {
     double rate_Hz[RATES_MAX];
     int rates, rates_given;
     double k_Npm, b_Nspm, scale; /* < 0: the paper's at that rate                 */
-    int64_t falls, seed, jobs, spread, replicates;
-    int pace, sweep;
+    int64_t falls, seed, jobs, spread, replicates, friction;
+    int pace, sweep, check;
     const char *out, *grid, *shard;
     struct run_setting setting[SETTINGS_MAX];
     int settings;
@@ -295,6 +297,11 @@ static int experiment(const struct drop_options *o)
     return ran ? ran : err;
 }
 
+static int in_plane(const struct drop_options *o)
+{
+    return o->sweep || o->check || o->friction;
+}
+
 /* Whether what was asked for can be run at all: 0, or 2 after a line on stderr. */
 static int refuse(struct drop_options *o)
 {
@@ -311,7 +318,7 @@ static int refuse(struct drop_options *o)
                      (int)o->replicates);
         return 2;
     }
-    if (!o->sweep && (o->grid || o->shard)) {
+    if ((o->grid && !o->sweep && !o->check) || (o->shard && !o->sweep)) {
         cli_complain("--grid and --shard: only with --sweep");
         return 2;
     }
@@ -321,22 +328,29 @@ static int refuse(struct drop_options *o)
         c = job_cfg(o, i, 1.5, 1);
         if (o->spread > 0 && run_check(&c) < 0) { return 2; }
     }
-    return o->out && !o->sweep ? outdir_open(o->out) : 0;
+    return o->out && !in_plane(o) ? outdir_open(o->out) : 0;
 }
 
-static int sweep(const struct drop_options *o)
+/* --- the plane of gains instead of the table's points --- */
+
+static int plane(const struct drop_options *o)
 {
     struct sweep_opt s = {.rate_Hz = o->rate_Hz, .rates = o->rates, .jobs = (int)o->jobs,
                           .base = job_cfg(o, 0, 1, (uint64_t)o->seed), .dir = o->out};
-    if (o->k_Npm >= 0 || o->b_Nspm >= 0 || o->scale != 1 || o->spread > 0 || o->pace) {
-        cli_complain("--sweep: chooses k and b itself: leave out --k, --b, --scale, --spread, --pace");
+    if (o->sweep + o->check + (o->friction > 0) > 1) {
+        cli_complain("--sweep, --border-check, --friction: one at a time");
         return 2;
     }
-    if (sweep_take_grid(o->grid ? o->grid : "20x16", &s.columns, &s.rows) ||
+    if (o->k_Npm >= 0 || o->b_Nspm >= 0 || o->scale != 1 || o->spread > 0 || o->pace) {
+        cli_complain("--%s: chooses k and b itself: leave out --k, --b, --scale, --spread, --pace",
+                     o->sweep ? "sweep" : o->check ? "border-check" : "friction");
+        return 2;
+    }
+    if (sweep_take_grid(o->grid ? o->grid : o->sweep ? "20x16" : "16x16", &s.columns, &s.rows) ||
         sweep_take_shard(o->shard ? o->shard : "1/1", &s.shard, &s.shards)) {
         return 2;
     }
-    return sweep_run(&s);
+    return o->sweep ? sweep_run(&s) : o->check ? border_check(&s) : friction_run(&s, (int)o->friction);
 }
 
 int cli_drop(int argc, char **argv)
@@ -367,6 +381,8 @@ int cli_drop(int argc, char **argv)
         {"sweep", CLI_FLAG, &o.sweep, 0, 0, NULL, "the stability border in the k-b plane, in DIR/stability.csv"},
         {"grid", CLI_TEXT, &o.grid, 0, 0, "KxB", "cells of the sweep at each rate (20x16)"},
         {"shard", CLI_TEXT, &o.shard, 0, 0, "I/N", "the I-th of N parts of the sweep, in a file of its own"},
+        {"border-check", CLI_FLAG, &o.check, 0, 0, NULL, "the simulated border beside that of the linear test"},
+        {"friction", CLI_INT, &o.friction, 2, FRICTION_POINTS_MAX, "N", "the border against N amounts of friction, 0..2 times"},
         {"params", CLI_FLAG, &list, 0, 0, NULL, "list both, with units and ranges"},
     };
     const struct cli_command c = {
@@ -395,5 +411,5 @@ int cli_drop(int argc, char **argv)
         return 0;
     }
     err = refuse(&o);
-    return err ? err : o.sweep ? sweep(&o) : experiment(&o);
+    return err ? err : in_plane(&o) ? plane(&o) : experiment(&o);
 }

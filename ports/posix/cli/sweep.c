@@ -13,6 +13,7 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -145,6 +146,30 @@ static int run_batch(const struct batch *b, int n, struct cells *cells)
 
 /* --- the sweep --- */
 
+/* Between two batches nobody else listens. */
+static void on_signal(int sig)
+{
+    (void)sig;
+    posix_interrupt();
+}
+
+static void take_signals(struct sigaction was[2])
+{
+    struct sigaction a;
+    memset(&a, 0, sizeof a);
+    sigemptyset(&a.sa_mask);
+    a.sa_handler = on_signal;
+    a.sa_flags = SA_RESTART;
+    sigaction(SIGINT, &a, &was[0]);
+    sigaction(SIGTERM, &a, &was[1]);
+}
+
+static void give_signals_back(const struct sigaction was[2])
+{
+    sigaction(SIGINT, &was[0], NULL);
+    sigaction(SIGTERM, &was[1], NULL);
+}
+
 static int load_shards(struct cells *cells, const char *dir)
 {
     DIR *d = opendir(dir);
@@ -167,6 +192,7 @@ static int sweep(const struct sweep_opt *o, struct cells *cells, const char *pat
 {
     struct batch b = {o, NULL, path, -1};
     int n, err = 0, known = cells->n;
+    struct sigaction was[2];
 
     if (cells_save(cells, path)) { return 1; } /* without a line that was cut off */
     b.fd = open(path, O_WRONLY | O_APPEND);
@@ -175,14 +201,17 @@ static int sweep(const struct sweep_opt *o, struct cells *cells, const char *pat
         return 1;
     }
     if (known > 0) { fprintf(stderr, "%s: goes on from %d cells\n", path, known); }
+    take_signals(was);
     while (err == 0) {
         struct plane_want *want = NULL;
         n = plane_wants(cells, o, &want);
         b.want = want;
-        err = n < 0 ? 1 : n > 0 ? run_batch(&b, n, cells) : 0;
+        err = n < 0 ? 1 : 0;
+        if (n > 0) { err = posix_interrupted() ? JOBS_INTERRUPTED : run_batch(&b, n, cells); }
         free(want);
         if (n <= 0) { break; }
     }
+    give_signals_back(was);
     close(b.fd);
     if (err == JOBS_INTERRUPTED) {
         cli_complain("interrupted: %d cells are kept in %s: the same command goes on", cells->n, path);
@@ -191,9 +220,13 @@ static int sweep(const struct sweep_opt *o, struct cells *cells, const char *pat
     return err ? err : cells_save(cells, path);
 }
 
-static int open_dir(const char *dir)
+int sweep_open_dir(const char *dir, const char *option)
 {
     struct stat st;
+    if (dir == NULL) {
+        cli_complain("--%s: needs --out DIR: there it leaves its files", option);
+        return 2;
+    }
     if (strlen(dir) > 700) {
         cli_complain("--out: %.40s...: longer than 700 bytes: choose a shorter path", dir);
         return 2;
@@ -216,12 +249,8 @@ int sweep_run(const struct sweep_opt *o)
     struct cells cells = {NULL, 0, 0, settings};
     int err;
 
-    if (o->dir == NULL) {
-        cli_complain("--sweep: needs --out DIR: there it leaves its cells and goes on from them");
-        return 2;
-    }
     settings_of(settings, o);
-    err = open_dir(o->dir);
+    err = sweep_open_dir(o->dir, "sweep");
     if (err == 0 && o->shards > 1) {
         snprintf(path, sizeof path, "%s/stability.%d-of-%d.csv", o->dir, o->shard, o->shards);
     } else if (err == 0) {

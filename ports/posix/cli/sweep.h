@@ -31,6 +31,9 @@ struct cell sweep_cell(const struct run_cfg *base, double rate_Hz, double k_Npm,
 /* Ticks of the scene's velocity window under these settings. */
 int sweep_window(const struct run_cfg *base);
 
+/* Makes the directory if need be. 0, or 2 after a line on stderr that names the option. */
+int sweep_open_dir(const char *dir, const char *option);
+
 /* Runs what DIR/stability.csv, and shards' files beside it, lack; writes the file,
  * border.csv and rho.csv for the picture, and says what it found on stdout. The exit
  * status. */
