@@ -237,7 +237,8 @@ TEST(the_simulated_border_is_the_linear_one)
     static struct said s;
     int cells = 0, agree = 0;
     strcpy(dir, said_dir());
-    said(&s, dir, cli_drop, WORDS("drop", "--border-check", "--rate", "500,2000", "--grid", "8x6", "--out", dir));
+    said(&s, dir, cli_drop,
+         WORDS("drop", "--border-check", "--rate", "500,2000", "--grid", "8x6", "--out", dir));
     CHECK(s.status == 0 && s.err[0] == '\0', "%d: %s", s.status, s.err);
     for (const char *at = strstr(s.out, "   all |"); at != NULL; at = NULL) {
         CHECK(sscanf(at, "   all | | %d of %d", &agree, &cells) == 2, "%s", at);

@@ -264,6 +264,9 @@ int border_check(const struct sweep_opt *o)
     for (int r = 0; r < o->rates; r++) { linear_top(o, o->rate_Hz[r], &top[0][r], &top[1][r]); }
     status = jobs_run(&jobs);
     for (int i = 0; i < n && status == 0; i++) { status = !x[i].done; }
+    if (status == JOBS_INTERRUPTED) {
+        cli_complain("interrupted: --border-check keeps nothing of what it has run");
+    }
     if (status == 0) {
         agree = print_agreement(&p, x, n);
         print_parts(&p, x, n, LET_GO);

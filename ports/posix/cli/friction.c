@@ -191,6 +191,9 @@ int friction_run(const struct sweep_opt *o, int points)
     status = sweep_open_dir(o->dir, "friction");
     if (status == 0) { status = jobs_run(&jobs); }
     for (int i = 0; i < n && status == 0; i++) { status = !x[i].done; }
+    if (status == JOBS_INTERRUPTED) {
+        cli_complain("interrupted: --friction keeps nothing of what it has run");
+    }
     if (status == 0) {
         print(o, x, points);
         status = write_files(o, x, n);
