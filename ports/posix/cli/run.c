@@ -20,6 +20,7 @@ static struct {
     size_t samples_cap, starts_cap;
     int fall; /* under observation in the present tick, 0 = none */
     int no_memory;
+    int logged; /* records cost a third of a run that nobody keeps */
     uint32_t last_tick;
 } run;
 
@@ -36,20 +37,20 @@ static void *grow(void *p, size_t *cap, size_t n, size_t size)
 static void start(const struct exh_scene *sc, struct exh_scene_board board)
 {
     run.r->T = board.T;
-    exh_log_start(sc, board);
+    if (run.logged) { exh_log_start(sc, board); }
 }
 
 static void before(uint32_t tick, struct exh_scene_in *in)
 {
     const int fall = posix_fall();
     if (tick == 0) { in->command = EXH_CMD_RUN; }
-    if (fall != run.fall) { exh_log_mark(tick, fall); }
+    if (run.logged && fall != run.fall) { exh_log_mark(tick, fall); }
     if (fall != 0 && fall != run.fall) {
         run.start = grow(run.start, &run.starts_cap, run.r->log.falls, sizeof *run.start);
         if (!run.no_memory) { run.start[run.r->log.falls++] = run.r->log.samples; }
     }
     run.fall = fall;
-    exh_log_before(tick, in);
+    if (run.logged) { exh_log_before(tick, in); }
 }
 
 static double si(int32_t raw, int frac)
@@ -61,7 +62,7 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
 {
     struct drop_signals s;
     memcpy(&s, exh_scene_drop.signal, sizeof s);
-    exh_log_after(tick, in, out);
+    if (run.logged) { exh_log_after(tick, in, out); }
     run.last_tick = tick;
     run.r->ticks++;
     run.r->faults |= (uint32_t)s.faults;
@@ -122,6 +123,7 @@ int run_drop(const struct run_cfg *c, struct run *r)
     memset(r, 0, sizeof *r);
     memset(&run, 0, sizeof run);
     run.r = r;
+    run.logged = c->board.log != NULL;
     err = set_parameters(c);
     if (err == 0) {
         posix_configure(&c->board);
@@ -132,7 +134,7 @@ int run_drop(const struct run_cfg *c, struct run *r)
         } else if (err < 0) {
             cli_complain("%lu Hz: %s", (unsigned long)c->rate_Hz, exh_error_text(err));
         }
-        if (r->T.num != 0) { r->lost = exh_log_end(run.last_tick + 1); } /* it was started */
+        if (run.logged && r->T.num != 0) { r->lost = exh_log_end(run.last_tick + 1); } /* it was started */
     }
     r->log.sample = run.sample;
     r->log.start = run.start;
