@@ -181,6 +181,12 @@ test:
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(test_bin)
 	@test/run.sh $(test_bin)
 
+## Intervals of the analysis over 10^4 synthetic runs: coverage, and bias to k
+.PHONY: coverage
+coverage:
+	@$(MAKE) --no-print-directory $(if $(V),,-s) $(B)/test/sim/coverage_test
+	@EXH_CASES=10000000 test/run.sh $(B)/test/sim/coverage_test
+
 # Stiff and extreme cases, under sanitizers: a build of its own.
 stress_obj := $(patsubst %.c,$(B)/posix/%.o,$(wildcard test/stress/*.c))
 $(B)/test/stress: $(stress_obj) $(filter-out %/main.o %/loop.o,$(cli_obj) $(sim_obj)) \

@@ -41,9 +41,6 @@ TEST(bad_usage_is_refused_by_name)
         {{"--period", "2/1"}, "--period: 2/1"},
         {{"--period", "1/4294967296"}, "--period: 1/4294967296"},
         {{"--period", "4294967297/4294967298"}, "--period: 4294967297"},
-        {{"--replicates", "1"}, "--replicates: 1 "},
-        {{"--replicates", "39"}, "--replicates: 39 "},
-        {{"--replicates", "100001"}, "--replicates: 100001"},
         {{"--falls", "2.5"}, "whole number"},
         {{"--seed", "99999999999999999999"}, "--seed: 99999999999999999999"},
         {{"--k", "1e6", "--scale", "100"}, "k: 100000000 "},
@@ -196,7 +193,7 @@ TEST(the_judge_observes_as_long_as_the_device)
         c.board = posix_config_default();
         c.board.falls = 3;
         c.board.device.observe_s = observe_s[i];
-        r = table2_measure(&c, 0, NULL);
+        r = table2_measure(&c, NULL);
         CHECK(r.done && r.falls == 3 && r.incomplete == 0, "%g s: %d of %d incomplete", observe_s[i],
               r.incomplete, r.falls);
     }

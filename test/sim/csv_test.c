@@ -78,7 +78,6 @@ TEST(table_2_is_made_again_from_the_csvs)
         CHECK(csv.falls == 10, "%s: %zu falls", name, csv.falls);
         l.samples = csv.n;
         l.falls = csv.falls;
-        opt.replicates = 0;
         CHECK(fall_stiffness(&l, &opt, &again) == FALL_OK, "%s", name);
         CHECK(again.fit.b_Npm > b_Npm * (1 - 2e-5) && again.fit.b_Npm < b_Npm * (1 + 2e-5),
               "%s: B %.6g, table %.6g", name, again.fit.b_Npm, b_Npm);

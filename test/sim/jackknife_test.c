@@ -1,7 +1,5 @@
-/* The bootstrap of the analysis: two-sided where it is random. */
+/* The interval of the analysis: two-sided where it is random. */
 #include "falls.h"
-
-/* ---- Bootstrap ------------------------------------------------------------------- */
 
 struct tally {
     double sum, square, width;
@@ -32,24 +30,22 @@ static void check_tally(const struct tally *t, const char *name)
           t->inside, t->runs);
 }
 
-TEST(bootstrap_width)
+TEST(jackknife_width)
 {
     struct tally a = {0}, b = {0};
     struct fall_opt opt = fall_opt_default;
     uint64_t rng = 1;
 
     opt.lag = 0;
-    opt.replicates = 200;
     for (uint64_t run = 0; run < 300; run++) {
         struct log_builder lb = {0};
         struct fall_stiffness s;
         scattered_falls(&lb, 20, 20, 5e-6, &rng);
         const struct fall_log log = built(&lb);
-        opt.seed = run;
         CHECK(fall_stiffness(&log, &opt, &s) == FALL_OK, "run %d", (int)run);
         CHECK(s.a.status == FALL_OK && s.b.status == FALL_OK, "run %d", (int)run);
-        CHECK(s.a.replicates == 200 && s.b.replicates == 200, "run %d", (int)run);
-        CHECK(s.b.lo_Npm < s.b.mid_Npm && s.b.mid_Npm < s.b.hi_Npm, "run %d", (int)run);
+        CHECK(s.a.falls == 20 && s.b.falls == 20, "run %d", (int)run);
+        CHECK(s.b.lo_Npm < s.fit.b_Npm && s.fit.b_Npm < s.b.hi_Npm, "run %d", (int)run);
         count(&a, s.fit.a_Npm, &s.a);
         count(&b, s.fit.b_Npm, &s.b);
         fall_stiffness_free(&s);
@@ -60,7 +56,7 @@ TEST(bootstrap_width)
 }
 
 /* Positions that have nothing to do with force: B must not invent an upper end. */
-TEST(bootstrap_unbounded)
+TEST(jackknife_unbounded)
 {
     struct log_builder b = {0};
     struct fall_opt opt = fall_opt_default;
@@ -82,4 +78,4 @@ TEST(bootstrap_unbounded)
     drop(&b);
 }
 
-TEST_MAIN("bootstrap", bootstrap_width, bootstrap_unbounded);
+TEST_MAIN("jackknife", jackknife_width, jackknife_unbounded);

@@ -30,7 +30,7 @@ static void work(const void *ctx, int i, void *to)
     c.board = posix_config_default();
     c.board.seed = SEED + (uint64_t)(i % RUNS);
     c.board.falls = FALLS;
-    r = table2_measure(&c, 0, NULL);
+    r = table2_measure(&c, NULL);
     memcpy(to, &r, sizeof r);
 }
 

@@ -10,8 +10,7 @@ const struct fall_opt fall_opt_default = {
     .band_lo_N = 0.8,
     .band_hi_N = 4.5,
     .force = FALL_FORCE_CENTRE,
-    .replicates = 1000,
-    .seed = 2013,
+    .scope = FALL_SCOPE_ALL,
 };
 
 const char *fall_status_text(enum fall_status status)
@@ -50,7 +49,7 @@ void *part_alloc(size_t n, size_t size_B)
 static int opt_ok(const struct fall_opt *opt)
 {
     return sane(opt->band_lo_N) && sane(opt->band_hi_N) && opt->band_lo_N <= opt->band_hi_N &&
-           part_bootstrap_opt_ok(opt);
+           opt->scope < FALL_SCOPES && opt->step_m >= 0 && sane(opt->step_m);
 }
 
 enum fall_status fall_stiffness(const struct fall_log *log, const struct fall_opt *opt,
@@ -61,7 +60,7 @@ enum fall_status fall_stiffness(const struct fall_log *log, const struct fall_op
     memset(out, 0, sizeof *out);
     out->raw.at = out->band.at = out->averaged.at = NULL;
     if (!opt_ok(opt)) { return FALL_BAD_OPT; }
-    enum fall_status status = fall_dissect(log, opt->min_samples, &contacts);
+    enum fall_status status = fall_dissect_scope(log, opt, &contacts);
     if (status == FALL_OK) { status = fall_pool(log, &contacts, opt->lag, &out->raw); }
     if (status == FALL_OK) {
         status = fall_band(&out->raw, opt->band_lo_N, opt->band_hi_N, &out->band);
@@ -70,7 +69,7 @@ enum fall_status fall_stiffness(const struct fall_log *log, const struct fall_op
     if (status == FALL_OK) {
         out->contacts = contacts.n;
         fall_fit_line(&out->averaged, &out->fit);
-        status = fall_bootstrap(&out->band, log->falls, opt, &out->a, &out->b);
+        status = fall_jackknife(&out->band, log->falls, opt->force, &out->a, &out->b);
     }
     fall_contacts_free(&contacts);
     return status;

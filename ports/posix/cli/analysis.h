@@ -40,7 +40,7 @@ enum fall_status {
     FALL_FLAT,      /* position or force does not vary: no line                 */
     FALL_NO_RISE,   /* force does not rise with position: no stiffness          */
     FALL_UNBOUNDED, /* the interval has no upper end                            */
-    FALL_FEW_FALLS, /* fewer than two falls, or most replicates without a line  */
+    FALL_FEW_FALLS, /* fewer than two falls, or one alone makes the line  */
     FALL_IO         /* a file could not be written                              */
 };
 
@@ -59,6 +59,7 @@ struct fall_contacts {
     struct fall_contact *at;
     size_t n;
 };
+struct fall_opt;
 
 /* Cuts at the edges of c. A fall's end closes a contact (open = 1), it never runs
  * on into the next fall. Contacts shorter than min_samples are dropped (0 and 1
@@ -66,6 +67,20 @@ struct fall_contacts {
 enum fall_status fall_dissect(const struct fall_log *log, size_t min_samples,
                               struct fall_contacts *out);
 void fall_contacts_free(struct fall_contacts *contacts);
+
+/* Which samples belong to the "contact situations" of the paper. */
+enum fall_scope {
+    FALL_SCOPE_ALL,   /* those of all contacts                                  */
+    FALL_SCOPE_FIRST, /* of the first contact of each fall                      */
+    FALL_SCOPE_MOVES, /* of all contacts, up to where the motor has stopped      */
+    FALL_SCOPE_WHOLE, /* of the whole fall, in contact or not                   */
+    FALL_SCOPES
+};
+
+/* fall_dissect(), then cut to a scope. The motor "has stopped" where from there to the
+ * end of its fall the encoder stays within one count, of step_m. */
+enum fall_status fall_dissect_scope(const struct fall_log *log, const struct fall_opt *opt,
+                                    struct fall_contacts *out);
 
 /* ---- Stiffness ----------------------------------------------------------- */
 
@@ -95,11 +110,11 @@ struct fall_opt {
     double band_lo_N;      /* both ends belong to the band                         */
     double band_hi_N;
     enum fall_force force;
-    size_t replicates;     /* of the bootstrap, 0 = none; otherwise 40 .. 1000000  */
-    uint64_t seed;
+    enum fall_scope scope; /* which samples belong to a contact                    */
+    double step_m;         /* of the encoder, for FALL_SCOPE_MOVES                 */
 };
 
-/* 1 sample, lag 1, 0.8 .. 4.5 N, centre, 1000 replicates, a fixed seed. */
+/* 1 sample, lag 1, 0.8 .. 4.5 N, centre, all contacts. */
 extern const struct fall_opt fall_opt_default;
 
 /* All pairs of the contacts, in log order. The monitor answers the command of the
@@ -136,25 +151,23 @@ struct fall_fit {
 
 void fall_fit_line(const struct fall_pairs *averaged, struct fall_fit *out);
 
-/* 2.5 %, 50 % and 97.5 % of the replicates, N/m. UNBOUNDED: hi is 0 and there is
- * no upper end (lo, and mid, are 0 where they have none either); any other status
- * but OK: all are 0. */
+/* 95 %, N/m. UNBOUNDED: hi is 0 and there is no upper end (lo is 0 where it has none
+ * either); any other status but OK: both are 0. */
 struct fall_interval {
     enum fall_status status;
-    double lo_Npm, mid_Npm, hi_Npm;
-    size_t replicates; /* that gave a line                                      */
+    double lo_Npm, hi_Npm;
+    size_t falls; /* that have pairs in the band                                */
 };
 
-/* Draws `falls` falls with replacement, replicates times, and repeats average and
- * fit. `sorted` is the output of fall_band(): a replicate walks it and takes each
- * pair as often as its fall was drawn, which is already in order of force.
- * The percentiles of B are taken of its slope (m/N) and inverted then: a slope
+/* Leaves out one fall after the other and repeats average and fit: the interval is the
+ * estimate +- t times the jackknife's standard error, t of one degree of freedom less
+ * than there are falls. `sorted` is the output of fall_band(). Falls, not pairs, are
+ * independent of each other. B's is made of its slope (m/N) and inverted then: a slope
  * that scatters through zero would make B jump from +inf to -inf.
- * A replicate's windows hold fewer distinct pairs than the data's (a fall drawn
- * twice gives each pair twice), so its positions are noisier and A's interval is
- * shifted to low values where r2 is low; mid_Npm shows by how much. B is not. */
-enum fall_status fall_bootstrap(const struct fall_pairs *sorted, size_t falls,
-                                const struct fall_opt *opt, struct fall_interval *a,
+ * It covers the mean of the estimator, which is not k: `make coverage` shows both, and
+ * that the percentiles of a bootstrap over ten falls, which this replaces, do not. */
+enum fall_status fall_jackknife(const struct fall_pairs *sorted, size_t falls,
+                                enum fall_force force, struct fall_interval *a,
                                 struct fall_interval *b);
 
 struct fall_stiffness {

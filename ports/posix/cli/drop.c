@@ -25,7 +25,7 @@ struct drop_options {
     double rate_Hz[RATES_MAX];
     int rates, rates_given;
     double k_Npm, b_Nspm, scale; /* < 0: the paper's at that rate                 */
-    int64_t falls, seed, jobs, spread, replicates, friction;
+    int64_t falls, seed, jobs, spread, friction;
     int pace, sweep, check;
     const char *out, *grid, *shard;
     struct run_setting setting[SETTINGS_MAX];
@@ -186,7 +186,7 @@ static struct table2_result shown_run(const struct drop_options *o, int i)
     struct table2_result r;
     char log[TABLE2_PATH_B], csv[TABLE2_PATH_B], plot[TABLE2_PATH_B];
 
-    if (o->out == NULL) { return table2_measure(&c, (size_t)o->replicates, NULL); }
+    if (o->out == NULL) { return table2_measure(&c, NULL); }
     outdir_path(log, o->out, o->rate_Hz[i], ".exh");
     outdir_path(csv, o->out, o->rate_Hz[i], ".csv");
     outdir_path(plot, o->out, o->rate_Hz[i], "");
@@ -197,7 +197,7 @@ static struct table2_result shown_run(const struct drop_options *o, int i)
         r.error = 1;
         return r;
     }
-    r = table2_measure(&c, (size_t)o->replicates, plot);
+    r = table2_measure(&c, plot);
     if (fclose(c.board.log) != 0 || r.lost) {
         cli_complain("%s: can't be written: %lu records lost", log, r.lost);
         r.error = 1;
@@ -220,7 +220,7 @@ static void work(const void *ctx, int i, void *result)
         const double scale = run < o->spread ? 1 : 1.5;
         const struct run_cfg c =
             job_cfg(o, rate_i, scale, (uint64_t)o->seed + 1 + (uint64_t)(run % o->spread));
-        r = table2_measure(&c, 0, NULL);
+        r = table2_measure(&c, NULL);
     }
     memcpy(result, &r, sizeof r);
 }
@@ -313,11 +313,6 @@ static int refuse(struct drop_options *o)
         o->rate_Hz[0] = (double)o->T.den / o->T.num;
         o->rates = 1;
     }
-    if (o->replicates > 0 && o->replicates < 40) {
-        cli_complain("--replicates: %d (allowed 0 and 40..100000): fewer have no 2.5 %% to cut off",
-                     (int)o->replicates);
-        return 2;
-    }
     if ((o->grid && !o->sweep && !o->check) || (o->shard && !o->sweep)) {
         cli_complain("--grid and --shard: only with --sweep");
         return 2;
@@ -375,7 +370,6 @@ int cli_drop(int argc, char **argv)
         {"out", CLI_TEXT, &o.out, 0, 0, "DIR", "write logs, CSVs of the falls and tables there"},
         {"jobs", CLI_INT, &o.jobs, 1, 1024, "N", "processes at a time (one a core)"},
         {"pace", CLI_FLAG, &o.pace, 0, 0, NULL, "follow the wall clock, for people who watch"},
-        {"replicates", CLI_INT, &o.replicates, 0, 100000, "N", "of the bootstrap, 0 or 40.. (1000)"},
         {"set", CLI_CALL, u[2].to, 0, 0, "NAME=VALUE", "a parameter of the scene"},
         {"device", CLI_CALL, u[3].to, 0, 0, "NAME=VALUE", "a value of the simulated device"},
         {"sweep", CLI_FLAG, &o.sweep, 0, 0, NULL, "the stability border in the k-b plane, in DIR/stability.csv"},
@@ -398,7 +392,6 @@ int cli_drop(int argc, char **argv)
     o.scale = 1;
     o.falls = 10;
     o.seed = 1;
-    o.replicates = 1000;
     o.jobs = jobs_cores();
     o.device = sim_device_default();
     for (o.rates = 0; o.rates < TABLE2_ROWS; o.rates++) {

@@ -26,7 +26,4 @@ enum fall_status part_pairs_alloc(struct fall_pairs *p, size_t cap);
 void part_average_into(const struct fall_pairs *sorted, enum fall_force force,
                        struct fall_pairs *out);
 
-/* bootstrap.c */
-int part_bootstrap_opt_ok(const struct fall_opt *opt);
-
 #endif

@@ -94,14 +94,12 @@ static void write_fall(const struct fall_log *log, const char *prefix, struct ta
     }
 }
 
-static void judge_stiffness(const struct run *run, size_t replicates, const char *plot_prefix,
-                            struct table2_result *r)
+static void judge_stiffness(const struct run *run, const char *plot_prefix, struct table2_result *r)
 {
     struct fall_opt opt = fall_opt_default;
     struct fall_stiffness s;
     enum fall_status status;
 
-    opt.replicates = replicates;
     status = fall_stiffness(&run->log, &opt, &s);
     r->line = s.fit.status;
     if (status != FALL_OK) {
@@ -121,7 +119,6 @@ static void judge_stiffness(const struct run *run, size_t replicates, const char
     fall_stiffness_free(&s);
     if (status != FALL_OK) { return; }
     opt.lag = 0;
-    opt.replicates = 0;
     status = fall_stiffness(&run->log, &opt, &s);
     if (status != FALL_OK) { failed(r, "stiffness at the same tick", fall_status_text(status)); }
     if (status == FALL_OK && s.fit.status == FALL_OK) {
@@ -131,8 +128,7 @@ static void judge_stiffness(const struct run *run, size_t replicates, const char
     fall_stiffness_free(&s);
 }
 
-struct table2_result table2_measure(const struct run_cfg *c, size_t replicates,
-                                    const char *plot_prefix)
+struct table2_result table2_measure(const struct run_cfg *c, const char *plot_prefix)
 {
     struct table2_result r;
     struct run run;
@@ -146,7 +142,7 @@ struct table2_result table2_measure(const struct run_cfg *c, size_t replicates,
         r.done = 1;
         r.rate_Hz = (double)run.T.den / run.T.num;
         judge_rest(&run, &c->board.device, &r);
-        judge_stiffness(&run, replicates, plot_prefix, &r);
+        judge_stiffness(&run, plot_prefix, &r);
         r.faults = run.faults;
         r.lost = run.lost;
     }

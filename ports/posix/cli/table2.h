@@ -34,10 +34,9 @@ struct table2_result {
 
 #define TABLE2_PATH_B 1024 /* a path with its zero                              */
 
-/* Runs and judges; replicates 0: no interval. With a plot prefix also writes what
+/* Runs and judges; with a plot prefix also writes what
  * the force-over-position picture needs. */
-struct table2_result table2_measure(const struct run_cfg *c, size_t replicates,
-                                    const char *plot_prefix);
+struct table2_result table2_measure(const struct run_cfg *c, const char *plot_prefix);
 
 /* Many runs of one row, at its gains and at 1.5 times both. Medians are of the runs
  * that gave a line; 0 unless more than half did. */
