@@ -26,7 +26,7 @@ struct drop_options {
     int rates, rates_given;
     double k_Npm, b_Nspm, scale; /* < 0: the paper's at that rate                 */
     int64_t falls, seed, jobs, spread, friction;
-    int pace, sweep, check;
+    int pace, sweep, check, readings;
     const char *out, *grid, *shard;
     struct run_setting setting[SETTINGS_MAX];
     int settings;
@@ -186,7 +186,7 @@ static struct table2_result shown_run(const struct drop_options *o, int i)
     struct table2_result r;
     char log[TABLE2_PATH_B], csv[TABLE2_PATH_B], plot[TABLE2_PATH_B];
 
-    if (o->out == NULL) { return table2_measure(&c, NULL); }
+    if (o->out == NULL) { return table2_measure(&c, NULL, o->readings); }
     outdir_path(log, o->out, o->rate_Hz[i], ".exh");
     outdir_path(csv, o->out, o->rate_Hz[i], ".csv");
     outdir_path(plot, o->out, o->rate_Hz[i], "");
@@ -197,7 +197,7 @@ static struct table2_result shown_run(const struct drop_options *o, int i)
         r.error = 1;
         return r;
     }
-    r = table2_measure(&c, plot);
+    r = table2_measure(&c, plot, o->readings);
     if (fclose(c.board.log) != 0 || r.lost) {
         cli_complain("%s: can't be written: %lu records lost", log, r.lost);
         r.error = 1;
@@ -220,7 +220,7 @@ static void work(const void *ctx, int i, void *result)
         const double scale = run < o->spread ? 1 : 1.5;
         const struct run_cfg c =
             job_cfg(o, rate_i, scale, (uint64_t)o->seed + 1 + (uint64_t)(run % o->spread));
-        r = table2_measure(&c, NULL);
+        r = table2_measure(&c, NULL, o->readings);
     }
     memcpy(result, &r, sizeof r);
 }
@@ -275,6 +275,26 @@ static int report(const struct drop_options *o, const struct table2_result *r)
     return err;
 }
 
+/* Of the further runs where there are any, else of those shown. */
+static int report_readings(const struct drop_options *o, const struct table2_result *r)
+{
+    const int spread = (int)o->spread;
+    const struct table2_readings t = {r, o->rates, spread ? o->rates : 0, spread ? 2 * spread : 1,
+                                      spread ? spread : 1};
+    char path[TABLE2_PATH_B];
+    FILE *f;
+    table2_readings_print(stdout, &t);
+    if (o->out == NULL) { return 0; }
+    snprintf(path, sizeof path, "%s/readings.csv", o->out);
+    f = fopen(path, "w");
+    if (f != NULL) { table2_readings_csv(f, &t); }
+    if (f == NULL || fclose(f) != 0) {
+        cli_complain("%s: can't be written", path);
+        return 1;
+    }
+    return 0;
+}
+
 static int experiment(const struct drop_options *o)
 {
     const int further = 2 * o->rates * (int)o->spread, n = o->rates + further;
@@ -288,6 +308,7 @@ static int experiment(const struct drop_options *o)
     }
     ran = jobs_run(&jobs);
     err = check(o, r, n) | report(o, r);
+    if (ran == 0 && o->readings) { err |= report_readings(o, r); }
     if (ran == JOBS_INTERRUPTED) {
         cli_complain("interrupted: %d of %d rates and %d of %d further runs were finished%s%s",
                      count_done(r, o->rates), o->rates, count_done(r + o->rates, further), further,
@@ -377,6 +398,7 @@ int cli_drop(int argc, char **argv)
         {"shard", CLI_TEXT, &o.shard, 0, 0, "I/N", "the I-th of N parts of the sweep, in a file of its own"},
         {"border-check", CLI_FLAG, &o.check, 0, 0, NULL, "the simulated border beside that of the linear test"},
         {"friction", CLI_INT, &o.friction, 2, FRICTION_POINTS_MAX, "N", "the border against N amounts of friction, 0..2 times"},
+        {"readings", CLI_FLAG, &o.readings, 0, 0, NULL, "the stiffness by every reading of the paper's analysis"},
         {"params", CLI_FLAG, &list, 0, 0, NULL, "list both, with units and ranges"},
     };
     const struct cli_command c = {

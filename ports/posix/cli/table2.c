@@ -128,7 +128,13 @@ static void judge_stiffness(const struct run *run, const char *plot_prefix, stru
     fall_stiffness_free(&s);
 }
 
-struct table2_result table2_measure(const struct run_cfg *c, const char *plot_prefix)
+static void judge_readings(const struct run *run, const struct sim_device *d, struct table2_result *r)
+{
+    const enum fall_status status = reading_all(&run->log, d->step_m / d->decode, r->reading_Npm);
+    if (status != FALL_OK) { failed(r, "readings", fall_status_text(status)); }
+}
+
+struct table2_result table2_measure(const struct run_cfg *c, const char *plot_prefix, int readings)
 {
     struct table2_result r;
     struct run run;
@@ -143,6 +149,7 @@ struct table2_result table2_measure(const struct run_cfg *c, const char *plot_pr
         r.rate_Hz = (double)run.T.den / run.T.num;
         judge_rest(&run, &c->board.device, &r);
         judge_stiffness(&run, plot_prefix, &r);
+        if (readings) { judge_readings(&run, &c->board.device, &r); }
         r.faults = run.faults;
         r.lost = run.lost;
     }

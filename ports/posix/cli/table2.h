@@ -2,6 +2,7 @@
 #ifndef CLI_TABLE2_H
 #define CLI_TABLE2_H
 
+#include "reading.h"
 #include "run.h"
 
 #include <stdio.h>
@@ -27,6 +28,7 @@ struct table2_result {
     double b_Npm, a_Npm, r2, ci_low_Npm, ci_high_Npm; /* aligned; 0: none       */
     double b_same_Npm, a_same_Npm;                    /* 0: none                */
     int ci_bounded;
+    double reading_Npm[READINGS]; /* if asked for; 0: none                       */
     int falls, oscillating, buzzing, incomplete;
     unsigned faults;
     unsigned long lost;
@@ -34,9 +36,9 @@ struct table2_result {
 
 #define TABLE2_PATH_B 1024 /* a path with its zero                              */
 
-/* Runs and judges; with a plot prefix also writes what
- * the force-over-position picture needs. */
-struct table2_result table2_measure(const struct run_cfg *c, const char *plot_prefix);
+/* Runs and judges; with a plot prefix also writes what the force-over-position picture
+ * needs; with `readings` also reads the run in every way of reading.h. */
+struct table2_result table2_measure(const struct run_cfg *c, const char *plot_prefix, int readings);
 
 /* Many runs of one row, at its gains and at 1.5 times both. Medians are of the runs
  * that gave a line; 0 unless more than half did. */
@@ -55,6 +57,15 @@ void table2_csv_header(FILE *f);
 void table2_csv_line(FILE *f, const struct table2_result *r);
 void table2_spread_csv_header(FILE *f);
 void table2_spread_csv_line(FILE *f, const struct table2_result *r, const struct table2_spread *s);
+
+/* Every reading of the analysis: the median of `runs` runs of each row, those of row i
+ * from r[first + i * stride] on. The CSV has a line a row and reading. */
+struct table2_readings {
+    const struct table2_result *r;
+    int rows, first, stride, runs;
+};
+void table2_readings_print(FILE *f, const struct table2_readings *t);
+void table2_readings_csv(FILE *f, const struct table2_readings *t);
 
 /* For people. spread may be NULL. */
 void table2_print(FILE *f, const struct table2_result *r, const struct table2_spread *s, int rows);
