@@ -85,7 +85,7 @@ $(image): $(image_obj) $(lib) $(PORT_LDSCRIPT)
 	    $(PORT_LDSCRIPT:%=-T %) $(image_obj) $(lib) -o $@
 
 # The host program: every scene that has a subcommand, over the simulated device.
-cli_src := $(wildcard ports/posix/cli/*.c) examples/log.c examples/drop/drop.c \
+cli_src := $(wildcard ports/posix/cli/*.c ports/posix/fit/*.c) examples/log.c examples/drop/drop.c \
            examples/calibrate/calibrate.c
 cli_obj := $(cli_src:%.c=$(B)/posix/%.o)
 sim_obj := $(patsubst %.c,$(B)/posix/%.o,$(wildcard ports/posix/*.c ports/posix/sim/*.c)) \
@@ -134,6 +134,14 @@ ifeq ($(PORT),posix)
 else
 	$(Q)$(or $(PORT_RUN),$(error PORT=$(PORT) cannot run images)) $(image) $(ARGS)
 endif
+
+FIT_BUDGET ?= 6000
+
+## Search for the plant by every reading of the analysis, hours (FIT_BUDGET=N plants); state in build/fit
+.PHONY: fit
+fit: all
+	$(Q)$(exhand) fit --budget $(FIT_BUDGET) --out $(B)/fit $(ARGS) > $(B)/fit.txt.new
+	@mv $(B)/fit.txt.new $(B)/fit.txt && cat $(B)/fit.txt
 
 # --- tests ----------------------------------------------------------------------
 

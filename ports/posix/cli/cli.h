@@ -5,6 +5,7 @@
 
 int cli_calibrate(int argc, char **argv);
 int cli_drop(int argc, char **argv);
+int cli_fit(int argc, char **argv);
 int cli_csv(int argc, char **argv);
 int cli_replay(int argc, char **argv);
 int cli_diagram(int argc, char **argv);

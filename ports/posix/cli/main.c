@@ -14,6 +14,7 @@ static const struct {
 } command[] = {
     {"calibrate", "known masses, F0 and home: the tables of force, current and monitor", cli_calibrate},
     {"drop", "the paper's falling-mass experiment on the simulated device", cli_drop},
+    {"fit", "a plant that does what the paper's device did, by every reading", cli_fit},
     {"csv", "a log as comma-separated values", cli_csv},
     {"replay", "the recorded inputs again, every output compared bit for bit", cli_replay},
     {"diagram", "a block diagram made from the signal and device tables", cli_diagram},
