@@ -37,24 +37,37 @@ TEST(logarithm_undoes_the_exponential)
     }
 }
 
-/* The search starts at the committed plant: its values there are those of the device. */
-TEST(the_start_is_the_committed_plant)
+/* Every value reaches the device, or the box, under its name. */
+TEST(a_plant_becomes_a_configuration)
 {
-    const struct plant_point p = space_start();
+    struct plant_point p = space_start();
     struct run_setting setting[SPACE_ROWS];
-    const struct sim_device d = sim_device_default();
     struct run_cfg c;
+    int settings = 0;
     memset(&c, 0, sizeof c);
     c.board = posix_config_default();
+    for (int i = 0; i < SPACE_ROWS; i++) { p.u[i] = 0.1 + 0.8 * i / SPACE_ROWS; }
     space_apply(&p, &c, setting);
-    CHECK_EQ_I64(c.settings, 4); /* f0, vel_p, kf, mon_scale */
-    for (int i = 0; i < sim_device_rows; i++) {
-        double want, got;
-        memcpy(&want, (const char *)&d + (size_t)i * sizeof want, sizeof want);
-        memcpy(&got, (const char *)&c.board.device + (size_t)i * sizeof got, sizeof got);
-        CHECK(gap(want, got) <= 1e-9 * want, "%s: %.12g, committed %.12g", sim_device_row[i].name, got,
-              want);
+    for (int i = 0; i < SPACE_ROWS; i++) {
+        const double want = space_value(i, p.u[i]);
+        if (space_row[i].kind == SPACE_DEVICE) {
+            double got = 0;
+            for (int k = 0; k < sim_device_rows; k++) {
+                if (strcmp(sim_device_row[k].name, space_row[i].name) != 0) { continue; }
+                memcpy(&got, (const char *)&c.board.device + (size_t)k * sizeof got, sizeof got);
+            }
+            CHECK(got == want, "%s: %.12g, want %.12g", space_row[i].name, got, want);
+        } else if (space_row[i].kind == SPACE_SCENE) {
+            CHECK(strcmp(setting[settings].name, space_row[i].name) == 0 &&
+                      setting[settings].value == want, "%s", space_row[i].name);
+            settings++;
+        }
     }
+    CHECK(strcmp(setting[settings].name, "kf") == 0, "%s", setting[settings].name);
+    CHECK(gap(setting[settings].value / c.board.device.kf_npa,
+              space_value(space_find("kf_gain"), p.u[space_find("kf_gain")])) < 1e-12, "kf");
+    CHECK(strcmp(setting[settings + 1].name, "mon_scale") == 0, "%s", setting[settings + 1].name);
+    CHECK_EQ_I64(c.settings, settings + 2);
 }
 
 /* A landscape instead of a simulation: each reading's best plant lies elsewhere. */
@@ -170,7 +183,7 @@ TEST(a_search_goes_on_where_it_was_cut_off)
     CHECK(again.status == 0 && strcmp(again.out, whole.out) == 0, "%s", again.out);
     CHECK_EQ_I64(said_size(journal), size);
     said(&refused, dir, cli_fit, WORDS("fit", "--budget", "9", "--seed", "2", "--out", out));
-    CHECK(refused.status == 1 && strstr(refused.err, "another search") != NULL, "%s", refused.err);
+    CHECK(refused.status == 1 && strstr(refused.err, "holds another search") != NULL, "%s", refused.err);
     said(&refused, dir, cli_fit, WORDS("fit", "--pin", "rotor=9"));
     CHECK(refused.status == 2 && strstr(refused.err, "--pin: rotor=9") != NULL, "%s", refused.err);
     said(&refused, dir, cli_fit, WORDS("fit", "--variant", "c"));
@@ -179,6 +192,6 @@ TEST(a_search_goes_on_where_it_was_cut_off)
 }
 
 TEST_MAIN("fit", values_and_units_are_inverse, logarithm_undoes_the_exponential,
-          the_start_is_the_committed_plant, every_reading_finds_its_own_best,
+          a_plant_becomes_a_configuration, every_reading_finds_its_own_best,
           the_same_seed_is_the_same_search, what_is_pinned_stays,
           a_search_goes_on_where_it_was_cut_off);

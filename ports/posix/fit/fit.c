@@ -61,7 +61,7 @@ static int evaluate(const struct fit_options *o, struct journal *j, const struct
     if (j->at + n <= j->held) {
         for (int i = 0; i < n; i++) {
             if (fread(&e, sizeof e, 1, j->f) != 1 || memcmp(&e.p, &p[i], sizeof e.p) != 0) {
-                cli_complain("the journal is of another search: remove it, or give another --out");
+                cli_complain("the journal is of another program's search: remove it, or give another --out");
                 return 1;
             }
             s[i] = e.s;
@@ -94,6 +94,39 @@ static FILE *open_out(const struct fit_options *o, const char *name, const char 
     f = fopen(path, mode);
     if (f == NULL) { cli_complain("%s: %s", path, strerror(errno)); }
     return f;
+}
+
+/* What the search depends on, in words: DIR/settings says of which one the state is. */
+static void settings_text(const struct fit_options *o, char *to, size_t size)
+{
+    int n = snprintf(to, size, "budget %ld, seed %ld, wall %s, by %s", (long)o->budget, (long)o->seed,
+                     o->search.fixed_wall ? "fixed" : "anywhere", o->only ? o->only : "all readings");
+    for (int i = 0; i < SPACE_ROWS && n > 0 && (size_t)n < size; i++) {
+        if (!o->search.pinned[i]) { continue; }
+        n += snprintf(to + n, size - (size_t)n, ", %s %.9g", space_row[i].name,
+                      space_value(i, o->search.start.u[i]));
+    }
+}
+
+/* 0; or 1 after a line on stderr: the state in the folder is of another search. */
+static int settings_agree(const struct fit_options *o)
+{
+    char mine[PATH_B], theirs[PATH_B], path[PATH_B];
+    FILE *f;
+    int same = 1;
+    settings_text(o, mine, sizeof mine);
+    snprintf(path, sizeof path, "%s/settings", o->out);
+    f = fopen(path, "r");
+    if (f != NULL) {
+        same = fgets(theirs, sizeof theirs, f) != NULL && strcmp(theirs, mine) == 0;
+        fclose(f);
+        if (!same) { cli_complain("--out: %s holds another search: give another folder", o->out); }
+        return !same;
+    }
+    f = open_out(o, "settings", "w");
+    if (f == NULL) { return 1; }
+    fputs(mine, f);
+    return fclose(f) != 0;
 }
 
 static int journal_open(const struct fit_options *o, struct journal *j)
@@ -152,8 +185,8 @@ static int rounds(const struct fit_options *o, struct search *s, struct journal 
 static int searched(struct fit_options *o, FILE *progress)
 {
     /* Shorter and coarser than the experiment, which is what judges in the end. */
-    static const struct score_plan first = {1, 4, 3, 5, 50e-6, SEED_FIRST};
-    static const struct score_plan second = {3, 8, 3, 5, 50e-6, SEED_SECOND};
+    const struct score_plan first = {1, 4, 3, 5, 50e-6, SEED_FIRST, o->search.fixed_wall};
+    const struct score_plan second = {3, 8, 3, 5, 50e-6, SEED_SECOND, o->search.fixed_wall};
     static struct plant_point some[SEARCH_STARTS];
     const int64_t turn = o->budget * 2 / 3;
     const int starts = o->budget < 3 * SEARCH_STARTS ? (int)(o->budget / 3) : SEARCH_STARTS;
@@ -161,7 +194,7 @@ static int searched(struct fit_options *o, FILE *progress)
     struct journal j;
     int n, err;
 
-    if (journal_open(o, &j)) { return 1; }
+    if (settings_agree(o) || journal_open(o, &j)) { return 1; }
     for (int i = 0; i < starts; i++) { some[i] = search_first(s, i); }
     err = offer_all(o, s, &j, &first, some, starts);
     if (err == 0) { err = rounds(o, s, &j, &first, turn, progress); }
@@ -244,6 +277,8 @@ int cli_fit(int argc, char **argv)
         {"budget", CLI_INT, &o.budget, 8, 1e8, "N", "plants run; every reading judges each (6000)"},
         {"variant", CLI_TEXT, &o.only, 0, 0, "NAME", "only this reading makes plants (all)"},
         {"pin", CLI_CALL, u.to, 0, 0, "NAME=VALUE", "keep a value instead of searching it"},
+        {"fixed-wall", CLI_FLAG, &o.search.fixed_wall, 0, 0, NULL,
+         "the wall where q_lim and step put it between two counts, not anywhere"},
         {"seed", CLI_INT, &o.seed, 0, 1e9, "N", "of the search (1)"},
         {"runs", CLI_INT, &o.runs, 1, 200, "N", "the winners are judged by, a row (20)"},
         {"further", CLI_INT, &o.further, 0, 200, "N", "runs at gains not in the table (8)"},

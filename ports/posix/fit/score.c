@@ -1,5 +1,7 @@
 #include "score.h"
 
+#include "sim/random.h"
+
 #include <string.h>
 
 #define FALLS 10
@@ -25,11 +27,16 @@ double score_observe_s(const struct score_plan *plan, int row)
 int score_run(const struct plant_point *p, const struct score_plan *plan, struct score_gains at,
               struct run *r)
 {
-    struct run_setting setting[SPACE_ROWS];
+    struct run_setting setting[SPACE_ROWS + 1];
+    struct sim_random wall = {at.seed ^ 0x77616C6C}; /* not the run's own chance */
     struct run_cfg c;
     memset(&c, 0, sizeof c);
     c.board = posix_config_default();
     space_apply(p, &c, setting);
+    if (!plan->fixed_wall) {
+        const double off_m = (sim_random_unit(&wall) - 0.5) * score_step_m(p);
+        setting[c.settings++] = (struct run_setting){"q_lim", c.board.device.height_m + off_m};
+    }
     c.rate_Hz = (uint32_t)table2_paper[at.row].rate_Hz;
     c.k_Npm = at.k_Npm;
     c.b_Nspm = at.b_Nspm;

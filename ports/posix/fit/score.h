@@ -14,6 +14,8 @@ struct score_plan {
     double observe_s, observe_slow_s; /* the latter at 100 Hz and below         */
     double substep_s;
     uint64_t seed;
+    int fixed_wall;    /* 0: the wall lies anywhere between two encoder counts,
+                          elsewhere in each run; 1: where q_lim and step put it */
 };
 
 struct score {

@@ -35,7 +35,7 @@ static void tidy(const struct search *s, struct plant_point *p)
     }
 }
 
-/* Every other one is anywhere, every other one near the committed plant. */
+/* Every other one is anywhere, every other one near the start. */
 struct plant_point search_first(struct search *s, int i)
 {
     struct plant_point p = s->start;

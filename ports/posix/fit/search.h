@@ -36,6 +36,7 @@ struct search {
     int pinned[SPACE_ROWS];        /* rows that keep the start's value           */
     struct plant_point start;
     struct sim_random rng;
+    int fixed_wall;
     int kept;                      /* members a population may have              */
 };
 

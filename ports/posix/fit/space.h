@@ -16,7 +16,7 @@ struct space_row {
     enum space_kind kind;
     double lo, hi;
     enum { SPACE_LINEAR, SPACE_LOG, SPACE_WHOLE } scale;
-    double start; /* the committed device's; NAN-free                          */
+    double start; /* of every search; the device that was committed before it */
     const char *why;
 };
 
@@ -32,7 +32,7 @@ struct plant_point {
 double space_value(int row, double u);
 double space_unit(int row, double value);
 
-/* The committed plant. */
+/* Where every search starts. */
 struct plant_point space_start(void);
 
 /* Writes device and settings (room for SPACE_ROWS of them) to c. */

@@ -31,7 +31,10 @@ struct trial {
     int reading[READINGS], readings;
 };
 
-static const struct score_plan whole = {0, 0, 5, 5, 25e-6, 0};
+static struct score_plan plan_of(const struct search *s)
+{
+    return (struct score_plan){0, 0, 5, 5, 25e-6, 0, s->fixed_wall};
+}
 
 static int by_value(const void *a, const void *b)
 {
@@ -53,7 +56,7 @@ static double quantile(const double *v, int n, double share)
 }
 
 /* Share of falls that oscillate in `runs` runs; stiffness by all readings if S is there. */
-static double oscillating(const struct plant_point *p, int row, double scale, int runs,
+static double oscillating(const struct score_plan *plan, const struct plant_point *p, int row, double scale, int runs,
                           double S[READINGS][RUNS_MAX], int *failed)
 {
     const struct table2_row *t = &table2_paper[row];
@@ -63,9 +66,9 @@ static double oscillating(const struct plant_point *p, int row, double scale, in
                                        SEED + (uint64_t)i};
         double soft, one[READINGS];
         struct run r;
-        int k = score_run(p, &whole, at, &r) < 0
+        int k = score_run(p, plan, at, &r) < 0
                     ? -1
-                    : score_oscillating(&r, score_step_m(p), whole.observe_s, 0, &soft);
+                    : score_oscillating(&r, score_step_m(p), plan->observe_s, 0, &soft);
         if (k >= 0 && S != NULL) {
             if (reading_all(&r.log, score_step_m(p), one) != FALL_OK) { k = -1; }
             for (int x = 0; x < READINGS; x++) { S[x][i] = one[x]; }
@@ -81,7 +84,7 @@ static double oscillating(const struct plant_point *p, int row, double scale, in
 }
 
 /* Largest b of the ladder up to which all rest (at least 9 of 10 falls). */
-static double largest_b(const struct plant_point *p, int row)
+static double largest_b(const struct score_plan *plan, const struct plant_point *p, int row)
 {
     static const double b[] = {1,  2,  3,  4,  5,  6,  8,  10, 12,  15,  20,
                                25, 30, 40, 50, 60, 80, 100, 120, 150, 200};
@@ -90,9 +93,9 @@ static double largest_b(const struct plant_point *p, int row)
         const struct score_gains at = {row, table2_paper[row].k_Npm / 2, b[i], FALLS, SEED};
         double soft;
         struct run r;
-        const int n = score_run(p, &whole, at, &r) < 0
+        const int n = score_run(p, plan, at, &r) < 0
                           ? -1
-                          : score_oscillating(&r, score_step_m(p), whole.observe_s, 0, &soft);
+                          : score_oscillating(&r, score_step_m(p), plan->observe_s, 0, &soft);
         run_free(&r);
         if (n < 0 || n > 1) { break; }
         best = b[i];
@@ -106,21 +109,22 @@ static void judge(const void *ctx, int i, void *to)
     const struct trial *t = ctx;
     const int reading = t->reading[i / TABLE2_ROWS], row = i % TABLE2_ROWS;
     const struct plant_point *p = &search_best(t->s, reading)->p;
+    const struct score_plan plan = plan_of(t->s);
     struct verdict v;
     memset(&v, 0, sizeof v);
     memset(S, 0, sizeof S);
-    v.rest = 1 - oscillating(p, row, 1, t->runs, S, &v.failed);
-    v.swing = oscillating(p, row, 1.5, t->runs, NULL, &v.failed);
+    v.rest = 1 - oscillating(&plan, p, row, 1, t->runs, S, &v.failed);
+    v.swing = oscillating(&plan, p, row, 1.5, t->runs, NULL, &v.failed);
     for (int k = 0; k < READINGS; k++) { v.median[k] = quantile(S[k], t->runs, 0.5); }
     v.low = quantile(S[reading], t->runs, 0.05);
     v.high = quantile(S[reading], t->runs, 0.95);
     for (int k = 0; k < FURTHER && t->further > 0; k++) {
         memset(other, 0, sizeof other);
-        v.rest_at[k] = 1 - oscillating(p, row, further_scale[k], t->further, other, &v.failed);
+        v.rest_at[k] = 1 - oscillating(&plan, p, row, further_scale[k], t->further, other, &v.failed);
         v.over_k[k] = quantile(other[reading], t->further, 0.5) /
                       (table2_paper[row].k_Npm * further_scale[k]);
     }
-    if (row == 0 || row == TABLE2_ROWS - 1) { v.b_max = largest_b(p, row); }
+    if (row == 0 || row == TABLE2_ROWS - 1) { v.b_max = largest_b(&plan, p, row); }
     memcpy(to, &v, sizeof v);
 }
 
@@ -146,10 +150,12 @@ static void print(const struct trial *t, const struct verdict *v, FILE *csv, FIL
 {
     printf("The best plant of each reading, by the whole experiment and %d seeds it was not fitted to\n"
            "(median of %d runs; off the paper's stiffness in %%; shares of falls in %%; b: the largest\n"
-           "that rests at half the row's k, 90 and 2000 Hz, the paper's \"nearly 20 times\")\n\n"
+           "that rests at half the row's k, 90 and 2000 Hz, the paper's \"nearly 20 times\"; the wall lies\n"
+           "%s between two encoder counts)\n\n"
            "                     off the paper, 90 .. 2000 Hz    within    at rest               "
            " oscillates at 1.5x      largest b\n"
-           "  reading                                             25 10\n", t->runs, t->runs);
+           "  reading                                             25 10\n", t->runs, t->runs,
+           t->s->fixed_wall ? "at one place" : "anywhere");
     for (int i = 0; i < t->readings; i++, v += TABLE2_ROWS) {
         const int x = t->reading[i];
         const struct plant_point *p = &search_best(t->s, x)->p;
