@@ -152,7 +152,7 @@ struct score score_plant(const struct plant_point *p, const struct score_plan *p
 
 double score_cost(const struct score *s, int reading)
 {
-    double cost = s->unrest;
+    double cost = (double)s->unrest;
     if (!s->done) { return 1e9; }
     for (int i = 0; i < TABLE2_ROWS; i++) {
         const double paper = space_ln(table2_paper[i].stiffness_Npm / table2_paper[i].k_Npm);
