@@ -58,6 +58,40 @@ TEST(a_sweep_finds_a_border_and_says_so)
     said_clean(dir);
 }
 
+/* The columns of the linear test in the table, of the row that begins with `rate`. */
+static void linear_columns(const char *out, const char *rate, char to[40])
+{
+    const char *at = strstr(out, rate);
+    for (int i = 0; i < 3 && at != NULL; i++) { at = strchr(at + (i > 0), '|') + (i == 2); }
+    CHECK(at != NULL && strcspn(at, "|") < 40, "%s", out);
+    snprintf(to, 40, "%.*s", (int)strcspn(at, "|"), at);
+}
+
+TEST(the_linear_border_does_not_hang_on_the_grid)
+{
+    static const char *const grid[] = {"2x2", "20x16"};
+    char text[2][2][40];
+    double k, b;
+    for (int i = 0; i < 2; i++) {
+        static struct said s;
+        const char *dir = said_dir();
+        said(&s, dir, cli_drop,
+             WORDS("drop", "--sweep", "--rate", "90,2000", "--falls", "1", "--grid", grid[i], "--device",
+                   "observe=0.6", "--device", "substep=0.0001", "--out", dir));
+        CHECK(s.status == 0, "%d: %s", s.status, s.err);
+        linear_columns(s.out, "\n    90 |", text[i][0]);
+        linear_columns(s.out, "\n  2000 |", text[i][1]);
+        said_clean(dir);
+    }
+    CHECK(strcmp(text[0][0], text[1][0]) == 0, "%s, %s", text[0][0], text[1][0]);
+    CHECK(strcmp(text[0][1], text[1][1]) == 0, "%s, %s", text[0][1], text[1][1]);
+    /* By an exhaustive scan, k in 3 % and b in 0.5 steps: 1822 and 43.5, 29333 and 86.5. */
+    CHECK(sscanf(text[0][0], "%lf %lf", &k, &b) == 2 && k > 1800 && k < 1860 && b > 43 && b < 45, "%s",
+          text[0][0]);
+    CHECK(sscanf(text[0][1], "%lf %lf", &k, &b) == 2 && k > 29300 && k < 30300 && b > 86 && b < 89, "%s",
+          text[0][1]);
+}
+
 /* Cut off anywhere: in the settings, in the header, in a cell, after one, before the last. */
 TEST(a_resumed_sweep_gives_the_same_file)
 {
@@ -276,7 +310,8 @@ TEST(friction_moves_the_border_outwards)
     said_clean(dir);
 }
 
-TEST_MAIN("sweep", a_sweep_finds_a_border_and_says_so, a_resumed_sweep_gives_the_same_file,
+TEST_MAIN("sweep", a_sweep_finds_a_border_and_says_so,
+          the_linear_border_does_not_hang_on_the_grid, a_resumed_sweep_gives_the_same_file,
           an_interrupted_sweep_keeps_its_cells, shards_make_the_whole,
           a_file_of_other_settings_is_refused_by_name, a_damaged_file_is_refused_by_line,
           bad_usage_is_refused_by_name, the_simulated_border_is_the_linear_one,

@@ -223,29 +223,109 @@ static double rho_on(const struct sweep_opt *o, const struct line *l, double v)
     return linear_rho(&o->base.board.device, 1 / l->rate_Hz, k, b, sweep_window(&o->base));
 }
 
-/* The largest value on a line with rho < 1; < 0: none. */
-static double rho_border(const struct sweep_opt *o, const struct line *l, double top)
+/* --- how far the linear test reaches: the same whatever the grid --- */
+
+struct linear {
+    const struct sweep_opt *o;
+    double rate_Hz, from, across; /* where the other gain is scanned */
+    double at;                    /* where it was found stable */
+};
+
+static int linear_stable(struct linear *x, double k, double b)
 {
-    enum { STEPS = 64 };
-    double below = -1, above;
-    int i = STEPS;
-    for (; i >= 0; i--) {
-        const double rho = rho_on(o, l, top * i / STEPS);
-        if (rho >= 0 && rho < 1) { break; }
+    const double rho =
+        linear_rho(&x->o->base.board.device, 1 / x->rate_Hz, k, b, sweep_window(&x->o->base));
+    return rho >= 0 && rho < 1;
+}
+
+#define ACROSS 100 /* values of the other gain: b in equal steps, k in equal ratios from 1 up */
+
+static int any_b(struct linear *x, double k)
+{
+    for (int i = 0; i <= ACROSS; i++) {
+        const double b = x->from + (x->across - x->from) * i / ACROSS;
+        if (!linear_stable(x, k, b)) { continue; }
+        x->at = b;
+        return 1;
     }
-    if (i < 0) { return -1; }
-    below = top * i / STEPS;
-    above = top * (i + 1) / STEPS;
-    for (int n = 0; i < STEPS && n < 20; n++) {
-        const double mid = (below + above) / 2, rho = rho_on(o, l, mid);
-        if (rho >= 0 && rho < 1) {
-            below = mid;
+    return 0;
+}
+
+static int any_k(struct linear *x, double b)
+{
+    double ratio = 2, k = 1;
+    for (double low = 1, high = 2; high - low > 1e-9;) { /* ratio^ACROSS = across, without a library */
+        double v = 1;
+        ratio = (low + high) / 2;
+        for (int i = 0; i < ACROSS; i++) { v *= ratio; }
+        if (v < x->across) {
+            low = ratio;
+        } else {
+            high = ratio;
+        }
+    }
+    for (int i = 0; i <= ACROSS; i++, k *= ratio) {
+        if (linear_stable(x, k, b)) { return 1; }
+    }
+    return 0;
+}
+
+static double halve(struct linear *x, int (*any)(struct linear *x, double v), double v, double above,
+                    double most)
+{
+    for (int n = 0; n < 7 && above <= most; n++) {
+        const double mid = (v + above) / 2;
+        if (any(x, mid)) {
+            v = mid;
         } else {
             above = mid;
         }
     }
-    return below;
+    return v;
 }
+
+/* From a value that is stable: 3 % steps, looking eight of them ahead, then halves. */
+static double climb(struct linear *x, int (*any)(struct linear *x, double v), double v, double most)
+{
+    for (int ahead = 8; v > 0 && ahead > 0; ahead--) {
+        double next = v;
+        for (int i = 0; i < ahead; i++) { next *= 1.03; }
+        if (next > most) { next = most; }
+        if (next > v && any(x, next)) {
+            v = next;
+            ahead = 9;
+        }
+    }
+    return halve(x, any, v, v > 0 ? 1.03 * v : 0.5, most);
+}
+
+/* The largest k and the largest b with rho < 1; zeros: nowhere. */
+static struct peak linear_peak(const struct sweep_opt *o, double rate_Hz)
+{
+    struct linear x = {o, rate_Hz, 0, 0, 0};
+    struct peak p;
+    memset(&p, 0, sizeof p);
+    for (double k = 1; k <= K_MAX_NPM; k *= 1.25) {
+        for (double b = 0; b <= B_MAX_NSPM; b = b > 0 ? 1.4 * b : 0.5) {
+            if (!linear_stable(&x, k, b)) { continue; }
+            p.k_Npm = k;
+            p.b_Nspm = b > p.b_Nspm ? b : p.b_Nspm;
+        }
+    }
+    if (p.k_Npm > 0) {
+        x.across = 1.4 * p.b_Nspm + 0.5;
+        p.k_Npm = climb(&x, any_b, p.k_Npm, K_MAX_NPM);
+        x.from = x.at - x.across / ACROSS; /* the tip lies between two b */
+        x.from = x.from > 0 ? x.from : 0;
+        x.across = x.at + x.across / ACROSS;
+        p.k_Npm = halve(&x, any_b, p.k_Npm, 1.01 * p.k_Npm, K_MAX_NPM);
+        x.across = 1.03 * p.k_Npm;
+        p.b_Nspm = climb(&x, any_k, p.b_Nspm, B_MAX_NSPM);
+    }
+    return p;
+}
+
+/* --- what a rate has --- */
 
 static struct found find(const struct cells *cells, const struct sweep_opt *o, double rate_Hz, FILE *f)
 {
@@ -254,6 +334,7 @@ static struct found find(const struct cells *cells, const struct sweep_opt *o, d
     memset(&x, 0, sizeof x);
     x.rate_Hz = rate_Hz;
     reach_of(&w, rate_Hz, &x.reach);
+    x.linear = linear_peak(o, rate_Hz);
     for (int i = 0; i < o->rows + o->columns; i++) {
         const struct line l = i < o->rows ? row_of(o, rate_Hz, x.reach, i)
                                           : column_of(o, rate_Hz, x.reach, i - o->rows);
@@ -267,7 +348,6 @@ static struct found find(const struct cells *cells, const struct sweep_opt *o, d
                 x.stiffness_Npm = c->stiffness_Npm;
             }
         }
-        raise_peak(&x.linear, &l, rho_border(o, &l, l.is_row ? x.reach.k_Npm : x.reach.b_Nspm));
         if (border(&w, &l, &below, &above) != 1) { continue; }
         raise_peak(&x.sim, &l, below);
         fprintf(f, "%.9g,%s,%.9g,%.9g\n", rate_Hz, l.is_row ? "k" : "b",
