@@ -92,6 +92,34 @@ TEST(the_linear_border_does_not_hang_on_the_grid)
           text[0][1]);
 }
 
+TEST(the_end_of_the_grid_is_no_border)
+{
+    static struct said s;
+    const char *dir = said_dir();
+    said(&s, dir, cli_drop,
+         WORDS("drop", "--sweep", "--rate", "5", "--falls", "1", "--device", "substep=0.001", "--out", dir));
+    CHECK(s.status == 0 && strstr(s.out, ">= 8 ") && strstr(s.out, ">=: stable up to"), "%d: %s%s", s.status,
+          s.err, s.out);
+    said_read(again, said_path(dir, "border.csv"));
+    CHECK(strstr(again, "\n5,b,") && strstr(again, "\n5,b,12.5,") == NULL, "%s", again);
+    said_clean(dir);
+}
+
+TEST(a_slow_rate_has_a_border)
+{
+    static struct said s;
+    const char *dir = said_dir();
+    double k = 0;
+    said(&s, dir, cli_drop,
+         WORDS("drop", "--sweep", "--rate", "5", "--falls", "1", "--grid", "3x3", "--device", "observe=2",
+               "--out", dir));
+    for (const char *at = strstr(s.out, "\n     5 |"); at != NULL; at = NULL) { k = atof(at + 9); }
+    CHECK(s.status == 0 && k > 20 && k < 35, "%d: %s%s", s.status, s.err, s.out);
+    said_read(again, said_path(dir, "border.csv"));
+    CHECK(strstr(again, "\n5,k,") && strstr(again, "\n5,b,"), "%s", again);
+    said_clean(dir);
+}
+
 /* Cut off anywhere: in the settings, in the header, in a cell, after one, before the last. */
 TEST(a_resumed_sweep_gives_the_same_file)
 {
@@ -311,7 +339,8 @@ TEST(friction_moves_the_border_outwards)
 }
 
 TEST_MAIN("sweep", a_sweep_finds_a_border_and_says_so,
-          the_linear_border_does_not_hang_on_the_grid, a_resumed_sweep_gives_the_same_file,
+          the_linear_border_does_not_hang_on_the_grid,
+          the_end_of_the_grid_is_no_border, a_slow_rate_has_a_border, a_resumed_sweep_gives_the_same_file,
           an_interrupted_sweep_keeps_its_cells, shards_make_the_whole,
           a_file_of_other_settings_is_refused_by_name, a_damaged_file_is_refused_by_line,
           bad_usage_is_refused_by_name, the_simulated_border_is_the_linear_one,

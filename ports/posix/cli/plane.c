@@ -54,9 +54,22 @@ static double octave(double first, double most, int i)
     return v < most ? v : most;
 }
 
-static double octave_k(int i)
+#define OCTAVES 4 /* tried at least, in k and in b */
+#define K_FIRST 250
+
+/* What a tick leaves stable goes with the rate squared: so many octaves lower begins k. */
+static int octaves_below(double rate_Hz)
 {
-    return octave(250, K_MAX_NPM, i);
+    int n = 0;
+    for (double r = rate_Hz; r < 90 && n < 16; r *= 2) { n += 2; }
+    return n;
+}
+
+static double octave_k(double rate_Hz, int i)
+{
+    double first = K_FIRST;
+    for (int n = octaves_below(rate_Hz); n > 0; n--) { first /= 2; }
+    return octave(first, K_MAX_NPM, i);
 }
 
 static double octave_b(int j)
@@ -68,17 +81,15 @@ struct reach {
     double k_Npm, b_Nspm; /* a column and a row of octaves in which nothing is stable */
 };
 
-#define OCTAVES 4 /* tried at least, in k and in b */
-
 /* 0: octaves are still wanted. */
 static int reach_of(struct wants *w, double rate_Hz, struct reach *reach)
 {
-    int columns = OCTAVES, rows = OCTAVES;
+    int columns = OCTAVES + octaves_below(rate_Hz), rows = OCTAVES;
     for (;;) {
         int column = -1, row = -1, known = 1; /* the last in which one is stable */
         for (int i = 0; i < columns; i++) {
             for (int j = 0; j < rows; j++) {
-                const struct cell *c = need(w, rate_Hz, octave_k(i), octave_b(j));
+                const struct cell *c = need(w, rate_Hz, octave_k(rate_Hz, i), octave_b(j));
                 known &= c != NULL;
                 if (c == NULL || !cell_stable(c)) { continue; }
                 column = i;
@@ -86,9 +97,9 @@ static int reach_of(struct wants *w, double rate_Hz, struct reach *reach)
             }
         }
         if (!known) { return 0; }
-        *reach = (struct reach){octave_k(column + 1), octave_b(row + 1)};
+        *reach = (struct reach){octave_k(rate_Hz, column + 1), octave_b(row + 1)};
         if (reach->b_Nspm == 0) { reach->b_Nspm = octave_b(1); }
-        if (column + 1 >= columns && octave_k(column) < K_MAX_NPM) {
+        if (column + 1 >= columns && octave_k(rate_Hz, column) < K_MAX_NPM) {
             columns++;
         } else if (row + 1 >= rows && octave_b(row) < B_MAX_NSPM) {
             rows++;
@@ -129,7 +140,8 @@ static double value(const struct line *l, int i)
 
 /* k, or b, is raised on a line until it is unstable: the border is where the stable
  * cells from the first one on end. 1: known, *below the highest value still found stable
- * and *above the lowest found not; -1: no cell is stable; 0: cells are still wanted. */
+ * and *above the lowest found not; 2: open, *below the line's end, which is still stable; -1:
+ * no cell is stable; 0: cells are still wanted. */
 static int border(struct wants *w, const struct line *l, double *below, double *above)
 {
     int first = -1, i = 0;
@@ -141,7 +153,7 @@ static int border(struct wants *w, const struct line *l, double *below, double *
     }
     if (first < 0) { return -1; }
     *below = *above = value(l, i - 1);
-    if (i == l->cells) { return 1; } /* beyond the reach: only at the scene's own limit */
+    if (i == l->cells) { return 2; }
     *above = value(l, i);
     for (int n = 0; n < HALVINGS; n++) {
         const double mid = (*below + *above) / 2;
@@ -196,6 +208,7 @@ int plane_wants(const struct cells *cells, const struct sweep_opt *o, struct pla
 struct peak {
     double k_Npm, k_at_b; /* the largest stable k, and where                    */
     double b_Nspm, b_at_k;
+    int k_open, b_open; /* stable up to where the grid ends: so much or more    */
 };
 
 struct found {
@@ -206,14 +219,16 @@ struct found {
     int cells, stable, stable_rho; /* of the grid */
 };
 
-static void raise_peak(struct peak *p, const struct line *l, double v)
+static void raise_peak(struct peak *p, const struct line *l, double v, int open)
 {
     if (l->is_row && v > p->k_Npm) {
         p->k_Npm = v;
         p->k_at_b = l->fixed;
+        p->k_open = open;
     } else if (!l->is_row && v > p->b_Nspm) {
         p->b_Nspm = v;
         p->b_at_k = l->fixed;
+        p->b_open = open;
     }
 }
 
@@ -339,6 +354,7 @@ static struct found find(const struct cells *cells, const struct sweep_opt *o, d
         const struct line l = i < o->rows ? row_of(o, rate_Hz, x.reach, i)
                                           : column_of(o, rate_Hz, x.reach, i - o->rows);
         double below, above;
+        int known;
         for (int n = 0; l.is_row && n < l.cells; n++) {
             const struct cell *c = at(&w, &l, value(&l, n));
             x.cells++;
@@ -348,8 +364,10 @@ static struct found find(const struct cells *cells, const struct sweep_opt *o, d
                 x.stiffness_Npm = c->stiffness_Npm;
             }
         }
-        if (border(&w, &l, &below, &above) != 1) { continue; }
-        raise_peak(&x.sim, &l, below);
+        known = border(&w, &l, &below, &above);
+        if (known <= 0) { continue; }
+        raise_peak(&x.sim, &l, below, known == 2);
+        if (known == 2) { continue; }
         fprintf(f, "%.9g,%s,%.9g,%.9g\n", rate_Hz, l.is_row ? "k" : "b",
                 l.is_row ? (below + above) / 2 : l.fixed, l.is_row ? l.fixed : (below + above) / 2);
     }
@@ -405,16 +423,21 @@ static void ratio(const char *what, double slow, double fast, const char *paper)
 }
 
 /* Where a border peaks: the value and at which of the other gain; dashes for none. */
-static const char *peak_text(char text[40], double v, double at)
+static const char *peak_text(char text[40], double v, double at, int open)
 {
     snprintf(text, 40, "%16s %6s", "-", "-");
-    if (v > 0) { snprintf(text, 40, "%16.5g %6.4g", v, at); }
+    if (v > 0) {
+        char value[20];
+        snprintf(value, sizeof value, "%s%.5g", open ? ">= " : "", v);
+        snprintf(text, 40, "%16s %6.4g", value, at);
+    }
     return text;
 }
 
 static void print(const struct found *x, int n, int falls)
 {
     const struct found *slow = NULL, *fast = NULL;
+    int any_open = 0;
     printf("\nThe border at each rate: stable where nine of ten falls come to rest, %d falls a cell\n\n"
            "  rate |largest stable k   at b |largest stable b   at k | rho < 1:  k       b | stiffest stable "
            "| paper's row\n"
@@ -426,17 +449,19 @@ static void print(const struct found *x, int n, int falls)
         if (row) { snprintf(paper, sizeof paper, "%5.0f %4.0f", row->k_Npm, row->b_Nspm); }
         if (x[i].stiffness_Npm > 0) { snprintf(stiffest, sizeof stiffest, "%.0f", x[i].stiffness_Npm); }
         printf("%6.6g |%s |%s | %9.5g %7.4g | %15s | %s\n", x[i].rate_Hz,
-               peak_text(k, x[i].sim.k_Npm, x[i].sim.k_at_b),
-               peak_text(b, x[i].sim.b_Nspm, x[i].sim.b_at_k), x[i].linear.k_Npm, x[i].linear.b_Nspm,
+               peak_text(k, x[i].sim.k_Npm, x[i].sim.k_at_b, x[i].sim.k_open),
+               peak_text(b, x[i].sim.b_Nspm, x[i].sim.b_at_k, x[i].sim.b_open), x[i].linear.k_Npm, x[i].linear.b_Nspm,
                stiffest, paper);
+        any_open |= x[i].sim.k_open | x[i].sim.b_open;
         if (x[i].rate_Hz == 90) { slow = &x[i]; }
         if (x[i].rate_Hz == 2000) { fast = &x[i]; }
     }
+    if (any_open) { printf("\n>=: stable up to where the grid ends, no border found\n"); }
     if (!slow || !fast) { return; }
     printf("\nFrom 90 to 2000 Hz                              times\n");
-    ratio("largest stable k", slow->sim.k_Npm, fast->sim.k_Npm,
+    ratio("largest stable k", slow->sim.k_open ? 0 : slow->sim.k_Npm, fast->sim.k_open ? 0 : fast->sim.k_Npm,
           "paper: nearly 20 in its text, 13.3 in its table");
-    ratio("largest stable b", slow->sim.b_Nspm, fast->sim.b_Nspm,
+    ratio("largest stable b", slow->sim.b_open ? 0 : slow->sim.b_Nspm, fast->sim.b_open ? 0 : fast->sim.b_Nspm,
           "paper: nearly 20 in its text; its table starts at 0");
     ratio("stiffest stable cell", slow->stiffness_Npm, fast->stiffness_Npm, "paper: 36");
     ratio("largest k with rho < 1", slow->linear.k_Npm, fast->linear.k_Npm, "");

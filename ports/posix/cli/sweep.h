@@ -1,8 +1,9 @@
 /* exhand drop --sweep: the stability border in the k-b plane, at each rate.
  *
  * First octaves: k and b are doubled until a whole column and a whole row of cells is
- * unstable. Then a grid over what that spans, then bisection between the last stable
- * cell and the next: along k on each row, along b on each column. What is to be run
+ * unstable; k begins the lower the slower the rate. Then a grid over what that spans, then
+ * bisection between the last stable cell and the next: along k on each row, along b on
+ * each column. A line that is stable to its end is open: it has no border. What is to be run
  * follows from the cells known, so a file of cells is all that a resumed sweep needs. */
 #ifndef CLI_SWEEP_H
 #define CLI_SWEEP_H
