@@ -338,10 +338,28 @@ TEST(friction_moves_the_border_outwards)
     said_clean(dir);
 }
 
+TEST(a_ray_ends_where_the_scene_does)
+{
+    char dir[64];
+    static struct said s;
+    strcpy(dir, said_dir());
+    said(&s, dir, cli_drop, /* sticks at any gain; the b of 2000 Hz meets the scene's limit first */
+         WORDS("drop", "--friction", "2", "--falls", "1", "--rate", "90,2000", "--device", "coulomb=1",
+               "--device", "mu_motor=0.2", "--device", "mu_mass=0.2", "--device", "observe=0.6", "--out", dir));
+    CHECK(s.status == 0 && s.err[0] == '\0' && strstr(s.out, ">= 16.94"), "%d: %s%s", s.status, s.err, s.out);
+    said_read(again, said_path(dir, "friction.csv"));
+    CHECK(strstr(again, "\ndry,90,2,16.9407,,"), "%s", again);
+    said(&s, dir, cli_drop,
+         WORDS("drop", "--friction", "2", "--falls", "1", "--rate", "2000", "--device", "coulomb=10",
+               "--device", "observe=0.6", "--out", dir));
+    CHECK(s.status == 0 && s.err[0] == '\0', "%d: %s", s.status, s.err);
+    said_clean(dir);
+}
+
 TEST_MAIN("sweep", a_sweep_finds_a_border_and_says_so,
           the_linear_border_does_not_hang_on_the_grid,
           the_end_of_the_grid_is_no_border, a_slow_rate_has_a_border, a_resumed_sweep_gives_the_same_file,
           an_interrupted_sweep_keeps_its_cells, shards_make_the_whole,
           a_file_of_other_settings_is_refused_by_name, a_damaged_file_is_refused_by_line,
           bad_usage_is_refused_by_name, the_simulated_border_is_the_linear_one,
-          friction_moves_the_border_outwards);
+          friction_moves_the_border_outwards, a_ray_ends_where_the_scene_does);

@@ -13,6 +13,8 @@
 #define GAIN_FIRST 0.1 /* of the paper's gains: the ray is climbed from here      */
 #define GAIN_STEP  1.25
 #define GAIN_MOST  20
+#define K_MAX_NPM  1e6 /* what the scene takes */
+#define B_MAX_NSPM 1e3
 #define HALVINGS   3
 
 enum kind { BOTH, DRY, VISCOUS, KINDS };
@@ -29,6 +31,7 @@ struct limit {
     int done, error, kind, rate_i;
     double scale;
     double stable, unstable; /* gains, of the paper's; 0: at rest at none tried         */
+    int open;                /* the ray ended first: there is no unstable        */
     double linear;           /* the largest with rho < 1                          */
 };
 
@@ -54,18 +57,30 @@ static int rests(const struct run_cfg *base, double rate_Hz, double gain, struct
     return error ? -1 : cell_stable(&c);
 }
 
+/* The ray ends where the scene would refuse k or b. */
+static double gain_most(double rate_Hz)
+{
+    const struct table2_row *row = table2_gains(rate_Hz);
+    double most = GAIN_MOST;
+    if (row->k_Npm * most > K_MAX_NPM) { most = K_MAX_NPM / row->k_Npm; }
+    if (row->b_Nspm * most > B_MAX_NSPM) { most = B_MAX_NSPM / row->b_Nspm; }
+    return most;
+}
+
 /* As on a line of the sweep: from the first gain at rest up to the first that is not. */
 static void climb(const struct run_cfg *base, double rate_Hz, struct limit *x)
 {
+    const double most = gain_most(rate_Hz);
     double gain = GAIN_FIRST;
     int stable = 0;
-    for (; gain < GAIN_MOST; gain *= GAIN_STEP) {
+    for (; gain < most; gain *= GAIN_STEP) {
         stable = rests(base, rate_Hz, gain, x);
         if (stable < 0 || (stable == 0 && x->stable > 0)) { break; }
         if (stable == 1) { x->stable = gain; }
     }
     x->unstable = gain;
-    for (int i = 0; i < HALVINGS && x->stable > 0 && stable >= 0 && gain < GAIN_MOST; i++) {
+    x->open = gain >= most;
+    for (int i = 0; i < HALVINGS && x->stable > 0 && stable >= 0 && !x->open; i++) {
         const double mid = (x->stable + x->unstable) / 2;
         stable = rests(base, rate_Hz, mid, x);
         if (stable == 1) {
@@ -113,7 +128,7 @@ static void work(const void *ctx, int i, void *result)
 static void print(const struct sweep_opt *o, const struct limit *x, int points)
 {
     printf("\nThe border along the ray through the paper's point, in its gains, against friction\n"
-           "(%d falls a cell; -: at rest at no gain from %.1f up)\n",
+           "(%d falls a cell; -: at rest at no gain from %.1f up; >=: at rest at the last gain tried)\n",
            o->base.board.falls, GAIN_FIRST);
     for (int kind = 0; kind < KINDS; kind++) {
         printf("\n%-38s", kind_text[kind]);
@@ -123,8 +138,10 @@ static void print(const struct sweep_opt *o, const struct limit *x, int points)
             printf("  times %-30.4g", 2.0 * p / (points - 1));
             for (int r = 0; r < o->rates; r++) {
                 const struct limit *l = &x[(kind * o->rates + r) * points + p];
+                char text[16];
+                snprintf(text, sizeof text, "%s%.2f", l->open ? ">= " : "", l->stable);
                 if (l->stable > 0) {
-                    printf(" %9.2f", l->stable);
+                    printf(" %9s", text);
                 } else {
                     printf("         -");
                 }
@@ -138,8 +155,10 @@ static int write_csv(FILE *f, const struct sweep_opt *o, const struct limit *x, 
 {
     fprintf(f, "friction,rate_hz,times,gain_stable,gain_unstable,gain_linear\n");
     for (int i = 0; i < n; i++) {
-        fprintf(f, "%s,%.9g,%.6g,%.6g,%.6g,%.6g\n", kind_name[x[i].kind], o->rate_Hz[x[i].rate_i],
-                x[i].scale, x[i].stable, x[i].unstable, x[i].linear);
+        char unstable[24] = "";
+        if (!x[i].open) { snprintf(unstable, sizeof unstable, "%.6g", x[i].unstable); }
+        fprintf(f, "%s,%.9g,%.6g,%.6g,%s,%.6g\n", kind_name[x[i].kind], o->rate_Hz[x[i].rate_i],
+                x[i].scale, x[i].stable, unstable, x[i].linear);
     }
     return ferror(f);
 }

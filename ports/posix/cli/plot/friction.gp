@@ -4,7 +4,8 @@
 #   gnuplot -e "data='friction.csv'; rates='90 100 ...'" friction.gp
 #
 #   data         friction,rate_hz,times,gain_stable,gain_unstable,gain_linear
-#                (exhand drop --friction); gain_stable 0: at rest at no gain tried
+#                (exhand drop --friction); gain_stable 0: at rest at no gain tried;
+#                gain_unstable empty: the ray ended first, no border
 #   rates        Hz, spaces between them
 # Optional:
 #   out          PNG to write                            (friction.png)
@@ -63,7 +64,7 @@ do for [c = 0:2] {
              using (here(i, column('times'))):(column('gain_linear') > low ? column('gain_linear') : NaN) \
              with lines lc rgb tint(i) lw 1.2 dt (7,5), \
          for [i = 1:words(rates)] data using (here(i, column('times'))): \
-             (column('gain_stable') > 0 ? sqrt(column('gain_stable')*column('gain_unstable')) : NaN) \
+             (column('gain_stable') > 0 && valid(5) ? sqrt(column('gain_stable')*column('gain_unstable')) : NaN) \
              with linespoints lc rgb tint(i) lw 2.2 pt 7 ps 1.2, \
          for [i = 1:words(rates)] data using (here(i, column('times')) + 0.012*(i - 3.5)): \
              (column('gain_stable') > 0 ? NaN : 0.092) with points lc rgb tint(i) pt 10 ps 1.6
