@@ -312,6 +312,26 @@ TEST(the_simulated_border_is_the_linear_one)
     said_clean(dir);
 }
 
+TEST(a_border_that_cannot_be_checked_is_refused)
+{
+    static const struct {
+        const char *word[4], *says;
+    } row[] = {
+        {{"--rate", "1"}, "--border-check: 1 Hz: watches 2500 ticks"},
+        {{"--rate", "20000", "--device", "delay=0.01"}, "--border-check: 20000 Hz: no linear border"},
+        {{"--rate", "25", "--grid", "200x4"}, "--border-check: 25 Hz: at k = 1."},
+    };
+    static struct said s;
+    const char *dir = said_dir();
+    for (size_t i = 0; i < LEN(row); i++) {
+        said(&s, dir, cli_drop,
+             WORDS("drop", "--border-check", row[i].word[0], row[i].word[1], row[i].word[2], row[i].word[3]));
+        CHECK(s.status == 2 && strstr(s.err, row[i].says), "row %zu: %d: %s", i, s.status, s.err);
+        CHECK(lines(s.err) == 1, "row %zu: %s", i, s.err);
+    }
+    said_clean(dir);
+}
+
 TEST(friction_moves_the_border_outwards)
 {
     char dir[64];
@@ -362,4 +382,5 @@ TEST_MAIN("sweep", a_sweep_finds_a_border_and_says_so,
           an_interrupted_sweep_keeps_its_cells, shards_make_the_whole,
           a_file_of_other_settings_is_refused_by_name, a_damaged_file_is_refused_by_line,
           bad_usage_is_refused_by_name, the_simulated_border_is_the_linear_one,
+          a_border_that_cannot_be_checked_is_refused,
           friction_moves_the_border_outwards, a_ray_ends_where_the_scene_does);

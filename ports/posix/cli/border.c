@@ -17,6 +17,15 @@
 #define AGREE_MIN 0.99
 #define DROPS     3     /* falls a cell of the second table                       */
 #define SETTINGS  80
+#define OVER      1.5 /* the agreement's grid, times the linear border            */
+#define WIDE      2.6 /* how far friction moves the border at most, and more      */
+#define HIGH      1.6
+
+/* What the scene and the device take. */
+#define K_MAX_NPM     1e6
+#define B_MAX_NSPM    1e3
+#define Q_LIM_MAX_M   1.0
+#define OBSERVE_MAX_S 100
 
 enum part { FRICTION = 1, SATURATION = 2, STEPS = 4, PULLBACK = 8, ALL = 15 };
 enum start { LET_GO, DROPPED, STARTS };
@@ -47,23 +56,26 @@ struct check {
     int stable;
 };
 
-/* The largest k and b with rho < 1: where the grids end. */
-static void linear_top(const struct sweep_opt *o, double rate_Hz, double *k_top, double *b_top)
+/* The largest k and b with rho < 1: where the grids end. Whether there are any. */
+static int linear_top(const struct sweep_opt *o, double rate_Hz, double *k_top, double *b_top)
 {
     const struct sim_device *d = &o->base.board.device;
     const int window = sweep_window(&o->base);
+    int any = 0;
     *k_top = *b_top = 1;
     for (double k = 10; k <= 1e6; k *= 1.1) {
         double b = 0;
         for (int j = 0; j < 80 && b <= 1e3; j++) {
             const double rho = linear_rho(d, 1 / rate_Hz, k, b, window);
             if (rho >= 0 && rho < 1) {
+                any = 1;
                 *k_top = k > *k_top ? k : *k_top;
                 *b_top = b > *b_top ? b : *b_top;
             }
             b = b == 0 ? 0.5 : b * 1.1;
         }
     }
+    return any;
 }
 
 /* The device with only these parts of it switched on. */
@@ -109,14 +121,14 @@ static struct check plan_cell(const struct plan *p, int i)
     const int agreement = o->rates * o->columns * o->rows;
     struct check x;
     int columns = p->columns, rows = p->rows, cell = i;
-    double wide = 2.6, high = 1.6; /* how far friction moves the border at most, and more */
+    double wide = WIDE, high = HIGH;
 
     memset(&x, 0, sizeof x);
     x.agreement = i < agreement;
     if (x.agreement) {
         columns = o->columns;
         rows = o->rows;
-        wide = high = 1.5;
+        wide = high = OVER;
     } else {
         cell = (i - agreement) / (STARTS * VARIANTS);
         x.variant = (i - agreement) / STARTS % VARIANTS;
@@ -158,6 +170,11 @@ static void work(const void *ctx, int i, void *result)
 
 /* --- what came out --- */
 
+static int linear(const struct check *x)
+{
+    return x->rho >= 0 && x->rho < 1;
+}
+
 static int print_agreement(const struct plan *p, const struct check *x, int n)
 {
     const struct sweep_opt *o = p->o;
@@ -171,7 +188,7 @@ static int print_agreement(const struct plan *p, const struct check *x, int n)
         int away[2] = {0, 0}, near[2] = {0, 0};
         for (int i = 0; i < n; i++) {
             const double off = x[i].rho < 1 ? 1 - x[i].rho : x[i].rho - 1;
-            const int agree = x[i].stable == (x[i].rho < 1);
+            const int agree = x[i].stable == linear(&x[i]);
             int *to = off < NEAR ? near : away;
             if (!x[i].agreement || x[i].rate_i != r || x[i].rho < 0) { continue; }
             to[0]++;
@@ -185,7 +202,7 @@ static int print_agreement(const struct plan *p, const struct check *x, int n)
     }
     printf("   all |       | %5d of %5d = %6.2f %% (>= %.0f %%)\n", all[1], all[0],
            all[0] ? 100.0 * all[1] / all[0] : 0, 100 * AGREE_MIN);
-    return all[1] >= AGREE_MIN * all[0];
+    return all[0] > 0 && all[1] >= AGREE_MIN * all[0];
 }
 
 static void print_parts(const struct plan *p, const struct check *x, int n, int start)
@@ -203,18 +220,18 @@ static void print_parts(const struct plan *p, const struct check *x, int n, int 
     for (int v = 0; v < VARIANTS; v++) {
         printf("%-38s", variant[v].what);
         for (int r = 0; r < p->o->rates; r++) {
-            int rest = 0, linear = 0, won = 0, lost = 0;
+            int rest = 0, within = 0, won = 0, lost = 0;
             char text[32];
             for (int i = 0; i < n; i++) {
                 if (x[i].agreement || x[i].rate_i != r || x[i].variant != v || x[i].start != start) {
                     continue;
                 }
                 rest += x[i].stable;
-                linear += x[i].rho < 1;
-                won += x[i].stable && x[i].rho >= 1;
-                lost += !x[i].stable && x[i].rho < 1;
+                within += linear(&x[i]);
+                won += x[i].stable && !linear(&x[i]);
+                lost += !x[i].stable && linear(&x[i]);
             }
-            snprintf(text, sizeof text, "%4.0f (+%d -%d)", linear ? 100.0 * rest / linear : 0, won, lost);
+            snprintf(text, sizeof text, "%4.0f (+%d -%d)", within ? 100.0 * rest / within : 0, won, lost);
             printf(" %-14s", text);
         }
         printf("\n");
@@ -244,10 +261,53 @@ static int write_csv(const struct plan *p, const struct check *x, int n)
     return 1;
 }
 
+/* Whether both grids can be run at a rate: 0, or 2 after a line on stderr. */
+static int refuse(const struct plan *p, int rate_i)
+{
+    const struct sweep_opt *o = p->o;
+    const double rate_Hz = o->rate_Hz[rate_i], k_top = p->k_top[rate_i], b_top = p->b_top[rate_i];
+    const double k_agree = OVER * k_top / o->columns, k_parts = WIDE * k_top / p->columns;
+    const double k_least = k_agree < k_parts ? k_agree : k_parts;
+    const double hang_m = (1 - OFFSET) * o->base.board.device.mass_kg * SIM_GRAVITY / k_least;
+    if (hang_m > Q_LIM_MAX_M) {
+        cli_complain("--border-check: %.6g Hz: at k = %.3g N/m the mass would hang %.3g m deep, the scene "
+                     "takes %.0f m: a higher --rate, fewer columns in --grid", rate_Hz, k_least, hang_m,
+                     Q_LIM_MAX_M);
+        return 2;
+    }
+    if (WIDE * k_top > K_MAX_NPM || HIGH * b_top > B_MAX_NSPM) {
+        cli_complain("--border-check: %.6g Hz: the grid would reach k = %.3g N/m, b = %.3g Ns/m, the scene "
+                     "takes %.0f, %.0f: a lower --rate", rate_Hz, WIDE * k_top, HIGH * b_top, K_MAX_NPM,
+                     B_MAX_NSPM);
+        return 2;
+    }
+    return 0;
+}
+
+/* 0 with the tops of all rates, or 2 after a line on stderr. */
+static int plan_rates(struct plan *p)
+{
+    const struct sweep_opt *o = p->o;
+    for (int r = 0; r < o->rates; r++) {
+        if (TICKS / o->rate_Hz[r] > OBSERVE_MAX_S) {
+            cli_complain("--border-check: %.6g Hz: watches %d ticks, at most %d s: --rate %d or higher",
+                         o->rate_Hz[r], TICKS, OBSERVE_MAX_S, TICKS / OBSERVE_MAX_S);
+            return 2;
+        }
+        if (!linear_top(o, o->rate_Hz[r], &p->k_top[r], &p->b_top[r])) {
+            cli_complain("--border-check: %.6g Hz: no linear border, rho < 1 nowhere, or the delay is too "
+                         "long to tell: another --rate or --device", o->rate_Hz[r]);
+            return 2;
+        }
+        if (refuse(p, r)) { return 2; }
+    }
+    return 0;
+}
+
 int border_check(const struct sweep_opt *o)
 {
     double top[2][64];
-    const struct plan p = {o, top[0], top[1], (3 * o->columns + 3) / 4, (o->rows + 3) / 2};
+    struct plan p = {o, top[0], top[1], (3 * o->columns + 3) / 4, (o->rows + 3) / 2};
     const int n = o->rates * (o->columns * o->rows + STARTS * VARIANTS * p.columns * p.rows);
     struct check *x = calloc((size_t)n, sizeof *x);
     const struct jobs jobs = {n, o->jobs, sizeof *x, x, work, &p, "cells", posix_interrupt};
@@ -257,11 +317,10 @@ int border_check(const struct sweep_opt *o)
         cli_complain("out of memory: a smaller --grid");
         return 1;
     }
-    if (o->dir != NULL && sweep_open_dir(o->dir, "border-check")) {
+    if (plan_rates(&p) || (o->dir != NULL && sweep_open_dir(o->dir, "border-check"))) {
         free(x);
         return 2;
     }
-    for (int r = 0; r < o->rates; r++) { linear_top(o, o->rate_Hz[r], &top[0][r], &top[1][r]); }
     status = jobs_run(&jobs);
     for (int i = 0; i < n && status == 0; i++) { status = !x[i].done; }
     if (status == JOBS_INTERRUPTED) {

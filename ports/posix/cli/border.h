@@ -13,7 +13,8 @@
 
 /* Both tables on stdout, and DIR/check.csv with --out. o->columns and o->rows are of the
  * check's own grid over each rate's linear border. 0, 1 when fewer than 99 % agree outside
- * |rho - 1| < 0.005 or a run failed, 130 interrupted. */
+ * |rho - 1| < 0.005 or a run failed, 2 when a rate has no linear border or its grid is beyond
+ * what the scene takes, 130 interrupted. */
 int border_check(const struct sweep_opt *o);
 
 #endif
