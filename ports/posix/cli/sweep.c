@@ -135,13 +135,14 @@ static int run_batch(const struct batch *b, int n, struct cells *cells)
 {
     struct ran *ran = calloc((size_t)n, sizeof *ran);
     const struct jobs jobs = {n, b->o->jobs, sizeof *ran, ran, work, b, "cells", posix_interrupt};
-    int status = ran == NULL ? 1 : jobs_run(&jobs);
+    int no_memory = 0, status = ran == NULL ? 1 : jobs_run(&jobs);
+    if (status == 0 && posix_interrupted()) { status = JOBS_INTERRUPTED; } /* before jobs listened */
     for (int i = 0; ran != NULL && i < n; i++) {
-        if (ran[i].done) { status |= cells_add(cells, &ran[i].cell); }
+        if (ran[i].done) { no_memory |= cells_add(cells, &ran[i].cell); }
         if (!ran[i].done && status == 0) { status = 1; }
     }
     free(ran);
-    return status;
+    return no_memory ? 1 : status;
 }
 
 /* --- the sweep --- */
