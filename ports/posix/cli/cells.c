@@ -59,8 +59,6 @@ const struct cell *cells_find(const struct cells *c, double rate_Hz, double k_Np
 
 int cells_add(struct cells *c, const struct cell *add)
 {
-    const int i = place(c, add);
-    if (i < c->n && compare(&c->at[i], add) == 0) { return 0; }
     if (c->n == c->cap) {
         const int cap = c->cap ? 2 * c->cap : 1024;
         struct cell *more = realloc(c->at, (size_t)cap * sizeof *more);
@@ -71,10 +69,23 @@ int cells_add(struct cells *c, const struct cell *add)
         c->at = more;
         c->cap = cap;
     }
-    memmove(&c->at[i + 1], &c->at[i], (size_t)(c->n - i) * sizeof *c->at);
-    c->at[i] = *add;
-    c->n++;
+    c->at[c->n++] = *add;
     return 0;
+}
+
+static int compare_any(const void *a, const void *b)
+{
+    return compare(a, b);
+}
+
+void cells_sort(struct cells *c)
+{
+    int n = 0;
+    if (c->n > 1) { qsort(c->at, (size_t)c->n, sizeof *c->at, compare_any); }
+    for (int i = 0; i < c->n; i++) {
+        if (n == 0 || compare(&c->at[n - 1], &c->at[i]) != 0) { c->at[n++] = c->at[i]; }
+    }
+    c->n = n;
 }
 
 void cells_free(struct cells *c)
@@ -184,6 +195,7 @@ int cells_load(struct cells *c, const char *path)
     }
     err = load(c, f, path);
     fclose(f);
+    cells_sort(c);
     return err;
 }
 

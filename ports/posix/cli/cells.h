@@ -31,8 +31,10 @@ int cells_load(struct cells *c, const char *path);
 /* NULL: not known. */
 const struct cell *cells_find(const struct cells *c, double rate_Hz, double k_Npm, double b_Nspm);
 
-/* 0, or 1 after a line on stderr: out of memory. A cell that is known is let be. */
+/* 0, or 1 after a line on stderr: out of memory. Found only after cells_sort(), which
+ * also leaves each cell once. */
 int cells_add(struct cells *c, const struct cell *add);
+void cells_sort(struct cells *c);
 
 /* All cells, sorted, in place of the file. 0, or 1 after a line on stderr. */
 int cells_save(const struct cells *c, const char *path);

@@ -21,16 +21,11 @@ struct wants {
     int n, cap, no_memory;
 };
 
-/* The cell, or NULL: then it is wanted. */
+/* The cell, or NULL: then it is wanted, perhaps not for the first time. */
 static const struct cell *need(struct wants *w, double rate_Hz, double k_Npm, double b_Nspm)
 {
     const struct cell *c = cells_find(w->cells, rate_Hz, k_Npm, b_Nspm);
     if (c != NULL) { return c; }
-    for (int i = 0; i < w->n; i++) {
-        if (w->at[i].rate_Hz == rate_Hz && w->at[i].k_Npm == k_Npm && w->at[i].b_Nspm == b_Nspm) {
-            return NULL;
-        }
-    }
     if (w->n == w->cap) {
         const int cap = w->cap ? 2 * w->cap : 1024;
         struct plane_want *more = realloc(w->at, (size_t)cap * sizeof *more);
@@ -43,6 +38,25 @@ static const struct cell *need(struct wants *w, double rate_Hz, double k_Npm, do
     }
     w->at[w->n++] = (struct plane_want){rate_Hz, k_Npm, b_Nspm};
     return NULL;
+}
+
+static int compare(const void *a, const void *b)
+{
+    const struct plane_want *x = a, *y = b;
+    if (x->rate_Hz != y->rate_Hz) { return x->rate_Hz < y->rate_Hz ? -1 : 1; }
+    if (x->k_Npm != y->k_Npm) { return x->k_Npm < y->k_Npm ? -1 : 1; }
+    return x->b_Nspm == y->b_Nspm ? 0 : x->b_Nspm < y->b_Nspm ? -1 : 1;
+}
+
+/* Sorted, each once. */
+static void tidy(struct wants *w)
+{
+    int n = 0;
+    if (w->n > 1) { qsort(w->at, (size_t)w->n, sizeof *w->at, compare); }
+    for (int i = 0; i < w->n; i++) {
+        if (n == 0 || compare(&w->at[n - 1], &w->at[i]) != 0) { w->at[n++] = w->at[i]; }
+    }
+    w->n = n;
 }
 
 /* --- octaves: how far the grid must reach --- */
@@ -191,12 +205,13 @@ int plane_wants(const struct cells *cells, const struct sweep_opt *o, struct pla
             line += o->rows + o->columns;
             continue;
         }
-        for (int i = 0; i < o->rows + o->columns; i++, line++) {
+        for (int i = 0; i < o->rows + o->columns && !posix_interrupted(); i++, line++) {
             const struct line l = i < o->rows ? row_of(o, rate_Hz, reach, i)
                                               : column_of(o, rate_Hz, reach, i - o->rows);
             if (line % o->shards == o->shard - 1) { want_line(&w, &l); }
         }
     }
+    tidy(&w);
     *want = w.at;
     if (!w.no_memory) { return w.n; }
     cli_complain("out of memory: a smaller --grid");

@@ -12,7 +12,8 @@ struct plane_want {
 };
 
 /* Cells to be run before more can be said, each once, into a list that the caller
- * frees. How many: 0 when the sweep is done; -1 after a line on stderr. */
+ * frees. How many: 0 when the sweep is done; -1 after a line on stderr. Once interrupted it
+ * returns early, with any number. */
 int plane_wants(const struct cells *cells, const struct sweep_opt *o, struct plane_want **want);
 
 /* A finished sweep: border.csv, rho.csv and sweep.gp in o->dir, a table on stdout. 0, or

@@ -141,6 +141,7 @@ static int run_batch(const struct batch *b, int n, struct cells *cells)
         if (ran[i].done) { no_memory |= cells_add(cells, &ran[i].cell); }
         if (!ran[i].done && status == 0) { status = 1; }
     }
+    cells_sort(cells);
     free(ran);
     return no_memory ? 1 : status;
 }
@@ -207,8 +208,8 @@ static int sweep(const struct sweep_opt *o, struct cells *cells, const char *pat
         struct plane_want *want = NULL;
         n = plane_wants(cells, o, &want);
         b.want = want;
-        err = n < 0 ? 1 : 0;
-        if (n > 0) { err = posix_interrupted() ? JOBS_INTERRUPTED : run_batch(&b, n, cells); }
+        err = n < 0 ? 1 : posix_interrupted() ? JOBS_INTERRUPTED : 0;
+        if (n > 0 && err == 0) { err = run_batch(&b, n, cells); }
         free(want);
         if (n <= 0) { break; }
     }
