@@ -248,6 +248,11 @@ TEST(a_damaged_file_is_refused_by_line)
         {"90,1000,0,1,1,0.9\n", "stability.csv:3: "},                /* a field is missing */
         {"90,1000,0,1,1,,0.9,\n", "stability.csv:3: "},
         {"90,nan,0,1,1,,0.9\n", "stability.csv:3: "},
+        {"90,inf,0,1,1,,0.9\n", "stability.csv:3: "},
+        {"90,1000001,0,1,1,,0.9\n", "stability.csv:3: "},
+        {"90,1000,1001,1,1,,0.9\n", "stability.csv:3: "},
+        {"90,1000,0,1,1,inf,0.9\n", "stability.csv:3: "},
+        {"90,1000,0,1,1,,nan\n", "stability.csv:3: "},
         {"\n", "stability.csv:3: "},
     };
     static struct said s;

@@ -3,6 +3,7 @@
 #include "option.h"
 
 #include <errno.h>
+#include <float.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -128,8 +129,10 @@ static int parse(const char *line, struct cell *c)
                    take(&line, ',', -1, &c->b_Nspm) && take(&line, ',', -1, &stable) &&
                    take(&line, ',', -1, &falls) && take(&line, ',', 0, &c->stiffness_Npm) &&
                    take(&line, '\n', -1, &c->rho) && *line == '\0';
-    if (!ok || !(c->rate_Hz >= 1 && c->k_Npm >= 0 && c->b_Nspm >= 0) || !(falls >= 1 && falls < 1e6) ||
-        !(stable >= 0 && stable <= falls)) {
+    if (!ok || !(c->rate_Hz >= 1 && c->rate_Hz <= 20000) || !(c->k_Npm >= 0 && c->k_Npm <= 1e6) ||
+        !(c->b_Nspm >= 0 && c->b_Nspm <= 1e3) || !(falls >= 1 && falls < 1e6) ||
+        !(stable >= 0 && stable <= falls) || !(c->stiffness_Npm >= 0 && c->stiffness_Npm <= DBL_MAX) ||
+        !(c->rho >= -1 && c->rho <= DBL_MAX)) {
         return 0;
     }
     c->stable_falls = (int)stable;

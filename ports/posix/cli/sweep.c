@@ -176,8 +176,12 @@ static int load_shards(struct cells *cells, const char *dir)
 {
     DIR *d = opendir(dir);
     int err = 0;
-    struct dirent *e;
-    while (d != NULL && err == 0 && (e = readdir(d)) != NULL) {
+    struct dirent *e = NULL;
+    if (d == NULL) {
+        cli_complain("--out: %s: can't be read: %s", dir, strerror(errno));
+        return 1;
+    }
+    while (err == 0 && (errno = 0, e = readdir(d)) != NULL) {
         char path[TABLE2_PATH_B];
         int shard, shards, end = 0;
         if (sscanf(e->d_name, "stability.%d-of-%d.csv%n", &shard, &shards, &end) == 2 && end > 0 &&
@@ -186,7 +190,11 @@ static int load_shards(struct cells *cells, const char *dir)
             err = cells_load(cells, path);
         }
     }
-    if (d != NULL) { closedir(d); }
+    if (err == 0 && errno != 0) {
+        cli_complain("--out: %s: can't be read: %s", dir, strerror(errno));
+        err = 1;
+    }
+    closedir(d);
     return err;
 }
 
