@@ -293,6 +293,8 @@ TEST(bad_usage_is_refused_by_name)
     CHECK(s.status == 2 && strstr(s.err, "--sweep: needs --out DIR"), "%d: %s", s.status, s.err);
     said(&s, dir, cli_drop, WORDS("drop", "--grid", "5x5"));
     CHECK(s.status == 2 && strstr(s.err, "--grid and --shard: only with --sweep"), "%d: %s", s.status, s.err);
+    said(&s, dir, cli_drop, WORDS("drop", "--border-check", "--falls", "5"));
+    CHECK(s.status == 2 && strstr(s.err, "--falls and --border-check: "), "%d: %s", s.status, s.err);
     said_clean(dir);
 }
 

@@ -174,7 +174,7 @@ static struct run_cfg job_cfg(const struct drop_options *o, int rate_i, double s
     c.board = posix_config_default();
     c.board.device = o->device;
     c.board.seed = seed;
-    c.board.falls = (int)o->falls;
+    c.board.falls = o->falls < 0 ? 10 : (int)o->falls;
     c.board.T = o->T;
     c.board.pace = o->pace;
     return c;
@@ -335,7 +335,7 @@ static int refuse(struct drop_options *o)
         o->rates = 1;
     }
     if ((o->grid && !o->sweep && !o->check) || (o->shard && !o->sweep)) {
-        cli_complain("--grid and --shard: only with --sweep");
+        cli_complain("--grid and --shard: only with --sweep, --grid with --border-check too");
         return 2;
     }
     for (int i = 0; i < o->rates; i++) {
@@ -362,6 +362,10 @@ static int plane(const struct drop_options *o)
                      o->sweep ? "sweep" : o->check ? "border-check" : "friction");
         return 2;
     }
+    if (o->check && o->falls >= 0) {
+        cli_complain("--falls and --border-check: it has its own falls: leave out one of them");
+        return 2;
+    }
     if (sweep_take_grid(o->grid ? o->grid : o->sweep ? "20x16" : "16x16", &s.columns, &s.rows) ||
         sweep_take_shard(o->shard ? o->shard : "1/1", &s.shard, &s.shards)) {
         return 2;
@@ -385,7 +389,7 @@ int cli_drop(int argc, char **argv)
         {"k", CLI_REAL, &o.k_Npm, 0, 1e6, "N/M", "stiffness (the paper's at that rate)"},
         {"b", CLI_REAL, &o.b_Nspm, 0, 1e3, "NS/M", "damping (the paper's at that rate)"},
         {"scale", CLI_REAL, &o.scale, 0, 100, "G", "multiplies both (1)"},
-        {"falls", CLI_INT, &o.falls, 1, 1000, "N", "falls a run (10)"},
+        {"falls", CLI_INT, &o.falls, 1, 1000, "N", "falls a run (10); not with --border-check"},
         {"spread", CLI_INT, &o.spread, 0, 1000, "N", "further runs, at 1 and 1.5 times both gains (0)"},
         {"seed", CLI_INT, &o.seed, 0, 1e9, "N", "of all chance in the simulation (1)"},
         {"out", CLI_TEXT, &o.out, 0, 0, "DIR", "write logs, CSVs of the falls and tables there"},
@@ -394,7 +398,7 @@ int cli_drop(int argc, char **argv)
         {"set", CLI_CALL, u[2].to, 0, 0, "NAME=VALUE", "a parameter of the scene"},
         {"device", CLI_CALL, u[3].to, 0, 0, "NAME=VALUE", "a value of the simulated device"},
         {"sweep", CLI_FLAG, &o.sweep, 0, 0, NULL, "the stability border in the k-b plane, in DIR/stability.csv"},
-        {"grid", CLI_TEXT, &o.grid, 0, 0, "KxB", "cells of the sweep at each rate (20x16)"},
+        {"grid", CLI_TEXT, &o.grid, 0, 0, "KxB", "cells at each rate of --sweep (20x16), --border-check (16x16)"},
         {"shard", CLI_TEXT, &o.shard, 0, 0, "I/N", "the I-th of N parts of the sweep, in a file of its own"},
         {"border-check", CLI_FLAG, &o.check, 0, 0, NULL, "the simulated border beside that of the linear test"},
         {"friction", CLI_INT, &o.friction, 2, FRICTION_POINTS_MAX, "N", "the border against N amounts of friction, 0..2 times"},
@@ -412,7 +416,7 @@ int cli_drop(int argc, char **argv)
     memset(&o, 0, sizeof o);
     o.k_Npm = o.b_Nspm = -1;
     o.scale = 1;
-    o.falls = 10;
+    o.falls = -1;
     o.seed = 1;
     o.jobs = jobs_cores();
     o.device = sim_device_default();
