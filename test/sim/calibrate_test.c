@@ -4,20 +4,17 @@
  * A mass lifts at kf i = fc + (1 + a) m g / (1 - b) and sinks at (1 - a) m g / (1 + b) - fc
  * (a: mu_motor, b: mu_mass, fc: coulomb). The middle is m g (1 + a b) / (1 - b^2): kf is
  * found as kf (1 - b^2) / (1 + a b), 2.4 % low with the committed device. */
-#include "check.h"
+#include "said.h"
 
 #include "cli/calibration.h"
-#include "cli/cli.h"
 #include "posix.h"
 
 #include "calibrate/calibrate.h"
 
 #include "exhand/error.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
+#include <signal.h>
+#include <time.h>
 
 #define LEN(a) (sizeof(a) / sizeof((a)[0]))
 
@@ -214,6 +211,49 @@ TEST(reversed_is_seen_at_the_least_current)
     }
 }
 
+/* Nobody in time, after steps that were done: they are not the calibration. */
+TEST(nobody_after_a_finished_step_is_no_calibration)
+{
+    static const struct {
+        double wait_ms;
+        unsigned step; /* the first that takes longer to prepare                */
+    } row[] = {{1, CALIBRATE_ZERO}, {1300, CALIBRATE_MASS + 2}};
+    for (size_t i = 0; i < LEN(row); i++) {
+        const struct calibration_setting wait = {"wait_time", row[i].wait_ms};
+        struct calibration_cfg c = config(1);
+        const struct calibration *r;
+        c.setting = &wait;
+        c.settings = 1;
+        r = calibrate(&c);
+        CHECK(r->step == row[i].step && r->result == CALIBRATE_NOBODY, "row %zu: %s: %s", i,
+              calibrate_step_text(r->step), calibrate_result_text(r->result));
+        CHECK(r->c.points == (i ? 2 : 0) && r->last_most_A == 0, "row %zu: %d points", i, r->c.points);
+        CHECK(size_of(r->last_s - row[i].wait_ms / 1000) < 0.002, "row %zu: %.4f s", i, r->last_s);
+    }
+}
+
+/* Ended from outside at any time, also between two steps and within the last mass. */
+TEST(ended_before_its_end_is_no_calibration)
+{
+    struct calibration_cfg c = config(1);
+    uint32_t last = 0;
+    c.rate_Hz = 100;
+    CHECK_EQ_I64(calibrate(&c)->result, EXH_PROBE_DONE);
+    for (uint32_t n = 1; last == 0; n += n < 800 ? 7 : 401) {
+        int err;
+        c.board.max_ticks = n;
+        err = calibration_run(&c, &out);
+        if (err == 0) {
+            last = n;
+            continue;
+        }
+        CHECK(err == -EXH_E_STATE && out.result == EXH_PROBE_BUSY, "after %" PRIu32 " ticks: %d: %s",
+              n, err, calibrate_result_text(out.result));
+    }
+    CHECK(last > 5000 && out.result == EXH_PROBE_DONE && out.c.points == c.masses,
+          "after %" PRIu32 " ticks", last);
+}
+
 /* The person hangs on other masses than said: the table does not rise there. */
 TEST(exchanged_masses_are_refused_by_table_and_point)
 {
@@ -394,6 +434,7 @@ TEST(exit_status_says_what_happened)
         {1, "--mass 0.1,0.2,0.22,0.5 --hung 0.1,0.22,0.2,0.5"}, /* does not rise               */
         {1, "--mass 0.1,0.2,0.3 --hung 0.1,0.24,0.3"},          /* far from the line           */
         {0, "--mass 0.1,0.2,0.3 --hung 0.1,0.24,0.3 --residual 1"},
+        {1, "--set wait_time=1300 --out @/nobody"},
         {2, "--mass 0.2,0.1"},
         {2, "--mass 0.2,"},
         {2, "--mass 9"},
@@ -422,7 +463,41 @@ TEST(exit_status_says_what_happened)
         snprintf(path, sizeof path, "%s/%s", dir, made[i]);
         CHECK(remove(path) == 0, "%s was not written", made[i]);
     }
+    snprintf(path, sizeof path, "%s/nobody", dir);
+    CHECK(rmdir(path) == 0, "something was written though nobody came");
     CHECK_EQ_I64(rmdir(dir), 0);
+}
+
+static int line_by_line(int argc, char **argv)
+{
+    setvbuf(stdout, NULL, _IOLBF, 0);
+    return cli_calibrate(argc, argv);
+}
+
+/* A signal while it waits, within a step, within a mass. */
+TEST(an_interruption_saves_nothing)
+{
+    static const char *const after[] = {"  zero", "  polarity", "  home", "  f0", "  mass 0.1",
+                                        "  mass 0.3"};
+    for (size_t i = 0; i < LEN(after); i++) {
+        const struct timespec nap = {0, 1000000};
+        char *dir = said_dir();
+        static struct said s;
+        const pid_t pid = said_start(dir, line_by_line,
+                                     WORDS("calibrate", "--rate", "20000", "--out", dir));
+        s.out[0] = '\0';
+        for (int n = 0; n < 20000 && strstr(s.out, after[i]) == NULL; n++) {
+            nanosleep(&nap, NULL);
+            said_read(s.out, said_path(dir, "said.out"));
+        }
+        CHECK_EQ_I64(kill(pid, i % 2 ? SIGINT : SIGTERM), 0);
+        said_end(&s, dir, pid);
+        CHECK(s.status == 130, "after%s: status %d: %s", after[i], s.status, s.err);
+        CHECK(strstr(s.err, "interrupted") && strstr(s.err, ": nothing was saved\n"), "%s", s.err);
+        CHECK(strstr(s.out, "force over current") == NULL, "%s", s.out);
+        CHECK(said_size(said_path(dir, "calibration.bin")) < 0, "after%s: written", after[i]);
+        said_clean(dir);
+    }
 }
 
 TEST_MAIN("sim/calibrate", kf_f0_and_home_are_the_devices, at_any_rate, other_devices, the_monitors_zero_is_found,
@@ -431,4 +506,5 @@ TEST_MAIN("sim/calibrate", kf_f0_and_home_are_the_devices, at_any_rate, other_de
           exchanged_masses_are_refused_by_table_and_point, set_up_refuses,
           a_fault_ends_it_in_its_tick_for_good, nothing_begins_outside_run,
           an_acting_limit_ends_it, it_does_not_wait_for_ever,
-          exit_status_says_what_happened);
+          nobody_after_a_finished_step_is_no_calibration, ended_before_its_end_is_no_calibration,
+          exit_status_says_what_happened, an_interruption_saves_nothing);

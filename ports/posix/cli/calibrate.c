@@ -260,12 +260,18 @@ static void interrupted(int sig)
     posix_interrupt();
 }
 
-/* Two checks besides the steps: all is a table, and its points lie on a line. */
+/* Three checks besides the steps: every mass is a point, all is a table, and its points
+ * lie on a line. */
 static int judge(const struct calibrate_options *o, struct calibration *r)
 {
     struct calibration_lines l;
     struct exh_calib_bad bad;
-    int err = exh_calib_valid(&r->c, &bad);
+    int err;
+    if (r->c.points != o->masses) {
+        cli_complain("%d of %d masses were weighed: calibrate again", r->c.points, o->masses);
+        return 1;
+    }
+    err = exh_calib_valid(&r->c, &bad);
     if (err < 0) { return complain("calibrate", err, &bad); }
     if (calibration_lines(&r->c, &l) < 0) {
         cli_complain("no line through these points: calibrate again");
@@ -278,6 +284,10 @@ static int judge(const struct calibrate_options *o, struct calibration *r)
         cli_complain("residual: %.4g N (allowed 0..%.4g): weigh that mass again, or --residual",
                 l.cur_worst_N > l.mon_worst_N ? l.cur_worst_N : l.mon_worst_N, o->residual_N);
         return 1;
+    }
+    if (posix_interrupted()) {
+        cli_complain("interrupted before it was written: nothing was saved");
+        return 130;
     }
     if (o->out != NULL) { err = write_files(o->out, &r->c, &l); }
     printf("for the drop experiment, straight: exhand drop --set kf=%.6g --set f0=%.4g\n",
@@ -312,7 +322,7 @@ static int calibrate(const struct calibrate_options *o)
     (void)sigaction(SIGTERM, &stop, NULL);
     err = calibration_run(&c, &r);
     fflush(stdout); /* the steps before what is said of them */
-    if (err < 0) { return err == -EXH_E_STATE ? 1 : 2; }
+    if (err < 0) { return err == -EXH_E_STATE ? 130 : 2; }
     if (r.result != EXH_PROBE_DONE) {
         cli_complain("%s: %s after %.2f s at up to %.1f mA, %.1f mm: stopped, no current; "
                         "put it right and calibrate again", calibrate_step_text(r.step),

@@ -97,11 +97,18 @@ static void step_ended(int32_t step, unsigned result)
     const struct calibrate *s = calibrate_state();
     const struct exh_quad_par *quad = &calibrate_config()->par->quad;
     calibrate_points(s, calibrate_config(), &run.out->c);
-    run.out->step = (unsigned)step;
-    run.out->result = result;
     run.out->polarity_A = si(s->polarity.cur_A_q26, EXH_Q_CUR);
     run.out->home_m = si(exh_quad_pos_m_q30(quad, s->home.home_cnt), EXH_Q_POS);
     say_result(run.cfg->progress, step, result);
+}
+
+/* What ends it all is the scene's to say: a step that is done is not yet the end. */
+static void all_ended(int32_t step, const struct calibrate_signals *s)
+{
+    run.out->step = (unsigned)step;
+    run.out->result = (unsigned)s->result;
+    run.out->limits = (uint32_t)s->limits & ~(uint32_t)EXH_LIMIT_GATE;
+    posix_stop();
 }
 
 static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
@@ -110,12 +117,16 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
     const double cur_A = si(s.i_des_A_q26, EXH_Q_CUR);
     const double far_m = si(s.q_m_q30 - run.begin_m_q30, EXH_Q_POS);
     const int busy = !s.waits && s.result == EXH_PROBE_BUSY;
+    const int ends = s.result != EXH_PROBE_BUSY && run.out->result == EXH_PROBE_BUSY;
     (void)in;
     (void)out;
-    if (busy && !run.busy) {
+    if (ends && !run.busy) { /* in a wait: it began where the last step ended */
+        run.out->last_s = (double)(tick - run.begin) * run.T.num / run.T.den;
+        run.out->last_most_A = run.out->last_travel_m = 0;
+    } else if (busy && !run.busy) {
         run.begin = tick;
         run.begin_m_q30 = s.q_m_q30;
-        run.out->last_most_A = run.out->last_travel_m = 0;
+        run.out->last_s = run.out->last_most_A = run.out->last_travel_m = 0;
     } else if (busy || run.busy) {
         run.out->last_s = (double)(tick - run.begin) * run.T.num / run.T.den;
         if (far_m > run.out->last_travel_m) { run.out->last_travel_m = far_m; }
@@ -124,10 +135,11 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
     }
     if (cur_A > run.out->most_A) { run.out->most_A = cur_A; }
     run.out->faults |= (uint32_t)s.faults;
-    if ((run.busy && !busy) || (s.result > EXH_PROBE_DONE && run.out->result == 0)) {
+    if (ends) { all_ended(run.step, &s); }
+    if (ends || (run.busy && !busy)) {
         step_ended(run.step, s.result ? (unsigned)s.result : EXH_PROBE_DONE);
+        run.begin = tick;
     }
-    if (s.result) { posix_stop(); }
     run.busy = busy;
     run.step = s.step;
 }
@@ -202,8 +214,9 @@ int calibration_run(const struct calibration_cfg *cfg, struct calibration *out)
         say_pair();
     } else if (err < 0) {
         cli_complain("%s", exh_error_text(err));
-    } else if (run.out->result == 0) {
-        cli_complain("interrupted");
+    } else if (posix_interrupted() || run.out->result == EXH_PROBE_BUSY) {
+        cli_complain("interrupted at step %d, %s: nothing was saved", (int)run.step,
+                     calibrate_step_text((unsigned)run.step));
         err = -EXH_E_STATE;
     }
     return err;

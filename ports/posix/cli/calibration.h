@@ -27,8 +27,9 @@ struct calibration_cfg {
 struct calibration {
     struct exh_calib c; /* points below; whose and when is the caller's         */
     struct exh_calib_point point[EXH_CALIB_POINTS_MAX];
-    unsigned step, result; /* the last step, and why it ended (examples/calibrate) */
-    uint32_t faults;
+    unsigned step, result; /* the step in which it ended, and why (examples/calibrate): DONE
+                            * if all of it is done; BUSY: it was ended before    */
+    uint32_t faults, limits; /* all faults; the limits that ended it            */
     double home_m;      /* the end, from where the string was at first          */
     double polarity_A;  /* current that moved the string                        */
     double most_A;      /* the highest current coded in all                     */
@@ -37,8 +38,8 @@ struct calibration {
     double last_travel_m; /* and the farthest from its start                    */
 };
 
-/* 0, or -EXH_E… after a line on stderr: it could not begin. A step that failed is in
- * *out, and said on progress. */
+/* 0, or -EXH_E… after a line on stderr: it could not begin, or (-EXH_E_STATE) it was
+ * interrupted. A step that failed is in *out, and said on progress. */
 int calibration_run(const struct calibration_cfg *cfg, struct calibration *out);
 
 /* Lines of both fits: N/A, and the largest residual, N. 0 or -EXH_E…. */
