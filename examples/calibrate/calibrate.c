@@ -28,10 +28,10 @@ static const struct exh_signal own_rows[] = {
      EXH_Q(2, 100, EXH_Q_VEL), "f0_speed", "m_per_s", "f0 returns the slack string so fast"},
     ROW_MS(0x820D, "dwell", 1000, 100, "time at each current"),
     ROW_MS(0x820E, "hold", 10000, 500, "means are taken over this"),
-    ROW_MS(0x820F, "step_time", 600000, 120000, "no step takes longer"),
+    ROW_MS(0x820F, "step_time", 600000, 120000, "no phase of a step takes longer"),
     ROW_MS(0x8210, "wait_time", 1000000, 600000, "no wait for a person takes longer"),
     {0x8211, 0, EXH_WHEN_ANY, 0, CALIBRATE_MASS + CALIBRATE_MASSES, 0, "go", "",
-     "steps that are prepared: the person's word"},
+     "the person's word: step + 1, new while it waits"},
 };
 
 /* Instances: the list of masses. */
@@ -73,6 +73,18 @@ EXH_STATIC_ASSERT(calibrate_signals_match_rows,
 
 /* --- set-up --- */
 
+/* Whoever has the parameters in ROM passed no rows: each in its own range, and no step's
+ * current beyond i_max. */
+static int own_ok(const struct calibrate_own_par *own)
+{
+    const int32_t *const v = (const int32_t *)(const void *)own;
+    for (size_t i = 0; i < COUNT(own_rows); i++) {
+        if (v[i] < own_rows[i].min || v[i] > own_rows[i].max) { return 0; }
+    }
+    return own->pol_max_A_q26 <= own->i_max_A_q26 && own->home_A_q26 <= own->i_max_A_q26 &&
+           own->slack_A_q26 <= own->i_max_A_q26;
+}
+
 /* The motions, all bounded by the same few parameters. */
 static int setup_motions(struct calibrate_cfg *cfg, const struct calibrate_own_par *own,
                          struct exh_probe_scale scale)
@@ -101,7 +113,8 @@ static int64_t force_of(const struct calibrate_par *par, unsigned i)
     return exh_mul_shr(par->mass_kg_q20[i], par->own.gravity_mps2_q20, EXH_Q_FORCE);
 }
 
-/* A mass that does not lift is held fast: the lighter it should be, the sooner it is seen. */
+/* A mass that does not lift is held fast: the lighter it should be, the sooner it is seen.
+ * One that the slack current alone might lift is refused. */
 static int setup_mass(struct exh_weigh_cfg *cfg, const struct calibrate_par *par, unsigned i,
                       struct exh_probe_scale scale)
 {
@@ -111,8 +124,7 @@ static int setup_mass(struct exh_weigh_cfg *cfg, const struct calibrate_par *par
     const int32_t end_A_q26 = most_A_q26 < (uint32_t)own->i_max_A_q26 ? (int32_t)most_A_q26
                                                                      : own->i_max_A_q26;
     const struct exh_probe_par probe = {
-        own->step_A_q26, end_A_q26 > own->slack_A_q26 ? end_A_q26 : own->slack_A_q26, own->dwell_ms,
-        own->time_ms, own->move_m_q30, own->travel_m_q30};
+        own->step_A_q26, end_A_q26, own->dwell_ms, own->time_ms, own->move_m_q30, own->travel_m_q30};
     const struct exh_weigh_par weigh = {probe, own->slack_A_q26, own->hold_ms};
     return exh_weigh_setup(cfg, &weigh, scale);
 }
@@ -137,6 +149,7 @@ int calibrate_setup(struct calibrate_cfg *cfg, const struct calibrate_par *par,
     const struct exh_table to_cur = {cfg->one_to_one, 2}, none = {NULL, 0};
     const int32_t end_A_q26 = par->own.i_max_A_q26;
     int err;
+    if (!own_ok(&par->own)) { return -EXH_E_RANGE; }
     cfg->par = par;
     cfg->one_to_one[0] = (struct exh_knot){0, 0, {0, 0}};
     cfg->one_to_one[1] =
@@ -247,10 +260,23 @@ const char *calibrate_result_text(unsigned result)
                : exh_probe_text(result);
 }
 
+/* From here on the person's word counts, not the one that is there already. */
+static void begin_wait(struct calibrate *s, const struct calibrate_cfg *cfg)
+{
+    s->busy = s->word = 0;
+    s->tick = 0;
+    s->go = cfg->par->own.go;
+}
+
 /* Zero current until the person's word; then the step begins with the next tick. */
 static void wait(struct calibrate *s, const struct calibrate_cfg *cfg, int32_t cnt, int run)
 {
-    if (run && cfg->par->own.go > s->step) {
+    const int32_t go = cfg->par->own.go;
+    if (go != s->go) { s->word = go == s->step + 1; }
+    s->go = go;
+    if (!run && s->ran) {
+        s->result = CALIBRATE_OFF;
+    } else if (run && s->word) {
         s->busy = 1;
         s->tick = 0;
         s->start_cnt = cnt;
@@ -267,19 +293,26 @@ static int32_t go_on(struct calibrate *s, const struct calibrate_cfg *cfg, struc
     if (s->result != EXH_PROBE_BUSY) { return 0; }
     if (!s->busy) {
         wait(s, cfg, v.cnt, run);
+        s->ran |= (uint8_t)run;
         return 0;
     }
     r = run ? steps[kind(s->step)].step(s, cfg, v, &cur_A_q26) : CALIBRATE_OFF;
     s->tick++;
     if (r == EXH_PROBE_BUSY) { return cur_A_q26; }
-    s->busy = 0;
-    s->tick = 0;
+    begin_wait(s, cfg);
     if (r != EXH_PROBE_DONE) {
         s->result = r; /* step stays: the one that failed */
     } else if (++s->step == CALIBRATE_MASS + cfg->masses) {
         s->result = EXH_PROBE_DONE;
     }
     return 0;
+}
+
+void calibrate_start(struct calibrate *s, const struct calibrate_cfg *cfg)
+{
+    static const struct calibrate power_on;
+    *s = power_on;
+    begin_wait(s, cfg);
 }
 
 void calibrate_tick(struct calibrate *s, const struct calibrate_cfg *cfg,
@@ -359,9 +392,9 @@ static void defaults(void)
 
 static int setup(struct exh_scene_board board)
 {
-    static const struct calibrate power_on;
-    state = power_on;
-    return calibrate_setup(&cfg, &active, board);
+    const int err = calibrate_setup(&cfg, &active, board);
+    if (err == 0) { calibrate_start(&state, &cfg); }
+    return err;
 }
 
 static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)

@@ -1,7 +1,8 @@
 /* Calibration of one finger as a scene: the paper's first step, with a person who
  * hangs masses on. Steps, in this order, each only after the person said that it is
- * prepared (parameter `go`), each bounded in current, travel and time; the first that
- * fails ends it, with no current from then on:
+ * prepared (parameter `go`: a new word for each, given while it waits), each bounded in
+ * current and travel, each phase of it in time; the first that fails ends it, with no
+ * current from then on:
  *
  *   zero      no current: the monitor's zero
  *   polarity  a small pull must move the slack string in
@@ -58,7 +59,7 @@ struct calibrate_own_par {
     int32_t home_min_m_q30, home_max_m_q30;
     int32_t f0_speed_mps_q27;
     int32_t dwell_ms, hold_ms, time_ms, wait_ms;
-    int32_t go; /* how many steps are prepared                                 */
+    int32_t go; /* this many steps are prepared: step + 1, newly said          */
 };
 
 struct calibrate_par {
@@ -102,7 +103,10 @@ struct calibrate {
     int32_t coded_A_q26; /* in the last tick                                   */
     int32_t start_cnt;   /* of the step                                        */
     uint32_t tick;       /* of the step or the wait                            */
+    int32_t go;          /* the word that was there when the wait began, or its last */
     uint8_t step, busy, result;
+    uint8_t word;        /* the person's word was given in this wait           */
+    uint8_t ran;         /* the box was in RUN                                 */
 };
 
 /* Configuration from parameters. 0 or -EXH_E…; -EXH_E_RATE: a dwell has less than two
@@ -110,6 +114,9 @@ struct calibrate {
  * parameter is refused. Divides. */
 int calibrate_setup(struct calibrate_cfg *cfg, const struct calibrate_par *par,
                     struct exh_scene_board board);
+
+/* As at power-on: a word that is there already is none. */
+void calibrate_start(struct calibrate *s, const struct calibrate_cfg *cfg);
 
 /* One tick. */
 void calibrate_tick(struct calibrate *s, const struct calibrate_cfg *cfg,

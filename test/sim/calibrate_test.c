@@ -278,6 +278,27 @@ TEST(set_up_refuses)
     par = *calibrate_config()->par;
     CHECK_EQ_I64(calibrate_setup(&cfg, &par, board), 0);
     CHECK_EQ_I64(calibrate_setup(&cfg, &par, slow), -EXH_E_RATE);
+    for (unsigned i = 0; i < 7; i++) { /* parameters from ROM, which passed no rows */
+        struct calibrate_par rom = par;
+        if (i == 0) { rom.own.wait_ms = 0; }
+        if (i == 1) { rom.own.kf_min_NpA_q20 = 0; }
+        if (i == 2) { rom.own.hold_ms = 0; }
+        if (i == 3) { rom.own.pol_max_A_q26 = rom.own.i_max_A_q26 = EXH_Q(2, 10, EXH_Q_CUR); }
+        if (i == 3) { rom.own.pol_max_A_q26++; }
+        if (i == 4) { rom.own.i_max_A_q26 = rom.own.home_A_q26 - 1; }
+        if (i == 4) { rom.own.pol_max_A_q26 = 1 << 18; }
+        if (i == 5) { rom.own.i_max_A_q26 = rom.own.home_A_q26 = rom.own.slack_A_q26 - 1; }
+        if (i == 5) { rom.own.pol_max_A_q26 = 1 << 18; }
+        if (i == 6) { rom.mass_kg_q20[0] = EXH_Q(1, 100, EXH_Q_FORCE); }
+        CHECK(calibrate_setup(&cfg, &rom, board) == -EXH_E_RANGE, "value %u", i);
+    }
+    for (unsigned i = 0; i < CALIBRATE_MASSES; i++) { /* no mass gets more than force over kf_min */
+        struct calibrate_par light = par;
+        light.mass_kg_q20[0] = EXH_Q(2 + i, 100, EXH_Q_FORCE);
+        CHECK_EQ_I64(calibrate_setup(&cfg, &light, board), 0);
+        CHECK(cfg.weigh[0].up.end_A_q26 <= EXH_Q(981 * (2 + i), 20000, EXH_Q_CUR) + 64, "%u: %d", i,
+              (int)cfg.weigh[0].up.end_A_q26);
+    }
     par.mass_kg_q20[1] = par.mass_kg_q20[0];
     CHECK_EQ_I64(calibrate_setup(&cfg, &par, board), -EXH_E_MONOTONE);
     par.mass_kg_q20[0] = 0;
@@ -302,11 +323,13 @@ static void under_way(struct rig *r)
     memset(r, 0, sizeof *r);
     calibrate(&c);
     r->par = *calibrate_config()->par;
-    r->par.own.go = 2;
+    r->par.own.go = 0;
     CHECK_EQ_I64(calibrate_setup(&r->cfg, &r->par, (struct exh_scene_board){{1, 2000}, 24}), 0);
+    calibrate_start(&r->s, &r->cfg);
     r->in.drive.din = EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_DRIVE0;
     r->in.command = EXH_CMD_RUN;
     for (int n = 0; n < 20000 && r->sig.i_des_A_q26 < EXH_Q(1, 10, EXH_Q_CUR); n++) {
+        r->par.own.go = r->s.step + 1;
         calibrate_tick(&r->s, &r->cfg, &r->in, &r->out, &r->sig);
         r->in.command = EXH_CMD_NONE;
     }
@@ -350,15 +373,66 @@ TEST(a_fault_ends_it_in_its_tick_for_good)
 /* The person's word alone moves nothing: the box must be in RUN. */
 TEST(nothing_begins_outside_run)
 {
-    static const struct calibrate power_on;
     struct rig r;
     under_way(&r);
-    r.s = power_on;
+    r.par.own.go = 0;
+    calibrate_start(&r.s, &r.cfg);
+    r.par.own.go = 1;
     for (int n = 0; n < 3000; n++) {
         r.in.command = n == 2000 ? EXH_CMD_RUN : EXH_CMD_NONE;
         calibrate_tick(&r.s, &r.cfg, &r.in, &r.out, &r.sig);
         CHECK(r.sig.result == 0 && (n >= 2000) == !r.sig.waits, "tick %d", n);
         CHECK(r.out.dac_raw[0] == 32768, "tick %d: current", n);
+    }
+}
+
+/* A word from before the wait is none, at power-on and at each later step. */
+TEST(each_step_needs_a_word_of_its_own)
+{
+    static const struct {
+        int32_t at_setup, then;
+        int begins;
+    } row[] = {{0, 1, 1}, {8, 8, 0}, {1, 1, 0}, {8, 1, 1}, {0, 2, 0}, {0, 8, 0}};
+    for (size_t i = 0; i < LEN(row); i++) {
+        struct rig r;
+        under_way(&r);
+        r.par.own.go = row[i].at_setup;
+        calibrate_start(&r.s, &r.cfg);
+        memset(&r.sig, 0, sizeof r.sig);
+        for (int n = 0; n < 3000; n++) { /* zero takes half a second */
+            r.in.command = n == 0 ? EXH_CMD_RUN : EXH_CMD_NONE;
+            if (n == 100) { r.par.own.go = row[i].then; }
+            if (n == 500 && row[i].begins) { r.par.own.go = 2; } /* in it: too early */
+            calibrate_tick(&r.s, &r.cfg, &r.in, &r.out, &r.sig);
+            if (n == 200) { CHECK(r.sig.waits != row[i].begins, "row %zu", i); }
+        }
+        CHECK(r.sig.waits && r.sig.step == row[i].begins, "row %zu: step %d", i, (int)r.sig.step);
+        r.par.own.go = 0;
+        calibrate_tick(&r.s, &r.cfg, &r.in, &r.out, &r.sig);
+        r.par.own.go = r.sig.step + 1;
+        calibrate_tick(&r.s, &r.cfg, &r.in, &r.out, &r.sig);
+        CHECK(!r.sig.waits, "row %zu: not on a new word", i);
+    }
+}
+
+/* The emergency stop, or a command, while it waits. */
+TEST(leaving_run_ends_a_wait_at_once)
+{
+    for (int i = 0; i < 2; i++) {
+        struct rig r;
+        under_way(&r);
+        calibrate_start(&r.s, &r.cfg);
+        memset(&r.sig, 0, sizeof r.sig);
+        for (int n = 0; n < 100; n++) {
+            r.in.command = n == 0 ? EXH_CMD_RUN : EXH_CMD_NONE;
+            calibrate_tick(&r.s, &r.cfg, &r.in, &r.out, &r.sig);
+        }
+        CHECK(r.sig.waits && r.sig.state == EXH_STATE_RUN, "it does not wait");
+        if (i == 0) { r.in.drive.din &= ~(uint32_t)EXH_DIN_ESTOP; }
+        if (i == 1) { r.in.command = EXH_CMD_OFF; }
+        calibrate_tick(&r.s, &r.cfg, &r.in, &r.out, &r.sig);
+        CHECK(r.sig.result == CALIBRATE_OFF && r.out.dac_raw[0] == 32768, "%s",
+              calibrate_result_text((unsigned)r.sig.result));
     }
 }
 
@@ -438,6 +512,15 @@ TEST(exit_status_says_what_happened)
         {2, "--mass 0.2,0.1"},
         {2, "--mass 0.2,"},
         {2, "--mass 9"},
+        {2, "--mass 0.5"}, /* one point is on any line                                        */
+        {0, "--mass 0.1,0.5"},
+        {2, "--mass 0.01,0.5"}, /* i.e. at most 49 mA, but slack_cur is 50                     */
+        {0, "--mass 0.02,0.5 --residual 1"},
+        {2, "--set i_max=0.2"}, /* pol_max                                                    */
+        {2, "--set i_max=0.09 --set pol_max=0.05"}, /* home_cur                                */
+        {2, "--set i_max=0.04 --set pol_max=0.03 --set home_cur=0.03"}, /* slack_cur           */
+        {2, "--set go=1"}, /* the person's word                                               */
+        {2, "--set mass=0.3"},
         {2, "--hung 0.1"},
         {2, "--wrong nothing"},
         {2, "--rate 0"},
@@ -505,6 +588,7 @@ TEST_MAIN("sim/calibrate", kf_f0_and_home_are_the_devices, at_any_rate, other_de
           whatever_is_wrong_stops_at_its_step, reversed_is_seen_at_the_least_current,
           exchanged_masses_are_refused_by_table_and_point, set_up_refuses,
           a_fault_ends_it_in_its_tick_for_good, nothing_begins_outside_run,
+          each_step_needs_a_word_of_its_own, leaving_run_ends_a_wait_at_once,
           an_acting_limit_ends_it, it_does_not_wait_for_ever,
           nobody_after_a_finished_step_is_no_calibration, ended_before_its_end_is_no_calibration,
           exit_status_says_what_happened, an_interruption_saves_nothing);

@@ -71,6 +71,10 @@ static int take_masses(void *ctx, const char *text)
 {
     struct calibrate_options *o = ctx;
     o->masses = masses("mass", text, o->mass_kg, 1);
+    if (o->masses == 1) { /* any one point lies on its own line: nothing would be checked */
+        cli_complain("--mass: %s: one mass alone can't be checked against a line: give two or more", text);
+        return 2;
+    }
     return o->masses ? 0 : 2;
 }
 
@@ -103,6 +107,14 @@ static int take_setting(void *ctx, const char *text)
     if (name == NULL) { return 2; }
     if (o->settings == SETTINGS_MAX) {
         cli_complain("--set: at most %d", SETTINGS_MAX);
+        return 2;
+    }
+    if (strcmp(name, "go") == 0) {
+        cli_complain("--set: go: it is the person's word, at each step: it can't be given before");
+        return 2;
+    }
+    if (strcmp(name, "mass") == 0) {
+        cli_complain("--set: mass: give --mass");
         return 2;
     }
     exh_scene_calibrate.defaults();

@@ -169,11 +169,39 @@ static int set_parameters(const struct calibration_cfg *c)
     return err;
 }
 
+static double active(const struct exh_params *p, const char *name)
+{
+    uint32_t at = 0;
+    const struct exh_signal *row = cli_signal_find(p->table, name, &at);
+    return row ? cli_signal_value(row, p->active[at]) : 0;
+}
+
+/* A product of values: a mass that what takes up the slack might lift, a speed that is
+ * beyond the travel limit within a dwell. 1 if it was one of them. */
+static int say_product(const struct exh_params *p)
+{
+    const double least_kg = active(p, "slack_cur") * active(p, "kf_min") / active(p, "gravity");
+    const double v = active(p, "f0_speed") * active(p, "dwell") / 1000;
+    if (run.cfg->mass_kg[0] < least_kg + 1e-6) {
+        cli_complain("--mass: %.9g (slack_cur %.9g a takes at least %.9g kg, by kf_min %.9g n_per_a): "
+                     "choose a heavier one, or a lower slack_cur", run.cfg->mass_kg[0],
+                     active(p, "slack_cur"), least_kg, active(p, "kf_min"));
+        return 1;
+    }
+    if (v >= active(p, "travel")) {
+        cli_complain("f0_speed: %.9g (in a dwell it goes %.9g m, allowed up to travel: %.9g m): choose "
+                     "a lower one", active(p, "f0_speed"), v, active(p, "travel"));
+        return 1;
+    }
+    return 0;
+}
+
 /* Set-up refused values that are each in their own range: which of them disagree? */
 static void say_pair(void)
 {
     static const char *const pair[][2] = {{"home_min", "home_max"}, {"move", "travel"},
                                           {"move", "home_max"},     {"slack_cur", "i_max"},
+                                          {"pol_max", "i_max"},     {"home_cur", "i_max"},
                                           {"i_cont", "i_peak"}};
     const struct exh_params *p = exh_scene_calibrate.params;
     for (size_t i = 0; i < sizeof pair / sizeof pair[0]; i++) {
@@ -186,8 +214,9 @@ static void say_pair(void)
                 row->unit);
         return;
     }
-    cli_complain("%s: `exhand calibrate --params` lists the ranges",
-            exh_error_text(-EXH_E_RANGE));
+    if (!say_product(p)) {
+        cli_complain("%s: `exhand calibrate --params` lists the ranges", exh_error_text(-EXH_E_RANGE));
+    }
 }
 
 int calibration_run(const struct calibration_cfg *cfg, struct calibration *out)
