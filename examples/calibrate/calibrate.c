@@ -364,6 +364,7 @@ void calibrate_points(const struct calibrate *s, const struct calibrate_cfg *cfg
     const int32_t zero_A_q26 = exh_drive_monitor_A_q26(&cfg->drive, (int16_t)zero_raw);
 
     c->dac_rawpA_q16 = par->drive.dac_rawpA_q16;
+    c->dac_zero_raw = par->drive.dac_zero_raw;
     c->mon_A_q40 = par->drive.mon_A_q40;
     c->mon_zero_raw = zero_raw;
     c->f0_A_q26 = s->f0.result == EXH_PROBE_DONE ? s->f0.cur_A_q26 : 0;

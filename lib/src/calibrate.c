@@ -8,6 +8,7 @@
 #define FORCE_MAX_N_Q20 EXH_Q(100, 1, EXH_Q_FORCE)
 #define CUR_MAX_A_Q26   EXH_Q(66, 10, EXH_Q_CUR)
 #define MON_MAX_A_Q26   EXH_Q(10, 1, EXH_Q_CUR)
+#define RATIO_MAX_NPA   2047 /* the least is 0.1 */
 
 /* --- mean --- */
 
@@ -36,10 +37,17 @@ static int32_t current_of(const struct exh_calib_point *p, enum exh_calib_which 
     return which == EXH_CALIB_MONITOR ? p->mon_A_q26 : p->cur_A_q26;
 }
 
+/* Force over current; raw force q20 per raw current q26 is 2^-6 N/A. */
+static int ratio_ok(int64_t force, int64_t cur)
+{
+    const int64_t force_q26 = force * (1 << (EXH_Q_CUR - EXH_Q_FORCE)); /* < 2^33 */
+    return force_q26 * 10 >= cur && force_q26 <= RATIO_MAX_NPA * cur;
+}
+
 static int point_ok(const struct exh_calib_point *p, enum exh_calib_which which)
 {
     const int32_t cur = current_of(p, which);
-    return p->force_N_q20 > 0 && p->force_N_q20 <= FORCE_MAX_N_Q20 && cur > 0 &&
+    return ratio_ok(p->force_N_q20, cur) && p->force_N_q20 > 0 && p->force_N_q20 <= FORCE_MAX_N_Q20 && cur > 0 &&
            cur <= (which == EXH_CALIB_MONITOR ? MON_MAX_A_Q26 : CUR_MAX_A_Q26) &&
            p->friction_A_q26 >= 0 && p->friction_A_q26 <= CUR_MAX_A_Q26;
 }
@@ -76,7 +84,7 @@ int32_t exh_calib_residual_N_q20(const struct exh_calib_fit *fit, const struct e
 const char *exh_calib_what_text(unsigned what)
 {
     static const char *const text[EXH_CALIB_WHATS] = {
-        "image", "device", "finger", "age", "scale of D/A or monitor", "zero, F0, end or number of points",
+        "image", "device", "finger", "age", "scale or zero of D/A or monitor", "zero, F0, end or number of points",
         "force-to-current table", "monitor-to-force table",
     };
     return what < EXH_CALIB_WHATS ? text[what] : "unknown";
@@ -91,7 +99,8 @@ static int refuse(struct exh_calib_bad *bad, enum exh_calib_what what, unsigned 
 static int values_ok(const struct exh_calib *c)
 {
     return c->points >= 1 && c->points <= EXH_CALIB_POINTS_MAX && c->finger < EXH_FINGERS &&
-           c->dac_rawpA_q16 > 0 && c->mon_A_q40 > 0 && c->mon_zero_raw >= INT16_MIN &&
+           c->dac_rawpA_q16 > 0 && c->dac_zero_raw >= 0 && c->dac_zero_raw <= UINT16_MAX &&
+           c->mon_A_q40 > 0 && c->mon_zero_raw >= INT16_MIN &&
            c->mon_zero_raw <= INT16_MAX && c->f0_A_q26 >= 0 && c->f0_A_q26 <= CUR_MAX_A_Q26 &&
            c->end_A_q26 >= 0 && c->end_A_q26 <= CUR_MAX_A_Q26;
 }
@@ -193,6 +202,7 @@ int exh_calib_valid(const struct exh_calib *c, struct exh_calib_bad *bad)
 int exh_calib_check(const struct exh_calib *c, const struct exh_calib_here *here,
                     struct exh_calib_bad *bad)
 {
+    if (c->points == 0) { return refuse(bad, EXH_CALIB_VALUE, 0, -EXH_E_RANGE); }
     if (c->device_id != here->device_id) {
         return refuse(bad, EXH_CALIB_DEVICE, 0, -EXH_E_VERSION);
     }
@@ -200,7 +210,8 @@ int exh_calib_check(const struct exh_calib *c, const struct exh_calib_here *here
     if (here->day < c->day || here->day - c->day > c->valid_days) {
         return refuse(bad, EXH_CALIB_AGE, 0, -EXH_E_STALE);
     }
-    if (c->dac_rawpA_q16 != here->dac_rawpA_q16 || c->mon_A_q40 != here->mon_A_q40) {
+    if (c->dac_rawpA_q16 != here->dac_rawpA_q16 || c->dac_zero_raw != here->dac_zero_raw ||
+        c->mon_A_q40 != here->mon_A_q40 || c->mon_zero_raw != here->mon_zero_raw) {
         return refuse(bad, EXH_CALIB_SCALE, 0, -EXH_E_STALE);
     }
     return 0;
@@ -224,8 +235,8 @@ static void head_bytes(struct exh_bytes *b, struct head *h)
 static void body_bytes(struct exh_bytes *b, struct exh_calib *c)
 {
     uint32_t *const id[] = {&c->device_id, &c->finger, &c->day, &c->valid_days};
-    int32_t *const value[] = {&c->dac_rawpA_q16, &c->mon_A_q40, &c->mon_zero_raw, &c->f0_A_q26,
-                              &c->end_A_q26};
+    int32_t *const value[] = {&c->dac_rawpA_q16, &c->dac_zero_raw, &c->mon_A_q40, &c->mon_zero_raw,
+                              &c->f0_A_q26, &c->end_A_q26};
     for (unsigned i = 0; i < sizeof id / sizeof id[0]; i++) { exh_bytes_u32(b, id[i]); }
     for (unsigned i = 0; i < sizeof value / sizeof value[0]; i++) { exh_bytes_i32(b, value[i]); }
     for (unsigned i = 0; i < c->points; i++) {

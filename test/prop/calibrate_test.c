@@ -114,6 +114,7 @@ TEST(a_quantised_table_is_recovered_to_the_code)
 /* A bent table: points at all its knots and any between them give it back. */
 TEST(a_bent_table_is_recovered_to_the_lsb)
 {
+    unsigned cases = 0, accepted = 0;
     while (check_case(4)) {
         struct exh_knot known[5], found[EXH_CALIB_POINTS_MAX + 2];
         struct exh_calib_point p[8];
@@ -121,6 +122,7 @@ TEST(a_bent_table_is_recovered_to_the_lsb)
         const struct exh_table t = {known, 5};
         struct exh_table got = {found, 10};
         int32_t x = 0, y = 0;
+        int flat = 0, steep = 0, n;
         for (unsigned i = 0; i < 5; i++) {
             known[i].x = x;
             known[i].y = y;
@@ -132,8 +134,18 @@ TEST(a_bent_table_is_recovered_to_the_lsb)
             const int32_t to = known[i / 2 + 1].x, from = known[i / 2].x;
             const int32_t f = i % 2 ? to : from + check_i32_in(1 << 12, to - from - (1 << 12));
             p[i] = (struct exh_calib_point){f, exh_table_at(t, f), 1 + (int32_t)i, 0};
+            flat |= p[i].cur_A_q26 <= (i > 0 ? p[i - 1].cur_A_q26 : 0);
+            steep |= INT64_C(640) * f < p[i].cur_A_q26 ||
+                     INT64_C(64) * f > INT64_C(2047) * p[i].cur_A_q26;
         }
-        if (exh_calib_force_table(&c, found, 10, NULL) != 9) { continue; } /* flat to rounding */
+        n = exh_calib_force_table(&c, found, 10, NULL);
+        cases++;
+        if (n < 0) { /* only a table that is flat to rounding, or no motor's */
+            CHECK((n == -EXH_E_MONOTONE && flat) || (n == -EXH_E_RANGE && steep), "refused: %d", n);
+            continue;
+        }
+        CHECK(n == 9 && !flat && !steep, "%d knots", n);
+        accepted++;
         got.n = 9;
         x = check_i32_in(0, known[4].x);
         y = exh_table_at(got, x) - exh_table_at(t, x);
@@ -142,6 +154,7 @@ TEST(a_bent_table_is_recovered_to_the_lsb)
             CHECK_EQ_I64(exh_table_at(got, known[i].x), known[i].y);
         }
     }
+    CHECK(cases < 16 || accepted > 0, "none of %u tables was accepted", cases);
 }
 
 TEST(mean_is_the_nearest)
@@ -164,6 +177,7 @@ TEST(mean_is_the_nearest)
 /* Any values: what is saved can be loaded and is the same; what is refused says why. */
 TEST(anything_is_saved_and_loaded_or_refused)
 {
+    unsigned cases = 0, saved = 0;
     while (check_case(8)) {
         struct exh_calib_point p[EXH_CALIB_POINTS_MAX], q[EXH_CALIB_POINTS_MAX];
         struct exh_calib c = {.point = p, .points = (uint8_t)check_i32_in(0, 16), .cap = 16};
@@ -174,26 +188,34 @@ TEST(anything_is_saved_and_loaded_or_refused)
         c.device_id = (uint32_t)check_u64();
         c.finger = (uint32_t)check_u64() % 6;
         c.dac_rawpA_q16 = check_i32_in(-1, INT32_MAX);
+        c.dac_zero_raw = check_i32_in(-1, 65536);
         c.mon_A_q40 = check_i32_in(-1, INT32_MAX);
         c.mon_zero_raw = check_i32_in(-32769, 32768);
         c.f0_A_q26 = check_i32_in(-1, EXH_Q(66, 10, EXH_Q_CUR));
         c.end_A_q26 = check_i32_in(-1, EXH_Q(66, 10, EXH_Q_CUR));
         for (int32_t i = 0; i < c.points; i++) {
-            p[i].force_N_q20 = (i + 1) << 20 | check_i32_in(0, 1 << 20);
-            p[i].cur_A_q26 = (i + 1) << 24 | check_i32_in(0, 1 << 24);
+            p[i].force_N_q20 = (i + 1) << 20 | check_i32_in(0, (1 << 20) - 1);
+            p[i].cur_A_q26 = (i + 1) << 24 | check_i32_in(0, (1 << 24) - 1);
             p[i].mon_A_q26 = check_u64() % 64 ? p[i].cur_A_q26 : check_i32();
             p[i].friction_A_q26 = check_i32_in(-1, 1 << 20);
         }
         len = exh_calib_save(&c, buf, sizeof buf, &bad);
         CHECK((len < 0) == (exh_calib_valid(&c, NULL) < 0), "saved %" PRId32, len);
         CHECK(len > 0 || bad.what < EXH_CALIB_WHATS, "refused without a name");
-        if (len < 0) { continue; }
+        cases++;
+        if (len < 0) {
+            CHECK(len == -EXH_E_RANGE || (len == -EXH_E_MONOTONE && bad.what == EXH_CALIB_MONITOR_TABLE),
+                  "refused: %" PRId32, len);
+            continue;
+        }
+        saved++;
         CHECK_EQ_I64(exh_calib_load(&back, buf, (size_t)len, &bad), 0);
         CHECK_EQ_I64(exh_calib_save(&back, again, sizeof again, NULL), len);
         CHECK(memcmp(buf, again, (size_t)len) == 0, "another image");
         buf[check_u64() % (uint32_t)len] ^= (uint8_t)(1 + check_u64() % 255);
         CHECK(exh_calib_load(&back, buf, (size_t)len, &bad) < 0, "a damaged byte passes");
     }
+    CHECK(cases < 1000 || saved > 0, "none of %u was saved", cases);
 }
 
 TEST_MAIN("prop/calibrate", a_straight_table_is_recovered_to_the_lsb,

@@ -28,6 +28,7 @@ static void set_up(struct fixture *f)
     memcpy(f->point, p, sizeof p);
     f->c = (struct exh_calib){.device_id = 7, .finger = 1, .day = 20000, .valid_days = 30,
                               .dac_rawpA_q16 = EXH_Q(324900, 176, EXH_Q_DAC),
+                              .dac_zero_raw = 32768,
                               .mon_A_q40 = EXH_Q(5164, 10000000, EXH_Q_MON), .mon_zero_raw = -3,
                               .f0_A_q26 = A(40), .end_A_q26 = A(6600), .point = f->point,
                               .points = POINTS, .cap = EXH_CALIB_POINTS_MAX};
@@ -126,6 +127,9 @@ TEST(refusals_name_table_and_point)
         {2, 2, A(606), -EXH_E_MONOTONE, EXH_CALIB_MONITOR_TABLE},
         {3, 2, A(1), -EXH_E_MONOTONE, EXH_CALIB_MONITOR_TABLE},
         {3, 2, A(10001), -EXH_E_RANGE, EXH_CALIB_MONITOR_TABLE},
+        {0, 0, N(30) - 100, -EXH_E_RANGE, EXH_CALIB_FORCE_TABLE}, /* 0.1 N/A of 300 mA       */
+        {0, 1, EXH_Q(990, 2047000, EXH_Q_CUR) - 2, -EXH_E_RANGE, EXH_CALIB_FORCE_TABLE},
+        {0, 2, EXH_Q(990, 2047000, EXH_Q_CUR) - 2, -EXH_E_RANGE, EXH_CALIB_MONITOR_TABLE},
     };
     for (size_t i = 0; i < LEN(row); i++) {
         struct exh_calib_bad bad = {99, 99};
@@ -150,7 +154,7 @@ TEST(refusals_name_table_and_point)
 
 TEST(values_out_of_range_are_refused)
 {
-    for (unsigned i = 0; i < 12; i++) {
+    for (unsigned i = 0; i < 14; i++) {
         struct exh_calib_bad bad = {99, 99};
         struct fixture f;
         set_up(&f);
@@ -165,8 +169,10 @@ TEST(values_out_of_range_are_refused)
         if (i == 8) { f.c.f0_A_q26 = A(6601); }
         if (i == 9) { f.c.end_A_q26 = -1; }
         if (i == 10) { f.c.end_A_q26 = A(6601); }
-        CHECK(exh_calib_valid(&f.c, &bad) == (i < 11 ? -EXH_E_RANGE : 0), "value %u", i);
-        CHECK(bad.what == (i < 11 ? EXH_CALIB_VALUE : 99), "value %u: %d", i, bad.what);
+        if (i == 11) { f.c.dac_zero_raw = -1; }
+        if (i == 12) { f.c.dac_zero_raw = 65536; }
+        CHECK(exh_calib_valid(&f.c, &bad) == (i < 13 ? -EXH_E_RANGE : 0), "value %u", i);
+        CHECK(bad.what == (i < 13 ? EXH_CALIB_VALUE : 99), "value %u: %d", i, bad.what);
     }
 }
 
@@ -177,34 +183,45 @@ TEST(another_device_and_stale_ones_are_refused)
         int err;
         unsigned what;
     } row[] = {
-        {{7, 1, 20000, 0, 0}, 0, 99},
-        {{7, 1, 20030, 0, 0}, 0, 99},
-        {{7, 1, 20031, 0, 0}, -EXH_E_STALE, EXH_CALIB_AGE},
-        {{7, 1, 19999, 0, 0}, -EXH_E_STALE, EXH_CALIB_AGE}, /* a clock that was set back */
-        {{7, 1, UINT32_MAX, 0, 0}, -EXH_E_STALE, EXH_CALIB_AGE},
-        {{7, 1, 0, 0, 0}, -EXH_E_STALE, EXH_CALIB_AGE},
-        {{8, 1, 20000, 0, 0}, -EXH_E_VERSION, EXH_CALIB_DEVICE},
-        {{7, 0, 20000, 0, 0}, -EXH_E_VERSION, EXH_CALIB_FINGER},
-        {{7, 1, 20000, 1, 0}, -EXH_E_STALE, EXH_CALIB_SCALE},
-        {{7, 1, 20000, 0, -1}, -EXH_E_STALE, EXH_CALIB_SCALE},
+        {{7, 1, 20000, 0, 0, 0, 0}, 0, 99},
+        {{7, 1, 20030, 0, 0, 0, 0}, 0, 99},
+        {{7, 1, 20031, 0, 0, 0, 0}, -EXH_E_STALE, EXH_CALIB_AGE},
+        {{7, 1, 19999, 0, 0, 0, 0}, -EXH_E_STALE, EXH_CALIB_AGE}, /* a clock that was set back */
+        {{7, 1, UINT32_MAX, 0, 0, 0, 0}, -EXH_E_STALE, EXH_CALIB_AGE},
+        {{7, 1, 0, 0, 0, 0, 0}, -EXH_E_STALE, EXH_CALIB_AGE},
+        {{8, 1, 20000, 0, 0, 0, 0}, -EXH_E_VERSION, EXH_CALIB_DEVICE},
+        {{7, 0, 20000, 0, 0, 0, 0}, -EXH_E_VERSION, EXH_CALIB_FINGER},
+        {{7, 1, 20000, 1, 0, 0, 0}, -EXH_E_STALE, EXH_CALIB_SCALE},
+        {{7, 1, 20000, 0, 0, -1, 0}, -EXH_E_STALE, EXH_CALIB_SCALE},
+        {{7, 1, 20000, 0, 1, 0, 0}, -EXH_E_STALE, EXH_CALIB_SCALE}, /* D/A moved by a code */
+        {{7, 1, 20000, 0, 0, 0, 3}, -EXH_E_STALE, EXH_CALIB_SCALE}, /* monitor's zero not copied */
     };
+    struct exh_calib_bad bad;
+    struct exh_calib_here here;
     struct fixture f;
     set_up(&f);
     for (size_t i = 0; i < LEN(row); i++) {
-        struct exh_calib_bad bad = {99, 99};
-        struct exh_calib_here here = row[i].here;
+        here = row[i].here;
+        bad.what = bad.at = 99;
         here.dac_rawpA_q16 += f.c.dac_rawpA_q16;
         here.mon_A_q40 += f.c.mon_A_q40;
+        here.dac_zero_raw += f.c.dac_zero_raw;
+        here.mon_zero_raw += f.c.mon_zero_raw;
         CHECK(exh_calib_check(&f.c, &here, &bad) == row[i].err, "row %zu", i);
         CHECK(bad.what == row[i].what, "row %zu: %s", i, exh_calib_what_text(bad.what));
         CHECK_EQ_I64(exh_calib_check(&f.c, &here, NULL), row[i].err);
     }
     f.c.valid_days = UINT32_MAX; /* for ever, but not before it was made */
-    CHECK_EQ_I64(exh_calib_check(&f.c, &(struct exh_calib_here){7, 1, UINT32_MAX, f.c.dac_rawpA_q16,
-                                                                f.c.mon_A_q40}, NULL), 0);
-    CHECK_EQ_I64(exh_calib_check(&f.c, &(struct exh_calib_here){7, 1, 19999, f.c.dac_rawpA_q16,
-                                                                f.c.mon_A_q40}, NULL),
-                 -EXH_E_STALE);
+    here = (struct exh_calib_here){7, 1, UINT32_MAX, f.c.dac_rawpA_q16, f.c.dac_zero_raw,
+                                   f.c.mon_A_q40, f.c.mon_zero_raw};
+    CHECK_EQ_I64(exh_calib_check(&f.c, &here, NULL), 0);
+    here.day = 19999;
+    CHECK_EQ_I64(exh_calib_check(&f.c, &here, NULL), -EXH_E_STALE);
+    here.day = 20000;
+    f.c.points = 0; /* nothing was loaded, and nobody looked */
+    bad.what = 99;
+    CHECK_EQ_I64(exh_calib_check(&f.c, &here, &bad), -EXH_E_RANGE);
+    CHECK_EQ_I64(bad.what, EXH_CALIB_VALUE);
 }
 
 /* --- image --- */
@@ -212,7 +229,7 @@ TEST(another_device_and_stale_ones_are_refused)
 static int32_t save(struct fixture *f, uint8_t *buf)
 {
     const int32_t len = exh_calib_save(&f->c, buf, EXH_CALIB_IMAGE_B, NULL);
-    CHECK_EQ_I64(len, 8 + 36 + 16 * f->c.points + 4);
+    CHECK_EQ_I64(len, 8 + 40 + 16 * f->c.points + 4);
     return len;
 }
 
@@ -226,7 +243,7 @@ TEST(image_round_trip)
     b.c.point = b.point;
     b.c.cap = EXH_CALIB_POINTS_MAX;
     len = save(&a, buf);
-    CHECK(memcmp(buf, "EXHC\1\0\4\0\7\0\0\0\1\0\0\0", 16) == 0, "head");
+    CHECK(memcmp(buf, "EXHC\2\0\4\0\7\0\0\0\1\0\0\0", 16) == 0, "head");
     CHECK_EQ_I64(exh_calib_load(&b.c, buf, (size_t)len, NULL), 0);
     CHECK_EQ_I64(save(&b, again), len);
     CHECK(memcmp(buf, again, (size_t)len) == 0, "what is loaded is what was saved");
@@ -241,7 +258,7 @@ TEST(any_bit_flipped_any_byte_missing_is_refused)
 {
     struct fixture a, b;
     struct exh_calib_bad bad;
-    uint8_t buf[EXH_CALIB_IMAGE_B];
+    uint8_t buf[EXH_CALIB_IMAGE_B], crc[4];
     int32_t len;
     set_up(&a);
     set_up(&b);
@@ -256,6 +273,10 @@ TEST(any_bit_flipped_any_byte_missing_is_refused)
               "bit %" PRId32 ": %d", i, err);
         CHECK(bad.what == EXH_CALIB_IMAGE && b.c.points == 0, "bit %" PRId32, i);
     }
+    memcpy(crc, buf + len - 4, 4); /* no CRC is none that fits */
+    memset(buf + len - 4, 0, 4);
+    CHECK_EQ_I64(exh_calib_load(&b.c, buf, (size_t)len, &bad), -EXH_E_CRC);
+    memcpy(buf + len - 4, crc, 4);
     for (int32_t i = 0; i < len; i++) {
         CHECK_EQ_I64(exh_calib_load(&b.c, buf, (size_t)i, &bad), -EXH_E_SHORT);
         CHECK(bad.what == EXH_CALIB_IMAGE && b.c.points == 0, "%" PRId32 " bytes", i);
@@ -276,7 +297,7 @@ TEST(a_sound_image_of_a_bad_table_is_refused)
     set_up(&a);
     set_up(&b);
     len = save(&a, buf);
-    c = exh_bytes_writer(buf + 44 + 2 * 16 + 4, 4); /* current of the third point */
+    c = exh_bytes_writer(buf + 48 + 2 * 16 + 4, 4); /* current of the third point */
     exh_bytes_i32(&c, &(int32_t){equal});
     crc = exh_crc32(0, buf, (size_t)len - 4);
     c = exh_bytes_writer(buf + len - 4, 4);

@@ -35,14 +35,14 @@ int32_t exh_mean_value(const struct exh_mean *m);
 
 /* --- points --- */
 
-#define EXH_CALIB_POINTS_MAX 16 /* sums of squares stay below 2^62                 */
+#define EXH_CALIB_POINTS_MAX 16 /* sums of squares stay below 2^63                 */
 
 struct exh_calib_point {
     int32_t force_N_q20;    /* known force m g, N, > 0 .. 100                  */
     int32_t cur_A_q26;      /* coded current that balances it, A, > 0 .. 6.6   */
     int32_t mon_A_q26;      /* its mean by the monitor, A, > 0 .. 10           */
     int32_t friction_A_q26; /* half of what friction holds, A, 0 .. 6.6        */
-};
+}; /* force over either current: 0.1 .. 2047 N/A */
 
 enum exh_calib_which { EXH_CALIB_CURRENT, EXH_CALIB_MONITOR };
 
@@ -53,8 +53,8 @@ struct exh_calib_fit {
     int32_t kf_NpA_q20;   /* N/A; error <= 1 LSB                               */
 };
 
-/* -EXH_E_RANGE: n not 1 .. EXH_CALIB_POINTS_MAX, a value outside its range above, or
- * more than 2047 N/A. Set-up only (divides). */
+/* -EXH_E_RANGE: n not 1 .. EXH_CALIB_POINTS_MAX, a value outside its range above, as is
+ * its force over current. Set-up only (divides). */
 int exh_calib_fit(struct exh_calib_fit *fit, const struct exh_calib_point *p, unsigned n,
                   enum exh_calib_which which);
 
@@ -70,8 +70,11 @@ struct exh_calib {
     uint32_t day;       /* when: days since 1970-01-01, or any serial number that grows */
     uint32_t valid_days; /* good on days day .. day + valid_days               */
     int32_t dac_rawpA_q16; /* scales it was measured with: with others it is no  */
-    int32_t mon_A_q40;     /* longer true                                     */
-    int32_t mon_zero_raw;  /* monitor code at no current, -32768 .. 32767      */
+    int32_t dac_zero_raw;  /* longer true; code of no current, 0 .. 65535      */
+    int32_t mon_A_q40;
+    int32_t mon_zero_raw;  /* monitor code at no current as measured, -32768 .. 32767: the
+                            * points are less this, so whoever uses the monitor table
+                            * must copy it to the drive's mon_zero_raw         */
     int32_t f0_A_q26;   /* current at which the slack string returns, A, 0 .. 6.6 */
     int32_t end_A_q26;  /* tables go on straight to here, A; at or below the last
                          * point: they end there. 0 .. 6.6                    */
@@ -86,7 +89,7 @@ enum exh_calib_what {
     EXH_CALIB_DEVICE,  /* it was made for another one                         */
     EXH_CALIB_FINGER,
     EXH_CALIB_AGE,     /* older than valid_days, or from the future            */
-    EXH_CALIB_SCALE,   /* D/A or monitor scale differ from those it was made with */
+    EXH_CALIB_SCALE,   /* scale or zero of D/A or monitor differ from those it was made with */
     EXH_CALIB_VALUE,   /* zero, F0, end or number of points                   */
     EXH_CALIB_FORCE_TABLE,   /* force -> current; at: the point               */
     EXH_CALIB_MONITOR_TABLE, /* monitor -> force; at: the point               */
@@ -101,8 +104,9 @@ struct exh_calib_bad {
 const char *exh_calib_what_text(unsigned what);
 
 /* Knots for exh_drive_setup(): through the origin and all points, and straight on to
- * end_A (along the fitted line's slope) where that lies beyond them. The monitor's
- * is odd: it reads through zero. Returns how many knots, or -EXH_E_MONOTONE,
+ * end_A (along the fitted line's slope) where that lies beyond them; the monitor's to the
+ * last point's monitored current + (end_A - its current), <= 16.6 A, along its own line's.
+ * The monitor's is odd: it reads through zero. Returns how many knots, or -EXH_E_MONOTONE,
  * -EXH_E_RANGE (with *bad, may be NULL, the culprit), -EXH_E_SHORT (cap too small;
  * points + 2 and 2 points + 3 always do). Exact at every point. Set-up only (divides). */
 int exh_calib_force_table(const struct exh_calib *c, struct exh_knot *knot, unsigned cap,
@@ -113,20 +117,22 @@ int exh_calib_monitor_table(const struct exh_calib *c, struct exh_knot *knot, un
 /* All of it: values in range and both tables as above. 0 or the error. */
 int exh_calib_valid(const struct exh_calib *c, struct exh_calib_bad *bad);
 
-/* May it be used here and today? -EXH_E_VERSION (another device, another finger) or
- * -EXH_E_STALE (age, scales); *bad tells which. */
+/* May it be used here and today? -EXH_E_RANGE (no points: nothing was loaded, or it was
+ * refused), -EXH_E_VERSION (another device, another finger) or -EXH_E_STALE (age, scales,
+ * zeros); *bad tells which. It does not look at the points: exh_calib_load() has. */
 struct exh_calib_here {
     uint32_t device_id, finger, day;
-    int32_t dac_rawpA_q16, mon_A_q40; /* of the drive parameters in use        */
+    int32_t dac_rawpA_q16, dac_zero_raw, mon_A_q40; /* of the drive parameters in use, */
+    int32_t mon_zero_raw; /* the last after copying the calibration's: without, it's stale */
 };
 int exh_calib_check(const struct exh_calib *c, const struct exh_calib_here *here,
                     struct exh_calib_bad *bad);
 
-/* --- image: "EXHC", version u16, points u16, nine values of 4 bytes in the order
+/* --- image: "EXHC", version u16, points u16, ten values of 4 bytes in the order
  * above, points of four i32, CRC-32 of all before it; little-endian --- */
 
-#define EXH_CALIB_VERSION 1
-#define EXH_CALIB_IMAGE_B (8u + 36u + 16u * EXH_CALIB_POINTS_MAX + 4u) /* the largest */
+#define EXH_CALIB_VERSION 2 /* 1 had no dac_zero_raw */
+#define EXH_CALIB_IMAGE_B (8u + 40u + 16u * EXH_CALIB_POINTS_MAX + 4u) /* the largest */
 
 /* Bytes written, or -EXH_E_SHORT; or what exh_calib_valid() refuses: nothing that
  * could not be read again is written. */

@@ -221,16 +221,21 @@ static int write_files(const char *dir, const struct exh_calib *c, const struct 
 
 /* --- an image that is there --- */
 
-/* Whose, when, and the scales of the device as they are now. */
-static struct exh_calib_here here_and_now(const struct calibrate_options *o)
+/* Whose, when, and the scales of the device as they are now. The monitor's zero is for
+ * who uses the image to copy, so here it is the image's. */
+static struct exh_calib_here here_and_now(const struct calibrate_options *o,
+                                          const struct exh_calib *c)
 {
-    struct exh_calib_here here = {(uint32_t)o->id, (uint32_t)o->finger, (uint32_t)o->day, 0, 0};
+    struct exh_calib_here here = {(uint32_t)o->id, (uint32_t)o->finger, (uint32_t)o->day, 0, 0, 0,
+                                  c->mon_zero_raw};
     struct exh_params *p = exh_scene_calibrate.params;
     uint32_t at;
     exh_scene_calibrate.defaults();
     (void)cli_param_set(p, "dac_scale", o->device.dac_perA);
+    (void)cli_param_set(p, "dac_zero", o->device.dac_zero);
     (void)cli_param_set(p, "mon_scale", o->device.mon_apc);
     if (cli_signal_find(p->table, "dac_scale", &at)) { here.dac_rawpA_q16 = p->staged[at]; }
+    if (cli_signal_find(p->table, "dac_zero", &at)) { here.dac_zero_raw = p->staged[at]; }
     if (cli_signal_find(p->table, "mon_scale", &at)) { here.mon_A_q40 = p->staged[at]; }
     return here;
 }
@@ -239,7 +244,7 @@ static int check_image(const struct calibrate_options *o)
 {
     struct exh_calib_point point[EXH_CALIB_POINTS_MAX];
     struct exh_calib c = {.point = point, .cap = EXH_CALIB_POINTS_MAX};
-    const struct exh_calib_here here = here_and_now(o);
+    struct exh_calib_here here;
     struct calibration_lines l;
     struct exh_calib_bad bad = {0, 0};
     uint8_t image[EXH_CALIB_IMAGE_B];
@@ -258,6 +263,7 @@ static int check_image(const struct calibrate_options *o)
            (unsigned long)c.device_id, (unsigned long)c.finger, (unsigned long)c.day,
            (unsigned long)c.valid_days, o->day);
     fflush(stdout);
+    here = here_and_now(o, &c);
     err = exh_calib_check(&c, &here, &bad);
     if (err < 0) { return complain(o->check, err, &bad); }
     if (calibration_lines(&c, &l) == 0) { calibration_print(stdout, &c, &l); }
