@@ -439,6 +439,7 @@ TEST(leaving_run_ends_a_wait_at_once)
 TEST(an_acting_limit_ends_it)
 {
     static const struct calibration_setting peak[] = {{"i_cont", 0.15}, {"i_peak", 0.2}};
+    static const struct calibration_setting force[] = {{"f_max", 0.2}}; /* 1 N for 1 A */
     struct calibration_cfg c = config(1);
     const struct calibration *r;
     c.setting = peak;
@@ -446,7 +447,54 @@ TEST(an_acting_limit_ends_it)
     r = calibrate(&c);
     CHECK(r->step == CALIBRATE_MASS && r->result == CALIBRATE_LIMITED, "%s: %s",
           calibrate_step_text(r->step), calibrate_result_text(r->result));
+    CHECK(r->most_A < 0.2003 && r->limits == EXH_LIMIT_PEAK, "%.4f A, limits %x", r->most_A, r->limits);
+    c.setting = force;
+    c.settings = LEN(force);
+    r = calibrate(&c);
+    CHECK(r->step == CALIBRATE_MASS && r->result == CALIBRATE_LIMITED && r->limits == EXH_LIMIT_FORCE,
+          "%s: %s, limits %x", calibrate_step_text(r->step), calibrate_result_text(r->result), r->limits);
     CHECK(r->most_A < 0.2003, "%.4f A", r->most_A);
+}
+
+TEST(why_it_ended_is_named)
+{
+    static const struct {
+        unsigned result;
+        uint32_t faults, limits;
+        const char *says;
+    } row[] = {{CALIBRATE_OFF, EXH_FAULT_ESTOP | EXH_FAULT_DEADMAN, 0,
+                "the box left RUN (emergency stop, dead-man released)"},
+               {CALIBRATE_OFF, 0, 0, "the box left RUN (by command)"},
+               {CALIBRATE_LIMITED, 0, EXH_LIMIT_DAC | EXH_LIMIT_SLEW, "a limit of the drive acts (D/A span)"},
+               {EXH_PROBE_STILL, 0, EXH_LIMIT_DAC, "did not move"}};
+    for (size_t i = 0; i < LEN(row); i++) {
+        const struct calibration r = {.result = row[i].result, .faults = row[i].faults,
+                                      .limits = row[i].limits};
+        char why[CALIBRATION_WHY_B];
+        calibration_why(why, &r);
+        CHECK(strcmp(why, row[i].says) == 0, "%s", why);
+    }
+}
+
+/* Zero: the string must not move, whichever way. */
+TEST(no_movement_while_the_zero_is_measured)
+{
+    for (int way = -1; way <= 1; way++) {
+        struct rig r;
+        under_way(&r);
+        r.par.own.go = 0;
+        calibrate_start(&r.s, &r.cfg);
+        memset(&r.sig, 0, sizeof r.sig);
+        for (int n = 0; n < 900; n++) {
+            r.in.command = n == 0 ? EXH_CMD_RUN : EXH_CMD_NONE;
+            r.par.own.go = n >= 100;
+            if (n > 200 && n <= 600) { r.in.drive.enc_raw[0] += (uint32_t)way; }
+            calibrate_tick(&r.s, &r.cfg, &r.in, &r.out, &r.sig);
+        }
+        CHECK(r.sig.step == CALIBRATE_ZERO &&
+                  r.sig.result == (way ? (int32_t)EXH_PROBE_TRAVEL : (int32_t)EXH_PROBE_BUSY),
+              "%d: step %d: %s", way, (int)r.sig.step, calibrate_result_text((unsigned)r.sig.result));
+    }
 }
 
 /* Nobody says that the next step is prepared. */
@@ -502,7 +550,9 @@ TEST(exit_status_says_what_happened)
         {1, "--check @/calibration.bin --day 20000 --id 9"},
         {1, "--check @/calibration.bin --day 20000 --id 9 --finger 2 --device dac_scale=1000"},
         {1, "--check @/calibration.csv --day 20000"}, /* no image                              */
-        {2, "--check @/none"},
+        {3, "--check @/none"},
+        {2, "--check @"}, /* a directory                                                       */
+        {2, "--out @/calibration.bin"},
         {1, "--wrong stuck"},
         {1, "--wrong motor_reversed"},
         {1, "--mass 0.1,0.2,0.22,0.5 --hung 0.1,0.22,0.2,0.5"}, /* does not rise               */
@@ -551,6 +601,93 @@ TEST(exit_status_says_what_happened)
     CHECK_EQ_I64(rmdir(dir), 0);
 }
 
+/* In a process of its own, with its words. */
+#define SAYS(dir, wanted, text, ...) \
+    do { \
+        static struct said s; \
+        said(&s, dir, cli_calibrate, WORDS("calibrate", __VA_ARGS__)); \
+        CHECK(s.status == (wanted) && strstr(s.err, text), "status %d: %s, wanted %s", s.status, s.err, \
+              text); \
+        CHECK(strstr(s.out, "for the drop experiment") == NULL, "%s", s.out); \
+    } while (0)
+
+TEST(what_is_refused_is_named)
+{
+    char *dir = said_dir();
+    const char *image = said_path(dir, "calibration.bin");
+    static struct said made;
+    SAYS(dir, 2, "--mass: 0.5: one mass", "--mass", "0.5");
+    SAYS(dir, 2, "--mass: two of them are the same", "--mass", "0.1,0.1000000001");
+    SAYS(dir, 2, "--mass: 0.01 (slack_cur", "--mass", "0.01,0.5");
+    SAYS(dir, 2, "(allowed up to i_max: ", "--set", "i_max=0.2");
+    SAYS(dir, 2, "--set: go:", "--set", "go=1");
+    SAYS(dir, 1, "mass 0.1 kg: did not move", "--wrong", "fixed_mass");
+    SAYS(dir, 1, "mass 0.1 kg: a limit of the drive acts (peak: i_peak)", "--set", "i_cont=0.15", "--set",
+         "i_peak=0.2");
+    SAYS(dir, 1, "nobody prepared the step after 1.30 s", "--set", "wait_time=1300");
+    SAYS(dir, 3, "No such file or directory: give the calibration.bin", "--check", "/nowhere/at/all");
+    SAYS(dir, 2, "Is a directory: give the calibration.bin", "--check", dir);
+    said(&made, dir, cli_calibrate, WORDS("calibrate", "--day", "20000", "--id", "9", "--out", dir));
+    CHECK(made.status == 0, "%s", made.err);
+    SAYS(dir, 1, "made for device 9, this is 8:", "--check", image, "--day", "20000", "--id", "8");
+    SAYS(dir, 1, "made for finger 0, this is 3:", "--check", image, "--day", "20000", "--id", "9",
+         "--finger", "3");
+    SAYS(dir, 1, "from the future: made on day 20000, today is day 19999: set the clock right, or give --day",
+         "--check", image, "--day", "19999", "--id", "9");
+    SAYS(dir, 1, "stale: made on day 20000, good for 90 days", "--check", image, "--day", "20091", "--id",
+         "9");
+    SAYS(dir, 1, "scale or zero", "--check", image, "--day", "20000", "--id", "9", "--device",
+         "dac_zero=32767");
+    SAYS(dir, 2, "Not a directory", "--out", image); /* before anything runs */
+    said_clean(dir);
+}
+
+#define LONG_64  "0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef"
+#define LONG_512 LONG_64 LONG_64 LONG_64 LONG_64 LONG_64 LONG_64 LONG_64 LONG_64
+
+TEST(what_cannot_be_written_is_said)
+{
+    static const char *const name[] = {"calibration.bin", "calibration.csv", "table.csv", "pictures.gp"};
+    for (size_t i = 0; i < 2 * LEN(name); i++) {
+        char *dir = said_dir();
+        const char *path = said_path(dir, name[i / 2]);
+        char text[300];
+        if (i % 2 == 0) { CHECK_EQ_I64(mkdir(path, 0777), 0); }
+        if (i % 2 == 1) { CHECK_EQ_I64(symlink("/dev/full", path), 0); }
+        snprintf(text, sizeof text, "%s: can't be written: %s:", path,
+                 i % 2 ? "No space left on device" : "Is a directory");
+        SAYS(dir, 1, text, "--out", dir);
+        said_clean(dir);
+    }
+    {
+        char *dir = said_dir();
+        SAYS(dir, 2, "too long a path", "--out", LONG_512);
+        said_clean(dir);
+    }
+}
+
+/* The worst residual of either table is held against --residual, not the one's only. */
+TEST(either_residual_counts)
+{
+    int seen[2] = {0, 0};
+    char *dir = said_dir();
+    for (unsigned seed = 1; seed <= 20 && !(seen[0] && seen[1]); seed++) {
+        const struct calibration_cfg c = config(seed);
+        struct calibration_lines l;
+        char limit[32], text[12];
+        int monitor;
+        calibrated(&c, &l);
+        monitor = l.mon_worst_N > l.cur_worst_N;
+        if (seen[monitor] || size_of(l.mon_worst_N - l.cur_worst_N) < 1e-6) { continue; }
+        seen[monitor] = 1;
+        snprintf(limit, sizeof limit, "%.9f", (l.mon_worst_N + l.cur_worst_N) / 2);
+        snprintf(text, sizeof text, "%u", seed);
+        SAYS(dir, 1, "residual: ", "--seed", text, "--residual", limit);
+    }
+    CHECK(seen[0] && seen[1], "no seed in which the one is worse: %d %d", seen[0], seen[1]);
+    said_clean(dir);
+}
+
 static int line_by_line(int argc, char **argv)
 {
     setvbuf(stdout, NULL, _IOLBF, 0);
@@ -589,6 +726,7 @@ TEST_MAIN("sim/calibrate", kf_f0_and_home_are_the_devices, at_any_rate, other_de
           exchanged_masses_are_refused_by_table_and_point, set_up_refuses,
           a_fault_ends_it_in_its_tick_for_good, nothing_begins_outside_run,
           each_step_needs_a_word_of_its_own, leaving_run_ends_a_wait_at_once,
-          an_acting_limit_ends_it, it_does_not_wait_for_ever,
+          an_acting_limit_ends_it, why_it_ended_is_named, no_movement_while_the_zero_is_measured, it_does_not_wait_for_ever,
           nobody_after_a_finished_step_is_no_calibration, ended_before_its_end_is_no_calibration,
-          exit_status_says_what_happened, an_interruption_saves_nothing);
+          exit_status_says_what_happened, what_is_refused_is_named, what_cannot_be_written_is_said,
+          either_residual_counts, an_interruption_saves_nothing);

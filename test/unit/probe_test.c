@@ -386,6 +386,29 @@ TEST(a_mass_that_swings_is_not_waited_for)
           exh_probe_text(w.s.result), n);
 }
 
+/* A movement while the means are taken: what was taken before it is not of this rest. */
+TEST(means_begin_anew_after_a_movement)
+{
+    struct script w;
+    struct exh_calib_point p;
+    uint8_t r = EXH_PROBE_BUSY;
+    int moved = 0;
+    lifted(&w, 0);
+    CHECK_EQ_I64(move(&w, 2, 6), EXH_PROBE_BUSY);
+    CHECK_EQ_I64(w.s.phase, 2);
+    for (int n = 0; n < 3000 && r == EXH_PROBE_BUSY; n++) {
+        if (w.s.coded.n == 20 && !moved) {
+            moved = 1;
+            w.cnt += 10;
+        }
+        r = exh_weigh_step(&w.s, &w.cfg, w.cnt, moved ? MA(200) : MA(100), moved ? MA(220) : MA(110));
+    }
+    CHECK(r == EXH_PROBE_DONE && moved, "%s", exh_probe_text(r));
+    p = exh_weigh_point(&w.s, 1);
+    CHECK(p.cur_A_q26 == MA(200) && p.mon_A_q26 == MA(220), "%" PRId32 ", %" PRId32, p.cur_A_q26,
+          p.mon_A_q26);
+}
+
 /* --- whatever the counts do --- */
 
 /* Never more current than the limit, an end within the time, no current after it, none in
@@ -447,4 +470,4 @@ TEST_MAIN("unit/probe", finds_the_current_that_moves_within_a_step,
           set_up_refuses_what_is_out_of_range, home_is_the_end_of_the_string, what_stops_homing,
           homing_takes_no_longer_than_allowed, weighing_brackets_friction, what_stops_weighing,
           travel_is_of_all_phases_together, a_mass_that_swings_is_not_waited_for,
-          any_counts_stay_within_the_bounds, every_result_has_its_text);
+          means_begin_anew_after_a_movement, any_counts_stay_within_the_bounds, every_result_has_its_text);

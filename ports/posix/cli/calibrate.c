@@ -18,6 +18,7 @@
 
 #define SETTINGS_MAX 64
 #define DAY_S 86400
+#define PATH_B 512
 
 struct calibrate_options {
     long rate_Hz, seed, id, finger, day, valid_days;
@@ -170,14 +171,30 @@ static void print_params(void)
 
 /* --- files --- */
 
-static FILE *open_out(const char *dir, const char *name, const char *mode)
+/* DIR/NAME; 0, or 1 after a line on stderr: nothing is ever written elsewhere. */
+static int path_of(char to[PATH_B], const char *dir, const char *name)
 {
-    char p[512];
-    FILE *f;
-    snprintf(p, sizeof p, "%s/%s", dir, name);
-    f = fopen(p, mode);
-    if (f == NULL) { cli_complain("%s: %s", p, strerror(errno)); }
-    return f;
+    const int n = snprintf(to, PATH_B, "%s/%s", dir, name);
+    if (n >= 0 && n < PATH_B) { return 0; }
+    cli_complain("--out: %s: too long a path: give a shorter one", dir);
+    return 1;
+}
+
+/* Makes the directory if need be. 0, or 2 after a line on stderr. */
+static int open_dir(const char *dir)
+{
+    char path[PATH_B];
+    struct stat st;
+    if (path_of(path, dir, "calibration.bin")) { return 2; } /* the longest name */
+    if (mkdir(dir, 0777) != 0 && errno != EEXIST) {
+        cli_complain("--out: %s: %s: give a directory that can be made", dir, strerror(errno));
+        return 2;
+    }
+    if (stat(dir, &st) != 0 || !S_ISDIR(st.st_mode)) {
+        cli_complain("--out: %s: %s: give a directory", dir, strerror(ENOTDIR));
+        return 2;
+    }
+    return 0;
 }
 
 static int complain(const char *what, int err, const struct exh_calib_bad *bad)
@@ -191,32 +208,74 @@ static int complain(const char *what, int err, const struct exh_calib_bad *bad)
     return 1;
 }
 
+struct results { /* what is written into the files */
+    const struct exh_calib *c;
+    const struct calibration_lines *l;
+    uint8_t image[EXH_CALIB_IMAGE_B];
+    size_t image_B;
+};
+
+static void write_image(FILE *f, const struct results *r)
+{
+    (void)fwrite(r->image, 1, r->image_B, f);
+}
+
+static void write_points(FILE *f, const struct results *r)
+{
+    calibration_csv(f, r->c, r->l);
+}
+
+static void write_table(FILE *f, const struct results *r)
+{
+    (void)calibration_table_csv(f, r->c); /* there is one: the image was saved */
+}
+
+static void write_pictures(FILE *f, const struct results *r)
+{
+    fprintf(f, "# Made by exhand calibrate. In this directory: gnuplot -c pictures.gp PLOTS, where\n"
+               "# PLOTS is the path of ports/posix/cli/plot.\n"
+               "out='calibration.png'; points='calibration.csv'; table='table.csv'\n"
+               "kf=%.9g; kf_mon=%.9g\nload ARG1.'/calibration.gp'\n",
+            (double)r->l->cur.kf_NpA_q20 / (1 << EXH_Q_FORCE),
+            (double)r->l->mon.kf_NpA_q20 / (1 << EXH_Q_FORCE));
+}
+
+/* All of them or the first that fails. 0, or 1 after a line on stderr. */
 static int write_files(const char *dir, const struct exh_calib *c, const struct calibration_lines *l)
 {
-    uint8_t image[EXH_CALIB_IMAGE_B];
-    struct exh_calib_bad bad;
-    const int32_t len = exh_calib_save(c, image, sizeof image, &bad);
-    FILE *f;
-    int err = len < 0 ? complain("calibration.bin", len, &bad) : 0;
-    if (err) { return err; }
-    f = open_out(dir, "calibration.bin", "wb");
-    err |= f == NULL || fwrite(image, 1, (size_t)len, f) != (size_t)len || fclose(f) != 0;
-    f = open_out(dir, "calibration.csv", "w");
-    if (f) { calibration_csv(f, c, l); }
-    err |= f == NULL || fclose(f) != 0;
-    f = open_out(dir, "table.csv", "w");
-    if (f) { err |= calibration_table_csv(f, c) < 0; }
-    err |= f == NULL || fclose(f) != 0;
-    f = open_out(dir, "pictures.gp", "w");
-    if (f) {
-        fprintf(f, "# Made by exhand calibrate. In this directory: gnuplot -c pictures.gp PLOTS, where\n"
-                   "# PLOTS is the path of ports/posix/cli/plot.\n"
-                   "out='calibration.png'; points='calibration.csv'; table='table.csv'\n"
-                   "kf=%.9g; kf_mon=%.9g\nload ARG1.'/calibration.gp'\n",
-                (double)l->cur.kf_NpA_q20 / (1 << EXH_Q_FORCE),
-                (double)l->mon.kf_NpA_q20 / (1 << EXH_Q_FORCE));
+    static const struct {
+        const char *name;
+        void (*write)(FILE *f, const struct results *r);
+    } file[] = {{"calibration.bin", write_image},
+                {"calibration.csv", write_points},
+                {"table.csv", write_table},
+                {"pictures.gp", write_pictures}};
+    struct results r = {.c = c, .l = l};
+    struct exh_calib_bad bad = {0, 0};
+    const int32_t len = exh_calib_save(c, r.image, sizeof r.image, &bad);
+    if (len < 0) { return complain("calibration.bin", len, &bad); }
+    r.image_B = (size_t)len;
+    for (size_t i = 0; i < sizeof file / sizeof file[0]; i++) {
+        char path[PATH_B];
+        FILE *f;
+        int failed;
+        if (path_of(path, dir, file[i].name)) { return 1; }
+        errno = 0;
+        f = fopen(path, "wb");
+        if (f != NULL) { file[i].write(f, &r); }
+        failed = f == NULL || fflush(f) != 0 || ferror(f);
+        if (failed) {
+            cli_complain("%s: can't be written: %s: make room or give another --out, and calibrate again",
+                         path, strerror(errno ? errno : EIO));
+        }
+        if (f != NULL && fclose(f) != 0 && !failed) {
+            cli_complain("%s: can't be closed: %s: give another --out, and calibrate again", path,
+                         strerror(errno));
+            failed = 1;
+        }
+        if (failed) { return 1; }
     }
-    return err | (f == NULL || fclose(f) != 0);
+    return 0;
 }
 
 /* --- an image that is there --- */
@@ -240,6 +299,28 @@ static struct exh_calib_here here_and_now(const struct calibrate_options *o,
     return here;
 }
 
+/* A sound image that may not be used: what it was made for, and what is here. */
+static int not_here(const struct calibrate_options *o, const struct exh_calib *c, int err,
+                    const struct exh_calib_bad *bad)
+{
+    if (bad->what == EXH_CALIB_DEVICE) {
+        cli_complain("%s: made for device %lu, this is %ld: give its --id, or calibrate this one", o->check,
+                     (unsigned long)c->device_id, o->id);
+    } else if (bad->what == EXH_CALIB_FINGER) {
+        cli_complain("%s: made for finger %lu, this is %ld: give its --finger, or calibrate this one",
+                     o->check, (unsigned long)c->finger, o->finger);
+    } else if (bad->what == EXH_CALIB_AGE && (uint32_t)o->day < c->day) {
+        cli_complain("%s: from the future: made on day %lu, today is day %ld: set the clock right, or "
+                     "give --day", o->check, (unsigned long)c->day, o->day);
+    } else if (bad->what == EXH_CALIB_AGE) {
+        cli_complain("%s: stale: made on day %lu, good for %lu days, today is day %ld: calibrate again",
+                     o->check, (unsigned long)c->day, (unsigned long)c->valid_days, o->day);
+    } else {
+        return complain(o->check, err, bad);
+    }
+    return 1;
+}
+
 static int check_image(const struct calibrate_options *o)
 {
     struct exh_calib_point point[EXH_CALIB_POINTS_MAX];
@@ -252,10 +333,17 @@ static int check_image(const struct calibrate_options *o)
     int err;
     FILE *f = fopen(o->check, "rb");
     if (f == NULL) {
-        cli_complain("%s: %s", o->check, strerror(errno));
-        return 2;
+        cli_complain("--check: %s: %s: give the calibration.bin that `exhand calibrate --out` wrote",
+                     o->check, strerror(errno));
+        return 3;
     }
     len = fread(image, 1, sizeof image, f);
+    if (ferror(f)) { /* a directory, as a rule */
+        cli_complain("--check: %s: can't be read: %s: give the calibration.bin that "
+                     "`exhand calibrate --out` wrote", o->check, strerror(errno));
+        fclose(f);
+        return 2;
+    }
     fclose(f);
     err = exh_calib_load(&c, image, len, &bad);
     if (err < 0) { return complain(o->check, err, &bad); }
@@ -265,8 +353,12 @@ static int check_image(const struct calibrate_options *o)
     fflush(stdout);
     here = here_and_now(o, &c);
     err = exh_calib_check(&c, &here, &bad);
-    if (err < 0) { return complain(o->check, err, &bad); }
-    if (calibration_lines(&c, &l) == 0) { calibration_print(stdout, &c, &l); }
+    if (err < 0) { return not_here(o, &c, err, &bad); }
+    if (calibration_lines(&c, &l) < 0) {
+        cli_complain("%s: no line through its points: calibrate again", o->check);
+        return 1;
+    }
+    calibration_print(stdout, &c, &l);
     return 0;
 }
 
@@ -307,10 +399,21 @@ static int judge(const struct calibrate_options *o, struct calibration *r)
         cli_complain("interrupted before it was written: nothing was saved");
         return 130;
     }
-    if (o->out != NULL) { err = write_files(o->out, &r->c, &l); }
+    if (o->out != NULL && write_files(o->out, &r->c, &l) != 0) { return 1; }
     printf("for the drop experiment, straight: exhand drop --set kf=%.6g --set f0=%.4g\n",
            (double)l.cur.kf_NpA_q20 / (1 << EXH_Q_FORCE), l.f0_N);
-    return err;
+    return 0;
+}
+
+static void say_failure(const struct calibrate_options *o, const struct calibration *r)
+{
+    const unsigned mass = r->step - CALIBRATE_MASS; /* wraps for the others */
+    char which[24] = "", why[CALIBRATION_WHY_B];
+    if (mass < (unsigned)o->masses) { snprintf(which, sizeof which, " %.4g kg", o->mass_kg[mass]); }
+    calibration_why(why, r);
+    cli_complain("%s%s: %s after %.2f s at up to %.1f mA, %.1f mm: stopped, no current; put it right and "
+                 "calibrate again", calibrate_step_text(r->step), which, why, r->last_s,
+                 r->last_most_A * 1e3, r->last_travel_m * 1e3);
 }
 
 static int calibrate(const struct calibrate_options *o)
@@ -332,19 +435,14 @@ static int calibrate(const struct calibrate_options *o)
     c.board.seed = (uint64_t)o->seed;
     c.board.pace = o->pace;
     c.board.wrong = o->wrong;
-    if (o->out != NULL && mkdir(o->out, 0777) != 0 && errno != EEXIST) {
-        cli_complain("--out: %s: %s", o->out, strerror(errno));
-        return 2;
-    }
+    if (o->out != NULL && open_dir(o->out) != 0) { return 2; }
     (void)sigaction(SIGINT, &stop, NULL);
     (void)sigaction(SIGTERM, &stop, NULL);
     err = calibration_run(&c, &r);
     fflush(stdout); /* the steps before what is said of them */
     if (err < 0) { return err == -EXH_E_STATE ? 130 : 2; }
     if (r.result != EXH_PROBE_DONE) {
-        cli_complain("%s: %s after %.2f s at up to %.1f mA, %.1f mm: stopped, no current; "
-                        "put it right and calibrate again", calibrate_step_text(r.step),
-                calibrate_result_text(r.result), r.last_s, r.last_most_A * 1e3, r.last_travel_m * 1e3);
+        say_failure(o, &r);
         return 1;
     }
     r.c.device_id = (uint32_t)o->id;

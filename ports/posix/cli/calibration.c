@@ -146,6 +146,33 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
 
 /* --- a run --- */
 
+/* The names of the bits that are set, blanks between. */
+static void names(char *to, size_t size, uint32_t bits, const char *const *name, unsigned count)
+{
+    to[0] = '\0';
+    for (unsigned i = 0; i < count; i++) {
+        const size_t n = strlen(to);
+        if (bits >> i & 1) { snprintf(to + n, size - n, "%s%s", n ? ", " : "", name[i]); }
+    }
+}
+
+void calibration_why(char to[CALIBRATION_WHY_B], const struct calibration *r)
+{
+    static const char *const fault[] = {"emergency stop", "drive not ready", "ticks missed", "encoder",
+                                        "dead-man released"};
+    static const char *const limit[] = {"pull", "force: f_max, or i_max", "slew", "peak: i_peak",
+                                        "I2t: i_cont, i_peak, peak_time", "D/A span", "gate"};
+    char list[120] = "";
+    if (r->result == CALIBRATE_OFF) {
+        names(list, sizeof list, r->faults, fault, sizeof fault / sizeof fault[0]);
+        if (list[0] == '\0') { snprintf(list, sizeof list, "by command"); }
+    } else if (r->result == CALIBRATE_LIMITED) {
+        names(list, sizeof list, r->limits & ~(uint32_t)EXH_LIMIT_SLEW, limit, sizeof limit / sizeof limit[0]);
+    }
+    snprintf(to, CALIBRATION_WHY_B, "%s%s%s%s", calibrate_result_text(r->result), list[0] ? " (" : "", list,
+             list[0] ? ")" : "");
+}
+
 static int set_parameters(const struct calibration_cfg *c)
 {
     const struct sim_device *d = &c->board.device;
@@ -241,6 +268,8 @@ int calibration_run(const struct calibration_cfg *cfg, struct calibration *out)
                 (unsigned long)cfg->rate_Hz, (unsigned long)exh_board_info.rate_max_Hz);
     } else if (err == -EXH_E_RANGE) {
         say_pair();
+    } else if (err == -EXH_E_MONOTONE) {
+        cli_complain("--mass: two of them are the same to within a milligram: give masses that rise");
     } else if (err < 0) {
         cli_complain("%s", exh_error_text(err));
     } else if (posix_interrupted() || run.out->result == EXH_PROBE_BUSY) {

@@ -42,6 +42,10 @@ struct calibration {
  * interrupted. A step that failed is in *out, and said on progress. */
 int calibration_run(const struct calibration_cfg *cfg, struct calibration *out);
 
+/* Why it ended, with the names of the faults or limits. */
+#define CALIBRATION_WHY_B 200
+void calibration_why(char to[CALIBRATION_WHY_B], const struct calibration *r);
+
 /* Lines of both fits: N/A, and the largest residual, N. 0 or -EXH_E…. */
 struct calibration_lines {
     struct exh_calib_fit cur, mon;
