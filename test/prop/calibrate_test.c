@@ -81,11 +81,14 @@ static void compare(const struct known *k, int64_t cur_lsb, int64_t mon_lsb)
  * the table), and kf within 1 LSB and what half an LSB in the least current makes. */
 TEST(a_straight_table_is_recovered_to_the_lsb)
 {
+    unsigned cases = 0, measured = 0;
     while (check_case(4)) {
         struct known k;
         struct exh_calib_fit fit;
         int64_t off;
+        cases++;
         if (!measure(&k, 1, 1)) { continue; }
+        measured++;
         compare(&k, 2, 2);
         CHECK_EQ_I64(exh_calib_fit(&fit, k.point, k.c.points, EXH_CALIB_CURRENT), 0);
         off = fit.kf_NpA_q20 - k.kf_q20;
@@ -99,16 +102,21 @@ TEST(a_straight_table_is_recovered_to_the_lsb)
             CHECK(r <= most && r >= -most, "residual %" PRId64 " of %" PRId64, r, most);
         }
     }
+    CHECK(cases < 100 || measured > cases / 20, "%u of %u", measured, cases);
 }
 
 /* Through codes: within one code of either, half a code's error at the worst point. */
 TEST(a_quantised_table_is_recovered_to_the_code)
 {
+    unsigned cases = 0, measured = 0;
     while (check_case(4)) {
         struct known k;
+        cases++;
         if (!measure(&k, DAC_LSB, MON_LSB)) { continue; }
+        measured++;
         compare(&k, DAC_LSB / 2 + 3, MON_LSB / 2 + 3);
     }
+    CHECK(cases < 100 || measured > cases / 20, "%u of %u", measured, cases);
 }
 
 /* A bent table: points at all its knots and any between them give it back. */

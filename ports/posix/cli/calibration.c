@@ -146,7 +146,7 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
 
 /* --- a run --- */
 
-/* The names of the bits that are set, blanks between. */
+/* The names of the bits that are set, commas between. */
 static void names(char *to, size_t size, uint32_t bits, const char *const *name, unsigned count)
 {
     to[0] = '\0';
@@ -167,7 +167,8 @@ void calibration_why(char to[CALIBRATION_WHY_B], const struct calibration *r)
         names(list, sizeof list, r->faults, fault, sizeof fault / sizeof fault[0]);
         if (list[0] == '\0') { snprintf(list, sizeof list, "by command"); }
     } else if (r->result == CALIBRATE_LIMITED) {
-        names(list, sizeof list, r->limits & ~(uint32_t)EXH_LIMIT_SLEW, limit, sizeof limit / sizeof limit[0]);
+        names(list, sizeof list, r->limits & ~(uint32_t)EXH_LIMIT_SLEW, limit,
+              sizeof limit / sizeof limit[0]);
     }
     snprintf(to, CALIBRATION_WHY_B, "%s%s%s%s", calibrate_result_text(r->result), list[0] ? " (" : "", list,
              list[0] ? ")" : "");
