@@ -183,7 +183,14 @@ TEST(a_search_goes_on_where_it_was_cut_off)
     CHECK(again.status == 0 && strcmp(again.out, whole.out) == 0, "%s", again.out);
     CHECK_EQ_I64(said_size(journal), size);
     said(&refused, dir, cli_fit, WORDS("fit", "--budget", "9", "--seed", "2", "--out", out));
-    CHECK(refused.status == 1 && strstr(refused.err, "holds another search") != NULL, "%s", refused.err);
+    CHECK(refused.status == 2 && strstr(refused.err, "holds another search") != NULL, "%s", refused.err);
+    snprintf(journal, sizeof journal, "%s/fit/progress.csv", dir);
+    CHECK(said_size(journal) > 0, "a refused search wrote over the progress of another");
+    for (int i = 0; i < 3; i++) { /* vel_p is whole, 0..2 */
+        static const char *const pin[] = {"vel_p=3", "vel_p=0.5", "vel_p=-1"};
+        said(&refused, dir, cli_fit, WORDS("fit", "--pin", pin[i]));
+        CHECK(refused.status == 2 && strstr(refused.err, pin[i]) != NULL, "%s", refused.err);
+    }
     said(&refused, dir, cli_fit, WORDS("fit", "--pin", "rotor=9"));
     CHECK(refused.status == 2 && strstr(refused.err, "--pin: rotor=9") != NULL, "%s", refused.err);
     said(&refused, dir, cli_fit, WORDS("fit", "--variant", "c"));

@@ -1,5 +1,7 @@
 #include "table2.h"
 
+#include "quantile.h"
+
 #include "option.h"
 
 #include <string.h>
@@ -171,22 +173,6 @@ static void add(struct values *v, double value)
     v->at[v->n++] = value;
 }
 
-/* The value below which the share p of them lies; sorts them. 0 unless more than half
- * of the runs gave one: a median of the few would pass the exception for the rule. */
-static double percentile(struct values *v, int runs, double p)
-{
-    const double at = p * (v->n - 1);
-    const int i = (int)at;
-    if (2 * v->n <= runs) { return 0; }
-    for (int a = 1; a < v->n; a++) {
-        const double x = v->at[a];
-        int b = a;
-        for (; b > 0 && v->at[b - 1] > x; b--) { v->at[b] = v->at[b - 1]; }
-        v->at[b] = x;
-    }
-    return i + 1 < v->n ? v->at[i] + (at - i) * (v->at[i + 1] - v->at[i]) : v->at[v->n - 1];
-}
-
 /* What was not seen to come to rest has not come to rest, nor was it seen to
  * oscillate: incomplete falls count against us on either side. */
 static double share(const struct table2_result *r, int runs, int with_incomplete)
@@ -224,12 +210,12 @@ struct table2_spread table2_spread(const struct table2_result *at_1, const struc
     }
     s.lines = b.n;
     s.lines_same = b_same.n;
-    s.b_Npm = percentile(&b, s.runs, 0.5);
-    s.b_low_Npm = percentile(&b, s.runs, 0.05);
-    s.b_high_Npm = percentile(&b, s.runs, 0.95);
-    s.a_Npm = percentile(&a, s.runs, 0.5);
-    s.b_same_Npm = percentile(&b_same, s.runs, 0.5);
-    s.a_same_Npm = percentile(&a_same, s.runs, 0.5);
+    s.b_Npm = quantile(b.at, b.n, s.runs, 0.5);
+    s.b_low_Npm = quantile(b.at, b.n, s.runs, 0.05);
+    s.b_high_Npm = quantile(b.at, b.n, s.runs, 0.95);
+    s.a_Npm = quantile(a.at, a.n, s.runs, 0.5);
+    s.b_same_Npm = quantile(b_same.at, b_same.n, s.runs, 0.5);
+    s.a_same_Npm = quantile(a_same.at, a_same.n, s.runs, 0.5);
     s.rest = restless < 0 ? -1 : 1 - restless;
     s.oscillates = share(at_15, n, 0);
     return s;

@@ -1,16 +1,9 @@
 #include "table2.h"
 
-#include <stdlib.h>
+#include "quantile.h"
 
 #define RUNS_MAX 1000
 
-static int by_value(const void *a, const void *b)
-{
-    const double l = *(const double *)a, r = *(const double *)b;
-    return (l > r) - (l < r);
-}
-
-/* 0 unless more than half the runs gave a line. */
 static double median(const struct table2_readings *t, int row, int reading)
 {
     double v[RUNS_MAX];
@@ -19,8 +12,7 @@ static double median(const struct table2_readings *t, int row, int reading)
     for (int i = 0; i < t->runs && i < RUNS_MAX; i++) {
         if (r[i].done && r[i].reading_Npm[reading] > 0) { v[n++] = r[i].reading_Npm[reading]; }
     }
-    qsort(v, (size_t)n, sizeof v[0], by_value);
-    return 2 * n > t->runs ? v[n / 2] : 0;
+    return quantile(v, n, t->runs, 0.5);
 }
 
 static const struct table2_row *compared(const struct table2_result *r)

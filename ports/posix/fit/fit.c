@@ -121,7 +121,7 @@ static int settings_agree(const struct fit_options *o)
         same = fgets(theirs, sizeof theirs, f) != NULL && strcmp(theirs, mine) == 0;
         fclose(f);
         if (!same) { cli_complain("--out: %s holds another search: give another folder", o->out); }
-        return !same;
+        return same ? 0 : 2;
     }
     f = open_out(o, "settings", "w");
     if (f == NULL) { return 1; }
@@ -194,7 +194,7 @@ static int searched(struct fit_options *o, FILE *progress)
     struct journal j;
     int n, err;
 
-    if (settings_agree(o) || journal_open(o, &j)) { return 1; }
+    if (journal_open(o, &j)) { return 1; }
     for (int i = 0; i < starts; i++) { some[i] = search_first(s, i); }
     err = offer_all(o, s, &j, &first, some, starts);
     if (err == 0) { err = rounds(o, s, &j, &first, turn, progress); }
@@ -221,7 +221,7 @@ static int take_pin(void *ctx, const char *text)
         v = strtod(equals + 1, &end);
     }
     if (row < 0 || end == equals + 1 || *end != '\0' ||
-        !(v >= space_row[row].lo && v <= space_row[row].hi)) {
+        !(v >= space_row[row].lo && v <= space_row[row].hi) || !space_exact(row, v)) {
         cli_complain("--pin: %s: give NAME=VALUE, of what --space lists and in its range", text);
         return 2;
     }
@@ -235,7 +235,8 @@ static void print_space(void)
     printf("What is searched, where it starts, and why within these bounds\n");
     for (int i = 0; i < SPACE_ROWS; i++) {
         const struct space_row *r = &space_row[i];
-        printf("  %-11s %10.4g  %8.4g .. %-8.4g %-4s %s\n", r->name, r->start, r->lo, r->hi,
+        printf("  %-11s %10.4g  %8.4g .. %-8.4g %-4s %s\n", r->name, r->start, r->lo,
+               r->scale == SPACE_WHOLE ? r->hi - 1 : r->hi,
                r->scale == SPACE_LOG ? "log" : r->scale == SPACE_WHOLE ? "int" : "lin", r->why);
     }
     printf("\nReadings: DIRECTION-PAIRS-PART\n"
@@ -253,6 +254,8 @@ static int fit(struct fit_options *o)
         cli_complain("--out: %s: %s", o->out, strerror(errno));
         return 2;
     }
+    err = settings_agree(o); /* before anything of another search is touched */
+    if (err) { return err; }
     progress = open_out(o, "progress.csv", "w");
     if (progress == NULL) { return 1; }
     fprintf(progress, "evaluations");

@@ -70,11 +70,10 @@ int score_oscillating(const struct run *r, double step_m, double observe_s, int 
     opt.encoder_step_m = step_m;
     *soft = 0;
     if (r->log.falls > FALLS || fall_dissect(&r->log, 1, &contacts) != FALL_OK) { return -1; }
-    if (fall_rest(&r->log, &contacts, &opt, rest) == FALL_OK) {
-        for (size_t i = 0; i < r->log.falls; i++) {
-            *soft += shortfall(&rest[i], wanted);
-            n += rest[i].rest == FALL_OSCILLATES || rest[i].rest == FALL_INCOMPLETE;
-        }
+    if (fall_rest(&r->log, &contacts, &opt, rest) != FALL_OK) { n = -1; } /* not a perfect score */
+    for (size_t i = 0; n >= 0 && i < r->log.falls; i++) {
+        *soft += shortfall(&rest[i], wanted);
+        n += rest[i].rest == FALL_OSCILLATES || rest[i].rest == FALL_INCOMPLETE;
     }
     fall_contacts_free(&contacts);
     return n;

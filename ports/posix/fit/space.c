@@ -78,6 +78,12 @@ double space_unit(int row, double value)
     return (value - r->lo) / (r->hi - r->lo);
 }
 
+int space_exact(int row, double value)
+{
+    return space_row[row].scale != SPACE_WHOLE ||
+           (value < space_row[row].hi && value == (double)(int)value);
+}
+
 struct plant_point space_start(void)
 {
     struct plant_point p;

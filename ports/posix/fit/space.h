@@ -31,6 +31,8 @@ struct plant_point {
 /* The value of a row at u, and back. */
 double space_value(int row, double u);
 double space_unit(int row, double value);
+/* 1 if the row can take this very value: whole ones take whole numbers below hi. */
+int space_exact(int row, double value);
 
 /* Where every search starts. */
 struct plant_point space_start(void);

@@ -2,6 +2,7 @@
 
 #include "cli/jobs.h"
 #include "cli/option.h"
+#include "cli/quantile.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -36,31 +37,23 @@ static struct score_plan plan_of(const struct search *s)
     return (struct score_plan){0, 0, 5, 5, 25e-6, 0, s->fixed_wall};
 }
 
-static int by_value(const void *a, const void *b)
+/* Of n values, share 0..1; zeros are no line. */
+static double of_lines(const double *v, int n, double share)
 {
-    const double l = *(const double *)a, r = *(const double *)b;
-    return (l > r) - (l < r);
-}
-
-/* Of n values, share 0..1; zeros (no line) are not counted unless they are the most. */
-static double quantile(const double *v, int n, double share)
-{
-    double sorted[RUNS_MAX];
-    int kept = 0;
+    double kept[RUNS_MAX];
+    int lines = 0;
     for (int i = 0; i < n; i++) {
-        if (v[i] > 0) { sorted[kept++] = v[i]; }
+        if (v[i] > 0) { kept[lines++] = v[i]; }
     }
-    if (2 * kept <= n) { return 0; }
-    qsort(sorted, (size_t)kept, sizeof sorted[0], by_value);
-    return sorted[(int)(share * (kept - 1) + 0.5)];
+    return quantile(kept, lines, n, share);
 }
 
-/* Share of falls that oscillate in `runs` runs; stiffness by all readings if S is there. */
+/* Share of falls that oscillate in `runs` runs, -1 if none ran; stiffness by all readings if S is there. */
 static double oscillating(const struct score_plan *plan, const struct plant_point *p, int row, double scale, int runs,
                           double S[READINGS][RUNS_MAX], int *failed)
 {
     const struct table2_row *t = &table2_paper[row];
-    int n = 0;
+    int n = 0, seen = 0;
     for (int i = 0; i < runs; i++) {
         const struct score_gains at = {row, t->k_Npm * scale, t->b_Nspm * scale, FALLS,
                                        SEED + (uint64_t)i};
@@ -73,14 +66,20 @@ static double oscillating(const struct score_plan *plan, const struct plant_poin
             if (reading_all(&r.log, score_step_m(p), one) != FALL_OK) { k = -1; }
             for (int x = 0; x < READINGS; x++) { S[x][i] = one[x]; }
         }
+        run_free(&r);
         if (k < 0) {
             *failed += 1;
-            k = 0;
+            continue;
         }
-        run_free(&r);
         n += k;
+        seen += FALLS;
     }
-    return runs ? (double)n / (FALLS * runs) : 0;
+    return seen ? (double)n / seen : -1;
+}
+
+static double at_rest(double oscillate)
+{
+    return oscillate < 0 ? -1 : 1 - oscillate;
 }
 
 /* Largest b of the ladder up to which all rest (at least 9 of 10 falls). */
@@ -113,15 +112,16 @@ static void judge(const void *ctx, int i, void *to)
     struct verdict v;
     memset(&v, 0, sizeof v);
     memset(S, 0, sizeof S);
-    v.rest = 1 - oscillating(&plan, p, row, 1, t->runs, S, &v.failed);
+    v.rest = at_rest(oscillating(&plan, p, row, 1, t->runs, S, &v.failed));
     v.swing = oscillating(&plan, p, row, 1.5, t->runs, NULL, &v.failed);
-    for (int k = 0; k < READINGS; k++) { v.median[k] = quantile(S[k], t->runs, 0.5); }
-    v.low = quantile(S[reading], t->runs, 0.05);
-    v.high = quantile(S[reading], t->runs, 0.95);
+    for (int k = 0; k < READINGS; k++) { v.median[k] = of_lines(S[k], t->runs, 0.5); }
+    v.low = of_lines(S[reading], t->runs, 0.05);
+    v.high = of_lines(S[reading], t->runs, 0.95);
     for (int k = 0; k < FURTHER && t->further > 0; k++) {
         memset(other, 0, sizeof other);
-        v.rest_at[k] = 1 - oscillating(&plan, p, row, further_scale[k], t->further, other, &v.failed);
-        v.over_k[k] = quantile(other[reading], t->further, 0.5) /
+        v.rest_at[k] =
+            at_rest(oscillating(&plan, p, row, further_scale[k], t->further, other, &v.failed));
+        v.over_k[k] = of_lines(other[reading], t->further, 0.5) /
                       (table2_paper[row].k_Npm * further_scale[k]);
     }
     if (row == 0 || row == TABLE2_ROWS - 1) { v.b_max = largest_b(&plan, p, row); }
