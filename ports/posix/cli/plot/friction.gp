@@ -10,7 +10,7 @@
 # Optional:
 #   out          PNG to write                            (friction.png)
 
-reset # another script may have run in this session
+reset # another script may have run before
 if (!exists("out")) out = 'friction.png'
 
 set terminal pngcairo size 2000,900 font 'DejaVu Sans,20' linewidth 1.6 background '#ffffff'

@@ -11,7 +11,7 @@
 # Lists have spaces between their words. Optional:
 #   out          PNG to write                            (stability.png)
 
-reset # another script may have run in this session
+reset # another script may have run before
 if (!exists("out")) out = 'stability.png'
 
 panels = words(rates)
