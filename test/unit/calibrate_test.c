@@ -273,10 +273,12 @@ TEST(any_bit_flipped_any_byte_missing_is_refused)
               "bit %" PRId32 ": %d", i, err);
         CHECK(bad.what == EXH_CALIB_IMAGE && b.c.points == 0, "bit %" PRId32, i);
     }
-    memcpy(crc, buf + len - 4, 4); /* no CRC is none that fits */
-    memset(buf + len - 4, 0, 4);
+    for (int k = 0; k < 4 && len >= 4; k++) { /* no CRC is none that fits */
+        crc[k] = buf[len - 4 + k];
+        buf[len - 4 + k] = 0;
+    }
     CHECK_EQ_I64(exh_calib_load(&b.c, buf, (size_t)len, &bad), -EXH_E_CRC);
-    memcpy(buf + len - 4, crc, 4);
+    for (int k = 0; k < 4 && len >= 4; k++) { buf[len - 4 + k] = crc[k]; }
     for (int32_t i = 0; i < len; i++) {
         CHECK_EQ_I64(exh_calib_load(&b.c, buf, (size_t)i, &bad), -EXH_E_SHORT);
         CHECK(bad.what == EXH_CALIB_IMAGE && b.c.points == 0, "%" PRId32 " bytes", i);
