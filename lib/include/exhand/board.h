@@ -8,6 +8,7 @@
 #define EXHAND_BOARD_H
 
 #include "exhand/drive.h"
+#include "exhand/glove.h"
 #include "exhand/units.h"
 
 #include <stddef.h>
@@ -50,10 +51,7 @@ void exh_board_halt(const char *why);
 
 /* --- only where the scene calls them --- */
 
-struct exh_glove_in {
-    int16_t raw[22];     /* A/D codes, in the order of the glove's sensors     */
-    uint16_t age_ticks;  /* 0 = converted for this tick                        */
-};
+/* The newest frame of the glove (glove.h) and its age. 0 or -EXH_E_IO. */
 int exh_board_read_glove(struct exh_glove_in *in);
 
 /* A free-running cycle or instruction counter, modulo 2^32. */

@@ -26,6 +26,7 @@
 #include "exhand/drive.h"
 #include "exhand/error.h"
 #include "exhand/fix.h"
+#include "exhand/glove.h"
 #include "exhand/probe.h"
 #include "exhand/quad.h"
 #include "exhand/record.h"

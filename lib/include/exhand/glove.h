@@ -1,0 +1,183 @@
+/* Glove: 22 A/D codes to 22 joint angles, and the calibration of a user's glove.
+ *
+ * One frame of all sensors at a time: codes that no hand gives are kept out, the rest
+ * goes through one low-pass and one quantizer (stable bits) and becomes an angle:
+ *
+ *   own_i = gain_i (code_i - zero_i)          angle_i = own_i + cross_i0 own_a + cross_i1 own_b
+ *
+ * The cross terms are for abduction sensors, which the flexion of the knuckles beside them
+ * pulls along. Gain, zero and cross terms belong to a user in a glove: a calibration.
+ * One that is damaged, old, somebody else's or implausible is refused, and the name of
+ * what is wrong with it is told.
+ */
+#ifndef EXHAND_GLOVE_H
+#define EXHAND_GLOVE_H
+
+#include "exhand/bytes.h"
+#include "exhand/signal.h"
+#include "exhand/units.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The CyberGlove's sensors in the order of its wires. Flexion counts up from the flat hand,
+ * abduction from fingers together; the three abductions of fingers are between two of them. */
+enum exh_glove_sensor_id {
+    EXH_GLOVE_THUMB_ROTATE, EXH_GLOVE_THUMB_MPJ, EXH_GLOVE_THUMB_IJ, EXH_GLOVE_THUMB_AB,
+    EXH_GLOVE_INDEX_MPJ, EXH_GLOVE_INDEX_PIJ, EXH_GLOVE_INDEX_DIJ,
+    EXH_GLOVE_MIDDLE_MPJ, EXH_GLOVE_MIDDLE_PIJ, EXH_GLOVE_MIDDLE_DIJ, EXH_GLOVE_MIDDLE_INDEX_AB,
+    EXH_GLOVE_RING_MPJ, EXH_GLOVE_RING_PIJ, EXH_GLOVE_RING_DIJ, EXH_GLOVE_RING_MIDDLE_AB,
+    EXH_GLOVE_PINKIE_MPJ, EXH_GLOVE_PINKIE_PIJ, EXH_GLOVE_PINKIE_DIJ, EXH_GLOVE_PINKIE_RING_AB,
+    EXH_GLOVE_PALM_ARCH, EXH_GLOVE_WRIST_PITCH, EXH_GLOVE_WRIST_YAW,
+    EXH_GLOVE_SENSORS
+};
+
+/* "ThumbRotate", ...; never NULL. */
+const char *exh_glove_sensor_text(unsigned sensor);
+
+/* What a board delivers. */
+struct exh_glove_in {
+    int16_t raw[EXH_GLOVE_SENSORS]; /* A/D codes, +-10 V card: 305 uV each      */
+    uint16_t age_ticks;             /* 0 = converted for this tick             */
+};
+
+/* --- parameters; rows in exh_glove_rows[] --- */
+
+struct exh_glove_par {
+    int32_t order;           /* of the low-pass: 1, 2; 0 = none                 */
+    int32_t fc_Hz_q16;       /* its cut-off, below half the glove's own rate    */
+    int32_t bits;            /* stable bits of the card's range, 1 .. 24        */
+    int32_t hyst_raw_q16;    /* hysteresis, codes q16; at or above the noise's
+                              * peak to peak behind the filter: no flips        */
+    int32_t low_raw;         /* a code at or below: the amplifier is at its lower rail */
+    int32_t high_raw;        /* a code at or above: at its upper                */
+    int32_t open_high;       /* 1: an open wire reads high, a short low; 0: the other way */
+    int32_t debounce_frames; /* that many frames in a row make and end a fault, 1 .. 255 */
+    int32_t margin_q16;      /* a code may leave the calibrated span by this share of it, 0 .. 8 */
+};
+#define EXH_GLOVE_ROWS 9
+extern const struct exh_signal exh_glove_rows[EXH_GLOVE_ROWS];
+
+/* --- calibration --- */
+
+#define EXH_GLOVE_NONE 255 /* no sensor */
+
+struct exh_glove_sensor {
+    int32_t zero_raw_q15;      /* code at which its own angle is 0, -32768 .. 32767  */
+    int32_t gain_turnpraw_q38; /* turn per code, 4e-7 .. 1/128 either way; < 0: falls */
+    int32_t cross_q30[2];      /* of the own angle of of[0], of[1], each +-2    */
+    int16_t low_raw, high_raw; /* lowest and highest code when it was calibrated */
+    uint8_t of[2];             /* sensors without cross terms, or EXH_GLOVE_NONE */
+};
+
+struct exh_glove_cal {
+    uint32_t user_id, glove_id; /* given by whoever calibrates                 */
+    uint32_t day;               /* when: days since 1970-01-01                 */
+    uint32_t valid_days;        /* good on days day .. day + valid_days        */
+    uint32_t present;           /* bit i: there is a sensor i. Where not, its own angle is 0
+                                 * and it has no faults. 0: no calibration      */
+    struct exh_glove_sensor sensor[EXH_GLOVE_SENSORS];
+};
+
+/* To run without a user's: nobody's hand, end points of one published calibration file
+ * (normalised 0 .. 1) at -9 .. 9 V; no cross terms. user_id and glove_id are 0. */
+extern const struct exh_glove_cal exh_glove_cal_default;
+
+/* What an error is about. */
+enum exh_glove_what {
+    EXH_GLOVE_IMAGE,    /* the bytes                                           */
+    EXH_GLOVE_USER,     /* made for another user                               */
+    EXH_GLOVE_GLOVE,    /* or another glove                                    */
+    EXH_GLOVE_AGE,      /* older than valid_days, or from the future            */
+    EXH_GLOVE_PRESENT,  /* no sensors, or one that there is none of            */
+    EXH_GLOVE_GAIN,     /* zero or implausible; at: the sensor, also below      */
+    EXH_GLOVE_ZERO,     /* its zero lies beyond the card's range               */
+    EXH_GLOVE_SPAN,     /* calibrated over fewer than EXH_GLOVE_SPAN_MIN_RAW codes */
+    EXH_GLOVE_CROSS,    /* cross term beyond +-2, or of no sensor to have one of */
+    EXH_GLOVE_POSES,    /* too few poses, or poses that do not tell its terms apart */
+    EXH_GLOVE_MOVE,     /* the hand did not move enough                        */
+    EXH_GLOVE_NOISE,    /* codes varied too much while a pose was held         */
+    EXH_GLOVE_RESIDUAL, /* a pose lies too far off the line through all        */
+    EXH_GLOVE_WHATS
+};
+struct exh_glove_bad {
+    uint8_t what; /* enum exh_glove_what                                       */
+    uint8_t at;   /* sensor, where it is about one                             */
+};
+
+/* "gain", ...; never NULL. */
+const char *exh_glove_what_text(unsigned what);
+
+#define EXH_GLOVE_SPAN_MIN_RAW 64 /* 20 mV: three times the paper's noise */
+
+/* Values in range? 0, or -EXH_E_RANGE with *bad (may be NULL) the culprit. */
+int exh_glove_cal_valid(const struct exh_glove_cal *cal, struct exh_glove_bad *bad);
+
+/* May it be used for this user, glove and day? -EXH_E_RANGE (nothing loaded, or refused),
+ * -EXH_E_VERSION (another user, another glove), -EXH_E_STALE (age); *bad tells which. */
+int exh_glove_cal_check(const struct exh_glove_cal *cal, uint32_t user_id, uint32_t glove_id,
+                        uint32_t day, struct exh_glove_bad *bad);
+
+/* Image: "EXHG", version u16, sensors u16, five u32 in the order above, then of each
+ * sensor zero, gain, cross 0, cross 1 (i32), low, high (i16), of 0, of 1 (u8), CRC-32 of
+ * all before it; little-endian. */
+#define EXH_GLOVE_CAL_VERSION 1
+#define EXH_GLOVE_CAL_IMAGE_B (8u + 20u + 22u * EXH_GLOVE_SENSORS + 4u)
+
+/* Bytes written, or -EXH_E_SHORT; or what exh_glove_cal_valid() refuses: nothing that
+ * could not be read again is written. */
+int32_t exh_glove_cal_save(const struct exh_glove_cal *cal, void *buf, size_t cap_B,
+                           struct exh_glove_bad *bad);
+
+/* Reads and checks a whole image; bytes behind it are ignored. -EXH_E_SHORT,
+ * -EXH_E_VERSION, -EXH_E_CRC, or what exh_glove_cal_valid() refuses; then present is 0. */
+int exh_glove_cal_load(struct exh_glove_cal *cal, const void *buf, size_t len_B,
+                       struct exh_glove_bad *bad);
+
+/* --- a calibration from poses --- */
+
+#define EXH_GLOVE_POSES_MAX 16 /* sums of products stay below 2^55             */
+
+/* The hand held still in one pose: what is known of it, and what was measured. */
+struct exh_glove_pose {
+    uint32_t known; /* bit i: the pose says what the angle of sensor i is      */
+    int32_t angle_turn_q32[EXH_GLOVE_SENSORS];
+    int32_t mean_raw_q16[EXH_GLOVE_SENSORS]; /* mean code                      */
+    int32_t noise_raw[EXH_GLOVE_SENSORS];    /* highest less lowest code       */
+};
+
+struct exh_glove_fit_par {
+    int32_t move_min_raw;          /* codes between two of its poses at least  */
+    int32_t noise_max_raw;         /* noise_raw of each pose at most           */
+    int32_t residual_max_turn_q32; /* of each pose at most                     */
+};
+extern const struct exh_glove_fit_par exh_glove_fit_default; /* 256 codes, 128 codes, 6 deg */
+
+/* How one sensor came out. */
+struct exh_glove_fit {
+    int32_t residual_turn_q32; /* the worst: known less fitted angle           */
+    uint8_t pose;              /* of that pose                                 */
+    uint8_t poses;             /* how many say its angle                       */
+    uint8_t what;              /* enum exh_glove_what, or EXH_GLOVE_WHATS: fine */
+};
+
+/* Least squares over the poses that know a sensor's angle: gain and zero of each sensor
+ * present, and the cross terms of those that cal->sensor[].of names (their angles as the
+ * fit of those sensors has them); two poses give the line through both. *cal: ids, day,
+ * present and of[] on entry, the rest on return; low and high are the lowest and highest
+ * mean of all poses, known or not. fit: one for each of the 22. 0, or -EXH_E_RANGE: the
+ * first sensor in *bad (may be NULL), each one's in fit[]; present is 0 then. Also
+ * -EXH_E_RANGE (EXH_GLOVE_POSES): n not 2 .. EXH_GLOVE_POSES_MAX. Error of the arithmetic:
+ * 2^-20 of the span. Set-up only (divides). */
+int exh_glove_cal_fit(struct exh_glove_cal *cal, struct exh_glove_fit *fit,
+                      const struct exh_glove_pose *pose, unsigned n,
+                      const struct exh_glove_fit_par *par, struct exh_glove_bad *bad);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
