@@ -15,39 +15,94 @@ const struct exh_signal exh_quad_rows[EXH_QUAD_ROWS] = {
      EXH_Q(10, 1, EXH_Q_VEL), "speed_max", "m_per_s", "faster is an encoder fault"},
 };
 
-/* Step of each transition, index previous<<2 | now of A<<1 | B; ILL = both lines
- * changed. Up is 00 01 11 10. x1 counts between 01 and 11 only, so that noise on
- * B cannot move the count. */
-#define ILL 2
-static const int8_t step_of[3][16] = {
-    [EXH_QUAD_X1] = {0, 0, 0, ILL, 0, 0, ILL, 1, 0, ILL, 0, 0, ILL, -1, 0, 0},
-    [EXH_QUAD_X2] = {0, 0, -1, ILL, 0, 0, ILL, 1, 1, ILL, 0, 0, ILL, -1, 0, 0},
-    [EXH_QUAD_X4] = {0, 1, -1, ILL, -1, 0, ILL, 1, 1, ILL, 0, -1, ILL, -1, 1, 0},
-};
+/* --- two lines --- */
 
-void exh_quad_ab_step(struct exh_quad_ab *s, enum exh_quad_mode mode, unsigned a, unsigned b,
-                      unsigned index)
+/* The three sums of up to 255 samples fit side by side into one word; the count, which
+ * may go down, is its top, so that it borrows from nobody. */
+#define RUN_MAX 255u
+#define EDGE    0x100u
+#define UP      (EDGE + 0x10000u)
+#define DOWN    (EDGE - 0x10000u)
+#define ILL     1u
+const struct exh_quad_mode exh_quad_x1 = {
+    {0, EDGE, EDGE, ILL, EDGE, 0, ILL, UP, EDGE, ILL, 0, EDGE, ILL, DOWN, EDGE, 0}};
+const struct exh_quad_mode exh_quad_x2 = {
+    {0, EDGE, DOWN, ILL, EDGE, 0, ILL, UP, UP, ILL, 0, EDGE, ILL, DOWN, EDGE, 0}};
+const struct exh_quad_mode exh_quad_x4 = {
+    {0, UP, DOWN, ILL, DOWN, 0, ILL, UP, UP, ILL, 0, DOWN, ILL, DOWN, UP, 0}};
+
+static void add(struct exh_quad_ab *s, uint32_t sums)
 {
-    const uint8_t now = (uint8_t)((a & 1) << 1 | (b & 1));
-    const uint8_t idx = (uint8_t)(index & 1);
+    s->cnt = exh_wrap_add(s->cnt, exh_from_u32(sums) >> 16);
+    s->edges += sums >> 8 & 0xFF;
+    s->illegal += sums & 0xFF;
+}
 
-    if (s->started) {
-        const int8_t d = step_of[mode][s->ab << 2 | now];
-        if (d == ILL) {
-            s->illegal++;
-        } else {
-            s->edges += now != s->ab;
-            s->cnt = exh_wrap_add(s->cnt, d);
-        }
-        if (idx > s->index) {
-            s->index_cnt = s->cnt;
-            s->indices++;
-        }
-    }
-    s->ab = now;
-    s->index = idx;
+void exh_quad_ab_step(struct exh_quad_ab *s, const struct exh_quad_mode *mode, unsigned ab)
+{
+    const unsigned now = ab & 3u;
+    if (s->started) { add(s, mode->adds[(unsigned)s->ab << 2 | now]); }
+    s->ab = (uint8_t)now;
     s->started = 1;
 }
+
+void exh_quad_ab_run(struct exh_quad_ab *s, const struct exh_quad_mode *mode, const uint8_t *ab,
+                     size_t n)
+{
+    uint32_t past; /* samples, the last in the low bits */
+    if (n == 0) { return; }
+    past = s->started ? s->ab : ab[0];
+    while (n > 0) {
+        const uint8_t *const end = ab + (n < RUN_MAX ? n : RUN_MAX);
+        uint32_t sums = 0;
+        n -= (size_t)(end - ab);
+        do {
+            past = past << 2 | (*ab++ & 3u);
+            sums += mode->adds[past & 15u];
+        } while (ab != end);
+        add(s, sums);
+    }
+    s->ab = past & 3u;
+    s->started = 1;
+}
+
+/* Ones among 64 bits: sums of 2, 4 and 8 of them side by side, then all. */
+static uint32_t ones(uint64_t x)
+{
+    x -= x >> 1 & UINT64_C(0x5555555555555555);
+    x = (x & UINT64_C(0x3333333333333333)) + (x >> 2 & UINT64_C(0x3333333333333333));
+    x = (x + (x >> 4)) & UINT64_C(0x0F0F0F0F0F0F0F0F);
+    return ((uint32_t)x + (uint32_t)(x >> 32)) * 0x01010101u >> 24;
+}
+
+void exh_quad_ab_word(struct exh_quad_ab *s, uint64_t a, uint64_t b)
+{
+    const uint64_t was_a = a << 1 | (s->started ? (uint64_t)s->ab >> 1 : a & 1);
+    const uint64_t was_b = b << 1 | (s->started ? (uint64_t)s->ab & 1 : b & 1);
+    const uint64_t moved_a = a ^ was_a, moved_b = b ^ was_b;
+    const uint64_t edge = moved_a ^ moved_b;
+    const uint64_t up = edge & (was_a ^ b); /* where a goes, b stood; where b goes, a does */
+    const uint32_t edges = ones(edge);
+
+    s->cnt = exh_wrap_add(s->cnt, exh_from_u32(2 * ones(up) - edges));
+    s->edges += edges;
+    s->illegal += ones(moved_a & moved_b);
+    s->ab = (uint8_t)((a >> 63) << 1 | b >> 63);
+    s->started = 1;
+}
+
+void exh_quad_index_step(struct exh_quad_index *s, int32_t cnt, unsigned level)
+{
+    const uint8_t now = level & 1u;
+    if (s->started && now > s->level) {
+        s->cnt = cnt;
+        s->seen++;
+    }
+    s->level = now;
+    s->started = 1;
+}
+
+/* --- a counter --- */
 
 int exh_quad_setup(struct exh_quad_cfg *cfg, const struct exh_quad_par *par, struct exh_period T,
                    unsigned bits)
@@ -101,11 +156,16 @@ void exh_quad_ab_bytes(struct exh_bytes *c, struct exh_quad_ab *s)
     exh_bytes_i32(c, &s->cnt);
     exh_bytes_u32(c, &s->edges);
     exh_bytes_u32(c, &s->illegal);
-    exh_bytes_i32(c, &s->index_cnt);
-    exh_bytes_u32(c, &s->indices);
     exh_bytes_u8(c, &s->ab);
-    exh_bytes_u8(c, &s->index);
     exh_bytes_u8(c, &s->started);
     s->ab &= 3; /* an index into a table, from bytes */
-    s->index &= 1;
+}
+
+void exh_quad_index_bytes(struct exh_bytes *c, struct exh_quad_index *s)
+{
+    exh_bytes_i32(c, &s->cnt);
+    exh_bytes_u32(c, &s->seen);
+    exh_bytes_u8(c, &s->level);
+    exh_bytes_u8(c, &s->started);
+    s->level &= 1;
 }

@@ -6,7 +6,7 @@
 #include "exhand/exhand.h"
 
 #define CASES 1000000
-#define LEGAL 64u /* samples of one quadrature op */
+#define LEGAL 64u /* samples of one quadrature op, and of one word */
 
 static int32_t x[BENCH_OPS], y[BENCH_OPS];
 static int64_t wide_x[BENCH_OPS];
@@ -188,30 +188,89 @@ static void lines_setup(void)
     }
 }
 
-static void lines_op(uint32_t i)
+/* The same walk, a line a word. */
+static uint64_t word[BENCH_OPS * 8 / LEGAL][2];
+
+static void words_setup(void)
 {
-    const uint8_t *p = &ab[i * LEGAL % (BENCH_OPS * 8)];
-    for (uint32_t k = 0; k < LEGAL; k++) {
-        exh_quad_ab_step(&lines, EXH_QUAD_X4, (unsigned)p[k] >> 1, p[k] & 1u, 0);
+    lines_setup();
+    for (uint32_t i = 0; i < BENCH_OPS * 8; i++) {
+        uint64_t *w = word[i / LEGAL];
+        w[0] = (i % LEGAL ? w[0] : 0) | (uint64_t)(ab[i] >> 1) << i % LEGAL;
+        w[1] = (i % LEGAL ? w[1] : 0) | (uint64_t)(ab[i] & 1) << i % LEGAL;
     }
 }
 
-/* The legal walk exactly; then 254 double steps, all of them flagged and none counted. */
-static void lines_error(struct error *e)
+static const uint8_t *stretch(uint32_t i)
+{
+    return &ab[i * LEGAL % (BENCH_OPS * 8)];
+}
+
+static void lines_run_op(uint32_t i)
+{
+    exh_quad_ab_run(&lines, &exh_quad_x4, stretch(i), LEGAL);
+}
+
+static void lines_step_op(uint32_t i)
+{
+    const uint8_t *p = stretch(i);
+    for (uint32_t k = 0; k < LEGAL; k++) { exh_quad_ab_step(&lines, &exh_quad_x4, p[k]); }
+}
+
+static void lines_word_op(uint32_t i)
+{
+    const uint64_t *w = word[i % (BENCH_OPS * 8 / LEGAL)];
+    exh_quad_ab_word(&lines, w[0], w[1]);
+}
+
+/* The legal walk exactly; then double steps, all of them flagged and none counted. */
+static void lines_run_error(struct error *e)
+{
+    uint8_t both[254];
+    int32_t last;
+    lines_setup();
+    for (uint32_t i = 0; i < BENCH_OPS * 8; i += LEGAL) {
+        exh_quad_ab_run(&lines, &exh_quad_x4, &ab[i], LEGAL);
+        error_add(e, (long double)lines.cnt - truth[i + LEGAL - 1]);
+    }
+    error_add(e, lines.illegal);
+    last = lines.cnt;
+    for (unsigned i = 0; i < 254; i++) { both[i] = lines.ab ^ (i & 1 ? 0u : 3u); }
+    exh_quad_ab_run(&lines, &exh_quad_x4, both, 254);
+    error_add(e, (long double)lines.illegal - 254);
+    error_add(e, (long double)lines.cnt - last);
+}
+
+static void lines_step_error(struct error *e)
 {
     int32_t last;
     lines_setup();
     for (uint32_t i = 0; i < BENCH_OPS * 8; i++) {
-        exh_quad_ab_step(&lines, EXH_QUAD_X4, (unsigned)ab[i] >> 1, ab[i] & 1u, 0);
+        exh_quad_ab_step(&lines, &exh_quad_x4, ab[i]);
         error_add(e, (long double)lines.cnt - truth[i]);
     }
     error_add(e, lines.illegal);
     last = lines.cnt;
-    for (unsigned i = 0; i < 254; i++) {
-        const unsigned now = lines.ab ^ 3u;
-        exh_quad_ab_step(&lines, EXH_QUAD_X4, now >> 1, now & 1, 0);
-    }
+    for (unsigned i = 0; i < 254; i++) { exh_quad_ab_step(&lines, &exh_quad_x4, lines.ab ^ 3u); }
     error_add(e, (long double)lines.illegal - 254);
+    error_add(e, (long double)lines.cnt - last);
+}
+
+static void lines_word_error(struct error *e)
+{
+    const uint64_t both = UINT64_C(0x5555555555555555); /* from 00: 11 00 11 … */
+    int32_t last;
+    words_setup();
+    for (uint32_t i = 0; i < BENCH_OPS * 8 / LEGAL; i++) {
+        exh_quad_ab_word(&lines, word[i][0], word[i][1]);
+        error_add(e, (long double)lines.cnt - truth[i * LEGAL + LEGAL - 1]);
+    }
+    error_add(e, lines.illegal);
+    exh_quad_ab_word(&lines, 0, 0);
+    lines.illegal = 0;
+    last = lines.cnt;
+    for (unsigned i = 0; i < 4; i++) { exh_quad_ab_word(&lines, both, both); }
+    error_add(e, (long double)lines.illegal - 256);
     error_add(e, (long double)lines.cnt - last);
 }
 
@@ -332,6 +391,7 @@ static void table16_error(struct error *e)
 }
 
 #define SCALED(q) (1.0 / (double)(UINT64_C(1) << (q)))
+#define QUAD_PACKED_PEER "64 time samples per word, popcount, net and illegal, private probe, gcc 12.2 -O2"
 #define QUAD_PEER "table + illegal count, inlined in its loop, private harness, gcc 12.2 -O2"
 
 static const struct kernel kernels[] = {
@@ -345,8 +405,14 @@ static const struct kernel kernels[] = {
      "equal to the bit-by-bit definition; 0..64 random bytes", 0, NULL},
     {"record_frame", "wrong", 1, 0, 1, setup_numbers, frame_op, frame_error,
      "reads back as written; the drop scene's frame", 0, NULL},
-    {"quad_ab_step_x4", "count", 1, 0, LEGAL, lines_setup, lines_op, lines_error,
-     "exact; legal walk of 8192 samples, then 254 double steps, all flagged", 14.2, QUAD_PEER},
+    {"quad_ab_run_x4", "count", 1, 0, LEGAL, lines_setup, lines_run_op, lines_run_error,
+     "exact; 64 samples a run; legal walk of 8192, then 254 double steps, all flagged", 14.2,
+     QUAD_PEER},
+    {"quad_ab_step_x4", "count", 1, 0, LEGAL, lines_setup, lines_step_op, lines_step_error,
+     "exact; one sample a call; the same samples", 0, NULL},
+    {"quad_ab_word", "count", 1, 0, LEGAL, words_setup, lines_word_op, lines_word_error,
+     "exact; 64 samples a word; legal walk of 8192, then 256 double steps, all flagged", 2.0,
+     QUAD_PACKED_PEER},
     {"quad_extend", "count", 1, 0, 1, extend_setup, extend_op, extend_error,
      "exact; 24-bit counter, moves up to half its width", 0, NULL},
     {"quad_pos", "m", SCALED(EXH_Q_POS), 0.5, 1, setup_numbers, pos_op, pos_error,

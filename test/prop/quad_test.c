@@ -62,4 +62,95 @@ TEST(extension_is_congruent_and_shortest)
     }
 }
 
-TEST_MAIN("prop/quad", position_is_within_half_an_lsb, extension_is_congruent_and_shortest);
+/* The definition, line by line: where a sample is in the sequence 00 01 11 10, how far
+ * from the one before, and which edges the mode counts. */
+static void by_definition(struct exh_quad_ab *s, int x, unsigned ab)
+{
+    const unsigned a = ab >> 1 & 1, b = ab & 1, was_a = s->ab >> 1, was_b = s->ab & 1u;
+    const unsigned at = 2 * a + (a ^ b), was = 2 * was_a + (was_a ^ was_b);
+    const unsigned moved = (at - was) & 3;
+    if (s->started && moved == 2) { s->illegal++; }
+    if (s->started && (moved & 1)) {
+        const int counted = x == 4 || (a != was_a && (x == 2 || b));
+        s->edges++;
+        if (counted) { s->cnt = exh_wrap_add(s->cnt, moved == 1 ? 1 : -1); }
+    }
+    s->ab = (uint8_t)(ab & 3);
+    s->started = 1;
+}
+
+static int same(const struct exh_quad_ab *s, const struct exh_quad_ab *t)
+{
+    return s->cnt == t->cnt && s->edges == t->edges && s->illegal == t->illegal && s->ab == t->ab &&
+           s->started == t->started;
+}
+
+/* A walk that mostly goes one way and rests, with reversals, steps of both lines, and
+ * stretches of nothing but noise. Bits above the sample are garbage. */
+static void walk(uint8_t *ab, size_t n)
+{
+    static const uint8_t gray[4] = {0, 1, 3, 2};
+    const int noise = check_i32_in(0, 3) == 0;
+    unsigned at = (unsigned)check_u64();
+    unsigned way = 1;
+    for (size_t i = 0; i < n; i++) {
+        const uint64_t r = check_u64();
+        if ((r & 0x3F) == 0) { way = 0u - way; }
+        at += noise ? (unsigned)(r >> 8) : (r >> 8 & 0x3F) == 0 ? 2 : (r >> 16 & 3) ? way : 0;
+        ab[i] = (uint8_t)(gray[at & 3] | (r >> 24 & 0xFC));
+    }
+}
+
+/* Steps, runs cut anywhere, and words: all are the definition. */
+TEST(steps_runs_and_words_are_the_definition)
+{
+    static const struct {
+        const struct exh_quad_mode *mode;
+        int x;
+    } row[] = {{&exh_quad_x1, 1}, {&exh_quad_x2, 2}, {&exh_quad_x4, 4}};
+    while (check_case(1000)) {
+        uint8_t ab[1024];
+        const size_t k = (size_t)check_i32_in(0, 2);
+        const struct exh_quad_ab start = {check_i32(), (uint32_t)check_i32(), (uint32_t)check_i32(),
+                                          (uint8_t)check_i32_in(0, 3), (uint8_t)check_i32_in(0, 1)};
+        struct exh_quad_ab want = start, step = start, run = start;
+        size_t done = 0;
+        walk(ab, sizeof ab);
+        while (done < sizeof ab) {
+            const size_t left = sizeof ab - done;
+            const size_t n = (size_t)check_i32_in(0, left < 600 ? (int32_t)left : 600);
+            for (size_t i = done; i < done + n; i++) {
+                by_definition(&want, row[k].x, ab[i]);
+                exh_quad_ab_step(&step, row[k].mode, ab[i]);
+                CHECK(same(&step, &want), "x%d sample %zu: step", row[k].x, i);
+            }
+            exh_quad_ab_run(&run, row[k].mode, ab + done, n);
+            done += n;
+            CHECK(same(&run, &want), "x%d up to sample %zu: run", row[k].x, done);
+        }
+    }
+}
+
+TEST(words_are_the_definition)
+{
+    while (check_case(200)) {
+        uint8_t ab[4 * 64];
+        const struct exh_quad_ab start = {check_i32(), (uint32_t)check_i32(), (uint32_t)check_i32(),
+                                          (uint8_t)check_i32_in(0, 3), (uint8_t)check_i32_in(0, 1)};
+        struct exh_quad_ab want = start, word = start;
+        walk(ab, sizeof ab);
+        for (size_t w = 0; w < sizeof ab; w += 64) {
+            uint64_t a = 0, b = 0;
+            for (size_t i = 0; i < 64; i++) {
+                a |= (uint64_t)(ab[w + i] >> 1 & 1) << i;
+                b |= (uint64_t)(ab[w + i] & 1) << i;
+                by_definition(&want, 4, ab[w + i]);
+            }
+            exh_quad_ab_word(&word, a, b);
+            CHECK(same(&word, &want), "word %zu", w / 64);
+        }
+    }
+}
+
+TEST_MAIN("prop/quad", position_is_within_half_an_lsb, extension_is_congruent_and_shortest,
+          steps_runs_and_words_are_the_definition, words_are_the_definition);

@@ -12,55 +12,52 @@
 /* Place of A<<1|B in the upward sequence 00 01 11 10. */
 static const int place[4] = {0, 1, 3, 2};
 
+static const struct {
+    const struct exh_quad_mode *mode;
+    int x;
+} modes[] = {{&exh_quad_x1, 1}, {&exh_quad_x2, 2}, {&exh_quad_x4, 4}};
+
 /* What the header says, from the geometry: a step up or down the sequence counts
  * in x4 always, in x2 when A changes, in x1 when A changes at B = 1. */
-static int counts(int mode, unsigned from, unsigned to)
+static int counts(int x, unsigned from, unsigned to)
 {
     const int moved = (place[to] - place[from] + 4) % 4;
     const int sign = moved == 3 ? -1 : moved;
     const int a_edge = ((from ^ to) & 2) != 0;
     if (moved == 2) { return ILL; }
-    if (mode == EXH_QUAD_X4) { return sign; }
-    return a_edge && (mode == EXH_QUAD_X2 || (to & 1)) ? sign : 0;
-}
-
-static void feed(struct exh_quad_ab *s, enum exh_quad_mode mode, unsigned ab, unsigned index)
-{
-    exh_quad_ab_step(s, mode, ab >> 1, ab & 1, index);
+    if (x == 4) { return sign; }
+    return a_edge && (x == 2 || (to & 1)) ? sign : 0;
 }
 
 TEST(all_transitions_in_all_modes)
 {
-    static const enum exh_quad_mode mode[] = {EXH_QUAD_X1, EXH_QUAD_X2, EXH_QUAD_X4};
-    for (size_t i = 0; i < 3 * 16; i++) {
-        const enum exh_quad_mode m = mode[i / 16];
+    for (size_t i = 0; i < LEN(modes) * 16; i++) {
+        const struct exh_quad_mode *m = modes[i / 16].mode;
         const unsigned from = i / 4 % 4, to = i % 4;
-        const int want = counts((int)m, from, to);
+        const int want = counts(modes[i / 16].x, from, to);
         struct exh_quad_ab s = {0};
-        feed(&s, m, from, 0);
+        exh_quad_ab_step(&s, m, from);
         CHECK(s.cnt == 0 && s.edges == 0 && s.illegal == 0, "first sample %u counted", from);
-        feed(&s, m, to, 0);
-        CHECK(s.cnt == (want == ILL ? 0 : want), "mode %d %u to %u: %" PRId32, (int)m, from, to,
-              s.cnt);
-        CHECK(s.illegal == (want == ILL), "mode %d %u to %u", (int)m, from, to);
-        CHECK(s.edges == (want != ILL && from != to), "mode %d %u to %u", (int)m, from, to);
+        exh_quad_ab_step(&s, m, to | 0xFC);
+        CHECK(s.cnt == (want == ILL ? 0 : want), "x%d %u to %u: %" PRId32, modes[i / 16].x, from,
+              to, s.cnt);
+        CHECK(s.illegal == (want == ILL), "x%d %u to %u", modes[i / 16].x, from, to);
+        CHECK(s.edges == (want != ILL && from != to), "x%d %u to %u", modes[i / 16].x, from, to);
     }
 }
 
 TEST(a_turn_and_back)
 {
     static const unsigned up[4] = {0, 1, 3, 2};
-    static const struct {
-        enum exh_quad_mode mode;
-        int per_line;
-    } row[] = {{EXH_QUAD_X1, 1}, {EXH_QUAD_X2, 2}, {EXH_QUAD_X4, 4}};
-    for (size_t i = 0; i < LEN(row); i++) {
+    for (size_t i = 0; i < LEN(modes); i++) {
         struct exh_quad_ab s = {0};
-        for (int k = 0; k <= 4000; k++) { feed(&s, row[i].mode, up[k % 4], 0); }
-        CHECK_EQ_I64(s.cnt, 1000 * row[i].per_line);
+        for (int k = 0; k <= 4000; k++) { exh_quad_ab_step(&s, modes[i].mode, up[k % 4]); }
+        CHECK_EQ_I64(s.cnt, 1000 * modes[i].x);
         CHECK_EQ_I64(s.edges, 4000);
-        for (int k = 3999; k >= -4000; k--) { feed(&s, row[i].mode, up[(k + 4000) % 4], 0); }
-        CHECK_EQ_I64(s.cnt, -1000 * row[i].per_line);
+        for (int k = 3999; k >= -4000; k--) {
+            exh_quad_ab_step(&s, modes[i].mode, up[(k + 4000) % 4]);
+        }
+        CHECK_EQ_I64(s.cnt, -1000 * modes[i].x);
         CHECK_EQ_I64(s.illegal, 0);
     }
 }
@@ -68,15 +65,14 @@ TEST(a_turn_and_back)
 /* Chatter on one line moves no count away: x1 ignores B wholly. */
 TEST(chatter_does_not_drift)
 {
-    static const enum exh_quad_mode mode[] = {EXH_QUAD_X1, EXH_QUAD_X2, EXH_QUAD_X4};
-    for (size_t i = 0; i < 3; i++) {
+    for (size_t i = 0; i < LEN(modes); i++) {
         for (unsigned line = 1; line <= 2; line++) {
             for (unsigned from = 0; from < 4; from++) {
                 struct exh_quad_ab s = {0};
                 for (unsigned k = 0; k < 101; k++) {
-                    feed(&s, mode[i], k & 1 ? from ^ line : from, 0);
+                    exh_quad_ab_step(&s, modes[i].mode, k & 1 ? from ^ line : from);
                 }
-                CHECK(s.cnt == 0, "mode %zu line %u: %" PRId32, i, line, s.cnt);
+                CHECK(s.cnt == 0, "x%d line %u: %" PRId32, modes[i].x, line, s.cnt);
             }
         }
     }
@@ -84,31 +80,82 @@ TEST(chatter_does_not_drift)
 
 TEST(count_wraps_without_a_jump)
 {
-    struct exh_quad_ab s = {0};
-    feed(&s, EXH_QUAD_X4, 0, 0);
-    s.cnt = INT32_MAX;
-    feed(&s, EXH_QUAD_X4, 1, 0);
-    CHECK_EQ_I64(s.cnt, INT32_MIN);
-    feed(&s, EXH_QUAD_X4, 0, 0);
+    static const uint8_t there[1] = {1}, back[1] = {0};
+    struct exh_quad_ab s = {INT32_MAX, UINT32_MAX, UINT32_MAX, 0, 1};
+    exh_quad_ab_step(&s, &exh_quad_x4, 1);
+    CHECK(s.cnt == INT32_MIN && s.edges == 0, "step up");
+    exh_quad_ab_step(&s, &exh_quad_x4, 0);
     CHECK_EQ_I64(s.cnt, INT32_MAX);
+    exh_quad_ab_run(&s, &exh_quad_x4, there, 1);
+    CHECK_EQ_I64(s.cnt, INT32_MIN);
+    exh_quad_ab_run(&s, &exh_quad_x4, back, 1);
+    CHECK_EQ_I64(s.cnt, INT32_MAX);
+    exh_quad_ab_word(&s, 0, UINT64_MAX);
+    CHECK_EQ_I64(s.cnt, INT32_MIN);
+    exh_quad_ab_word(&s, UINT64_MAX, 0);
+    CHECK(s.cnt == INT32_MIN && s.illegal == 0, "illegal");
 }
 
-TEST(index_is_latched_after_the_step)
+/* A run is as long as it likes: all its steps up, down, or illegal. */
+TEST(runs_of_one_kind)
+{
+    static const uint8_t up[4] = {0, 1, 3, 2}, down[4] = {0, 2, 3, 1}, both[4] = {1, 2, 1, 2};
+    static const size_t len[] = {1, 2, 254, 255, 256, 257, 510, 511, 512, 5000};
+    static uint8_t ab[5000];
+    for (size_t i = 0; i < LEN(len) * 3; i++) {
+        const uint8_t *from = i % 3 == 0 ? up : i % 3 == 1 ? down : both;
+        const int64_t steps = (int64_t)len[i / 3] - 1;
+        struct exh_quad_ab s = {0};
+        for (size_t k = 0; k < len[i / 3]; k++) { ab[k] = (uint8_t)(from[k % 4] | k << 2); }
+        exh_quad_ab_run(&s, &exh_quad_x4, ab, len[i / 3]);
+        CHECK_EQ_I64(s.cnt, i % 3 == 0 ? steps : i % 3 == 1 ? -steps : 0);
+        CHECK_EQ_I64(s.edges, i % 3 == 2 ? 0 : steps);
+        CHECK_EQ_I64(s.illegal, i % 3 == 2 ? steps : 0);
+    }
+}
+
+TEST(a_run_of_nothing_starts_nothing)
+{
+    static const uint8_t two[1] = {2};
+    struct exh_quad_ab s = {0};
+    exh_quad_ab_run(&s, &exh_quad_x4, two, 0);
+    CHECK(!s.started, "started");
+    exh_quad_ab_run(&s, &exh_quad_x4, two, 1);
+    CHECK(s.started && s.ab == 2 && s.edges == 0 && s.illegal == 0, "the first sample counted");
+}
+
+/* Both lines at once in the first sample of a word, against the last of the one before. */
+TEST(words_hang_together)
 {
     struct exh_quad_ab s = {0};
-    feed(&s, EXH_QUAD_X4, 0, 1);
-    CHECK_EQ_I64(s.indices, 0); /* a level at the first sample is no edge */
-    feed(&s, EXH_QUAD_X4, 1, 0);
-    feed(&s, EXH_QUAD_X4, 3, 1);
-    CHECK_EQ_I64(s.indices, 1);
-    CHECK_EQ_I64(s.index_cnt, 2);
-    feed(&s, EXH_QUAD_X4, 2, 1);
-    CHECK_EQ_I64(s.index_cnt, 2); /* still high: no new edge */
-    feed(&s, EXH_QUAD_X4, 3, 0);
-    feed(&s, EXH_QUAD_X4, 0, 1); /* illegal step and an index at once */
-    CHECK_EQ_I64(s.illegal, 1);
-    CHECK_EQ_I64(s.indices, 2);
-    CHECK_EQ_I64(s.index_cnt, 2);
+    exh_quad_ab_word(&s, UINT64_MAX, 0); /* 10 all through: the first sample counts nothing */
+    CHECK(s.cnt == 0 && s.edges == 0 && s.illegal == 0 && s.ab == 2, "a steady word");
+    exh_quad_ab_word(&s, UINT64_MAX, UINT64_MAX - 1); /* 10, then 11: down */
+    CHECK(s.cnt == -1 && s.edges == 1 && s.ab == 3, "%" PRId32, s.cnt);
+    exh_quad_ab_word(&s, 0, 0);
+    CHECK(s.cnt == -1 && s.illegal == 1 && s.edges == 1, "%" PRIu32 " illegal", s.illegal);
+    /* 64 edges up: 01 11 10 00 */
+    exh_quad_ab_word(&s, UINT64_C(0x6666666666666666), UINT64_C(0x3333333333333333));
+    CHECK(s.cnt == 63 && s.edges == 65, "%" PRId32, s.cnt);
+    /* and down: 10 11 01 00 */
+    exh_quad_ab_word(&s, UINT64_C(0x3333333333333333), UINT64_C(0x6666666666666666));
+    CHECK(s.cnt == -1 && s.edges == 129 && s.illegal == 1, "%" PRId32, s.cnt);
+}
+
+TEST(index_latches_the_count)
+{
+    struct exh_quad_index s = {0};
+    exh_quad_index_step(&s, 7, 1);
+    CHECK_EQ_I64(s.seen, 0); /* a level at the first sample is no edge */
+    exh_quad_index_step(&s, 8, 0);
+    exh_quad_index_step(&s, 9, 3);
+    CHECK(s.seen == 1 && s.cnt == 9, "rising: %" PRId32, s.cnt);
+    exh_quad_index_step(&s, 10, 1);
+    CHECK(s.seen == 1 && s.cnt == 9, "still high: no new edge");
+    exh_quad_index_step(&s, 11, 2); /* bit 0 is the line */
+    CHECK(s.seen == 1 && s.cnt == 9, "falling");
+    exh_quad_index_step(&s, -12, 1);
+    CHECK(s.seen == 2 && s.cnt == -12, "again: %" PRId32, s.cnt);
 }
 
 /* --- extension --- */
@@ -225,19 +272,40 @@ TEST(state_round_trip)
 
 TEST(lines_round_trip)
 {
-    struct exh_quad_ab s = {-5, 6, 7, -8, 9, 3, 1, 1}, back = {0};
+    struct exh_quad_ab s = {-5, 6, 7, 3, 1}, back = {0};
     uint8_t buf[32];
     struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
     exh_quad_ab_bytes(&c, &s);
-    CHECK_EQ_I64(c.at, 23);
+    CHECK_EQ_I64(c.at, 14);
     c = exh_bytes_reader(buf, c.at);
     exh_quad_ab_bytes(&c, &back);
-    CHECK(exh_bytes_ok(&c) && memcmp(&back, &s, sizeof s) == 0, "state differs");
-    buf[20] = 0xFF; /* damaged: the lines are an index into a table */
+    CHECK(exh_bytes_ok(&c) && back.cnt == -5 && back.edges == 6 && back.illegal == 7 &&
+              back.ab == 3 && back.started == 1,
+          "state differs");
+    memset(buf, 0xFF, sizeof buf); /* damaged: the lines are an index into a table */
     c = exh_bytes_reader(buf, sizeof buf);
     exh_quad_ab_bytes(&c, &back);
-    exh_quad_ab_step(&back, EXH_QUAD_X4, 0, 1, 0);
+    CHECK_EQ_I64(back.ab, 3);
+    exh_quad_ab_step(&back, &exh_quad_x4, 1);
     CHECK_EQ_I64(back.ab, 1);
+}
+
+TEST(index_round_trip)
+{
+    struct exh_quad_index s = {-8, 9, 1, 1}, back = {0};
+    uint8_t buf[16];
+    struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
+    exh_quad_index_bytes(&c, &s);
+    CHECK_EQ_I64(c.at, 10);
+    c = exh_bytes_reader(buf, c.at);
+    exh_quad_index_bytes(&c, &back);
+    CHECK(exh_bytes_ok(&c) && back.cnt == -8 && back.seen == 9 && back.level == 1 &&
+              back.started == 1,
+          "state differs");
+    memset(buf, 0xFE, sizeof buf);
+    c = exh_bytes_reader(buf, sizeof buf);
+    exh_quad_index_bytes(&c, &back);
+    CHECK_EQ_I64(back.level, 0);
 }
 
 /* --- set-up: what no hand can do --- */
@@ -304,6 +372,6 @@ TEST(setup_rejections)
 }
 
 TEST_MAIN("unit/quad", all_transitions_in_all_modes, a_turn_and_back, chatter_does_not_drift,
-          count_wraps_without_a_jump, index_is_latched_after_the_step, first_value_is_count_zero,
-          wraps_at_both_ends, bits_above_the_counter_are_ignored, long_walks, position_by_hand,
-          state_round_trip, lines_round_trip, a_jump_is_told_at_every_rate, setup_rejections);
+          count_wraps_without_a_jump, runs_of_one_kind, a_run_of_nothing_starts_nothing,
+          words_hang_together, index_latches_the_count, first_value_is_count_zero, wraps_at_both_ends, bits_above_the_counter_are_ignored, long_walks, position_by_hand, state_round_trip,
+          lines_round_trip, index_round_trip, a_jump_is_told_at_every_rate, setup_rejections);

@@ -6,6 +6,7 @@
 #include "exhand/signal.h"
 #include "exhand/units.h"
 
+#include <stddef.h>
 #include <stdint.h>
 
 #ifdef __cplusplus
@@ -20,26 +21,50 @@ struct exh_quad_par {
 #define EXH_QUAD_ROWS 2
 extern const struct exh_signal exh_quad_rows[EXH_QUAD_ROWS];
 
-/* Software decoding of the two lines, for ports without a counter. */
-enum exh_quad_mode { EXH_QUAD_X1, EXH_QUAD_X2, EXH_QUAD_X4 };
-
+/* Software decoding of the two lines, for ports without a counter. A sample is
+ * A<<1 | B in the low two bits, what is above them is ignored; 00 01 11 10 counts
+ * up. x1 counts only the A edges at B = 1, so that noise on B moves nothing, x2 all
+ * A edges, x4 all edges. A step in which both lines changed is illegal: it counts 0
+ * and is counted. The first sample sets the state and counts nothing, a repeated one
+ * counts nothing. Sample faster than the shortest distance of two edges. */
 struct exh_quad_ab {
-    int32_t cnt;       /* counts since the first sample; wraps modulo 2^32      */
-    uint32_t edges;    /* legal transitions seen                               */
-    uint32_t illegal;  /* both lines changed at once: direction lost           */
-    int32_t index_cnt; /* cnt at the last rising edge of the index             */
-    uint32_t indices;  /* rising edges of the index seen                       */
-    uint8_t ab;        /* last A<<1 | B                                        */
-    uint8_t index;     /* last index level                                     */
-    uint8_t started;   /* the first sample sets the state and counts nothing   */
+    int32_t cnt;      /* counts since the first sample; wraps modulo 2^32        */
+    uint32_t edges;   /* legal transitions seen, of every mode alike; wraps      */
+    uint32_t illegal; /* both lines changed at once: direction lost; wraps       */
+    uint8_t ab;       /* the last sample                                         */
+    uint8_t started;  /* 1 after the first                                       */
 };
 
-/* One sample: a, b, index are 0 or 1; 00 01 11 10 counts up. x1 counts only the
- * A edges at B = 1, x2 all A edges, x4 all. An illegal step (both lines at once)
- * counts 0 and is counted. Feed it faster than the shortest edge distance.
- * Index is latched after the step of the same sample. */
-void exh_quad_ab_step(struct exh_quad_ab *s, enum exh_quad_mode mode, unsigned a, unsigned b,
-                      unsigned index);
+/* What each transition adds, index previous<<2 | now: count << 16 (two's
+ * complement), edge << 8, illegal. Only the modes that are used are linked. */
+struct exh_quad_mode {
+    uint32_t adds[16];
+};
+extern const struct exh_quad_mode exh_quad_x1, exh_quad_x2, exh_quad_x4;
+
+/* One sample. */
+void exh_quad_ab_step(struct exh_quad_ab *s, const struct exh_quad_mode *mode, unsigned ab);
+
+/* n samples, ab[0] the first: as n steps, at a third of their cost. */
+void exh_quad_ab_run(struct exh_quad_ab *s, const struct exh_quad_mode *mode, const uint8_t *ab,
+                     size_t n);
+
+/* 64 samples in x4, a line a word, bit 0 the first, as a shift register collects
+ * them: as 64 steps, at a sixth of the cost of a run. To end a stream within a word,
+ * repeat its last sample. */
+void exh_quad_ab_word(struct exh_quad_ab *s, uint64_t a, uint64_t b);
+
+/* Index mark: the count at its last rising edge. Only for whom it has one. */
+struct exh_quad_index {
+    int32_t cnt;     /* at the last rising edge                                 */
+    uint32_t seen;   /* rising edges; wraps                                     */
+    uint8_t level;   /* the last                                                */
+    uint8_t started; /* 1 after the first: a level that is high there is no edge */
+};
+
+/* One sample, after the step of the same sample: cnt is its count, bit 0 of level
+ * the line. */
+void exh_quad_index_step(struct exh_quad_index *s, int32_t cnt, unsigned level);
 
 /* Extension of a hardware counter of 16 to 32 bits across its wrap. */
 struct exh_quad_cfg {
@@ -74,6 +99,7 @@ int32_t exh_quad_pos_m_q30(const struct exh_quad_par *par, int32_t cnt);
 
 /* State through a cursor (bytes.h). */
 void exh_quad_ab_bytes(struct exh_bytes *c, struct exh_quad_ab *s);
+void exh_quad_index_bytes(struct exh_bytes *c, struct exh_quad_index *s);
 void exh_quad_bytes(struct exh_bytes *c, struct exh_quad *s);
 
 #ifdef __cplusplus
