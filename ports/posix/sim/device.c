@@ -53,27 +53,38 @@ typedef char device_rows_match[sizeof(struct sim_device) / sizeof(double) ==
                                    ? 1
                                    : -1];
 
+void sim_rows_default(void *values, const struct sim_device_row *rows, int n)
+{
+    unsigned char *to = values;
+    for (int i = 0; i < n; i++) {
+        memcpy(to + (size_t)i * sizeof(double), &rows[i].value, sizeof(double));
+    }
+}
+
+int sim_rows_set(void *values, const struct sim_device_row *rows, int n, const char *name,
+                 double value, const struct sim_device_row **row)
+{
+    unsigned char *to = values;
+    *row = NULL;
+    for (int i = 0; i < n; i++) {
+        if (strcmp(rows[i].name, name) != 0) { continue; }
+        *row = &rows[i];
+        if (!(value >= (*row)->min && value <= (*row)->max)) { return -1; }
+        memcpy(to + (size_t)i * sizeof(double), &value, sizeof value);
+        return 0;
+    }
+    return -1;
+}
+
 struct sim_device sim_device_default(void)
 {
     struct sim_device d;
-    unsigned char *to = (unsigned char *)&d;
-    for (int i = 0; i < sim_device_rows; i++) {
-        memcpy(to + (size_t)i * sizeof(double), &sim_device_row[i].value, sizeof(double));
-    }
+    sim_rows_default(&d, sim_device_row, sim_device_rows);
     return d;
 }
 
 int sim_device_set(struct sim_device *d, const char *name, double value,
                    const struct sim_device_row **row)
 {
-    unsigned char *to = (unsigned char *)d;
-    *row = NULL;
-    for (int i = 0; i < sim_device_rows; i++) {
-        if (strcmp(sim_device_row[i].name, name) != 0) { continue; }
-        *row = &sim_device_row[i];
-        if (!(value >= (*row)->min && value <= (*row)->max)) { return -1; }
-        memcpy(to + (size_t)i * sizeof(double), &value, sizeof value);
-        return 0;
-    }
-    return -1;
+    return sim_rows_set(d, sim_device_row, sim_device_rows, name, value, row);
 }

@@ -1,0 +1,167 @@
+/* Every parameter of the simulated glove and its card, with unit, range and how sure we are.
+ *
+ * paper   read in the ICRA 2013 paper
+ * card    read in a data sheet or driver of the card (Diamond DMM-32X-AT)
+ * file    read in a published calibration file of a CyberGlove
+ * ours    a choice of the simulation
+ */
+#include "glove.h"
+
+#include "plant.h"
+
+#include <stddef.h>
+#include <string.h>
+
+#define TWO_PI 6.283185307179586
+#define DEG    (TWO_PI / 360)
+#define CODES  32768.0 /* either side of 0 V */
+
+const struct sim_device_row sim_glove_row[] = {
+    {"excite", "v", 5, 0.1, 20, "ours", "across each sensor and its series resistors"},
+    {"dead", "", 0.1, 0, 0.4, "ours", "share of it at either end that only a broken wire gives"},
+    {"gain", "", 4.5, 0.1, 1000, "ours", "of the amplifier: the live part is -9 .. 9 V"},
+    {"offset", "v", -11.25, -20, 20, "ours", "behind the amplifier"},
+    {"rail", "v", 12, 1, 20, "ours", "where the amplifier ends, either side of 0"},
+    {"couple", "", 0.08, -1, 1, "ours", "of its neighbours' mean flexion in an abduction sensor"},
+
+    {"cutoff", "hz", 159, 1, 1000000, "ours", "anti-alias low-pass, one pole: 10 kohm and 100 nF"},
+    {"noise", "v", 0.0061, 0, 1, "paper", "peak to peak: normal, clipped at 3 standard deviations"},
+
+    {"interval", "s", 4e-6, 1e-6, 1e-3, "card",
+     "from channel to channel; it has 4, 5, 10, 15, 20 us"},
+    {"settle", "s", 0.36e-6, 0, 1e-3, "ours",
+     "time constant of the multiplexer: a step of full scale settles to one code in 4 us"},
+    {"span", "v", 10, 1, 10, "paper", "the card's range, either side of 0, in 16 bits"},
+};
+const int sim_glove_rows = (int)(sizeof sim_glove_row / sizeof sim_glove_row[0]);
+
+typedef char glove_rows_match[sizeof(struct sim_glove_par) / sizeof(double) ==
+                                      sizeof sim_glove_row / sizeof sim_glove_row[0]
+                                  ? 1
+                                  : -1];
+
+/* In the glove's order. End points: file (one user's, 8 bits), angles nominal. An abduction
+ * sensor is bent by the two fingers it joins, the thumb's by its rotation (ours). */
+const struct sim_glove_sensor sim_glove_sensor[SIM_GLOVE_SENSORS] = {
+    {"thumb_rotate", -60, 0.335, 60, 0.697, {-1, -1}},
+    {"thumb_mpj", -30, 0.311, 30, 0.736, {-1, -1}},
+    {"thumb_ij", 0, 0.461, 90, 0.909, {-1, -1}},
+    {"thumb_ab", 0, 0.791, 50, 0.350, {0, 0}},
+    {"index_mpj", 0, 0.429, 90, 0.654, {-1, -1}},
+    {"index_pij", 0, 0.181, 90, 0.654, {-1, -1}},
+    {"index_dij", 0, 0.185, 90, 0.469, {-1, -1}},
+    {"middle_mpj", 0, 0.417, 90, 0.630, {-1, -1}},
+    {"middle_pij", 0, 0.268, 90, 0.591, {-1, -1}},
+    {"middle_dij", 0, 0.000, 90, 0.323, {-1, -1}},
+    {"middle_index_ab", 0, 0.468, 50, 0.390, {4, 7}},
+    {"ring_mpj", 0, 0.323, 90, 0.571, {-1, -1}},
+    {"ring_pij", 0, 0.240, 90, 0.618, {-1, -1}},
+    {"ring_dij", 0, 0.177, 90, 0.390, {-1, -1}},
+    {"ring_middle_ab", 0, 0.610, 50, 0.283, {7, 11}},
+    {"pinkie_mpj", 0, 0.354, 90, 0.591, {-1, -1}},
+    {"pinkie_pij", 0, 0.154, 90, 0.602, {-1, -1}},
+    {"pinkie_dij", 0, 0.319, 90, 0.579, {-1, -1}},
+    {"pinkie_ring_ab", 0, 0.516, 50, 0.209, {11, 15}},
+    {"palm_arch", 0, 0.357, 40, 0.650, {-1, -1}},
+    {"wrist_pitch", -30, 0.154, 40, 0.622, {-1, -1}},
+    {"wrist_yaw", -30, 0.925, 10, 0.236, {-1, -1}},
+};
+
+struct sim_glove_par sim_glove_default(void)
+{
+    struct sim_glove_par p;
+    sim_rows_default(&p, sim_glove_row, sim_glove_rows);
+    return p;
+}
+
+int sim_glove_set(struct sim_glove_par *p, const char *name, double value,
+                  const struct sim_device_row **row)
+{
+    return sim_rows_set(p, sim_glove_row, sim_glove_rows, name, value, row);
+}
+
+void sim_glove_start(struct sim_glove *g, const struct sim_glove_par *p, uint64_t seed,
+                     const double angle_rad[SIM_GLOVE_SENSORS])
+{
+    memset(g, 0, sizeof *g);
+    g->par = *p;
+    g->rng.state = seed;
+    for (unsigned i = 0; i < SIM_GLOVE_SENSORS; i++) {
+        sim_lag_start(&g->angle_rad[i], 1 / (TWO_PI * p->cutoff_Hz), angle_rad[i]);
+    }
+    g->held_V = sim_glove_volt(g, 0, 0);
+    g->held_s = -1;
+}
+
+void sim_glove_move(struct sim_glove *g, unsigned i, const struct sim_curve *x)
+{
+    sim_lag_follow(&g->angle_rad[i], x);
+}
+
+static double limit(double v, double most)
+{
+    return v > most ? most : v < -most ? -most : v;
+}
+
+/* Of a share of the excitation. */
+static double amplified(const struct sim_glove_par *p, double share)
+{
+    return limit(p->gain * p->excite_V * share + p->offset_V, p->rail_V);
+}
+
+double sim_glove_volt(const struct sim_glove *g, unsigned i, double t_s)
+{
+    const struct sim_glove_par *p = &g->par;
+    const struct sim_glove_sensor *n = &sim_glove_sensor[i];
+    double rad = sim_lag_at(&g->angle_rad[i], t_s);
+    double share;
+    if (g->fault[i] == SIM_GLOVE_RAIL_HIGH) { return p->rail_V; }
+    if (g->fault[i] == SIM_GLOVE_RAIL_LOW) { return -p->rail_V; }
+    if (g->fault[i] == SIM_GLOVE_OPEN) { return amplified(p, 1); }
+    if (g->fault[i] == SIM_GLOVE_SHORT) { return amplified(p, 0); }
+    for (int k = 0; k < 2 && n->bend[k] >= 0 && p->couple != 0; k++) {
+        rad += p->couple / 2 * sim_lag_at(&g->angle_rad[n->bend[k]], t_s);
+    }
+    share = n->lo + (rad - n->lo_deg * DEG) * ((n->hi - n->lo) / ((n->hi_deg - n->lo_deg) * DEG));
+    return amplified(p, p->dead + (1 - 2 * p->dead) * share);
+}
+
+double sim_glove_held_s(const struct sim_glove_par *p, unsigned i, double tick_s)
+{
+    return tick_s - (SIM_GLOVE_SENSORS - i) * p->interval_s;
+}
+
+/* Twelve uniforms make a normal of deviation 1 within +-6; what is known by its peak-to-peak
+ * value is clipped there. 3 deviations: a thousand samples have reached it about once on
+ * either side, so that a second at any usual rate measures all of it. */
+static double noise(struct sim_random *r, double pp)
+{
+    int32_t sum = 0;
+    for (int k = 0; k < 3; k++) {
+        const uint64_t u = sim_random_u64(r);
+        sum += (int32_t)((u & 0xFFFF) + (u >> 16 & 0xFFFF) + (u >> 32 & 0xFFFF) + (u >> 48));
+    }
+    return limit((sum - 6 * 65535) * (1.0 / 65536) * (pp / 6), pp / 2);
+}
+
+/* The multiplexer goes on as soon as a channel is held: what is left of the one before has
+ * the whole slot to decay. */
+int16_t sim_glove_convert(struct sim_glove *g, unsigned i, double t_s)
+{
+    const struct sim_glove_par *p = &g->par;
+    double v = sim_glove_volt(g, i, t_s);
+    if (p->settle_s > 0 && t_s > g->held_s) {
+        v += (g->held_V - v) * sim_exp_neg((t_s - g->held_s) / p->settle_s);
+    }
+    g->held_V = v;
+    g->held_s = t_s;
+    if (p->noise_V > 0) { v += noise(&g->rng, p->noise_V); }
+    if (g->fault[i] != SIM_GLOVE_STUCK) { g->code[i] = sim_glove_code(p, v); }
+    return g->code[i];
+}
+
+int16_t sim_glove_code(const struct sim_glove_par *p, double v_V)
+{
+    const double v = v_V * (CODES / p->span_V) + (CODES + 0.5); /* the cast cuts it off */
+    return (int16_t)(v < 0 ? -32768 : v >= 65536 ? 32767 : (int32_t)v - 32768);
+}

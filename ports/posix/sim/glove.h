@@ -1,0 +1,86 @@
+/* The glove's analog chain, from 22 joint angles to 22 A/D codes:
+ *
+ *   angle, low-pass, sensor (its own two end points), amplifier, multiplexer, noise, A/D
+ *
+ * The low-pass stands first: sensor and amplifier are straight lines, up to the amplifier's
+ * rails, so the order of the three makes no difference, and behind angles known in closed
+ * form its output is known in closed form (lag.h).
+ *
+ * The card converts one channel after the other, the last one `interval` before the tick
+ * at which the frame is read: channel i is held at tick - (22 - i) interval.
+ */
+#ifndef SIM_GLOVE_H
+#define SIM_GLOVE_H
+
+#include "device.h"
+#include "lag.h"
+#include "random.h"
+
+#include <stdint.h>
+
+#define SIM_GLOVE_SENSORS 22
+
+/* Doubles only, in the order of the table in glove.c. */
+struct sim_glove_par {
+    double excite_V, dead, gain, offset_V, rail_V, couple;
+    double cutoff_Hz, noise_V;
+    double interval_s, settle_s, span_V;
+};
+
+extern const struct sim_device_row sim_glove_row[];
+extern const int sim_glove_rows;
+
+/* The committed values. */
+struct sim_glove_par sim_glove_default(void);
+
+/* Sets one by name, as sim_device_set() does. */
+int sim_glove_set(struct sim_glove_par *p, const char *name, double value,
+                  const struct sim_device_row **row);
+
+/* One sensor: its output, as a share of the live part of the excitation, is a straight line
+ * through these. */
+struct sim_glove_sensor {
+    const char *name;
+    double lo_deg, lo, hi_deg, hi;
+    int bend[2]; /* sensors whose mean this one sees `couple` of, -1: none      */
+};
+extern const struct sim_glove_sensor sim_glove_sensor[SIM_GLOVE_SENSORS];
+
+enum sim_glove_fault {
+    SIM_GLOVE_WELL,
+    SIM_GLOVE_OPEN,      /* a broken wire: all of the excitation at the amplifier */
+    SIM_GLOVE_SHORT,     /* none of it                                          */
+    SIM_GLOVE_STUCK,     /* the code stays what it last was                      */
+    SIM_GLOVE_RAIL_HIGH, /* the amplifier at a rail                             */
+    SIM_GLOVE_RAIL_LOW
+};
+
+struct sim_glove {
+    struct sim_glove_par par;
+    struct sim_random rng;
+    struct sim_lag angle_rad[SIM_GLOVE_SENSORS];
+    unsigned char fault[SIM_GLOVE_SENSORS]; /* enum sim_glove_fault              */
+    int16_t code[SIM_GLOVE_SENSORS];        /* the last                         */
+    double held_V, held_s;                  /* on the multiplexer, and since when */
+};
+
+/* Settled at these angles; the multiplexer at rest on channel 0. */
+void sim_glove_start(struct sim_glove *g, const struct sim_glove_par *p, uint64_t seed,
+                     const double angle_rad[SIM_GLOVE_SENSORS]);
+
+/* From x->start_s on, the joint of sensor i moves so. */
+void sim_glove_move(struct sim_glove *g, unsigned i, const struct sim_curve *x);
+
+/* Behind the amplifier, without noise, at t_s. */
+double sim_glove_volt(const struct sim_glove *g, unsigned i, double t_s);
+
+/* When channel i of the frame of this tick is held. */
+double sim_glove_held_s(const struct sim_glove_par *p, unsigned i, double tick_s);
+
+/* Converts channel i, held at t_s; in the order of time. */
+int16_t sim_glove_convert(struct sim_glove *g, unsigned i, double t_s);
+
+/* The code of a voltage: nearest, limited to 16 bits. */
+int16_t sim_glove_code(const struct sim_glove_par *p, double v_V);
+
+#endif

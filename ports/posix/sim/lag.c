@@ -1,0 +1,102 @@
+#include "lag.h"
+
+#include "plant.h"
+
+/* pi/2 in two parts: the first has 33 bits, so that a multiple of it is exact. */
+#define HALF_PI_HI 1.57079632673412561417
+#define HALF_PI_LO 6.07710050650619224932e-11
+#define TWO_BY_PI  0.63661977236758134308
+
+/* Of an angle within +-pi/4: Taylor, the first term left out is below 1e-17. */
+static double short_sin(double x)
+{
+    const double z = x * x;
+    double sum = 0;
+    for (int n = 17; n >= 3; n -= 2) { sum = (1 + sum) * -z / (n * (n - 1)); }
+    return x + x * sum;
+}
+
+static double short_cos(double x)
+{
+    const double z = x * x;
+    double sum = 0;
+    for (int n = 18; n >= 2; n -= 2) { sum = (1 + sum) * -z / (n * (n - 1)); }
+    return 1 + sum;
+}
+
+/* sin(x + quarter pi/2). */
+static double turned_sin(double x, long quarter)
+{
+    const double turns = x * TWO_BY_PI;
+    const long n = (long)(turns < 0 ? turns - 0.5 : turns + 0.5);
+    const double rest = (x - (double)n * HALF_PI_HI) - (double)n * HALF_PI_LO;
+    const long q = (n + quarter) & 3;
+    const double v = q & 1 ? short_cos(rest) : short_sin(rest);
+    return q & 2 ? -v : v;
+}
+
+double sim_sin(double x)
+{
+    return turned_sin(x, 0);
+}
+
+double sim_cos(double x)
+{
+    return turned_sin(x, 1);
+}
+
+static double poly_at(const double c[SIM_CURVE_TERMS], double s)
+{
+    double v = 0;
+    for (int k = SIM_CURVE_TERMS - 1; k >= 0; k--) { v = v * s + c[k]; }
+    return v;
+}
+
+double sim_curve_at(const struct sim_curve *x, double t_s)
+{
+    const double s = t_s - x->start_s;
+    double v = poly_at(x->c, s);
+    if (x->amp != 0) { v += x->amp * sim_sin(x->omega_radps * s + x->phase_rad); }
+    return v;
+}
+
+/* What the output runs after: the particular solution, which for a polynomial is
+ * x - tau x' + tau^2 x'' - …, and for the sine the sine, smaller and later. */
+static double target(const struct sim_lag *l, double s)
+{
+    double v = poly_at(l->p, s);
+    if (l->x.amp != 0) {
+        const double wt = l->x.omega_radps * l->tau_s;
+        const double a = l->x.omega_radps * s + l->x.phase_rad;
+        v += l->x.amp / (1 + wt * wt) * (sim_sin(a) - wt * sim_cos(a));
+    }
+    return v;
+}
+
+void sim_lag_start(struct sim_lag *l, double tau_s, double x)
+{
+    const struct sim_lag none = {0};
+    *l = none;
+    l->tau_s = tau_s;
+    l->x.c[0] = l->p[0] = x;
+}
+
+void sim_lag_follow(struct sim_lag *l, const struct sim_curve *x)
+{
+    const double y = sim_lag_at(l, x->start_s);
+    double above = 0;
+    l->x = *x;
+    for (int k = SIM_CURVE_TERMS - 1; k >= 0; k--) {
+        above = x->c[k] - l->tau_s * (k + 1) * above;
+        l->p[k] = above;
+    }
+    l->off = l->tau_s > 0 ? y - target(l, 0) : 0;
+}
+
+double sim_lag_at(const struct sim_lag *l, double t_s)
+{
+    const double s = t_s - l->x.start_s;
+    double y = target(l, s);
+    if (l->off != 0) { y += l->off * sim_exp_neg(s / l->tau_s); }
+    return y;
+}
