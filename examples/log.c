@@ -98,11 +98,19 @@ void exh_log_start(const struct exh_scene *sc, struct exh_scene_board board)
     keyframe(0);
 }
 
+static void glove_bytes(struct exh_bytes *c, struct exh_scene_in *in)
+{
+    exh_bytes_u8(c, &in->glove_new);
+    exh_bytes_u16(c, &in->glove.age_ticks);
+    for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) { exh_bytes_i16(c, &in->glove.raw[i]); }
+}
+
 void exh_log_frame_bytes(struct exh_bytes *c, const struct exh_scene *sc, struct exh_scene_in *in,
                          struct exh_drive_out *out, int32_t *signal)
 {
     const uint32_t n = signals(sc);
     exh_drive_in_bytes(c, &in->drive, sc->fingers);
+    if (sc->read_glove) { glove_bytes(c, in); }
     exh_drive_out_bytes(c, out, sc->fingers);
     for (uint32_t i = 0; i < n; i++) { exh_bytes_i32(c, &signal[i]); }
 }

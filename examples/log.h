@@ -22,7 +22,7 @@ uint32_t exh_log_end(uint32_t tick);
 
 /* Payloads, shared with the replay: what is written is what is read. A keyframe that
  * is read goes through the parameters' own checks; one that fails them is not ok.
- * A scene without signals or state logs none. */
+ * A scene without signals, state or glove logs none. */
 void exh_log_frame_bytes(struct exh_bytes *c, const struct exh_scene *sc, struct exh_scene_in *in,
                          struct exh_drive_out *out, int32_t *signal);
 void exh_log_keyframe_bytes(struct exh_bytes *c, const struct exh_scene *sc);

@@ -19,6 +19,22 @@ static int set_up(const struct exh_scene *sc, uint32_t rate_Hz, struct exh_scene
     return err;
 }
 
+/* Everything that crosses inward from the board at this tick. *wait: ticks to the next glove
+ * frame, counted, since a division has no place in a tick. */
+static int read_board(const struct exh_scene *sc, struct exh_scene_in *in, uint32_t *wait)
+{
+    const int err = exh_board_read_drive(&in->drive);
+    if (err < 0 || sc->read_glove == NULL) { return err; }
+    in->glove_new = *wait == 0;
+    if (*wait > 0) {
+        --*wait;
+        in->glove.age_ticks = (uint16_t)(in->glove.age_ticks + (in->glove.age_ticks < UINT16_MAX));
+        return 0;
+    }
+    *wait = sc->glove_every > 0 ? sc->glove_every - 1u : 0u;
+    return sc->read_glove(&in->glove);
+}
+
 int exh_loop(const struct exh_scene *sc, uint32_t rate_Hz, const struct exh_loop_hooks *hooks)
 {
     static const struct exh_loop_hooks none;
@@ -26,14 +42,14 @@ int exh_loop(const struct exh_scene *sc, uint32_t rate_Hz, const struct exh_loop
     struct exh_scene_in in = {.command = EXH_CMD_NONE};
     struct exh_scene_board board;
     struct exh_drive_out out;
-    uint32_t tick = 0;
+    uint32_t tick = 0, glove_wait = 0;
     int missed;
 
     int err = set_up(sc, rate_Hz, &board);
     if (err == 0 && h->start) { h->start(sc, board); }
     while (err == 0 && (missed = exh_board_wait()) >= 0) {
         in.missed = (uint32_t)missed;
-        err = exh_board_read_drive(&in.drive);
+        err = read_board(sc, &in, &glove_wait);
         if (err < 0) { break; }
         if (h->before) { h->before(tick, &in); }
         if (sc->params) { exh_params_apply(sc->params); }

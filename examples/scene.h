@@ -9,6 +9,7 @@
 
 #include "exhand/bytes.h"
 #include "exhand/drive.h"
+#include "exhand/glove.h"
 #include "exhand/signal.h"
 
 #include <stdint.h>
@@ -17,6 +18,9 @@ struct exh_scene_in {
     struct exh_drive_in drive;
     uint32_t missed; /* ticks missed before this one                          */
     uint8_t command; /* enum exh_command                                      */
+    /* Of scenes with a glove alone: */
+    uint8_t glove_new;         /* 1: read for this tick, 0: the one before, older by a tick */
+    struct exh_glove_in glove; /* age_ticks counts from its conversion         */
 };
 
 /* What set-up has to know of the board it runs on. */
@@ -32,6 +36,9 @@ struct exh_scene {
     struct exh_params *params;              /* NULL: constants in ROM         */
     const struct exh_signal_table *signals; /* outputs per tick, or NULL      */
     int32_t *signal;                        /* their values, or NULL          */
+    /* exh_board_read_glove, or NULL: only a scene that names it links it. */
+    int (*read_glove)(struct exh_glove_in *in);
+    uint16_t glove_every; /* a frame every so many ticks, from the first on; 0 = 1 */
 
     /* Parameters to their defaults and unlocked; NULL without parameters. Before
      * staging any and before the loop. */

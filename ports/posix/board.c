@@ -5,6 +5,7 @@
 
 #include "sim/bench.h"
 #include "sim/fall.h"
+#include "sim/operator.h"
 #include "sim/plant.h"
 #include "sim/random.h"
 
@@ -33,6 +34,12 @@ static struct {
     struct plant plant;
     struct fall fall;
     struct bench bench; /* instead of the fall, if configured */
+    struct sim_glove glove;
+    struct sim_operator hand;
+    int16_t frame[SIM_GLOVE_SENSORS]; /* the glove's last, */
+    uint64_t frame_tick;              /* converted for this tick */
+    double frame_s;                   /* at this time; < 0: none yet */
+    long frames;                      /* read of a recording */
     uint64_t tick;
     double now_s;
     double grid; /* encoder phase, counts */
@@ -54,6 +61,8 @@ struct posix_config posix_config_default(void)
     c.device = sim_device_default();
     c.seed = 1;
     c.falls = 1;
+    c.glove_par = sim_glove_default();
+    c.hand = sim_operator_default();
     return c;
 }
 
@@ -128,6 +137,11 @@ int exh_board_init(uint32_t rate_Hz, struct exh_period *achieved)
         sim.plant.q_m = sim.cfg.from_q_m;
     }
     sim.servo_s = sim_random_unit(&sim.rng) / sim.cfg.device.servo_hz;
+    sim.frame_s = -1;
+    sim.frames = 0;
+    if (sim.cfg.glove) {
+        sim_operator_start(&sim.hand, &sim.cfg.hand, &sim.glove, &sim.cfg.glove_par, sim.cfg.seed);
+    }
     stop = 0;
     *achieved = sim.T;
     return 0;
@@ -222,8 +236,13 @@ int exh_board_read_drive(struct exh_drive_in *in)
     const double mon_A = sim.plant.mon_A + d->mon_noise_a * sim_random_bell(&sim.rng);
     const int64_t mon_raw = floor_count(mon_A / d->mon_apc + 0.5);
     const double q_m = sim.cfg.bench ? bench_encoder_m(&sim.bench, &sim.plant) : sim.plant.q_m;
-    const int64_t cnt = floor_count(q_m * d->decode / d->step_m + sim.grid + d->enc_start);
+    double jitter = 0;
+    int64_t cnt;
 
+    if (sim.cfg.enc_jitter_cnt > 0) {
+        jitter = sim.cfg.enc_jitter_cnt * (sim_random_unit(&sim.rng) - 0.5);
+    }
+    cnt = floor_count(q_m * d->decode / d->step_m + sim.grid + d->enc_start + jitter);
     memset(in, 0, sizeof *in);
     in->enc_raw[0] = (uint32_t)((uint64_t)cnt & 0xFFFFFF);
     in->mon_raw[0] = (int16_t)(mon_raw > 32767 ? 32767 : mon_raw < -32768 ? -32768 : mon_raw);
@@ -259,10 +278,44 @@ void exh_board_halt(const char *why)
     exit(strcmp(why, "done") == 0 ? 0 : 1);
 }
 
+static void next_frame(void)
+{
+    if (sim.cfg.frame == NULL) {
+        sim_operator_frame(&sim.hand, &sim.glove, sim.now_s, sim.frame);
+    } else {
+        memcpy(sim.frame, sim.cfg.frame[sim.frames], sizeof sim.frame);
+        if (sim.frames + 1 < sim.cfg.frames) { sim.frames++; }
+    }
+    sim.frame_tick = sim.tick;
+    sim.frame_s = sim.now_s;
+}
+
+/* A scan that ends at this tick, if it could begin after the last had ended. */
 int exh_board_read_glove(struct exh_glove_in *in)
 {
-    (void)in;
-    return -EXH_E_ABSENT;
+    const double scan_s = SIM_GLOVE_SENSORS * sim.cfg.glove_par.interval_s;
+    uint64_t age;
+    if (!sim.cfg.glove) { return -EXH_E_ABSENT; }
+    if (sim.frame_s < 0 || sim.now_s >= sim.frame_s + scan_s * 0.999999) { next_frame(); }
+    memcpy(in->raw, sim.frame, sizeof sim.frame);
+    age = sim.tick - sim.frame_tick;
+    in->age_ticks = (uint16_t)(age < UINT16_MAX ? age : UINT16_MAX);
+    return 0;
+}
+
+void posix_hand(int pose)
+{
+    sim_operator_go(&sim.hand, pose);
+}
+
+int posix_hand_ready(void)
+{
+    return sim_operator_at_rest(&sim.hand, sim.now_s - 5e-3 /* behind the low-pass too */);
+}
+
+struct sim_glove *posix_glove(void)
+{
+    return &sim.glove;
 }
 
 uint32_t exh_board_cycles(void)

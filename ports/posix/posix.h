@@ -5,6 +5,7 @@
 
 #include "sim/bench.h"
 #include "sim/device.h"
+#include "sim/operator.h"
 
 #include "exhand/units.h"
 
@@ -24,6 +25,13 @@ struct posix_config {
     unsigned wrong;          /* enum bench_wrong: what is wrong with the bench    */
     int from_here;           /* 1: the first fall begins at from_x_m, from_q_m   */
     double from_x_m, from_q_m; /* mass and string, 0 = virtual contact           */
+    double enc_jitter_cnt;   /* peak to peak, uniform: 1 makes a resting encoder change
+                              * between two counts                             */
+    int glove;               /* 1: there is a glove, and a hand in it           */
+    struct sim_glove_par glove_par;
+    struct sim_operator_par hand;
+    const int16_t (*frame)[SIM_GLOVE_SENSORS]; /* recorded frames instead, the caller's, */
+    long frames;             /* one a read, the last for ever; NULL: none        */
 };
 
 /* Defaults: the committed device, seed 1, one fall. */
@@ -38,6 +46,13 @@ int posix_fall(void);
 /* The person at the bench prepares a place; ready some time later. */
 void posix_bench(enum bench_place place, double mass_kg);
 int posix_bench_ready(void);
+
+/* The hand in the glove goes to a pose (sim/operator.h); ready when it is there and still. */
+void posix_hand(int pose);
+int posix_hand_ready(void);
+
+/* The glove itself, for faults. */
+struct sim_glove *posix_glove(void);
 
 /* Ends the run: the next wait says stop. */
 void posix_stop(void);
