@@ -2,7 +2,9 @@
  * integers, without allocation, with the same bits on every machine.
  *
  *   fix units bytes error        below everything
+ *   angle                        binary angles, sine and cosine
  *   signal                       one descriptor per value; parameters
+ *   hand                         the glove's angles to the robot hand's joints and fingertips
  *   quad -> velocity -> contact -> drive -> safety (the gate)      one tick
  *   calibrate, probe             tables of the box, and the motions that measure them
  *   record                       log and replay
@@ -20,6 +22,7 @@
 #define EXH_VERSION_NUMBER \
     ((uint32_t)EXH_VERSION_MAJOR << 16 | (uint32_t)EXH_VERSION_MINOR << 8 | EXH_VERSION_PATCH)
 
+#include "exhand/angle.h"
 #include "exhand/bytes.h"
 #include "exhand/calibrate.h"
 #include "exhand/contact.h"
@@ -27,6 +30,7 @@
 #include "exhand/error.h"
 #include "exhand/fix.h"
 #include "exhand/glove.h"
+#include "exhand/hand.h"
 #include "exhand/probe.h"
 #include "exhand/quad.h"
 #include "exhand/record.h"

@@ -56,6 +56,16 @@ static inline int64_t exh_mul_shr(int32_t a, int32_t b, unsigned n)
     return ((int64_t)a * b + (INT64_C(1) << (n - 1))) >> n;
 }
 
+/* The high word of a product, floor(a*b / 2^32): the cheapest product there is. */
+static inline int32_t exh_mul_hi(int32_t a, int32_t b)
+{
+    return (int32_t)((int64_t)a * b >> 32);
+}
+static inline uint32_t exh_umul_hi(uint32_t a, uint32_t b)
+{
+    return (uint32_t)((uint64_t)a * b >> 32);
+}
+
 /* a*b / 2^31 rounded half up, b >= 0; exact for every a. */
 static inline int64_t exh_mul64_q31(int64_t a, int32_t b)
 {

@@ -1,0 +1,107 @@
+/* Hand: from the glove's 22 angles to the joints of a robot hand, to its fingertips.
+ *
+ * What a hand is made of is data: a map (which sensors move which joint) and bones
+ * (lengths and place of each finger). Those of the DLR/HIT Hand II, right, are in
+ * hand_hit2.c. Every call works on one finger and costs one finger.
+ *
+ * A finger has four joints: q0 turns it sideways about the z axis of its base, q1, q2 and q3
+ * bend it, and q3 follows q2. Driven are q0, q1, q2. At 0 it points along x of its base;
+ * bending moves the tip towards z.
+ */
+#ifndef EXHAND_HAND_H
+#define EXHAND_HAND_H
+
+#include "exhand/signal.h"
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define EXH_HAND_FINGERS 5
+#define EXH_HAND_JOINTS  3 /* driven, of one finger: q0, q1, q2                 */
+#define EXH_HAND_SENSORS 22 /* of the glove, in the order of glove.h          */
+#define EXH_HAND_TERMS   2 /* sensors that move one joint, at most              */
+
+enum exh_hand_finger_id { EXH_THUMB, EXH_INDEX, EXH_MIDDLE, EXH_RING, EXH_LITTLE };
+
+/* --- sensors to joints --- */
+
+#define EXH_HAND_GAIN_MAX_Q24 (8 * (INT32_C(1) << 24))
+
+struct exh_hand_joint {
+    int32_t bias_turn_q32; /* the joint's angle when all sensors are 0     */
+    int32_t gain_q24[EXH_HAND_TERMS]; /* -8 .. 8; 0: no term                        */
+    uint8_t sensor[EXH_HAND_TERMS]; /* below EXH_HAND_SENSORS                       */
+    int32_t lo_turn_q32, hi_turn_q32; /* the joint's limits, lo <= hi                */
+};
+struct exh_hand_map {
+    struct exh_hand_joint joint[EXH_HAND_FINGERS][EXH_HAND_JOINTS];
+};
+extern const struct exh_hand_map exh_hit2_map;
+
+/* 0 if every sensor, gain and pair of limits is as said above, -EXH_E_RANGE otherwise: for
+ * maps that come from outside. Set-up. */
+int exh_hand_map_check(const struct exh_hand_map *map);
+
+/* The three driven joints of one finger (0 .. 4) from all 22 sensors: bias + sum of gain times
+ * sensor, exact, rounded once, limited to lo .. hi. Nothing wraps. Error <= 1/2 LSB.
+ * Bit j of the result: joint j was limited. */
+uint32_t exh_hand_joints(const struct exh_hand_map *map, unsigned finger,
+                         const int32_t *sensor_turn_q32, int32_t *joint_turn_q32);
+
+/* --- joints to the fingertip --- */
+
+struct exh_vec3 {
+    int32_t x, y, z;
+};
+
+/* One finger as it is built, in the frame of the palm. */
+struct exh_hand_bones {
+    int32_t
+        len_m_q34[3]; /* from q1 to q2, to q3, to the middle of the pad; each > 0, sum <= 0.12 m */
+    int32_t rot_q30[3][3]; /* rows x, y, z of the palm: the base frame's axes are the columns */
+    int32_t base_m_q32[3]; /* where q0 and q1 are; within +-0.125 m            */
+};
+extern const struct exh_hand_bones exh_hit2_bones[EXH_HAND_FINGERS];
+
+/* Parameters of one finger; rows in exh_hand_rows[]. */
+struct exh_hand_par {
+    int32_t arm1_m_q30; /* string per radian of q1, m, 0 .. 50 mm            */
+    int32_t arm2_m_q30; /* of q2                                             */
+    int32_t arm3_m_q30; /* of q3                                             */
+    int32_t pad_m_q30; /* the pad's radius, m, 0 .. 25 mm: the finger's surface lies as far
+                           from P_F                                           */
+};
+#define EXH_HAND_ROWS 4
+extern const struct exh_signal exh_hand_rows[EXH_HAND_ROWS];
+
+struct exh_hand_finger {
+    const struct exh_hand_bones *bones;
+    int32_t pull_radpm_q20[2]; /* turning of q1 and of q2 per metre of string */
+};
+
+/* Set-up (divides); bones must outlive f. -EXH_E_RANGE: a parameter or a bone outside its range
+ * above, rot no rotation (axes not of length 1 or not square to each other, within 1e-6), or
+ * both arm1 and arm2 + arm3 so small that a metre of string would turn them by more than 250 rad:
+ * arm1^2 + (arm2 + arm3)^2 below (4 mm)^2. */
+int exh_hand_setup(struct exh_hand_finger *f, const struct exh_hand_bones *bones,
+                   const struct exh_hand_par *par);
+
+/* The middle of the pad, P_F, in the palm's frame, m, q30, of the joints q0, q1, q2 (q3 = q2), which
+ * may be any angles. Error of the arithmetic <= 0.01 um (10.7 LSB); nothing can overflow or
+ * saturate: |P_F| < 0.5 m. */
+void exh_hand_tip(const struct exh_hand_finger *f, const int32_t *joint_turn_q32,
+                  struct exh_vec3 *tip_m_q30);
+
+/* The same P_F, and how it moves as string runs out: metres per metre of string, q24. String over
+ * the back of the finger turns q1, and q2 with q3: of all turnings that pay out a metre,
+ * arm1*dq1 + (arm2 + arm3)*dq2 = 1, the one with the least dq1^2 + dq2^2. q0 moves no string. */
+void exh_hand_tip_slope(const struct exh_hand_finger *f, const int32_t *joint_turn_q32,
+                        struct exh_vec3 *tip_m_q30, struct exh_vec3 *slope_q24);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,232 @@
+#include "exhand/hand.h"
+
+#include "exhand/angle.h"
+#include "exhand/error.h"
+#include "exhand/fix.h"
+#include "exhand/units.h"
+
+#define ARM_MAX_M_Q30  EXH_Q(50, 1000, EXH_Q_POS)
+#define PAD_MAX_M_Q30  EXH_Q(25, 1000, EXH_Q_POS)
+#define ARM_MIN_M_Q30  EXH_Q(4, 1000, EXH_Q_POS)
+#define LEN_MAX_M_Q34  EXH_Q(120, 1000, 34)
+#define BASE_MAX_M_Q32 EXH_Q(125, 1000, 32)
+
+/* The arms are ours, and not measured: cables guided 20, 16 and 12 mm from the joints'
+ * axes (thicker there, and less room towards the tip) give 61 mm of string from straight to bent
+ * in full; exoskeletons of this kind are said to move 60 to 90 mm. */
+const struct exh_signal exh_hand_rows[EXH_HAND_ROWS] = {
+    {0x0A01, EXH_Q_POS, EXH_WHEN_SETUP, 0, ARM_MAX_M_Q30, EXH_Q(20, 1000, EXH_Q_POS), "arm1", "m",
+     "string per radian of the proximal joint"},
+    {0x0A02, EXH_Q_POS, EXH_WHEN_SETUP, 0, ARM_MAX_M_Q30, EXH_Q(16, 1000, EXH_Q_POS), "arm2", "m",
+     "string per radian of the middle joint"},
+    {0x0A03, EXH_Q_POS, EXH_WHEN_SETUP, 0, ARM_MAX_M_Q30, EXH_Q(12, 1000, EXH_Q_POS), "arm3", "m",
+     "string per radian of the distal joint"},
+    {0x0A04, EXH_Q_POS, EXH_WHEN_SETUP, 0, PAD_MAX_M_Q30, EXH_Q(105, 10000, EXH_Q_POS), "pad", "m",
+     "radius of the fingertip's pad"},
+};
+
+/* --- sensors to joints --- */
+
+static int joint_ok(const struct exh_hand_joint *j)
+{
+    for (unsigned t = 0; t < EXH_HAND_TERMS; t++) {
+        if (j->sensor[t] >= EXH_HAND_SENSORS || j->gain_q24[t] > EXH_HAND_GAIN_MAX_Q24 ||
+            j->gain_q24[t] < -EXH_HAND_GAIN_MAX_Q24) {
+            return 0;
+        }
+    }
+    return j->lo_turn_q32 <= j->hi_turn_q32;
+}
+
+int exh_hand_map_check(const struct exh_hand_map *map)
+{
+    for (unsigned f = 0; f < EXH_HAND_FINGERS; f++) {
+        for (unsigned j = 0; j < EXH_HAND_JOINTS; j++) {
+            if (!joint_ok(&map->joint[f][j])) { return -EXH_E_RANGE; }
+        }
+    }
+    return 0;
+}
+
+uint32_t exh_hand_joints(const struct exh_hand_map *map, unsigned finger,
+                         const int32_t *sensor_turn_q32, int32_t *joint_turn_q32)
+{
+    uint32_t limited = 0;
+    for (unsigned i = 0; i < EXH_HAND_JOINTS; i++) {
+        const struct exh_hand_joint *j = &map->joint[finger][i];
+        int64_t sum_q56 = (int64_t)j->bias_turn_q32 * (1 << 24); /* |sum| < 2^60 */
+        int64_t want;
+        for (unsigned t = 0; t < EXH_HAND_TERMS; t++) {
+            sum_q56 += (int64_t)j->gain_q24[t] * sensor_turn_q32[j->sensor[t]];
+        }
+        want = exh_shr_round(sum_q56, 56 - 32);
+        joint_turn_q32[i] = exh_clamp(want, j->lo_turn_q32, j->hi_turn_q32);
+        limited |= (uint32_t)(want != joint_turn_q32[i]) << i;
+    }
+    return limited;
+}
+
+/* --- joints to the fingertip --- */
+
+/* Rows of length 1 and square to each other, to 1e-6 (2^-20). */
+static int is_rotation(const int32_t rot_q30[3][3])
+{
+    const int64_t tol_q60 = INT64_C(1) << 40;
+    for (unsigned i = 0; i < 3; i++) {
+        for (unsigned k = i; k < 3; k++) {
+            int64_t dot_q60 = i == k ? -(INT64_C(1) << 60) : 0;
+            for (unsigned c = 0; c < 3; c++) {
+                if (rot_q30[i][c] > 1 << 30 || rot_q30[i][c] < -(1 << 30)) { return 0; }
+                dot_q60 += (int64_t)rot_q30[i][c] * rot_q30[k][c];
+            }
+            if (dot_q60 > tol_q60 || dot_q60 < -tol_q60) { return 0; }
+        }
+    }
+    return 1;
+}
+
+static int bones_ok(const struct exh_hand_bones *b)
+{
+    int64_t sum = 0;
+    for (unsigned i = 0; i < 3; i++) {
+        if (b->len_m_q34[i] <= 0 || b->base_m_q32[i] > BASE_MAX_M_Q32 ||
+            b->base_m_q32[i] < -BASE_MAX_M_Q32) {
+            return 0;
+        }
+        sum += b->len_m_q34[i];
+    }
+    return sum <= LEN_MAX_M_Q34 && is_rotation(b->rot_q30);
+}
+
+static int arm_ok(int32_t arm_m_q30)
+{
+    return arm_m_q30 >= 0 && arm_m_q30 <= ARM_MAX_M_Q30;
+}
+
+int exh_hand_setup(struct exh_hand_finger *f, const struct exh_hand_bones *bones,
+                   const struct exh_hand_par *par)
+{
+    uint64_t arm_m_q30[2], square_q60;
+    if (!arm_ok(par->arm1_m_q30) || !arm_ok(par->arm2_m_q30) || !arm_ok(par->arm3_m_q30) ||
+        par->pad_m_q30 < 0 || par->pad_m_q30 > PAD_MAX_M_Q30 || !bones_ok(bones)) {
+        return -EXH_E_RANGE;
+    }
+    arm_m_q30[0] = (uint64_t)par->arm1_m_q30;
+    arm_m_q30[1] = (uint64_t)par->arm2_m_q30 + (uint64_t)par->arm3_m_q30;
+    square_q60 = arm_m_q30[0] * arm_m_q30[0] + arm_m_q30[1] * arm_m_q30[1];
+    if (square_q60 < (uint64_t)ARM_MIN_M_Q30 * ARM_MIN_M_Q30) { return -EXH_E_RANGE; }
+    f->bones = bones;
+    for (unsigned i = 0; i < 2; i++) {
+        /* arm / square: q30 + 36 over q60 - 14 is q20 */
+        const uint64_t den = square_q60 >> 14;
+        f->pull_radpm_q20[i] = (int32_t)exh_udiv64((arm_m_q30[i] << 36) + den / 2, den, NULL);
+    }
+    return 0;
+}
+
+/* The finger in the plane it bends in, beside its sideways turn. */
+struct pose {
+    struct exh_sincos side; /* q0                                            */
+    struct exh_sincos bone[3]; /* direction of each bone: q1, q1 + q2, q1 + 2 q2  */
+    int32_t out_m_q34, up_m_q34; /* the tip along the straight finger, and towards z */
+};
+
+/* Sine and cosine of a sum. May pass +-2^30 by 5 LSB. */
+static inline struct exh_sincos sum_of(struct exh_sincos a, struct exh_sincos b)
+{
+    const struct exh_sincos y = {
+        (int32_t)(((int64_t)a.sin_q30 * b.cos_q30 + (int64_t)a.cos_q30 * b.sin_q30) >> 30),
+        (int32_t)(((int64_t)a.cos_q30 * b.cos_q30 - (int64_t)a.sin_q30 * b.sin_q30) >> 30)};
+    return y;
+}
+
+static inline void bend(struct pose *p, const int32_t len_m_q34[3], const int32_t *joint_turn_q32)
+{
+    struct exh_sincos middle;
+    exh_sincos(joint_turn_q32[0], &p->side);
+    exh_sincos(joint_turn_q32[1], &p->bone[0]);
+    exh_sincos(joint_turn_q32[2], &middle);
+    p->bone[1] = sum_of(p->bone[0], middle);
+    p->bone[2] = sum_of(p->bone[1], middle);
+    p->out_m_q34 = (int32_t)(((int64_t)len_m_q34[0] * p->bone[0].cos_q30 +
+                              (int64_t)len_m_q34[1] * p->bone[1].cos_q30 +
+                              (int64_t)len_m_q34[2] * p->bone[2].cos_q30) >>
+                             30);
+    p->up_m_q34 = (int32_t)(((int64_t)len_m_q34[0] * p->bone[0].sin_q30 +
+                             (int64_t)len_m_q34[1] * p->bone[1].sin_q30 +
+                             (int64_t)len_m_q34[2] * p->bone[2].sin_q30) >>
+                            30);
+}
+
+/* One coordinate in the palm. Three products lose half an LSB of q32 each, which the 3 gives back
+ * (1.5, and 2 to round). */
+static inline int32_t palm_m_q30(int32_t base_m_q32, const int32_t row_q30[3],
+                                 const struct exh_vec3 *v_m_q34)
+{
+    return (base_m_q32 + exh_mul_hi(row_q30[0], v_m_q34->x) + exh_mul_hi(row_q30[1], v_m_q34->y) +
+            exh_mul_hi(row_q30[2], v_m_q34->z) + 3) >>
+           (32 - 30);
+}
+
+static inline void tip_of(const struct pose *p, const struct exh_hand_bones *b,
+                          struct exh_vec3 *tip_m_q30)
+{
+    const struct exh_vec3 v_m_q34 = {(int32_t)((int64_t)p->side.cos_q30 * p->out_m_q34 >> 30),
+                                     (int32_t)((int64_t)p->side.sin_q30 * p->out_m_q34 >> 30),
+                                     p->up_m_q34};
+    tip_m_q30->x = palm_m_q30(b->base_m_q32[0], b->rot_q30[0], &v_m_q34);
+    tip_m_q30->y = palm_m_q30(b->base_m_q32[1], b->rot_q30[1], &v_m_q34);
+    tip_m_q30->z = palm_m_q30(b->base_m_q32[2], b->rot_q30[2], &v_m_q34);
+}
+
+void exh_hand_tip(const struct exh_hand_finger *f, const int32_t *joint_turn_q32,
+                  struct exh_vec3 *tip_m_q30)
+{
+    struct pose p;
+    bend(&p, f->bones->len_m_q34, joint_turn_q32);
+    tip_of(&p, f->bones, tip_m_q30);
+}
+
+/* x*a + y*b of a length in q34 and a pull in q20, as q24: |sum| < 67 * 2^54. */
+static inline int32_t rate_q24(int32_t x_m_q34, int32_t a_radpm_q20, int32_t y_m_q34,
+                               int32_t b_radpm_q20)
+{
+    return (
+        int32_t)(((int64_t)x_m_q34 * a_radpm_q20 + (int64_t)y_m_q34 * b_radpm_q20 + (1 << 29)) >>
+                 (34 + 20 - 24));
+}
+
+static inline int32_t turned_q24(const int32_t row_q30[3], const struct exh_vec3 *v_q24)
+{
+    return (int32_t)(((int64_t)row_q30[0] * v_q24->x + (int64_t)row_q30[1] * v_q24->y +
+                      (int64_t)row_q30[2] * v_q24->z + (1 << 29)) >>
+                     30);
+}
+
+void exh_hand_tip_slope(const struct exh_hand_finger *f, const int32_t *joint_turn_q32,
+                        struct exh_vec3 *tip_m_q30, struct exh_vec3 *slope_q24)
+{
+    const struct exh_hand_bones *b = f->bones;
+    const int32_t *pull = f->pull_radpm_q20;
+    struct pose p;
+    struct exh_vec3 v_q24;
+    int32_t out2_m_q34, up2_m_q34, rate_out_q24;
+
+    bend(&p, b->len_m_q34, joint_turn_q32);
+    tip_of(&p, b, tip_m_q30);
+
+    /* A radian of q2 turns the last bone by two: lever arms of the tip about q2. */
+    out2_m_q34 = (int32_t)(((int64_t)b->len_m_q34[1] * p.bone[1].cos_q30 +
+                            2 * (int64_t)b->len_m_q34[2] * p.bone[2].cos_q30) >>
+                           30);
+    up2_m_q34 = (int32_t)(((int64_t)b->len_m_q34[1] * p.bone[1].sin_q30 +
+                           2 * (int64_t)b->len_m_q34[2] * p.bone[2].sin_q30) >>
+                          30);
+    rate_out_q24 = rate_q24(-p.up_m_q34, pull[0], -up2_m_q34, pull[1]);
+    v_q24.x = (int32_t)((int64_t)p.side.cos_q30 * rate_out_q24 >> 30);
+    v_q24.y = (int32_t)((int64_t)p.side.sin_q30 * rate_out_q24 >> 30);
+    v_q24.z = rate_q24(p.out_m_q34, pull[0], out2_m_q34, pull[1]);
+    slope_q24->x = turned_q24(b->rot_q30[0], &v_q24);
+    slope_q24->y = turned_q24(b->rot_q30[1], &v_q24);
+    slope_q24->z = turned_q24(b->rot_q30[2], &v_q24);
+}
