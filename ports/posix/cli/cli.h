@@ -9,5 +9,6 @@ int cli_fit(int argc, char **argv);
 int cli_csv(int argc, char **argv);
 int cli_replay(int argc, char **argv);
 int cli_diagram(int argc, char **argv);
+int cli_quad(int argc, char **argv);
 
 #endif

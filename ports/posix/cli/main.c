@@ -18,6 +18,7 @@ static const struct {
     {"csv", "a log as comma-separated values", cli_csv},
     {"replay", "the recorded inputs again, every output compared bit for bit", cli_replay},
     {"diagram", "a block diagram made from the signal and device tables", cli_diagram},
+    {"quad", "samples of an encoder's two lines: count, edges, illegal steps", cli_quad},
 };
 #define COMMANDS (sizeof command / sizeof command[0])
 
