@@ -24,7 +24,8 @@ enum exh_error {
     EXH_E_IO = 9,       /* a device answered wrongly or not in time            */
     EXH_E_ABSENT = 10,  /* a device is not there                               */
     EXH_E_STALE = 11,   /* a calibration too old, or made before a change      */
-    EXH_E_COUNT = 12    /* how many there are; not an error                    */
+    EXH_E_CUTOFF = 12,  /* a cut-off at or above half the rate                 */
+    EXH_E_COUNT = 13    /* how many there are; not an error                    */
 };
 
 /* One line of plain English for a returned code (sign ignored). Never NULL. */

@@ -6,6 +6,7 @@
  *   signal                       one descriptor per value; parameters
  *   hand                         the glove's angles to the robot hand's joints and fingertips
  *   quad -> velocity -> contact -> drive -> safety (the gate)      one tick
+ *   filter, quantizer            glove voltages to codes that stand still
  *   calibrate, probe             tables of the box, and the motions that measure them
  *   record                       log and replay
  *   board                        what a port provides; only the loop calls it
@@ -28,11 +29,13 @@
 #include "exhand/contact.h"
 #include "exhand/drive.h"
 #include "exhand/error.h"
+#include "exhand/filter.h"
 #include "exhand/fix.h"
 #include "exhand/glove.h"
 #include "exhand/hand.h"
 #include "exhand/probe.h"
 #include "exhand/quad.h"
+#include "exhand/quantizer.h"
 #include "exhand/record.h"
 #include "exhand/safety.h"
 #include "exhand/signal.h"

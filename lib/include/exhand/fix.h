@@ -80,6 +80,12 @@ static inline int32_t exh_from_u32(uint32_t u)
     return u <= INT32_MAX ? (int32_t)u : -(int32_t)(UINT32_MAX - u) - 1;
 }
 
+/* The same of 64 bits. */
+static inline int64_t exh_from_u64(uint64_t u)
+{
+    return u <= INT64_MAX ? (int64_t)u : -(int64_t)(UINT64_MAX - u) - 1;
+}
+
 /* now - before across any wrap of a 32-bit counter: the one place that wraps. */
 static inline int32_t exh_wrap_diff(int32_t now, int32_t before)
 {
@@ -90,6 +96,12 @@ static inline int32_t exh_wrap_diff(int32_t now, int32_t before)
 static inline int32_t exh_wrap_add(int32_t a, int32_t b)
 {
     return exh_from_u32((uint32_t)a + (uint32_t)b);
+}
+
+/* a + b modulo 2^64, where only damaged values can leave 64 bits. */
+static inline int64_t exh_wrap_add64(int64_t a, int64_t b)
+{
+    return exh_from_u64((uint64_t)a + (uint64_t)b);
 }
 
 /* A positive factor mant * 2^-shift with 31 significant bits: what a division

@@ -1,0 +1,76 @@
+/* Filter: low-pass of first or second order for many channels over one set of
+ * coefficients.
+ *
+ * Butterworth by the bilinear transform, as a state-variable filter: the output is
+ * an integral that stands still only where it equals the input, so gain at 0 Hz is 1
+ * whatever the coefficients round to, and a constant input comes out exactly.
+ */
+#ifndef EXHAND_FILTER_H
+#define EXHAND_FILTER_H
+
+#include "exhand/bytes.h"
+#include "exhand/signal.h"
+#include "exhand/units.h"
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Parameters of all channels; rows in exh_filter_rows[]. */
+struct exh_filter_par {
+    int32_t order; /* 1 or 2                                              */
+    int32_t fc_Hz_q16; /* -3.01 dB, Hz, 0.01 .. 10^4, below half the rate     */
+};
+#define EXH_FILTER_ROWS 2
+extern const struct exh_signal exh_filter_rows[EXH_FILTER_ROWS];
+
+enum exh_filter_kind { /* docs/NUMERICS.md, "low-pass" */
+                       EXH_FILTER_LOW2,
+                       EXH_FILTER_LOW1,
+                       EXH_FILTER_HIGH2,
+                       EXH_FILTER_HIGH1
+};
+
+/* Coefficients; what each means depends on the kind. */
+struct exh_filter_cfg {
+    int32_t a, b, c, d;
+    uint8_t shift; /* 0 .. 31                                                 */
+    uint8_t kind; /* enum exh_filter_kind: low is fc up to 0.114 of the rate */
+};
+
+/* One channel. */
+struct exh_filter {
+    int64_t pos; /* low-pass state, LSB of x in q26, plus half an LSB          */
+    int64_t vel; /* band-pass state, 9/8 LSB of x in q32 (high: q26)           */
+};
+
+/* Set-up (divides). Coefficients for the period T. -EXH_E_CUTOFF: fc at or above half
+ * the rate; -EXH_E_RANGE: order not 1 or 2, no period, fc not positive or below 2^-21
+ * (4.8e-7) of the rate. Relative error of fc and Q below 2^-28. */
+int exh_filter_setup(struct exh_filter_cfg *cfg, const struct exh_filter_par *par,
+                     struct exh_period T);
+
+/* n channels settled at x: the next outputs are x while the inputs are. */
+void exh_filter_reset(struct exh_filter *s, const int32_t *x, unsigned n);
+
+/* One sample of n channels, any int32; y may be x. A constant input is reached exactly;
+ * otherwise the error is documented in docs/REPORT.md. y saturates with the right sign
+ * (a step overshoots by 4.3 %) and comes back: no state can wrap. */
+void exh_filter_step(struct exh_filter *s, const struct exh_filter_cfg *cfg, const int32_t *x,
+                     int32_t *y, unsigned n);
+
+/* From one set of coefficients to another, between two ticks. A settled channel stays
+ * exactly where it is. */
+void exh_filter_retune(struct exh_filter *s, unsigned n, const struct exh_filter_cfg *from,
+                       const struct exh_filter_cfg *to);
+
+/* State through a cursor (bytes.h). What is read is limited to what the filter can
+ * bear. */
+void exh_filter_bytes(struct exh_bytes *c, struct exh_filter *s);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,41 @@
+#include "exhand/quantizer.h"
+
+#include "exhand/error.h"
+#include "exhand/fix.h"
+#include "exhand/units.h"
+
+const struct exh_signal exh_quantizer_rows[EXH_QUANTIZER_ROWS] = {
+    {0x0801, 0, EXH_WHEN_SETUP, 1, 24, 14, "bits", "", "stable bits"},
+    {0x0802, 16, EXH_WHEN_SETUP, 0, INT32_MAX, EXH_Q(4, 1, 16), "hyst", "raw",
+     "noise that shall not show, peak to peak"},
+};
+
+int exh_quantizer_setup(struct exh_quantizer_cfg *cfg, const struct exh_quantizer_par *par)
+{
+    if (par->bits < 1 || par->bits > 24 || par->hyst_raw_q16 < 0 ||
+        par->hyst_raw_q16 > INT64_C(1) << (32 - par->bits)) {
+        return -EXH_E_RANGE;
+    }
+    cfg->drop = (uint8_t)(32 - par->bits);
+    cfg->keep = (UINT32_C(1) << (cfg->drop - 1)) + (uint32_t)par->hyst_raw_q16 / 2;
+    return 0;
+}
+
+int32_t exh_quantizer_step(struct exh_quantizer *s, const struct exh_quantizer_cfg *cfg, int32_t x)
+{
+    const uint32_t off =
+        x > s->value ? (uint32_t)x - (uint32_t)s->value : (uint32_t)s->value - (uint32_t)x;
+    if (!s->started || off > cfg->keep) {
+        const int64_t code = exh_shr_round(x, cfg->drop);
+        const int64_t top = (INT64_C(1) << (31 - cfg->drop)) - 1;
+        s->value = (int32_t)((code < top ? code : top) * (INT64_C(1) << cfg->drop));
+        s->started = 1;
+    }
+    return s->value;
+}
+
+void exh_quantizer_bytes(struct exh_bytes *c, struct exh_quantizer *s)
+{
+    exh_bytes_i32(c, &s->value);
+    exh_bytes_u8(c, &s->started);
+}
