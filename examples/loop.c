@@ -20,26 +20,30 @@ static int set_up(const struct exh_scene *sc, uint32_t rate_Hz, struct exh_scene
 }
 
 /* Everything that crosses inward from the board at this tick. *wait: ticks to the next glove
- * frame, counted, since a division has no place in a tick. */
+ * frame, counted, since a division has no place in a tick. The board may have none newer than
+ * the last: that one is a tick older than it was. */
 static int read_board(const struct exh_scene *sc, struct exh_scene_in *in, uint32_t *wait)
 {
-    const int err = exh_board_read_drive(&in->drive);
+    const uint32_t same = in->glove.age_ticks + 1u;
+    int err = exh_board_read_drive(&in->drive);
     if (err < 0 || sc->read_glove == NULL) { return err; }
-    in->glove_new = *wait == 0;
+    in->glove_new = 0;
     if (*wait > 0) {
         --*wait;
-        in->glove.age_ticks = (uint16_t)(in->glove.age_ticks + (in->glove.age_ticks < UINT16_MAX));
+        in->glove.age_ticks = (uint16_t)(same < UINT16_MAX ? same : UINT16_MAX);
         return 0;
     }
-    *wait = sc->glove_every > 0 ? sc->glove_every - 1u : 0u;
-    return sc->read_glove(&in->glove);
+    if (sc->glove_every && *sc->glove_every > 1) { *wait = (uint32_t)*sc->glove_every - 1; }
+    err = sc->read_glove(&in->glove);
+    in->glove_new = in->glove.age_ticks < same && in->glove.age_ticks < UINT16_MAX;
+    return err;
 }
 
 int exh_loop(const struct exh_scene *sc, uint32_t rate_Hz, const struct exh_loop_hooks *hooks)
 {
     static const struct exh_loop_hooks none;
     const struct exh_loop_hooks *h = hooks ? hooks : &none;
-    struct exh_scene_in in = {.command = EXH_CMD_NONE};
+    struct exh_scene_in in = {.command = EXH_CMD_NONE, .glove.age_ticks = UINT16_MAX};
     struct exh_scene_board board;
     struct exh_drive_out out;
     uint32_t tick = 0, glove_wait = 0;

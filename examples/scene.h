@@ -19,8 +19,8 @@ struct exh_scene_in {
     uint32_t missed; /* ticks missed before this one                          */
     uint8_t command; /* enum exh_command                                      */
     /* Of scenes with a glove alone: */
-    uint8_t glove_new;         /* 1: read for this tick, 0: the one before, older by a tick */
-    struct exh_glove_in glove; /* age_ticks counts from its conversion         */
+    uint8_t glove_new;         /* 1: a new frame, 0: the one before, older by a tick */
+    struct exh_glove_in glove; /* its age counts from its conversion           */
 };
 
 /* What set-up has to know of the board it runs on. */
@@ -38,7 +38,7 @@ struct exh_scene {
     int32_t *signal;                        /* their values, or NULL          */
     /* exh_board_read_glove, or NULL: only a scene that names it links it. */
     int (*read_glove)(struct exh_glove_in *in);
-    uint16_t glove_every; /* a frame every so many ticks, from the first on; 0 = 1 */
+    const int32_t *glove_every; /* asks for a frame every so many ticks; NULL: every tick */
 
     /* Parameters to their defaults and unlocked; NULL without parameters. Before
      * staging any and before the loop. */

@@ -37,14 +37,16 @@ static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
     if (seen.ticks < TICKS) { seen.in[seen.ticks++] = *in; }
 }
 
-static struct exh_scene scene(uint16_t every)
+static struct exh_scene scene(int32_t every)
 {
+    static int32_t kept;
     const struct exh_scene s = {.name = "kept",
                                 .rate_Hz = 1000,
                                 .read_glove = exh_board_read_glove,
-                                .glove_every = every,
+                                .glove_every = every ? &kept : NULL,
                                 .setup = setup,
                                 .tick = tick};
+    kept = every;
     return s;
 }
 
@@ -57,7 +59,7 @@ static struct posix_config with_glove(void)
     return c;
 }
 
-static void run(const struct posix_config *c, uint32_t rate_Hz, uint16_t every)
+static void run(const struct posix_config *c, uint32_t rate_Hz, int32_t every)
 {
     const struct exh_scene s = scene(every);
     posix_configure(c);
@@ -90,10 +92,10 @@ TEST(a_scene_that_names_no_glove_gets_none)
 
 TEST(frames_come_every_so_many_ticks_and_age_between)
 {
-    static const uint16_t every[] = {0, 1, 2, 3, 10, 63, 64, 65535};
+    static const int32_t every[] = {0, 1, 2, 3, 10, 63, 64, 65535};
     for (size_t k = 0; k < LEN(every); k++) {
         const struct posix_config c = with_glove();
-        const unsigned step = every[k] ? every[k] : 1;
+        const unsigned step = every[k] ? (unsigned)every[k] : 1;
         run(&c, 1000, every[k]);
         for (unsigned n = 0; n < TICKS; n++) {
             const struct exh_scene_in *in = &seen.in[n];
@@ -122,8 +124,10 @@ TEST(a_scan_that_does_not_fit_is_older)
         c.glove_par.interval_s = row[k].interval_s;
         run(&c, row[k].rate_Hz, 1);
         for (unsigned n = 0; n < TICKS; n++) {
-            CHECK(seen.in[n].glove.age_ticks == n % row[k].every && seen.in[n].glove_new,
-                  "row %zu, tick %u: age %u", k, n, seen.in[n].glove.age_ticks);
+            const unsigned age = n % row[k].every;
+            CHECK(seen.in[n].glove.age_ticks == age && seen.in[n].glove_new == (age == 0),
+                  "row %zu, tick %u: age %u, new %u", k, n, seen.in[n].glove.age_ticks,
+                  seen.in[n].glove_new);
         }
     }
 }
