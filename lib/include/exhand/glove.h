@@ -14,6 +14,8 @@
 #define EXHAND_GLOVE_H
 
 #include "exhand/bytes.h"
+#include "exhand/filter.h"
+#include "exhand/quantizer.h"
 #include "exhand/signal.h"
 #include "exhand/units.h"
 
@@ -68,7 +70,7 @@ extern const struct exh_signal exh_glove_rows[EXH_GLOVE_ROWS];
 
 struct exh_glove_sensor {
     int32_t zero_raw_q15;      /* code at which its own angle is 0, -32768 .. 32767  */
-    int32_t gain_turnpraw_q38; /* turn per code, 4e-7 .. 1/128 either way; < 0: falls */
+    int32_t gain_turnpraw_q38; /* turn per code, 2^-21 .. 2^-7 either way; < 0: falls */
     int32_t cross_q30[2];      /* of the own angle of of[0], of[1], each +-2    */
     int16_t low_raw, high_raw; /* lowest and highest code when it was calibrated */
     uint8_t of[2];             /* sensors without cross terms, or EXH_GLOVE_NONE */
@@ -78,8 +80,9 @@ struct exh_glove_cal {
     uint32_t user_id, glove_id; /* given by whoever calibrates                 */
     uint32_t day;               /* when: days since 1970-01-01                 */
     uint32_t valid_days;        /* good on days day .. day + valid_days        */
-    uint32_t present;           /* bit i: there is a sensor i. Where not, its own angle is 0
-                                 * and it has no faults. 0: no calibration      */
+    uint32_t present;           /* bit i: there is a sensor i. Where not, its gain is 0, so
+                                 * its angle is what cross terms make it, and it has no
+                                 * faults. 0: no calibration                    */
     struct exh_glove_sensor sensor[EXH_GLOVE_SENSORS];
 };
 
@@ -114,6 +117,9 @@ const char *exh_glove_what_text(unsigned what);
 
 #define EXH_GLOVE_SPAN_MIN_RAW 64 /* 20 mV: three times the paper's noise */
 
+/* What is wrong with one sensor, 0 .. 21, of it; EXH_GLOVE_WHATS: nothing. */
+unsigned exh_glove_sensor_valid(const struct exh_glove_cal *cal, unsigned sensor);
+
 /* Values in range? 0, or -EXH_E_RANGE with *bad (may be NULL) the culprit. */
 int exh_glove_cal_valid(const struct exh_glove_cal *cal, struct exh_glove_bad *bad);
 
@@ -137,6 +143,70 @@ int32_t exh_glove_cal_save(const struct exh_glove_cal *cal, void *buf, size_t ca
  * -EXH_E_VERSION, -EXH_E_CRC, or what exh_glove_cal_valid() refuses; then present is 0. */
 int exh_glove_cal_load(struct exh_glove_cal *cal, const void *buf, size_t len_B,
                        struct exh_glove_bad *bad);
+
+/* --- the tick --- */
+
+/* Why a channel is not believed. */
+enum exh_glove_cause {
+    EXH_GLOVE_GOOD,
+    EXH_GLOVE_OPEN,    /* at the rail that an open wire goes to                */
+    EXH_GLOVE_SHORT,   /* at the other rail                                    */
+    EXH_GLOVE_OUTSIDE, /* beyond the calibrated span and its margin            */
+    EXH_GLOVE_CAUSES
+};
+const char *exh_glove_cause_text(unsigned cause); /* "open", ...; never NULL   */
+
+struct exh_glove_cfg {
+    const struct exh_glove_cal *cal;
+    struct exh_filter_cfg filter;
+    struct exh_quantizer_cfg quantizer;
+    int16_t lo_raw[EXH_GLOVE_SENSORS], hi_raw[EXH_GLOVE_SENSORS]; /* codes that are believed */
+    int16_t low_raw, high_raw;        /* the rails                             */
+    uint8_t low_cause, high_cause;    /* what a code there means               */
+    uint8_t debounce_frames;
+    uint8_t order;
+    uint8_t crossed[EXH_GLOVE_SENSORS]; /* those with cross terms, in order    */
+    uint8_t crosses;                    /* how many                            */
+};
+
+struct exh_glove {
+    struct exh_filter filter[EXH_GLOVE_SENSORS];
+    struct exh_quantizer quantizer[EXH_GLOVE_SENSORS];
+    int16_t good_raw[EXH_GLOVE_SENSORS]; /* last code that was believed: the filter's input */
+    uint16_t faults[EXH_GLOVE_SENSORS];  /* how often it became faulty; stays at 65535 */
+    uint8_t run[EXH_GLOVE_SENSORS];      /* frames in a row that speak against `cause` */
+    uint8_t cause[EXH_GLOVE_SENSORS];    /* enum exh_glove_cause                */
+    uint8_t started;                     /* the first frame settles all         */
+};
+
+/* Set-up (divides); cal must outlive cfg. T is the time between frames, which is the
+ * glove's own and may be several ticks of the loop. -EXH_E_CUTOFF: fc at or above half its
+ * rate. -EXH_E_RANGE: a parameter outside its row, low_raw not below high_raw, what
+ * exh_glove_cal_valid() refuses, or a calibrated span that touches a rail. */
+int exh_glove_setup(struct exh_glove_cfg *cfg, const struct exh_glove_par *par,
+                    const struct exh_glove_cal *cal, struct exh_period T);
+
+/* One new frame; *s is zero before the first. Call it once a frame, not once a tick: with
+ * an older frame that was seen before, keep the angles. 22 angles, turn_q32, +-1/2 turn:
+ * beyond, they saturate (a joint does not wrap). Returns bit i: sensor i is faulty, s->cause
+ * tells why. A faulty one is only flagged; all others go on, and so do cross terms, from the
+ * angle that it holds.
+ *
+ * What happens to a code that is not believed (rail, or beyond the span's margin): the last
+ * one that was takes its place in the filter, from its first frame on. So a spike leaves no
+ * trace. From the debounce_frames-th in a row the channel is faulty; its angle stands still,
+ * at the last good code's, once the filter has settled there. A faulty channel believes
+ * again with the debounce_frames-th good code in a row, and its angle goes there as the
+ * filter's step response does, with no jump. In the first frame a bad code is a fault at
+ * once; its place takes the code of angle 0, or the end of the calibrated span next to it.
+ *
+ * Error of the angle: quantizer (units of its step and hysteresis: (Q + H)/2), 1 LSB per
+ * term; gain within 2^-18 at 2^-21 turn per code, within 2^-22 at the default's. */
+uint32_t exh_glove_step(struct exh_glove *s, const struct exh_glove_cfg *cfg,
+                        const struct exh_glove_in *in, int32_t *angle_turn_q32);
+
+/* State through a cursor (bytes.h). */
+void exh_glove_bytes(struct exh_bytes *c, struct exh_glove *s);
 
 /* --- a calibration from poses --- */
 
@@ -166,13 +236,14 @@ struct exh_glove_fit {
 };
 
 /* Least squares over the poses that know a sensor's angle: gain and zero of each sensor
- * present, and the cross terms of those that cal->sensor[].of names (their angles as the
- * fit of those sensors has them); two poses give the line through both. *cal: ids, day,
- * present and of[] on entry, the rest on return; low and high are the lowest and highest
- * mean of all poses, known or not. fit: one for each of the 22. 0, or -EXH_E_RANGE: the
- * first sensor in *bad (may be NULL), each one's in fit[]; present is 0 then. Also
- * -EXH_E_RANGE (EXH_GLOVE_POSES): n not 2 .. EXH_GLOVE_POSES_MAX. Error of the arithmetic:
- * 2^-20 of the span. Set-up only (divides). */
+ * present, and the cross terms of those that have of[] (of the angles that the fit gives
+ * those other sensors). Two poses give the line through both; each cross term needs one
+ * more, in which that other sensor moves.
+ * *cal: ids, day, present and of[] on entry, the rest on return; what is not present keeps
+ * its cross terms. low and high are the lowest and highest mean of all poses. fit: one for
+ * each of the 22. 0, or -EXH_E_RANGE: the first sensor in *bad (may be NULL), each one's
+ * in fit[], and present is 0; also when n is not 2 .. EXH_GLOVE_POSES_MAX (EXH_GLOVE_POSES).
+ * Arithmetic: within 2^-16 of the span. Set-up only (divides). */
 int exh_glove_cal_fit(struct exh_glove_cal *cal, struct exh_glove_fit *fit,
                       const struct exh_glove_pose *pose, unsigned n,
                       const struct exh_glove_fit_par *par, struct exh_glove_bad *bad);

@@ -1,0 +1,412 @@
+/* glove.h, calibration: what is refused and by which name, the image, the fit of poses. */
+#include "exhand/glove.h"
+
+#include "exhand/error.h"
+
+#include "check.h"
+
+#define LEN(a) (sizeof(a) / sizeof((a)[0]))
+#define ALL    ((1u << EXH_GLOVE_SENSORS) - 1u)
+#define DEG(d) EXH_Q(d, 360, 32)
+
+static struct exh_glove_cal sound(void)
+{
+    struct exh_glove_cal cal = exh_glove_cal_default;
+    cal.user_id = 7;
+    cal.glove_id = 3;
+    cal.day = 20000;
+    cal.valid_days = 30;
+    cal.sensor[10].of[0] = 4;
+    cal.sensor[10].of[1] = 7;
+    cal.sensor[10].cross_q30[0] = -12345678;
+    cal.sensor[10].cross_q30[1] = 87654321;
+    return cal;
+}
+
+/* --- values --- */
+
+TEST(valid_names_the_culprit)
+{
+    static const struct {
+        int sensor;
+        struct exh_glove_sensor s;
+        uint8_t what;
+    } row[] = {
+        {0, {0, 0, {0, 0}, 0, 1000, {255, 255}}, EXH_GLOVE_GAIN},
+        {21, {0, (1 << 17) - 1, {0, 0}, 0, 1000, {255, 255}}, EXH_GLOVE_GAIN},
+        {21, {0, -(1 << 17) + 1, {0, 0}, 0, 1000, {255, 255}}, EXH_GLOVE_GAIN},
+        {5, {0, INT32_MIN, {0, 0}, 0, 1000, {255, 255}}, EXH_GLOVE_GAIN},
+        {5, {0, INT32_MAX, {0, 0}, 0, 1000, {255, 255}}, EXH_GLOVE_WHATS},
+        {5, {0, -INT32_MAX, {0, 0}, 0, 1000, {255, 255}}, EXH_GLOVE_WHATS},
+        {5, {0, 1 << 17, {0, 0}, 0, 1000, {255, 255}}, EXH_GLOVE_WHATS},
+        {6, {1 << 30, 1 << 20, {0, 0}, 0, 1000, {255, 255}}, EXH_GLOVE_ZERO},
+        {6, {(1 << 30) - 1, 1 << 20, {0, 0}, 0, 1000, {255, 255}}, EXH_GLOVE_WHATS},
+        {6, {-(1 << 30), 1 << 20, {0, 0}, 0, 1000, {255, 255}}, EXH_GLOVE_WHATS},
+        {6, {-(1 << 30) - 1, 1 << 20, {0, 0}, 0, 1000, {255, 255}}, EXH_GLOVE_ZERO},
+        {7, {0, 1 << 20, {0, 0}, 500, 563, {255, 255}}, EXH_GLOVE_SPAN},
+        {7, {0, 1 << 20, {0, 0}, 500, 564, {255, 255}}, EXH_GLOVE_WHATS},
+        {7, {0, 1 << 20, {0, 0}, INT16_MIN, INT16_MAX, {255, 255}}, EXH_GLOVE_WHATS},
+        {7, {0, 1 << 20, {0, 0}, INT16_MAX, INT16_MIN, {255, 255}}, EXH_GLOVE_SPAN},
+        {3, {0, 1 << 20, {1, 0}, 0, 1000, {22, 255}}, EXH_GLOVE_CROSS},
+        {3, {0, 1 << 20, {0, 1}, 0, 1000, {255, 254}}, EXH_GLOVE_CROSS},
+        {3, {0, 1 << 20, {1, 0}, 0, 1000, {3, 255}}, EXH_GLOVE_CROSS}, /* itself */
+        {3, {0, 1 << 20, {1, 0}, 0, 1000, {10, 255}}, EXH_GLOVE_CROSS}, /* has some itself */
+        {3, {0, 1 << 20, {1, 0}, 0, 1000, {255, 255}}, EXH_GLOVE_CROSS}, /* of none */
+        {3, {0, 1 << 20, {INT32_MIN, INT32_MAX}, 0, 1000, {0, 21}}, EXH_GLOVE_WHATS},
+    };
+    for (size_t i = 0; i < LEN(row); i++) {
+        struct exh_glove_cal cal = sound();
+        struct exh_glove_bad bad = {99, 99};
+        int err;
+        cal.sensor[row[i].sensor] = row[i].s;
+        err = exh_glove_cal_valid(&cal, &bad);
+        CHECK(err == (row[i].what == EXH_GLOVE_WHATS ? 0 : -EXH_E_RANGE), "row %zu: %d", i, err);
+        CHECK(err == 0 || (bad.what == row[i].what && bad.at == row[i].sensor), "row %zu: %s of %d",
+              i, exh_glove_what_text(bad.what), bad.at);
+        CHECK(exh_glove_cal_valid(&cal, NULL) == err, "row %zu", i);
+    }
+}
+
+TEST(present_and_absent)
+{
+    struct exh_glove_cal cal = sound();
+    struct exh_glove_bad bad = {99, 99};
+    cal.present = 0;
+    CHECK_EQ_I64(exh_glove_cal_valid(&cal, &bad), -EXH_E_RANGE);
+    CHECK_EQ_I64(bad.what, EXH_GLOVE_PRESENT);
+    cal.present = ALL | 1u << 22;
+    CHECK_EQ_I64(exh_glove_cal_valid(&cal, &bad), -EXH_E_RANGE);
+    CHECK_EQ_I64(bad.what, EXH_GLOVE_PRESENT);
+    cal.present = ALL & ~(1u << 6);
+    CHECK_EQ_I64(exh_glove_cal_valid(&cal, &bad), -EXH_E_RANGE); /* absent with a gain */
+    CHECK(bad.what == EXH_GLOVE_GAIN && bad.at == 6, "%d of %d", bad.what, bad.at);
+    cal.sensor[6] = (struct exh_glove_sensor){0, 0, {1 << 29, 0}, 0, 0, {5, 255}};
+    CHECK_EQ_I64(exh_glove_cal_valid(&cal, &bad), 0);
+    cal.sensor[6].of[0] = 9;
+    CHECK_EQ_I64(exh_glove_cal_valid(&cal, &bad), 0);
+    cal.present &= ~(1u << 9);
+    cal.sensor[9] = (struct exh_glove_sensor){0, 0, {0, 0}, 0, 0, {255, 255}};
+    CHECK_EQ_I64(exh_glove_cal_valid(&cal, &bad), -EXH_E_RANGE); /* of one that is not there */
+    CHECK(bad.what == EXH_GLOVE_CROSS && bad.at == 6, "%d of %d", bad.what, bad.at);
+}
+
+TEST(check_tells_whose_and_when)
+{
+    static const struct {
+        uint32_t user, glove, day;
+        int err, what;
+    } row[] = {
+        {7, 3, 20000, 0, 0},
+        {7, 3, 20030, 0, 0},
+        {7, 3, 20031, -EXH_E_STALE, EXH_GLOVE_AGE},
+        {7, 3, 19999, -EXH_E_STALE, EXH_GLOVE_AGE},
+        {7, 3, UINT32_MAX, -EXH_E_STALE, EXH_GLOVE_AGE},
+        {8, 3, 20000, -EXH_E_VERSION, EXH_GLOVE_USER},
+        {7, 4, 20000, -EXH_E_VERSION, EXH_GLOVE_GLOVE},
+        {8, 4, 0, -EXH_E_VERSION, EXH_GLOVE_USER},
+    };
+    struct exh_glove_cal cal = sound();
+    struct exh_glove_bad bad = {99, 99};
+    for (size_t i = 0; i < LEN(row); i++) {
+        const int err = exh_glove_cal_check(&cal, row[i].user, row[i].glove, row[i].day, &bad);
+        CHECK(err == row[i].err && (err == 0 || bad.what == row[i].what), "row %zu: %d, %s", i, err,
+              exh_glove_what_text(bad.what));
+    }
+    cal.present = 0;
+    CHECK_EQ_I64(exh_glove_cal_check(&cal, 7, 3, 20000, &bad), -EXH_E_RANGE);
+    CHECK_EQ_I64(bad.what, EXH_GLOVE_PRESENT);
+}
+
+TEST(every_word_is_there)
+{
+    for (unsigned i = 0; i <= EXH_GLOVE_WHATS; i++) {
+        CHECK(check_same_text(exh_glove_what_text(i), "unknown") == (i == EXH_GLOVE_WHATS), "%u",
+              i);
+    }
+    for (unsigned i = 0; i <= EXH_GLOVE_SENSORS; i++) {
+        CHECK(check_same_text(exh_glove_sensor_text(i), "unknown") == (i == EXH_GLOVE_SENSORS),
+              "%u", i);
+    }
+    CHECK(check_same_text(exh_glove_sensor_text(EXH_GLOVE_PINKIE_RING_AB), "PinkieRingAb"), "18");
+}
+
+/* --- image --- */
+
+TEST(image_round_trip)
+{
+    struct exh_glove_cal cal = sound(), back;
+    uint8_t a[EXH_GLOVE_CAL_IMAGE_B + 1], b[EXH_GLOVE_CAL_IMAGE_B];
+    struct exh_glove_bad bad = {99, 99};
+    memset(&back, 0xA5, sizeof back);
+    CHECK_EQ_I64(exh_glove_cal_save(&cal, a, sizeof a, &bad), EXH_GLOVE_CAL_IMAGE_B);
+    CHECK(memcmp(a, "EXHG\x01\0\x16\0\x07\0\0\0\x03", 13) == 0, "head");
+    CHECK_EQ_I64(exh_glove_cal_load(&back, a, sizeof a, &bad), 0);
+    CHECK_EQ_I64(exh_glove_cal_save(&back, b, sizeof b, &bad), EXH_GLOVE_CAL_IMAGE_B);
+    CHECK(memcmp(a, b, sizeof b) == 0, "written again it differs");
+    CHECK(back.valid_days == 30 && back.sensor[10].cross_q30[1] == 87654321 &&
+              back.sensor[21].low_raw == cal.sensor[21].low_raw &&
+              back.sensor[20].gain_turnpraw_q38 == cal.sensor[20].gain_turnpraw_q38,
+          "values");
+}
+
+TEST(every_flipped_bit_is_seen)
+{
+    struct exh_glove_cal cal = sound();
+    uint8_t image[EXH_GLOVE_CAL_IMAGE_B];
+    struct exh_glove_bad bad;
+    CHECK(exh_glove_cal_save(&cal, image, sizeof image, &bad) > 0, "save");
+    for (size_t bit = 0; bit < 8 * sizeof image; bit++) {
+        int err;
+        image[bit / 8] ^= (uint8_t)(1u << bit % 8);
+        bad.what = 99;
+        err = exh_glove_cal_load(&cal, image, sizeof image, &bad);
+        CHECK(err == (bit < 64 ? -EXH_E_VERSION : -EXH_E_CRC), "bit %zu: %d", bit, err);
+        CHECK(bad.what == EXH_GLOVE_IMAGE && cal.present == 0, "bit %zu", bit);
+        image[bit / 8] ^= (uint8_t)(1u << bit % 8);
+    }
+    CHECK_EQ_I64(exh_glove_cal_load(&cal, image, sizeof image, &bad), 0);
+}
+
+TEST(every_cut_is_seen)
+{
+    struct exh_glove_cal cal = sound();
+    uint8_t image[EXH_GLOVE_CAL_IMAGE_B];
+    struct exh_glove_bad bad;
+    CHECK(exh_glove_cal_save(&cal, image, sizeof image, &bad) > 0, "save");
+    for (size_t len = 0; len < sizeof image; len++) {
+        CHECK(exh_glove_cal_load(&cal, image, len, &bad) == -EXH_E_SHORT && cal.present == 0,
+              "%zu bytes", len);
+        CHECK_EQ_I64(bad.what, EXH_GLOVE_IMAGE);
+    }
+    cal = sound();
+    for (size_t cap = 0; cap < sizeof image; cap++) {
+        CHECK(exh_glove_cal_save(&cal, image, cap, &bad) == -EXH_E_SHORT, "room for %zu", cap);
+    }
+}
+
+/* Sound bytes of an unsound calibration: refused for what it says. */
+TEST(an_image_of_nonsense_is_refused)
+{
+    struct exh_glove_cal cal = sound();
+    uint8_t image[EXH_GLOVE_CAL_IMAGE_B];
+    struct exh_glove_bad bad = {99, 99};
+    struct exh_bytes b;
+    uint32_t crc;
+    int32_t zero = 0;
+    cal.sensor[4].gain_turnpraw_q38 = 0;
+    CHECK_EQ_I64(exh_glove_cal_save(&cal, image, sizeof image, &bad), -EXH_E_RANGE);
+    CHECK(bad.what == EXH_GLOVE_GAIN && bad.at == 4, "saved");
+    cal = sound();
+    CHECK(exh_glove_cal_save(&cal, image, sizeof image, &bad) > 0, "save");
+    b = exh_bytes_writer(image + 28 + 4 * 22 + 4, 4);
+    exh_bytes_i32(&b, &zero);
+    crc = exh_crc32(0, image, sizeof image - 4);
+    b = exh_bytes_writer(image + sizeof image - 4, 4);
+    exh_bytes_u32(&b, &crc);
+    CHECK_EQ_I64(exh_glove_cal_load(&cal, image, sizeof image, &bad), -EXH_E_RANGE);
+    CHECK(bad.what == EXH_GLOVE_GAIN && bad.at == 4 && cal.present == 0, "%s",
+          exh_glove_what_text(bad.what));
+}
+
+/* --- the fit --- */
+
+#define POSES 7
+
+struct fixture {
+    struct exh_glove_cal cal;
+    struct exh_glove_fit fit[EXH_GLOVE_SENSORS];
+    struct exh_glove_pose pose[EXH_GLOVE_POSES_MAX];
+    unsigned n;
+    struct exh_glove_bad bad;
+};
+
+/* What sensor i reads, q16, when its own angle is so: 0 degrees at 1000 i - 9000, a degree is
+ * 50 + 5 i codes, downward for odd sensors. */
+static int32_t code_q16(unsigned i, int32_t own_deg)
+{
+    const int32_t per_deg = (i & 1 ? -1 : 1) * (50 + 5 * (int32_t)i);
+    return (1000 * (int32_t)i - 9000 + own_deg * per_deg) * 65536;
+}
+
+/* Pose 0 all flat, pose 1 all at 80 degrees, then knuckles 4 and 7 alone and together,
+ * sensor 10 alone and with 4. 10 is bent by a quarter of 4 and, backward, by half of 7. */
+static void set_up(struct fixture *f)
+{
+    static const int8_t knuckle[POSES][3] = {{0, 0, 0},  {80, 80, 80}, {80, 0, 0}, {0, 80, 0},
+                                             {0, 0, 40}, {40, 0, 40},  {40, 80, 0}}; /* 4, 7, 10 */
+    memset(f, 0, sizeof *f);
+    f->cal = (struct exh_glove_cal){7, 3, 20000, 30, ALL, {{0}}};
+    for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
+        f->cal.sensor[i].of[0] = f->cal.sensor[i].of[1] = EXH_GLOVE_NONE;
+    }
+    f->cal.sensor[10].of[0] = 4;
+    f->cal.sensor[10].of[1] = 7;
+    f->n = POSES;
+    for (unsigned p = 0; p < POSES; p++) {
+        const int32_t a = knuckle[p][0], b = knuckle[p][1], ab = knuckle[p][2];
+        f->pose[p].known = p < 2 ? ALL : 1u << 4 | 1u << 7 | 1u << 10;
+        for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
+            const int32_t deg = i == 4 ? a : i == 7 ? b : i == 10 ? ab : p == 1 ? 80 : 0;
+            f->pose[p].angle_turn_q32[i] = DEG(deg);
+            f->pose[p].mean_raw_q16[i] = code_q16(i, i == 10 ? ab + a / 4 - b / 2 : deg);
+            f->pose[p].noise_raw[i] = 20;
+        }
+    }
+}
+
+static int fit(struct fixture *f)
+{
+    return exh_glove_cal_fit(&f->cal, f->fit, f->pose, f->n, &exh_glove_fit_default, &f->bad);
+}
+
+static int near(int64_t a, int64_t b, int64_t off)
+{
+    return a - b <= off && b - a <= off;
+}
+
+TEST(poses_give_gain_zero_and_cross_terms)
+{
+    struct fixture f;
+    set_up(&f);
+    CHECK(fit(&f) == 0, "%s of %s", exh_glove_what_text(f.bad.what),
+          exh_glove_sensor_text(f.bad.at));
+    for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
+        const struct exh_glove_sensor *s = &f.cal.sensor[i];
+        const int64_t per_deg = (i & 1 ? -1 : 1) * (50 + 5 * (int64_t)i);
+        const int64_t gain = (INT64_C(1) << 38) / (360 * per_deg);
+        const int32_t end = code_q16(i, 80) >> 16, flat = code_q16(i, 0) >> 16;
+        CHECK(near(s->gain_turnpraw_q38, gain, 40), "%u: gain %" PRId32 ", %" PRId64, i,
+              s->gain_turnpraw_q38, gain);
+        CHECK(near(s->zero_raw_q15, (1000 * (int64_t)i - 9000) * 32768, 300), "%u: zero %" PRId32,
+              i, s->zero_raw_q15);
+        CHECK(i == 10 || (s->low_raw == (flat < end ? flat : end) &&
+                          s->high_raw == (flat < end ? end : flat)),
+              "%u: %d .. %d", i, s->low_raw, s->high_raw);
+        CHECK(f.fit[i].what == EXH_GLOVE_WHATS &&
+                  f.fit[i].poses == (i == 4 || i == 7 || i == 10 ? 7 : 2) &&
+                  near(f.fit[i].residual_turn_q32, 0, 4096),
+              "%u: %d poses, %" PRId32, i, f.fit[i].poses, f.fit[i].residual_turn_q32);
+    }
+    CHECK(near(f.cal.sensor[10].cross_q30[0], -(1 << 28), 2000), "%" PRId32,
+          f.cal.sensor[10].cross_q30[0]);
+    CHECK(near(f.cal.sensor[10].cross_q30[1], 1 << 29, 2000), "%" PRId32,
+          f.cal.sensor[10].cross_q30[1]);
+    CHECK_EQ_I64(f.cal.sensor[10].low_raw, (1000 - 40 * 100));
+    CHECK_EQ_I64(f.cal.sensor[10].high_raw, (1000 + 60 * 100));
+}
+
+/* One pose 3 degrees off, of three on the line: least squares leave two thirds or less. */
+TEST(residual_is_the_worst_pose)
+{
+    struct fixture f;
+    set_up(&f);
+    f.pose[2].known |= 1u << 5;
+    f.pose[2].angle_turn_q32[5] = DEG(40);
+    f.pose[2].mean_raw_q16[5] = code_q16(5, 37);
+    CHECK_EQ_I64(fit(&f), 0);
+    CHECK_EQ_I64(f.fit[5].poses, 3);
+    CHECK_EQ_I64(f.fit[5].pose, 2);
+    CHECK(near(f.fit[5].residual_turn_q32, DEG(2), DEG(1) / 50), "%" PRId32,
+          f.fit[5].residual_turn_q32);
+    f.pose[2].mean_raw_q16[5] = code_q16(5, 28);
+    CHECK_EQ_I64(fit(&f), -EXH_E_RANGE);
+}
+
+TEST(poses_are_refused_by_name)
+{
+    for (int k = 0; k < 12; k++) {
+        struct fixture f;
+        int what, at = 5;
+        set_up(&f);
+        switch (k) {
+        case 0:
+            f.pose[1].mean_raw_q16[5] = f.pose[0].mean_raw_q16[5] + 255 * 65536;
+            what = EXH_GLOVE_MOVE;
+            break;
+        case 1:
+            f.pose[1].noise_raw[5] = 129;
+            what = EXH_GLOVE_NOISE;
+            break;
+        case 2:
+            f.pose[1].known &= ~(1u << 5);
+            what = EXH_GLOVE_POSES;
+            break;
+        case 3:
+            f.pose[1].angle_turn_q32[5] = DEG(4);
+            what = EXH_GLOVE_POSES;
+            break;
+        case 4:
+            f.pose[2].known |= 1u << 5;
+            f.pose[2].angle_turn_q32[5] = DEG(40);
+            f.pose[2].mean_raw_q16[5] = code_q16(5, 29);
+            what = EXH_GLOVE_RESIDUAL;
+            break;
+        case 5: /* 80 degrees over the whole card: its zero is beyond */
+            f.pose[0].angle_turn_q32[5] = DEG(100);
+            f.pose[1].angle_turn_q32[5] = DEG(120);
+            f.pose[0].mean_raw_q16[5] = -30000 * 65536;
+            f.pose[1].mean_raw_q16[5] = 30000 * 65536;
+            what = EXH_GLOVE_ZERO;
+            break;
+        case 6:
+            f.cal.sensor[5].of[0] = 22;
+            what = EXH_GLOVE_CROSS;
+            break;
+        case 7:
+            f.cal.sensor[5].of[1] = 10;
+            what = EXH_GLOVE_CROSS;
+            break;
+        case 8: /* both knuckles always together */
+            for (unsigned p = 2; p < POSES; p++) {
+                f.pose[p].mean_raw_q16[7] = code_q16(7, f.pose[p].angle_turn_q32[4] / DEG(1));
+            }
+            for (unsigned p = 2; p < POSES; p++) {
+                f.pose[p].angle_turn_q32[7] = f.pose[p].angle_turn_q32[4];
+            }
+            what = EXH_GLOVE_POSES;
+            at = 10;
+            break;
+        case 9:
+            f.pose[1].noise_raw[4] = 500;
+            what = EXH_GLOVE_NOISE;
+            at = 4;
+            break; /* and 10 with it */
+        case 10:
+            f.n = 1;
+            what = EXH_GLOVE_POSES;
+            at = 0;
+            break;
+        default:
+            f.n = EXH_GLOVE_POSES_MAX + 1;
+            what = EXH_GLOVE_POSES;
+            at = 0;
+            break;
+        }
+        CHECK(fit(&f) == -EXH_E_RANGE, "case %d", k);
+        CHECK(f.bad.what == what && f.bad.at == at, "case %d: %s of %s", k,
+              exh_glove_what_text(f.bad.what), exh_glove_sensor_text(f.bad.at));
+        CHECK(f.cal.present == 0, "case %d", k);
+        CHECK(k >= 10 || (f.fit[at].what == what && f.fit[20].what == EXH_GLOVE_WHATS), "case %d",
+              k);
+        CHECK(k != 9 || f.fit[10].what == EXH_GLOVE_CROSS, "case %d", k);
+        CHECK(k != 1 || f.fit[5].pose == 1, "case %d", k);
+    }
+}
+
+TEST(absent_sensors_need_no_pose)
+{
+    struct fixture f;
+    set_up(&f);
+    f.cal.present &= ~(1u << 6);
+    f.cal.sensor[6].of[0] = 5;
+    f.cal.sensor[6].cross_q30[0] = 1 << 29;
+    for (unsigned p = 0; p < POSES; p++) { f.pose[p].known &= ~(1u << 6); }
+    CHECK_EQ_I64(fit(&f), 0);
+    CHECK_EQ_I64(f.cal.sensor[6].cross_q30[0], 1 << 29);
+    CHECK_EQ_I64(f.cal.sensor[6].gain_turnpraw_q38, 0);
+}
+
+TEST_MAIN("unit/glove_cal", valid_names_the_culprit, present_and_absent, check_tells_whose_and_when,
+          every_word_is_there, image_round_trip, every_flipped_bit_is_seen, every_cut_is_seen,
+          an_image_of_nonsense_is_refused, poses_give_gain_zero_and_cross_terms,
+          residual_is_the_worst_pose, poses_are_refused_by_name, absent_sensors_need_no_pose);
