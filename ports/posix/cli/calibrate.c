@@ -3,25 +3,24 @@
 
 #include "calibration.h"
 #include "option.h"
+#include "outfile.h"
 #include "param.h"
 
 #include "calibrate/calibrate.h"
 
 #include "exhand/error.h"
 
-#include <errno.h>
+#include <inttypes.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <time.h>
 
 #define SETTINGS_MAX 64
 #define DAY_S 86400
-#define PATH_B 512
 
 struct calibrate_options {
-    long rate_Hz, seed, id, finger, day, valid_days;
+    int64_t rate_Hz, seed, id, finger, day, valid_days; /* as CLI_INT writes them */
     double residual_N;
     double mass_kg[CALIBRATE_MASSES], hung_kg[CALIBRATE_MASSES];
     int masses, hung, pace;
@@ -171,32 +170,6 @@ static void print_params(void)
 
 /* --- files --- */
 
-/* DIR/NAME; 0, or 1 after a line on stderr: nothing is ever written elsewhere. */
-static int path_of(char to[PATH_B], const char *dir, const char *name)
-{
-    const int n = snprintf(to, PATH_B, "%s/%s", dir, name);
-    if (n >= 0 && n < PATH_B) { return 0; }
-    cli_complain("--out: %s: too long a path: give a shorter one", dir);
-    return 1;
-}
-
-/* Makes the directory if need be. 0, or 2 after a line on stderr. */
-static int open_dir(const char *dir)
-{
-    char path[PATH_B];
-    struct stat st;
-    if (path_of(path, dir, "calibration.bin")) { return 2; } /* the longest name */
-    if (mkdir(dir, 0777) != 0 && errno != EEXIST) {
-        cli_complain("--out: %s: %s: give a directory that can be made", dir, strerror(errno));
-        return 2;
-    }
-    if (stat(dir, &st) != 0 || !S_ISDIR(st.st_mode)) {
-        cli_complain("--out: %s: %s: give a directory", dir, strerror(ENOTDIR));
-        return 2;
-    }
-    return 0;
-}
-
 static int complain(const char *what, int err, const struct exh_calib_bad *bad)
 {
     char point[24] = "";
@@ -215,23 +188,27 @@ struct results { /* what is written into the files */
     size_t image_B;
 };
 
-static void write_image(FILE *f, const struct results *r)
+static void write_image(FILE *f, const void *ctx)
 {
+    const struct results *r = ctx;
     (void)fwrite(r->image, 1, r->image_B, f);
 }
 
-static void write_points(FILE *f, const struct results *r)
+static void write_points(FILE *f, const void *ctx)
 {
+    const struct results *r = ctx;
     calibration_csv(f, r->c, r->l);
 }
 
-static void write_table(FILE *f, const struct results *r)
+static void write_table(FILE *f, const void *ctx)
 {
+    const struct results *r = ctx;
     (void)calibration_table_csv(f, r->c); /* there is one: the image was saved */
 }
 
-static void write_pictures(FILE *f, const struct results *r)
+static void write_pictures(FILE *f, const void *ctx)
 {
+    const struct results *r = ctx;
     fprintf(f, "# Made by exhand calibrate. In this directory: gnuplot -c pictures.gp PLOTS, where\n"
                "# PLOTS is the path of ports/posix/cli/plot.\n"
                "out='calibration.png'; points='calibration.csv'; table='table.csv'\n"
@@ -245,7 +222,7 @@ static int write_files(const char *dir, const struct exh_calib *c, const struct 
 {
     static const struct {
         const char *name;
-        void (*write)(FILE *f, const struct results *r);
+        void (*write)(FILE *f, const void *ctx);
     } file[] = {{"calibration.bin", write_image},
                 {"calibration.csv", write_points},
                 {"table.csv", write_table},
@@ -256,24 +233,7 @@ static int write_files(const char *dir, const struct exh_calib *c, const struct 
     if (len < 0) { return complain("calibration.bin", len, &bad); }
     r.image_B = (size_t)len;
     for (size_t i = 0; i < sizeof file / sizeof file[0]; i++) {
-        char path[PATH_B];
-        FILE *f;
-        int failed;
-        if (path_of(path, dir, file[i].name)) { return 1; }
-        errno = 0;
-        f = fopen(path, "wb");
-        if (f != NULL) { file[i].write(f, &r); }
-        failed = f == NULL || fflush(f) != 0 || ferror(f);
-        if (failed) {
-            cli_complain("%s: can't be written: %s: make room or give another --out, and calibrate again",
-                         path, strerror(errno ? errno : EIO));
-        }
-        if (f != NULL && fclose(f) != 0 && !failed) {
-            cli_complain("%s: can't be closed: %s: give another --out, and calibrate again", path,
-                         strerror(errno));
-            failed = 1;
-        }
-        if (failed) { return 1; }
+        if (outfile_write(dir, file[i].name, file[i].write, &r) != 0) { return 1; }
     }
     return 0;
 }
@@ -304,16 +264,16 @@ static int not_here(const struct calibrate_options *o, const struct exh_calib *c
                     const struct exh_calib_bad *bad)
 {
     if (bad->what == EXH_CALIB_DEVICE) {
-        cli_complain("%s: made for device %lu, this is %ld: give its --id, or calibrate this one", o->check,
+        cli_complain("%s: made for device %lu, this is %" PRId64 ": give its --id, or calibrate this one", o->check,
                      (unsigned long)c->device_id, o->id);
     } else if (bad->what == EXH_CALIB_FINGER) {
-        cli_complain("%s: made for finger %lu, this is %ld: give its --finger, or calibrate this one",
+        cli_complain("%s: made for finger %lu, this is %" PRId64 ": give its --finger, or calibrate this one",
                      o->check, (unsigned long)c->finger, o->finger);
     } else if (bad->what == EXH_CALIB_AGE && (uint32_t)o->day < c->day) {
-        cli_complain("%s: from the future: made on day %lu, today is day %ld: set the clock right, or "
+        cli_complain("%s: from the future: made on day %lu, today is day %" PRId64 ": set the clock right, or "
                      "give --day", o->check, (unsigned long)c->day, o->day);
     } else if (bad->what == EXH_CALIB_AGE) {
-        cli_complain("%s: stale: made on day %lu, good for %lu days, today is day %ld: calibrate again",
+        cli_complain("%s: stale: made on day %lu, good for %lu days, today is day %" PRId64 ": calibrate again",
                      o->check, (unsigned long)c->day, (unsigned long)c->valid_days, o->day);
     } else {
         return complain(o->check, err, bad);
@@ -329,25 +289,12 @@ static int check_image(const struct calibrate_options *o)
     struct calibration_lines l;
     struct exh_calib_bad bad = {0, 0};
     uint8_t image[EXH_CALIB_IMAGE_B];
-    size_t len;
+    const long len = outfile_read(o->check, "calibration.bin that `exhand calibrate --out` wrote", image, sizeof image);
     int err;
-    FILE *f = fopen(o->check, "rb");
-    if (f == NULL) {
-        cli_complain("--check: %s: %s: give the calibration.bin that `exhand calibrate --out` wrote",
-                     o->check, strerror(errno));
-        return 3;
-    }
-    len = fread(image, 1, sizeof image, f);
-    if (ferror(f)) { /* a directory, as a rule */
-        cli_complain("--check: %s: can't be read: %s: give the calibration.bin that "
-                     "`exhand calibrate --out` wrote", o->check, strerror(errno));
-        fclose(f);
-        return 2;
-    }
-    fclose(f);
-    err = exh_calib_load(&c, image, len, &bad);
+    if (len < 0) { return (int)-len; }
+    err = exh_calib_load(&c, image, (size_t)len, &bad);
     if (err < 0) { return complain(o->check, err, &bad); }
-    printf("%s: device %lu, finger %lu, made on day %lu, good for %lu days; today is day %ld\n", o->check,
+    printf("%s: device %lu, finger %lu, made on day %lu, good for %lu days; today is day %" PRId64 "\n", o->check,
            (unsigned long)c.device_id, (unsigned long)c.finger, (unsigned long)c.day,
            (unsigned long)c.valid_days, o->day);
     fflush(stdout);
@@ -435,7 +382,7 @@ static int calibrate(const struct calibrate_options *o)
     c.board.seed = (uint64_t)o->seed;
     c.board.pace = o->pace;
     c.board.wrong = o->wrong;
-    if (o->out != NULL && open_dir(o->out) != 0) { return 2; }
+    if (o->out != NULL && outfile_dir(o->out, "calibration.bin") != 0) { return 2; }
     (void)sigaction(SIGINT, &stop, NULL);
     (void)sigaction(SIGTERM, &stop, NULL);
     err = calibration_run(&c, &r);
@@ -456,7 +403,7 @@ int cli_calibrate(int argc, char **argv)
 {
     static struct calibrate_options o;
     static const double mass_kg[] = {0.1, 0.2, 0.3, 0.5, 0.7};
-    int list = 0, err;
+    int list = 0, glove = 0, err; /* --glove never gets as far as being set */
     const struct cli_call known = {take_masses, &o}, setting = {take_setting, &o};
     const struct cli_call device = {take_device, &o}, fault = {take_wrong, &o};
     const struct cli_call hung = {take_hung, &o};
@@ -465,6 +412,7 @@ int cli_calibrate(int argc, char **argv)
         void *to;
     } u[5] = {{&known}, {&setting}, {&device}, {&fault}, {&hung}};
     const struct cli_option option[] = {
+        {"glove", CLI_FLAG, &glove, 0, 0, NULL, "the glove, from poses: --glove --help lists its options"},
         {"mass", CLI_CALL, u[0].to, 0, 0, "KG[,KG...]", "known masses, rising (0.1,0.2,0.3,0.5,0.7)"},
         {"hung", CLI_CALL, u[4].to, 0, 0, "KG[,KG...]", "what really hangs on the string, as many (the same)"},
         {"rate", CLI_INT, &o.rate_Hz, 20, 20000, "HZ", "loop rate (2000)"},
@@ -487,12 +435,15 @@ int cli_calibrate(int argc, char **argv)
         "Polarity, home, F0, then masses: tables from force to current and from monitor to force.",
         option, (int)(sizeof option / sizeof option[0]), 0};
 
+    for (int i = 1; i < argc; i++) {
+        if (strcmp(argv[i], "--glove") == 0) { return cli_calibrate_glove(argc, argv); }
+    }
     memset(&o, 0, sizeof o); /* a test calls more than once */
     o.rate_Hz = 2000;
     o.seed = o.id = 1;
     o.valid_days = 90;
     o.residual_N = 0.1;
-    o.day = (long)(time(NULL) / DAY_S);
+    o.day = (int64_t)(time(NULL) / DAY_S);
     o.device = sim_device_default();
     o.masses = (int)(sizeof mass_kg / sizeof mass_kg[0]);
     memcpy(o.mass_kg, mass_kg, sizeof mass_kg);
