@@ -44,7 +44,10 @@ struct linear_plant linear_two_mass(const struct sim_device *d)
     return p;
 }
 
-/* --- matrices --- */
+/* --- matrices: of the plant and its input, which is one more state that does not change --- */
+
+#define FLOW (LINEAR_PLANT + 1)
+typedef double flow_matrix[FLOW][FLOW];
 
 static double size_of(double v)
 {
@@ -52,7 +55,7 @@ static double size_of(double v)
 }
 
 /* c = a b */
-static void multiply(double c[][EIGEN_MAX], double a[][EIGEN_MAX], double b[][EIGEN_MAX], int n)
+static void multiply(flow_matrix c, flow_matrix a, flow_matrix b, int n)
 {
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++) { c[i][j] = 0; }
@@ -64,7 +67,7 @@ static void multiply(double c[][EIGEN_MAX], double a[][EIGEN_MAX], double b[][EI
 }
 
 /* The largest sum of sizes along a row. */
-static double norm(double a[][EIGEN_MAX], int n)
+static double norm(flow_matrix a, int n)
 {
     double most = 0;
     for (int i = 0; i < n; i++) {
@@ -78,10 +81,9 @@ static double norm(double a[][EIGEN_MAX], int n)
 /* e^(a t) = (e^(a t / 2^s))^(2^s), the inner one by Taylor at a norm below 1/2. */
 struct linear_flow linear_flow(const struct linear_plant *p, double t_s)
 {
-    static double a[EIGEN_MAX][EIGEN_MAX], e[EIGEN_MAX][EIGEN_MAX];
-    static double term[EIGEN_MAX][EIGEN_MAX], next[EIGEN_MAX][EIGEN_MAX];
+    flow_matrix a, e, term, next;
     struct linear_flow f;
-    const int n = p->n + 1; /* the input as one more state, which does not change */
+    const int n = p->n + 1;
     double scale = t_s;
     int squarings = 0;
 
@@ -120,15 +122,31 @@ struct linear_flow linear_flow(const struct linear_plant *p, double t_s)
 
 /* --- one tick --- */
 
+/* The plant over a tick, and before and after a new force takes hold in it: what does
+ * not hang on the wall, which is asked for at many gains. */
+struct tick {
+    struct linear_plant p;
+    double T_s, part_s;
+    struct linear_flow all, before, after;
+};
+
+static const struct tick *tick_of(const struct linear_plant *p, double T_s, double part_s)
+{
+    static struct tick last;
+    if (memcmp(&last.p, p, sizeof *p) != 0 || last.T_s != T_s || last.part_s != part_s) {
+        last = (struct tick){*p, T_s, part_s, linear_flow(p, T_s), linear_flow(p, part_s),
+                             linear_flow(p, T_s - part_s)};
+    }
+    return &last;
+}
+
 int linear_monodromy(struct matrix *M, const struct linear_plant *p,
                      const struct linear_wall *w)
 {
     const double ticks = w->delay_s / w->T_s;
     const int whole = ticks < EIGEN_MAX ? (int)ticks : EIGEN_MAX;
     const double part_s = (ticks - whole) * w->T_s;
-    const struct linear_flow all = linear_flow(p, w->T_s);
-    const struct linear_flow before = linear_flow(p, part_s);
-    const struct linear_flow after = linear_flow(p, w->T_s - part_s);
+    const struct tick *const t = tick_of(p, w->T_s, part_s);
     const int u1 = p->n;             /* u[k-1]; u[k-d-1] is the last of them */
     const int q1 = u1 + whole + 1;   /* q[k-1] */
     double law[EIGEN_MAX] = {0};    /* u[k] from z */
@@ -140,13 +158,13 @@ int linear_monodromy(struct matrix *M, const struct linear_plant *p,
     law[M->n - 1] = -w->b_Nspm / (w->window * w->T_s);
     for (int i = 0; i < p->n; i++) {
         for (int j = 0; j < p->n; j++) {
-            M->m[i][j] = all.phi[i][j];
-            M->m[i][q1 - 1] += after.phi[i][j] * before.gamma[j];
+            M->m[i][j] = t->all.phi[i][j];
+            M->m[i][q1 - 1] += t->after.phi[i][j] * t->before.gamma[j];
         }
         if (whole > 0) {
-            M->m[i][u1 + whole - 1] += after.gamma[i];
+            M->m[i][u1 + whole - 1] += t->after.gamma[i];
         } else {
-            for (int j = 0; j < M->n; j++) { M->m[i][j] += after.gamma[i] * law[j]; }
+            for (int j = 0; j < M->n; j++) { M->m[i][j] += t->after.gamma[i] * law[j]; }
         }
     }
     memcpy(M->m[u1], law, sizeof law);
