@@ -24,13 +24,22 @@ static void copy(const char *from, const char *to, long bytes)
     CHECK(f != NULL && fwrite(text, 1, (size_t)bytes, f) == (size_t)bytes && fclose(f) == 0, "%s", to);
 }
 
-/* The sweep at one go, into `whole`; its directory. */
+/* The sweep at one go, into `whole`. */
 static void one_go(const char *dir, struct said *s)
 {
     said(s, dir, cli_drop, WORDS(SMALL(dir)));
     CHECK(s->status == 0 && s->err[0] == '\0', "%d: %s", s->status, s->err);
     said_read(whole, said_path(dir, "stability.csv"));
     CHECK(strlen(whole) > 2000 && strlen(whole) < SAID_B - 1, "%zu bytes", strlen(whole));
+}
+
+/* What it left in DIR/stability.csv, for tests that begin there; run once. */
+static void after_one_go(const char *dir, struct said *s)
+{
+    FILE *f;
+    if (whole[0] == '\0') { one_go(dir, s); }
+    f = fopen(said_path(dir, "stability.csv"), "w");
+    CHECK(f != NULL && fputs(whole, f) >= 0 && fclose(f) == 0, "%s", dir);
 }
 
 static int lines(const char *text)
@@ -126,7 +135,7 @@ TEST(a_resumed_sweep_gives_the_same_file)
     char dir[64], rest[64];
     static struct said s;
     strcpy(dir, said_dir());
-    one_go(dir, &s);
+    after_one_go(dir, &s);
     for (size_t i = 0; i < 8; i++) {
         const long size = (long)strlen(whole);
         const long cut[] = {0, 30, (long)(strchr(whole, '\n') - whole) + 5, size / 3, size / 2, size - 1,
@@ -152,7 +161,7 @@ TEST(an_interrupted_sweep_keeps_its_cells)
     pid_t pid;
     int known;
     strcpy(dir, said_dir());
-    one_go(dir, &s);
+    after_one_go(dir, &s);
     path = said_path(dir, "stability.csv");
     for (int i = 0; i < 10; i++) { /* a busy machine may let it end first: again */
         remove(path);
@@ -185,7 +194,7 @@ TEST(shards_make_the_whole)
     strcpy(dir, said_dir());
     strcpy(shards, said_dir());
     strcpy(strung, said_dir());
-    one_go(dir, &s);
+    after_one_go(dir, &s);
     for (int i = 0; i < 3; i++) {
         said(&s, shards, cli_drop, WORDS(SMALL(shards), "--shard", part[i]));
         CHECK(s.status == 0, "%d: %s", s.status, s.err);
@@ -227,7 +236,7 @@ TEST(a_file_of_other_settings_is_refused_by_name)
     };
     const char *dir = said_dir();
     static struct said s;
-    one_go(dir, &s);
+    after_one_go(dir, &s);
     for (size_t i = 0; i < LEN(row); i++) {
         said(&s, dir, cli_drop, WORDS(SMALL(dir), row[i].word[0], row[i].word[1]));
         CHECK(s.status == 2 && strstr(s.err, row[i].says), "row %zu: %d: %s", i, s.status, s.err);
@@ -257,7 +266,7 @@ TEST(a_damaged_file_is_refused_by_line)
     };
     static struct said s;
     const char *dir = said_dir();
-    one_go(dir, &s);
+    after_one_go(dir, &s);
     for (size_t i = 0; i < LEN(row); i++) {
         FILE *f = fopen(said_path(dir, "stability.csv"), "w");
         const char *cells = strchr(strchr(whole, '\n') + 1, '\n') + 1;
