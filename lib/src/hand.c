@@ -5,6 +5,8 @@
 #include "exhand/fix.h"
 #include "exhand/units.h"
 
+#include "sincos.h"
+
 #define ARM_MAX_M_Q30  EXH_Q(50, 1000, EXH_Q_POS)
 #define PAD_MAX_M_Q30  EXH_Q(25, 1000, EXH_Q_POS)
 #define ARM_MIN_M_Q30  EXH_Q(4, 1000, EXH_Q_POS)
@@ -124,109 +126,101 @@ int exh_hand_setup(struct exh_hand_finger *f, const struct exh_hand_bones *bones
     return 0;
 }
 
-/* The finger in the plane it bends in, beside its sideways turn. */
+/* With lengths l0, l1, l2 and q3 = q2 the tip lies, along and across the first bone,
+ *   along  = l0 + l1 cos q2 + l2 cos 2 q2 = l0 - l2 + M cos q2
+ *   across =      l1 sin q2 + l2 sin 2 q2 =           M sin q2,    M = l1 + 2 l2 cos q2,
+ * which saves sine and cosine of every sum of joints. */
 struct pose {
-    struct exh_sincos side; /* q0                                            */
-    struct exh_sincos bone[3]; /* direction of each bone: q1, q1 + q2, q1 + 2 q2  */
-    int32_t out_m_q34, up_m_q34; /* the tip along the straight finger, and towards z */
+    struct exh_sincos q0, q1, q2;
+    int_fast32_t fold_m_q33; /* M */
+    int_fast32_t along_m_q34, across_m_q34;
 };
 
-/* Sine and cosine of a sum. May pass +-2^30 by 5 LSB. */
-static inline struct exh_sincos sum_of(struct exh_sincos a, struct exh_sincos b)
+/* floor(a*b / 2^n) of 32-bit values, as is the result, in a type as wide as the machine likes. */
+static inline int_fast32_t part(int_fast32_t a, int_fast32_t b, unsigned n)
 {
-    const struct exh_sincos y = {
-        (int32_t)(((int64_t)a.sin_q30 * b.cos_q30 + (int64_t)a.cos_q30 * b.sin_q30) >> 30),
-        (int32_t)(((int64_t)a.cos_q30 * b.cos_q30 - (int64_t)a.sin_q30 * b.sin_q30) >> 30)};
-    return y;
+    return (int_fast32_t)((int64_t)a * b >> n);
 }
 
-static inline void bend(struct pose *p, const int32_t len_m_q34[3], const int32_t *joint_turn_q32)
+static inline struct pose pose_of(const int32_t len_m_q34[3], const int32_t *joint_turn_q32)
 {
-    struct exh_sincos middle;
-    exh_sincos(joint_turn_q32[0], &p->side);
-    exh_sincos(joint_turn_q32[1], &p->bone[0]);
-    exh_sincos(joint_turn_q32[2], &middle);
-    p->bone[1] = sum_of(p->bone[0], middle);
-    p->bone[2] = sum_of(p->bone[1], middle);
-    p->out_m_q34 = (int32_t)(((int64_t)len_m_q34[0] * p->bone[0].cos_q30 +
-                              (int64_t)len_m_q34[1] * p->bone[1].cos_q30 +
-                              (int64_t)len_m_q34[2] * p->bone[2].cos_q30) >>
-                             30);
-    p->up_m_q34 = (int32_t)(((int64_t)len_m_q34[0] * p->bone[0].sin_q30 +
-                             (int64_t)len_m_q34[1] * p->bone[1].sin_q30 +
-                             (int64_t)len_m_q34[2] * p->bone[2].sin_q30) >>
-                            30);
+    const int_fast32_t l0 = len_m_q34[0], l1 = len_m_q34[1], l2 = len_m_q34[2];
+    struct pose p;
+    p.q2 = sincos_in_place(joint_turn_q32[2]);
+    p.fold_m_q33 = (l1 >> (34 - 33)) + part(l2, p.q2.cos_q30, 34 + 30 - 33 - 1);
+    p.along_m_q34 = l0 - l2 + part(p.fold_m_q33, p.q2.cos_q30, 33 + 30 - 34);
+    p.across_m_q34 = part(p.fold_m_q33, p.q2.sin_q30, 33 + 30 - 34);
+    p.q1 = sincos_in_place(joint_turn_q32[1]);
+    p.q0 = sincos_in_place(joint_turn_q32[0]);
+    return p;
+}
+
+/* A vector in the axes of the finger's base. */
+struct base3 {
+    int_fast32_t x, y, z;
+};
+
+/* (along, across) turned by q1, then by q0 about z; same format. */
+static inline struct base3 turned(const struct pose *p, int_fast32_t along, int_fast32_t across)
+{
+    const int64_t out = (int64_t)along * p->q1.cos_q30 - (int64_t)across * p->q1.sin_q30;
+    const int64_t up = (int64_t)along * p->q1.sin_q30 + (int64_t)across * p->q1.cos_q30;
+    const int_fast32_t far = (int_fast32_t)(out >> 30);
+    const struct base3 v = {part(p->q0.cos_q30, far, 30), part(p->q0.sin_q30, far, 30),
+                            (int_fast32_t)(up >> 30)};
+    return v;
 }
 
 /* One coordinate in the palm. Three products lose half an LSB of q32 each, which the 3 gives back
  * (1.5, and 2 to round). */
-static inline int32_t palm_m_q30(int32_t base_m_q32, const int32_t row_q30[3],
-                                 const struct exh_vec3 *v_m_q34)
+static inline int32_t place_m_q30(int32_t base_m_q32, const int32_t row_q30[3], struct base3 v_m_q34)
 {
-    return (base_m_q32 + exh_mul_hi(row_q30[0], v_m_q34->x) + exh_mul_hi(row_q30[1], v_m_q34->y) +
-            exh_mul_hi(row_q30[2], v_m_q34->z) + 3) >>
+    return (int32_t)(base_m_q32 + part(row_q30[0], v_m_q34.x, 32) + part(row_q30[1], v_m_q34.y, 32) +
+                     part(row_q30[2], v_m_q34.z, 32) + 3) >>
            (32 - 30);
 }
 
 static inline void tip_of(const struct pose *p, const struct exh_hand_bones *b,
                           struct exh_vec3 *tip_m_q30)
 {
-    const struct exh_vec3 v_m_q34 = {(int32_t)((int64_t)p->side.cos_q30 * p->out_m_q34 >> 30),
-                                     (int32_t)((int64_t)p->side.sin_q30 * p->out_m_q34 >> 30),
-                                     p->up_m_q34};
-    tip_m_q30->x = palm_m_q30(b->base_m_q32[0], b->rot_q30[0], &v_m_q34);
-    tip_m_q30->y = palm_m_q30(b->base_m_q32[1], b->rot_q30[1], &v_m_q34);
-    tip_m_q30->z = palm_m_q30(b->base_m_q32[2], b->rot_q30[2], &v_m_q34);
+    const struct base3 v_m_q34 = turned(p, p->along_m_q34, p->across_m_q34);
+    tip_m_q30->x = place_m_q30(b->base_m_q32[0], b->rot_q30[0], v_m_q34);
+    tip_m_q30->y = place_m_q30(b->base_m_q32[1], b->rot_q30[1], v_m_q34);
+    tip_m_q30->z = place_m_q30(b->base_m_q32[2], b->rot_q30[2], v_m_q34);
 }
 
 void exh_hand_tip(const struct exh_hand_finger *f, const int32_t *joint_turn_q32,
                   struct exh_vec3 *tip_m_q30)
 {
-    struct pose p;
-    bend(&p, f->bones->len_m_q34, joint_turn_q32);
+    const struct pose p = pose_of(f->bones->len_m_q34, joint_turn_q32);
     tip_of(&p, f->bones, tip_m_q30);
 }
 
-/* x*a + y*b of a length in q34 and a pull in q20, as q24: |sum| < 67 * 2^54. */
-static inline int32_t rate_q24(int32_t x_m_q34, int32_t a_radpm_q20, int32_t y_m_q34,
-                               int32_t b_radpm_q20)
+static inline int32_t turned_q24(const int32_t row_q30[3], struct base3 v_q24)
 {
-    return (
-        int32_t)(((int64_t)x_m_q34 * a_radpm_q20 + (int64_t)y_m_q34 * b_radpm_q20 + (1 << 29)) >>
-                 (34 + 20 - 24));
+    const int64_t sum_q54 = (int64_t)row_q30[0] * v_q24.x + (int64_t)row_q30[1] * v_q24.y +
+                            (int64_t)row_q30[2] * v_q24.z;
+    return (int32_t)exh_shr_round(sum_q54, 54 - 24);
 }
 
-static inline int32_t turned_q24(const int32_t row_q30[3], const struct exh_vec3 *v_q24)
-{
-    return (int32_t)(((int64_t)row_q30[0] * v_q24->x + (int64_t)row_q30[1] * v_q24->y +
-                      (int64_t)row_q30[2] * v_q24->z + (1 << 29)) >>
-                     30);
-}
-
+/* As q1 turns, the tip moves by (-across, along); as q2 turns, and q3 with it, by
+ * (-K sin q2, K cos q2 - 2 l2), K = 2 M - l1. */
 void exh_hand_tip_slope(const struct exh_hand_finger *f, const int32_t *joint_turn_q32,
                         struct exh_vec3 *tip_m_q30, struct exh_vec3 *slope_q24)
 {
     const struct exh_hand_bones *b = f->bones;
-    const int32_t *pull = f->pull_radpm_q20;
-    struct pose p;
-    struct exh_vec3 v_q24;
-    int32_t out2_m_q34, up2_m_q34, rate_out_q24;
+    const struct pose p = pose_of(b->len_m_q34, joint_turn_q32);
+    const int_fast32_t k_m_q32 = p.fold_m_q33 - (b->len_m_q34[1] >> (34 - 32));
+    const int_fast32_t along_m_q33 = -part(k_m_q32, p.q2.sin_q30, 32 + 30 - 33);
+    const int_fast32_t across_m_q33 = part(k_m_q32, p.q2.cos_q30, 32 + 30 - 33) - b->len_m_q34[2];
+    const int64_t w1_radpm_q20 = f->pull_radpm_q20[0], w2_radpm_q20 = f->pull_radpm_q20[1];
+    const int64_t along_q54 = 2 * w2_radpm_q20 * along_m_q33 - w1_radpm_q20 * p.across_m_q34;
+    const int64_t across_q54 = 2 * w2_radpm_q20 * across_m_q33 + w1_radpm_q20 * p.along_m_q34;
+    const struct base3 v_q24 = turned(&p, (int_fast32_t)exh_shr_round(along_q54, 54 - 24),
+                                      (int_fast32_t)exh_shr_round(across_q54, 54 - 24));
 
-    bend(&p, b->len_m_q34, joint_turn_q32);
     tip_of(&p, b, tip_m_q30);
-
-    /* A radian of q2 turns the last bone by two: lever arms of the tip about q2. */
-    out2_m_q34 = (int32_t)(((int64_t)b->len_m_q34[1] * p.bone[1].cos_q30 +
-                            2 * (int64_t)b->len_m_q34[2] * p.bone[2].cos_q30) >>
-                           30);
-    up2_m_q34 = (int32_t)(((int64_t)b->len_m_q34[1] * p.bone[1].sin_q30 +
-                           2 * (int64_t)b->len_m_q34[2] * p.bone[2].sin_q30) >>
-                          30);
-    rate_out_q24 = rate_q24(-p.up_m_q34, pull[0], -up2_m_q34, pull[1]);
-    v_q24.x = (int32_t)((int64_t)p.side.cos_q30 * rate_out_q24 >> 30);
-    v_q24.y = (int32_t)((int64_t)p.side.sin_q30 * rate_out_q24 >> 30);
-    v_q24.z = rate_q24(p.out_m_q34, pull[0], out2_m_q34, pull[1]);
-    slope_q24->x = turned_q24(b->rot_q30[0], &v_q24);
-    slope_q24->y = turned_q24(b->rot_q30[1], &v_q24);
-    slope_q24->z = turned_q24(b->rot_q30[2], &v_q24);
+    slope_q24->x = turned_q24(b->rot_q30[0], v_q24);
+    slope_q24->y = turned_q24(b->rot_q30[1], v_q24);
+    slope_q24->z = turned_q24(b->rot_q30[2], v_q24);
 }

@@ -11,8 +11,8 @@
 #define ONE_Q30 (INT64_C(1) << 30)
 #define Q60     60u
 
-/* Of angle.h, 2.4 LSB of q30, as q60. */
-#define BOUND_Q60 ((INT64_C(24) << 30) / 10)
+/* Of angle.h, 2.25 LSB of q30. */
+#define BOUND_Q60 (INT64_C(9) << (60 - 30 - 2))
 
 /* --- the oracle --- */
 

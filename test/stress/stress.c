@@ -1,6 +1,6 @@
 /* Stress: the drop scene at and beyond the ends of its ranges, alone and in closed loop
- * over the simulated device. `make stress` builds it with -fsanitize=address,undefined,
- * runs it, and runs the property tests with EXH_CASES=100000000 for the laws themselves.
+ * over the simulated device; and sine and cosine of every angle there is. `make stress` builds
+ * it with -fsanitize=address,undefined, runs it, and runs the property tests with EXH_CASES=100000000 for the laws themselves.
  *
  * Prints one table: case, what must hold besides the rules below, what held, ok or FAIL.
  * Exit status 1 on any FAIL. In every tick of every case must hold:
@@ -21,6 +21,7 @@
 
 int main(void)
 {
+    int failed;
     exh_scene_drop.defaults(); /* its table is the one the rig uses */
     printf("In every tick: output, ledgers, force, slew, code, current, heat, signals (see "
            "test/stress/stress.c).\n");
@@ -29,6 +30,7 @@ int main(void)
     random_parameters();
     heats();
     wraps();
-    printf("%d failed\n", failures());
-    return failures() != 0;
+    failed = failures() + every_angle();
+    printf("%d failed\n", failed);
+    return failed != 0;
 }

@@ -88,5 +88,7 @@ void open_loops(void);
 void random_parameters(void);
 void heats(void);
 void wraps(void);
+/* 1 if any angle is wrong. */
+int every_angle(void);
 
 #endif
