@@ -167,7 +167,7 @@ pc104_row()
 }
 
 mkdir -p "$b"
-[ $# -gt 0 ] || set -- minimal drop
+[ $# -gt 0 ] || set -- minimal drop glove
 : >"$b/table.txt"
 for scene in "$@"; do
     [ -r "examples/$scene/scene.mk" ] || { note "$scene: no examples/$scene/scene.mk"; continue; }

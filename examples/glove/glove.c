@@ -1,0 +1,236 @@
+#include "glove.h"
+
+#include "exhand/board.h"
+
+#define OWN_AT    (EXH_GLOVE_ROWS + EXH_HAND_ROWS)
+#define OWN_ROWS  4
+#define CAL_ROWS  8
+#define CAL_AT    (OWN_AT + OWN_ROWS)
+#define PARAMS    (CAL_AT + CAL_ROWS * EXH_GLOVE_SENSORS)
+
+#define ALL_SENSORS ((1 << EXH_GLOVE_SENSORS) - 1)
+
+static const struct exh_signal own_rows[OWN_ROWS] = {
+    {0x8401, 0, EXH_WHEN_SETUP, 1, 1000, 1, "every", "", "ticks from one glove frame to the next"},
+    {0x8402, 0, EXH_WHEN_SETUP, INT32_MIN, INT32_MAX, 0, "user", "", "whose calibration it is"},
+    {0x8403, 0, EXH_WHEN_SETUP, INT32_MIN, INT32_MAX, 0, "glove", "", "and of which glove"},
+    {0x8404, 0, EXH_WHEN_SETUP, 1, ALL_SENSORS, ALL_SENSORS, "present", "", "sensors that are there, bits"},
+};
+
+/* Instances: the sensors. What is allowed together glove.h says, and set-up asks. */
+static const struct exh_signal cal_rows[CAL_ROWS] = {
+    {0x8410, 15, EXH_WHEN_SETUP, INT32_MIN, INT32_MAX, 0, "cal_zero", "", "code of angle 0"},
+    {0x8411, 38, EXH_WHEN_SETUP, INT32_MIN, INT32_MAX, 0, "cal_gain", "turn", "angle per code"},
+    {0x8412, 30, EXH_WHEN_SETUP, INT32_MIN, INT32_MAX, 0, "cal_cross0", "", "of the angle of cal_of0"},
+    {0x8413, 30, EXH_WHEN_SETUP, INT32_MIN, INT32_MAX, 0, "cal_cross1", "", "of the angle of cal_of1"},
+    {0x8414, 0, EXH_WHEN_SETUP, INT16_MIN, INT16_MAX, 0, "cal_low", "", "lowest code calibrated"},
+    {0x8415, 0, EXH_WHEN_SETUP, INT16_MIN, INT16_MAX, 0, "cal_high", "", "highest code calibrated"},
+    {0x8416, 0, EXH_WHEN_SETUP, 0, 255, 255, "cal_of0", "", "sensor that pulls this one along, 255 none"},
+    {0x8417, 0, EXH_WHEN_SETUP, 0, 255, 255, "cal_of1", "", "another"},
+};
+
+#define ANGLE(i, name, help) \
+    {(uint16_t)(0x8501 + (i)), 32, EXH_WHEN_OUTPUT, INT32_MIN, INT32_MAX, 0, (name), "turn", (help)}
+#define JOINT(i, name, help) \
+    {(uint16_t)(0x8521 + (i)), 32, EXH_WHEN_OUTPUT, INT32_MIN, INT32_MAX, 0, (name), "turn", (help)}
+#define TIP(i, name, help) \
+    {(uint16_t)(0x8541 + (i)), EXH_Q_POS, EXH_WHEN_OUTPUT, INT32_MIN, INT32_MAX, 0, (name), "m", (help)}
+
+static const struct exh_signal signal_rows[] = {
+    ANGLE(0, "thumb_rotate", "glove: thumb across the palm"),
+    ANGLE(1, "thumb_mpj", "thumb, middle joint"),
+    ANGLE(2, "thumb_ij", "thumb, last joint"),
+    ANGLE(3, "thumb_ab", "thumb to index"),
+    ANGLE(4, "index_mpj", "knuckle"),
+    ANGLE(5, "index_pij", "middle joint"),
+    ANGLE(6, "index_dij", "last joint"),
+    ANGLE(7, "middle_mpj", "knuckle"),
+    ANGLE(8, "middle_pij", "middle joint"),
+    ANGLE(9, "middle_dij", "last joint"),
+    ANGLE(10, "middle_index_ab", "between the two"),
+    ANGLE(11, "ring_mpj", "knuckle"),
+    ANGLE(12, "ring_pij", "middle joint"),
+    ANGLE(13, "ring_dij", "last joint"),
+    ANGLE(14, "ring_middle_ab", "between the two"),
+    ANGLE(15, "pinkie_mpj", "knuckle"),
+    ANGLE(16, "pinkie_pij", "middle joint"),
+    ANGLE(17, "pinkie_dij", "last joint"),
+    ANGLE(18, "pinkie_ring_ab", "between the two"),
+    ANGLE(19, "palm_arch", "hollow of the palm"),
+    ANGLE(20, "wrist_pitch", "up"),
+    ANGLE(21, "wrist_yaw", "out"),
+    {0x8517, 0, EXH_WHEN_OUTPUT, 0, ALL_SENSORS, 0, "glove_faults", "", "sensors not believed, bits"},
+    JOINT(0, "thumb_q0", "robot: sideways"),
+    JOINT(1, "thumb_q1", "knuckle"),
+    JOINT(2, "thumb_q2", "middle joint, the last follows it"),
+    JOINT(3, "index_q0", "sideways"),
+    JOINT(4, "index_q1", "knuckle"),
+    JOINT(5, "index_q2", "middle joint"),
+    JOINT(6, "middle_q0", "sideways"),
+    JOINT(7, "middle_q1", "knuckle"),
+    JOINT(8, "middle_q2", "middle joint"),
+    JOINT(9, "ring_q0", "sideways"),
+    JOINT(10, "ring_q1", "knuckle"),
+    JOINT(11, "ring_q2", "middle joint"),
+    JOINT(12, "little_q0", "sideways"),
+    JOINT(13, "little_q1", "knuckle"),
+    JOINT(14, "little_q2", "middle joint"),
+    {0x8530, 0, EXH_WHEN_OUTPUT, 0, (1 << 15) - 1, 0, "clamped", "", "joints at a limit, bits"},
+    TIP(0, "thumb_x", "fingertip P_F in the palm's frame"),
+    TIP(1, "thumb_y", ""),
+    TIP(2, "thumb_z", ""),
+    TIP(3, "index_x", ""),
+    TIP(4, "index_y", ""),
+    TIP(5, "index_z", ""),
+    TIP(6, "middle_x", ""),
+    TIP(7, "middle_y", ""),
+    TIP(8, "middle_z", ""),
+    TIP(9, "ring_x", ""),
+    TIP(10, "ring_y", ""),
+    TIP(11, "ring_z", ""),
+    TIP(12, "little_x", ""),
+    TIP(13, "little_y", ""),
+    TIP(14, "little_z", ""),
+    {0x8550, 0, EXH_WHEN_OUTPUT, 0, UINT16_MAX, 0, "age", "", "ticks since the frame was converted"},
+};
+#define SIGNALS (sizeof signal_rows / sizeof signal_rows[0])
+
+static const struct exh_signal_group param_groups[] = {{exh_glove_rows, EXH_GLOVE_ROWS, 1},
+                                                       {exh_hand_rows, EXH_HAND_ROWS, 1},
+                                                       {own_rows, OWN_ROWS, 1},
+                                                       {cal_rows, CAL_ROWS, EXH_GLOVE_SENSORS}};
+static const struct exh_signal_table param_table = {param_groups, 4};
+static const struct exh_signal_group signal_groups[] = {{signal_rows, SIGNALS, 1}};
+static const struct exh_signal_table signal_table = {signal_groups, 1};
+
+EXH_STATIC_ASSERT(glove_par_matches_rows, sizeof(struct glove_par) == PARAMS * sizeof(int32_t));
+EXH_STATIC_ASSERT(glove_signals_match_rows,
+                  sizeof(struct glove_signals) == SIGNALS * sizeof(int32_t));
+
+/* --- calibration --- */
+
+void glove_par_of_cal(struct glove_par *par, const struct exh_glove_cal *cal)
+{
+    par->own.user_id = exh_from_u32(cal->user_id);
+    par->own.glove_id = exh_from_u32(cal->glove_id);
+    par->own.present = (int32_t)cal->present;
+    for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
+        const struct exh_glove_sensor *s = &cal->sensor[i];
+        par->sensor[i] = (struct glove_sensor_par){
+            s->zero_raw_q15, s->gain_turnpraw_q38,  {s->cross_q30[0], s->cross_q30[1]},
+            s->low_raw,      s->high_raw, {s->of[0], s->of[1]}};
+    }
+}
+
+void glove_cal_of_par(struct exh_glove_cal *cal, const struct glove_par *par)
+{
+    *cal = (struct exh_glove_cal){.user_id = (uint32_t)par->own.user_id,
+                                  .glove_id = (uint32_t)par->own.glove_id,
+                                  .present = (uint32_t)par->own.present};
+    for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
+        const struct glove_sensor_par *s = &par->sensor[i];
+        cal->sensor[i] = (struct exh_glove_sensor){
+            s->zero_raw_q15, s->gain_turnpraw_q38, {s->cross_q30[0], s->cross_q30[1]},
+            (int16_t)s->low_raw, (int16_t)s->high_raw, {(uint8_t)s->of[0], (uint8_t)s->of[1]}};
+    }
+}
+
+/* --- frame --- */
+
+int glove_setup(struct glove_cfg *cfg, const struct glove_par *par, struct exh_period T)
+{
+    int err;
+    glove_cal_of_par(&cfg->cal, par);
+    err = exh_glove_setup(&cfg->glove, &par->glove, &cfg->cal, T);
+    for (unsigned f = 0; err == 0 && f < EXH_HAND_FINGERS; f++) {
+        err = exh_hand_setup(&cfg->finger[f], &exh_hit2_bones[f], &par->hand);
+    }
+    return err;
+}
+
+void glove_frame(struct glove *s, const struct glove_cfg *cfg, const struct exh_glove_in *in)
+{
+    struct glove_signals *sig = &s->sig;
+    uint32_t clamped = 0;
+    sig->faults = (int32_t)exh_glove_step(&s->glove, &cfg->glove, in, sig->angle_turn_q32);
+    for (unsigned f = 0; f < EXH_HAND_FINGERS; f++) {
+        int32_t *joint = sig->joint_turn_q32[f];
+        clamped |= exh_hand_joints(&exh_hit2_map, f, sig->angle_turn_q32, joint)
+                   << (EXH_HAND_JOINTS * f);
+        exh_hand_tip(&cfg->finger[f], joint, &sig->tip_m_q30[f]);
+    }
+    sig->clamped = (int32_t)clamped;
+}
+
+/* --- the one instance of this image --- */
+
+static struct glove_par active, staged;
+static struct exh_params params;
+static struct glove_signals signals;
+static struct glove_cfg cfg;
+static struct glove state;
+
+/* Nothing to drive: the gate stays shut, and makes the frame, as it makes all. */
+static const struct exh_drive_par idle_par = {.dac_zero_raw = 32768};
+static const struct exh_drive_cfg idle_cfg = {.par = &idle_par};
+static struct exh_safety shut;
+
+static void defaults(void)
+{
+    exh_params_init(&params, &param_table, (int32_t *)&active, (int32_t *)&staged);
+    glove_par_of_cal(&active, &exh_glove_cal_default);
+    staged = active;
+}
+
+int glove_stage_cal(const struct exh_glove_cal *cal, struct exh_glove_bad *bad)
+{
+    const int err = exh_glove_cal_valid(cal, bad);
+    if (err == 0) {
+        glove_par_of_cal(&staged, cal);
+        params.pending = 1;
+    }
+    return err;
+}
+
+static int setup(struct exh_scene_board board)
+{
+    const uint64_t num = (uint64_t)board.T.num * (uint32_t)active.own.every;
+    static const struct glove power_on;
+    state = power_on;
+    shut = (struct exh_safety){.fingers = 1};
+    if (num > UINT32_MAX) { return -EXH_E_RATE; }
+    return glove_setup(&cfg, &active, (struct exh_period){(uint32_t)num, board.T.den});
+}
+
+static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
+{
+    struct exh_current_ledger none = {0};
+    uint32_t limits = 0;
+    if (in->glove_new) { glove_frame(&state, &cfg, &in->glove); }
+    state.sig.age_ticks = in->glove.age_ticks;
+    signals = state.sig;
+    exh_gate(&shut, &idle_cfg, 1, &none, &limits, out);
+}
+
+static void state_bytes(struct exh_bytes *c)
+{
+    int32_t *held = (int32_t *)&state.sig; /* what the next ticks show again */
+    exh_glove_bytes(c, &state.glove);
+    for (unsigned i = 0; i < SIGNALS; i++) { exh_bytes_i32(c, &held[i]); }
+    exh_safety_bytes(c, &shut);
+}
+
+const struct exh_scene exh_scene_glove = {
+    .name = "glove",
+    .rate_Hz = 2000,
+    .fingers = 0,
+    .params = &params,
+    .signals = &signal_table,
+    .signal = (int32_t *)&signals,
+    .read_glove = exh_board_read_glove,
+    .glove_every = &active.own.every,
+    .defaults = defaults,
+    .setup = setup,
+    .tick = tick,
+    .state = state_bytes,
+};
