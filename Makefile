@@ -86,7 +86,7 @@ $(image): $(image_obj) $(lib) $(PORT_LDSCRIPT)
 
 # The host program: every scene that has a subcommand, over the simulated device.
 cli_src := $(wildcard ports/posix/cli/*.c ports/posix/fit/*.c) examples/log.c examples/drop/drop.c \
-           examples/calibrate/calibrate.c
+           examples/calibrate/calibrate.c examples/glove/glove.c
 cli_obj := $(cli_src:%.c=$(B)/posix/%.o)
 sim_obj := $(patsubst %.c,$(B)/posix/%.o,$(wildcard ports/posix/*.c ports/posix/sim/*.c)) \
            $(B)/posix/examples/loop.o

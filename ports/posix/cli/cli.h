@@ -6,6 +6,7 @@
 int cli_calibrate(int argc, char **argv);
 int cli_calibrate_glove(int argc, char **argv); /* `exhand calibrate --glove` */
 int cli_drop(int argc, char **argv);
+int cli_glove(int argc, char **argv);
 int cli_fit(int argc, char **argv);
 int cli_csv(int argc, char **argv);
 int cli_replay(int argc, char **argv);

@@ -18,6 +18,7 @@ struct walk {
     struct logfile *log;
     unsigned what;
     uint64_t tick;  /* of the row                                              */
+    struct exh_scene_in in;
     int32_t fall;   /* the last mark: 0 between falls                          */
     uint32_t rows;
     uint32_t malformed; /* records of another length than they must have        */
@@ -36,19 +37,18 @@ static void take_mark(struct walk *w, const struct exh_record *r)
     }
 }
 
-/* The next row, its values in the scene's signals; 0 at the end. */
+/* The next row, its values in the scene's signals and w->in; 0 at the end. */
 static int next_row(struct walk *w)
 {
     struct exh_record r;
     struct exh_drive_out out;
-    struct exh_scene_in in;
     while (logfile_next(w->log, &r)) {
         struct exh_bytes c = exh_bytes_reader(r.payload, r.len_B);
         if (r.type == EXH_RECORD_EVENT) { take_mark(w, &r); }
         if (r.type != EXH_RECORD_FRAME) { continue; }
         if ((w->what & CSV_FALLS) && w->fall == 0) { continue; }
-        memset(&in, 0, sizeof in);
-        exh_log_frame_bytes(&c, w->log->scene, &in, &out, w->log->scene->signal);
+        memset(&w->in, 0, sizeof w->in);
+        exh_log_frame_bytes(&c, w->log->scene, &w->in, &out, w->log->scene->signal);
         if (!exh_bytes_ok(&c) || c.at != r.len_B) {
             w->malformed++;
         } else if (w->rows > 0 && w->log->tick <= w->tick) {
@@ -70,23 +70,25 @@ static uint32_t columns(const struct exh_signal_table *t, unsigned what)
     return what & CSV_ALL ? exh_signal_count(t) : t->group[0].rows;
 }
 
-static void header_line(FILE *to, const struct exh_signal_table *t, uint32_t n)
+static void header_line(FILE *to, const struct exh_signal_table *t, uint32_t n, int glove)
 {
     fprintf(to, "t_s");
     for (uint32_t i = 0; i < n; i++) {
         const struct exh_signal *r = exh_signal_at(t, i, NULL);
         fprintf(to, ",%s%s%s", r->name, r->unit[0] ? "_" : "", r->unit);
     }
+    for (int i = 0; glove && i < EXH_GLOVE_SENSORS; i++) { fprintf(to, ",raw%d", i); }
     fputc('\n', to);
 }
 
 static void line(FILE *to, const struct exh_signal_table *t, uint32_t n, double t_s,
-                 const int32_t *v)
+                 const int32_t *v, const int16_t *raw)
 {
     fprintf(to, "%.9f", t_s);
     for (uint32_t i = 0; i < n; i++) {
         fprintf(to, ",%.9g", cli_signal_value(exh_signal_at(t, i, NULL), v[i]));
     }
+    for (int i = 0; raw && i < EXH_GLOVE_SENSORS; i++) { fprintf(to, ",%d", raw[i]); }
     fputc('\n', to);
 }
 
@@ -95,9 +97,11 @@ static int write_rows(struct walk *w, FILE *to)
     const struct exh_scene *sc = w->log->scene;
     const struct exh_period T = w->log->header.T;
     const uint32_t n = columns(sc->signals, w->what);
-    header_line(to, sc->signals, n);
+    const int glove = sc->read_glove && (w->what & CSV_ALL); /* the codes, too */
+    header_line(to, sc->signals, n, glove);
     while (next_row(w)) {
-        line(to, sc->signals, n, (double)w->tick * T.num / T.den, sc->signal);
+        line(to, sc->signals, n, (double)w->tick * T.num / T.den, sc->signal,
+             glove ? w->in.glove.raw : NULL);
     }
     return ferror(to) || fflush(to) != 0;
 }
@@ -166,7 +170,7 @@ int cli_csv(int argc, char **argv)
     const char *out = NULL;
     const struct cli_option option[] = {
         {"out", CLI_TEXT, &out, 0, 0, "FILE", "write there instead of standard output"},
-        {"all", CLI_FLAG, &all, 0, 0, NULL, "limits, state and faults too"},
+        {"all", CLI_FLAG, &all, 0, 0, NULL, "limits, state and faults too; of a glove, its codes"},
         {"falls", CLI_FLAG, &falls, 0, 0, NULL,
          "falls under observation alone, a gap in t_s between two: what Table II is made of"},
     };

@@ -3,7 +3,7 @@
 #define CLI_CSV_H
 
 enum csv_what {
-    CSV_ALL = 1,  /* the scene's further signals too, not only the paper's       */
+    CSV_ALL = 1,  /* the scene's further signals too, not only the paper's; codes */
     CSV_FALLS = 2 /* only falls under observation, by the log's marks: what the
                      experimenter's hand did between them leaves a gap in time   */
 };

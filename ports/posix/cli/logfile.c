@@ -3,6 +3,7 @@
 #include "option.h"
 
 #include "drop/drop.h"
+#include "glove/glove.h"
 
 #include "exhand/error.h"
 #include "exhand/exhand.h"
@@ -12,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const struct exh_scene *const scenes[] = {&exh_scene_drop};
+static const struct exh_scene *const scenes[] = {&exh_scene_drop, &exh_scene_glove};
 
 static const struct exh_scene *scene_by_name(const char *name)
 {
@@ -47,7 +48,7 @@ static int read_header(struct logfile *l)
     struct exh_bytes c;
     if (!logfile_next(l, &r) || r.type != EXH_RECORD_HEADER) {
         return complain(l, "not a log: it does not start with a header: give a file made by "
-                           "`exhand drop --out DIR`");
+                           "`exhand drop --out DIR` or `exhand glove --record FILE`");
     }
     c = exh_bytes_reader(r.payload, r.len_B);
     exh_record_header_bytes(&c, &l->header);

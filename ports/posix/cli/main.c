@@ -15,6 +15,7 @@ static const struct {
     {"calibrate", "known masses, F0 and home: tables of force and current; or --glove, poses", cli_calibrate},
     {"drop", "the paper's falling-mass experiment on the simulated device", cli_drop},
     {"fit", "a plant that does what the paper's device did, by every reading", cli_fit},
+    {"glove", "glove codes to stable angles and fingertips; the paper's Table I", cli_glove},
     {"csv", "a log as comma-separated values", cli_csv},
     {"replay", "the recorded inputs again, every output compared bit for bit", cli_replay},
     {"diagram", "a block diagram made from the signal and device tables", cli_diagram},

@@ -1,0 +1,324 @@
+/* exhand glove: the glove's Table I, recordings as stable angles, the scan's skew, logs. */
+#include "glove.h"
+
+#include "cli.h"
+#include "option.h"
+#include "param.h"
+
+#include "log.h"
+#include "loop.h"
+
+#include "exhand/error.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define NAME_B   32
+#define IMAGE_B  (EXH_GLOVE_CAL_IMAGE_B + 1)
+#define RATE_TOP 20000
+
+/* --- options with a syntax of their own --- */
+
+static int split(const char *option, const char *text, char name[NAME_B], double *value)
+{
+    const char *equals = strchr(text, '=');
+    const size_t len = equals ? (size_t)(equals - text) : NAME_B;
+    char *end = NULL;
+    if (equals != NULL) { *value = strtod(equals + 1, &end); }
+    if (len >= NAME_B || end == equals + 1 || *end != '\0') {
+        cli_complain("--%s: %s: give NAME=VALUE", option, text);
+        return 2;
+    }
+    memcpy(name, text, len);
+    name[len] = '\0';
+    return 0;
+}
+
+static int take_setting(void *ctx, const char *text)
+{
+    struct glove_options *o = ctx;
+    char name[NAME_B];
+    double value;
+    if (split("set", text, name, &value)) { return 2; }
+    if (strncmp(name, "cal_", 4) == 0) {
+        cli_complain("--set: %s: each sensor has its own: give --calibration FILE", name);
+        return 2;
+    }
+    if (strcmp(name, "glove_fc") == 0) { o->fc_given = 1; }
+    return cli_param_set(exh_scene_glove.params, name, value) < 0 ? 2 : 0;
+}
+
+/* One of the motor's device or of the glove's chain: no name is in both. */
+static int take_device(void *ctx, const char *text)
+{
+    struct glove_options *o = ctx;
+    const struct sim_device_row *row;
+    char name[NAME_B];
+    double value;
+    int err;
+    if (split("device", text, name, &value)) { return 2; }
+    err = sim_glove_set(&o->chain, name, value, &row);
+    if (err && row == NULL) { err = sim_device_set(&o->device, name, value, &row); }
+    if (err && row) {
+        cli_complain("--device: %s: %.12g (allowed %.12g..%.12g%s%s): choose a value in that range", name,
+                     value, row->min, row->max, row->unit[0] ? " " : "", row->unit);
+    } else if (err) {
+        cli_complain("--device: %s: no such value of the device: `exhand glove --params` lists them", name);
+    }
+    return err ? 2 : 0;
+}
+
+static void print_params(void)
+{
+    printf("Parameters of the scene (--set NAME=VALUE; those of the calibration come from a file)\n");
+    cli_signal_print(stdout, exh_scene_glove.params->table);
+    printf("\nThe simulated glove and its card (--device NAME=VALUE; `exhand drop --params` lists the "
+           "motor's)\n");
+    for (int i = 0; i < sim_glove_rows; i++) {
+        const struct sim_device_row *r = &sim_glove_row[i];
+        printf("  %-13s %-8s %14.12g  %14.12g .. %-14.12g %-8s %s\n", r->name, r->unit, r->value, r->min,
+               r->max, r->sure, r->help);
+    }
+}
+
+/* --- calibration --- */
+
+static int complain_cal(const char *path, int err, struct exh_glove_bad bad)
+{
+    if (err == -EXH_E_RANGE) {
+        cli_complain("%s: %s of %s: outside its range", path, exh_glove_what_text(bad.what),
+                     exh_glove_sensor_text(bad.at));
+    } else {
+        cli_complain("%s: %s", path, exh_error_text(err));
+    }
+    return 2;
+}
+
+static int load_calibration(const char *path)
+{
+    static struct exh_glove_cal cal;
+    struct exh_glove_bad bad = {0, 0};
+    uint8_t image[IMAGE_B];
+    size_t len;
+    int err;
+    FILE *f = fopen(path, "rb");
+    if (f == NULL) {
+        cli_complain("%s: %s", path, strerror(errno));
+        return 2;
+    }
+    len = fread(image, 1, sizeof image, f);
+    fclose(f);
+    err = exh_glove_cal_load(&cal, image, len, &bad);
+    if (err == 0) { err = glove_stage_cal(&cal, &bad); }
+    return err < 0 ? complain_cal(path, err, bad) : 0;
+}
+
+/* --- a log --- */
+
+static uint32_t last_tick;
+static int64_t last_ticks;
+
+static void before(uint32_t tick, struct exh_scene_in *in)
+{
+    exh_log_before(tick, in);
+}
+
+static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
+{
+    exh_log_after(tick, in, out);
+    last_tick = tick;
+    last_ticks++;
+}
+
+static int find_motion(const struct glove_options *o, struct sim_operator_par *hand)
+{
+    static const char *const does[] = {"rest", "poses", "grasp", "wave"};
+    *hand = sim_operator_default();
+    hand->pose = o->pose ? sim_pose_find(o->pose) : 0;
+    for (int i = 0; i < 4; i++) {
+        if (o->does == NULL || strcmp(o->does, does[i]) == 0) {
+            hand->does = (enum sim_operator_does)i;
+            if (hand->pose >= 0) { return 0; }
+        }
+    }
+    if (hand->pose < 0) {
+        cli_complain("--pose: %s: no such pose:", o->pose);
+        for (int i = 0; i < sim_poses; i++) { fprintf(stderr, "  %-11s %s\n", sim_pose[i].name, sim_pose[i].say); }
+    } else {
+        cli_complain("--does: %s: a hand can rest, poses, grasp or wave", o->does);
+    }
+    return 2;
+}
+
+static int run_logged(const struct glove_options *o, const struct posix_config *c)
+{
+    static const struct exh_loop_hooks hooks = {exh_log_start, before, after};
+    int err;
+    posix_configure(c);
+    last_tick = 0;
+    last_ticks = 0;
+    err = exh_loop(&exh_scene_glove, 0, &hooks);
+    if (err < 0) {
+        cli_complain("%.6g Hz: %s", o->rate_Hz, exh_error_text(err));
+        return 2;
+    }
+    return exh_log_end(last_tick + 1) == 0 ? 0 : 1;
+}
+
+/* The rows of --play: codes as frames, angles through the analog chain. */
+static int play(const struct glove_options *o, struct posix_config *c, struct glove_frames *f,
+                struct recording *r)
+{
+    int err = recording_read(r, o->play, o->unit ? recording_unit_of(o->unit) : RECORDING_GUESS);
+    if (err) { return err; }
+    if (r->codes) {
+        err = glove_frames_of(f, o, o->play);
+        c->frame = (const int16_t(*)[SIM_GLOVE_SENSORS])f->raw;
+        c->frames = f->n;
+    } else {
+        c->hand.does = SIM_RECORD;
+        c->hand.row_rad = (const double(*)[SIM_GLOVE_SENSORS])r->row;
+        c->hand.rows = r->rows;
+        c->hand.row_hz = o->rate_Hz;
+    }
+    return err;
+}
+
+static int record(const struct glove_options *o)
+{
+    struct posix_config c = posix_config_default();
+    struct glove_frames f = {NULL, 0, {0, 0}};
+    struct recording r = {NULL, 0, 0};
+    int err = find_motion(o, &c.hand), closed;
+    if (err == 0 && o->play) { err = play(o, &c, &f, &r); }
+    c.device = o->device;
+    c.glove_par = o->chain;
+    c.seed = (uint64_t)o->seed;
+    c.bench = c.glove = 1;
+    c.T = glove_period(o->rate_Hz);
+    c.max_ticks = (uint32_t)(o->seconds * o->rate_Hz + 0.5);
+    if (err == 0 && (c.log = fopen(o->record, "wb")) == NULL) {
+        cli_complain("%s: %s", o->record, strerror(errno));
+        err = 2;
+    }
+    if (err == 0) {
+        err = run_logged(o, &c);
+        closed = fclose(c.log);
+        if (err == 1 || closed != 0) {
+            cli_complain("%s: can't be written whole", o->record);
+            err = 1;
+        }
+    }
+    free(f.raw);
+    recording_free(&r);
+    return err ? err : posix_interrupted() ? 130 : 0;
+}
+
+/* --- the command --- */
+
+static void interrupted(int sig)
+{
+    (void)sig;
+    posix_interrupt();
+}
+
+static int bad_combination(const char *what)
+{
+    cli_complain("%s: `exhand glove --help` lists the options", what);
+    return 2;
+}
+
+static int check(const struct glove_options *o)
+{
+    if (!o->selftest && !o->csv && !o->skew && !o->record) {
+        return bad_combination("what to do is missing: --selftest, --csv, --skew or --record");
+    }
+    if ((o->skew != 0) + (o->record != NULL) + (o->selftest || o->csv) > 1) {
+        return bad_combination("--skew, --record, and --selftest or --csv: one at a time");
+    }
+    if (o->log && !o->selftest) { return bad_combination("--log: goes with --selftest"); }
+    if (o->csv && o->log) { return bad_combination("--csv and --log: one of them"); }
+    if (o->csv && o->rate_Hz <= 0) { return bad_combination("--csv: --rate HZ says how fast its rows came"); }
+    if (o->log && o->rate_Hz > 0) { return bad_combination("--rate: a log knows its own"); }
+    if (o->unit && recording_unit_of(o->unit) == RECORDING_GUESS) {
+        return bad_combination("--unit: codes, rad, deg or turn");
+    }
+    if ((o->tips || o->deg) && (!o->csv || o->selftest)) {
+        return bad_combination("--tips and --deg: go with --csv");
+    }
+    if (o->play && !o->record) { return bad_combination("--play: goes with --record"); }
+    return 0;
+}
+
+static int run(struct glove_options *o)
+{
+    int err = check(o);
+    if (err == 0 && o->calibration) { err = load_calibration(o->calibration); }
+    if (err) { return err; }
+    signal(SIGINT, interrupted);
+    signal(SIGTERM, interrupted);
+    if (o->record) {
+        if (o->rate_Hz <= 0) { o->rate_Hz = exh_scene_glove.rate_Hz; }
+        return record(o);
+    }
+    return o->skew ? glove_skew(o) : o->selftest ? glove_table1(o) : glove_csv(o);
+}
+
+int cli_glove(int argc, char **argv)
+{
+    static struct glove_options o;
+    int params = 0;
+    const struct cli_call set = {take_setting, &o}, device = {take_device, &o};
+    union {
+        const struct cli_call *view;
+        void *to;
+    } u[2] = {{&set}, {&device}};
+    const struct cli_option option[] = {
+        {"selftest", CLI_FLAG, &o.selftest, 0, 0, NULL, "the paper's Table I, on the board or a recording"},
+        {"csv", CLI_TEXT, &o.csv, 0, 0, "FILE", "a recording: 22 codes or angles a line"},
+        {"log", CLI_TEXT, &o.log, 0, 0, "FILE", "a log made by --record"},
+        {"rate", CLI_REAL, &o.rate_Hz, 0.1, RATE_TOP, "HZ", "of the rows, or of the loop (2000)"},
+        {"tips", CLI_FLAG, &o.tips, 0, 0, NULL, "joints and fingertips of the robot hand too"},
+        {"deg", CLI_FLAG, &o.deg, 0, 0, NULL, "angles in degrees, not radians"},
+        {"unit", CLI_TEXT, &o.unit, 0, 0, "UNIT", "of the rows: codes, rad, deg, turn; else guessed"},
+        {"calibration", CLI_TEXT, &o.calibration, 0, 0, "FILE", "instead of nobody's"},
+        {"skew", CLI_FLAG, &o.skew, 0, 0, NULL, "what the scan's skew does to the fingertips"},
+        {"record", CLI_TEXT, &o.record, 0, 0, "FILE", "run the scene on the simulated glove, log it there"},
+        {"play", CLI_TEXT, &o.play, 0, 0, "FILE", "with --record: the hand does what this recording says"},
+        {"does", CLI_TEXT, &o.does, 0, 0, "WHAT", "with --record: rest, poses, grasp or wave"},
+        {"pose", CLI_TEXT, &o.pose, 0, 0, "NAME", "with --record: begin in this pose"},
+        {"seconds", CLI_REAL, &o.seconds, 0.001, 100000, "S", "how long the board is asked (10)"},
+        {"from", CLI_REAL, &o.from_s, 0, 1e6, "S", "selftest: a recording is at rest from here"},
+        {"to", CLI_REAL, &o.to_s, 0, 1e6, "S", "to here"},
+        {"span", CLI_REAL, &o.span_V, 0.001, 20, "V", "all that a joint's signal can be (20)"},
+        {"travel", CLI_REAL, &o.travel_m, 1e-6, 2, "M", "a finger's string (0.034)"},
+        {"span-current", CLI_REAL, &o.span_A, 0.001, 100, "A", "all that a motor's current can be (6.6)"},
+        {"seed", CLI_INT, &o.seed, 0, 9e15, "N", "of the simulation"},
+        {"set", CLI_CALL, u[0].to, 0, 0, "NAME=VALUE", "a parameter of the scene"},
+        {"device", CLI_CALL, u[1].to, 0, 0, "NAME=VALUE", "one of the simulation"},
+        {"params", CLI_FLAG, &params, 0, 0, NULL, "list both"},
+    };
+    const struct cli_command c = {"glove", "--selftest | --csv FILE --rate HZ | --skew | --record FILE",
+                                  "Glove codes to stable angles and fingertips.", option,
+                                  (int)(sizeof option / sizeof option[0]), 0};
+    int err;
+    memset(&o, 0, sizeof o);
+    o.seconds = 10;
+    o.span_V = 20;
+    o.travel_m = 0.034;
+    o.span_A = 6.6;
+    o.seed = 1;
+    o.device = sim_device_default();
+    o.chain = sim_glove_default();
+    exh_scene_glove.defaults();
+    err = cli_parse(&c, argc, argv, NULL);
+    if (err) { return err == 1 ? 0 : err; }
+    if (params) {
+        print_params();
+        return 0;
+    }
+    return run(&o);
+}

@@ -1,0 +1,50 @@
+/* What the parts of `exhand glove` share. */
+#ifndef CLI_GLOVE_H
+#define CLI_GLOVE_H
+
+#include "recording.h"
+
+#include "posix.h"
+
+#include "glove/glove.h"
+
+#include <stdint.h>
+
+struct glove_options {
+    int selftest, skew, tips, deg;
+    const char *csv, *log, *record, *play, *calibration, *unit, *does, *pose;
+    double rate_Hz;             /* 0: not said                                  */
+    double seconds, from_s, to_s;
+    double travel_m, span_A, span_V;
+    int64_t seed;
+    struct sim_device device;
+    struct sim_glove_par chain;
+    int fc_given;
+};
+
+/* Frames of codes as they came. */
+struct glove_frames {
+    int16_t (*raw)[EXH_GLOVE_SENSORS];
+    long n;
+    struct exh_period T;
+};
+
+/* 1 / rate as a ratio, to 1/1000 Hz. */
+struct exh_period glove_period(double rate_Hz);
+
+/* The scene's parameters as they are staged, and set up from them. A filter that nobody asked
+ * for goes down to a quarter of the rate where it must. 0, or 2 after a line on stderr. */
+int glove_ready(const struct glove_options *o, struct glove_par *par, struct glove_cfg *cfg,
+                struct exh_period T);
+
+/* The codes of a recording; angles through the calibration, backwards. If angles come without
+ * --calibration, a glove is staged whose 65536 codes are one turn, so that each has its code.
+ * 0, or an exit status after a line on stderr. Free raw. */
+int glove_frames_of(struct glove_frames *f, const struct glove_options *o, const char *path);
+
+/* The modes: exit status. */
+int glove_table1(const struct glove_options *o);
+int glove_csv(const struct glove_options *o);
+int glove_skew(const struct glove_options *o);
+
+#endif
