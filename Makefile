@@ -146,7 +146,7 @@ fit: all
 # --- tests ----------------------------------------------------------------------
 
 san       := -fsanitize=address,undefined -fno-sanitize-recover=all
-test_dirs := unit prop sim board
+test_dirs := unit prop sim board golden
 test_src  := $(foreach d,$(test_dirs),$(wildcard test/$(d)/*_test.c))
 test_bin  := $(test_src:test/%_test.c=$(B)/test/%_test)
 tflags     = $(base) $(CFLAGS) -Itest -DEXH_FIX_AUDIT
@@ -179,6 +179,12 @@ $(B)/test/loop.o: examples/loop.c $(stamp)
 # The port contract, on the port that runs here.
 $(B)/test/board/%_test: $(B)/posix/test/board/%_test.o $(B)/posix/test/support.o $(filter-out %/loop.o,$(sim_obj)) \
                         $(B)/posix/libexhand.a
+	@mkdir -p $(@D)
+	$(Q)$(CC) -o $@ $^ -lcmocka
+
+# Golden vectors: the objects as they are shipped, at every rate.
+golden_src := $(wildcard test/golden/*.c) examples/drop/drop.c
+$(B)/test/golden/golden_test: $(golden_src:%.c=$(B)/posix/%.o) $(B)/posix/test/support.o $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) -o $@ $^ -lcmocka
 
@@ -215,6 +221,16 @@ stress:
 	@echo "laws at $(STRESS_CASES) random cases each, under sanitizers, dealt to $(STRESS_PARTS) processes:"
 	@EXH_CASES=$(STRESS_CASES) PARTS=$(STRESS_PARTS) JOBS=$$(nproc) test/run.sh $(prop_bin)
 
+## Make the golden vectors anew from the model of docs/NUMERICS.md (ARGS=--check: compare only)
+.PHONY: golden
+golden:
+	$(Q)test/golden/golden.py $(or $(ARGS),--all)
+
+## Change each module in small ways: the golden vectors must tell at 95 % of the rates
+.PHONY: mutants
+mutants: $(B)/test/golden/golden_test
+	$(Q)CC="$(CC)" B=$(B) test/golden/mutants.py $(ARGS)
+
 # The library's tests again for a 32-bit CPU, where there is no CMocka: own printer.
 plain_bin := $(patsubst test/%_test.c,$(B)/i686/%_test,$(filter test/unit/% test/prop/%,$(test_src)))
 $(plain_bin): $(B)/i686/%_test: test/%_test.c test/support.c $(lib_src) $(wildcard test/*.h lib/include/exhand/*.h) \
@@ -223,9 +239,15 @@ $(plain_bin): $(B)/i686/%_test: test/%_test.c test/support.c $(lib_src) $(wildca
 	$(Q)i686-linux-gnu-gcc -static $(filter-out -MMD -MP,$(tflags)) -D_POSIX_C_SOURCE=200809L -DEXH_CHECK_PLAIN \
 	    -o $@ $(filter %.c,$^)
 
+$(B)/i686/golden/golden_test: $(golden_src) test/support.c $(lib_src) $(wildcard test/*.h test/golden/*.h \
+                              test/golden/digest/*.inc lib/include/exhand/*.h) $(stamp)
+	@mkdir -p $(@D)
+	$(Q)i686-linux-gnu-gcc -static $(filter-out -MMD -MP,$(base) $(CFLAGS)) -Itest -D_POSIX_C_SOURCE=200809L \
+	    -DEXH_CHECK_PLAIN -o $@ $(filter %.c,$^)
+
 .PHONY: test-i686
-test-i686: $(plain_bin)
-	@EXH_CASES=100000 test/run.sh $(plain_bin)
+test-i686: $(plain_bin) $(B)/i686/golden/golden_test
+	@EXH_CASES=100000 test/run.sh $^
 
 # --- the same bits everywhere -----------------------------------------------------------
 

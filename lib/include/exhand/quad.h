@@ -74,7 +74,7 @@ struct exh_quad_cfg {
     uint8_t unused;   /* 32 less the counter's width                           */
 };
 struct exh_quad {
-    uint32_t raw;    /* last counter value, low bits                          */
+    uint32_t raw;    /* last counter value as given; its low bits count       */
     int32_t cnt;     /* counts since the first sample; wraps modulo 2^32       */
     uint8_t started; /* the first sample is count 0                            */
     uint8_t lost;    /* 1: a sample moved more than speed_max. cnt left it out and

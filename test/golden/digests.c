@@ -1,0 +1,51 @@
+/* What the generator found: the digest of each module at 1, 2, … 2000 Hz. */
+#include "modules.h"
+
+const uint32_t digest_fix[GOLDEN_RATES] = {
+#include "digest/fix.inc"
+};
+const uint32_t digest_bytes[GOLDEN_RATES] = {
+#include "digest/bytes.inc"
+};
+const uint32_t digest_record[GOLDEN_RATES] = {
+#include "digest/record.inc"
+};
+const uint32_t digest_signal[GOLDEN_RATES] = {
+#include "digest/signal.inc"
+};
+const uint32_t digest_quad[GOLDEN_RATES] = {
+#include "digest/quad.inc"
+};
+const uint32_t digest_quad_ab[GOLDEN_RATES] = {
+#include "digest/quad_ab.inc"
+};
+const uint32_t digest_velocity_window[GOLDEN_RATES] = {
+#include "digest/velocity_window.inc"
+};
+const uint32_t digest_velocity_pole[GOLDEN_RATES] = {
+#include "digest/velocity_pole.inc"
+};
+const uint32_t digest_velocity_foaw[GOLDEN_RATES] = {
+#include "digest/velocity_foaw.inc"
+};
+const uint32_t digest_velocity_track[GOLDEN_RATES] = {
+#include "digest/velocity_track.inc"
+};
+const uint32_t digest_contact[GOLDEN_RATES] = {
+#include "digest/contact.inc"
+};
+const uint32_t digest_table[GOLDEN_RATES] = {
+#include "digest/table.inc"
+};
+const uint32_t digest_drive[GOLDEN_RATES] = {
+#include "digest/drive.inc"
+};
+const uint32_t digest_safety[GOLDEN_RATES] = {
+#include "digest/safety.inc"
+};
+const uint32_t digest_calibrate[GOLDEN_RATES] = {
+#include "digest/calibrate.inc"
+};
+const uint32_t digest_drop[GOLDEN_RATES] = {
+#include "digest/drop.inc"
+};

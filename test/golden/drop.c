@@ -1,0 +1,121 @@
+/* The scene drop: one tick from an encoder's counter to a D/A code. */
+#include "modules.h"
+
+#include "drop/drop.h"
+
+#include "exhand/fix.h"
+
+#define HEALTHY 0x1F03u
+
+struct scene {
+    struct drop_par par;
+    struct drop_cfg cfg;
+    struct drop s;
+};
+
+static int32_t any_size(struct golden_rng *r, int32_t most)
+{
+    const int64_t any = golden_draw(r, 0, most);
+    return (int32_t)(any >> golden_draw(r, 0, 12));
+}
+
+static void any_par(struct drop_par *p, struct golden_rng *r, uint32_t rate_Hz)
+{
+    p->quad.step_m_q42 = golden_step(r);
+    p->quad.speed_max_mps_q27 = (int32_t)golden_draw(r, 13421773, INT32_MAX);
+    p->velocity.p = (int32_t)golden_draw(r, 0, 4);
+    p->contact.k_Npm_q10 = any_size(r, 1024000000);
+    p->contact.b_Nspm_q20 = any_size(r, 1048576000);
+    p->contact.f0_N_q20 = (int32_t)golden_draw(r, 0, 20971520);
+    p->contact.f0_band_m_q30 = any_size(r, 10737418);
+    p->contact.hyst_m_q30 = any_size(r, 10737418);
+    golden_drive_par(&p->drive, r, rate_Hz);
+    p->safety.missed_max = (int32_t)golden_draw(r, 0, 1);
+    p->own.q_lim_m_q30 = (int32_t)golden_draw(r, -(1 << 26), 1 << 26);
+    p->own.kf_NpA_q20 = (int32_t)golden_draw(r, 104858, 104857600);
+}
+
+static void scene_setup(struct scene *d, struct golden_rng *r, uint32_t rate_Hz, uint32_t k)
+{
+    struct exh_scene_board board = {golden_period(rate_Hz, k), 16};
+    int err;
+    (void)memset(d, 0, sizeof *d);
+    any_par(&d->par, r, rate_Hz);
+    while ((err = drop_setup(&d->cfg, &d->par, board)) != 0 && board.enc_bits < 32) {
+        board.enc_bits = (uint8_t)(board.enc_bits + 4);
+    }
+    CHECK_EQ_I64(err, 0);
+}
+
+static void any_in(struct exh_scene_in *in, struct golden_rng *r, uint32_t k)
+{
+    if (golden_draw(r, 0, 47) == 0) {
+        in->drive.din ^= 1u << golden_draw(r, 0, 8);
+    } else if (golden_draw(r, 0, 3) == 0) {
+        in->drive.din = HEALTHY;
+    }
+    in->missed = golden_draw(r, 0, 47) == 0 ? 1 : 0;
+    in->command = k % 8 == 2 ? EXH_CMD_RUN : k % 8 == 5 ? EXH_CMD_CLEAR : EXH_CMD_NONE;
+    in->drive.mon_raw[0] = (int16_t)golden_draw(r, -32768, 32767);
+}
+
+static void put_out(struct golden *g, const struct drop_signals *sig, const struct exh_drive_out *out)
+{
+    golden_put(g, sig->q_m_q30);
+    golden_put(g, sig->qd_mps_q27);
+    golden_put(g, sig->f_des_N_q20);
+    golden_put(g, sig->i_des_A_q26);
+    golden_put(g, sig->c);
+    golden_put(g, sig->f_mon_N_q20);
+    golden_put(g, sig->limits);
+    golden_put(g, sig->state);
+    golden_put(g, sig->faults);
+    golden_put(g, sig->present);
+    golden_put(g, out->dac_raw[0]);
+    golden_put(g, out->enable);
+    golden_put(g, out->alive);
+}
+
+static void put_state(struct golden *g, struct drop *s)
+{
+    GOLDEN_STATE(g, exh_quad_bytes, &s->quad);
+    GOLDEN_STATE(g, exh_velocity_window_bytes, &s->velocity);
+    GOLDEN_STATE(g, exh_contact_bytes, &s->contact);
+    GOLDEN_STATE(g, exh_drive_bytes, &s->drive);
+    GOLDEN_STATE(g, exh_safety_bytes, &s->safety);
+}
+
+void golden_drop(struct golden *g, uint32_t rate_Hz)
+{
+    static struct golden_wave moves;
+    static struct scene d;
+    struct golden_rng r = golden_rng("drop", rate_Hz, 0);
+    struct exh_scene_in in = {.missed = 0};
+    uint32_t raw = 0;
+    while (g->tick < GOLDEN_TICKS) {
+        const uint32_t k = g->tick;
+        const int32_t jump = d.cfg.quad.jump_cnt;
+        struct drop_signals sig;
+        struct exh_drive_out out;
+        if (k == 0 || k == GOLDEN_AGAIN) {
+            scene_setup(&d, &r, rate_Hz, k);
+            golden_wave(&moves, "drop", rate_Hz, 1 + (k > 0), -d.cfg.quad.jump_cnt,
+                        d.cfg.quad.jump_cnt, d.cfg.quad.jump_cnt < 1024 ? 1 : d.cfg.quad.jump_cnt >> 10);
+            raw = (uint32_t)(golden_u64(&r) & UINT32_MAX);
+            in.drive.din = HEALTHY;
+        }
+        raw += (uint32_t)(k >= 8 && k < 56 ? moves.at[k] >> 3 : moves.at[k]);
+        if (k >= 188 && k < GOLDEN_AGAIN) { raw += (uint32_t)golden_draw(&r, -jump, jump); }
+        in.drive.enc_raw[0] = raw;
+        any_in(&in, &r, k);
+        golden_put(g, raw);
+        golden_put(g, in.drive.mon_raw[0]);
+        golden_put(g, in.drive.din);
+        golden_put(g, in.missed);
+        golden_put(g, in.command);
+        drop_tick(&d.s, &d.cfg, &in, &out, &sig);
+        put_out(g, &sig, &out);
+        put_state(g, &d.s);
+        golden_tick(g);
+    }
+}

@@ -1,0 +1,199 @@
+#include "explain.h"
+
+#if __STDC_HOSTED__
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#define LINE_B 4096
+#define DIR "test/golden/"
+
+void golden_rates(uint32_t *lo, uint32_t *hi)
+{
+    const char *text = getenv("EXH_RATES");
+    unsigned a;
+    unsigned b;
+    int n;
+    if (text == NULL) { return; }
+    n = sscanf(text, "%u..%u", &a, &b);
+    if (n == 1) { b = a; }
+    CHECK(n > 0 && a >= 1 && a <= b && b <= GOLDEN_RATES, "EXH_RATES=%s is no lo..hi of 1..%u",
+          text, GOLDEN_RATES);
+    *lo = a;
+    *hi = b;
+}
+
+/* A trace being read beside a run. */
+struct reader {
+    FILE *f;
+    const char *name;
+    uint32_t rate_Hz;
+    int whole; /* inputs, too, and the state's bytes instead of their CRC      */
+    int ended;
+    uint32_t shown; /* columns but the state                                   */
+    char columns[LINE_B];
+    char before[GOLDEN_COLUMNS + 1][LINE_B];
+    char said[LINE_B]; /* the first difference, "" while there is none          */
+};
+
+static int next_line(struct reader *r, char *line)
+{
+    size_t n;
+    line[0] = '\0';
+    if (fgets(line, LINE_B, r->f) == NULL) { return 0; }
+    n = strlen(line);
+    if (n > 0 && line[n - 1] == '\n') { line[n - 1] = '\0'; }
+    return 1;
+}
+
+/* The next word of a line into word; what is behind it. */
+static const char *word_of(const char *p, char *word, size_t cap)
+{
+    size_t n = 0;
+    while (*p == ' ') { p++; }
+    for (; *p != '\0' && *p != ' '; p++) {
+        if (n + 1 < cap) { word[n++] = *p; }
+    }
+    word[n] = '\0';
+    return p;
+}
+
+/* The state of this tick as the trace has it. */
+static void state_text(const struct golden *g, int whole, char *text)
+{
+    size_t n = 0;
+    if (!whole) {
+        (void)snprintf(text, LINE_B, "%08" PRIx32, exh_crc32(0, g->state, g->state_B));
+        return;
+    }
+    (void)snprintf(text, LINE_B, "-");
+    for (uint32_t i = 0; i < g->state_B && n + 3 < LINE_B; i++) {
+        n += (size_t)snprintf(text + n, LINE_B - n, "%02x", g->state[i]);
+    }
+}
+
+static void say(struct reader *r, const struct golden *g, const char *column, const char *want,
+                const char *got)
+{
+    unsigned at = 0;
+    while (want[at] != '\0' && want[at] == got[at]) { at++; }
+    if (check_same_text(column, "state") && r->whole) {
+        (void)snprintf(r->said, sizeof r->said,
+                       "%s at %" PRIu32 " Hz, tick %" PRIu32
+                       ": state differs from byte %u on\n    expected %.200s\n    got      %.200s",
+                       r->name, r->rate_Hz, g->tick, at / 2, want, got);
+    } else {
+        (void)snprintf(r->said, sizeof r->said,
+                       "%s at %" PRIu32 " Hz, tick %" PRIu32 ": %.60s: expected %.60s, got %.60s",
+                       r->name, r->rate_Hz, g->tick, column, want, got);
+    }
+}
+
+/* The sink: one tick beside one line. */
+static void see(struct golden *g)
+{
+    static char line[LINE_B];
+    static char want[LINE_B];
+    static char got[LINE_B];
+    char column[64];
+    struct reader *r = g->file;
+    const char *p = line;
+    const char *c = r->columns;
+    if (r->said[0] != '\0' || r->ended) { return; }
+    if (!next_line(r, line)) {
+        r->ended = 1;
+        return;
+    }
+    for (uint32_t i = 0; i <= r->shown; i++) {
+        p = word_of(p, want, sizeof want);
+        c = word_of(c, column, sizeof column);
+        if (check_same_text(want, ".")) { (void)memcpy(want, r->before[i], LINE_B); }
+        if (i < r->shown) {
+            (void)snprintf(got, sizeof got, "%" PRId64, g->v[g->columns - r->shown + i]);
+        } else {
+            state_text(g, r->whole, got);
+        }
+        if (!check_same_text(want, got)) {
+            say(r, g, column, want, got);
+            return;
+        }
+        (void)memcpy(r->before[i], want, LINE_B);
+    }
+}
+
+/* Plays the run beside the trace in f. Returns 1 if all of it was there. */
+static int beside(struct reader *r, golden_run *run)
+{
+    static struct golden g;
+    static char line[LINE_B];
+    r->ended = 0;
+    r->said[0] = '\0';
+    if (!next_line(r, line) || line[0] != '#' || !next_line(r, r->columns)) { return 0; }
+    r->shown = 0;
+    for (const char *p = r->columns; *p != '\0'; p++) { r->shown += *p == ' '; }
+    g = (struct golden){.see = see, .file = r};
+    run(&g, r->rate_Hz);
+    return !r->ended;
+}
+
+void golden_explain(const char *name, golden_run *run, uint32_t rate_Hz)
+{
+    static struct reader r;
+    char command[200];
+    const char *asked = getenv("EXH_EXPLAIN");
+    if (asked != NULL && check_same_text(asked, "0")) { return; }
+    (void)snprintf(command, sizeof command,
+                   "python3 " DIR "golden.py --module %s --rate %" PRIu32, name, rate_Hz);
+    r = (struct reader){.f = popen(command, "r"), .name = name, .rate_Hz = rate_Hz, .whole = 1};
+    if (r.f == NULL || !beside(&r, run)) {
+        check_note("no trace from: %s", command);
+    } else if (r.said[0] == '\0') {
+        check_note("%s at %" PRIu32 " Hz is as the generator says: its digest is an old one: "
+                   "make golden", name, rate_Hz);
+    } else {
+        check_note("%s", r.said);
+    }
+    if (r.f != NULL) {
+        while (next_line(&r, r.columns)) {}
+        (void)pclose(r.f);
+    }
+}
+
+void golden_trace(const char *name, golden_run *run, uint32_t rate_Hz)
+{
+    static struct reader r;
+    char path[200];
+    int whole_file;
+    (void)snprintf(path, sizeof path, DIR "trace/%s-%" PRIu32 ".txt", name, rate_Hz);
+    r = (struct reader){.f = fopen(path, "r"), .name = name, .rate_Hz = rate_Hz};
+    CHECK(r.f != NULL, "%s: cannot be read", path);
+    if (r.f == NULL) { return; }
+    whole_file = beside(&r, run);
+    (void)fclose(r.f);
+    CHECK(whole_file, "%s ends early", path);
+    CHECK(r.said[0] == '\0', "%s", r.said);
+}
+
+#else
+
+void golden_rates(uint32_t *lo, uint32_t *hi)
+{
+    (void)lo;
+    (void)hi;
+}
+
+void golden_explain(const char *name, golden_run *run, uint32_t rate_Hz)
+{
+    (void)name;
+    (void)run;
+    (void)rate_Hz;
+}
+
+void golden_trace(const char *name, golden_run *run, uint32_t rate_Hz)
+{
+    (void)name;
+    (void)run;
+    (void)rate_Hz;
+}
+
+#endif

@@ -1,0 +1,7 @@
+"""The modules that have golden vectors: {name: (columns, run(rate) -> (row, state) a tick)}."""
+
+from . import basics, calibrate, contact, drive, drop, quad, safety, signal, velocity
+
+MODULES = {}
+for part in (basics, signal, quad, velocity, contact, drive, safety, calibrate, drop):
+    MODULES.update(part.MODULES)

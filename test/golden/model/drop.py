@@ -1,0 +1,68 @@
+"""The scene drop: one tick from an encoder's counter to a D/A code."""
+
+from .contact import Contact
+from .drive import Drive, Table, any_par
+from .num import AGAIN, M32, TICKS, Rng, period, sat32, shr, wave
+from .quad import narrowest, position
+from .safety import ENCODER, RUN, Safety
+from .velocity import Window, scale
+
+
+class Drop:
+    def __init__(self, step, speed, p, law, drive, most, lim, kf, T):
+        self.step, self.law, self.drive_par, self.most, self.lim = step, law, drive, most, lim
+        self.quad, self.bits = narrowest(step, speed, T)
+        self.velocity, self.contact, self.safety = Window(step, T, p), Contact(), Safety()
+        peak = drive[3]
+        top = sat32(shr(kf * peak, 26))
+        self.drive = Drive(drive, T, Table([(0, 0), (top, peak)]), Table([(-peak, -top), (peak, top)]))
+
+    def tick(self, raw, mon, din, missed, command):
+        cnt = self.quad.tick(raw)
+        q, v = position(cnt, self.step), self.velocity.tick(cnt)
+        state = self.safety.step(self.most, din, ENCODER if self.quad.lost else 0, missed, command, 1)
+        c, spring, damper, pull = self.contact.tick(self.law, q, v, self.lim)
+        limits, _, _, force = self.drive.take(1 if state == RUN else 0, spring + damper + pull)
+        more, i0, peak, i2t = self.drive.current()
+        ((gate, _, _, coded, code),), enable = self.safety.gate([self.drive_par], [i0 + peak + i2t])
+        return (q, v, force, coded, c, self.drive.monitor(mon)[1], limits | more | gate, state,
+                self.safety.faults, self.safety.present, code, enable, self.safety.alive)
+
+    def state(self):
+        return (self.quad.state() + self.velocity.state() + self.contact.state() + self.drive.state() +
+                self.safety.state())
+
+
+def drop(rate):
+    rng = Rng("drop", rate, 0)
+    for k in range(TICKS):
+        if k in (0, AGAIN):
+            step, speed, p = scale(rng), rng.draw(13421773, (1 << 31) - 1), rng.draw(0, 4)
+            law = (rng.draw(0, 1024000000) >> rng.draw(0, 12), rng.draw(0, 1048576000) >> rng.draw(0, 12),
+                   rng.draw(0, 20971520), rng.draw(0, 10737418) >> rng.draw(0, 12), rng.draw(0, 10737418) >> rng.draw(0, 12))
+            drive = any_par(rng, rate)
+            most, lim, kf = rng.draw(0, 1), rng.draw(-(1 << 26), 1 << 26), rng.draw(104858, 104857600)
+            s = Drop(step, speed, p, law, drive, most, lim, kf, period(rate, k))
+            jump = s.quad.jump
+            moves = wave("drop", rate, 1 + (k > 0), -jump, jump, max(1, jump >> 10))
+            raw, din = rng.u64() & M32, 0x1F03
+        if k < 8 or k >= 56:  # to both rails no longer than a hand would
+            raw += moves[k]
+        else:
+            raw += moves[k] >> 3
+        if 188 <= k < AGAIN:
+            raw += rng.draw(-jump, jump)
+        if rng.draw(0, 47) == 0:
+            din ^= 1 << rng.draw(0, 8)
+        elif rng.draw(0, 3) == 0:
+            din = 0x1F03
+        missed = 1 if rng.draw(0, 47) == 0 else 0
+        command = 1 if k % 8 == 2 else 3 if k % 8 == 5 else 0
+        mon = rng.draw(-32768, 32767)
+        yield (raw & M32, mon, din, missed, command, *s.tick(raw & M32, mon, din, missed, command)), s.state()
+
+
+COLUMNS = ("raw mon_raw din missed command | q_m_q30 qd_mps_q27 f_des_N_q20 i_des_A_q26 c f_mon_N_q20 limits state "
+                "faults present dac_raw enable alive")
+
+MODULES = {"drop": (COLUMNS, drop)}

@@ -1,0 +1,104 @@
+"""signal: a table's CRC, and parameters staged, applied, saved and loaded."""
+
+import zlib
+from struct import pack
+
+from .num import (AGAIN, CRC, M32, RANGE, SHORT, STATE, TICKS, UNKNOWN, VERSION, Rng)
+
+SETUP, ANY = 1, 2
+
+# (id, frac, when, min, max, default) of each row, and how many instances of them.
+GROUPS = (
+    (((0x7001, 10, ANY, 0, 1024000000, 7), (0x7002, 20, SETUP, -(1 << 31), (1 << 31) - 1, -1),
+      (0x7003, 0, ANY, -5, 5, 0)), 2),
+    (((0x7101, 0, SETUP, 1, 2, 1), (0x7102, 30, ANY, -1000, 1000, 0)), 1),
+)
+
+
+def table_crc():
+    b = b""
+    for rows, instances in GROUPS:
+        b += pack("<H", len(rows))
+        b += b"".join(pack("<HBBii", *row[:5]) for row in rows)
+        b += pack("<H", instances)
+    return zlib.crc32(b)
+
+
+VALUES = [(row, i) for rows, n in GROUPS for i in range(n) for row in rows]
+TABLE_CRC = table_crc()
+
+
+class Params:
+    def __init__(self):
+        self.active = [row[5] for row, _ in VALUES]
+        self.staged, self.locked, self.pending = self.active[:], 0, 0
+
+    def may(self, i, raw):
+        """0 or the error of value i becoming raw."""
+        row = VALUES[i][0]
+        if not row[3] <= raw <= row[4]:
+            return RANGE
+        if row[2] == SETUP and self.locked and raw != self.staged[i]:
+            return STATE
+        return 0
+
+    def stage(self, ident, instance, raw):
+        for i, (row, n) in enumerate(VALUES):
+            if row[0] == ident and n == instance:
+                err = self.may(i, raw)
+                if not err:
+                    self.staged[i], self.pending = raw, 1
+                return -err
+        return -UNKNOWN
+
+    def apply(self):
+        if self.pending:
+            self.active = self.staged[:]
+        done, self.pending = self.pending, 0
+        return done
+
+    def save(self):
+        b = b"EXHP" + pack("<HHI", 1, len(VALUES), TABLE_CRC) + pack("<%di" % len(VALUES), *self.active)
+        return b + pack("<I", zlib.crc32(b))
+
+    def load(self, values):
+        """(error, the culprit): all of them or none."""
+        for i, raw in enumerate(values):
+            err = self.may(i, raw)
+            if err:
+                return -err, i
+        self.staged, self.pending = values, 1
+        return 0, 0
+
+
+def signal(rate):
+    rng = Rng("signal", rate, 0)
+    for k in range(TICKS):
+        if k in (0, AGAIN):
+            p = Params()
+        if k % 64 == 24:
+            p.locked = 1
+        elif k % 64 == 40:
+            p.locked = 0
+        row, instance = VALUES[rng.draw(0, len(VALUES) - 1)]
+        ident = row[0] + (1 if rng.draw(0, 15) == 0 else 0)
+        instance += 1 if rng.draw(0, 15) == 0 else 0
+        how, raw = rng.draw(0, 3), rng.draw(-(1 << 31), (1 << 31) - 1)
+        if how > 0:
+            raw = (row[3], row[4], row[5])[how - 1]
+        err = p.stage(ident, instance, raw)
+        done = p.apply() if rng.draw(0, 1) else -1
+        saved = p.save()
+        load = bad = 0
+        if rng.draw(0, 3) == 0:  # its own image, one value changed
+            values = p.active[:]
+            i = rng.draw(0, len(VALUES) - 1)
+            values[i] = rng.draw(-2000, 2000)
+            load, bad = p.load(values)
+        yield (ident, instance, raw, err, done, zlib.crc32(saved), load, bad, p.pending, *p.active), b""
+
+
+COLUMNS = "id instance raw | stage apply image_crc load load_at pending " + " ".join(
+    "v%d" % i for i in range(len(VALUES)))
+
+MODULES = {"signal": (COLUMNS, signal)}

@@ -1,0 +1,29 @@
+/* Every module that has golden vectors. The name is that of its run, its digests, its
+ * files and its test. */
+#ifndef TEST_GOLDEN_MODULES_H
+#define TEST_GOLDEN_MODULES_H
+
+#include "golden.h"
+
+#define GOLDEN_MODULE(name) \
+    void golden_##name(struct golden *g, uint32_t rate_Hz); \
+    extern const uint32_t digest_##name[GOLDEN_RATES]
+
+GOLDEN_MODULE(fix);
+GOLDEN_MODULE(bytes);
+GOLDEN_MODULE(record);
+GOLDEN_MODULE(signal);
+GOLDEN_MODULE(quad);
+GOLDEN_MODULE(quad_ab);
+GOLDEN_MODULE(velocity_window);
+GOLDEN_MODULE(velocity_pole);
+GOLDEN_MODULE(velocity_foaw);
+GOLDEN_MODULE(velocity_track);
+GOLDEN_MODULE(contact);
+GOLDEN_MODULE(table);
+GOLDEN_MODULE(drive);
+GOLDEN_MODULE(safety);
+GOLDEN_MODULE(calibrate);
+GOLDEN_MODULE(drop);
+
+#endif
