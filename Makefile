@@ -108,7 +108,8 @@ all: $(lib) $(products)
 # Coarse where the answer does not hang on it: `exhand drop --sweep` and --friction have finer ones.
 demo_runs := calibration:"calibrate --out $(B)/demo/calibration" table2:"drop --out $(B)/demo --spread 20" \
              stability:"drop --out $(B)/demo --sweep --grid 12x10 --falls 3" \
-             friction:"drop --out $(B)/demo --friction 5 --falls 3"
+             friction:"drop --out $(B)/demo --friction 5 --falls 3" table1:"glove --selftest" \
+             glove:"glove --record $(B)/demo/glove.exh --does poses --seconds 5"
 
 ## The paper's first experiment on the simulated device: tables, plots, logs in build/demo
 .PHONY: demo
@@ -124,7 +125,7 @@ demo: all
 	        gnuplot -c $$(basename $$g).gp "$(CURDIR)/ports/posix/cli/plot") || s=1; done; fi; \
 	for p in force_position fall stability friction calibration/calibration; do p=$(B)/demo/$$p.png; \
 	    if [ -s $$p ]; then echo "picture: $$p"; else echo "picture missing: $$p" >&2; fi; done; \
-	cat $(B)/demo/calibration.txt $(B)/demo/stability.txt $(B)/demo/friction.txt $(B)/demo/table2.txt; exit $$s
+	cat $(B)/demo/calibration.txt $(B)/demo/table1.txt $(B)/demo/stability.txt $(B)/demo/friction.txt $(B)/demo/table2.txt; exit $$s
 
 ## Run the host program (ARGS="drop --help") or the image of SCENE on PORT
 .PHONY: run
@@ -293,6 +294,7 @@ check:
 	@$(MAKE) --no-print-directory PORT=template SCENE=minimal all
 	@$(MAKE) --no-print-directory PORT=pc104 SCENE=minimal undef run
 	@$(MAKE) --no-print-directory PORT=pc104 SCENE=drop run
+	@$(MAKE) --no-print-directory PORT=pc104 SCENE=glove run
 	@$(MAKE) --no-print-directory size
 	@$(MAKE) --no-print-directory bench
 

@@ -20,6 +20,7 @@ for exe in "$@"; do
     "$exe" calibrate --out "$out/calibration" >"$dir/calibration.txt" 2>&1 &&
         cmp "$logs/calibration/calibration.csv" "$out/calibration/calibration.csv"
     verdict "$exe: calibration.csv" $?
+    "$exe" glove --record "$out/glove.exh" --does poses --seconds 5 >"$dir/glove.txt" 2>&1
     for log in "$logs"/*.exh; do
         cmp "$log" "$out/${log##*/}"
         verdict "$exe: ${log##*/} made" $?

@@ -79,6 +79,7 @@ TEST(the_selftest_gives_the_papers_rows)
         CHECK(strstr(s.out, "20 V                         11   6.1 mV            11\n") != NULL, "%s", s.out);
         CHECK(strstr(s.out, " 9   1 encoder step     9\n") != NULL, "%s", s.out);
         CHECK(strstr(s.out, " 7   47.2 mA            7\n") != NULL, "%s", s.out);
+        CHECK(strstr(s.out, "changes of its 22 angles 0\n") != NULL, "%s", s.out);
     }
     said_clean(dir);
 }
@@ -127,6 +128,8 @@ TEST(too_much_noise_falls_short)
         while (at && *at != '\n') { at--; }
         CHECK(at && strncmp(at + 3, row[i].row, strlen(row[i].row)) == 0, "%s", s.out);
     }
+    said(&s, dir, cli_glove, WORDS("glove", "--selftest", "--set", "glove_hyst=0"));
+    CHECK(s.status == 1 && strstr(s.out, "changes of its 22 angles 0\n") == NULL, "%s", s.out);
     said(&s, dir, cli_glove, WORDS("glove", "--selftest", "--travel", "0.033"));
     CHECK(s.status == 1 && strstr(s.out, "497)") && strstr(s.out, " 8   1 encoder step     9   falls"), "%s", s.out);
     said(&s, dir, cli_glove, WORDS("glove", "--selftest", "--device", "decode=4"));
