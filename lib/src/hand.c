@@ -173,10 +173,11 @@ static inline struct base3 turned(const struct pose *p, int_fast32_t along, int_
 
 /* One coordinate in the palm. Three products lose half an LSB of q32 each, which the 3 gives back
  * (1.5, and 2 to round). */
-static inline int32_t place_m_q30(int32_t base_m_q32, const int32_t row_q30[3], struct base3 v_m_q34)
+static inline int32_t place_m_q30(int32_t base_m_q32, const int32_t row_q30[3],
+                                  struct base3 v_m_q34)
 {
-    return (int32_t)(base_m_q32 + part(row_q30[0], v_m_q34.x, 32) + part(row_q30[1], v_m_q34.y, 32) +
-                     part(row_q30[2], v_m_q34.z, 32) + 3) >>
+    return (int32_t)(base_m_q32 + part(row_q30[0], v_m_q34.x, 32) +
+                     part(row_q30[1], v_m_q34.y, 32) + part(row_q30[2], v_m_q34.z, 32) + 3) >>
            (32 - 30);
 }
 

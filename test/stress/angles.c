@@ -68,8 +68,8 @@ static void look(struct seen *e, uint32_t x, struct circle want)
         e->cos_lsb = d;
         e->cos_at = x;
     }
-    e->beyond += y.sin_q30 > ONE_Q30 || y.sin_q30 < -ONE_Q30 || y.cos_q30 > ONE_Q30 ||
-                 y.cos_q30 < -ONE_Q30;
+    e->beyond +=
+        y.sin_q30 > ONE_Q30 || y.sin_q30 < -ONE_Q30 || y.cos_q30 > ONE_Q30 || y.cos_q30 < -ONE_Q30;
     e->angles++;
 }
 
