@@ -234,7 +234,7 @@ mutants: $(B)/test/golden/golden_test
 
 # The library's tests again for a 32-bit CPU, where there is no CMocka: own printer.
 plain_bin := $(patsubst test/%_test.c,$(B)/i686/%_test,$(filter test/unit/% test/prop/%,$(test_src)))
-$(plain_bin): $(B)/i686/%_test: test/%_test.c test/support.c $(lib_src) $(wildcard test/*.h lib/include/exhand/*.h) \
+$(plain_bin): $(B)/i686/%_test: test/%_test.c test/support.c $(lib_src) $(wildcard test/*.h lib/include/exhand/*.h lib/src/*.h) \
               $(stamp)
 	@mkdir -p $(@D)
 	$(Q)i686-linux-gnu-gcc -static $(filter-out -MMD -MP,$(tflags)) -D_POSIX_C_SOURCE=200809L -DEXH_CHECK_PLAIN \
@@ -313,7 +313,7 @@ size:
 
 # Objects as they are shipped: no sanitizer, no audit hook. Linked without debug information,
 # which not every valgrind reads of every compiler; its profile needs the symbols alone.
-bench_obj := $(patsubst %,$(B)/posix/test/bench/%.o,kernels measure number estimate force path law scene minimal)
+bench_obj := $(patsubst %,$(B)/posix/test/bench/%.o,kernels measure number estimate force path law hand scene minimal)
 bench_bin := $(B)/bench/kernels $(B)/bench/velocity $(B)/bench/speed
 $(B)/posix/test/bench/kernels.o: PORT_HOSTFLAGS += -DBENCH_FLAGS='"-std=c99 -O$(O)$(if $(CFLAGS), $(CFLAGS))"'
 $(B)/bench/kernels: $(bench_obj) $(B)/posix/examples/drop/drop.o
