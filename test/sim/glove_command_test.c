@@ -288,6 +288,50 @@ TEST(its_own_output_is_an_input)
     said_clean(dir);
 }
 
+/* A real one, of lines that end in CR with a letter behind them: every stable angle lies within
+ * the quantizer's (Q + H)/2, 26 codes of 2^-16 turn, and half a code, of what was recorded. */
+TEST(a_real_recording_comes_through)
+{
+    const char *data = getenv("EXH_DATA") ? getenv("EXH_DATA") : "../shared/data";
+    static char in_path[512], in_line[4096], out_line[4096];
+    char *dir = said_dir();
+    FILE *in, *out;
+    double worst = 0;
+    long rows = 0;
+    snprintf(in_path, sizeof in_path, "%s/glove-cyberglove-libras-alphabet/alphabet.csv", data);
+    in = fopen(in_path, "r");
+    if (in == NULL) {
+        check_note("%s: not there: no real glove is tested; EXH_DATA names the place", in_path);
+        said_clean(dir);
+        return;
+    }
+    said(&s, dir, cli_glove, WORDS("glove", "--csv", in_path, "--rate", "10", "--set", "glove_order=0"));
+    CHECK(s.status == 0, "%d: %s", s.status, s.err);
+    out = fopen(said_path(dir, "said.out"), "r");
+    CHECK(out != NULL && fgets(out_line, sizeof out_line, out), "no answer");
+    for (int c = getc(in); c != '\r' && c != EOF;) { c = getc(in); } /* its header */
+    while (fgets(out_line, sizeof out_line, out)) {
+        char *a = in_line, *b = strchr(out_line, ',');
+        size_t n = 0;
+        for (int c = getc(in); c != '\r' && c != EOF && n < sizeof in_line - 1; c = getc(in)) {
+            in_line[n++] = (char)c;
+        }
+        in_line[n] = '\0';
+        for (int i = 0; i < SENSORS; i++) {
+            const double off = strtod(a + (i > 0), &a) - strtod(b + 1, &b);
+            if (off > worst) { worst = off; }
+            if (-off > worst) { worst = -off; }
+        }
+        CHECK(strcmp(b, ",0\n") == 0, "row %ld: a fault: %s", rows, b);
+        rows++;
+    }
+    fclose(in);
+    fclose(out);
+    CHECK_EQ_I64(rows, 2100);
+    CHECK(worst < 26.51 * 6.2832 / 65536 && worst > 24 * 6.2832 / 65536, "%.6f rad", worst);
+    said_clean(dir);
+}
+
 /* 30 Hz of low-pass do not fit 60 Hz: it goes down and says so; asked for, it is refused. */
 TEST(the_low_pass_fits_the_rate)
 {
@@ -514,7 +558,7 @@ TEST(a_recording_moves_the_simulated_hand)
 TEST_MAIN("glove_command", the_selftest_gives_the_papers_rows, a_low_pass_gives_bits_for_delay,
           too_much_noise_falls_short, the_selftest_takes_recordings,
           every_line_end_and_header_reads_alike, bad_recordings_are_refused_by_line,
-          units_are_guessed_or_told, its_own_output_is_an_input, the_low_pass_fits_the_rate,
+          units_are_guessed_or_told, its_own_output_is_an_input, a_real_recording_comes_through, the_low_pass_fits_the_rate,
           bad_usage_is_refused_by_name, help_and_parameters_are_listed,
           skew_grows_with_interval_and_speed, a_log_replays_bit_for_bit_from_any_keyframe,
           a_changed_code_is_found, angles_are_those_of_the_hand,
