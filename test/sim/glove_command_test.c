@@ -15,6 +15,11 @@
 
 static struct said s;
 
+static double size_of(double v)
+{
+    return v < 0 ? -v : v;
+}
+
 /* Column i of the last line of a CSV file. */
 static double last_value(const char *path, int column)
 {
@@ -214,6 +219,7 @@ TEST(bad_recordings_are_refused_by_line)
     } row[] = {
         {"", "in.csv: holds no row"},
         {"S01,S02\n", "in.csv: holds no row"},
+        {"S01\nS02\n", "in.csv: line 2, column 1: \"S02\" is no number"},
         {ROW_A "\n" "0.1,0.2\n", "in.csv: line 2: 2 columns (22 wanted)"},
         {ROW_A "\r\n\r\n" ROW_A "\r\n1,2,3\r\n", "in.csv: line 4: 3 columns (22 wanted)"},
         {ROW_A "\r" ROW_A "\r1,2,x,4\r", "in.csv: line 3, column 3: \"x\" is no number"},
@@ -261,6 +267,41 @@ TEST(units_are_guessed_or_told)
     said(&s, dir, cli_glove, WORDS("glove", "--csv", csv, "--rate", "200", "--deg"));
     CHECK(s.status == 0, "as codes: %d: %s", s.status, s.err); /* through nobody's calibration */
     CHECK(number_after(s.out, "\n0", 4) > 28 && number_after(s.out, "\n0", 4) < 29.5, "%s", s.out);
+    said_clean(dir);
+}
+
+/* Angles go backwards through a user's calibration, cross terms and all, and come back to a
+ * code's worth of angle, and what its cross terms add. */
+TEST(angles_pass_a_calibration_and_back)
+{
+    char *dir = said_dir();
+    const char *csv = said_path(dir, "in.csv"), *cal_path = said_path(dir, "user.glove");
+    struct exh_glove_cal cal = exh_glove_cal_default;
+    uint8_t image[EXH_GLOVE_CAL_IMAGE_B];
+    FILE *f;
+    cal.sensor[10].of[0] = 4;
+    cal.sensor[10].of[1] = 7;
+    cal.sensor[10].cross_q30[0] = -(1 << 28);
+    cal.sensor[10].cross_q30[1] = 1 << 27;
+    CHECK_EQ_I64(exh_glove_cal_save(&cal, image, sizeof image, NULL), EXH_GLOVE_CAL_IMAGE_B);
+    f = fopen(cal_path, "wb");
+    CHECK(f != NULL && fwrite(image, 1, sizeof image, f) == sizeof image && fclose(f) == 0, "image");
+    write_text(csv, ".1,.2,.3,.4,.5,.6,.7,.8,.9,1,.3,1.2,1.3,1.4,.4,.6,.7,.8,.3,.2,.1,-.1\n");
+    said(&s, dir, cli_glove, WORDS("glove", "--csv", csv, "--rate", "200", "--calibration", cal_path, "--set",
+                                   "glove_bits=24", "--set", "glove_hyst=0", "--set", "glove_order=0"));
+    CHECK(s.status == 0, "%d: %s", s.status, s.err);
+    for (int i = 0; i < SENSORS; i++) {
+        static const double want[] = {.1, .2, .3, .4, .5,  .6, .7, .8, .9, 1,  .3,
+                                      1.2, 1.3, 1.4, .4, .6, .7, .8, .3, .2, .1, -.1};
+        const double code_rad = size_of(cal.sensor[i].gain_turnpraw_q38) / 274877906944.0 * 6.2832;
+        const double off = size_of(number_after(s.out, "\n0", i) - want[i]);
+        CHECK(off <= 0.51 * code_rad + (i == 10 ? 1e-4 : 0), "column %d: %.6f rad off", i, off);
+    }
+    image[30] ^= 1;
+    f = fopen(cal_path, "wb");
+    CHECK(f != NULL && fwrite(image, 1, sizeof image, f) == sizeof image && fclose(f) == 0, "image");
+    said(&s, dir, cli_glove, WORDS("glove", "--csv", csv, "--rate", "200", "--calibration", cal_path));
+    CHECK(s.status == 2 && strstr(s.err, "user.glove: ") && strstr(s.err, "damaged"), "%s", s.err);
     said_clean(dir);
 }
 
@@ -428,6 +469,9 @@ TEST(skew_grows_with_interval_and_speed)
         CHECK(um[0][4][c] > 4.95 * um[0][0][c] && um[0][4][c] < 5.05 * um[0][0][c], "interval, column %d", c);
         CHECK(um[1][0][c] > 2.47 * um[0][0][c] && um[1][0][c] < 2.53 * um[0][0][c], "speed, column %d", c);
     }
+    /* Once found to be so: also which channel comes first matters. */
+    CHECK(um[0][0][0] > 36.0 && um[0][0][0] < 36.6 && um[0][0][2] > 12.3 && um[0][0][2] < 12.6, "%g %g um",
+          um[0][0][0], um[0][0][2]);
     /* 338 deg/s at three joints, 25 mm at each lever: below 5.9 * 0.105 * (1 + 0.48 + 0.24) m/s */
     CHECK(um[0][0][0] > 20 && um[0][0][0] < 88e-6 * 1.1e6, "%g um", um[0][0][0]);
     CHECK(um[0][0][2] < um[0][0][0] / 2 && um[0][0][1] < um[0][0][0], "%g um", um[0][0][2]);
@@ -558,7 +602,7 @@ TEST(a_recording_moves_the_simulated_hand)
 TEST_MAIN("glove_command", the_selftest_gives_the_papers_rows, a_low_pass_gives_bits_for_delay,
           too_much_noise_falls_short, the_selftest_takes_recordings,
           every_line_end_and_header_reads_alike, bad_recordings_are_refused_by_line,
-          units_are_guessed_or_told, its_own_output_is_an_input, a_real_recording_comes_through, the_low_pass_fits_the_rate,
+          units_are_guessed_or_told, angles_pass_a_calibration_and_back, its_own_output_is_an_input, a_real_recording_comes_through, the_low_pass_fits_the_rate,
           bad_usage_is_refused_by_name, help_and_parameters_are_listed,
           skew_grows_with_interval_and_speed, a_log_replays_bit_for_bit_from_any_keyframe,
           a_changed_code_is_found, angles_are_those_of_the_hand,

@@ -5,9 +5,6 @@
 #include "option.h"
 #include "param.h"
 
-#include "log.h"
-#include "loop.h"
-
 #include "exhand/error.h"
 
 #include <errno.h>
@@ -116,107 +113,6 @@ static int load_calibration(const char *path)
     return err < 0 ? complain_cal(path, err, bad) : 0;
 }
 
-/* --- a log --- */
-
-static uint32_t last_tick;
-static int64_t last_ticks;
-
-static void before(uint32_t tick, struct exh_scene_in *in)
-{
-    exh_log_before(tick, in);
-}
-
-static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
-{
-    exh_log_after(tick, in, out);
-    last_tick = tick;
-    last_ticks++;
-}
-
-static int find_motion(const struct glove_options *o, struct sim_operator_par *hand)
-{
-    static const char *const does[] = {"rest", "poses", "grasp", "wave"};
-    *hand = sim_operator_default();
-    hand->pose = o->pose ? sim_pose_find(o->pose) : 0;
-    for (int i = 0; i < 4; i++) {
-        if (o->does == NULL || strcmp(o->does, does[i]) == 0) {
-            hand->does = (enum sim_operator_does)i;
-            if (hand->pose >= 0) { return 0; }
-        }
-    }
-    if (hand->pose < 0) {
-        cli_complain("--pose: %s: no such pose:", o->pose);
-        for (int i = 0; i < sim_poses; i++) { fprintf(stderr, "  %-11s %s\n", sim_pose[i].name, sim_pose[i].say); }
-    } else {
-        cli_complain("--does: %s: a hand can rest, poses, grasp or wave", o->does);
-    }
-    return 2;
-}
-
-static int run_logged(const struct glove_options *o, const struct posix_config *c)
-{
-    static const struct exh_loop_hooks hooks = {exh_log_start, before, after};
-    int err;
-    posix_configure(c);
-    last_tick = 0;
-    last_ticks = 0;
-    err = exh_loop(&exh_scene_glove, 0, &hooks);
-    if (err < 0) {
-        cli_complain("%.6g Hz: %s", o->rate_Hz, exh_error_text(err));
-        return 2;
-    }
-    return exh_log_end(last_tick + 1) == 0 ? 0 : 1;
-}
-
-/* The rows of --play: codes as frames, angles through the analog chain. */
-static int play(const struct glove_options *o, struct posix_config *c, struct glove_frames *f,
-                struct recording *r)
-{
-    int err = recording_read(r, o->play, o->unit ? recording_unit_of(o->unit) : RECORDING_GUESS);
-    if (err) { return err; }
-    if (r->codes) {
-        err = glove_frames_of(f, o, o->play);
-        c->frame = (const int16_t(*)[SIM_GLOVE_SENSORS])f->raw;
-        c->frames = f->n;
-    } else {
-        c->hand.does = SIM_RECORD;
-        c->hand.row_rad = (const double(*)[SIM_GLOVE_SENSORS])r->row;
-        c->hand.rows = r->rows;
-        c->hand.row_hz = o->rate_Hz;
-    }
-    return err;
-}
-
-static int record(const struct glove_options *o)
-{
-    struct posix_config c = posix_config_default();
-    struct glove_frames f = {NULL, 0, {0, 0}};
-    struct recording r = {NULL, 0, 0};
-    int err = find_motion(o, &c.hand), closed;
-    if (err == 0 && o->play) { err = play(o, &c, &f, &r); }
-    c.device = o->device;
-    c.glove_par = o->chain;
-    c.seed = (uint64_t)o->seed;
-    c.bench = c.glove = 1;
-    c.T = glove_period(o->rate_Hz);
-    c.max_ticks = (uint32_t)(o->seconds * o->rate_Hz + 0.5);
-    if (err == 0 && (c.log = fopen(o->record, "wb")) == NULL) {
-        cli_complain("%s: %s", o->record, strerror(errno));
-        err = 2;
-    }
-    if (err == 0) {
-        err = run_logged(o, &c);
-        closed = fclose(c.log);
-        if (err == 1 || closed != 0) {
-            cli_complain("%s: can't be written whole", o->record);
-            err = 1;
-        }
-    }
-    free(f.raw);
-    recording_free(&r);
-    return err ? err : posix_interrupted() ? 130 : 0;
-}
-
 /* --- the command --- */
 
 static void interrupted(int sig)
@@ -262,7 +158,7 @@ static int run(struct glove_options *o)
     signal(SIGTERM, interrupted);
     if (o->record) {
         if (o->rate_Hz <= 0) { o->rate_Hz = exh_scene_glove.rate_Hz; }
-        return record(o);
+        return glove_record(o);
     }
     return o->skew ? glove_skew(o) : o->selftest ? glove_table1(o) : glove_csv(o);
 }

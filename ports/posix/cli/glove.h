@@ -29,6 +29,21 @@ struct glove_frames {
     struct exh_period T;
 };
 
+/* What was taken at rest. */
+struct glove_rest {
+    struct glove_frames frames;
+    uint32_t *enc; /* and mon: ticks of them; NULL: no motor in the recording     */
+    int16_t *mon;
+    long ticks, cap;
+};
+
+/* From the board, from a log, from a recording; what of a recording lies between --from and --to.
+ * 0, or an exit status after a line on stderr. Free the three arrays. */
+int glove_rest_board(struct glove_rest *r, const struct glove_options *o);
+int glove_rest_log(struct glove_rest *r, const char *path);
+int glove_rest_csv(struct glove_rest *r, const struct glove_options *o);
+int glove_rest_cut(struct glove_frames *f, const struct glove_options *o);
+
 /* 1 / rate as a ratio, to 1/1000 Hz. */
 struct exh_period glove_period(double rate_Hz);
 
@@ -46,5 +61,6 @@ int glove_frames_of(struct glove_frames *f, const struct glove_options *o, const
 int glove_table1(const struct glove_options *o);
 int glove_csv(const struct glove_options *o);
 int glove_skew(const struct glove_options *o);
+int glove_record(const struct glove_options *o);
 
 #endif

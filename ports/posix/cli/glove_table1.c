@@ -3,11 +3,7 @@
  * the first. */
 #include "glove.h"
 
-#include "logfile.h"
 #include "option.h"
-
-#include "log.h"
-#include "loop.h"
 
 #include "exhand/board.h"
 #include "exhand/error.h"
@@ -18,132 +14,6 @@
 
 #define SENSORS EXH_GLOVE_SENSORS
 #define CODES   65536.0 /* in 20 V */
-
-/* What was recorded at rest. */
-struct rest {
-    struct glove_frames frames;
-    uint32_t *enc; /* NULL: no motor in the recording */
-    int16_t *mon;
-    long ticks, cap;
-    int no_memory;
-};
-
-static struct rest *taking; /* of the loop's hook */
-
-/* --- input --- */
-
-static void start(const struct exh_scene *sc, struct exh_scene_board board)
-{
-    (void)sc;
-    taking->frames.T = board.T;
-}
-
-static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
-{
-    struct rest *r = taking;
-    (void)tick;
-    (void)out;
-    if (r->ticks == r->cap) {
-        posix_stop();
-        return;
-    }
-    r->enc[r->ticks] = in->drive.enc_raw[0];
-    r->mon[r->ticks++] = in->drive.mon_raw[0];
-    if (in->glove_new) {
-        memcpy(r->frames.raw[r->frames.n++], in->glove.raw, sizeof in->glove.raw);
-    }
-}
-
-static int make_room(struct rest *r, long n)
-{
-    r->cap = n;
-    r->frames.raw = malloc((size_t)n * sizeof *r->frames.raw);
-    r->enc = malloc((size_t)n * sizeof *r->enc);
-    r->mon = malloc((size_t)n * sizeof *r->mon);
-    if (r->frames.raw && r->enc && r->mon) { return 0; }
-    cli_complain("out of memory: fewer --seconds");
-    return 1;
-}
-
-/* What the board gives, hand and motor at rest. */
-static int from_board(struct rest *r, const struct glove_options *o)
-{
-    static const struct exh_loop_hooks hooks = {start, NULL, after};
-    const double rate_Hz = o->rate_Hz > 0 ? o->rate_Hz : exh_scene_glove.rate_Hz;
-    struct posix_config c = posix_config_default();
-    int err = make_room(r, (long)(o->seconds * rate_Hz) + 1);
-    if (err) { return err; }
-    c.device = o->device;
-    c.glove_par = o->chain;
-    c.seed = (uint64_t)o->seed;
-    c.bench = c.glove = 1;
-    c.enc_jitter_cnt = 1;
-    c.T = glove_period(rate_Hz);
-    c.max_ticks = (uint32_t)r->cap - 1;
-    posix_configure(&c);
-    taking = r;
-    err = exh_loop(&exh_scene_glove, 0, &hooks);
-    if (err < 0) {
-        cli_complain("%s: %.6g Hz: %s", exh_board_info.name, rate_Hz, exh_error_text(err));
-        return err == -EXH_E_ABSENT ? 3 : 2;
-    }
-    return posix_interrupted() ? 130 : 0;
-}
-
-/* The glove frames of a log. */
-static int from_log(struct rest *r, const char *path)
-{
-    struct logfile l;
-    struct exh_record rec;
-    struct exh_scene_in in;
-    struct exh_drive_out out;
-    int err = logfile_open(&l, path);
-    if (err == 0 && l.scene->read_glove == NULL) {
-        cli_complain("%s: made by scene %s, which reads no glove", path, l.scene->name);
-        err = 2;
-    }
-    r->frames.T = l.header.T;
-    if (err == 0) {
-        r->cap = (long)(l.len / EXH_RECORD_OVERHEAD);
-        r->frames.raw = malloc((size_t)r->cap * sizeof *r->frames.raw);
-        err = r->frames.raw == NULL;
-    }
-    while (err == 0 && logfile_next(&l, &rec)) {
-        struct exh_bytes c = exh_bytes_reader(rec.payload, rec.len_B);
-        if (rec.type != EXH_RECORD_FRAME) { continue; }
-        memset(&in, 0, sizeof in);
-        exh_log_frame_bytes(&c, l.scene, &in, &out, l.scene->signal);
-        if (exh_bytes_ok(&c) && c.at == rec.len_B && in.glove_new) {
-            memcpy(r->frames.raw[r->frames.n++], in.glove.raw, sizeof in.glove.raw);
-        }
-    }
-    if (err == 0) { err = logfile_complain(&l); }
-    logfile_close(&l);
-    return err;
-}
-
-static int from_csv(struct rest *r, const struct glove_options *o)
-{
-    r->frames.T = glove_period(o->rate_Hz);
-    return glove_frames_of(&r->frames, o, o->csv);
-}
-
-/* --from and --to of a recording. */
-static int cut(struct glove_frames *f, const struct glove_options *o)
-{
-    const double T_s = (double)f->T.num / f->T.den;
-    const long from = (long)(o->from_s / T_s + 0.5);
-    long to = o->to_s > 0 ? (long)(o->to_s / T_s + 0.5) : f->n;
-    if (to > f->n) { to = f->n; }
-    if (from >= to) {
-        cli_complain("--from, --to: %.6g..%.6g s: nothing is recorded there: it ends at %.6g s", o->from_s,
-                     o->to_s, (double)f->n * T_s);
-        return 2;
-    }
-    f->n = to - from;
-    memmove(f->raw, f->raw + from, (size_t)f->n * sizeof *f->raw);
-    return 0;
-}
 
 /* --- measuring --- */
 
@@ -190,7 +60,7 @@ static double joint_pp(const struct glove_frames *f, int *worst)
 }
 
 /* By the library, from counter values, m. */
-static int position_pp(const struct rest *r, const struct sim_device *d, double *pp_m, double *step_m)
+static int position_pp(const struct glove_rest *r, const struct sim_device *d, double *pp_m, double *step_m)
 {
     const struct exh_quad_par par = {
         (int32_t)(d->step_m / d->decode * (double)(INT64_C(1) << EXH_Q_STEP) + 0.5),
@@ -212,7 +82,7 @@ static int position_pp(const struct rest *r, const struct sim_device *d, double 
     return 0;
 }
 
-static double current_pp(const struct rest *r, const struct sim_device *d)
+static double current_pp(const struct glove_rest *r, const struct sim_device *d)
 {
     const struct exh_drive_par par = {.mon_A_q40 =
                                           (int32_t)(d->mon_apc * (double)(INT64_C(1) << EXH_Q_MON) + 0.5)};
@@ -241,7 +111,7 @@ static int joint_row(const struct glove_options *o, double pp)
     return row("joint angle", noise, width_text, stable_bits(span, pp), "6.1 mV", 11);
 }
 
-static int motor_rows(const struct glove_options *o, const struct rest *r)
+static int motor_rows(const struct glove_options *o, const struct glove_rest *r)
 {
     double pp_m, step_m, pp_A;
     char noise[64], span[64];
@@ -302,7 +172,8 @@ static void widths(const struct glove_frames *f, const struct exh_filter_cfg *cf
         }
     }
     for (int i = 0; q != NULL && i < 2 * SENSORS; i++) { /* one each to find its place */
-        if (flips[i / SENSORS][i % SENSORS] > 1) { b->flips[i / SENSORS] += flips[i / SENSORS][i % SENSORS] - 1; }
+        const long n = flips[i / SENSORS][i % SENSORS];
+        if (n > 1) { b->flips[i / SENSORS] += n - 1; }
     }
     for (int i = 0; q == NULL && i < SENSORS; i++) {
         if (width(&seen[i], 1) / 65536 > b->pp_raw) { b->pp_raw = width(&seen[i], 1) / 65536; }
@@ -386,7 +257,7 @@ static int worse(int a, int b)
     return a > b ? a : b;
 }
 
-static int report(const struct glove_options *o, const struct rest *r, const char *source)
+static int report(const struct glove_options *o, const struct glove_rest *r, const char *source)
 {
     const struct glove_frames *f = &r->frames;
     const double rate_Hz = (double)f->T.den / f->T.num;
@@ -404,21 +275,21 @@ static int report(const struct glove_options *o, const struct rest *r, const cha
 
 int glove_table1(const struct glove_options *o)
 {
-    struct rest r;
+    struct glove_rest r;
     char source[300];
     int err;
     memset(&r, 0, sizeof r);
     if (o->csv) {
         snprintf(source, sizeof source, "recorded: %s", o->csv);
-        err = from_csv(&r, o);
+        err = glove_rest_csv(&r, o);
     } else if (o->log) {
         snprintf(source, sizeof source, "recorded: %s", o->log);
-        err = from_log(&r, o->log);
+        err = glove_rest_log(&r, o->log);
     } else {
         snprintf(source, sizeof source, "hand and motor at rest, board %s", exh_board_info.name);
-        err = from_board(&r, o);
+        err = glove_rest_board(&r, o);
     }
-    if (err == 0 && (o->csv || o->log)) { err = cut(&r.frames, o); }
+    if (err == 0 && (o->csv || o->log)) { err = glove_rest_cut(&r.frames, o); }
     if (err == 0) { err = report(o, &r, source); }
     free(r.frames.raw);
     free(r.enc);
