@@ -169,12 +169,13 @@ static void cross(const struct exh_glove_cfg *cfg, int32_t *angle_turn_q32)
 uint32_t exh_glove_step(struct exh_glove *s, const struct exh_glove_cfg *cfg,
                         const struct exh_glove_in *in, int32_t *angle_turn_q32)
 {
+    const struct exh_glove_sensor *cal = cfg->cal->sensor;
     int32_t *const x = angle_turn_q32; /* codes q16 on their way to become angles */
     uint32_t faulty = 0;
     if (!s->started) { start(s, cfg, in); }
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
         const int16_t raw = in->raw[i];
-        if (raw < cfg->lo_raw[i] || raw > cfg->hi_raw[i] || s->run[i] || s->cause[i]) {
+        if (raw < cfg->lo_raw[i] || raw > cfg->hi_raw[i] || (s->run[i] | s->cause[i]) != 0) {
             doubt(s, cfg, i, raw);
             faulty |= (uint32_t)(s->cause[i] != EXH_GLOVE_GOOD) << i;
         } else {
@@ -183,8 +184,7 @@ uint32_t exh_glove_step(struct exh_glove *s, const struct exh_glove_cfg *cfg,
         x[i] = s->good_raw[i] * 65536;
     }
     if (cfg->order > 0) { exh_filter_step(s->filter, &cfg->filter, x, x, EXH_GLOVE_SENSORS); }
-    for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
-        const struct exh_glove_sensor *cal = &cfg->cal->sensor[i];
+    for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++, cal++) {
         const int32_t code = exh_quantizer_step(&s->quantizer[i], &cfg->quantizer, x[i]);
         /* Half the code: the difference to a zero at the far end fits. */
         angle_turn_q32[i] = exh_sat32(

@@ -53,8 +53,9 @@ struct exh_glove_par {
     int32_t order;           /* of the low-pass: 1, 2; 0 = none                 */
     int32_t fc_Hz_q16;       /* its cut-off, below half the glove's own rate    */
     int32_t bits;            /* stable bits of the card's range, 1 .. 24        */
-    int32_t hyst_raw_q16;    /* hysteresis, codes q16; at or above the noise's
-                              * peak to peak behind the filter: no flips        */
+    int32_t hyst_raw_q16;    /* hysteresis, codes q16, at most a step of 2^(16-bits)
+                              * codes; at or above the noise's peak to peak behind
+                              * the filter: an angle moves once and stays       */
     int32_t low_raw;         /* a code at or below: the amplifier is at its lower rail */
     int32_t high_raw;        /* a code at or above: at its upper                */
     int32_t open_high;       /* 1: an open wire reads high, a short low; 0: the other way */
@@ -181,8 +182,9 @@ struct exh_glove {
 
 /* Set-up (divides); cal must outlive cfg. T is the time between frames, which is the
  * glove's own and may be several ticks of the loop. -EXH_E_CUTOFF: fc at or above half its
- * rate. -EXH_E_RANGE: a parameter outside its row, low_raw not below high_raw, what
- * exh_glove_cal_valid() refuses, or a calibrated span that touches a rail. */
+ * rate. -EXH_E_RANGE: a parameter outside its row, more hysteresis than a step, low_raw not
+ * below high_raw, what exh_glove_cal_valid() refuses, or a calibrated span that touches a
+ * rail. */
 int exh_glove_setup(struct exh_glove_cfg *cfg, const struct exh_glove_par *par,
                     const struct exh_glove_cal *cal, struct exh_period T);
 
@@ -200,8 +202,9 @@ int exh_glove_setup(struct exh_glove_cfg *cfg, const struct exh_glove_par *par,
  * filter's step response does, with no jump. In the first frame a bad code is a fault at
  * once; its place takes the code of angle 0, or the end of the calibrated span next to it.
  *
- * Error of the angle: quantizer (units of its step and hysteresis: (Q + H)/2), 1 LSB per
- * term; gain within 2^-18 at 2^-21 turn per code, within 2^-22 at the default's. */
+ * Error of the angle: (Q + H)/2 of the quantizer in the sensor's gain, and 1/2 LSB a term.
+ * Cost depends on the order and the number of cross terms; a channel that is faulty or in
+ * doubt costs some 20 instructions more. Ages are the caller's: in->age_ticks is not read. */
 uint32_t exh_glove_step(struct exh_glove *s, const struct exh_glove_cfg *cfg,
                         const struct exh_glove_in *in, int32_t *angle_turn_q32);
 
