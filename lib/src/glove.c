@@ -143,8 +143,8 @@ static void start(struct exh_glove *s, const struct exh_glove_cfg *cfg,
         s->good_raw[i] =
             s->cause[i] == EXH_GLOVE_GOOD
                 ? in->raw[i]
-                : (int16_t)exh_clamp(cal->zero_raw_q15 >> 15, cal->low_raw, cal->high_raw);
-        x_raw_q16[i] = s->good_raw[i] * 65536;
+                : (int16_t)exh_clamp(cal->zero_raw_q15 >> EXH_Q_ZERO, cal->low_raw, cal->high_raw);
+        x_raw_q16[i] = s->good_raw[i] * (1 << EXH_Q_RAW);
     }
     exh_filter_reset(s->filter, x_raw_q16, EXH_GLOVE_SENSORS);
     s->started = 1;
@@ -181,14 +181,15 @@ uint32_t exh_glove_step(struct exh_glove *s, const struct exh_glove_cfg *cfg,
         } else {
             s->good_raw[i] = raw;
         }
-        x[i] = s->good_raw[i] * 65536;
+        x[i] = s->good_raw[i] * (1 << EXH_Q_RAW);
     }
     if (cfg->order > 0) { exh_filter_step(s->filter, &cfg->filter, x, x, EXH_GLOVE_SENSORS); }
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++, cal++) {
         const int32_t code = exh_quantizer_step(&s->quantizer[i], &cfg->quantizer, x[i]);
         /* Half the code: the difference to a zero at the far end fits. */
-        angle_turn_q32[i] = exh_sat32(
-            exh_mul_shr((code >> 1) - cal->zero_raw_q15, cal->gain_turnpraw_q38, 15 + 38 - 32));
+        angle_turn_q32[i] =
+            exh_sat32(exh_mul_shr((code >> 1) - cal->zero_raw_q15, cal->gain_turnpraw_q38,
+                                  EXH_Q_ZERO + EXH_Q_TPRAW - EXH_Q_TURN));
     }
     cross(cfg, angle_turn_q32);
     return faulty;

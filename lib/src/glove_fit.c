@@ -7,7 +7,6 @@
  */
 #include "exhand/glove.h"
 
-#include "exhand/calibrate.h"
 #include "exhand/error.h"
 #include "exhand/fix.h"
 
@@ -53,8 +52,8 @@ static int64_t factor_mul(const struct factor *f, int64_t v)
 
 static int32_t own_turn_q32(const struct exh_glove_sensor *s, int32_t raw_q16)
 {
-    return exh_sat32(
-        exh_mul_shr((raw_q16 >> 1) - s->zero_raw_q15, s->gain_turnpraw_q38, 15 + 38 - 32));
+    return exh_sat32(exh_mul_shr((raw_q16 >> 1) - s->zero_raw_q15, s->gain_turnpraw_q38,
+                                 EXH_Q_ZERO + EXH_Q_TPRAW - EXH_Q_TURN));
 }
 
 /* sum[r][c] over all pairs; the known angle comes behind the terms. */
@@ -162,19 +161,21 @@ static unsigned fit_cross(struct known *k, struct exh_glove_sensor *s)
     return EXH_GLOVE_WHATS;
 }
 
+static int64_t mean(const int32_t *v, unsigned n)
+{
+    uint64_t sum = (uint64_t)n << 31; /* lifted: never negative */
+    for (unsigned p = 0; p < n; p++) { sum += (uint64_t)(int64_t)v[p]; }
+    return (int64_t)exh_udiv64(sum, n, NULL) - (INT64_C(1) << 31);
+}
+
 /* Gain by the line through what is left, zero where it crosses. */
 static unsigned fit_line(struct known *k, struct exh_glove_sensor *s)
 {
-    struct exh_mean code = {0, 0}, angle = {0, 0};
     struct factor f, inverse;
     int64_t gain, zero_q16;
     if (last_factor(k, &f, &inverse) < 0) { return EXH_GLOVE_GAIN; }
-    for (unsigned p = 0; p < k->n; p++) {
-        exh_mean_add(&code, k->code_raw_q16[p]);
-        exh_mean_add(&angle, k->angle_turn_q32[p]);
-    }
     gain = factor_mul(&f, INT64_C(1) << (38 + 8 - 24)); /* turn q24 over code q8 */
-    zero_q16 = exh_mean_value(&code) - factor_mul(&inverse, exh_mean_value(&angle));
+    zero_q16 = mean(k->code_raw_q16, k->n) - factor_mul(&inverse, mean(k->angle_turn_q32, k->n));
     if (gain > INT32_MAX || gain < -INT32_MAX) { return EXH_GLOVE_GAIN; }
     if (zero_q16 > INT32_MAX || zero_q16 < INT32_MIN) { return EXH_GLOVE_ZERO; }
     s->gain_turnpraw_q38 = (int32_t)gain;

@@ -4,6 +4,7 @@
  *   fix units bytes error        below everything
  *   angle                        binary angles, sine and cosine
  *   signal                       one descriptor per value; parameters
+ *   glove                        its codes to 22 joint angles; a user's calibration from poses
  *   hand                         the glove's angles to the robot hand's joints and fingertips
  *   quad -> velocity -> contact -> drive -> safety (the gate)      one tick
  *   filter, quantizer            glove voltages to codes that stand still

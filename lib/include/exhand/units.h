@@ -13,6 +13,10 @@
  *   D/A codes         1/A     q16     0..32767    1.5e-5
  *   monitor           A/code  q40     0..1.95 mA  0.91 pA
  *   force slew        N/s     q0      0..2.1e9    1
+ *   angle             turn    q32     +-1/2       1.5 nrad
+ *   glove code        codes   q16     +-32768     1.5e-5
+ *   glove zero        codes   q15     +-32768     3.1e-5
+ *   glove gain        turn/code q38   +-1/128     3.6e-12
  */
 #ifndef EXHAND_UNITS_H
 #define EXHAND_UNITS_H
@@ -28,6 +32,10 @@
 #define EXH_Q_STEP 42  /* m/count  */
 #define EXH_Q_DAC 16   /* codes/A  */
 #define EXH_Q_MON 40   /* A/code   */
+#define EXH_Q_TURN 32  /* turn     */
+#define EXH_Q_RAW 16   /* codes    */
+#define EXH_Q_ZERO 15  /* codes    */
+#define EXH_Q_TPRAW 38 /* turn/code */
 
 /* num/den in format q, for initialisers: an integer constant expression,
  * truncated towards zero. |num| * 2^q < 2^63 and the result fits int32_t.
