@@ -198,14 +198,16 @@ TEST(retune_keeps_what_is_settled)
 
 TEST(state_round_trip)
 {
-    struct exh_filter s = {INT64_C(-0x123456789ABCDEF), INT64_C(0x7EDCBA9876543210)}, back = {0, 0};
+    struct exh_filter s = {INT64_C(-0x123456789ABCDEF), INT64_C(0x7EDCBA9876543210), 1},
+                      back = {0, 0, 0};
     uint8_t buf[32];
     struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
     exh_filter_bytes(&c, &s);
-    CHECK_EQ_I64(c.at, 16);
+    CHECK_EQ_I64(c.at, 17);
     c = exh_bytes_reader(buf, c.at);
     exh_filter_bytes(&c, &back);
-    CHECK(exh_bytes_ok(&c) && back.pos == s.pos && back.vel == s.vel, "state differs");
+    CHECK(exh_bytes_ok(&c) && back.pos == s.pos && back.vel == s.vel && back.wide == s.wide,
+          "state differs");
 }
 
 /* Whatever is restored: no undefined step, and the input again in the end. */
@@ -219,6 +221,7 @@ TEST(recovers_from_any_state)
                 const int32_t x = check_i32();
                 int32_t y = 0;
                 s.pos = k < 4 ? (k & 1 ? INT64_MIN : INT64_MAX) : check_i64();
+                s.wide = k >> 2 & 1;
                 s.vel = k < 4 ? (k & 2 ? INT64_MIN : INT64_MAX) : check_i64();
                 for (int32_t t = 2 * settling(i); t > 0; t--) { y = one(&s, cfg, x); }
                 CHECK(y == x, "order %" PRId32 " tune %zu: %" PRId32 " at %" PRId32, order, i, y,

@@ -42,8 +42,9 @@ struct exh_filter_cfg {
 
 /* One channel. */
 struct exh_filter {
-    int64_t pos; /* low-pass state, LSB of x in q26, plus half an LSB          */
-    int64_t vel; /* band-pass state, 9/8 LSB of x in q32 (high: q26)           */
+    int64_t pos; /* low-pass state, LSB of x in q31, and half an LSB more       */
+    int64_t vel; /* band-pass state, 9/8 LSB of x in q32                        */
+    uint8_t wide; /* 1: of a high kind, both in q26                              */
 };
 
 /* Set-up (divides). Coefficients for the period T. -EXH_E_CUTOFF: fc at or above half

@@ -1,0 +1,55 @@
+/* The high kinds: cut-off up to half the rate. Fractions of 31 bits times 64-bit states. */
+#include "filter_tick.h"
+
+#include "exhand/fix.h"
+
+#define Q    EXH_FILTER_HIGH_Q
+#define HALF (INT64_C(1) << (Q - 1))
+
+/* States swing up to 32 times the input where that swings at half the rate. There they
+ * stop, which takes energy and so cannot start an oscillation. */
+static int64_t bounded(int64_t v)
+{
+    const int64_t most = INT64_C(1) << (31 + 5 + Q);
+    return v > most ? most : v < -most ? -most : v;
+}
+
+/* What a reset, or a low kind before, left: into our format. */
+static void widen(struct exh_filter *s)
+{
+    if (!s->wide) {
+        s->pos >>= EXH_FILTER_POS_Q - Q;
+        s->vel >>= EXH_FILTER_VEL_Q - Q;
+        s->wide = 1;
+    }
+}
+
+EXH_FILTER_STEP(exh_filter_high2)
+{
+    for (; n > 0; n--, s++, x++, y++) {
+        int64_t pos, vel, e, mid, move, low;
+        widen(s);
+        pos = bounded(s->pos);
+        vel = bounded(s->vel);
+        e = (int64_t)*x * (1 << Q) + HALF - pos;
+        mid = exh_mul64_q31(vel, cfg->a) + exh_mul64_q31(e, cfg->b);
+        move = exh_mul64_q31(vel, cfg->c) + exh_mul64_q31(e, cfg->d);
+        low = pos + move;
+        s->vel = 2 * mid - vel;
+        s->pos = low + move;
+        *y = exh_sat32(low >> Q);
+    }
+}
+
+EXH_FILTER_STEP(exh_filter_high1)
+{
+    for (; n > 0; n--, s++, x++, y++) {
+        int64_t pos, move, low;
+        widen(s);
+        pos = bounded(s->pos);
+        move = exh_mul64_q31((int64_t)*x * (1 << Q) + HALF - pos, cfg->a);
+        low = pos + move;
+        s->pos = low + move;
+        *y = exh_sat32(low >> Q);
+    }
+}

@@ -1,0 +1,80 @@
+/* The low kinds: cut-off well below the rate, where the state creeps and the cost counts.
+ * Words are cut so that a 32-bit CPU multiplies 32 by 32 bits only and shifts once. */
+#include "filter_tick.h"
+
+#include "exhand/fix.h"
+
+#define POS_Q EXH_FILTER_POS_Q
+
+/* No input moves the state this far; only damaged bytes do. */
+#define BEYOND (INT64_C(5) << (31 - 2 + POS_Q)) /* 5/4 of full scale */
+
+/* The output where it does not fit. A state that no input can cause starts anew there. */
+static int32_t clipped(struct exh_filter *s, int64_t low)
+{
+    const int32_t y = low < 0 ? INT32_MIN : INT32_MAX;
+    EXH_SATURATED();
+    if (low > BEYOND || low < -BEYOND) { exh_filter_rest(s, y); }
+    return y;
+}
+
+/* The limit seen in the high word alone. */
+static inline int32_t output(struct exh_filter *s, int64_t low)
+{
+    const uint64_t half = UINT64_C(1) << (31 + POS_Q);
+    if ((uint64_t)low + half >= 2 * half) { return clipped(s, low); }
+    return exh_from_u32((uint32_t)((uint64_t)low >> POS_Q & UINT32_MAX));
+}
+
+static inline int32_t high_word(int64_t v)
+{
+    return exh_from_u32((uint32_t)((uint64_t)v >> 32));
+}
+
+/* (x - floor(pos)) * a - vel's integer part * b modulo 2^64, in whichever way the CPU has
+ * the shorter code: the same bits. */
+static inline int64_t acceleration(const struct exh_filter *s, int32_t x, int32_t a, int32_t b)
+{
+#if UINTPTR_MAX > UINT32_MAX
+    const uint64_t drive = (uint64_t)(x - (s->pos >> POS_Q)) * (uint64_t)a;
+    return exh_from_u64(drive + (uint64_t)((int64_t)high_word(s->vel) * -b));
+#else
+    const uint32_t odd = (uint32_t)a & (uint32_t)((int32_t)s->pos >> 31);
+    const uint64_t at = (uint64_t)((int64_t)high_word(s->pos) * (2 * a)) + odd;
+    const uint64_t friction = (uint64_t)((int64_t)high_word(s->vel) * b);
+    return exh_from_u64((uint64_t)((int64_t)x * a) - at - friction);
+#endif
+}
+
+/* Damaged bytes may wrap here, which clipped() finds. Nothing else comes near. */
+EXH_FILTER_STEP(exh_filter_low2)
+{
+    const int32_t a = cfg->a, b = cfg->b, c = cfg->c;
+#if UINTPTR_MAX > UINT32_MAX
+    const unsigned shift = cfg->shift;
+#else
+    const volatile uint8_t shift = cfg->shift; /* read, and seen to be masked, at each use */
+#endif
+    for (; n > 0; n--, s++, x++, y++) {
+        const int64_t v = acceleration(s, *x, a, b) >> (shift & 31);
+        const int64_t p = exh_wrap_add64(s->vel, v);
+        const int64_t move = (int64_t)high_word(p) * c;
+        const int64_t low = exh_wrap_add64(s->pos, move);
+        s->vel = exh_wrap_add64(p, v);
+        s->pos = exh_wrap_add64(low, move);
+        *y = output(s, low);
+    }
+}
+
+EXH_FILTER_STEP(exh_filter_low1)
+{
+    const int32_t a = cfg->a;
+    const unsigned shift = cfg->shift & 31;
+    for (; n > 0; n--, s++, x++, y++) {
+        const int64_t e = *x - (s->pos >> POS_Q);
+        const int64_t move = exh_from_u64((uint64_t)e * (uint64_t)a) >> shift;
+        const int64_t low = exh_wrap_add64(s->pos, move);
+        s->pos = exh_wrap_add64(low, move);
+        *y = output(s, low);
+    }
+}
