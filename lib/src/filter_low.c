@@ -39,10 +39,9 @@ static inline int64_t acceleration(const struct exh_filter *s, int32_t x, int32_
     const uint64_t drive = (uint64_t)(x - (s->pos >> POS_Q)) * (uint64_t)a;
     return exh_from_u64(drive + (uint64_t)((int64_t)high_word(s->vel) * -b));
 #else
-    const uint32_t odd = (uint32_t)a & (uint32_t)((int32_t)s->pos >> 31);
-    const uint64_t at = (uint64_t)((int64_t)high_word(s->pos) * (2 * a)) + odd;
-    const uint64_t friction = (uint64_t)((int64_t)high_word(s->vel) * b);
-    return exh_from_u64((uint64_t)((int64_t)x * a) - at - friction);
+    const int64_t odd = (uint32_t)a & (uint32_t)((int32_t)s->pos >> 31);
+    const uint64_t drive = (uint64_t)((int64_t)x * a - (int64_t)high_word(s->pos) * (2 * a) - odd);
+    return exh_from_u64(drive - (uint64_t)((int64_t)high_word(s->vel) * b));
 #endif
 }
 
@@ -53,14 +52,15 @@ EXH_FILTER_STEP(exh_filter_low2)
 #if UINTPTR_MAX > UINT32_MAX
     const unsigned shift = cfg->shift;
 #else
-    const volatile uint8_t shift = cfg->shift; /* read, and seen to be masked, at each use */
+    const volatile unsigned shift = cfg->shift; /* read at each use: so its mask is seen there */
 #endif
     for (; n > 0; n--, s++, x++, y++) {
-        const int64_t v = acceleration(s, *x, a, b) >> (shift & 31);
+        const int64_t acc = acceleration(s, *x, a, b);
+        const int64_t v = acc >> (shift & 31);
         const int64_t p = exh_wrap_add64(s->vel, v);
+        s->vel = exh_wrap_add64(p, v);
         const int64_t move = (int64_t)high_word(p) * c;
         const int64_t low = exh_wrap_add64(s->pos, move);
-        s->vel = exh_wrap_add64(p, v);
         s->pos = exh_wrap_add64(low, move);
         *y = output(s, low);
     }
