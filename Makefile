@@ -323,11 +323,21 @@ $(bench_bin): $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $(filter %.o,$^) $(filter %.a,$^) -Wl,--strip-debug -lm
 
+# The kernels again for a 32-bit CPU, where only instructions are counted: the same flags, static.
+bench_i686 := $(B)/bench/kernels-i686
+i686_src   := $(patsubst $(B)/posix/%.o,%.c,$(filter-out %/velocity.o,$(bench_obj))) examples/drop/drop.c $(lib_src)
+$(bench_i686): $(i686_src) $(wildcard test/bench/*.h lib/src/*.h lib/include/exhand/*.h test/wide.h) $(stamp)
+	@mkdir -p $(@D)
+	$(Q)i686-linux-gnu-gcc -static $(filter-out -MMD -MP -g,$(base)) $(PORT_HOSTFLAGS) $(CFLAGS) -Itest \
+	    -o $@ $(filter %.c,$^) -lm
+
 ## Error and instructions of every kernel, beside test/bench/baseline.csv (ARGS=--update)
 .PHONY: bench
 bench:
 	@.ci/deps "the benches" valgrind valgrind || exit 3
 	@$(MAKE) --no-print-directory $(bench_bin)
+	@if .ci/deps "the i686 counts" i686-linux-gnu-gcc gcc-i686-linux-gnu libc6-dev-i386-cross; then \
+	    $(MAKE) --no-print-directory $(bench_i686); else rm -f $(bench_i686); fi
 	@B=$(B) test/bench/bench.sh $(ARGS)
 
 # --- keeping house ------------------------------------------------------------------

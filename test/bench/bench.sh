@@ -2,9 +2,10 @@
 # What each kernel costs and how wrong it is: bench.sh [--update]
 #
 # Builds nothing: runs kernels, velocity and speed from $B/bench, the first and the last also
-# under callgrind. Writes $B/bench/bench.csv and velocity.csv, prints the tables and what has
-# changed since test/bench/baseline.csv. Instructions are printed, never fatal: they are the
-# compiler's as much as ours. --update makes this run the baseline.
+# under callgrind, and kernels-i686, where that was built, under callgrind alone. Writes
+# $B/bench/bench.csv and velocity.csv, prints the tables and what has changed since
+# test/bench/baseline.csv. Instructions are printed, never fatal: they are the compiler's as
+# much as ours. --update makes this run the baseline.
 #
 # Environment: B (build).
 # Exit status: 0 ok, 1 an error above its documented bound, or a kernel of the baseline is gone,
@@ -58,38 +59,53 @@ printf 'tools: %s; host: %s %s\n\n' "$(valgrind --version)" "$(uname -s)" "$(una
 
 "$b/kernels" errors >"$tmp/errors"
 "$b/kernels" anchors >"$tmp/anchors"
-profile bench_measure --dump-after=bench_measure "$b/kernels" count >"$tmp/order"
-k=0
-while IFS=, read -r name ops; do
-    k=$((k + 1))
-    n=$(total "$tmp/cg.$k")
-    [ "$n" -gt 0 ] || { echo "bench: $name: callgrind counted nothing" >&2; exit 1; }
-    echo "$name,$ops,$n"
-done <"$tmp/order" >"$tmp/counts"
+
+# counts BINARY: name,ops,instructions of every op, the empty one first
+counts()
+{
+    rm -f "$tmp"/cg*
+    profile bench_measure --dump-after=bench_measure "$1" count >"$tmp/order"
+    k=0
+    while IFS=, read -r name ops; do
+        k=$((k + 1))
+        n=$(total "$tmp/cg.$k")
+        [ "$n" -gt 0 ] || { echo "bench: $name: callgrind counted nothing" >&2; return 1; }
+        echo "$name,$ops,$n"
+    done <"$tmp/order"
+}
+
+counts "$b/kernels" >"$tmp/counts"
+: >"$tmp/counts-i686"
+if [ -x "$b/kernels-i686" ]; then
+    counts "$b/kernels-i686" >"$tmp/counts-i686"
+else
+    echo "i686: not counted, shown as \"-\": i686-linux-gnu-gcc missing"
+fi
 
 # name,unit,error_max,error_rms,error_max_lsb,error_rms_lsb,bound_lsb,inputs,why -> bench.csv;
 # the first line of the counts is the empty op. Anchors: name,instructions,source.
 awk -F, -v OFS=, '
-    FNR == 1 { file++ }
-    file == 1 { if (FNR == 1) empty = $3; else count[$1] = ($3 - empty) / $2; next }
-    file == 2 { anchor[$1] = $2; next }
+    FNR == 1 { empty = "" }
+    FILENAME ~ /counts/ { if (empty == "") empty = $3; n = sprintf("%.2f", ($3 - empty) / $2)
+                          if (FILENAME ~ /i686/) i686[$1] = n; else count[$1] = n; next }
+    FILENAME ~ /anchors/ { anchor[$1] = $2; next }
     /^#/ { next }
-    FNR == 1 { print "name,instructions,error_max_lsb,error_rms_lsb,bound_lsb,unit,error_max," \
-               "error_rms,inputs,anchor_instructions" }
-    { print $1, sprintf("%.2f", count[$1]), $5, $6, $7, $2, $3, $4, $8, \
-            ($1 in anchor ? anchor[$1] : "") }
-' "$tmp/counts" "$tmp/anchors" "$tmp/errors" >"$b/bench.csv"
+    !n_rows++ { print "name,instructions,error_max_lsb,error_rms_lsb,bound_lsb,unit,error_max," \
+                "error_rms,inputs,anchor_instructions,instructions_i686" }
+    { print $1, count[$1], $5, $6, $7, $2, $3, $4, $8, \
+            ($1 in anchor ? anchor[$1] : ""), ($1 in i686 ? i686[$1] : "-") }
+' "$tmp/counts" "$tmp/counts-i686" "$tmp/anchors" "$tmp/errors" >"$b/bench.csv"
 
 # --- kernels ---
 
 awk -F, '
-    NR == 1 { printf "%-20s %9s %9s | %-6s %9s %9s | %9s %9s %7s\n", "kernel", "instr/op", \
-              "(anchor)", "unit", "max", "rms", "max LSB", "rms LSB", "bound"; next }
-    { printf "%-20s %9.2f %9s | %-6s %9s %9s | %9s %9s %7s\n", $1, $2, \
-             ($10 == "" ? "" : "(" $10 ")"), $6, $7, $8, $3, $4, $5 }
+    NR == 1 { printf "%-20s %9s %9s %9s | %-6s %9s %9s | %9s %9s %7s\n", "kernel", "instr/op", \
+              "(anchor)", "i686", "unit", "max", "rms", "max LSB", "rms LSB", "bound"; next }
+    { printf "%-20s %9.2f %9s %9s | %-6s %9s %9s | %9s %9s %7s\n", $1, $2, \
+             ($10 == "" ? "" : "(" $10 ")"), $11, $6, $7, $8, $3, $4, $5 }
 ' "$b/bench.csv"
 echo
-echo "instr/op: inside bench_measure() by callgrind, an empty op subtracted; the mean of 1024 ops."
+echo "instr/op, i686: inside bench_measure() by callgrind, an empty op subtracted; mean of 1024 ops."
 echo "Errors against long double or exact integers. Bounds and inputs:"
 awk -F, '!/^#/ { why = $9; for (i = 10; i <= NF; i++) why = why "," $i
                  printf "  %-20s %s\n", $1, why }' "$tmp/errors"
@@ -143,7 +159,7 @@ done | awk -F, '{ n[$1] = $2 }
 
 if [ $update = yes ]; then
     { echo "# $built; $(valgrind --version); made by make bench ARGS=--update"
-      cut -d, -f1-4 "$b/bench.csv"; } >"$here/baseline.csv"
+      cut -d, -f1-4,11 "$b/bench.csv"; } >"$here/baseline.csv"
     echo
     echo "$here/baseline.csv: written"
 fi
@@ -154,15 +170,19 @@ fi
 
 echo
 awk -F, '
+    function moved(from, to) { return sprintf("%10.2f %10.2f %+8.1f %%", from, to, \
+                                              from ? 100 * (to / from - 1) : 0) }
     /^#/ { base = substr($0, 3); next }
     $1 == "name" { next }
-    NR == FNR { was[$1] = $2; max[$1] = $3; order[n++] = $1; next }
+    NR == FNR { was[$1] = $2; max[$1] = $3; was_i686[$1] = $5; order[n++] = $1; next }
     { now[$1] = $2
       if ($3 + 0 > $5 + 0) { printf "FAIL %s: error %s LSB above its bound of %s\n", $1, $3, $5
                              bad = 1 }
-      if (!($1 in was)) { printf "new: %s, %s instructions\n", $1, $2; next }
-      if ($2 != was[$1]) change[$1] = sprintf("%10.2f %10.2f %+9.1f %%", was[$1], $2, \
-                                              was[$1] ? 100 * ($2 / was[$1] - 1) : 0)
+      if (!($1 in was)) { printf "new: %s, %s instructions, i686 %s\n", $1, $2, $11; next }
+      if ($2 != was[$1]) change[$1] = moved(was[$1], $2)
+      if ($11 != "-" && was_i686[$1] + 0 > 0 && $11 != was_i686[$1])
+          change[$1] = (($1 in change) ? change[$1] : sprintf("%32s", "")) " | i686" \
+                       moved(was_i686[$1], $11)
       if ($3 != max[$1]) { printf "error of %s: max was %s, now %s LSB\n", $1, max[$1], $3 } }
     END {
       for (i = 0; i < n; i++) {
