@@ -12,7 +12,7 @@
 
 #define ALL                   4 /* code, two knuckles, and the known angle */
 #define ANGLES_APART_TURN_Q32 EXH_Q(5, 360, 32) /* known angles that differ at all     */
-#define PIVOT_MIN             (INT64_C(1) << 34) /* a knuckle that moved by 2.8 degrees */
+#define PIVOT_MIN             (INT64_C(1) << 42) /* a knuckle that moved by 2.8 degrees */
 #define PIVOT_SHARE           8 /* 2^-8 of it in its own way           */
 
 const struct exh_glove_fit_par exh_glove_fit_default = {256, 128, EXH_Q(6, 360, 32)};
@@ -22,7 +22,7 @@ struct known {
     unsigned n, terms; /* poses, unknown factors                */
     uint8_t pose[EXH_GLOVE_POSES_MAX]; /* which they are                        */
     int32_t code_raw_q16[EXH_GLOVE_POSES_MAX];
-    int32_t term[ALL][EXH_GLOVE_POSES_MAX]; /* code q8, angles of knuckles turn_q24 */
+    int32_t term[ALL][EXH_GLOVE_POSES_MAX]; /* code q12, angles of knuckles turn_q28 */
     int32_t angle_turn_q32[EXH_GLOVE_POSES_MAX]; /* less what cross terms explain  */
 };
 
@@ -78,7 +78,7 @@ static int last_factor(struct known *k, struct factor *f, struct factor *inverse
 {
     const unsigned last = k->terms - 1, y = k->terms;
     int64_t sum[ALL][ALL], least;
-    for (unsigned p = 0; p < k->n; p++) { k->term[y][p] = k->angle_turn_q32[p] >> 8; }
+    for (unsigned p = 0; p < k->n; p++) { k->term[y][p] = k->angle_turn_q32[p] >> 4; }
     sums(sum, k);
     least = sum[last][last] >> PIVOT_SHARE;
     for (unsigned r = 0; r < last; r++) {
@@ -119,13 +119,13 @@ static unsigned gather(struct known *k, const struct exh_glove_cal *cal, struct 
         }
         k->pose[m] = (uint8_t)p;
         k->code_raw_q16[m] = raw_q16;
-        k->term[0][m] = raw_q16 >> 8;
+        k->term[0][m] = raw_q16 >> 4;
         k->angle_turn_q32[m] = known;
         k->terms = 1;
         for (unsigned j = 0; j < 2; j++) {
             const unsigned of = cal->sensor[at].of[j];
             if (of == EXH_GLOVE_NONE) { continue; }
-            k->term[k->terms++][m] = own_turn_q32(&cal->sensor[of], pose[p].mean_raw_q16[of]) >> 8;
+            k->term[k->terms++][m] = own_turn_q32(&cal->sensor[of], pose[p].mean_raw_q16[of]) >> 4;
         }
         code[0] = raw_q16 < code[0] ? raw_q16 : code[0];
         code[1] = raw_q16 > code[1] ? raw_q16 : code[1];
@@ -154,7 +154,7 @@ static unsigned fit_cross(struct known *k, struct exh_glove_sensor *s)
         s->cross_q30[j] = (int32_t)cross_q30;
         k->terms--;
         for (unsigned p = 0; p < k->n; p++) {
-            const int64_t share = exh_mul_shr(s->cross_q30[j], k->term[k->terms][p], 30 - 8);
+            const int64_t share = exh_mul_shr(s->cross_q30[j], k->term[k->terms][p], 30 - 4);
             k->angle_turn_q32[p] = exh_sat32(k->angle_turn_q32[p] - share);
         }
     }
@@ -174,7 +174,7 @@ static unsigned fit_line(struct known *k, struct exh_glove_sensor *s)
     struct factor f, inverse;
     int64_t gain, zero_q16;
     if (last_factor(k, &f, &inverse) < 0) { return EXH_GLOVE_GAIN; }
-    gain = factor_mul(&f, INT64_C(1) << (38 + 8 - 24)); /* turn q24 over code q8 */
+    gain = factor_mul(&f, INT64_C(1) << (38 + 12 - 28)); /* turn q28 over code q12 */
     zero_q16 = mean(k->code_raw_q16, k->n) - factor_mul(&inverse, mean(k->angle_turn_q32, k->n));
     if (gain > INT32_MAX || gain < -INT32_MAX) { return EXH_GLOVE_GAIN; }
     if (zero_q16 > INT32_MAX || zero_q16 < INT32_MIN) { return EXH_GLOVE_ZERO; }

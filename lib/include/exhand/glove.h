@@ -213,7 +213,7 @@ void exh_glove_bytes(struct exh_bytes *c, struct exh_glove *s);
 
 /* --- a calibration from poses --- */
 
-#define EXH_GLOVE_POSES_MAX 16 /* sums of products stay below 2^55             */
+#define EXH_GLOVE_POSES_MAX 16 /* sums of products stay within 2^62            */
 
 /* The hand held still in one pose: what is known of it, and what was measured. */
 struct exh_glove_pose {
@@ -246,7 +246,8 @@ struct exh_glove_fit {
  * its cross terms. low and high are the lowest and highest mean of all poses. fit: one for
  * each of the 22. 0, or -EXH_E_RANGE: the first sensor in *bad (may be NULL), each one's
  * in fit[], and present is 0; also when n is not 2 .. EXH_GLOVE_POSES_MAX (EXH_GLOVE_POSES).
- * Arithmetic: within 2^-16 of the span. Set-up only (divides). */
+ * Off exact least squares by less than 2^-12 of the span, however hard the poses are to
+ * tell apart. Set-up only (divides). */
 int exh_glove_cal_fit(struct exh_glove_cal *cal, struct exh_glove_fit *fit,
                       const struct exh_glove_pose *pose, unsigned n,
                       const struct exh_glove_fit_par *par, struct exh_glove_bad *bad);
