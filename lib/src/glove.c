@@ -53,10 +53,11 @@ static int par_ok(const struct exh_glove_par *par)
            inside(par->bits, &row[2]) && inside(par->hyst_raw_q16, &row[3]) &&
            inside(par->low_raw, &row[4]) && inside(par->high_raw, &row[5]) &&
            inside(par->open_high, &row[6]) && inside(par->debounce_frames, &row[7]) &&
-           inside(par->margin_q16, &row[8]) && par->low_raw < par->high_raw;
+           inside(par->margin_q16, &row[8]);
 }
 
-/* The codes that each sensor is believed at: its span, its margin, between the rails. */
+/* The codes that each sensor is believed at: its span, its margin, between the rails. A span
+ * between them also tells that the rails are in order. */
 static int limits(struct exh_glove_cfg *cfg, const struct exh_glove_par *par)
 {
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {

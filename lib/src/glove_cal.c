@@ -76,14 +76,15 @@ static int refuse(struct exh_glove_bad *bad, unsigned what, unsigned at, int err
 
 /* --- what is accepted --- */
 
-/* A cross term is of a sensor that is there and has none itself: one pass tells all. */
+/* A cross term is of a sensor that is there and has none itself, as this one has: so it is
+ * of no sensor's own, and one pass over the angles does. */
 static int cross_ok(const struct exh_glove_cal *cal, unsigned at)
 {
     for (unsigned k = 0; k < 2; k++) {
         const unsigned of = cal->sensor[at].of[k];
         if (of == EXH_GLOVE_NONE) {
             if (cal->sensor[at].cross_q30[k] != 0) { return 0; }
-        } else if (of >= EXH_GLOVE_SENSORS || of == at || !(cal->present >> of & 1) ||
+        } else if (of >= EXH_GLOVE_SENSORS || !(cal->present >> of & 1) ||
                    cal->sensor[of].of[0] != EXH_GLOVE_NONE ||
                    cal->sensor[of].of[1] != EXH_GLOVE_NONE) {
             return 0;

@@ -82,7 +82,13 @@ TEST(present_and_absent)
     CHECK(bad.what == EXH_GLOVE_GAIN && bad.at == 6, "%d of %d", bad.what, bad.at);
     cal.sensor[6] = (struct exh_glove_sensor){0, 0, {1 << 29, 0}, 0, 0, {5, 255}};
     CHECK_EQ_I64(exh_glove_cal_valid(&cal, &bad), 0);
-    cal.sensor[6].of[0] = 9;
+    for (unsigned k = 0; k < 2; k++) { /* of one that has a cross term itself */
+        cal.sensor[9].of[k] = 0;
+        cal.sensor[6].of[0] = 9;
+        CHECK_EQ_I64(exh_glove_cal_valid(&cal, &bad), -EXH_E_RANGE);
+        CHECK(bad.what == EXH_GLOVE_CROSS && bad.at == 6, "%d of %d", bad.what, bad.at);
+        cal.sensor[9].of[k] = EXH_GLOVE_NONE;
+    }
     CHECK_EQ_I64(exh_glove_cal_valid(&cal, &bad), 0);
     cal.present &= ~(1u << 9);
     cal.sensor[9] = (struct exh_glove_sensor){0, 0, {0, 0}, 0, 0, {255, 255}};
@@ -112,6 +118,9 @@ TEST(check_tells_whose_and_when)
         CHECK(err == row[i].err && (err == 0 || bad.what == row[i].what), "row %zu: %d, %s", i, err,
               exh_glove_what_text(bad.what));
     }
+    cal.valid_days = UINT32_MAX; /* for ever, but not before */
+    CHECK_EQ_I64(exh_glove_cal_check(&cal, 7, 3, UINT32_MAX, &bad), 0);
+    CHECK_EQ_I64(exh_glove_cal_check(&cal, 7, 3, 19999, &bad), -EXH_E_STALE);
     cal.present = 0;
     CHECK_EQ_I64(exh_glove_cal_check(&cal, 7, 3, 20000, &bad), -EXH_E_RANGE);
     CHECK_EQ_I64(bad.what, EXH_GLOVE_PRESENT);
@@ -312,9 +321,37 @@ TEST(residual_is_the_worst_pose)
     CHECK_EQ_I64(fit(&f), -EXH_E_RANGE);
 }
 
+/* Where the poses may just be: noise at its limit, a pose number behind poses that know nothing. */
+TEST(limits_of_poses_are_allowed)
+{
+    struct fixture f;
+    set_up(&f);
+    f.pose[1].noise_raw[5] = 128;
+    f.pose[0].known &= ~(1u << 6);
+    for (unsigned p = 2; p < 4; p++) {
+        f.pose[p].known |= 1u << 6;
+        f.pose[p].angle_turn_q32[6] = DEG(p == 2 ? 40 : 0);
+        f.pose[p].mean_raw_q16[6] = code_q16(6, p == 2 ? 37 : 0);
+    }
+    CHECK(fit(&f) == 0, "%s of %s", exh_glove_what_text(f.bad.what),
+          exh_glove_sensor_text(f.bad.at));
+    CHECK_EQ_I64(f.fit[6].pose, 2);
+}
+
+/* One pose of the knuckles 4 and 7 and of what lies between them. */
+static void knuckles(struct fixture *f, unsigned p, int32_t a_deg, int32_t b_deg, int32_t ab_deg)
+{
+    f->pose[p].angle_turn_q32[4] = (int32_t)(a_deg * (INT64_C(1) << 32) / 360);
+    f->pose[p].angle_turn_q32[7] = (int32_t)(b_deg * (INT64_C(1) << 32) / 360);
+    f->pose[p].angle_turn_q32[10] = (int32_t)(ab_deg * (INT64_C(1) << 32) / 360);
+    f->pose[p].mean_raw_q16[4] = code_q16(4, a_deg);
+    f->pose[p].mean_raw_q16[7] = code_q16(7, b_deg);
+    f->pose[p].mean_raw_q16[10] = code_q16(10, ab_deg);
+}
+
 TEST(poses_are_refused_by_name)
 {
-    for (int k = 0; k < 12; k++) {
+    for (int k = 0; k < 15; k++) {
         struct fixture f;
         int what, at = 5;
         set_up(&f);
@@ -376,6 +413,31 @@ TEST(poses_are_refused_by_name)
             what = EXH_GLOVE_POSES;
             at = 0;
             break;
+        case 12: /* knuckles that are never 4 degrees apart: as good as together */
+            for (unsigned p = 0; p < POSES; p++) {
+                knuckles(&f, p, (int32_t)(p % 3) * 40, (int32_t)(p % 3) * 40 + (p & 1 ? 3 : 0),
+                         p & 4 ? 30 : 0);
+            }
+            what = EXH_GLOVE_POSES;
+            at = 10;
+            break;
+        case 13: /* of the poses that know sensor 10, 7 moves in one, by 1 degree */
+            f.pose[1].known &= ~(1u << 10);
+            for (unsigned p = 2; p < POSES; p++) {
+                knuckles(&f, p, p & 1 ? 80 : 0, p == 3, p & 4 ? 40 : 0);
+            }
+            what = EXH_GLOVE_POSES;
+            at = 10;
+            break;
+        case 14: /* three times as far as the knuckle itself */
+            for (unsigned p = 0; p < POSES; p++) {
+                const int32_t a = f.pose[p].angle_turn_q32[4] / DEG(1),
+                              ab = f.pose[p].angle_turn_q32[10] / DEG(1);
+                f.pose[p].mean_raw_q16[10] = code_q16(10, ab + 3 * a - 100);
+            }
+            what = EXH_GLOVE_CROSS;
+            at = 10;
+            break;
         default:
             f.n = EXH_GLOVE_POSES_MAX + 1;
             what = EXH_GLOVE_POSES;
@@ -386,8 +448,8 @@ TEST(poses_are_refused_by_name)
         CHECK(f.bad.what == what && f.bad.at == at, "case %d: %s of %s", k,
               exh_glove_what_text(f.bad.what), exh_glove_sensor_text(f.bad.at));
         CHECK(f.cal.present == 0, "case %d", k);
-        CHECK(k >= 10 || (f.fit[at].what == what && f.fit[20].what == EXH_GLOVE_WHATS), "case %d",
-              k);
+        CHECK(k == 10 || k == 11 || (f.fit[at].what == what && f.fit[20].what == EXH_GLOVE_WHATS),
+              "case %d", k);
         CHECK(k != 9 || f.fit[10].what == EXH_GLOVE_CROSS, "case %d", k);
         CHECK(k != 1 || f.fit[5].pose == 1, "case %d", k);
     }
@@ -409,4 +471,5 @@ TEST(absent_sensors_need_no_pose)
 TEST_MAIN("unit/glove_cal", valid_names_the_culprit, present_and_absent, check_tells_whose_and_when,
           every_word_is_there, image_round_trip, every_flipped_bit_is_seen, every_cut_is_seen,
           an_image_of_nonsense_is_refused, poses_give_gain_zero_and_cross_terms,
-          residual_is_the_worst_pose, poses_are_refused_by_name, absent_sensors_need_no_pose);
+          residual_is_the_worst_pose, limits_of_poses_are_allowed, poses_are_refused_by_name,
+          absent_sensors_need_no_pose);

@@ -279,7 +279,61 @@ TEST(a_channel_may_start_faulty)
     CHECK_EQ_I64(f.angle[0], 200 * 65536);
 }
 
+/* The rails stay what they are however far the margin reaches. */
+TEST(no_margin_reaches_a_rail)
+{
+    static const struct {
+        int16_t raw;
+        uint8_t cause;
+    } row[] = {{-32000, EXH_GLOVE_SHORT},
+               {-31999, EXH_GLOVE_GOOD},
+               {32000, EXH_GLOVE_OPEN},
+               {31999, EXH_GLOVE_GOOD}};
+    for (size_t k = 0; k < LEN(row); k++) {
+        struct fixture f;
+        set_up(&f);
+        f.par.margin_q16 = 8 * 65536;
+        ready(&f);
+        f.in.raw[3] = row[k].raw;
+        (void)frame(&f);
+        CHECK(f.s.cause[3] == row[k].cause, "code %d: %s", row[k].raw,
+              exh_glove_cause_text(f.s.cause[3]));
+    }
+}
+
 /* --- with the filter --- */
+
+/* Low-pass, quantizer and line by hand, at both orders and without. */
+TEST(the_chain_is_filter_quantizer_line)
+{
+    for (int order = 0; order <= 2; order++) {
+        struct fixture f;
+        struct exh_filter_cfg low;
+        struct exh_quantizer_cfg codes;
+        struct exh_filter state;
+        struct exh_quantizer kept;
+        set_up(&f);
+        f.par = defaults();
+        f.par.order = order;
+        ready(&f);
+        memset(&state, 0, sizeof state);
+        memset(&kept, 0, sizeof kept);
+        CHECK_EQ_I64(exh_quantizer_setup(&codes, &(struct exh_quantizer_par){11, 20 * 65536}), 0);
+        if (order > 0) {
+            const struct exh_filter_par par = {order, 30 * 65536};
+            CHECK_EQ_I64(exh_filter_setup(&low, &par, kilohertz), 0);
+        }
+        for (int n = 0; n < 500; n++) {
+            int32_t x = check_i32_in(-9000, 11000) * 65536;
+            f.in.raw[12] = (int16_t)(x / 65536);
+            CHECK_EQ_I64(frame(&f), 0);
+            if (order > 0 && n == 0) { exh_filter_reset(&state, &x, 1); }
+            if (order > 0) { exh_filter_step(&state, &low, &x, &x, 1); }
+            x = exh_quantizer_step(&kept, &codes, x);
+            CHECK(f.angle[12] == x - 1000 * 65536, "order %d frame %d", order, n);
+        }
+    }
+}
 
 TEST(the_first_frame_settles)
 {
@@ -532,6 +586,26 @@ TEST(damaged_state_finds_back)
     }
 }
 
+/* Nothing of a state that says it has not begun is taken on. */
+TEST(a_state_that_has_not_begun_is_empty)
+{
+    struct fixture f;
+    set_up(&f);
+    ready(&f);
+    f.in.raw[0] = INT16_MAX;
+    (void)frame(&f);
+    memset(f.s.run, 2, sizeof f.s.run);
+    f.s.started = 0;
+    f.in.raw[0] = 1500;
+    CHECK_EQ_I64(frame(&f), 0);
+    CHECK_EQ_I64(f.s.faults[0], 0);
+    for (int n = 0; n < 2; n++) {
+        f.in.raw[1] = INT16_MAX;
+        CHECK_EQ_I64(frame(&f), 0);
+    }
+    CHECK_EQ_I64(frame(&f), 2);
+}
+
 TEST(every_cause_has_a_word)
 {
     for (unsigned i = 0; i <= EXH_GLOVE_CAUSES; i++) {
@@ -545,7 +619,8 @@ TEST_MAIN("unit/glove", codes_become_angles, a_gain_below_zero_falls,
           absent_sensors_have_no_faults, causes_are_told_apart,
           a_fault_begins_and_ends_with_the_third_frame, a_loose_contact_keeps_its_state,
           the_latest_cause_stands, faults_are_counted_up_to_65535, a_channel_may_start_faulty,
-          the_first_frame_settles, a_spike_leaves_no_trace, after_a_fault_the_angle_glides,
+          no_margin_reaches_a_rail, the_chain_is_filter_quantizer_line, the_first_frame_settles,
+          a_spike_leaves_no_trace, after_a_fault_the_angle_glides,
           noise_within_the_hysteresis_moves_no_angle_twice, default_calibration_runs_at_the_default,
           default_calibration_gives_its_end_points, setup_rejections, state_round_trip,
-          damaged_state_finds_back, every_cause_has_a_word);
+          damaged_state_finds_back, a_state_that_has_not_begun_is_empty, every_cause_has_a_word);
