@@ -67,6 +67,25 @@ TEST(published_vectors)
     }
 }
 
+/* Rows and columns of each finger's turn: of length 1 and square to each other to 3 LSB. */
+TEST(turns_are_turns)
+{
+    for (unsigned f = 0; f < EXH_HAND_FINGERS; f++) {
+        for (unsigned i = 0; i < 18; i++) {
+            const unsigned a = i / 3 % 3, b = i % 3, columns = i / 9;
+            const int64_t one_q60 = a == b ? INT64_C(1) << 60 : 0;
+            int64_t dot_q60 = -one_q60;
+            for (unsigned k = 0; k < 3; k++) {
+                const int32_t(*r)[3] = exh_hit2_bones[f].rot_q30;
+                dot_q60 += (int64_t)(columns ? r[k][a] : r[a][k]) * (columns ? r[k][b] : r[b][k]);
+            }
+            CHECK(dot_q60 <= INT64_C(3) << 30 && dot_q60 >= -(INT64_C(3) << 30),
+                  "finger %u, %s %u and %u: %" PRId64, f, columns ? "columns" : "rows", a, b,
+                  dot_q60);
+        }
+    }
+}
+
 /* A finger of one plain bone and all axes of the palm: worked on paper. */
 TEST(slope_on_paper)
 {
@@ -212,5 +231,6 @@ TEST(map_check_refuses)
     }
 }
 
-TEST_MAIN("unit/hand", published_vectors, slope_on_paper, setup_refuses, map_of_the_hand_is_sound,
-          a_finger_follows_its_own_sensors, spans_end_at_the_limits, map_check_refuses);
+TEST_MAIN("unit/hand", published_vectors, turns_are_turns, slope_on_paper, setup_refuses,
+          map_of_the_hand_is_sound, a_finger_follows_its_own_sensors, spans_end_at_the_limits,
+          map_check_refuses);
