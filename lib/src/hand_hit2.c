@@ -1,4 +1,5 @@
-/* The DLR/HIT Hand II, right: its bones, and how the glove's sensors move it. */
+/* The DLR/HIT Hand II, right: its bones, and how the glove's sensors move it (glove.h
+ * lends their names, no more). */
 #include "exhand/hand.h"
 
 #include "exhand/angle.h"
