@@ -51,8 +51,9 @@ const struct exh_hand_bones exh_hit2_bones[EXH_HAND_FINGERS] = {
 
 /* A sensor's span, in degrees, laid over a joint's: the joint is at its lower limit at `from` and
  * at its upper limit at `to`. The spans are a hand's: what joints of real hands in gloves that
- * nobody calibrated reach, in round numbers, so that few postures are cut off. A glove
- * calibrated to the person reaches less, and a map of the person's own may use more. */
+ * nobody calibrated reach, in round numbers, so that few postures are cut off. The price is
+ * that a flat hand in a calibrated glove bends the robot's knuckles by 18 degrees and its
+ * middle joints by 10; a map of the person's own need not. */
 #define SPAN_GAIN(lo, hi, from, to) EXH_Q((hi) - (lo), (to) - (from), 24)
 #define SPAN_BIAS(lo, hi, from, to) \
     EXH_DEG((lo) * ((to) - (from)) - ((hi) - (lo)) * (from), (to) - (from))
@@ -72,8 +73,8 @@ const struct exh_hand_bones exh_hit2_bones[EXH_HAND_FINGERS] = {
         SPAN_BIAS(0, 85, -30, 110), {SPAN_GAIN(0, 85, -30, 110), 0}, {mpj, 0}, PROXIMAL_LIMITS \
     }
 
-/* q2 and q3 are one in the robot and two in the hand: their sum is laid over the robot's sum, so each
- * sensor bends q2 by half. */
+/* q2 and q3 are one in the robot and two in the hand: their sum is laid over the robot's sum, so
+ * each sensor bends q2 by half. */
 #define CURL(pij, dij, from, to) \
     { \
         SPAN_BIAS(0, 65, from, to), {SPAN_GAIN(0, 65, from, to), SPAN_GAIN(0, 65, from, to)}, \

@@ -20,9 +20,9 @@ extern "C" {
 #endif
 
 #define EXH_HAND_FINGERS 5
-#define EXH_HAND_JOINTS  3 /* driven, of one finger: q0, q1, q2                 */
-#define EXH_HAND_SENSORS 22 /* of the glove, in the order of glove.h          */
-#define EXH_HAND_TERMS   2 /* sensors that move one joint, at most              */
+#define EXH_HAND_JOINTS  3 /* driven, of one finger: q0, q1, q2 */
+#define EXH_HAND_SENSORS 22 /* of the glove, in the order of glove.h */
+#define EXH_HAND_TERMS   2 /* sensors that move one joint, at most */
 
 enum exh_hand_finger_id { EXH_THUMB, EXH_INDEX, EXH_MIDDLE, EXH_RING, EXH_LITTLE };
 
@@ -31,10 +31,10 @@ enum exh_hand_finger_id { EXH_THUMB, EXH_INDEX, EXH_MIDDLE, EXH_RING, EXH_LITTLE
 #define EXH_HAND_GAIN_MAX_Q24 (8 * (INT32_C(1) << 24))
 
 struct exh_hand_joint {
-    int32_t bias_turn_q32; /* the joint's angle when all sensors are 0     */
-    int32_t gain_q24[EXH_HAND_TERMS]; /* -8 .. 8; 0: no term                        */
-    uint8_t sensor[EXH_HAND_TERMS]; /* below EXH_HAND_SENSORS                       */
-    int32_t lo_turn_q32, hi_turn_q32; /* the joint's limits, lo <= hi                */
+    int32_t bias_turn_q32; /* the joint's angle when all sensors are at 0 */
+    int32_t gain_q24[EXH_HAND_TERMS]; /* -8 .. 8; 0: no term */
+    uint8_t sensor[EXH_HAND_TERMS]; /* below EXH_HAND_SENSORS */
+    int32_t lo_turn_q32, hi_turn_q32; /* the joint's limits, lo <= hi */
 };
 struct exh_hand_map {
     struct exh_hand_joint joint[EXH_HAND_FINGERS][EXH_HAND_JOINTS];
@@ -59,20 +59,18 @@ struct exh_vec3 {
 
 /* One finger as it is built, in the frame of the palm. */
 struct exh_hand_bones {
-    int32_t
-        len_m_q34[3]; /* from q1 to q2, to q3, to the middle of the pad; each > 0, sum <= 0.12 m */
+    int32_t len_m_q34[3]; /* q1 to q2, to q3, to the pad's middle; each > 0, sum <= 0.12 m */
     int32_t rot_q30[3][3]; /* rows x, y, z of the palm: the base frame's axes are the columns */
-    int32_t base_m_q32[3]; /* where q0 and q1 are; within +-0.125 m            */
+    int32_t base_m_q32[3]; /* where q0 and q1 are; within +-0.125 m */
 };
 extern const struct exh_hand_bones exh_hit2_bones[EXH_HAND_FINGERS];
 
 /* Parameters of one finger; rows in exh_hand_rows[]. */
 struct exh_hand_par {
-    int32_t arm1_m_q30; /* string per radian of q1, m, 0 .. 50 mm            */
-    int32_t arm2_m_q30; /* of q2                                             */
-    int32_t arm3_m_q30; /* of q3                                             */
-    int32_t pad_m_q30; /* the pad's radius, m, 0 .. 25 mm: the finger's surface lies as far
-                           from P_F                                           */
+    int32_t arm1_m_q30; /* string per radian of q1, m, 0 .. 50 mm; ours, not measured */
+    int32_t arm2_m_q30; /* of q2 */
+    int32_t arm3_m_q30; /* of q3 */
+    int32_t pad_m_q30; /* radius of the pad, m, 0 .. 25 mm: so far from P_F is the skin */
 };
 #define EXH_HAND_ROWS 4
 extern const struct exh_signal exh_hand_rows[EXH_HAND_ROWS];
