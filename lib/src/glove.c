@@ -141,6 +141,7 @@ static void start(struct exh_glove *s, const struct exh_glove_cfg *cfg,
         s->cause[i] = cause_of(cfg, i, in->raw[i]);
         s->faults[i] = s->cause[i] != EXH_GLOVE_GOOD;
         s->run[i] = 0;
+        s->quantizer[i] = (struct exh_quantizer){0, 0};
         s->good_raw[i] =
             s->cause[i] == EXH_GLOVE_GOOD
                 ? in->raw[i]
