@@ -313,7 +313,7 @@ size:
 
 # Objects as they are shipped: no sanitizer, no audit hook. Linked without debug information,
 # which not every valgrind reads of every compiler; its profile needs the symbols alone.
-bench_obj := $(patsubst %,$(B)/posix/test/bench/%.o,kernels measure number estimate force path law glove hand scene minimal)
+bench_obj := $(patsubst %,$(B)/posix/test/bench/%.o,kernels measure number estimate force path law filter glove hand scene minimal)
 bench_bin := $(B)/bench/kernels $(B)/bench/velocity $(B)/bench/speed
 $(B)/posix/test/bench/kernels.o: PORT_HOSTFLAGS += -DBENCH_FLAGS='"-std=c99 -O$(O)$(if $(CFLAGS), $(CFLAGS))"'
 $(B)/bench/kernels: $(bench_obj) $(B)/posix/examples/drop/drop.o
@@ -331,14 +331,38 @@ $(bench_i686): $(i686_src) $(wildcard test/bench/*.h lib/src/*.h lib/include/exh
 	$(Q)i686-linux-gnu-gcc -static $(filter-out -MMD -MP -g,$(base)) $(PORT_HOSTFLAGS) $(CFLAGS) -Itest \
 	    -o $@ $(filter %.c,$^) -lm
 
+# Ours beside peers; CMSIS-DSP where peers.sh could fetch it. Same compiler and flags for all, but
+# for warnings: others' code has its own.
+cmsis     := $(B)/peers/cmsisdsp-1.10.3
+biquad    := $(cmsis)/Source/FilteringFunctions/arm_biquad_cascade_
+cmsis_src := $(foreach f,df1_q31 df1_fast_q31 df1_init_q31 df1_32x64_q31 df1_32x64_init_q31 df1_q15 df1_init_q15 \
+             df2T_f32 df2T_init_f32 df2T_f64 df2T_init_f64,$(biquad)$f.c) \
+             $(cmsis)/Source/ControllerFunctions/arm_sin_cos_q31.c $(cmsis)/Source/CommonTables/arm_common_tables.c \
+             $(cmsis)/Source/FastMathFunctions/arm_sin_q31.c $(cmsis)/Source/FastMathFunctions/arm_cos_q31.c
+peers_src := test/bench/peers.c test/bench/peers_plain.c test/bench/measure.c $(lib_src)
+ifneq ($(wildcard $(cmsis)/.complete),)
+peers_src += test/bench/peers_cmsis.c $(cmsis_src)
+peers_def := -DPEERS_CMSIS -D__GNUC_PYTHON__ -isystem $(cmsis)/Include -isystem $(cmsis)/PrivateInclude
+endif
+peers     := $(B)/bench/peers
+$(peers): peers_cc := $(CC)
+$(peers)-i686: peers_cc := i686-linux-gnu-gcc -static
+$(peers) $(peers)-i686: $(peers_src) $(wildcard $(cmsis)/.complete test/bench/*.h lib/src/*.h lib/include/exhand/*.h) $(stamp)
+	@mkdir -p $(@D)
+	$(Q)$(peers_cc) $(filter-out $(warn) -MMD -MP -g,$(base)) -w $(PORT_HOSTFLAGS) $(CFLAGS) $(peers_def) -Itest \
+	    -Wl,--gc-sections -o $@ $(filter %.c,$^) -lm
+
 ## Error and instructions of every kernel, beside test/bench/baseline.csv (ARGS=--update)
 .PHONY: bench
 bench:
 	@.ci/deps "the benches" valgrind valgrind || exit 3
 	@$(MAKE) --no-print-directory $(bench_bin)
+	@B=$(B) test/bench/peers.sh fetch || true
+	@$(MAKE) --no-print-directory $(peers)
 	@if .ci/deps "the i686 counts" i686-linux-gnu-gcc gcc-i686-linux-gnu libc6-dev-i386-cross; then \
-	    $(MAKE) --no-print-directory $(bench_i686); else rm -f $(bench_i686); fi
+	    $(MAKE) --no-print-directory $(bench_i686) $(peers)-i686; else rm -f $(bench_i686) $(peers)-i686; fi
 	@B=$(B) test/bench/bench.sh $(ARGS)
+	@echo; B=$(B) test/bench/peers.sh table
 
 # --- keeping house ------------------------------------------------------------------
 
