@@ -68,6 +68,42 @@ TEST(refusals_by_name)
     }
 }
 
+/* Coefficients of NUMERICS.md, each from its formula in 80 digits. */
+TEST(coefficients_by_hand)
+{
+    static const struct {
+        struct exh_filter_par par;
+        struct exh_period T;
+        struct exh_filter_cfg want;
+    } row[] = {
+        {{2, 65536}, {1, 10}, {792587485, 1550717162, 784979701, 0, 0, 0}},
+        {{2, 65536}, {1, 100}, {918109975, 1493163400, 75923317, 0, 3, 0}},
+        {{2, 65536}, {1, 1000}, {764203595, 1218541453, 7589859, 0, 6, 0}},
+        {{2, 65536}, {1, 10000}, {613810709, 976783288, 758983, 0, 9, 0}},
+        {{2, 655}, {1, 20000}, {785558151, 1249872031, 3793, 0, 17, 0}},
+        {{1, 655}, {1, 20000}, {883792582, 0, 0, 0, 18, 1}},
+        {{2, 327680}, {1, 2000}, {948925983, 1518116586, 18974974, 0, 5, 0}},
+        {{2, 1310720}, {597, 1193182}, {918711832, 1494164500, 75975401, 0, 3, 0}},
+        {{1, 1310720}, {1, 1000}, {1016888549, 0, 0, 0, 3, 1}},
+        {{1, 65536}, {1, 4}, {1073741824, 0, 0, 0, 0, 3}},
+        {{2, 65536}, {1, 4}, {628983398, 559096354, 707606323, 628983398, 0, 2}},
+        {{2, 2949120}, {1, 100}, {43128699, 242047902, 306341876, 1719259095, 0, 2}},
+        {{2, 7470900}, {1, 1000}, {855931719, 1722173676, 904209532, 0, 0, 0}},
+        {{2, 32767}, {1, 1}, {5, 91499, 115804, 2147338069, 0, 2}},
+        {{1, 32767}, {1, 1}, {2147380709, 0, 0, 0, 0, 3}},
+        {{1, 16384000}, {1, 20000}, {649480731, 0, 0, 0, 3, 1}},
+    };
+    for (size_t i = 0; i < LEN(row); i++) {
+        const struct exh_filter_cfg *w = &row[i].want;
+        struct exh_filter_cfg c;
+        CHECK_EQ_I64(exh_filter_setup(&c, &row[i].par, row[i].T), 0);
+        CHECK(c.a == w->a && c.b == w->b && c.c == w->c && c.d == w->d && c.shift == w->shift &&
+                  c.kind == w->kind,
+              "row %zu: %" PRId32 " %" PRId32 " %" PRId32 " %" PRId32 " %d %d", i, c.a, c.b, c.c,
+              c.d, c.shift, c.kind);
+    }
+}
+
 /* Long enough for all but the slowest decay of the highest cut-offs. */
 static int32_t settling(size_t i)
 {
@@ -159,6 +195,41 @@ TEST(full_scale_does_not_latch)
     }
 }
 
+/* A sine at fc, 24, 12, 8 and 4 samples a period, of a quarter of the range: half its power
+ * comes through, to 10^-7. Sums over a period, squares in units that fit. */
+TEST(half_the_power_at_the_cut_off)
+{
+    /* sin of k/24 of a turn, q30 */
+    static const int32_t sine[7] = {0,         277904834,  536870912, 759250125,
+                                    929887697, 1037154959, 1073741824};
+    static const uint32_t step[] = {1, 2, 3, 6};
+    for (size_t i = 0; i < 2 * LEN(step); i++) {
+        const uint32_t by = step[i / 2];
+        const struct exh_filter_cfg *cfg = tuned(1 + (int32_t)(i % 2), 1 << 16, 24 / by);
+        const int32_t zero = 0;
+        struct exh_filter s;
+        int64_t in_phase = 0, across = 0, power, half;
+        exh_filter_reset(&s, &zero, 1);
+        for (uint32_t t = 0; t < 24 * 100; t += by) {
+            const uint32_t k = t % 24, c = (t + 6) % 24;
+            const int32_t x = (k < 12 ? 1 : -1) * sine[k % 12 <= 6 ? k % 12 : 12 - k % 12];
+            const int32_t xc = (c < 12 ? 1 : -1) * sine[c % 12 <= 6 ? c % 12 : 12 - c % 12];
+            const int32_t y = one(&s, cfg, x);
+            if (t >= 24 * 99) {
+                in_phase += (int64_t)y * (x / 64);
+                across += (int64_t)y * (xc / 64);
+            }
+        }
+        /* each is 2^30 * 2^24 * 12/by times the cosine or sine of the phase */
+        in_phase = in_phase / (12 / by) / (1 << 26);
+        across = across / (12 / by) / (1 << 26);
+        power = in_phase * in_phase + across * across;
+        half = INT64_C(1) << 55;
+        CHECK(power - half < half / 10000000 && half - power < half / 10000000,
+              "%" PRIu32 " samples a period: %" PRId64 " of %" PRId64, 24 / by, power, half);
+    }
+}
+
 TEST(channels_do_not_touch)
 {
     const struct exh_filter_cfg *cfg = tuned(2, 20 << 16, 1000);
@@ -193,6 +264,34 @@ TEST(retune_keeps_what_is_settled)
                 exh_filter_retune(&s, 1, t & 1 ? &b : &a, t & 1 ? &a : &b);
             }
         }
+    }
+}
+
+/* Order 1 has no speed, and gives none to order 2 after it. */
+TEST(a_change_of_order_drops_the_speed)
+{
+    const struct exh_filter_cfg second = *tuned(2, 1 << 16, 100), first = *tuned(1, 1 << 16, 100);
+    struct exh_filter s;
+    const int32_t zero = 0;
+    exh_filter_reset(&s, &zero, 1);
+    for (int t = 0; t < 10; t++) { (void)one(&s, &second, INT32_MAX); }
+    CHECK(s.vel > 0, "no speed to drop");
+    exh_filter_retune(&s, 1, &second, &second);
+    CHECK(s.vel > 0, "dropped without need");
+    exh_filter_retune(&s, 1, &second, &first);
+    CHECK_EQ_I64(s.vel, 0);
+}
+
+/* 1.4 of full scale: after one tick at the rail, at rest. */
+TEST(a_state_beyond_any_input_starts_anew)
+{
+    const struct exh_filter_cfg *cfg = tuned(2, 1 << 16, 1000);
+    for (int sign = -1; sign <= 1; sign += 2) {
+        const int32_t rail = sign < 0 ? INT32_MIN : INT32_MAX;
+        struct exh_filter s = {sign * (INT64_C(7) << 30) * (INT64_C(1) << 30), 12345, 0}, fresh;
+        exh_filter_reset(&fresh, &rail, 1);
+        CHECK_EQ_I64(one(&s, cfg, 0), rail);
+        CHECK(s.pos == fresh.pos && s.vel == fresh.vel && s.wide == fresh.wide, "not at rest");
     }
 }
 
@@ -231,6 +330,8 @@ TEST(recovers_from_any_state)
     }
 }
 
-TEST_MAIN("unit/filter", refusals_by_name, a_constant_input_comes_out_exactly, reset_is_settled,
-          a_step_rises_once_and_overshoots, full_scale_does_not_latch, channels_do_not_touch,
-          retune_keeps_what_is_settled, state_round_trip, recovers_from_any_state);
+TEST_MAIN("unit/filter", refusals_by_name, coefficients_by_hand, half_the_power_at_the_cut_off,
+          a_constant_input_comes_out_exactly, reset_is_settled, a_step_rises_once_and_overshoots,
+          full_scale_does_not_latch, channels_do_not_touch, retune_keeps_what_is_settled,
+          a_change_of_order_drops_the_speed, a_state_beyond_any_input_starts_anew, state_round_trip,
+          recovers_from_any_state);
