@@ -33,13 +33,13 @@ static int32_t places(struct exh_real v, int32_t bits)
     return bits - 63 - v.e;
 }
 
-/* From here on g = tan(pi fc T), damp = g + sqrt 2, den = 1 + g damp; see NUMERICS.md. */
-static void low2(struct exh_filter_cfg *cfg, struct exh_real g, struct exh_real damp,
-                 struct exh_real den)
+/* Below, g = tan(pi fc T) and damped = g (g + sqrt 2); see NUMERICS.md. */
+static void low2(struct exh_filter_cfg *cfg, struct exh_real g, struct exh_real damped)
 {
     const struct exh_real nine_eighths = exh_real_scale(exh_real_of(9), -3);
-    const struct exh_real b = exh_real_div(exh_real_mul(g, damp), den);
-    struct exh_real a = exh_real_div(exh_real_mul(g, g), den);
+    const struct exh_real more = exh_real_add(exh_real_of(1), damped);
+    const struct exh_real b = exh_real_div(damped, more);
+    struct exh_real a = exh_real_div(exh_real_mul(g, g), more);
     int32_t n;
     cfg->c = coefficient(exh_real_mul(g, nine_eighths), POS_Q, 31);
     a = exh_real_scale(exh_real_div(a, exh_real_of((uint64_t)cfg->c)), POS_Q);
@@ -49,23 +49,28 @@ static void low2(struct exh_filter_cfg *cfg, struct exh_real g, struct exh_real 
     cfg->shift = (uint8_t)(n - VEL_Q);
 }
 
-static void high2(struct exh_filter_cfg *cfg, struct exh_real g, struct exh_real den)
+static void high2(struct exh_filter_cfg *cfg, struct exh_real g, struct exh_real damped)
 {
-    const struct exh_real inv = exh_real_div(exh_real_of(1), den);
+    const struct exh_real one = exh_real_of(1), nine = exh_real_of(9);
+    const struct exh_real inv = exh_real_div(one, exh_real_add(one, damped));
     const struct exh_real mid = exh_real_mul(g, inv);
-    const struct exh_real nine = exh_real_of(9);
     cfg->a = coefficient(inv, 31, 31);
     cfg->b = coefficient(exh_real_div(mid, nine), 31 + 3, 31);
     cfg->c = coefficient(exh_real_mul(mid, nine), 31 - 3, 31);
     cfg->d = coefficient(exh_real_mul(g, mid), 31, 31);
 }
 
-static void first(struct exh_filter_cfg *cfg, struct exh_real g)
+static void low1(struct exh_filter_cfg *cfg, struct exh_real g)
 {
     const struct exh_real a = exh_real_div(g, exh_real_add(exh_real_of(1), g));
-    const int32_t n = cfg->kind == EXH_FILTER_LOW1 ? places(a, 30) : 31;
-    cfg->a = coefficient(a, n, 31);
+    const int32_t n = places(a, 30); /* 2a must fit, too */
+    cfg->a = coefficient(a, n, 30);
     cfg->shift = (uint8_t)(n - POS_Q);
+}
+
+static void high1(struct exh_filter_cfg *cfg, struct exh_real g)
+{
+    cfg->a = coefficient(exh_real_div(g, exh_real_add(exh_real_of(1), g)), 31, 31);
 }
 
 int exh_filter_setup(struct exh_filter_cfg *cfg, const struct exh_filter_par *par,
@@ -74,26 +79,29 @@ int exh_filter_setup(struct exh_filter_cfg *cfg, const struct exh_filter_par *pa
     /* fc T = num / den */
     const uint64_t num = par->fc_Hz_q16 > 0 ? (uint64_t)par->fc_Hz_q16 * T.num : 0;
     const uint64_t den = (uint64_t)T.den << 16;
-    struct exh_real g, damp;
+    struct exh_real g, damped;
+    int high;
 
     if (num == 0 || den == 0 || par->order < 1 || par->order > 2) { return -EXH_E_RANGE; }
-    if (num >= den - num || num >= den) { return -EXH_E_CUTOFF; }
+    if (num >= den / 2) { return -EXH_E_CUTOFF; }
     if (num < den >> 21) { return -EXH_E_RANGE; }
+
     g = exh_real_tan_pi(num, den);
-    damp = exh_real_add(g, EXH_REAL_SQRT2);
+    high = exh_real_round(exh_real_scale(g, 32)) > UINT64_C(3) << 29; /* g > 3/8 */
+    damped = exh_real_mul(g, exh_real_add(g, EXH_REAL_SQRT2));
     *cfg = (struct exh_filter_cfg){0, 0, 0, 0, 0, 0};
-    const int high = exh_real_round(exh_real_scale(g, 32)) > UINT64_C(3) << 29; /* g > 3/8 */
-    if (par->order == 1) {
-        cfg->kind = high ? EXH_FILTER_HIGH1 : EXH_FILTER_LOW1;
-        first(cfg, g);
-        return 0;
-    }
-    const struct exh_real one_more = exh_real_add(exh_real_of(1), exh_real_mul(g, damp));
-    cfg->kind = high ? EXH_FILTER_HIGH2 : EXH_FILTER_LOW2;
-    if (high) {
-        high2(cfg, g, one_more);
+    if (par->order == 1 && high) {
+        cfg->kind = EXH_FILTER_HIGH1;
+        high1(cfg, g);
+    } else if (par->order == 1) {
+        cfg->kind = EXH_FILTER_LOW1;
+        low1(cfg, g);
+    } else if (high) {
+        cfg->kind = EXH_FILTER_HIGH2;
+        high2(cfg, g, damped);
     } else {
-        low2(cfg, g, damp, one_more);
+        cfg->kind = EXH_FILTER_LOW2;
+        low2(cfg, g, damped);
     }
     return 0;
 }

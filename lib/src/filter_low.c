@@ -31,31 +31,34 @@ static inline int32_t high_word(int64_t v)
     return exh_from_u32((uint32_t)((uint64_t)v >> 32));
 }
 
-/* (x - floor(pos)) * a - vel's integer part * b modulo 2^64, in whichever way the CPU has
- * the shorter code: the same bits. */
-static inline int64_t acceleration(const struct exh_filter *s, int32_t x, int32_t a, int32_t b)
+/* (x - floor(pos)) * a modulo 2^64, in whichever way the CPU has the shorter code: the same
+ * bits. 2a fits. */
+static inline uint64_t drive(int64_t pos, int32_t x, int32_t a)
 {
 #if UINTPTR_MAX > UINT32_MAX
-    const uint64_t drive = (uint64_t)(x - (s->pos >> POS_Q)) * (uint64_t)a;
-    return exh_from_u64(drive + (uint64_t)((int64_t)high_word(s->vel) * -b));
+    return (uint64_t)(x - (pos >> POS_Q)) * (uint64_t)a;
 #else
-    const int64_t odd = (uint32_t)a & (uint32_t)((int32_t)s->pos >> 31);
-    const uint64_t drive = (uint64_t)((int64_t)x * a - (int64_t)high_word(s->pos) * (2 * a) - odd);
-    return exh_from_u64(drive - (uint64_t)((int64_t)high_word(s->vel) * b));
+    const int64_t odd = (uint32_t)a & (uint32_t)((int32_t)pos >> 31);
+    return (uint64_t)((int64_t)x * a - (int64_t)high_word(pos) * (2 * a) - odd);
 #endif
 }
+
+/* Of cfg->shift, where it is used: a 32-bit compiler that does not see the mask right there
+ * shifts 64 bits by way of a test and two moves. */
+#if UINTPTR_MAX > UINT32_MAX
+#define SHIFT const unsigned
+#else
+#define SHIFT const volatile unsigned
+#endif
 
 /* Damaged bytes may wrap here, which clipped() finds. Nothing else comes near. */
 EXH_FILTER_STEP(exh_filter_low2)
 {
     const int32_t a = cfg->a, b = cfg->b, c = cfg->c;
-#if UINTPTR_MAX > UINT32_MAX
-    const unsigned shift = cfg->shift;
-#else
-    const volatile unsigned shift = cfg->shift; /* read at each use: so its mask is seen there */
-#endif
+    SHIFT shift = cfg->shift;
     for (; n > 0; n--, s++, x++, y++) {
-        const int64_t acc = acceleration(s, *x, a, b);
+        const uint64_t friction = (uint64_t)((int64_t)high_word(s->vel) * b);
+        const int64_t acc = exh_from_u64(drive(s->pos, *x, a) - friction);
         const int64_t v = acc >> (shift & 31);
         const int64_t p = exh_wrap_add64(s->vel, v);
         s->vel = exh_wrap_add64(p, v);
@@ -69,10 +72,10 @@ EXH_FILTER_STEP(exh_filter_low2)
 EXH_FILTER_STEP(exh_filter_low1)
 {
     const int32_t a = cfg->a;
-    const unsigned shift = cfg->shift & 31;
+    SHIFT shift = cfg->shift;
     for (; n > 0; n--, s++, x++, y++) {
-        const int64_t e = *x - (s->pos >> POS_Q);
-        const int64_t move = exh_from_u64((uint64_t)e * (uint64_t)a) >> shift;
+        const int64_t acc = exh_from_u64(drive(s->pos, *x, a));
+        const int64_t move = acc >> (shift & 31);
         const int64_t low = exh_wrap_add64(s->pos, move);
         s->pos = exh_wrap_add64(low, move);
         *y = output(s, low);

@@ -288,7 +288,8 @@ TEST(a_state_beyond_any_input_starts_anew)
     const struct exh_filter_cfg *cfg = tuned(2, 1 << 16, 1000);
     for (int sign = -1; sign <= 1; sign += 2) {
         const int32_t rail = sign < 0 ? INT32_MIN : INT32_MAX;
-        struct exh_filter s = {sign * (INT64_C(7) << 30) * (INT64_C(1) << 30), 12345, 0}, fresh;
+        const int64_t far = INT64_C(7) << 60;
+        struct exh_filter s = {sign < 0 ? -far : far, 12345, 0}, fresh;
         exh_filter_reset(&fresh, &rail, 1);
         CHECK_EQ_I64(one(&s, cfg, 0), rail);
         CHECK(s.pos == fresh.pos && s.vel == fresh.vel && s.wide == fresh.wide, "not at rest");
