@@ -222,7 +222,7 @@ static const char *as_csv(const char *dir, const uint8_t byte[WALK], int with_ti
 TEST(csv_bytes_and_truth_agree)
 {
     static const char *const every[] = {"1", "7", "5000", "1000000"};
-    static const char *const end[] = {"\n", "\r\n"};
+    static const char *const end[] = {"\n", "\r\n", "\r"};
     char *dir = said_dir();
     uint8_t byte[WALK];
     char want[200];
@@ -372,6 +372,8 @@ TEST(input_that_is_none)
         {"t,a,b\nt,a,b\n", "line 2: no time"},
         {"1.7e9,1,0\n", "line 1: time beyond"},
         {"0,1,0\nnan,1,0\n", "line 2: time beyond"},
+        {"nan,1,0\n1,1,1\n", "line 1: time beyond"},
+        {"0,1,0\r\n1,1,1\r2,1,x\r", "line 3: b is not"},
         {"PK\3\4xx", "unzip -p"},
     };
     char *dir = said_dir();
@@ -382,6 +384,8 @@ TEST(input_that_is_none)
         CHECK(s.status == 2 && strstr(s.err, row[i].says) && s.out[0] == '\0', "row %zu: %d: %s%s",
               i, s.status, s.out, s.err);
     }
+    quad(dir, "/dev/null", WORDS("quad", "--csv", make_file(dir, "in.csv", "0,1,1\0,9\n", 9)));
+    CHECK(s.status == 2 && strstr(s.err, "line 1: b is not"), "what a NUL hides: %d: %s", s.status, s.err);
     memset(wide, ' ', sizeof wide);
     quad(dir, "/dev/null", WORDS("quad", "--csv", make_file(dir, "in.csv", wide, sizeof wide)));
     CHECK(s.status == 2 && strstr(s.err, "line 1: far too long"), "%d: %s", s.status, s.err);

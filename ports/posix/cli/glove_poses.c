@@ -1,5 +1,6 @@
 #include "glove_poses.h"
 
+#include "lines.h"
 #include "option.h"
 
 #include <errno.h>
@@ -132,20 +133,6 @@ void glove_poses_take(struct glove_taken *t, const struct glove_bench *b, FILE *
 
 /* --- recorded --- */
 
-/* Without its end; 0 when there is none left, -1 when it is too long. */
-static int next_line(FILE *f, char to[LINE_B])
-{
-    size_t n = 0;
-    int c = getc(f);
-    if (c == EOF) { return 0; }
-    for (; c != EOF && c != '\n' && c != '\r'; c = getc(f)) {
-        if (n + 1 == LINE_B) { return -1; }
-        to[n++] = (char)c;
-    }
-    to[n] = '\0';
-    return 1;
-}
-
 static int pose_of(const char *name)
 {
     for (int p = 0; p < GLOVE_POSES; p++) {
@@ -212,7 +199,7 @@ int glove_poses_read(struct glove_taken *t, const char *path)
         cli_complain("--poses: %s: %s: give a CSV of poses and codes", path, strerror(errno));
         return 3;
     }
-    while (status == 0 && (more = next_line(f, line)) != 0) {
+    while (status == 0 && (more = lines_next(f, line, sizeof line)) != 0) {
         at++;
         if (more < 0) {
             cli_complain(

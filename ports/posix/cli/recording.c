@@ -48,15 +48,15 @@ static int is_separator(int c)
     return c == ',' || c == ';' || c == ' ' || c == '\t';
 }
 
-/* The next field of the line, without blanks around; 0 at the end of the file. One of a
- * length that no number has is cut off. */
+/* The next field of the line, without blanks around; 0 at the end of the file. A longer one
+ * is cut off, which makes it no number. */
 static int next_field(struct reader *in, char to[FIELD_B])
 {
     size_t n = 0;
     int c = getc(in->f), blank;
     while (c == ' ' || c == '\t') { c = getc(in->f); }
     for (; c != EOF && c != '\n' && c != '\r' && !is_separator(c); c = getc(in->f)) {
-        if (n < FIELD_B - 1) { to[n++] = (char)c; }
+        if (n < FIELD_B - 1) { to[n++] = c == '\0' ? '?' : (char)c; }
     }
     to[n] = '\0';
     blank = c == ' ' || c == '\t';
@@ -84,7 +84,7 @@ static int is_number(const char *text, double *v)
 {
     char *end;
     *v = strtod(text, &end);
-    return end != text && *end == '\0' && *v >= -DBL_MAX && *v <= DBL_MAX;
+    return end != text && *end == '\0' && strlen(text) < FIELD_B - 1 && *v >= -DBL_MAX && *v <= DBL_MAX;
 }
 
 /* What a name of the header says of the unit. */
@@ -94,13 +94,25 @@ static void take_name(struct reader *in, const char *name)
     if (in->unit == RECORDING_GUESS && unit != NULL) { in->unit = recording_unit_of(unit + 1); }
 }
 
-/* The first line, if it is a header. Its first field has been read. */
-static void take_header(struct reader *in, const char *first)
+static int no_number(const struct reader *in, int column, const char *field)
 {
-    char name[FIELD_B];
+    char text[FIELD_B + 40];
+    snprintf(text, sizeof text, "\"%s\" is no number", field);
+    return bad(in, column, text);
+}
+
+/* The first line, if it is a header. Its first field has been read. A number behind that one
+ * says that it is a row, which must not get lost as if it were a header. */
+static int take_header(struct reader *in, const char *first)
+{
+    char name[FIELD_B], *end = name;
     in->timed = strcmp(first, "t_s") == 0;
-    if (in->timed && !in->ended && next_field(in, name)) { take_name(in, name); }
+    if (in->ended || !next_field(in, name)) { return 0; }
+    (void)strtod(name, &end);
+    if (end != name && *end == '\0') { return no_number(in, 1, first); }
+    if (in->timed) { take_name(in, name); }
     skip_line(in);
+    return 0;
 }
 
 static int store(struct reader *in, struct recording *r, const double value[SENSORS])
@@ -126,13 +138,12 @@ static int take_row(struct reader *in, struct recording *r, char field[FIELD_B])
 {
     const int first = in->timed ? 2 : 1;
     double value[SENSORS], ignored;
-    char text[FIELD_B + 40];
+    char text[80];
     int column;
     for (column = 1;; column++) {
         double *to = column >= first ? &value[column - first] : &ignored;
         if (!is_number(field, to)) {
-            snprintf(text, sizeof text, "\"%s\" is no number", field);
-            return bad(in, column, text);
+            return no_number(in, column, field);
         }
         if (column - first == SENSORS - 1) { break; }
         if (in->ended || !next_field(in, field)) {
@@ -179,9 +190,12 @@ static int read_rows(struct reader *in, struct recording *r)
     double ignored;
     int err = 0;
     for (in->line = 1; err == 0 && next_field(in, field); in->line++) {
+        if (in->line == 1 && strncmp(field, "\xEF\xBB\xBF", 3) == 0) {
+            memmove(field, field + 3, strlen(field + 3) + 1); /* a byte order mark */
+        }
         if (field[0] == '\0' && in->ended) { continue; }
         if (r->rows == 0 && in->line == 1 && !is_number(field, &ignored)) {
-            take_header(in, field);
+            err = take_header(in, field);
         } else {
             err = take_row(in, r, field);
         }
@@ -196,22 +210,23 @@ static int read_rows(struct reader *in, struct recording *r)
 
 int recording_read(struct recording *r, const char *path, enum recording_unit unit)
 {
+    const int standard = strcmp(path, "-") == 0;
     struct reader in;
     int err;
     memset(r, 0, sizeof *r);
     memset(&in, 0, sizeof in);
-    in.path = path;
+    in.path = standard ? "standard input" : path;
     in.unit = unit;
     in.whole = 1;
     in.lo = DBL_MAX;
     in.hi = -DBL_MAX;
-    in.f = fopen(path, "rb");
+    in.f = standard ? stdin : fopen(path, "rb");
     if (in.f == NULL) {
-        cli_complain("%s: %s", path, strerror(errno));
-        return 2;
+        cli_complain("%s: %s: give a recording, 22 codes or angles a line", path, strerror(errno));
+        return 3;
     }
     err = read_rows(&in, r);
-    fclose(in.f);
+    if (!standard) { fclose(in.f); }
     if (err == 0) { err = settle_unit(&in, r); }
     if (err) { recording_free(r); }
     return err;

@@ -29,7 +29,7 @@ struct recording {
     int codes; /* 1: codes                                                      */
 };
 
-/* 0, or 2 after a line on stderr that names file, line and column. */
+/* "-" is standard input. 0, or 2 or 3 after a line on stderr that names file, line and column. */
 int recording_read(struct recording *r, const char *path, enum recording_unit unit);
 void recording_free(struct recording *r);
 

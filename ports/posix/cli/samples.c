@@ -1,5 +1,6 @@
 #include "samples.h"
 
+#include "lines.h"
 #include "option.h"
 
 #include <errno.h>
@@ -144,20 +145,19 @@ static int take_row(struct samples *s, const char *text, struct samples_chunk *c
     return 0;
 }
 
-/* The next line without its end, LF or CRLF, without a byte order mark and blanks; NULL
- * after the last. */
-static const char *get_text(struct samples *s, char *buf, size_t cap)
+/* A line without a byte order mark and blanks. */
+static const char *text_of(const struct samples *s, const char *buf)
 {
-    if (fgets(buf, (int)cap, s->from) == NULL) { return NULL; }
-    s->line++;
-    buf[strcspn(buf, "\r\n")] = '\0';
     return blank(s->line == 1 && strncmp(buf, "\xEF\xBB\xBF", 3) == 0 ? buf + 3 : buf);
 }
 
 /* Nothing, a comment, or the names of the columns, once, before the first row. */
 static int is_no_row(struct samples *s, const char *text)
 {
-    const int names = s->seen == 0 && !s->named && strspn(text, "+-.0123456789") == 0;
+    char *end;
+    int names;
+    (void)strtod(text, &end);
+    names = s->seen == 0 && !s->named && end == text; /* nan is no name */
     if (*text == '\0' || *text == '#' || *text == ';') { return 1; }
     s->named |= names;
     return names;
@@ -165,12 +165,15 @@ static int is_no_row(struct samples *s, const char *text)
 
 static int next_rows(struct samples *s, struct samples_chunk *c)
 {
-    char buf[256];
-    const char *text;
-    while (c->n < SAMPLES_CHUNK && (text = get_text(s, buf, sizeof buf)) != NULL) {
+    char buf[256] = "";
+    int more;
+    while (c->n < SAMPLES_CHUNK && (more = lines_next(s->from, buf, sizeof buf)) != 0) {
+        const char *text;
         int err = 0;
-        if (s->line == 1 && is_zip(text, strlen(text))) { return complain_zip(s); }
-        if (strlen(buf) == sizeof buf - 1) { return bad_line(s, "far too long"); }
+        s->line++;
+        text = text_of(s, buf);
+        if (s->line == 1 && is_zip(buf, sizeof buf)) { return complain_zip(s); }
+        if (more < 0) { return bad_line(s, "far too long"); }
         if (!is_no_row(s, text)) { err = take_row(s, text, c); }
         if (err) { return err; }
     }

@@ -1,0 +1,12 @@
+/* Lines of a text, however they end. */
+#ifndef CLI_LINES_H
+#define CLI_LINES_H
+
+#include <stddef.h>
+#include <stdio.h>
+
+/* The next line without its end, LF, CR or CR LF; a NUL in it becomes '?', so that nothing
+ * behind it is lost. 1; 0 after the last; -1 if it does not fit. */
+int lines_next(FILE *f, char *to, size_t cap_B);
+
+#endif
