@@ -10,6 +10,9 @@
 
 #include "exhand/record.h"
 
+#include <signal.h>
+#include <time.h>
+
 #define LEN(a)  (sizeof(a) / sizeof((a)[0]))
 #define SENSORS EXH_GLOVE_SENSORS
 
@@ -142,6 +145,35 @@ TEST(too_much_noise_falls_short)
     said_clean(dir);
 }
 
+/* The quietest sensor is a dead one: Table I alone would call its bits stable. */
+TEST(a_dead_glove_fails)
+{
+    const char *dir = said_dir();
+    said(&s, dir, cli_glove, WORDS("glove", "--selftest", "--device", "excite=0.1"));
+    CHECK(s.status == 1, "%d: %s", s.status, s.out);
+    CHECK(strstr(s.out, "Not believed: ThumbRotate ThumbMPJ ") && strstr(s.out, " WristYaw\n"), "%s", s.out);
+    said_clean(dir);
+}
+
+/* Ticks are not frames: a scene may ask less often, and a scan may be longer than a tick. */
+TEST(frames_have_a_rate_of_their_own)
+{
+    static const struct {
+        const char *rate, *set, *device, *says;
+    } row[] = {{"2000", "every=1", "interval=0.000004", "\n20000 frames of 22 channels at 2000 Hz, 10 s"},
+               {"2000", "every=5", "interval=0.000004", "\n4000 frames of 22 channels at 400 Hz, 10 s"},
+               {"2000", "every=1", "interval=0.00006", "\n6667 frames of 22 channels at 666.667 Hz, 10 s"},
+               {"20000", "every=1", "interval=0.000004", "\n100000 frames of 22 channels at 10000 Hz, 10 s"}};
+    const char *dir = said_dir();
+    for (size_t i = 0; i < LEN(row); i++) {
+        said(&s, dir, cli_glove,
+             WORDS("glove", "--selftest", "--rate", row[i].rate, "--set", row[i].set, "--device", row[i].device));
+        CHECK(s.status == 0 && strstr(s.out, row[i].says), "row %zu: %d: %s", i, s.status, s.out);
+        CHECK(number_after(strstr(s.out, "\n        30"), "mV", 1) < 7.52, "row %zu: %s", i, s.out);
+    }
+    said_clean(dir);
+}
+
 TEST(the_selftest_takes_recordings)
 {
     char *dir = said_dir();
@@ -189,6 +221,7 @@ TEST(every_line_end_and_header_reads_alike)
         ROW_A "\n" ROW_B,
         "\n\n" ROW_A "\n\n" ROW_B "\n\n",
         "S01,S02,OUTPUT\r" ROW_A ",A\r" ROW_B ",B\r",
+        "\xEF\xBB\xBF" ROW_A "\n" ROW_B "\n",
         "any words here\n" ROW_A ",label\n" ROW_B ", label \n",
         SPACED "\n" ROW_B "\n",
         "  " SPACED " A \r\n" ROW_B "\r\n",
@@ -224,6 +257,9 @@ TEST(bad_recordings_are_refused_by_line)
         {ROW_A "\r\n\r\n" ROW_A "\r\n1,2,3\r\n", "in.csv: line 4: 3 columns (22 wanted)"},
         {ROW_A "\r" ROW_A "\r1,2,x,4\r", "in.csv: line 3, column 3: \"x\" is no number"},
         {ROW_A "\n" "S01,S02\n", "in.csv: line 2, column 1: \"S01\" is no number"},
+        {"nan," ROW_A "\n" ROW_A "\n", "in.csv: line 1, column 1: \"nan\" is no number"},
+        {"," ROW_A "\n" ROW_A "\n", "in.csv: line 1, column 1: \"\" is no number"},
+        {ROW_A "\n00000000000000000000000000000000000000000000000000000000000000001,2\n", "line 2, column 1: "},
         {"1,nan,3\n", "in.csv: line 1, column 2: \"nan\" is no number"},
         {"1,inf,3\n", "in.csv: line 1, column 2: \"inf\""},
         {"1,,3\n", "in.csv: line 1, column 2: \"\" is no number"},
@@ -244,7 +280,7 @@ TEST(bad_recordings_are_refused_by_line)
         CHECK(s.out[0] == '\0', "%zu: %s", i, s.out);
     }
     said(&s, dir, cli_glove, WORDS("glove", "--csv", "/nowhere", "--rate", "200"));
-    CHECK(s.status == 2 && strstr(s.err, "/nowhere: No such file"), "%s", s.err);
+    CHECK(s.status == 3 && strstr(s.err, "/nowhere: No such file"), "%s", s.err);
     said_clean(dir);
 }
 
@@ -391,7 +427,7 @@ TEST(the_low_pass_fits_the_rate)
 TEST(bad_usage_is_refused_by_name)
 {
     static const struct {
-        const char *word[6];
+        const char *word[7];
         const char *says;
     } row[] = {
         {{NULL}, "what to do is missing"},
@@ -413,19 +449,56 @@ TEST(bad_usage_is_refused_by_name)
         {{"--record", "/nowhere/x"}, "/nowhere/x: No such file"},
         {{"--record", "x", "--pose", "none"}, "--pose: none: no such pose"},
         {{"--record", "x", "--does", "none"}, "--does: none"},
-        {{"--selftest", "--calibration", "/nowhere"}, "/nowhere: No such file"},
+        {{"--selftest", "--set", "present=1"}, "give --calibration"},
+        {{"--selftest", "--does", "wave"}, "go with --record"},
+        {{"--skew", "--pose", "fist"}, "go with --record"},
+        {{"--record", "x", "--play", "y", "--does", "wave"}, "--play: says what"},
+        {{"--selftest", "--to", "1"}, "of a recording"},
+        {{"--skew", "--rate", "100"}, "--skew: does not depend"},
+        {{"--csv", "x", "--rate", "100", "--seconds=1"}, "--seconds: a recording"},
+        {{"--selftest", "--seconds", "0.01"}, "20 frames: too few"},
+        {{"--selftest", "--rate", "0.5"}, "--rate: 0.5 (allowed 1..20000)"},
         {{"--selftest", "--calibration", "/dev/null"}, "/dev/null: "},
         {{"--selftest", "--log", "/dev/null"}, "/dev/null: not a log"},
     };
     const char *dir = said_dir();
     for (size_t i = 0; i < LEN(row); i++) {
         const char *const *w = row[i].word;
-        said(&s, dir, cli_glove, WORDS("glove", w[0], w[1], w[2], w[3], w[4]));
+        said(&s, dir, cli_glove, WORDS("glove", w[0], w[1], w[2], w[3], w[4], w[5]));
         CHECK(s.status == 2, "row %zu: status %d: %s", i, s.status, s.err);
         CHECK(strstr(s.err, row[i].says) != NULL, "row %zu: %s", i, s.err);
         CHECK(strncmp(s.err, "exhand glove: ", 14) == 0, "row %zu: %s", i, s.err);
         CHECK(s.out[0] == '\0', "row %zu: %s", i, s.out);
     }
+    said_clean(dir);
+}
+
+TEST(what_is_not_there_is_said_by_status)
+{
+    static const char *const option[] = {"--calibration", "--log"};
+    const char *dir = said_dir();
+    for (size_t i = 0; i < LEN(option); i++) {
+        said(&s, dir, cli_glove, WORDS("glove", "--selftest", option[i], "/nowhere"));
+        CHECK(s.status == 3 && strstr(s.err, "/nowhere: No such file"), "%d: %s", s.status, s.err);
+    }
+    said(&s, dir, cli_replay, WORDS("replay", "/nowhere"));
+    CHECK(s.status == 3 && strstr(s.err, "/nowhere: No such file"), "%d: %s", s.status, s.err);
+    said_clean(dir);
+}
+
+/* Of a recording there is nothing to save: it ends by the signal, half way or before its input. */
+TEST(an_interrupt_is_no_success)
+{
+    static const struct timespec while_it_waits = {0, 200000000};
+    char *dir = said_dir();
+    const char *pipe = said_path(dir, "pipe");
+    pid_t pid;
+    CHECK_EQ_I64(mkfifo(pipe, 0600), 0);
+    pid = said_start(dir, cli_glove, WORDS("glove", "--csv", pipe, "--rate", "100"));
+    nanosleep(&while_it_waits, NULL);
+    CHECK_EQ_I64(kill(pid, SIGINT), 0);
+    said_end(&s, dir, pid);
+    CHECK(s.status == -1 && s.err[0] == '\0', "%d: %s", s.status, s.err);
     said_clean(dir);
 }
 
@@ -436,6 +509,7 @@ TEST(help_and_parameters_are_listed)
     CHECK(s.status == 0 && strstr(s.out, "--selftest") && strstr(s.out, "--tips"), "%s", s.out);
     said(&s, dir, cli_glove, WORDS("glove", "--params"));
     CHECK(s.status == 0 && strstr(s.out, "glove_fc") && strstr(s.out, "settle"), "%s", s.out);
+    CHECK(strstr(s.out, "every") && strstr(s.out, "cal_zero") == NULL, "22 of each: %s", s.out);
     said_clean(dir);
 }
 
@@ -513,6 +587,39 @@ TEST(a_log_replays_bit_for_bit_from_any_keyframe)
         replay_from(dir, log, "2600", 0);
         CHECK(strstr(s.out, "from tick 2048") != NULL, "%s", s.out);
     }
+    said_clean(dir);
+}
+
+static long size_of_file(const char *path)
+{
+    struct stat st;
+    return stat(path, &st) == 0 ? (long)st.st_size : -1;
+}
+
+/* What is refused leaves the log that is there; less than a tick is one, not without end; and
+ * what is played is played to its end. */
+TEST(a_record_is_as_long_as_it_should_be)
+{
+    static char text[SAID_B];
+    char *dir = said_dir();
+    const char *log = said_path(dir, "glove.exh"), *csv = said_path(dir, "in.csv");
+    long size;
+    said(&s, dir, cli_glove, WORDS("glove", "--record", log, "--rate", "100", "--seconds", "0.001"));
+    CHECK(s.status == 0, "%d: %s", s.status, s.err);
+    said(&s, dir, cli_replay, WORDS("replay", log));
+    CHECK(s.status == 0 && strstr(s.out, ": 1 ticks "), "%s%s", s.out, s.err);
+    size = size_of_file(log);
+    said(&s, dir, cli_glove, WORDS("glove", "--record", log, "--set", "glove_fc=5000"));
+    CHECK(s.status == 2 && strstr(s.err, "cut-off at or above half the rate: see"), "%d: %s", s.status, s.err);
+    CHECK_EQ_I64(size_of_file(log), size);
+    for (int n = 0; n < 150; n++) { strcat(text, ROW_A "\n"); }
+    write_text(csv, text);
+    said(&s, dir, cli_glove, WORDS("glove", "--record", log, "--play", csv, "--rate", "70", "--set", "glove_fc=9"));
+    CHECK(s.status == 0 && s.err[0] == '\0', "%d: %s", s.status, s.err);
+    said(&s, dir, cli_replay, WORDS("replay", log));
+    CHECK(s.status == 0 && strstr(s.out, ": 150 ticks "), "%s%s", s.out, s.err);
+    said(&s, dir, cli_glove, WORDS("glove", "--record", log, "--rate", "20000", "--seconds", "0.1"));
+    CHECK(s.status == 0 && strstr(s.err, "1000 frames in 2000 ticks: a scan takes longer"), "%s", s.err);
     said_clean(dir);
 }
 
@@ -600,10 +707,11 @@ TEST(a_recording_moves_the_simulated_hand)
 }
 
 TEST_MAIN("glove_command", the_selftest_gives_the_papers_rows, a_low_pass_gives_bits_for_delay,
-          too_much_noise_falls_short, the_selftest_takes_recordings,
+          too_much_noise_falls_short, a_dead_glove_fails, frames_have_a_rate_of_their_own,
+          the_selftest_takes_recordings,
           every_line_end_and_header_reads_alike, bad_recordings_are_refused_by_line,
           units_are_guessed_or_told, angles_pass_a_calibration_and_back, its_own_output_is_an_input, a_real_recording_comes_through, the_low_pass_fits_the_rate,
-          bad_usage_is_refused_by_name, help_and_parameters_are_listed,
+          bad_usage_is_refused_by_name, what_is_not_there_is_said_by_status, an_interrupt_is_no_success, help_and_parameters_are_listed,
           skew_grows_with_interval_and_speed, a_log_replays_bit_for_bit_from_any_keyframe,
-          a_changed_code_is_found, angles_are_those_of_the_hand,
+          a_record_is_as_long_as_it_should_be, a_changed_code_is_found, angles_are_those_of_the_hand,
           a_recording_moves_the_simulated_hand);

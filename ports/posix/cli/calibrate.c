@@ -289,7 +289,7 @@ static int check_image(const struct calibrate_options *o)
     struct calibration_lines l;
     struct exh_calib_bad bad = {0, 0};
     uint8_t image[EXH_CALIB_IMAGE_B];
-    const long len = outfile_read(o->check, "calibration.bin that `exhand calibrate --out` wrote", image, sizeof image);
+    const long len = outfile_read("check", o->check, "calibration.bin that `exhand calibrate --out` wrote", image, sizeof image);
     int err;
     if (len < 0) { return (int)-len; }
     err = exh_calib_load(&c, image, (size_t)len, &bad);

@@ -2,12 +2,13 @@
 #include "glove.h"
 
 #include "cli.h"
+#include "glove_image.h"
 #include "option.h"
+#include "outfile.h"
 #include "param.h"
 
 #include "exhand/error.h"
 
-#include <errno.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -40,8 +41,9 @@ static int take_setting(void *ctx, const char *text)
     char name[NAME_B];
     double value;
     if (split("set", text, name, &value)) { return 2; }
-    if (strncmp(name, "cal_", 4) == 0) {
-        cli_complain("--set: %s: each sensor has its own: give --calibration FILE", name);
+    if (strncmp(name, "cal_", 4) == 0 || strcmp(name, "user") == 0 || strcmp(name, "glove") == 0 ||
+        strcmp(name, "present") == 0) {
+        cli_complain("--set: %s: comes with the calibration: give --calibration FILE", name);
         return 2;
     }
     if (strcmp(name, "glove_fc") == 0) { o->fc_given = 1; }
@@ -68,10 +70,13 @@ static int take_device(void *ctx, const char *text)
     return err ? 2 : 0;
 }
 
+/* All but the calibration's, which stand last: 22 of each say nothing. */
 static void print_params(void)
 {
+    const struct exh_signal_table *all = exh_scene_glove.params->table;
+    const struct exh_signal_table t = {all->group, (uint16_t)(all->groups - 1)};
     printf("Parameters of the scene (--set NAME=VALUE; those of the calibration come from a file)\n");
-    cli_signal_print(stdout, exh_scene_glove.params->table);
+    cli_signal_print(stdout, &t);
     printf("\nThe simulated glove and its card (--device NAME=VALUE; `exhand drop --params` lists the "
            "motor's)\n");
     for (int i = 0; i < sim_glove_rows; i++) {
@@ -86,10 +91,10 @@ static void print_params(void)
 static int complain_cal(const char *path, int err, struct exh_glove_bad bad)
 {
     if (err == -EXH_E_RANGE) {
-        cli_complain("%s: %s of %s: outside its range", path, exh_glove_what_text(bad.what),
-                     exh_glove_sensor_text(bad.at));
+        cli_complain("--calibration: %s: %s of %s: outside its range: calibrate again", path,
+                     exh_glove_what_text(bad.what), exh_glove_sensor_text(bad.at));
     } else {
-        cli_complain("%s: %s", path, exh_error_text(err));
+        cli_complain("--calibration: %s: %s: give the " IMAGE_WANTED, path, exh_error_text(err));
     }
     return 2;
 }
@@ -99,16 +104,10 @@ static int load_calibration(const char *path)
     static struct exh_glove_cal cal;
     struct exh_glove_bad bad = {0, 0};
     uint8_t image[IMAGE_B];
-    size_t len;
+    const long len = outfile_read("calibration", path, IMAGE_WANTED, image, sizeof image);
     int err;
-    FILE *f = fopen(path, "rb");
-    if (f == NULL) {
-        cli_complain("%s: %s", path, strerror(errno));
-        return 2;
-    }
-    len = fread(image, 1, sizeof image, f);
-    fclose(f);
-    err = exh_glove_cal_load(&cal, image, len, &bad);
+    if (len < 0) { return (int)-len; }
+    err = exh_glove_cal_load(&cal, image, (size_t)len, &bad);
     if (err == 0) { err = glove_stage_cal(&cal, &bad); }
     return err < 0 ? complain_cal(path, err, bad) : 0;
 }
@@ -121,10 +120,38 @@ static void interrupted(int sig)
     posix_interrupt();
 }
 
+void glove_catch(void)
+{
+    signal(SIGINT, interrupted);
+    signal(SIGTERM, interrupted);
+}
+
 static int bad_combination(const char *what)
 {
     cli_complain("%s: `exhand glove --help` lists the options", what);
     return 2;
+}
+
+/* What would do nothing is not meant so. */
+static int check_rest(const struct glove_options *o)
+{
+    const int recorded = o->selftest && (o->csv || o->log);
+    const struct {
+        int wrong;
+        const char *why;
+    } row[] = {
+        {o->play && !o->record, "--play: goes with --record"},
+        {(o->does || o->pose) && !o->record, "--does and --pose: go with --record"},
+        {(o->does || o->pose) && o->play, "--play: says what the hand does: leave --does and --pose out"},
+        {(o->from_s > 0 || o->to_s > 0) && !recorded, "--from and --to: go with --selftest of a recording"},
+        {o->seconds > 0 && (o->csv || o->log), "--seconds: a recording is as long as it is"},
+        {o->skew && (o->rate_Hz > 0 || o->seconds > 0 || o->calibration),
+         "--skew: does not depend on --rate, --seconds or --calibration"},
+    };
+    for (size_t i = 0; i < sizeof row / sizeof row[0]; i++) {
+        if (row[i].wrong) { return bad_combination(row[i].why); }
+    }
+    return 0;
 }
 
 static int check(const struct glove_options *o)
@@ -145,8 +172,7 @@ static int check(const struct glove_options *o)
     if ((o->tips || o->deg) && (!o->csv || o->selftest)) {
         return bad_combination("--tips and --deg: go with --csv");
     }
-    if (o->play && !o->record) { return bad_combination("--play: goes with --record"); }
-    return 0;
+    return check_rest(o);
 }
 
 static int run(struct glove_options *o)
@@ -154,8 +180,6 @@ static int run(struct glove_options *o)
     int err = check(o);
     if (err == 0 && o->calibration) { err = load_calibration(o->calibration); }
     if (err) { return err; }
-    signal(SIGINT, interrupted);
-    signal(SIGTERM, interrupted);
     if (o->record) {
         if (o->rate_Hz <= 0) { o->rate_Hz = exh_scene_glove.rate_Hz; }
         return glove_record(o);
@@ -174,9 +198,9 @@ int cli_glove(int argc, char **argv)
     } u[2] = {{&set}, {&device}};
     const struct cli_option option[] = {
         {"selftest", CLI_FLAG, &o.selftest, 0, 0, NULL, "the paper's Table I, on the board or a recording"},
-        {"csv", CLI_TEXT, &o.csv, 0, 0, "FILE", "a recording: 22 codes or angles a line"},
+        {"csv", CLI_TEXT, &o.csv, 0, 0, "FILE", "a recording: 22 codes or angles a line; - is standard input"},
         {"log", CLI_TEXT, &o.log, 0, 0, "FILE", "a log made by --record"},
-        {"rate", CLI_REAL, &o.rate_Hz, 0.1, RATE_TOP, "HZ", "of the rows, or of the loop (2000)"},
+        {"rate", CLI_REAL, &o.rate_Hz, 1, RATE_TOP, "HZ", "of the rows, or of the loop (2000)"},
         {"tips", CLI_FLAG, &o.tips, 0, 0, NULL, "joints and fingertips of the robot hand too"},
         {"deg", CLI_FLAG, &o.deg, 0, 0, NULL, "angles in degrees, not radians"},
         {"unit", CLI_TEXT, &o.unit, 0, 0, "UNIT", "of the rows: codes, rad, deg, turn; else guessed"},
@@ -186,7 +210,7 @@ int cli_glove(int argc, char **argv)
         {"play", CLI_TEXT, &o.play, 0, 0, "FILE", "with --record: the hand does what this recording says"},
         {"does", CLI_TEXT, &o.does, 0, 0, "WHAT", "with --record: rest, poses, grasp or wave"},
         {"pose", CLI_TEXT, &o.pose, 0, 0, "NAME", "with --record: begin in this pose"},
-        {"seconds", CLI_REAL, &o.seconds, 0.001, 100000, "S", "how long the board is asked (10)"},
+        {"seconds", CLI_REAL, &o.seconds, 0.001, 100000, "S", "how long the board is asked (10, or all of --play)"},
         {"from", CLI_REAL, &o.from_s, 0, 1e6, "S", "selftest: a recording is at rest from here"},
         {"to", CLI_REAL, &o.to_s, 0, 1e6, "S", "to here"},
         {"span", CLI_REAL, &o.span_V, 0.001, 20, "V", "all that a joint's signal can be (20)"},
@@ -202,7 +226,6 @@ int cli_glove(int argc, char **argv)
                                   (int)(sizeof option / sizeof option[0]), 0};
     int err;
     memset(&o, 0, sizeof o);
-    o.seconds = 10;
     o.span_V = 20;
     o.travel_m = 0.034;
     o.span_A = 6.6;

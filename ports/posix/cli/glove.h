@@ -14,7 +14,8 @@ struct glove_options {
     int selftest, skew, tips, deg;
     const char *csv, *log, *record, *play, *calibration, *unit, *does, *pose;
     double rate_Hz;             /* 0: not said                                  */
-    double seconds, from_s, to_s;
+    double seconds;             /* 0: not said                                  */
+    double from_s, to_s;
     double travel_m, span_A, span_V;
     int64_t seed;
     struct sim_device device;
@@ -43,6 +44,9 @@ int glove_rest_board(struct glove_rest *r, const struct glove_options *o);
 int glove_rest_log(struct glove_rest *r, const char *path);
 int glove_rest_csv(struct glove_rest *r, const struct glove_options *o);
 int glove_rest_cut(struct glove_frames *f, const struct glove_options *o);
+
+/* From here on Ctrl-C ends the board's run, not the program: what there is of a log gets whole. */
+void glove_catch(void);
 
 /* 1 / rate as a ratio, to 1/1000 Hz. */
 struct exh_period glove_period(double rate_Hz);

@@ -1,6 +1,7 @@
 /* exhand calibrate --glove: a user's calibration of the glove, from poses. */
 #include "cli.h"
 
+#include "glove_image.h"
 #include "glove_poses.h"
 #include "option.h"
 #include "outfile.h"
@@ -16,8 +17,6 @@
 #define RAIL_RAW        32000 /* beyond: no code of a hand */
 #define DEG_OF_TURN_Q32 (360.0 / 4294967296.0)
 #define DEG_OF_GAIN_Q38 (360.0 / 274877906944.0)
-#define IMAGE_NAME      "glove.bin"
-#define IMAGE_WANTED    IMAGE_NAME " that `exhand calibrate --glove --out` wrote"
 
 struct glove_options {
     int64_t user, id, day, valid_days, sensors, move_raw, noise_raw;
@@ -258,7 +257,7 @@ static int check_image(const struct glove_options *o)
     struct exh_glove_cal c;
     struct exh_glove_bad bad = {0, 0};
     uint8_t image[EXH_GLOVE_CAL_IMAGE_B];
-    const long len = outfile_read(o->check, IMAGE_WANTED, image, sizeof image);
+    const long len = outfile_read("check", o->check, IMAGE_WANTED, image, sizeof image);
     int err;
     if (len < 0) { return (int)-len; }
     err = exh_glove_cal_load(&c, image, (size_t)len, &bad);
@@ -375,13 +374,16 @@ static int calibrate(const struct glove_options *o)
     r.cal.day = (uint32_t)o->day;
     r.cal.valid_days = (uint32_t)o->valid_days;
     r.poses = glove_poses_fit(r.pose, r.which, &r.taken);
+    if (r.poses < 2) {
+        cli_complain("%u poses: two or more are needed", r.poses);
+        return 1;
+    }
     err = exh_glove_cal_fit(&r.cal, r.fit, r.pose, r.poses, &par, &bad);
     print_result(&r);
     fflush(stdout);
     if (err < 0) {
-        if (r.poses < 2) { cli_complain("%u poses: two or more are needed", r.poses); }
         for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
-            if (r.poses >= 2 && r.fit[i].what != EXH_GLOVE_WHATS) { say_bad(o, &r, i); }
+            if (r.fit[i].what != EXH_GLOVE_WHATS) { say_bad(o, &r, i); }
         }
         return 1;
     }

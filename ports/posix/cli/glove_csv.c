@@ -29,13 +29,12 @@ int glove_ready(const struct glove_options *o, struct glove_par *par, struct glo
     memcpy(par, p->staged, sizeof *par);
     if (!o->fc_given && par->glove.order > 0 && par->glove.fc_Hz_q16 / 65536.0 > rate_Hz / 4) {
         par->glove.fc_Hz_q16 = (int32_t)(rate_Hz / 4 * 65536);
-        if (par->glove.fc_Hz_q16 < exh_glove_rows[1].min) { par->glove.order = 0; }
         cli_complain("at %.6g Hz the low-pass is at %.6g Hz: --set glove_fc=... says another", rate_Hz,
-                     par->glove.order ? par->glove.fc_Hz_q16 / 65536.0 : 0);
+                     par->glove.fc_Hz_q16 / 65536.0);
     }
     err = glove_setup(cfg, par, T);
     if (err < 0) {
-        cli_complain("%.6g Hz with these parameters: %s", rate_Hz, exh_error_text(err));
+        cli_complain("%.6g Hz with these parameters: %s: see --rate and --set", rate_Hz, exh_error_text(err));
         return 2;
     }
     return 0;
@@ -167,7 +166,7 @@ int glove_csv(const struct glove_options *o)
     }
     memset(&s, 0, sizeof s);
     header(o);
-    for (long n = 0; n < f.n && !posix_interrupted(); n++) {
+    for (long n = 0; n < f.n; n++) {
         struct exh_glove_in in = {.age_ticks = 0};
         memcpy(in.raw, f.raw[n], sizeof in.raw);
         glove_frame(&s, &cfg, &in);

@@ -14,11 +14,13 @@
 #include <string.h>
 
 static uint32_t last_tick;
+static long frames;
 
 static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
 {
     exh_log_after(tick, in, out);
     last_tick = tick;
+    frames += in->glove_new;
 }
 
 static int find_motion(const struct glove_options *o, struct sim_operator_par *hand)
@@ -43,18 +45,43 @@ static int find_motion(const struct glove_options *o, struct sim_operator_par *h
     return 2;
 }
 
+static int complain_loop(const struct glove_options *o, int err)
+{
+    if (err < 0) { cli_complain("%.6g Hz: %s: see --rate and --set", o->rate_Hz, exh_error_text(err)); }
+    return err < 0 ? 2 : 0;
+}
+
+/* One tick without a log: what is refused has touched no log that was there. */
+static int try_once(const struct glove_options *o, struct posix_config c)
+{
+    c.max_ticks = 1;
+    posix_configure(&c);
+    return complain_loop(o, exh_loop(&exh_scene_glove, 0, NULL));
+}
+
 static int run_logged(const struct glove_options *o, const struct posix_config *c)
 {
     static const struct exh_loop_hooks hooks = {exh_log_start, exh_log_before, after};
+    const long every = *exh_scene_glove.glove_every;
     int err;
     posix_configure(c);
     last_tick = 0;
+    frames = 0;
     err = exh_loop(&exh_scene_glove, 0, &hooks);
-    if (err < 0) {
-        cli_complain("%.6g Hz: %s", o->rate_Hz, exh_error_text(err));
-        return 2;
+    if (err < 0) { return complain_loop(o, err); }
+    if (frames * every <= last_tick - last_tick / 4) { /* as set up, the filter has another cut-off */
+        cli_complain("%ld frames in %lu ticks: a scan takes longer than %ld: --set every=... says more",
+                     frames, last_tick + 1ul, every);
     }
     return exh_log_end(last_tick + 1) == 0 ? 0 : 1;
+}
+
+/* As long as was said, or as what is played; one tick at least, since none were no end. */
+static uint32_t ticks_of(const struct glove_options *o, long rows)
+{
+    const double seconds = o->seconds > 0 ? o->seconds : rows > 0 ? (double)rows / o->rate_Hz : 10;
+    const double ticks = seconds * o->rate_Hz + 0.5;
+    return ticks < 1 ? 1 : ticks > UINT32_MAX ? UINT32_MAX : (uint32_t)ticks;
 }
 
 /* The rows of --play: codes as frames, angles through the analog chain. */
@@ -88,12 +115,14 @@ int glove_record(const struct glove_options *o)
     c.seed = (uint64_t)o->seed;
     c.bench = c.glove = 1;
     c.T = glove_period(o->rate_Hz);
-    c.max_ticks = (uint32_t)(o->seconds * o->rate_Hz + 0.5);
+    if (err == 0) { err = try_once(o, c); }
+    c.max_ticks = ticks_of(o, r.codes ? r.rows * *exh_scene_glove.glove_every : r.rows);
     if (err == 0 && (c.log = fopen(o->record, "wb")) == NULL) {
-        cli_complain("%s: %s", o->record, strerror(errno));
+        cli_complain("--record: %s: %s: give a file that can be written", o->record, strerror(errno));
         err = 2;
     }
     if (err == 0) {
+        glove_catch();
         err = run_logged(o, &c);
         closed = fclose(c.log);
         if (err == 1 || closed != 0) {

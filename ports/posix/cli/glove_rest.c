@@ -13,12 +13,28 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Of normal noise that ends at 3 deviations, a hundred show 5 of the 6 between its ends. */
+#define FRAMES_MIN 100
+
 static struct glove_rest *taking; /* of the loop's hook */
 
 static void start(const struct exh_scene *sc, struct exh_scene_board board)
 {
     (void)sc;
     taking->frames.T = board.T;
+}
+
+/* What the frames' rate turned out to be: the scene may ask every so many ticks only, and a scan
+ * may be longer than that. */
+static int settle_rate(struct glove_rest *r)
+{
+    const long n = r->frames.n;
+    if (n < FRAMES_MIN) {
+        cli_complain("%ld frames: too few to measure noise by (%d): give more --seconds", n, FRAMES_MIN);
+        return 2;
+    }
+    r->frames.T.num *= (uint32_t)((r->ticks + n / 2) / n);
+    return 0;
 }
 
 static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
@@ -54,7 +70,8 @@ int glove_rest_board(struct glove_rest *r, const struct glove_options *o)
     static const struct exh_loop_hooks hooks = {start, NULL, after};
     const double rate_Hz = o->rate_Hz > 0 ? o->rate_Hz : exh_scene_glove.rate_Hz;
     struct posix_config c = posix_config_default();
-    int err = make_room(r, (long)(o->seconds * rate_Hz) + 1);
+    const double seconds = o->seconds > 0 ? o->seconds : 10;
+    int err = make_room(r, (long)(seconds * rate_Hz) + 1);
     if (err) { return err; }
     c.device = o->device;
     c.glove_par = o->chain;
@@ -62,15 +79,16 @@ int glove_rest_board(struct glove_rest *r, const struct glove_options *o)
     c.bench = c.glove = 1;
     c.enc_jitter_cnt = 1;
     c.T = glove_period(rate_Hz);
-    c.max_ticks = (uint32_t)r->cap - 1;
+    c.max_ticks = r->cap > 1 ? (uint32_t)r->cap - 1 : 1; /* 0 were no end */
     posix_configure(&c);
     taking = r;
+    glove_catch();
     err = exh_loop(&exh_scene_glove, 0, &hooks);
     if (err < 0) {
-        cli_complain("%s: %.6g Hz: %s", exh_board_info.name, rate_Hz, exh_error_text(err));
+        cli_complain("%s: %.6g Hz: %s: see --rate and --set", exh_board_info.name, rate_Hz, exh_error_text(err));
         return err == -EXH_E_ABSENT ? 3 : 2;
     }
-    return posix_interrupted() ? 130 : 0;
+    return posix_interrupted() ? 130 : settle_rate(r);
 }
 
 /* The glove frames of a log. */

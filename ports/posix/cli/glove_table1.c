@@ -224,6 +224,18 @@ static int behind_table(const struct glove_options *o, const struct glove_frames
     return err;
 }
 
+/* A dead sensor is the quietest of all, so Table I alone does not tell. */
+static int faults_line(uint32_t faults)
+{
+    if (faults == 0) { return 0; }
+    printf("Not believed:");
+    for (unsigned i = 0; i < SENSORS; i++) {
+        if (faults >> i & 1) { printf(" %s", exh_glove_sensor_text(i)); }
+    }
+    printf("\n");
+    return 1;
+}
+
 /* The glove module as its parameters are: how often its angles changed, beyond once each to
  * find their place. At rest, never; only of the board it is known that the hand is at rest. */
 static int module_line(const struct glove_options *o, const struct glove_frames *f, int at_rest)
@@ -233,6 +245,7 @@ static int module_line(const struct glove_options *o, const struct glove_frames 
     static struct glove s;
     int32_t last[SENSORS] = {0};
     long flips[SENSORS] = {0}, beyond = 0;
+    uint32_t faults = 0;
     const int err = glove_ready(o, &par, &cfg, f->T);
     if (err) { return err; }
     memset(&s, 0, sizeof s);
@@ -240,6 +253,7 @@ static int module_line(const struct glove_options *o, const struct glove_frames 
         struct exh_glove_in in = {.age_ticks = 0};
         memcpy(in.raw, f->raw[n], sizeof in.raw);
         glove_frame(&s, &cfg, &in);
+        faults |= (uint32_t)s.sig.faults;
         for (int i = 0; i < SENSORS; i++) {
             flips[i] += n > 0 && s.sig.angle_turn_q32[i] != last[i];
             last[i] = s.sig.angle_turn_q32[i];
@@ -249,7 +263,7 @@ static int module_line(const struct glove_options *o, const struct glove_frames 
     printf("\nThe glove as set (order %d, %.6g Hz, %d bits, hysteresis %.4g codes): changes of its 22 "
            "angles %ld\n", (int)par.glove.order, par.glove.fc_Hz_q16 / 65536.0, (int)par.glove.bits,
            par.glove.hyst_raw_q16 / 65536.0, beyond);
-    return at_rest && beyond > 0;
+    return (faults_line(faults) || beyond > 0) && at_rest;
 }
 
 static int worse(int a, int b)

@@ -33,7 +33,10 @@ static int read_file(struct logfile *l)
 {
     FILE *f = fopen(l->path, "rb");
     long len = -1;
-    if (f == NULL) { return complain(l, strerror(errno)); }
+    if (f == NULL) {
+        (void)complain(l, strerror(errno));
+        return 3;
+    }
     if (fseek(f, 0, SEEK_END) == 0) { len = ftell(f); }
     rewind(f);
     if (len >= 0 && len < 0x7FFFFFFF) { l->bytes = malloc((size_t)len + 1); }

@@ -56,17 +56,17 @@ int outfile_write(const char *dir, const char *name, void (*write)(FILE *f, cons
     return failed;
 }
 
-long outfile_read(const char *path, const char *expected, void *to, size_t cap_B)
+long outfile_read(const char *option, const char *path, const char *expected, void *to, size_t cap_B)
 {
     FILE *f = fopen(path, "rb");
     long len;
     if (f == NULL) {
-        cli_complain("--check: %s: %s: give the %s", path, strerror(errno), expected);
+        cli_complain("--%s: %s: %s: give the %s", option, path, strerror(errno), expected);
         return -3;
     }
     len = (long)fread(to, 1, cap_B, f);
     if (ferror(f)) { /* a directory, as a rule */
-        cli_complain("--check: %s: can't be read: %s: give the %s", path, strerror(errno),
+        cli_complain("--%s: %s: can't be read: %s: give the %s", option, path, strerror(errno),
                      expected);
         len = -2;
     }
