@@ -287,6 +287,8 @@ check:
 	@for t in $(check_tools); do .ci/deps "the checks" $$t $(check_pkgs) || exit 3; done
 	@$(MAKE) --no-print-directory all test
 	@$(MAKE) --no-print-directory test-i686
+	@$(MAKE) --no-print-directory golden ARGS="--check --every 40"
+	@$(MAKE) --no-print-directory mutants
 	@$(MAKE) --no-print-directory demo > $(B)/demo.txt && tail -n 40 $(B)/demo.txt
 	@$(MAKE) --no-print-directory $(variants:%=variant-%)
 	@test/sim/bits.sh $(B)/bits $(B)/demo $(variants:%=$(B)/variant/%/posix/exhand)

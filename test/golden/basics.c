@@ -176,13 +176,17 @@ void golden_record(struct golden *g, uint32_t rate_Hz)
         for (uint32_t i = 0; i < n; i++) { payload[i] = (uint8_t)golden_draw(&r, 0, 255); }
         size = write(buf, cap, type, seq, g->tick, payload, n);
         golden_put(g, size);
-        golden_put(g, size > 0 ? exh_crc32(0, buf, size) : 0);
+        /* Over all but the last byte: over a whole record the CRC is the same for all. */
+        golden_put(g, size > 0 ? exh_crc32(0, buf, size - 1) : 0);
         how = (uint32_t)golden_draw(&r, 0, 3);
         where = (uint32_t)golden_draw(&r, 0, 8 * (int64_t)whole - 1);
         (void)write(buf, sizeof buf, type, seq, g->tick, payload, n);
         if (golden_draw(&r, 0, 9) == 0) { other_version(buf, whole); }
-        if (how == 1) { buf[where >> 3] ^= (uint8_t)(1u << (where & 7)); }
-        if (how == 2) { len = where >> 3; }
+        if (how & 1) {
+            const uint32_t at = how == 1 ? where : where & 15;
+            buf[at >> 3] ^= (uint8_t)(1u << (at & 7));
+        }
+        if (how & 2) { len = where >> 3; }
         golden_put(g, how);
         golden_put(g, len);
         put_read(g, buf, len);

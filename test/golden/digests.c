@@ -46,6 +46,21 @@ const uint32_t digest_safety[GOLDEN_RATES] = {
 const uint32_t digest_calibrate[GOLDEN_RATES] = {
 #include "digest/calibrate.inc"
 };
+const uint32_t digest_filter[GOLDEN_RATES] = {
+#include "digest/filter.inc"
+};
+const uint32_t digest_quantizer[GOLDEN_RATES] = {
+#include "digest/quantizer.inc"
+};
+const uint32_t digest_glove[GOLDEN_RATES] = {
+#include "digest/glove.inc"
+};
+const uint32_t digest_angle[GOLDEN_RATES] = {
+#include "digest/angle.inc"
+};
+const uint32_t digest_hand[GOLDEN_RATES] = {
+#include "digest/hand.inc"
+};
 const uint32_t digest_drop[GOLDEN_RATES] = {
 #include "digest/drop.inc"
 };

@@ -85,21 +85,31 @@ static struct exh_table rising(struct golden_rng *r, struct exh_knot *knot, int3
     return (struct exh_table){knot, (uint8_t)n};
 }
 
+/* 0.1 to 10 N a tick, or the least allowed. */
+static int32_t slew(struct golden_rng *r, uint32_t rate_Hz, int32_t least)
+{
+    const int64_t any = rate_Hz * golden_draw(r, 10, 1000) / 100;
+    return any < least ? least : (int32_t)any;
+}
+
 void golden_drive_par(struct exh_drive_par *p, struct golden_rng *r, uint32_t rate_Hz)
 {
     const int32_t cont_max = 221459251;
-    const int32_t ms_max = (int32_t)(30000 / rate_Hz + 1);
-    p->f_max_N_q20 = (int32_t)golden_draw(r, 0, 104857600);
-    p->slew_up_Nps = (int32_t)golden_draw(r, 1, 10000000);
-    p->slew_up_Nps >>= golden_draw(r, 0, 12);
-    if (p->slew_up_Nps == 0) { p->slew_up_Nps = 1; }
-    p->slew_down_Nps = (int32_t)golden_draw(r, 1000, 10000000);
-    p->i_peak_A_q26 = (int32_t)golden_draw(r, 6710886, 442918502);
+    const int32_t least_peak = 6710886;
+    const int32_t ms_max = (int32_t)(12000 / rate_Hz + 1);
+    p->f_max_N_q20 = (int32_t)golden_draw(r, 1 << 20, 104857600);
+    p->slew_up_Nps = slew(r, rate_Hz, 1);
+    p->slew_down_Nps = slew(r, rate_Hz, 1000);
+    p->i_peak_A_q26 = (int32_t)golden_draw(r, least_peak, 442918502);
+    p->i_peak_A_q26 >>= golden_draw(r, 0, 4);
+    if (p->i_peak_A_q26 < least_peak) { p->i_peak_A_q26 = least_peak; }
     p->i_cont_A_q26 =
         (int32_t)golden_draw(r, 0, p->i_peak_A_q26 - 1 < cont_max ? p->i_peak_A_q26 - 1 : cont_max);
+    p->i_cont_A_q26 >>= golden_draw(r, 0, 2);
     p->peak_ms = (int32_t)golden_draw(r, 1, ms_max < 2700 ? ms_max : 2700);
     p->dac_zero_raw = (int32_t)golden_draw(r, 0, 65535);
     p->dac_span_raw = (int32_t)golden_draw(r, 0, 32767);
+    p->dac_span_raw >>= golden_draw(r, 0, 8);
     p->dac_rawpA_q16 = (int32_t)golden_draw(r, 65536, INT32_MAX);
     p->mon_zero_raw = (int32_t)golden_draw(r, -32768, 32767);
     p->mon_A_q40 = (int32_t)golden_draw(r, 1, INT32_MAX);
@@ -137,7 +147,7 @@ void golden_drive(struct golden *g, uint32_t rate_Hz)
     golden_wave(&damper, "drive", rate_Hz, 2, -(1 << 25), 1 << 25, 1 << golden_draw(&r, 10, 22));
     while (g->tick < GOLDEN_TICKS) {
         const uint32_t k = g->tick;
-        int run = k >= 70 && k < 76 ? 0 : k == 130 ? 2 : 1;
+        int run = k < 4 || (k >= 70 && k < 76) ? 0 : k == 130 ? 2 : 1;
         struct exh_force_ledger f = {.passivity_N_q20 = 0};
         struct exh_current_ledger i;
         uint32_t limits;
@@ -149,7 +159,7 @@ void golden_drive(struct golden *g, uint32_t rate_Hz)
         if (k >= 180 && k < GOLDEN_AGAIN) {
             f.spring_N_q20 *= INT64_C(1) << golden_draw(&r, 0, 16);
         }
-        if (k >= 160) { run = golden_draw(&r, 0, 3) > 0; }
+        if (k >= 160) { run = golden_draw(&r, 0, 15) > 0; }
         golden_put(g, f.spring_N_q20);
         golden_put(g, f.damper_N_q20);
         golden_put(g, f.pullback_N_q20);

@@ -54,7 +54,7 @@ static void any_in(struct exh_scene_in *in, struct golden_rng *r, uint32_t k)
     } else if (golden_draw(r, 0, 3) == 0) {
         in->drive.din = HEALTHY;
     }
-    in->missed = golden_draw(r, 0, 47) == 0 ? 1 : 0;
+    in->missed = golden_draw(r, 0, 127) == 0 ? 1 : 0;
     in->command = k % 8 == 2 ? EXH_CMD_RUN : k % 8 == 5 ? EXH_CMD_CLEAR : EXH_CMD_NONE;
     in->drive.mon_raw[0] = (int16_t)golden_draw(r, -32768, 32767);
 }
@@ -105,7 +105,9 @@ void golden_drop(struct golden *g, uint32_t rate_Hz)
             in.drive.din = HEALTHY;
         }
         raw += (uint32_t)(k >= 8 && k < 56 ? moves.at[k] >> 3 : moves.at[k]);
-        if (k >= 188 && k < GOLDEN_AGAIN) { raw += (uint32_t)golden_draw(&r, -jump, jump); }
+        if (k >= 180 && k < GOLDEN_AGAIN) {
+            raw += (uint32_t)golden_draw(&r, -2 * (int64_t)jump, 2 * (int64_t)jump);
+        }
         in.drive.enc_raw[0] = raw;
         any_in(&in, &r, k);
         golden_put(g, raw);

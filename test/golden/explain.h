@@ -7,10 +7,14 @@
 /* The rates that EXH_RATES=lo..hi asks for; as they are without it. */
 void golden_rates(uint32_t *lo, uint32_t *hi);
 
-/* Calls the generator and tells the first tick that differs, expected and got. */
-void golden_explain(const char *name, golden_run *run, uint32_t rate_Hz);
+/* 1 if EXH_EXPLAIN=0: count, and tell nothing. */
+int golden_quiet(void);
 
-/* Fails where the run differs from the committed trace. */
-void golden_trace(const char *name, golden_run *run, uint32_t rate_Hz);
+/* Calls the generator for a run whose digest is wrong, and returns what to say of it: the
+ * first tick that differs, expected and got. Never NULL; good until the next call. */
+const char *golden_explain(const char *name, golden_run *run, uint32_t rate_Hz);
+
+/* The same against the committed trace: "" where all is as it says. */
+const char *golden_trace(const char *name, golden_run *run, uint32_t rate_Hz);
 
 #endif

@@ -24,6 +24,11 @@ GOLDEN_MODULE(table);
 GOLDEN_MODULE(drive);
 GOLDEN_MODULE(safety);
 GOLDEN_MODULE(calibrate);
+GOLDEN_MODULE(filter);
+GOLDEN_MODULE(quantizer);
+GOLDEN_MODULE(glove);
+GOLDEN_MODULE(angle);
+GOLDEN_MODULE(hand);
 GOLDEN_MODULE(drop);
 
 #endif

@@ -24,6 +24,7 @@ void golden_quad(struct golden *g, uint32_t rate_Hz)
     unsigned bits = 0;
     while (g->tick < GOLDEN_TICKS) {
         const uint32_t k = g->tick;
+        uint32_t shown;
         int32_t cnt;
         if (k == 0 || k == GOLDEN_AGAIN) {
             par.speed_max_mps_q27 = (int32_t)golden_draw(&r, 13421773, INT32_MAX);
@@ -37,13 +38,15 @@ void golden_quad(struct golden *g, uint32_t rate_Hz)
         if (k >= 184 && k < GOLDEN_AGAIN) {
             raw += (uint32_t)golden_draw(&r, -cfg.jump_cnt, cfg.jump_cnt);
         }
-        cnt = exh_quad_extend(&s, &cfg, raw);
-        golden_put(g, raw);
+        /* What is above the counter's width is nothing. */
+        shown = (uint32_t)((raw & ((UINT64_C(1) << bits) - 1)) | (golden_u64(&r) << bits & UINT32_MAX));
+        cnt = exh_quad_extend(&s, &cfg, shown);
+        golden_put(g, shown);
         golden_put(g, bits);
         golden_put(g, cfg.jump_cnt);
         golden_put(g, cnt);
         golden_put(g, exh_quad_pos_m_q30(&par, cnt));
-        golden_put(g, exh_quad_pos_m_q30(&par, exh_from_u32(raw)));
+        golden_put(g, exh_quad_pos_m_q30(&par, exh_from_u32(shown)));
         GOLDEN_STATE(g, exh_quad_bytes, &s);
         golden_tick(g);
     }

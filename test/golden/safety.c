@@ -31,7 +31,9 @@ static void box_setup(struct box *b, struct golden_rng *r, uint32_t rate_Hz, uin
 /* What crosses inward in tick k. */
 static void any_in(struct exh_safety_in *in, struct golden_rng *r, uint32_t k)
 {
-    if (golden_draw(r, 0, 15) == 0) {
+    static const uint8_t command[] = {EXH_CMD_NONE,  EXH_CMD_OFF, 4,             EXH_CMD_RUN,
+                                      EXH_CMD_CLEAR, EXH_CMD_RUN, EXH_CMD_CLEAR, EXH_CMD_RUN};
+    if (golden_draw(r, 0, 31) == 0) {
         in->din ^= 1u << golden_draw(r, 0, 12);
     } else if (golden_draw(r, 0, 7) == 0) {
         in->din = HEALTHY;
@@ -39,9 +41,9 @@ static void any_in(struct exh_safety_in *in, struct golden_rng *r, uint32_t k)
     in->raised = 0;
     in->missed = 0;
     if (golden_draw(r, 0, 31) == 0) { in->raised = 1u << golden_draw(r, 0, 4); }
-    if (golden_draw(r, 0, 31) == 0) { in->missed = (uint32_t)golden_draw(r, 0, 2); }
+    if (golden_draw(r, 0, 63) == 0) { in->missed = (uint32_t)golden_draw(r, 0, 2); }
     if (k == 188 || k == 190) { in->missed = (uint32_t)golden_draw(r, 0, UINT32_MAX); }
-    in->command = (uint8_t)golden_draw(r, 0, 4);
+    in->command = command[golden_draw(r, 0, 7)];
 }
 
 static void put_axes(struct golden *g, unsigned n, const struct exh_current_ledger *i,

@@ -16,12 +16,12 @@ struct any {
     struct exh_velocity_scale scale;
 };
 
-static void begin(struct any *a, const char *name, uint32_t rate_Hz)
+/* small: counts a tick in ramps and walks; 0: what is some 8 m/s. */
+static void begin(struct any *a, const char *name, uint32_t rate_Hz, int64_t small)
 {
-    int64_t small;
     a->rng = golden_rng(name, rate_Hz, 0);
     a->scale.step_m_q42 = golden_step(&a->rng);
-    small = (INT64_C(1) << 45) / ((int64_t)a->scale.step_m_q42 * rate_Hz);
+    if (small == 0) { small = (INT64_C(1) << 45) / ((int64_t)a->scale.step_m_q42 * rate_Hz); }
     golden_wave(&a->cnt, name, rate_Hz, 1, INT32_MIN, INT32_MAX, small < 3 ? 3 : (int32_t)small);
 }
 
@@ -44,7 +44,7 @@ void golden_velocity_window(struct golden *g, uint32_t rate_Hz)
     static struct any a;
     struct exh_velocity_window_cfg cfg;
     struct exh_velocity_window s;
-    begin(&a, "velocity_window", rate_Hz);
+    begin(&a, "velocity_window", rate_Hz, 0);
     while (g->tick < GOLDEN_TICKS) {
         if (again(g, &a, rate_Hz)) {
             const struct exh_velocity_par par = {(int32_t)golden_draw(&a.rng, 0, 4)};
@@ -62,7 +62,7 @@ void golden_velocity_pole(struct golden *g, uint32_t rate_Hz)
     static struct any a;
     struct exh_velocity_pole_cfg cfg;
     struct exh_velocity_pole s;
-    begin(&a, "velocity_pole", rate_Hz);
+    begin(&a, "velocity_pole", rate_Hz, 0);
     while (g->tick < GOLDEN_TICKS) {
         if (again(g, &a, rate_Hz)) {
             CHECK_EQ_I64(exh_velocity_pole_setup(&cfg, a.scale, tau(&a.rng)), 0);
@@ -79,10 +79,10 @@ void golden_velocity_foaw(struct golden *g, uint32_t rate_Hz)
     static struct any a;
     struct exh_velocity_foaw_cfg cfg;
     struct exh_velocity_foaw s;
-    begin(&a, "velocity_foaw", rate_Hz);
+    begin(&a, "velocity_foaw", rate_Hz, 40);
     while (g->tick < GOLDEN_TICKS) {
         if (again(g, &a, rate_Hz)) {
-            const unsigned n = (unsigned)golden_draw(&a.rng, 1, 16);
+            const unsigned n = (unsigned)golden_draw(&a.rng, 2, 16);
             const int64_t any = golden_draw(&a.rng, 1, 255);
             const unsigned tol = (unsigned)(any >> golden_draw(&a.rng, 0, 7));
             CHECK_EQ_I64(exh_velocity_foaw_setup(&cfg, a.scale, n, tol > 0 ? tol : 1), 0);
@@ -99,7 +99,7 @@ void golden_velocity_track(struct golden *g, uint32_t rate_Hz)
     static struct any a;
     struct exh_velocity_track_cfg cfg;
     struct exh_velocity_track s;
-    begin(&a, "velocity_track", rate_Hz);
+    begin(&a, "velocity_track", rate_Hz, 0);
     while (g->tick < GOLDEN_TICKS) {
         if (again(g, &a, rate_Hz)) {
             CHECK_EQ_I64(exh_velocity_track_setup(&cfg, a.scale, tau(&a.rng)), 0);

@@ -62,10 +62,12 @@ BYTES = "cap | at ok crc u8 u16 i16 u32 i32 i64"
 def read_record(buf):
     """What exh_record_read() says of the bytes: (result, type, version, length, seq, tick)."""
     bad = lambda e: (-e, 0, 0, 0, 0, 0)
-    if len(buf) < 18:
+    if len(buf) < 2:
         return bad(SHORT)
     if buf[0:2] != b"\x45\x58":
         return bad(UNKNOWN)
+    if len(buf) < 18:
+        return bad(SHORT)
     n = int.from_bytes(buf[4:6], "little")
     if len(buf) < 18 + n:
         return bad(SHORT)
@@ -92,11 +94,12 @@ def record(rate):
         if version == 0:  # a record of another version, whole otherwise
             buf[3] = 2
             buf[-4:] = pack("<I", zlib.crc32(bytes(buf[:-4])))
-        if how == 1:
-            buf[where >> 3] ^= 1 << (where & 7)
-        elif how == 2:
+        if how & 1:
+            at = where if how == 1 else where & 15
+            buf[at >> 3] ^= 1 << (at & 7)
+        if how & 2:
             del buf[where >> 3:]
-        yield (size, zlib.crc32(whole) if size else 0, how, len(buf), *read_record(bytes(buf))), b""
+        yield (size, zlib.crc32(whole[:-1]) if size else 0, how, len(buf), *read_record(bytes(buf))), b""
 
 
 RECORD = "size crc how len read type version length seq tick"

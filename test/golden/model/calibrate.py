@@ -73,7 +73,7 @@ def mean(rng):
 
 def calibrate(rate):
     rng = Rng("calibrate", rate, 0)
-    for _ in range(TICKS):
+    for k in range(TICKS):
         middle, points = mean(rng), any_points(rng)
         values = [rng.u64() & M32, rng.draw(0, 4), rng.draw(1, 30000), rng.draw(0, 400), rng.draw(65536, (1 << 31) - 1),
                   rng.draw(0, 65535), rng.draw(1, (1 << 31) - 1), rng.draw(-32768, 32767), rng.draw(0, 442918502),
@@ -81,9 +81,12 @@ def calibrate(rate):
         (g1, kf1), (g2, kf2) = fit(points, 1), fit(points, 2)
         p, which = points[rng.draw(0, len(points) - 1)], 1 + rng.draw(0, 1)
         rest = sat32(p[0] - times((g1, g2)[which - 1], p[which]))
-        saved = image(values, points)
-        where = rng.draw(64, 8 * len(saved) - 1)
-        flip = rng.draw(0, 3) == 0
+        size = crc = load = 0
+        if k % 4 == 0:
+            saved = image(values, points)
+            size, crc = len(saved), zlib.crc32(saved[:-1])
+            load = -CRC if rng.draw(0, 3) == 0 else 0
+            rng.draw(64, 8 * size - 1)  # the bit
         other, by = rng.draw(0, 9), rng.draw(1, 500)
         wrong, what = 0, 0
         if other == 0:
@@ -101,8 +104,7 @@ def calibrate(rate):
         if at > 0:  # spoil one
             points[at][which2] = points[at - 1][which2] - rng.draw(0, 1)
             err, bad_what, bad_at = -MONOTONE, (FORCE_TABLE, MONITOR_TABLE)[which2 - 1], at
-        yield ((middle, len(points), kf1, *g1, kf2, *g2, rest, len(saved), zlib.crc32(saved),
-                -CRC if flip else 0, wrong, what, err, bad_what, bad_at), knots_bytes(force) + knots_bytes(monitor))
+        yield ((middle, len(points), kf1, *g1, kf2, *g2, rest, size, crc, load, wrong, what, err, bad_what, bad_at), knots_bytes(force) + knots_bytes(monitor))
 
 
 COLUMNS = ("mean points kf_NpA_q20 mant shift kf_mon_NpA_q20 mant_mon shift_mon residual_N_q20 image_B crc "

@@ -112,12 +112,12 @@ def rising(rng, x, y, n, dx, dy):
 
 def any_par(rng, rate):
     """The rows of the drive, in their order."""
-    f_max = rng.draw(0, 104857600)
-    up, down = rng.draw(1, 10000000) >> rng.draw(0, 12) or 1, rng.draw(1000, 10000000)
-    peak = rng.draw(6710886, 442918502)
-    cont = rng.draw(0, min(peak - 1, 221459251))
-    ms = rng.draw(1, min(2700, 30000 // rate + 1))
-    zero, span = rng.draw(0, 65535), rng.draw(0, 32767)
+    f_max = rng.draw(1 << 20, 104857600)
+    up, down = max(1, rate * rng.draw(10, 1000) // 100), max(1000, rate * rng.draw(10, 1000) // 100)
+    peak = max(6710886, rng.draw(6710886, 442918502) >> rng.draw(0, 4))
+    cont = rng.draw(0, min(peak - 1, 221459251)) >> rng.draw(0, 2)
+    ms = rng.draw(1, min(2700, 12000 // rate + 1))
+    zero, span = rng.draw(0, 65535), rng.draw(0, 32767) >> rng.draw(0, 8)
     dac = rng.draw(65536, MAX32)
     mon_zero, mon = rng.draw(-32768, 32767), rng.draw(1, MAX32)
     return f_max, up, down, peak, cont, ms, zero, span, dac, mon_zero, mon
@@ -136,9 +136,9 @@ def drive(rate):
         s, p = spring[k], rng.draw(0, 20971520) if k & 8 else 0
         if 180 <= k < AGAIN:
             s <<= rng.draw(0, 16)
-        run = 0 if 70 <= k < 76 else 2 if k == 130 else 1
+        run = 0 if k < 4 or 70 <= k < 76 else 2 if k == 130 else 1
         if k >= 160:
-            run = min(1, rng.draw(0, 3))
+            run = min(1, rng.draw(0, 15))
         limits, clamp_, slew, force = d.take(run, s + damper[k] + p)
         more, i_table, i_peak, i_i2t = d.current()
         raw = rng.draw(-32768, 32767)

@@ -50,13 +50,13 @@ def drop(rate):
             raw += moves[k]
         else:
             raw += moves[k] >> 3
-        if 188 <= k < AGAIN:
-            raw += rng.draw(-jump, jump)
+        if 180 <= k < AGAIN:
+            raw += rng.draw(-2 * jump, 2 * jump)
         if rng.draw(0, 47) == 0:
             din ^= 1 << rng.draw(0, 8)
         elif rng.draw(0, 3) == 0:
             din = 0x1F03
-        missed = 1 if rng.draw(0, 47) == 0 else 0
+        missed = 1 if rng.draw(0, 127) == 0 else 0
         command = 1 if k % 8 == 2 else 3 if k % 8 == 5 else 0
         mon = rng.draw(-32768, 32767)
         yield (raw & M32, mon, din, missed, command, *s.tick(raw & M32, mon, din, missed, command)), s.state()

@@ -44,7 +44,7 @@ class Refused(Exception):
     """What set-up refuses; the argument is the positive error number."""
 
 
-RANGE, UNKNOWN, STATE, CRC, VERSION, SHORT, MONOTONE, STALE = 1, 2, 3, 4, 5, 6, 7, 11
+RANGE, UNKNOWN, STATE, CRC, VERSION, SHORT, MONOTONE, STALE, CUTOFF = 1, 2, 3, 4, 5, 6, 7, 11, 12
 
 
 def gain(num, den):

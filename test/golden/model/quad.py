@@ -57,8 +57,9 @@ def quad(rate):
         raw += moves[k]
         if 184 <= k < AGAIN:  # some of them too fast
             raw += rng.draw(-q.jump, q.jump)
-        cnt = q.tick(raw & M32)
-        yield (raw & M32, bits, q.jump, cnt, position(cnt, step), position(wrap(raw), step)), q.state()
+        shown = raw & (1 << bits) - 1 | rng.u64() << bits & M32  # what is above the counter's width is nothing
+        cnt = q.tick(shown)
+        yield (shown, bits, q.jump, cnt, position(cnt, step), position(wrap(shown), step)), q.state()
 
 
 QUAD = "raw | bits jump_cnt cnt pos_m_q30 pos_of_raw_m_q30"

@@ -16,16 +16,16 @@ class Safety:
 
     def __init__(self):
         self.present = self.faults = self.first = self.first_tick = self.tick = 0
-        self.missed = self.late = self.state_ = self.alive = self.fingers = 0
+        self.missed = self.late = self.state_ = self.alive = 0
 
     def step(self, missed_max, din, raised, missed, command, fingers):
         most = missed_max if missed_max in (0, 1) else 0
         self.missed = min(M32, self.missed + missed)
         self.late = max(0, self.late - 1) + LATE * min(missed, 2)
-        self.fingers = din >> 8 & (1 << fingers) - 1
+        ready = (1 << fingers) - 1
         p = raised
         p |= 0 if din & 1 else ESTOP
-        p |= 0 if self.fingers == (1 << fingers) - 1 else DRIVE
+        p |= 0 if din >> 8 & ready == ready else DRIVE
         p |= OVERRUN if self.late > LATE * most else 0
         p |= 0 if din & 2 else DEADMAN
         self.present = p
@@ -49,7 +49,7 @@ class Safety:
         out, enable = [], 0
         for i, (par, cur) in enumerate(zip(pars, currents)):
             zero, span, scale = par[6:9]
-            if self.state_ == RUN and self.fingers >> i & 1:
+            if self.state_ == RUN:
                 enable |= 1 << i
                 asked = shr(cur * scale, 42)
                 code = clamp(zero + clamp(asked, -span, span), 0, 65535)
@@ -76,15 +76,15 @@ def safety(rate):
             s, most, n = Safety(), rng.draw(-1, 2), rng.draw(1, FINGERS)
             pars = [any_par(rng, rate) for _ in range(n)]
             din = 0x1F03
-        if rng.draw(0, 15) == 0:
+        if rng.draw(0, 31) == 0:
             din ^= 1 << rng.draw(0, 12)
         elif rng.draw(0, 7) == 0:
             din = 0x1F03
         raised = 1 << rng.draw(0, 4) if rng.draw(0, 31) == 0 else 0
-        missed = rng.draw(0, 2) if rng.draw(0, 31) == 0 else 0
+        missed = rng.draw(0, 2) if rng.draw(0, 63) == 0 else 0
         if k in (188, 190):
             missed = rng.draw(0, M32)
-        command = rng.draw(0, 4)
+        command = (0, 2, 4, 1, 3, 1, 3, 1)[rng.draw(0, 7)]
         state = s.step(most, din, raised, missed, command, n)
         out, enable = s.gate(pars, [w[k] for w in waves[:n]])
         row = [din, raised, missed, command, state, enable, s.alive]

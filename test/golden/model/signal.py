@@ -19,8 +19,7 @@ def table_crc():
     b = b""
     for rows, instances in GROUPS:
         b += pack("<H", len(rows))
-        b += b"".join(pack("<HBBii", *row[:5]) for row in rows)
-        b += pack("<H", instances)
+        b += b"".join(pack("<HBBiiH", *row[:5], instances) for row in rows)
     return zlib.crc32(b)
 
 
@@ -76,10 +75,7 @@ def signal(rate):
     for k in range(TICKS):
         if k in (0, AGAIN):
             p = Params()
-        if k % 64 == 24:
-            p.locked = 1
-        elif k % 64 == 40:
-            p.locked = 0
+        p.locked = k >> 2 & 1
         row, instance = VALUES[rng.draw(0, len(VALUES) - 1)]
         ident = row[0] + (1 if rng.draw(0, 15) == 0 else 0)
         instance += 1 if rng.draw(0, 15) == 0 else 0
@@ -87,7 +83,7 @@ def signal(rate):
         if how > 0:
             raw = (row[3], row[4], row[5])[how - 1]
         err = p.stage(ident, instance, raw)
-        done = p.apply() if rng.draw(0, 1) else -1
+        done = p.apply() if rng.draw(0, 3) == 0 else -1
         saved = p.save()
         load = bad = 0
         if rng.draw(0, 3) == 0:  # its own image, one value changed
@@ -95,7 +91,7 @@ def signal(rate):
             i = rng.draw(0, len(VALUES) - 1)
             values[i] = rng.draw(-2000, 2000)
             load, bad = p.load(values)
-        yield (ident, instance, raw, err, done, zlib.crc32(saved), load, bad, p.pending, *p.active), b""
+        yield (ident, instance, raw, err, done, zlib.crc32(saved[:-1]), load, bad, p.pending, *p.active), b""
 
 
 COLUMNS = "id instance raw | stage apply image_crc load load_at pending " + " ".join(

@@ -12,10 +12,9 @@ def scale(rng):
     return max(4398047, rng.draw(4398047, (1 << 31) - 1) >> rng.draw(0, 8))
 
 
-def counts(name, rate, step, stream):
-    """Counts that reach some 8 m/s in ramps and walks; its rails are the counter's."""
-    small = max(3, (1 << 45) // (step * rate))
-    return wave(name, rate, stream, -(1 << 31), (1 << 31) - 1, small)
+def counts(name, rate, step, small):
+    """Counts that move by small in ramps and walks, or else some 8 m/s; its rails are the counter's."""
+    return wave(name, rate, 1, -(1 << 31), (1 << 31) - 1, small or max(3, (1 << 45) // (step * rate)))
 
 
 class Window:
@@ -120,10 +119,10 @@ class Track:
         return self.pack(self.err, self.vel, self.cnt, self.started)
 
 
-def run(name, rate, make):
+def run(name, rate, make, small=0):
     rng = Rng(name, rate, 0)
     step = scale(rng)
-    est, cnt = None, counts(name, rate, step, 1)
+    est, cnt = None, counts(name, rate, step, small)
     for k in range(TICKS):
         if k in (0, AGAIN):
             est = make(step, period(rate, k), rng)
@@ -143,7 +142,7 @@ def pole(rate):
 
 def foaw(rate):
     return run("velocity_foaw", rate,
-               lambda step, T, rng: Foaw(step, T, rng.draw(1, 16), rng.draw(1, 255) >> rng.draw(0, 7) or 1))
+               lambda step, T, rng: Foaw(step, T, rng.draw(2, 16), rng.draw(1, 255) >> rng.draw(0, 7) or 1), 40)
 
 
 def track(rate):

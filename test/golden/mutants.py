@@ -1,0 +1,184 @@
+#!/usr/bin/env python3
+"""Mutants: small changes of the library that the golden vectors must notice.
+
+Each row names a module, a source and a text in it with another in its place. The changed source is
+compiled and linked with the test's objects, the module is run at every rate, and the share of rates
+whose digest differs is printed. Below 95 %, a text that is not there, or a build that fails: exit 1.
+
+    mutants.py [MODULE...]     B, CC: where the test was built (build), the compiler (cc)
+"""
+
+import glob
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+
+ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
+B, CC = os.environ.get("B", "build"), os.environ.get("CC", "cc").split()
+LEAST = 0.95
+FLAGS = "-std=c99 -O1 -w -Ilib/include -Ilib/src -Iexamples -Itest -D_POSIX_C_SOURCE=200809L".split()
+
+L, H, X = "lib/src/", "lib/include/exhand/", "examples/drop/"
+VELOCITY, QUAD, DRIVE, SAFETY = L + "velocity.c", L + "quad.c", L + "drive.c", L + "safety.c"
+
+# module, source, text, what stands there instead. A changed header is compiled into the module's own
+# run, which is where its inline functions are.
+MUTANTS = (
+    ("fix", L + "fix.c", "if (rem >= den - rem) { mant++; }", ""),
+    ("fix", L + "fix.c", "carry || r >= den", "carry || r > den"),
+    ("fix", H + "fix.h", "((v >> (n - 1)) & 1)", "0"),
+    ("fix", H + "fix.h", "(lo + (INT64_C(1) << 30)) >> 31", "lo >> 31"),
+    ("fix", H + "fix.h", "return INT32_MIN;", "return -INT32_MAX;"),
+    ("bytes", L + "bytes.c", "n <= c->cap - c->at", "n < c->cap - c->at"),
+    ("bytes", L + "bytes.c", "nibble[crc & 15];\n        crc", "nibble[crc & 7];\n        crc"),
+    ("bytes", L + "bytes.c", "(int32_t)u - 0x10000", "(int32_t)u - 0xFFFF"),
+    ("record", L + "record.c", "len_B < end + 4", "len_B < end"),
+    ("record", L + "record.c", "if (crc != exh_crc32(0, p, end))", "if (0)"),
+    ("record", L + "record.c", "r->version != EXH_RECORD_VERSION", "0"),
+    ("record", L + "record.c", "#define LEN_AT 4u", "#define LEN_AT 6u"),
+    ("signal", L + "signal.c", "exh_bytes_u8(&c, &row.when);", ""),
+    ("signal", L + "signal.c", "raw != p->staged[i]", "raw != p->active[i]"),
+    ("signal", L + "signal.c", "raw < row->min ||", "raw <= row->min ||"),
+    ("quad", QUAD, "moved > cfg->jump_cnt ||", "moved >= cfg->jump_cnt ||"),
+    ("quad", QUAD, "<< cfg->unused) >> cfg->unused", ")"),
+    ("quad", QUAD, "exh_sat32(exh_mul_shr(cnt,", "(int32_t)(exh_mul_shr(cnt,"),
+    ("quad", QUAD, "par->speed_max_mps_q27) + 1;", "par->speed_max_mps_q27);"),
+    ("quad_ab", QUAD, "{0, EDGE, EDGE, ILL, EDGE, 0, ILL, UP,", "{0, EDGE, EDGE, ILL, UP, 0, ILL, EDGE,"),
+    ("quad_ab", QUAD, "{0, EDGE, DOWN, ILL,", "{0, EDGE, UP, ILL,"),
+    ("quad_ab", QUAD, "(was_a ^ b)", "(a ^ b)"),
+    ("quad_ab", QUAD, "now > s->level", "now >= s->level"),
+    ("velocity_window", VELOCITY, "return exh_sat32(exh_gain_mul(cfg->gain, moved));",
+     "return (int32_t)exh_gain_mul(cfg->gain, moved);"),
+    ("velocity_window", VELOCITY, "(cfg->n - 1u)", "(EXH_VELOCITY_N - 1u)"),
+    ("velocity_window", H + "fix.h", "((INT64_C(1) << g.shift) >> 1)", "0"),
+    ("velocity_pole", VELOCITY, "exh_shr_round(s->v_mps_q55, 28)", "(s->v_mps_q55 >> 28)"),
+    ("velocity_pole", VELOCITY, "s->started ? exh_wrap_diff(cnt, s->cnt) : 0;\n    const int64_t diff_q55",
+     "exh_wrap_diff(cnt, s->cnt);\n    const int64_t diff_q55"),
+    ("velocity_pole", VELOCITY, "(int64_t)exh_sat32(exh_gain_mul(cfg->gain, moved)) *",
+     "exh_gain_mul(cfg->gain, moved) *"),
+    ("velocity_foaw", VELOCITY, "6 * j * m", "6 * m"),
+    ("velocity_foaw", VELOCITY, "n < s->have && fits", "n <= s->have && fits"),
+    ("velocity_foaw", VELOCITY, "off <= tol * den &&", ""),
+    ("velocity_track", VELOCITY, "exh_clamp(moved, -(INT32_C(1) << 28), INT32_C(1) << 28)", "(int64_t)moved"),
+    ("velocity_track", VELOCITY, "2 * (int64_t)a_q31 - cfg->beta_q31", "2 * (int64_t)a_q31 - cfg->beta_q31 - 1"),
+    ("velocity_track", VELOCITY, "s->err_cnt_q32 = off - exh_mul64_q31(off, cfg->alpha_q31);",
+     "s->err_cnt_q32 = off - (off >> 31) * cfg->alpha_q31;"),
+    ("contact", L + "contact.c", "back > band", "back >= band"),
+    ("contact", L + "contact.c", "past >= 0 ||", "past > 0 ||"),
+    ("contact", L + "contact.c", "past >= -(int64_t)par->hyst_m_q30", "past > -(int64_t)par->hyst_m_q30"),
+    ("contact", L + "contact.c", "exh_sat32(past)", "(int32_t)past"),
+    ("table", DRIVE, "exh_clamp(x, t.knot[0].x, t.knot[last].x);", "exh_clamp(x, t.knot[0].x, t.knot[last].x - 1);"),
+    ("table", DRIVE, "i += in >= t.knot[k].x;", "i += in > t.knot[k].x + 1;"),
+    ("table", H + "fix.h", "((INT64_C(1) << g.shift) >> 1)", "0"),
+    ("drive", DRIVE, "held > top ? top :", ""),
+    ("drive", DRIVE, ">> cfg->i2t_shift >> 2;", ">> cfg->i2t_shift >> 1;"),
+    ("drive", DRIVE, "heat < 0 ? 0 :", ""),
+    ("drive", DRIVE, "const int32_t hot = i2t_limit(s, cfg);", "const int32_t hot = cfg->par->i_peak_A_q26;"),
+    ("drive", DRIVE, "f->clamp_N_q20 = held - asked;", "f->clamp_N_q20 = asked - held;"),
+    ("safety", SAFETY, "k <= MISSED_MAX", "k < MISSED_MAX"),
+    ("safety", SAFETY, "s->faults |= now;", "s->faults = now;"),
+    ("safety", SAFETY, "in.command == EXH_CMD_CLEAR && now == 0", "in.command == EXH_CMD_CLEAR"),
+    ("safety", SAFETY, "asked, -par->dac_span_raw, par->dac_span_raw", "asked, 0, par->dac_span_raw"),
+    ("calibrate", L + "calibrate.c", "rem >= m->n - rem", "rem > m->n - rem"),
+    ("calibrate", L + "calibrate.c", "(int32_t)more);", "(int32_t)more - 1);"),
+    ("calibrate", L + "calibrate.c", "knot[half - 1 - i].y = -y;", "knot[half - 1 - i].y = 1 - y;"),
+    ("filter", L + "filter_low.c", "(int64_t)high_word(p) * c", "(int64_t)high_word(s->vel) * c"),
+    ("filter", L + "filter_high.c", "+ HALF - pos;", "- pos;"),
+    ("filter", L + "filter.c", "cfg->b = coefficient(b, n, 31);", "cfg->b = coefficient(b, n, 31) - 1;"),
+    ("filter", L + "filter.c", "{ s[i].vel = 0; }", "{ }"),
+    ("quantizer", L + "quantizer.c", "off > cfg->keep", "off >= cfg->keep"),
+    ("quantizer", L + "quantizer.c", "code < top ? code : top", "code"),
+    ("quantizer", L + "quantizer.c", "(uint32_t)par->hyst_raw_q16 / 2", "(uint32_t)par->hyst_raw_q16 / 4"),
+    ("glove", L + "glove.c", "(int64_t)s->low_raw - margin, par->low_raw + 1", "(int64_t)s->low_raw, par->low_raw + 1"),
+    ("glove", L + "glove.c", "s->run[i] + 1 < cfg->debounce_frames", "s->run[i] < cfg->debounce_frames"),
+    ("glove", L + "glove.c", "(code >> 1) - cal->zero_raw_q15", "code / 2 - cal->zero_raw_q15 + 1"),
+    ("glove", L + "glove.c", "angle_turn_q32[i] = exh_sat32(sum);", "angle_turn_q32[i] = (int32_t)sum;"),
+    ("angle", L + "sincos.h", "(-693597423)", "(-693597424)"),
+    ("angle", L + "sincos.h", "odd - (v_q31 ^ odd)", "-(v_q31 ^ odd)"),
+    ("angle", L + "sincos.h", "top_mask((x + EIGHTH) << 1)", "top_mask(x << 1)"),
+    ("hand", L + "hand.c", "exh_shr_round(sum_q56, 56 - 32)", "(sum_q56 >> (56 - 32))"),
+    ("hand", L + "hand.c", "v_m_q34.z, 32) + 3)", "v_m_q34.z, 32) + 2)"),
+    ("hand", L + "hand.c", "+ den / 2, den", ", den"),
+    ("hand", L + "hand.c", "exh_clamp(want, j->lo_turn_q32, j->hi_turn_q32)", "(int32_t)want"),
+    ("drop", X + "drop.c", "s->quad.lost ? EXH_FAULT_ENCODER : 0u", "0u"),
+    ("drop", X + "drop.c", "limits |= exh_drive_current", "limits = exh_drive_current"),
+    ("drop", X + "drop.c", "exh_velocity_window_mps_q27(&s->velocity, &cfg->velocity, cnt)",
+     "exh_velocity_window_mps_q27(&s->velocity, &cfg->velocity, cnt + 1)"),
+)
+
+# Where the inline functions of a header are called for a module.
+CALLS = {"fix": "test/golden/basics.c", "velocity_window": VELOCITY, "table": DRIVE, "angle": L + "angle.c"}
+
+
+def objects_but(original):
+    """The test's objects without the one that is made of `original`."""
+    sources = sorted(glob.glob(os.path.join(ROOT, "test/golden/*.c"))) + ["test/support.c", "examples/drop/drop.c"]
+    names = [os.path.relpath(os.path.join(ROOT, s), ROOT) for s in sources]
+    return [os.path.join(B, "posix", s[:-2] + ".o") for s in names if s != original]
+
+
+def changed(where, module, source, old, new):
+    """Writes the mutant into a folder that comes before all others; the file to compile, and the
+    one that it stands for."""
+    with open(os.path.join(ROOT, source)) as f:
+        text = f.read()
+    if old not in text:
+        raise ValueError("not in %s: %s" % (source, old))
+    public = source.startswith(H)
+    path = os.path.join(where, "exhand" if public else "", os.path.basename(source))
+    os.makedirs(os.path.dirname(path), exist_ok=True)
+    with open(path, "w") as f:
+        f.write(text.replace(old, new, 1))
+    if not source.endswith(".h"):
+        return path, source
+    return shutil.copy(os.path.join(ROOT, CALLS[module]), where), CALLS[module]
+
+
+def run(command, **more):
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, **more)
+
+
+def share(mutant):
+    """Of the rates, those at which the module's digest differs; or the reason why nobody knows."""
+    module, source, old, new = mutant
+    with tempfile.TemporaryDirectory() as where:
+        try:
+            path, original = changed(where, module, source, old, new)
+        except ValueError as e:
+            return str(e)
+        exe, obj = os.path.join(where, "test"), os.path.join(where, "mutant.o")
+        near = ["-I" + where, *FLAGS, "-I" + os.path.dirname(original)]
+        built = run(CC + near + ["-c", path, "-o", obj])
+        if built.returncode == 0:
+            built = run(CC + ["-o", exe, obj] + objects_but(original) + [os.path.join(B, "posix/libexhand.a"), "-lcmocka"])
+        if built.returncode != 0:
+            return "does not build: " + built.stderr.strip().split("\n")[0]
+        ran = run([exe], env=dict(os.environ, EXH_TEST=module, EXH_EXPLAIN="0"), timeout=300)
+        said = ran.stdout + ran.stderr
+        found = re.search(r"(\d+) of (\d+) rates differ", said)
+        if found:
+            return int(found.group(1)) / int(found.group(2))
+        return 0.0 if ran.returncode == 0 else "died: " + " ".join(said.split())[:120]
+
+
+def main():
+    wanted = [m for m in MUTANTS if len(sys.argv) < 2 or m[0] in sys.argv[1:]]
+    bad = 0
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        for (module, source, old, new), got in zip(wanted, pool.map(share, wanted)):
+            ok = isinstance(got, float) and got >= LEAST
+            bad += not ok
+            said = "%5.1f %%" % (100 * got) if isinstance(got, float) else got
+            print("%s %-16s %-12s %s  ->  %s" % ("  " if ok else "! ", module, said, old.replace("\n", " ")[:60],
+                                                 new.replace("\n", " ")[:50] or "nothing"))
+    print("%d mutants, %d of them seen at less than %d %% of the rates or not at all" %
+          (len(wanted), bad, 100 * LEAST))
+    return 1 if bad or not wanted else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
