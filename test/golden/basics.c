@@ -75,7 +75,7 @@ static struct fields {
     struct fields f;
     f.u8 = (uint8_t)((uint64_t)golden_corner(r) & UINT8_MAX);
     f.u16 = (uint16_t)((uint64_t)golden_corner(r) & UINT16_MAX);
-    f.i16 = (int16_t)(any_i32(r) * 65536 >> 16);
+    f.i16 = (int16_t)(exh_from_u32((uint32_t)any_i32(r) << 16) >> 16);
     f.u32 = (uint32_t)((uint64_t)golden_corner(r) & UINT32_MAX);
     f.i32 = any_i32(r);
     f.i64 = golden_corner(r);
@@ -123,7 +123,7 @@ void golden_bytes(struct golden *g, uint32_t rate_Hz)
 /* --- record --- */
 
 #define PAYLOAD_B 40
-#define RECORD_B (PAYLOAD_B + EXH_RECORD_OVERHEAD)
+#define RECORD_B  (PAYLOAD_B + EXH_RECORD_OVERHEAD)
 
 /* Writes a record; its size, 0 if it did not fit. */
 static uint32_t write(uint8_t *buf, uint32_t cap, uint8_t type, uint32_t seq, uint32_t tick,

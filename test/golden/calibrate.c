@@ -59,7 +59,8 @@ static void put_fits(struct golden *g, struct golden_rng *r, const struct exh_ca
     golden_put(g, c->points);
     for (which = 0; which < 2; which++) {
         CHECK_EQ_I64(exh_calib_fit(&fit[which], c->point, c->points,
-                                   which == 0 ? EXH_CALIB_CURRENT : EXH_CALIB_MONITOR), 0);
+                                   which == 0 ? EXH_CALIB_CURRENT : EXH_CALIB_MONITOR),
+                     0);
         golden_put(g, fit[which].kf_NpA_q20);
         golden_put(g, fit[which].gain.mant);
         golden_put(g, fit[which].gain.shift);

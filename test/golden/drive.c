@@ -134,7 +134,8 @@ static void axis_setup(struct axis *a, struct golden_rng *r, uint32_t rate_Hz, u
     x = (int32_t)golden_draw(r, -(1 << 29), 0);
     y = (int32_t)golden_draw(r, -(1 << 27), 0);
     CHECK_EQ_I64(exh_drive_setup(&a->cfg, &a->par, golden_period(rate_Hz, k), to_cur,
-                                 rising(r, a->to_force, x, y, 1 << 28, 1 << 25)), 0);
+                                 rising(r, a->to_force, x, y, 1 << 28, 1 << 25)),
+                 0);
 }
 
 void golden_drive(struct golden *g, uint32_t rate_Hz)

@@ -59,7 +59,8 @@ static void any_in(struct exh_scene_in *in, struct golden_rng *r, uint32_t k)
     in->drive.mon_raw[0] = (int16_t)golden_draw(r, -32768, 32767);
 }
 
-static void put_out(struct golden *g, const struct drop_signals *sig, const struct exh_drive_out *out)
+static void put_out(struct golden *g, const struct drop_signals *sig,
+                    const struct exh_drive_out *out)
 {
     golden_put(g, sig->q_m_q30);
     golden_put(g, sig->qd_mps_q27);
@@ -100,7 +101,8 @@ void golden_drop(struct golden *g, uint32_t rate_Hz)
         if (k == 0 || k == GOLDEN_AGAIN) {
             scene_setup(&d, &r, rate_Hz, k);
             golden_wave(&moves, "drop", rate_Hz, 1 + (k > 0), -d.cfg.quad.jump_cnt,
-                        d.cfg.quad.jump_cnt, d.cfg.quad.jump_cnt < 1024 ? 1 : d.cfg.quad.jump_cnt >> 10);
+                        d.cfg.quad.jump_cnt,
+                        d.cfg.quad.jump_cnt < 1024 ? 1 : d.cfg.quad.jump_cnt >> 10);
             raw = (uint32_t)(golden_u64(&r) & UINT32_MAX);
             in.drive.din = HEALTHY;
         }

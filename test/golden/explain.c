@@ -8,7 +8,7 @@
 #include <stdlib.h>
 
 #define LINE_B 4096
-#define DIR "test/golden/"
+#define DIR    "test/golden/"
 
 void golden_rates(uint32_t *lo, uint32_t *hi)
 {
@@ -149,8 +149,8 @@ const char *golden_explain(const char *name, golden_run *run, uint32_t rate_Hz)
     static struct reader r;
     char command[200];
     int all = 0;
-    (void)snprintf(command, sizeof command,
-                   "python3 " DIR "golden.py --module %s --rate %" PRIu32, name, rate_Hz);
+    (void)snprintf(command, sizeof command, "python3 " DIR "golden.py --module %s --rate %" PRIu32,
+                   name, rate_Hz);
     r = (struct reader){.f = popen(command, "r"), .name = name, .rate_Hz = rate_Hz, .whole = 1};
     if (r.f != NULL) {
         all = beside(&r, run);
@@ -162,7 +162,8 @@ const char *golden_explain(const char *name, golden_run *run, uint32_t rate_Hz)
     } else if (r.said[0] == '\0') {
         (void)snprintf(r.said, sizeof r.said,
                        "%s at %" PRIu32 " Hz is as the generator says, its digest is an old one: "
-                       "make golden", name, rate_Hz);
+                       "make golden",
+                       name, rate_Hz);
     }
     return r.said;
 }

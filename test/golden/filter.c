@@ -50,7 +50,8 @@ void golden_filter(struct golden *g, uint32_t rate_Hz)
     struct exh_filter_cfg cfg[2]; /* before and now */
     int err = 0;
     for (uint32_t i = 0; i < CHANNELS; i++) {
-        golden_wave(&w[i], "filter", rate_Hz, 1 + i, INT32_MIN, INT32_MAX, 1 << golden_draw(&r, 8, 28));
+        golden_wave(&w[i], "filter", rate_Hz, 1 + i, INT32_MIN, INT32_MAX,
+                    1 << golden_draw(&r, 8, 28));
     }
     while (g->tick < GOLDEN_TICKS) {
         const uint32_t k = g->tick;

@@ -95,7 +95,8 @@ static void any_frame(const struct worn *g, const struct golden_wave *w, uint32_
     for (int i = 0; i < EXH_GLOVE_SENSORS; i++) {
         const struct exh_glove_sensor *s = &g->cal.sensor[i];
         const int32_t share = w[i & 3].at[k] + 32768;
-        const int32_t good = s->low_raw + (int32_t)((int64_t)share * (s->high_raw - s->low_raw) >> 16);
+        const int32_t good =
+            s->low_raw + (int32_t)((int64_t)share * (s->high_raw - s->low_raw) >> 16);
         in->raw[i] = (int16_t)(g->wrong >> i & 1 ? bad_code(g, i, k) : good);
     }
 }
@@ -119,7 +120,9 @@ void golden_glove(struct golden *g, uint32_t rate_Hz)
     while (g->tick < GOLDEN_TICKS) {
         struct exh_glove_in in = {.age_ticks = 0};
         int32_t angle[EXH_GLOVE_SENSORS];
-        if (g->tick == 0 || g->tick == GOLDEN_AGAIN) { wear(&worn, &r, golden_period(rate_Hz, g->tick)); }
+        if (g->tick == 0 || g->tick == GOLDEN_AGAIN) {
+            wear(&worn, &r, golden_period(rate_Hz, g->tick));
+        }
         worn.wrong ^= 1u << golden_draw(&r, 0, 21);
         any_frame(&worn, w, g->tick, &in);
         for (int i = 0; i < EXH_GLOVE_SENSORS; i++) { golden_put(g, in.raw[i]); }

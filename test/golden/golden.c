@@ -57,8 +57,8 @@ struct golden_rng golden_rng(const char *module, uint32_t rate_Hz, uint32_t stre
     struct golden_rng r;
     uint32_t n = 0;
     while (module[n] != '\0') { n++; }
-    r.state = (uint64_t)crc_add(0, (const uint8_t *)module, n) << 32 |
-              (uint64_t)stream << 16 | rate_Hz;
+    r.state =
+        (uint64_t)crc_add(0, (const uint8_t *)module, n) << 32 | (uint64_t)stream << 16 | rate_Hz;
     return r;
 }
 
@@ -94,23 +94,23 @@ static int64_t wave_next(uint32_t k, int64_t x, int64_t *slope, struct golden_rn
                          int64_t hi, int64_t small)
 {
     const int64_t mid = (lo + hi) >> 1;
-    if (k < 8) { return mid; }  /* rest */
-    if (k < 32) { return hi; }  /* steps to both rails */
+    if (k < 8) { return mid; } /* rest */
+    if (k < 32) { return hi; } /* steps to both rails */
     if (k < 56) { return lo; }
-    if (k < 120) {              /* ramp and reversal */
+    if (k < 120) { /* ramp and reversal */
         if (k == 56) {
             *slope = golden_draw(r, 1, small);
             x = mid;
         }
         return x + (k < 88 ? *slope : -*slope);
     }
-    if (k < 144) {              /* dwell, +-1 of noise */
+    if (k < 144) { /* dwell, +-1 of noise */
         if (k == 120) { *slope = golden_draw(r, -small, small); }
         return mid + *slope + golden_draw(r, -1, 1);
     }
     if (k < 176) { return x + golden_draw(r, -small, small); }
     if (k < 192) { return golden_draw(r, lo, hi); } /* all over the range */
-    if (k < 200) { return mid; }                    /* after the second set-up */
+    if (k < 200) { return mid; } /* after the second set-up */
     if (k < 216) { return x + golden_draw(r, -small, small); }
     if (k < 232) { return x + (k < 224 ? small : -small); }
     if (k < 248) { return k & 4 ? hi : lo; }

@@ -13,10 +13,10 @@
 
 #include "check.h"
 
-#define GOLDEN_TICKS 256u
-#define GOLDEN_AGAIN 192u /* at this tick everything is set up anew, at another rate */
+#define GOLDEN_TICKS   256u
+#define GOLDEN_AGAIN   192u /* at this tick everything is set up anew, at another rate */
 #define GOLDEN_RESTORE 100u /* the state before this tick is read back from its bytes */
-#define GOLDEN_RATES 2000u
+#define GOLDEN_RATES   2000u
 #define GOLDEN_COLUMNS 40u
 #define GOLDEN_STATE_B 1024u
 
@@ -28,7 +28,7 @@ struct golden {
     uint32_t tick;
     uint32_t crc; /* of all rows so far                                         */
     void (*see)(struct golden *g); /* the sink: called at each tick's end        */
-    void *file;                    /* the sink's own                             */
+    void *file; /* the sink's own                             */
 };
 
 typedef void golden_run(struct golden *g, uint32_t rate_Hz);

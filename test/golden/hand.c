@@ -67,8 +67,9 @@ static void any_bones(struct golden_rng *r, struct exh_hand_bones *b)
     for (int i = 0; i < 3; i++) { b->len_m_q34[i] = (int32_t)golden_draw(r, 1, 687194767); }
     t = any_turn(r);
     u = any_turn(r);
-    const int64_t rot[3][3] = {
-        {t.c * u.d, -t.s * u.c, t.s * u.s}, {t.s * u.d, t.c * u.c, -t.c * u.s}, {0, u.s * t.d, u.c * t.d}};
+    const int64_t rot[3][3] = {{t.c * u.d, -t.s * u.c, t.s * u.s},
+                               {t.s * u.d, t.c * u.c, -t.c * u.s},
+                               {0, u.s * t.d, u.c * t.d}};
     for (int i = 0; i < 9; i++) { b->rot_q30[i / 3][i % 3] = q30_of(rot[i / 3][i % 3], t.d * u.d); }
     for (int i = 0; i < 3; i++) {
         b->base_m_q32[i] = (int32_t)golden_draw(r, -536870912, 536870912);
@@ -108,7 +109,8 @@ void golden_hand(struct golden *g, uint32_t rate_Hz)
     static struct some_hand h;
     struct golden_rng r = golden_rng("hand", rate_Hz, 0);
     for (uint32_t i = 0; i < 4; i++) {
-        golden_wave(&w[i], "hand", rate_Hz, 1 + i, INT32_MIN, INT32_MAX, 1 << golden_draw(&r, 16, 28));
+        golden_wave(&w[i], "hand", rate_Hz, 1 + i, INT32_MIN, INT32_MAX,
+                    1 << golden_draw(&r, 16, 28));
     }
     while (g->tick < GOLDEN_TICKS) {
         const unsigned f = g->tick % EXH_HAND_FINGERS;

@@ -154,7 +154,8 @@ def share(mutant):
         near = ["-I" + where, *FLAGS, "-I" + os.path.dirname(original)]
         built = run(CC + near + ["-c", path, "-o", obj])
         if built.returncode == 0:
-            built = run(CC + ["-o", exe, obj] + objects_but(original) + [os.path.join(B, "posix/libexhand.a"), "-lcmocka"])
+            rest = objects_but(original) + [os.path.join(B, "posix/libexhand.a"), "-lcmocka"]
+            built = run(CC + ["-o", exe, obj] + rest)
         if built.returncode != 0:
             return "does not build: " + built.stderr.strip().split("\n")[0]
         ran = run([exe], env=dict(os.environ, EXH_TEST=module, EXH_EXPLAIN="0"), timeout=300)

@@ -39,7 +39,8 @@ void golden_quad(struct golden *g, uint32_t rate_Hz)
             raw += (uint32_t)golden_draw(&r, -cfg.jump_cnt, cfg.jump_cnt);
         }
         /* What is above the counter's width is nothing. */
-        shown = (uint32_t)((raw & ((UINT64_C(1) << bits) - 1)) | (golden_u64(&r) << bits & UINT32_MAX));
+        shown =
+            (uint32_t)((raw & ((UINT64_C(1) << bits) - 1)) | (golden_u64(&r) << bits & UINT32_MAX));
         cnt = exh_quad_extend(&s, &cfg, shown);
         golden_put(g, shown);
         golden_put(g, bits);
@@ -92,9 +93,7 @@ static void decode(struct decoders *d, uint32_t k, const uint8_t *ab, unsigned l
         d->x4.illegal = UINT32_MAX - 3;
     }
     (void)memcpy(d->waiting + k % 4 * SAMPLES, ab, SAMPLES);
-    if (k % 4 == 3) {
-        exh_quad_ab_word(&d->word, word_of(d->waiting, 1), word_of(d->waiting, 0));
-    }
+    if (k % 4 == 3) { exh_quad_ab_word(&d->word, word_of(d->waiting, 1), word_of(d->waiting, 0)); }
     exh_quad_index_step(&d->index, d->x4.cnt, level);
 }
 

@@ -24,15 +24,17 @@ static void box_setup(struct box *b, struct golden_rng *r, uint32_t rate_Hz, uin
     for (unsigned i = 0; i < b->in.fingers; i++) {
         golden_drive_par(&b->axis[i], r, rate_Hz);
         CHECK_EQ_I64(exh_drive_setup(&b->cfg[i], &b->axis[i], golden_period(rate_Hz, k),
-                                     (struct exh_table){knot, 2}, (struct exh_table){NULL, 0}), 0);
+                                     (struct exh_table){knot, 2}, (struct exh_table){NULL, 0}),
+                     0);
     }
 }
 
 /* What crosses inward in tick k. */
 static void any_in(struct exh_safety_in *in, struct golden_rng *r, uint32_t k)
 {
-    static const uint8_t command[] = {EXH_CMD_NONE,  EXH_CMD_OFF, 4,             EXH_CMD_RUN,
-                                      EXH_CMD_CLEAR, EXH_CMD_RUN, EXH_CMD_CLEAR, EXH_CMD_RUN};
+    static const uint8_t command[] = {EXH_CMD_NONE,  EXH_CMD_OFF,   4,
+                                      EXH_CMD_RUN,   EXH_CMD_CLEAR, EXH_CMD_RUN,
+                                      EXH_CMD_CLEAR, EXH_CMD_RUN};
     if (golden_draw(r, 0, 31) == 0) {
         in->din ^= 1u << golden_draw(r, 0, 12);
     } else if (golden_draw(r, 0, 7) == 0) {

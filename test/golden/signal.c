@@ -16,7 +16,7 @@ static const struct exh_signal more_rows[] = {
 static const struct exh_signal_group groups[] = {{some_rows, 3, 2}, {more_rows, 2, 1}};
 static const struct exh_signal_table table = {groups, 2};
 
-#define VALUES 8
+#define VALUES  8
 #define IMAGE_B (12 + 4 * VALUES + 4)
 
 static int64_t raw_of(struct golden_rng *r, const struct exh_signal *row)

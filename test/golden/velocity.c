@@ -110,4 +110,3 @@ void golden_velocity_track(struct golden *g, uint32_t rate_Hz)
         golden_tick(g);
     }
 }
-

@@ -3,7 +3,7 @@
 import zlib
 from struct import pack
 
-from .num import (AGAIN, CRC, MAX32, SHORT, TICKS, UNKNOWN, VERSION, Refused, Rng, clamp, gain,
+from .num import (CRC, MAX32, SHORT, TICKS, UNKNOWN, VERSION, Refused, Rng, clamp, gain,
                   sat32, shr, times, wrap, wrap64)
 
 

@@ -4,7 +4,7 @@ import zlib
 from struct import pack
 
 from .drive import Table
-from .num import (AGAIN, CRC, M32, MONOTONE, RANGE, STALE, TICKS, VERSION, Rng, div, gain, sat32, times)
+from .num import CRC, M32, MAX32, MONOTONE, STALE, TICKS, VERSION, Rng, div, gain, sat32, times
 
 DEVICE, FINGER, AGE, SCALE, FORCE_TABLE, MONITOR_TABLE = 1, 2, 3, 4, 6, 7
 
@@ -47,7 +47,7 @@ def knots_bytes(knots):
 
 
 def image(values, points):
-    body = b"EXHC" + pack("<HH", 2, len(points)) + pack("<6IiiII", *[v & M32 for v in values[:6]], values[6], values[7], *values[8:])
+    body = b"EXHC" + pack("<HH", 2, len(points)) + pack("<10I", *[v & M32 for v in values])
     body += b"".join(pack("<4i", *p) for p in points)
     return body + pack("<I", zlib.crc32(body))
 
@@ -75,8 +75,8 @@ def calibrate(rate):
     rng = Rng("calibrate", rate, 0)
     for k in range(TICKS):
         middle, points = mean(rng), any_points(rng)
-        values = [rng.u64() & M32, rng.draw(0, 4), rng.draw(1, 30000), rng.draw(0, 400), rng.draw(65536, (1 << 31) - 1),
-                  rng.draw(0, 65535), rng.draw(1, (1 << 31) - 1), rng.draw(-32768, 32767), rng.draw(0, 442918502),
+        values = [rng.u64() & M32, rng.draw(0, 4), rng.draw(1, 30000), rng.draw(0, 400), rng.draw(65536, MAX32),
+                  rng.draw(0, 65535), rng.draw(1, MAX32), rng.draw(-32768, 32767), rng.draw(0, 442918502),
                   rng.draw(0, 442918502)]
         (g1, kf1), (g2, kf2) = fit(points, 1), fit(points, 2)
         p, which = points[rng.draw(0, len(points) - 1)], 1 + rng.draw(0, 1)
@@ -104,7 +104,8 @@ def calibrate(rate):
         if at > 0:  # spoil one
             points[at][which2] = points[at - 1][which2] - rng.draw(0, 1)
             err, bad_what, bad_at = -MONOTONE, (FORCE_TABLE, MONITOR_TABLE)[which2 - 1], at
-        yield ((middle, len(points), kf1, *g1, kf2, *g2, rest, size, crc, load, wrong, what, err, bad_what, bad_at), knots_bytes(force) + knots_bytes(monitor))
+        yield ((middle, len(points), kf1, *g1, kf2, *g2, rest, size, crc, load, wrong, what, err, bad_what,
+                bad_at), knots_bytes(force) + knots_bytes(monitor))
 
 
 COLUMNS = ("mean points kf_NpA_q20 mant shift kf_mon_NpA_q20 mant_mon shift_mon residual_N_q20 image_B crc "

@@ -66,7 +66,7 @@ class Drive:
         self.cont2 = (self.cont >> 10) ** 2
         self.budget = ((self.peak >> 10) ** 2 - self.cont2) * ticks
         self.sh = max(0, self.budget.bit_length() - 31)
-        self.fold = gain(self.peak - self.cont, self.budget >> self.sh >> 2) if self.budget >> self.sh >> 2 else (0, 0)
+        self.fold = gain(self.peak - self.cont, self.budget >> self.sh >> 2)
         self.amp = gain(1 << 42, self.dac)
         self.force = self.heat = 0
 
@@ -131,7 +131,8 @@ def drive(rate):
         if k in (0, AGAIN):
             par = any_par(rng, rate)
             to_cur = rising(rng, 0, 0, rng.draw(2, 6), 1 << 25, 1 << 28)
-            to_force = rising(rng, rng.draw(-(1 << 29), 0), rng.draw(-(1 << 27), 0), rng.draw(2, 6), 1 << 28, 1 << 25)
+            x, y, n = rng.draw(-(1 << 29), 0), rng.draw(-(1 << 27), 0), rng.draw(2, 6)
+            to_force = rising(rng, x, y, n, 1 << 28, 1 << 25)
             d = Drive(par, period(rate, k), to_cur, to_force)
         s, p = spring[k], rng.draw(0, 20971520) if k & 8 else 0
         if 180 <= k < AGAIN:

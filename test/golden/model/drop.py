@@ -39,7 +39,8 @@ def drop(rate):
         if k in (0, AGAIN):
             step, speed, p = scale(rng), rng.draw(13421773, (1 << 31) - 1), rng.draw(0, 4)
             law = (rng.draw(0, 1024000000) >> rng.draw(0, 12), rng.draw(0, 1048576000) >> rng.draw(0, 12),
-                   rng.draw(0, 20971520), rng.draw(0, 10737418) >> rng.draw(0, 12), rng.draw(0, 10737418) >> rng.draw(0, 12))
+                   rng.draw(0, 20971520), rng.draw(0, 10737418) >> rng.draw(0, 12),
+                   rng.draw(0, 10737418) >> rng.draw(0, 12))
             drive = any_par(rng, rate)
             most, lim, kf = rng.draw(0, 1), rng.draw(-(1 << 26), 1 << 26), rng.draw(104858, 104857600)
             s = Drop(step, speed, p, law, drive, most, lim, kf, period(rate, k))
@@ -62,7 +63,7 @@ def drop(rate):
         yield (raw & M32, mon, din, missed, command, *s.tick(raw & M32, mon, din, missed, command)), s.state()
 
 
-COLUMNS = ("raw mon_raw din missed command | q_m_q30 qd_mps_q27 f_des_N_q20 i_des_A_q26 c f_mon_N_q20 limits state "
-                "faults present dac_raw enable alive")
+COLUMNS = ("raw mon_raw din missed command | q_m_q30 qd_mps_q27 f_des_N_q20 i_des_A_q26 c f_mon_N_q20 "
+           "limits state faults present dac_raw enable alive")
 
 MODULES = {"drop": (COLUMNS, drop)}

@@ -94,8 +94,9 @@ class Glove:
         return sum((c != GOOD) << i for i, c in enumerate(self.cause)), out
 
     def state(self):
-        return b"".join([self.sensor(c.pos, c.vel, c.wide, q.value, q.started, *rest) for c, q, *rest in zip(
-            self.channel, self.quantizer, self.good, self.faults, self.run, self.cause)]) + bytes([self.started])
+        sensors = zip(self.channel, self.quantizer, self.good, self.faults, self.run, self.cause)
+        return b"".join([self.sensor(c.pos, c.vel, c.wide, q.value, q.started, *rest)
+                         for c, q, *rest in sensors]) + bytes([self.started])
 
 
 def any_par(rng, T):
@@ -103,8 +104,8 @@ def any_par(rng, T):
     most, least = ((T[1] << 15) - 1) // T[0], (T[1] >> 5) // T[0] + 1
     order, fc = rng.draw(0, 2), max(6553, least, rng.draw(1, most) >> rng.draw(0, 10))
     bits = rng.draw(4, 16)
-    return (order, fc, bits, rng.draw(0, 1 << min(28, 32 - bits)), rng.draw(-32768, -31000), rng.draw(31000, 32767),
-            rng.draw(0, 1), rng.draw(1, 6), rng.draw(0, 65536) >> rng.draw(0, 4))
+    return (order, fc, bits, rng.draw(0, 1 << min(28, 32 - bits)), rng.draw(-32768, -31000),
+            rng.draw(31000, 32767), rng.draw(0, 1), rng.draw(1, 6), rng.draw(0, 65536) >> rng.draw(0, 4))
 
 
 def glove(rate):
@@ -121,8 +122,9 @@ def glove(rate):
         for i, (_, _, _, low, high, _) in enumerate(sensors):
             m = shr((high - low) * par[8], 16)
             good = low + ((w[i & 3][k] + 32768) * (high - low) >> 16)
-            bad = (-32768, 32767, max(-32768, low - m - (k & 1)), min(32767, high + m + (k & 1)))[i + (k >> 5) & 3]
-            raw.append(bad if wrong >> i & 1 else good)
+            past = m + (k & 1)
+            bad = -32768, 32767, max(-32768, low - past), min(32767, high + past)
+            raw.append(bad[i + (k >> 5) & 3] if wrong >> i & 1 else good)
         faulty, a = s.tick(raw)
         yield (*raw, faulty, a[0], a[3], a[10], a[21], zlib.crc32(s.angles(*a))), s.state()
 

@@ -56,7 +56,8 @@ class Finger:
         m = (l1 >> 1) + (l2 * c2 >> 30)
         a, b = l0 - l2 + (m * c2 >> 29), m * s2 >> 29
         v = turn(a, b)
-        tip = [(place + sum(r * x >> 32 for r, x in zip(row, v)) + 3) >> 2 for row, place in zip(self.rot, self.base)]
+        tip = [(place + sum(r * x >> 32 for r, x in zip(row, v)) + 3) >> 2
+               for row, place in zip(self.rot, self.base)]
         k, (w1, w2) = m - (l1 >> 2), self.pull
         a1, b1 = -(k * s2 >> 29), (k * c2 >> 29) - l2
         v = turn(shr(2 * w2 * a1 - w1 * b, 30), shr(2 * w2 * b1 + w1 * a, 30))
@@ -86,7 +87,8 @@ def any_finger(rng):
     rot = ((c1 * d2, -s1 * c2, s1 * s2), (s1 * d2, c1 * c2, -c1 * s2), (0, s2 * d1, c2 * d1))
     rot = [[div(v << 30, d1 * d2) for v in row] for row in rot]
     base = [rng.draw(-536870912, 536870912) for _ in range(3)]
-    return Finger(length, rot, base, rng.draw(4294968, 53687091), rng.draw(0, 53687091), rng.draw(0, 53687091))
+    arm = rng.draw(4294968, 53687091), rng.draw(0, 53687091), rng.draw(0, 53687091)
+    return Finger(length, rot, base, *arm)
 
 
 def hand(rate):

@@ -57,7 +57,7 @@ def quad(rate):
         raw += moves[k]
         if 184 <= k < AGAIN:  # some of them too fast
             raw += rng.draw(-q.jump, q.jump)
-        shown = raw & (1 << bits) - 1 | rng.u64() << bits & M32  # what is above the counter's width is nothing
+        shown = raw & (1 << bits) - 1 | rng.u64() << bits & M32  # above the counter's width is nothing
         cnt = q.tick(shown)
         yield (shown, bits, q.jump, cnt, position(cnt, step), position(wrap(shown), step)), q.state()
 

@@ -3,7 +3,7 @@
 from struct import Struct
 
 from .drive import DAC, GATE, any_par
-from .num import AGAIN, M32, TICKS, Rng, clamp, gain, period, shr, times, wave
+from .num import AGAIN, M32, TICKS, Rng, clamp, gain, shr, times, wave
 
 OFF, RUN, FAULT = 0, 1, 2
 ESTOP, DRIVE, OVERRUN, ENCODER, DEADMAN = 1, 2, 4, 8, 16
@@ -94,6 +94,7 @@ def safety(rate):
 
 
 COLUMNS = "din raised missed command | state enable alive " + " ".join(
-    "%s%d" % (name, i) for i in range(FINGERS) for name in ("limits", "gate_A_q26_", "dac_A_q26_", "coded_A_q26_", "code"))
+    "%s%d" % (name, i) for i in range(FINGERS)
+    for name in ("limits", "gate_A_q26_", "dac_A_q26_", "coded_A_q26_", "code"))
 
 MODULES = {"safety": (COLUMNS, safety)}

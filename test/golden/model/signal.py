@@ -3,7 +3,7 @@
 import zlib
 from struct import pack
 
-from .num import (AGAIN, CRC, M32, RANGE, SHORT, STATE, TICKS, UNKNOWN, VERSION, Rng)
+from .num import AGAIN, RANGE, STATE, TICKS, UNKNOWN, Rng
 
 SETUP, ANY = 1, 2
 

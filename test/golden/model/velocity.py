@@ -141,8 +141,10 @@ def pole(rate):
 
 
 def foaw(rate):
-    return run("velocity_foaw", rate,
-               lambda step, T, rng: Foaw(step, T, rng.draw(2, 16), rng.draw(1, 255) >> rng.draw(0, 7) or 1), 40)
+    def make(step, T, rng):
+        return Foaw(step, T, rng.draw(2, 16), rng.draw(1, 255) >> rng.draw(0, 7) or 1)
+
+    return run("velocity_foaw", rate, make, 40)
 
 
 def track(rate):
