@@ -16,21 +16,21 @@ int exh_quantizer_setup(struct exh_quantizer_cfg *cfg, const struct exh_quantize
         par->hyst_raw_q16 > INT64_C(1) << (32 - par->bits)) {
         return -EXH_E_RANGE;
     }
-    cfg->drop = (uint8_t)(32 - par->bits);
-    cfg->keep = (UINT32_C(1) << (cfg->drop - 1)) + (uint32_t)par->hyst_raw_q16 / 2;
+    cfg->half = UINT32_C(1) << (31 - par->bits);
+    cfg->keep = cfg->half + (uint32_t)par->hyst_raw_q16 / 2;
     return 0;
 }
 
 int32_t exh_quantizer_step(struct exh_quantizer *s, const struct exh_quantizer_cfg *cfg, int32_t x)
 {
+    /* Beyond most there is no code to round to. */
+    const int32_t most = INT32_MAX - (int32_t)cfg->half;
+    const uint32_t up = (uint32_t)(x < most ? x : most) + cfg->half;
+    const int32_t near = exh_from_u32(up & (0u - 2 * cfg->half));
     const uint32_t off =
         x > s->value ? (uint32_t)x - (uint32_t)s->value : (uint32_t)s->value - (uint32_t)x;
-    if (!s->started || off > cfg->keep) {
-        const int64_t code = exh_shr_round(x, cfg->drop);
-        const int64_t top = (INT64_C(1) << (31 - cfg->drop)) - 1;
-        s->value = (int32_t)((code < top ? code : top) * (INT64_C(1) << cfg->drop));
-        s->started = 1;
-    }
+    if (!s->started || off > cfg->keep) { s->value = near; }
+    s->started = 1;
     return s->value;
 }
 

@@ -22,7 +22,7 @@ extern const struct exh_signal exh_quantizer_rows[EXH_QUANTIZER_ROWS];
 
 struct exh_quantizer_cfg {
     uint32_t keep; /* a code is kept while the input is within this of its value */
-    uint8_t drop; /* 32 less bits: one code is 2^drop                        */
+    uint32_t half; /* half a code, LSB of the input                           */
 };
 struct exh_quantizer {
     int32_t value; /* of the code kept, in units of the input               */
