@@ -268,6 +268,12 @@ variants   := $(patsubst v_%,%,$(filter v_%,$(.VARIABLES)))
 $(variants:%=variant-%): variant-%:
 	@$(MAKE) --no-print-directory B=$(B)/variant/$* $(v_$*) WERROR=1 all
 
+# Golden vectors by the compilers that link CMocka; a tenth of the rates.
+.PHONY: $(variants:%=golden-%)
+$(variants:%=golden-%): golden-%:
+	@$(MAKE) --no-print-directory -s B=$(B)/variant/$* $(v_$*) WERROR=1 $(B)/variant/$*/test/golden/golden_test
+	@echo "$*:" && EXH_RATES=1..200 test/run.sh $(B)/variant/$*/test/golden/golden_test
+
 # The library alone for small CPUs: what it needs from outside.
 u_cortex-m3 := CROSS=arm-none-eabi- CFLAGS="-mcpu=cortex-m3 -mthumb -ffreestanding"
 u_cortex-m0 := CROSS=arm-none-eabi- CFLAGS="-mcpu=cortex-m0 -mthumb -ffreestanding" \
@@ -291,6 +297,7 @@ check:
 	@$(MAKE) --no-print-directory mutants
 	@$(MAKE) --no-print-directory demo > $(B)/demo.txt && tail -n 40 $(B)/demo.txt
 	@$(MAKE) --no-print-directory $(variants:%=variant-%)
+	@$(MAKE) --no-print-directory $(patsubst %,golden-%,$(filter-out i686%,$(variants)))
 	@test/sim/bits.sh $(B)/bits $(B)/demo $(variants:%=$(B)/variant/%/posix/exhand)
 	@$(MAKE) --no-print-directory undef undef-cortex-m3 undef-cortex-m0
 	@$(MAKE) --no-print-directory PORT=template SCENE=minimal all

@@ -14,6 +14,23 @@ static int64_t as_i64(uint64_t u)
     return u <= INT64_MAX ? (int64_t)u : -(int64_t)(UINT64_MAX - u) - 1;
 }
 
+/* Mostly about as long or as short as they may be. */
+static struct exh_period any_period(struct golden_rng *r)
+{
+    const int64_t most = UINT32_MAX;
+    int64_t den = golden_draw(r, 1, most);
+    int64_t near[3];
+    int64_t num;
+    den >>= golden_draw(r, 0, 31);
+    near[0] = den * 1001 / 1000;
+    near[1] = den / 20020;
+    near[2] = golden_draw(r, 0, most);
+    num = near[golden_draw(r, 0, 2)];
+    num += golden_draw(r, -1, 1);
+    num = num < 0 ? 0 : num > most ? most : num;
+    return (struct exh_period){(uint32_t)num, (uint32_t)den};
+}
+
 static void put_gain(struct golden *g, uint64_t num, uint64_t den, int32_t x)
 {
     struct exh_gain gain = {0, 0};
@@ -43,9 +60,12 @@ void golden_fix(struct golden *g, uint32_t rate_Hz)
         num >>= golden_draw(&r, 0, 63);
         den = golden_u64(&r);
         den = den >> golden_draw(&r, 0, 63) | 1;
+        const struct exh_period T = any_period(&r);
         golden_put(g, v);
         golden_put(g, a);
         golden_put(g, b);
+        golden_put(g, T.num);
+        golden_put(g, T.den);
         golden_put(g, exh_sat32(v));
         golden_put(g, exh_clamp(v, lo, hi));
         golden_put(g, exh_shr_round(v, n));
@@ -55,6 +75,7 @@ void golden_fix(struct golden *g, uint32_t rate_Hz)
         golden_put(g, exh_wrap_diff(a, b));
         golden_put(g, exh_wrap_add(a, b));
         put_gain(g, num, den, a);
+        golden_put(g, exh_period_ok(T));
         golden_tick(g);
     }
 }

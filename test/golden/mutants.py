@@ -33,6 +33,7 @@ MUTANTS = (
     ("fix", H + "fix.h", "((v >> (n - 1)) & 1)", "0"),
     ("fix", H + "fix.h", "(lo + (INT64_C(1) << 30)) >> 31", "lo >> 31"),
     ("fix", H + "fix.h", "return INT32_MIN;", "return -INT32_MAX;"),
+    ("fix", H + "units.h", "UINT64_C(1001) * T.den", "UINT64_C(1000) * T.den"),
     ("bytes", L + "bytes.c", "n <= c->cap - c->at", "n < c->cap - c->at"),
     ("bytes", L + "bytes.c", "nibble[crc & 15];\n        crc", "nibble[crc & 7];\n        crc"),
     ("bytes", L + "bytes.c", "(int32_t)u - 0x10000", "(int32_t)u - 0xFFFF"),

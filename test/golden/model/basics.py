@@ -3,8 +3,19 @@
 import zlib
 from struct import pack
 
-from .num import (CRC, MAX32, SHORT, TICKS, UNKNOWN, VERSION, Refused, Rng, clamp, gain,
+from .num import (CRC, M32, MAX32, SHORT, TICKS, UNKNOWN, VERSION, Refused, Rng, clamp, gain,
                   sat32, shr, times, wrap, wrap64)
+
+
+def any_period(r):
+    """Mostly about as long or as short as they may be."""
+    den = r.draw(1, M32) >> r.draw(0, 31)
+    near = (den * 1001 // 1000, den // 20020, r.draw(0, M32))[r.draw(0, 2)] + r.draw(-1, 1)
+    return clamp(near, 0, M32), den
+
+
+def period_ok(num, den):
+    return int(num > 0 and 1000 * num <= 1001 * den and den <= 20020 * num)
 
 
 def fix(rate):
@@ -21,13 +32,14 @@ def fix(rate):
             g = gain(num, den)
         except Refused as e:
             err = -e.args[0]
-        yield (v, a, b, sat32(v), clamp(v, lo, hi), shr(v, n), shr(a * b, n), shr(v * (b & MAX32), 31),
+        T = any_period(r)
+        yield (v, a, b, *T, sat32(v), clamp(v, lo, hi), shr(v, n), shr(a * b, n), shr(v * (b & MAX32), 31),
                wrap(b), wrap(a - b), wrap(a + b), err, g[0], g[1], times(g, a),
-               wrap64(num // den), wrap64(num % den)), b""
+               wrap64(num // den), wrap64(num % den), period_ok(*T)), b""
 
 
-FIX = ("v a b | sat32 clamp shr_round mul_shr mul64_q31 from_u32 wrap_diff wrap_add "
-            "err mant shift gain_mul quotient remainder")
+FIX = ("v a b T_num T_den | sat32 clamp shr_round mul_shr mul64_q31 from_u32 wrap_diff wrap_add "
+            "err mant shift gain_mul quotient remainder period_ok")
 
 FIELDS = (("<B", 8, 0), ("<H", 16, 0), ("<h", 16, 1), ("<I", 32, 0), ("<i", 32, 1), ("<q", 64, 1))
 
