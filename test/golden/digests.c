@@ -55,6 +55,9 @@ const uint32_t digest_quantizer[GOLDEN_RATES] = {
 const uint32_t digest_glove[GOLDEN_RATES] = {
 #include "digest/glove.inc"
 };
+const uint32_t digest_glove_cal[GOLDEN_RATES] = {
+#include "digest/glove_cal.inc"
+};
 const uint32_t digest_angle[GOLDEN_RATES] = {
 #include "digest/angle.inc"
 };

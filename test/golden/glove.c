@@ -63,15 +63,20 @@ struct worn {
     uint32_t wrong; /* sensors whose codes are at an end or beyond it          */
 };
 
-static void wear(struct worn *g, struct golden_rng *r, struct exh_period T)
+void golden_glove_sensors(struct exh_glove_cal *cal, struct golden_rng *r)
 {
     static const uint8_t absent[] = {0, 5, 10, 14, 20, 21, 31, 31}; /* 31: none is */
+    cal->present = 0x3FFFFFu & ~(1u << absent[golden_draw(r, 0, 7)]);
+    for (int i = 0; i < EXH_GLOVE_SENSORS; i++) {
+        any_sensor(r, i, cal->present >> i & 1, &cal->sensor[i]);
+    }
+}
+
+static void wear(struct worn *g, struct golden_rng *r, struct exh_period T)
+{
     (void)memset(g, 0, sizeof *g);
     g->par = any_par(r, T);
-    g->cal.present = 0x3FFFFFu & ~(1u << absent[golden_draw(r, 0, 7)]);
-    for (int i = 0; i < EXH_GLOVE_SENSORS; i++) {
-        any_sensor(r, i, g->cal.present >> i & 1, &g->cal.sensor[i]);
-    }
+    golden_glove_sensors(&g->cal, r);
     CHECK_EQ_I64(exh_glove_setup(&g->cfg, &g->par, &g->cal, T), 0);
 }
 

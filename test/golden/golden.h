@@ -9,6 +9,7 @@
 
 #include "exhand/bytes.h"
 #include "exhand/drive.h"
+#include "exhand/glove.h"
 #include "exhand/units.h"
 
 #include "check.h"
@@ -82,6 +83,9 @@ struct exh_period golden_period(uint32_t rate_Hz, uint32_t k);
 
 /* Any parameters of a drive that set-up takes, with a short peak. */
 void golden_drive_par(struct exh_drive_par *p, struct golden_rng *r, uint32_t rate_Hz);
+
+/* The sensors of some calibration of a glove. */
+void golden_glove_sensors(struct exh_glove_cal *cal, struct golden_rng *r);
 
 /* An encoder step, m q42. */
 int32_t golden_step(struct golden_rng *r);

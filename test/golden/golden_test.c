@@ -106,10 +106,11 @@ MODULE(calibrate);
 MODULE(filter);
 MODULE(quantizer);
 MODULE(glove);
+MODULE(glove_cal);
 MODULE(angle);
 MODULE(hand);
 MODULE(drop);
 
 TEST_MAIN("golden", first_tick_that_differs_is_told, fix, bytes, record, signal, quad, quad_ab,
           velocity_window, velocity_pole, velocity_foaw, velocity_track, contact, table, drive,
-          safety, calibrate, filter, quantizer, glove, angle, hand, drop);
+          safety, calibrate, filter, quantizer, glove, glove_cal, angle, hand, drop);

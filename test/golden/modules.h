@@ -27,6 +27,7 @@ GOLDEN_MODULE(calibrate);
 GOLDEN_MODULE(filter);
 GOLDEN_MODULE(quantizer);
 GOLDEN_MODULE(glove);
+GOLDEN_MODULE(glove_cal);
 GOLDEN_MODULE(angle);
 GOLDEN_MODULE(hand);
 GOLDEN_MODULE(drop);
