@@ -257,6 +257,21 @@ TEST(lines_of_a_pose_are_averaged)
     said_clean(dir);
 }
 
+/* A glove without last joints: each follows the middle joint beside it. */
+TEST(a_glove_of_18_sensors_lacks_the_last_joints)
+{
+    static const char *const line[] = {"\nIndexDIJ         +0.6667 of IndexPIJ (not measured)\n",
+                                       "\nMiddleDIJ        +0.6667 of MiddlePIJ (not measured)\n",
+                                       "\nRingDIJ          +0.6667 of RingPIJ (not measured)\n",
+                                       "\nPinkieDIJ        +0.6667 of PinkiePIJ (not measured)\n"};
+    static struct said s;
+    char *dir = said_dir();
+    said(&s, dir, cli_calibrate, WORDS("calibrate", "--glove", "--sensors", "18"));
+    CHECK(s.status == 0, "%d: %s", s.status, s.err);
+    for (size_t i = 0; i < LEN(line); i++) { CHECK(strstr(s.out, line[i]) != NULL, "no %s: %s", line[i], s.out); }
+    said_clean(dir);
+}
+
 TEST(bad_lines_are_told_by_number)
 {
     static const char *const nine = "1,1,1,1,1,1,1,1,1,";
@@ -331,5 +346,5 @@ TEST(poses_know_enough)
 
 TEST_MAIN("sim/glove_calibrate", a_good_hand_is_found_back, a_real_hand_is_found_back,
           exit_status_says_what_happened, all_that_is_wrong_is_told_at_once,
-          lines_of_a_pose_are_averaged, bad_lines_are_told_by_number, recorded_poses_give_the_same,
+          lines_of_a_pose_are_averaged, a_glove_of_18_sensors_lacks_the_last_joints, bad_lines_are_told_by_number, recorded_poses_give_the_same,
           poses_know_enough);

@@ -171,6 +171,10 @@ TEST(frames_have_a_rate_of_their_own)
         CHECK(s.status == 0 && strstr(s.out, row[i].says), "row %zu: %d: %s", i, s.status, s.out);
         CHECK(number_after(strstr(s.out, "\n        30"), "mV", 1) < 7.52, "row %zu: %s", i, s.out);
     }
+    said(&s, dir, cli_glove, WORDS("glove", "--selftest", "--set", "every=5", "--set", "glove_fc=199"));
+    CHECK(s.status != 2, "%d: %s", s.status, s.err);
+    said(&s, dir, cli_glove, WORDS("glove", "--selftest", "--set", "every=5", "--set", "glove_fc=201"));
+    CHECK(s.status == 2 && strstr(s.err, "at or above half the rate"), "of 400 Hz: %d: %s", s.status, s.err);
     said_clean(dir);
 }
 
@@ -298,6 +302,12 @@ TEST(units_are_guessed_or_told)
         const double got = number_after(s.out, "\n0", i);
         CHECK(got > want - 0.003 && got < want + 0.003, "column %d: %g, want %g", i, got, want);
     }
+    write_text(csv, ".25,.01,.02,.03,.04,.05,.06,.07,.08,.09,.1,.11,.12,.13,.14,-.1,-.2,-.3,-.4,-.45,0,0\n");
+    said(&s, dir, cli_glove, WORDS("glove", "--csv", csv, "--rate", "200", "--unit", "turn", "--deg", "--set",
+                                   "glove_bits=24", "--set", "glove_hyst=0", "--set", "glove_order=0"));
+    CHECK(number_after(s.out, "\n0", 0) > 89.99 && number_after(s.out, "\n0", 0) < 90.01, "%s", s.out);
+    CHECK(number_after(s.out, "\n0", 19) > -162.01 && number_after(s.out, "\n0", 19) < -161.99, "%s", s.out);
+    write_text(csv, "10,20,30,40,50,60,70,80,90,100,110,120,130,140,150,-10,-20,-30,-40,-50,-60,-70\n");
     said(&s, dir, cli_glove, WORDS("glove", "--csv", csv, "--rate", "200", "--unit", "radians"));
     CHECK(s.status == 2 && strstr(s.err, "--unit: codes, rad, deg or turn"), "%s", s.err);
     said(&s, dir, cli_glove, WORDS("glove", "--csv", csv, "--rate", "200", "--deg"));

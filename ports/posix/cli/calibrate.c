@@ -1,6 +1,7 @@
 /* exhand calibrate: the paper's first step, on the simulated device's bench. */
 #include "cli.h"
 
+#include "assign.h"
 #include "calibration.h"
 #include "option.h"
 #include "outfile.h"
@@ -85,26 +86,12 @@ static int take_hung(void *ctx, const char *text)
     return o->hung ? 0 : 2;
 }
 
-/* NAME=VALUE; the name is a copy that is kept till exit. NULL after a line on stderr. */
-static const char *assignment(const char *option, const char *text, double *value)
-{
-    const char *equals = strchr(text, '=');
-    char *end = NULL, *name = NULL;
-    if (equals != NULL) { *value = strtod(equals + 1, &end); }
-    if (equals != NULL && end != equals + 1 && *end == '\0') {
-        name = calloc((size_t)(equals - text) + 1, 1);
-        if (name != NULL) { memcpy(name, text, (size_t)(equals - text)); }
-    }
-    if (name == NULL) { cli_complain("--%s: %s: give NAME=VALUE", option, text); }
-    return name;
-}
-
 static int take_setting(void *ctx, const char *text)
 {
     struct calibrate_options *o = ctx;
-    double value = 0;
-    const char *name = assignment("set", text, &value);
-    if (name == NULL) { return 2; }
+    char name[ASSIGN_NAME_B];
+    double value;
+    if (assign_split("set", text, name, &value)) { return 2; }
     if (o->settings == SETTINGS_MAX) {
         cli_complain("--set: at most %d", SETTINGS_MAX);
         return 2;
@@ -119,7 +106,8 @@ static int take_setting(void *ctx, const char *text)
     }
     exh_scene_calibrate.defaults();
     if (cli_param_set(exh_scene_calibrate.params, name, value) < 0) { return 2; }
-    o->setting[o->settings++] = (struct calibration_setting){name, value};
+    o->setting[o->settings++] = (struct calibration_setting){
+        cli_signal_find(exh_scene_calibrate.params->table, name, NULL)->name, value};
     return 0;
 }
 
@@ -127,17 +115,11 @@ static int take_device(void *ctx, const char *text)
 {
     struct calibrate_options *o = ctx;
     const struct sim_device_row *row;
-    double value = 0;
-    const char *name = assignment("device", text, &value);
-    if (name == NULL) { return 2; }
+    char name[ASSIGN_NAME_B];
+    double value;
+    if (assign_split("device", text, name, &value)) { return 2; }
     if (sim_device_set(&o->device, name, value, &row) == 0) { return 0; }
-    if (row) {
-        cli_complain("%s: %.9g (allowed %.9g..%.9g %s): choose a value in that range", name, value,
-                row->min, row->max, row->unit);
-    } else {
-        cli_complain("%s: no such value of the device: `exhand calibrate --params` lists them", name);
-    }
-    return 2;
+    return assign_refused("calibrate", name, value, row);
 }
 
 static int take_wrong(void *ctx, const char *text)

@@ -1,6 +1,7 @@
 /* exhand drop: the paper's falling-mass experiment, run, judged, written. */
 #include "cli.h"
 
+#include "assign.h"
 #include "border.h"
 #include "csv.h"
 #include "friction.h"
@@ -87,29 +88,12 @@ static int take_period(void *ctx, const char *text)
     return 0;
 }
 
-#define NAME_B 32
-
-static int split(const char *option, const char *text, char name[NAME_B], double *value)
-{
-    const char *equals = strchr(text, '=');
-    const size_t len = equals ? (size_t)(equals - text) : NAME_B;
-    char *end = NULL;
-    if (equals != NULL) { *value = strtod(equals + 1, &end); }
-    if (len >= NAME_B || end == equals + 1 || *end != '\0') {
-        cli_complain("--%s: %s: give NAME=VALUE", option, text);
-        return 2;
-    }
-    memcpy(name, text, len);
-    name[len] = '\0';
-    return 0;
-}
-
 static int take_setting(void *ctx, const char *text)
 {
     struct drop_options *o = ctx;
-    char name[NAME_B];
+    char name[ASSIGN_NAME_B];
     double value;
-    if (split("set", text, name, &value)) { return 2; }
+    if (assign_split("set", text, name, &value)) { return 2; }
     if (o->settings == SETTINGS_MAX) {
         cli_complain("--set: at most %d", SETTINGS_MAX);
         return 2;
@@ -129,18 +113,12 @@ static int take_device(void *ctx, const char *text)
 {
     struct drop_options *o = ctx;
     const struct sim_device_row *row;
-    char name[NAME_B];
+    char name[ASSIGN_NAME_B];
     double value;
     int err;
-    if (split("device", text, name, &value)) { return 2; }
+    if (assign_split("device", text, name, &value)) { return 2; }
     err = sim_device_set(&o->device, name, value, &row);
-    if (err && row) {
-        cli_complain("--device: %s: %.12g (allowed %.12g..%.12g%s%s): choose a value in that range", name,
-                     value, row->min, row->max, row->unit[0] ? " " : "", row->unit);
-    } else if (err) {
-        cli_complain("--device: %s: no such value of the device: `exhand drop --params` lists them", name);
-    }
-    return err ? 2 : 0;
+    return err ? assign_refused("drop", name, value, row) : 0;
 }
 
 static void print_params(void)

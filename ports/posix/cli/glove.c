@@ -1,6 +1,7 @@
 /* exhand glove: the glove's Table I, recordings as stable angles, the scan's skew, logs. */
 #include "glove.h"
 
+#include "assign.h"
 #include "cli.h"
 #include "glove_image.h"
 #include "option.h"
@@ -14,33 +15,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define NAME_B   32
 #define IMAGE_B  (EXH_GLOVE_CAL_IMAGE_B + 1)
 #define RATE_TOP 20000
 
 /* --- options with a syntax of their own --- */
 
-static int split(const char *option, const char *text, char name[NAME_B], double *value)
-{
-    const char *equals = strchr(text, '=');
-    const size_t len = equals ? (size_t)(equals - text) : NAME_B;
-    char *end = NULL;
-    if (equals != NULL) { *value = strtod(equals + 1, &end); }
-    if (len >= NAME_B || end == equals + 1 || *end != '\0') {
-        cli_complain("--%s: %s: give NAME=VALUE", option, text);
-        return 2;
-    }
-    memcpy(name, text, len);
-    name[len] = '\0';
-    return 0;
-}
-
 static int take_setting(void *ctx, const char *text)
 {
     struct glove_options *o = ctx;
-    char name[NAME_B];
+    char name[ASSIGN_NAME_B];
     double value;
-    if (split("set", text, name, &value)) { return 2; }
+    if (assign_split("set", text, name, &value)) { return 2; }
     if (strncmp(name, "cal_", 4) == 0 || strcmp(name, "user") == 0 || strcmp(name, "glove") == 0 ||
         strcmp(name, "present") == 0) {
         cli_complain("--set: %s: comes with the calibration: give --calibration FILE", name);
@@ -55,19 +40,13 @@ static int take_device(void *ctx, const char *text)
 {
     struct glove_options *o = ctx;
     const struct sim_device_row *row;
-    char name[NAME_B];
+    char name[ASSIGN_NAME_B];
     double value;
     int err;
-    if (split("device", text, name, &value)) { return 2; }
+    if (assign_split("device", text, name, &value)) { return 2; }
     err = sim_glove_set(&o->chain, name, value, &row);
     if (err && row == NULL) { err = sim_device_set(&o->device, name, value, &row); }
-    if (err && row) {
-        cli_complain("--device: %s: %.12g (allowed %.12g..%.12g%s%s): choose a value in that range", name,
-                     value, row->min, row->max, row->unit[0] ? " " : "", row->unit);
-    } else if (err) {
-        cli_complain("--device: %s: no such value of the device: `exhand glove --params` lists them", name);
-    }
-    return err ? 2 : 0;
+    return err ? assign_refused("glove", name, value, row) : 0;
 }
 
 /* All but the calibration's, which stand last: 22 of each say nothing. */

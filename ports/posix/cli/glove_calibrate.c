@@ -1,6 +1,7 @@
 /* exhand calibrate --glove: a user's calibration of the glove, from poses. */
 #include "cli.h"
 
+#include "assign.h"
 #include "glove_image.h"
 #include "glove_poses.h"
 #include "option.h"
@@ -39,16 +40,6 @@ struct glove_result {
 
 /* --- options with a syntax of their own --- */
 
-/* NAME=VALUE of at most 31 bytes a name: the value, or NULL. */
-static const char *split(const char *text, char name[32])
-{
-    const char *equals = strchr(text, '=');
-    if (equals == NULL || equals - text > 31) { return NULL; }
-    memcpy(name, text, (size_t)(equals - text));
-    name[equals - text] = '\0';
-    return equals + 1;
-}
-
 static int take_fault(void *ctx, const char *text)
 {
     static const struct {
@@ -56,11 +47,13 @@ static int take_fault(void *ctx, const char *text)
         unsigned char fault;
     } kind[] = {{"open", SIM_GLOVE_OPEN}, {"short", SIM_GLOVE_SHORT}, {"stuck", SIM_GLOVE_STUCK}};
     struct glove_options *o = ctx;
-    char name[32];
-    const char *value = split(text, name);
-    for (unsigned i = 0; value != NULL && i < EXH_GLOVE_SENSORS; i++) {
+    const char *equals = strchr(text, '=');
+    const size_t len = equals ? (size_t)(equals - text) : 0;
+    for (unsigned i = 0; equals != NULL && i < EXH_GLOVE_SENSORS; i++) {
+        const char *sensor = exh_glove_sensor_text(i);
         for (size_t k = 0; k < sizeof kind / sizeof kind[0]; k++) {
-            if (strcmp(name, exh_glove_sensor_text(i)) == 0 && strcmp(value, kind[k].name) == 0) {
+            if (strlen(sensor) == len && strncmp(text, sensor, len) == 0 &&
+                strcmp(equals + 1, kind[k].name) == 0) {
                 o->bench.fault[i] = kind[k].fault;
                 return 0;
             }
@@ -76,23 +69,12 @@ static int take_fault(void *ctx, const char *text)
 static int take_device(void *ctx, const char *text)
 {
     struct glove_options *o = ctx;
-    const struct sim_device_row *row = NULL;
-    char name[32], *end = NULL;
-    const char *value = split(text, name);
-    const double v = value != NULL ? strtod(value, &end) : 0;
-    if (value == NULL || end == value || *end != '\0') {
-        cli_complain("--device: %s: give NAME=VALUE", text);
-        return 2;
-    }
-    if (sim_glove_set(&o->bench.par, name, v, &row) == 0) { return 0; }
-    if (row != NULL) {
-        cli_complain("%s: %.9g (allowed %.9g..%.9g %s): choose a value in that range", name, v,
-                     row->min, row->max, row->unit);
-    } else {
-        cli_complain(
-            "%s: no such value of the glove: `exhand calibrate --glove --params` lists them", name);
-    }
-    return 2;
+    const struct sim_device_row *row;
+    char name[ASSIGN_NAME_B];
+    double value;
+    if (assign_split("device", text, name, &value)) { return 2; }
+    if (sim_glove_set(&o->bench.par, name, value, &row) == 0) { return 0; }
+    return assign_refused("calibrate --glove", name, value, row);
 }
 
 static void print_params(void)

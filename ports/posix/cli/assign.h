@@ -1,0 +1,16 @@
+/* NAME=VALUE, as --set and --device take it. */
+#ifndef CLI_ASSIGN_H
+#define CLI_ASSIGN_H
+
+#include "sim/device.h"
+
+#define ASSIGN_NAME_B 32
+
+/* Name and value apart. 0, or 2 after a line on stderr. */
+int assign_split(const char *option, const char *text, char name[ASSIGN_NAME_B], double *value);
+
+/* What sim_device_set() or sim_glove_set() refused, row being what it left there: says so, and
+ * which command lists what there is. 2. */
+int assign_refused(const char *command, const char *name, double value, const struct sim_device_row *row);
+
+#endif
