@@ -99,7 +99,7 @@ MUTANTS = (
     ("glove", L + "glove.c", "(code >> 1) - cal->zero_raw_q15", "code / 2 - cal->zero_raw_q15 + 1"),
     ("glove", L + "glove.c", "angle_turn_q32[i] = exh_sat32(sum);", "angle_turn_q32[i] = (int32_t)sum;"),
     ("glove_cal", L + "glove_cal.c", "day - cal->day > cal->valid_days", "day - cal->day > 2 * cal->valid_days"),
-    ("glove_cal", L + "glove_cal.c", "present && s->high_raw", "s->high_raw"),
+    ("glove_cal", L + "glove_cal.c", "size < GAIN_MIN_TURNPRAW_Q38 ||", "size == 0 ||"),
     ("glove_cal", L + "glove_cal.c", "cal->sensor[of].of[0] != EXH_GLOVE_NONE ||", ""),
     ("glove_cal", L + "glove_cal.c", "s->zero_raw_q15 >= ZERO_END_RAW_Q15", "0"),
     ("angle", L + "sincos.h", "(-693597423)", "(-693597424)"),
