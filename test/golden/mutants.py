@@ -92,7 +92,7 @@ MUTANTS = (
     ("filter", L + "filter.c", "cfg->b = coefficient(b, n, 31);", "cfg->b = coefficient(b, n, 31) - 1;"),
     ("filter", L + "filter.c", "{ s[i].vel = 0; }", "{ }"),
     ("quantizer", L + "quantizer.c", "off > cfg->keep", "off >= cfg->keep"),
-    ("quantizer", L + "quantizer.c", "code < top ? code : top", "code"),
+    ("quantizer", L + "quantizer.c", "(uint32_t)(x < most ? x : most)", "(uint32_t)x"),
     ("quantizer", L + "quantizer.c", "(uint32_t)par->hyst_raw_q16 / 2", "(uint32_t)par->hyst_raw_q16 / 4"),
     ("glove", L + "glove.c", "(int64_t)s->low_raw - margin, par->low_raw + 1", "(int64_t)s->low_raw, par->low_raw + 1"),
     ("glove", L + "glove.c", "s->run[i] + 1 < cfg->debounce_frames", "s->run[i] < cfg->debounce_frames"),
