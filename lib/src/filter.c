@@ -36,12 +36,11 @@ static int32_t places(struct exh_real v, int32_t bits)
 /* Below, g = tan(pi fc T) and damped = g (g + sqrt 2); see NUMERICS.md. */
 static void low2(struct exh_filter_cfg *cfg, struct exh_real g, struct exh_real damped)
 {
-    const struct exh_real nine_eighths = exh_real_scale(exh_real_of(9), -3);
     const struct exh_real more = exh_real_add(exh_real_of(1), damped);
     const struct exh_real b = exh_real_div(damped, more);
     struct exh_real a = exh_real_div(exh_real_mul(g, g), more);
     int32_t n;
-    cfg->c = coefficient(exh_real_mul(g, nine_eighths), POS_Q, 31);
+    cfg->c = coefficient(exh_real_mul(g, exh_real_scale(exh_real_of(23), -4)), POS_Q, 31);
     a = exh_real_scale(exh_real_div(a, exh_real_of((uint64_t)cfg->c)), POS_Q);
     n = places(a, 30) < places(b, 31) ? places(a, 30) : places(b, 31); /* 2a must fit, too */
     cfg->a = coefficient(a, n, 30);
@@ -51,12 +50,12 @@ static void low2(struct exh_filter_cfg *cfg, struct exh_real g, struct exh_real 
 
 static void high2(struct exh_filter_cfg *cfg, struct exh_real g, struct exh_real damped)
 {
-    const struct exh_real one = exh_real_of(1), nine = exh_real_of(9);
+    const struct exh_real one = exh_real_of(1), unit = exh_real_of(23); /* of vel: 23/16 LSB */
     const struct exh_real inv = exh_real_div(one, exh_real_add(one, damped));
     const struct exh_real mid = exh_real_mul(g, inv);
     cfg->a = coefficient(inv, 31, 31);
-    cfg->b = coefficient(exh_real_div(mid, nine), 31 + 3, 31);
-    cfg->c = coefficient(exh_real_mul(mid, nine), 31 - 3, 31);
+    cfg->b = coefficient(exh_real_div(mid, unit), 31 + 4, 31);
+    cfg->c = coefficient(exh_real_mul(mid, unit), 31 - 4, 31);
     cfg->d = coefficient(exh_real_mul(g, mid), 31, 31);
 }
 
@@ -87,7 +86,7 @@ int exh_filter_setup(struct exh_filter_cfg *cfg, const struct exh_filter_par *pa
     if (num < den >> 21) { return -EXH_E_RANGE; }
 
     g = exh_real_tan_pi(num, den);
-    high = exh_real_round(exh_real_scale(g, 32)) > UINT64_C(3) << 29; /* g > 3/8 */
+    high = exh_real_round(exh_real_scale(g, 32)) > UINT64_C(11) << 27; /* g > 11/32 */
     damped = exh_real_mul(g, exh_real_add(g, EXH_REAL_SQRT2));
     *cfg = (struct exh_filter_cfg){0, 0, 0, 0, 0, 0};
     if (par->order == 1 && high) {

@@ -37,13 +37,13 @@ enum exh_filter_kind { /* docs/NUMERICS.md, "low-pass" */
 struct exh_filter_cfg {
     int32_t a, b, c, d;
     uint8_t shift; /* 0 .. 31                                                 */
-    uint8_t kind; /* enum exh_filter_kind: low is fc up to 0.114 of the rate */
+    uint8_t kind; /* enum exh_filter_kind: low is fc up to 0.105 of the rate */
 };
 
 /* One channel. */
 struct exh_filter {
     int64_t pos; /* low-pass state, LSB of x in q31, and half an LSB more       */
-    int64_t vel; /* band-pass state, 9/8 LSB of x in q32                        */
+    int64_t vel; /* band-pass state, 23/16 LSB of x in q32                      */
     uint8_t wide; /* 1: of a high kind, both in q26                              */
 };
 
@@ -58,7 +58,7 @@ void exh_filter_reset(struct exh_filter *s, const int32_t *x, unsigned n);
 
 /* One sample of n channels, any int32; y may be x. A constant input is reached exactly and
  * kept; while anything moves the output is within 2.5 LSB of the ideal filter's, 4 LSB at
- * fc above 0.114 of the rate (make bench; rms 0.3 LSB). y saturates with the right sign (a
+ * fc above 0.105 of the rate (make bench; rms 0.3 LSB). y saturates with the right sign (a
  * step overshoots by 4.3 %) and comes back: no input wraps a state. A state from damaged
  * bytes that none can cause finds its way back. */
 void exh_filter_step(struct exh_filter *s, const struct exh_filter_cfg *cfg, const int32_t *x,
@@ -67,7 +67,7 @@ void exh_filter_step(struct exh_filter *s, const struct exh_filter_cfg *cfg, con
 /* From one set of coefficients to another, between two ticks, of n channels. A settled
  * channel stays exactly where it is; one that moves goes on from its place, and with its
  * speed if both are of order 2. So the next output is at most from->c + to->c LSB away from
- * the last, LOW2 both: 9/8 tan(pi fc T) of full scale each, which is what any tick may add. */
+ * the last, LOW2 both: 23/16 tan(pi fc T) of full scale each; any tick may add two thirds of that. */
 void exh_filter_retune(struct exh_filter *s, unsigned n, const struct exh_filter_cfg *from,
                        const struct exh_filter_cfg *to);
 

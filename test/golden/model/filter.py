@@ -67,11 +67,11 @@ class Config:
             raise Refused(RANGE)
         g = tan((PI * fc * num // den) >> 16)
         k = g * (g + SQRT2) >> P
-        high = (2 * (g << 32) + ONE) // (2 * ONE) > 3 << 29
+        high = (2 * (g << 32) + ONE) // (2 * ONE) > 11 << 27
         self.kind = (HIGH2 if high else LOW2) if order == 2 else (HIGH1 if high else LOW1)
         self.a = self.b = self.c = self.d = self.shift = 0
         if self.kind == LOW2:
-            self.c = rounded(9 * g << 31, 8 * ONE)
+            self.c = rounded(23 * g << 31, 16 * ONE)
             alpha = (g * g << 31) // ((ONE + k) * self.c)
             beta = (k << P) // (ONE + k)
             n = 0
@@ -86,8 +86,8 @@ class Config:
             self.a, self.shift = rounded(scaled(gamma, n)), n - 31
         elif self.kind == HIGH2:
             self.a = rounded(ONE << 31, ONE + k)
-            self.b = rounded(8 * g << 31, 9 * (ONE + k))
-            self.c = rounded(9 * g << 31, 8 * (ONE + k))
+            self.b = rounded(16 * g << 31, 23 * (ONE + k))
+            self.c = rounded(23 * g << 31, 16 * (ONE + k))
             self.d = rounded((g * g >> P) << 31, ONE + k)
         else:
             self.a = rounded(g << 31, ONE + g)
