@@ -232,13 +232,15 @@ golden:
 mutants: $(B)/test/golden/golden_test
 	$(Q)CC="$(CC)" B=$(B) test/golden/mutants.py $(ARGS)
 
-# The library's tests again for a 32-bit CPU, where there is no CMocka: own printer.
+# The library's tests again for a 32-bit CPU, where there is no CMocka: own printer. What overflows
+# there and not in 64 bits traps.
+trap := -fsanitize=undefined -fsanitize-undefined-trap-on-error
 plain_bin := $(patsubst test/%_test.c,$(B)/i686/%_test,$(filter test/unit/% test/prop/%,$(test_src)))
 $(plain_bin): $(B)/i686/%_test: test/%_test.c test/support.c $(lib_src) $(wildcard test/*.h lib/include/exhand/*.h lib/src/*.h) \
               $(stamp)
 	@mkdir -p $(@D)
-	$(Q)i686-linux-gnu-gcc -static $(filter-out -MMD -MP,$(tflags)) -D_POSIX_C_SOURCE=200809L -DEXH_CHECK_PLAIN \
-	    -o $@ $(filter %.c,$^)
+	$(Q)i686-linux-gnu-gcc -static $(filter-out -MMD -MP,$(tflags)) $(trap) -D_POSIX_C_SOURCE=200809L \
+	    -DEXH_CHECK_PLAIN -o $@ $(filter %.c,$^)
 
 $(B)/i686/golden/golden_test: $(golden_src) test/support.c $(lib_src) $(wildcard test/*.h test/golden/*.h \
                               test/golden/digest/*.inc lib/include/exhand/*.h) $(stamp)

@@ -142,13 +142,19 @@ static inline int_fast32_t part(int_fast32_t a, int_fast32_t b, unsigned n)
     return (int_fast32_t)((int64_t)a * b >> n);
 }
 
+/* The same and c, where the sum has 32 bits again but the product, of long bones, more. */
+static inline int_fast32_t part_and(int_fast32_t a, int_fast32_t b, unsigned n, int_fast32_t c)
+{
+    return (int_fast32_t)(((int64_t)a * b >> n) + c);
+}
+
 static inline struct pose pose_of(const int32_t len_m_q34[3], const int32_t *joint_turn_q32)
 {
     const int_fast32_t l0 = len_m_q34[0], l1 = len_m_q34[1], l2 = len_m_q34[2];
     struct pose p;
     p.q2 = sincos_in_place(joint_turn_q32[2]);
     p.fold_m_q33 = (l1 >> (34 - 33)) + part(l2, p.q2.cos_q30, 34 + 30 - 33 - 1);
-    p.along_m_q34 = l0 - l2 + part(p.fold_m_q33, p.q2.cos_q30, 33 + 30 - 34);
+    p.along_m_q34 = part_and(p.fold_m_q33, p.q2.cos_q30, 33 + 30 - 34, l0 - l2);
     p.across_m_q34 = part(p.fold_m_q33, p.q2.sin_q30, 33 + 30 - 34);
     p.q1 = sincos_in_place(joint_turn_q32[1]);
     p.q0 = sincos_in_place(joint_turn_q32[0]);
@@ -213,7 +219,8 @@ void exh_hand_tip_slope(const struct exh_hand_finger *f, const int32_t *joint_tu
     const struct pose p = pose_of(b->len_m_q34, joint_turn_q32);
     const int_fast32_t k_m_q32 = p.fold_m_q33 - (b->len_m_q34[1] >> (34 - 32));
     const int_fast32_t along_m_q33 = -part(k_m_q32, p.q2.sin_q30, 32 + 30 - 33);
-    const int_fast32_t across_m_q33 = part(k_m_q32, p.q2.cos_q30, 32 + 30 - 33) - b->len_m_q34[2];
+    const int_fast32_t across_m_q33 =
+        part_and(k_m_q32, p.q2.cos_q30, 32 + 30 - 33, -b->len_m_q34[2]);
     const int64_t w1_radpm_q20 = f->pull_radpm_q20[0], w2_radpm_q20 = f->pull_radpm_q20[1];
     const int64_t along_q54 = 2 * w2_radpm_q20 * along_m_q33 - w1_radpm_q20 * p.across_m_q34;
     const int64_t across_q54 = 2 * w2_radpm_q20 * across_m_q33 + w1_radpm_q20 * p.along_m_q34;
