@@ -77,21 +77,20 @@ static void sums(int64_t sum[ALL][ALL], const struct known *k)
 static int last_factor(struct known *k, struct factor *f, struct factor *inverse)
 {
     const unsigned last = k->terms - 1, y = k->terms;
-    int64_t sum[ALL][ALL], least;
+    int64_t sum[ALL][ALL], least[ALL];
     for (unsigned p = 0; p < k->n; p++) { k->term[y][p] = k->angle_turn_q32[p] >> 4; }
     sums(sum, k);
-    least = sum[last][last] >> PIVOT_SHARE;
-    for (unsigned r = 0; r < last; r++) {
-        if (sum[r][r] < 1) { return -EXH_E_RANGE; }
-        for (unsigned c = r + 1; c <= y; c++) {
+    for (unsigned r = 0; r <= last; r++) { least[r] = sum[r][r] >> PIVOT_SHARE; }
+    for (unsigned r = 0; r <= last; r++) {
+        /* Of what moves with the terms before it, rounding alone would be left to divide by. */
+        if (sum[r][r] < 1 || sum[r][r] < least[r] || (r > 0 && sum[r][r] < PIVOT_MIN)) {
+            return -EXH_E_RANGE;
+        }
+        for (unsigned c = r + 1; r < last && c <= y; c++) {
             struct factor share;
             if (factor_set(&share, sum[r][c], sum[r][r]) < 0) { return -EXH_E_RANGE; }
             for (unsigned d = c; d <= y; d++) { sum[c][d] -= factor_mul(&share, sum[r][d]); }
         }
-    }
-    if (sum[last][last] < 1 || sum[last][last] < least ||
-        (last > 0 && sum[last][last] < PIVOT_MIN)) {
-        return -EXH_E_RANGE;
     }
     if (inverse != NULL) {
         const int64_t size = sum[last][y] < 0 ? -sum[last][y] : sum[last][y];
@@ -108,6 +107,7 @@ static unsigned gather(struct known *k, const struct exh_glove_cal *cal, struct 
 {
     int32_t code[2] = {INT32_MAX, INT32_MIN}, angle[2] = {INT32_MAX, INT32_MIN};
     k->n = 0;
+    k->terms = 1;
     for (unsigned p = 0; p < n; p++) {
         const int32_t raw_q16 = pose[p].mean_raw_q16[at];
         const int32_t known = pose[p].angle_turn_q32[at];
@@ -155,7 +155,9 @@ static unsigned fit_cross(struct known *k, struct exh_glove_sensor *s)
         k->terms--;
         for (unsigned p = 0; p < k->n; p++) {
             const int64_t share = exh_mul_shr(s->cross_q30[j], k->term[k->terms][p], 30 - 4);
-            k->angle_turn_q32[p] = exh_sat32(k->angle_turn_q32[p] - share);
+            const int64_t left = k->angle_turn_q32[p] - share;
+            if (left > INT32_MAX || left < INT32_MIN) { return EXH_GLOVE_CROSS; } /* no joint */
+            k->angle_turn_q32[p] = (int32_t)left;
         }
     }
     return EXH_GLOVE_WHATS;

@@ -235,5 +235,41 @@ TEST(any_poses_end_in_a_word)
     }
 }
 
+/* An abduction whose code goes with a knuckle's but for some noise: from too little to tell
+ * them apart, what rounding left was once divided by, and the sums overflowed. */
+TEST(what_moves_together_is_refused)
+{
+    static struct exh_glove_pose pose[EXH_GLOVE_POSES_MAX];
+    const struct exh_glove_fit_par par = {0, 0, INT32_MAX};
+    while (check_case(1)) {
+        struct exh_glove_cal cal = {1, 1, 0, 1, 1u | 2u | 1u << 10, {{0}}};
+        struct exh_glove_fit fit[SENSORS];
+        const int32_t noise = 1 << check_i32_in(0, 20);
+        for (unsigned i = 0; i < SENSORS; i++) {
+            cal.sensor[i].of[0] = cal.sensor[i].of[1] = EXH_GLOVE_NONE;
+        }
+        cal.sensor[10].of[0] = 0;
+        cal.sensor[10].of[1] = 1;
+        memset(pose, 0, sizeof pose);
+        for (unsigned p = 0; p < EXH_GLOVE_POSES_MAX; p++) {
+            const int32_t far = p & 1 ? 2000000000 : -2000000000;
+            struct exh_glove_pose *const at = &pose[p];
+            at->known = cal.present;
+            at->mean_raw_q16[0] = check_i32_in(-2000000000, 2000000000);
+            at->mean_raw_q16[1] = p < 2 ? far : check_i32_in(-2000000000, 2000000000);
+            at->mean_raw_q16[10] = at->mean_raw_q16[0] + check_i32_in(-noise, noise);
+            at->angle_turn_q32[0] = at->mean_raw_q16[0];
+            at->angle_turn_q32[1] = at->mean_raw_q16[1];
+            at->angle_turn_q32[10] = check_i32();
+        }
+        CHECK_EQ_I64(exh_glove_cal_fit(&cal, fit, pose, EXH_GLOVE_POSES_MAX, &par, NULL),
+                     -EXH_E_RANGE);
+        CHECK(fit[0].what == EXH_GLOVE_WHATS && fit[1].what == EXH_GLOVE_WHATS &&
+                  fit[10].what == EXH_GLOVE_POSES,
+              "%s, %s, %s", exh_glove_what_text(fit[0].what), exh_glove_what_text(fit[1].what),
+              exh_glove_what_text(fit[10].what));
+    }
+}
+
 TEST_MAIN("prop/glove", angle_is_within_half_an_lsb, faults_as_the_header_tells,
-          the_fit_finds_the_truth, any_poses_end_in_a_word);
+          the_fit_finds_the_truth, any_poses_end_in_a_word, what_moves_together_is_refused);

@@ -351,7 +351,7 @@ static void knuckles(struct fixture *f, unsigned p, int32_t a_deg, int32_t b_deg
 
 TEST(poses_are_refused_by_name)
 {
-    for (int k = 0; k < 15; k++) {
+    for (int k = 0; k < 16; k++) {
         struct fixture f;
         int what, at = 5;
         set_up(&f);
@@ -434,6 +434,15 @@ TEST(poses_are_refused_by_name)
                 const int32_t a = f.pose[p].angle_turn_q32[4] / DEG(1),
                               ab = f.pose[p].angle_turn_q32[10] / DEG(1);
                 f.pose[p].mean_raw_q16[10] = code_q16(10, ab + 3 * a - 100);
+            }
+            what = EXH_GLOVE_CROSS;
+            at = 10;
+            break;
+        case 15: /* one and a half of both, against each other: the first leaves 240 degrees */
+            for (unsigned p = 0; p < POSES; p++) {
+                const int32_t a = p % 3 == 0 ? 0 : 160, b = p % 3 == 0 ? 0 : p & 1 ? 110 : 160;
+                knuckles(&f, p, a, b, p & 4 ? 30 : 0);
+                f.pose[p].mean_raw_q16[10] = code_q16(10, (p & 4 ? 30 : 0) + (a - b) * 3 / 2);
             }
             what = EXH_GLOVE_CROSS;
             at = 10;

@@ -101,7 +101,8 @@ enum exh_glove_what {
     EXH_GLOVE_GAIN,     /* zero or implausible; at: the sensor, also below      */
     EXH_GLOVE_ZERO,     /* its zero lies beyond the card's range               */
     EXH_GLOVE_SPAN,     /* calibrated over fewer than EXH_GLOVE_SPAN_MIN_RAW codes */
-    EXH_GLOVE_CROSS,    /* cross term beyond +-2, or of no sensor to have one of */
+    EXH_GLOVE_CROSS,    /* cross term beyond +-2, or of no sensor to have one of; in a fit
+                         * also one that a pose leaves more than half a turn after */
     EXH_GLOVE_POSES,    /* too few poses, or poses that do not tell its terms apart */
     EXH_GLOVE_MOVE,     /* the hand did not move enough                        */
     EXH_GLOVE_NOISE,    /* codes varied too much while a pose was held         */
