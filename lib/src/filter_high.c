@@ -14,12 +14,13 @@ static int64_t bounded(int64_t v)
     return v > most ? most : v < -most ? -most : v;
 }
 
-/* What a reset, or a low kind before, left: into our format. */
+/* What a reset, or a low kind before, left: into our format. A low kind that is settled stands
+ * anywhere within an LSB of pos, and of vel, of which it sees the integer part alone; so do we. */
 static void widen(struct exh_filter *s)
 {
     if (!s->wide) {
         s->pos >>= EXH_FILTER_POS_Q - Q;
-        s->vel >>= EXH_FILTER_VEL_Q - Q;
+        s->vel = (s->vel >> EXH_FILTER_VEL_Q) * (1 << Q);
         s->wide = 1;
     }
 }

@@ -79,7 +79,7 @@ static int32_t define_high(struct exh_filter *s, const struct exh_filter_cfg *cf
     int64_t e, move, low;
     if (!s->wide) {
         s->pos = floor_shr(s->pos, 5);
-        s->vel = floor_shr(s->vel, 6);
+        s->vel = floor_shr(s->vel, 32) * (INT64_C(1) << 26);
         s->wide = 1;
     }
     s->pos = limited(s->pos);

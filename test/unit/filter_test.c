@@ -296,6 +296,24 @@ TEST(a_state_beyond_any_input_starts_anew)
     }
 }
 
+/* A low kind that settles by itself stands anywhere within an LSB, not in its middle as after
+ * a reset. */
+TEST(retune_keeps_every_settled_state)
+{
+    const struct exh_filter_cfg low = *tuned(2, 20 << 16, 1000);
+    for (size_t i = 0; i < LEN(tune) * 4; i++) {
+        const struct exh_filter_cfg to = *tuned(2, tune[i / 4].fc_Hz_q16, tune[i / 4].rate_Hz);
+        const int32_t x = check_i32();
+        struct exh_filter s = {x * (INT64_C(1) << 31), 0, 0};
+        s.pos += i & 1 ? INT32_MAX : 0;
+        s.vel += i & 2 ? UINT32_MAX : 0;
+        for (int t = 0; t < 200; t++) {
+            CHECK_EQ_I64(one(&s, t < 100 ? &low : &to, x), x);
+            if (t == 99) { exh_filter_retune(&s, 1, &low, &to); }
+        }
+    }
+}
+
 TEST(state_round_trip)
 {
     struct exh_filter s = {INT64_C(-0x123456789ABCDEF), INT64_C(0x7EDCBA9876543210), 1},
@@ -334,5 +352,5 @@ TEST(recovers_from_any_state)
 TEST_MAIN("unit/filter", refusals_by_name, coefficients_by_hand, half_the_power_at_the_cut_off,
           a_constant_input_comes_out_exactly, reset_is_settled, a_step_rises_once_and_overshoots,
           full_scale_does_not_latch, channels_do_not_touch, retune_keeps_what_is_settled,
-          a_change_of_order_drops_the_speed, a_state_beyond_any_input_starts_anew, state_round_trip,
-          recovers_from_any_state);
+          retune_keeps_every_settled_state, a_change_of_order_drops_the_speed,
+          a_state_beyond_any_input_starts_anew, state_round_trip, recovers_from_any_state);

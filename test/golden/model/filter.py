@@ -117,7 +117,7 @@ class Channel:
             self.pos = l + m
             return sat32(l >> 31)
         if not self.wide:
-            pos, vel, self.wide = pos >> 5, vel >> 6, 1
+            pos, vel, self.wide = pos >> 5, vel >> 32 << 26, 1
         pos, vel = clamp(pos, -(1 << 62), 1 << 62), clamp(vel, -(1 << 62), 1 << 62)
         e = (x << 26) + (1 << 25) - pos
         if f.kind == HIGH2:
