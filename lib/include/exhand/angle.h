@@ -14,7 +14,7 @@ extern "C" {
 
 /* num/den degrees or millionths of a radian as a binary angle, for initialisers: integer
  * constant expressions, truncated towards zero, error <= 1 LSB. Within -180 <= x < 180 degrees and
- * |num| <= 2^31 (EXH_DEG), |num| <= 3141592 (EXH_URAD). 683.565275576 LSB are 1 urad. */
+ * |num| < 2^31 (EXH_DEG), |num| <= 3141592 (EXH_URAD). 683.565275576 LSB are 1 urad. */
 #define EXH_DEG(num, den) ((int32_t)((num) * (INT64_C(1) << 32) / (INT64_C(360) * (den))))
 #define EXH_URAD(num)     ((int32_t)((num)*INT64_C(683565275576) / INT64_C(1000000000)))
 
@@ -25,7 +25,7 @@ struct exh_sincos {
 /* Sine and cosine of any angle. Error <= 2.25 LSB of q30 (0.0021 ppm), found over all 2^32
  * angles; 0 and +-2^30 exactly at whole quarters of a turn, never beyond +-2^30. Symmetric to the last bit:
  * sin(-x) = -sin(x), cos(-x) = cos(x), and a quarter turn on makes them cos(x), -sin(x). The
- * work is the same for every angle: no table, no branch, ten products. */
+ * work is the same for every angle: no table, no branch, nine products. */
 void exh_sincos(int32_t x_turn_q32, struct exh_sincos *y);
 
 #ifdef __cplusplus

@@ -40,7 +40,8 @@ int exh_quantizer_setup(struct exh_quantizer_cfg *cfg, const struct exh_quantize
  * <= (Q + hysteresis)/2; at the top, where there is no higher code, below Q. */
 int32_t exh_quantizer_step(struct exh_quantizer *s, const struct exh_quantizer_cfg *cfg, int32_t x);
 
-/* State through a cursor (bytes.h). */
+/* State through a cursor (bytes.h). A value read that is no multiple of Q (damaged, or of other
+ * parameters) is kept as any other, within the same error, until the input leaves it. */
 void exh_quantizer_bytes(struct exh_bytes *c, struct exh_quantizer *s);
 
 #ifdef __cplusplus
