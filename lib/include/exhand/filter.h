@@ -58,10 +58,12 @@ int exh_filter_setup(struct exh_filter_cfg *cfg, const struct exh_filter_par *pa
 void exh_filter_reset(struct exh_filter *s, const int32_t *x, unsigned n);
 
 /* One sample of n channels, any int32; y may be x. A constant input is reached exactly and
- * kept; while anything moves the output is within 2.5 LSB of the ideal filter's, 4 LSB at
- * fc above 0.105 of the rate (make bench; rms 0.3 LSB). y saturates with the right sign (a
- * step overshoots by 4.3 %) and comes back: no input wraps a state. A state from damaged
- * bytes that none can cause finds its way back. */
+ * kept; while anything moves, be it from rail to rail, the output is within 6 LSB of the ideal
+ * filter's (rms 0.3 to 1 LSB); with fc above 0.45 of the rate within 24 LSB where the input swings
+ * at about half the rate, and above 0.49 such an input, if large, drives the states to their
+ * limits and the output anywhere, until it ends. y saturates with the right sign (a step
+ * overshoots by 4.3 %) and comes back: no input wraps a state. A state from damaged bytes
+ * that none can cause finds its way back. */
 void exh_filter_step(struct exh_filter *s, const struct exh_filter_cfg *cfg, const int32_t *x,
                      int32_t *y, unsigned n);
 
