@@ -98,7 +98,8 @@ void exh_hand_tip(const struct exh_hand_finger *f, const int32_t *joint_turn_q32
  * the back of the finger turns q1, and q2 with q3: of all turnings that pay out a metre,
  * arm1*dq1 + (arm2 + arm3)*dq2 = 1, the one with the least dq1^2 + dq2^2. q0 moves no string.
  * Error <= 4 LSB (2.4e-7) for arms that turn no joint by more than 40 rad per metre (defaults:
- * 17 and 24), 16 LSB for any; it cannot saturate: below 68. */
+ * 17 and 24), 16 LSB for any, of the pulls in f; that these are rounded to q20 adds up to 4 LSB
+ * with the longest bones (5.5 in all found). It cannot saturate: below 68. */
 void exh_hand_tip_slope(const struct exh_hand_finger *f, const int32_t *joint_turn_q32,
                         struct exh_vec3 *tip_m_q30, struct exh_vec3 *slope_q24);
 
