@@ -46,6 +46,15 @@ const uint32_t digest_safety[GOLDEN_RATES] = {
 const uint32_t digest_calibrate[GOLDEN_RATES] = {
 #include "digest/calibrate.inc"
 };
+const uint32_t digest_probe[GOLDEN_RATES] = {
+#include "digest/probe.inc"
+};
+const uint32_t digest_home[GOLDEN_RATES] = {
+#include "digest/home.inc"
+};
+const uint32_t digest_weigh[GOLDEN_RATES] = {
+#include "digest/weigh.inc"
+};
 const uint32_t digest_filter[GOLDEN_RATES] = {
 #include "digest/filter.inc"
 };

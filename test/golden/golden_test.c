@@ -103,6 +103,9 @@ MODULE(table);
 MODULE(drive);
 MODULE(safety);
 MODULE(calibrate);
+MODULE(probe);
+MODULE(home);
+MODULE(weigh);
 MODULE(filter);
 MODULE(quantizer);
 MODULE(glove);
@@ -113,4 +116,5 @@ MODULE(drop);
 
 TEST_MAIN("golden", first_tick_that_differs_is_told, fix, bytes, record, signal, quad, quad_ab,
           velocity_window, velocity_pole, velocity_foaw, velocity_track, contact, table, drive,
-          safety, calibrate, filter, quantizer, glove, glove_cal, angle, hand, drop);
+          safety, calibrate, probe, home, weigh, filter, quantizer, glove, glove_cal, angle, hand,
+          drop);

@@ -87,6 +87,15 @@ MUTANTS = (
     ("calibrate", L + "calibrate.c", "rem >= m->n - rem", "rem > m->n - rem"),
     ("calibrate", L + "calibrate.c", "(int32_t)more);", "(int32_t)more - 1);"),
     ("calibrate", L + "calibrate.c", "knot[half - 1 - i].y = -y;", "knot[half - 1 - i].y = 1 - y;"),
+    ("probe", L + "probe.c", "rises && s->settled &&", "rises &&"),
+    ("probe", L + "probe.c", "if (cfg->step_A_q26 < 0 || -out < cfg->move_cnt)", "if (1)"),
+    ("probe", L + "probe.c", "s->cur_A_q26 = exh_clamp(next, 0,", "s->cur_A_q26 = exh_clamp(next + 1, 0,"),
+    ("home", L + "probe.c", "far < cfg->least_cnt ? EXH", "far < cfg->move_cnt ? EXH"),
+    ("home", L + "probe.c", "if (s->result != EXH_PROBE_BUSY) { s->cur_A_q26 = 0; }", ""),
+    ("home", L + "probe.c", "s->home_cnt = cnt;\n        s->dwell_cnt = cnt;", "s->home_cnt = cnt;"),
+    ("weigh", L + "weigh.c", "s->probe.start_cnt = start_cnt;", ""),
+    ("weigh", L + "weigh.c", "(s->lift_A_q26 + at_A_q26) >> 1", "(s->lift_A_q26 + at_A_q26 + 2) >> 1"),
+    ("weigh", L + "weigh.c", "s->coded = s->mon = (struct exh_mean){0, 0};", ""),
     ("filter", L + "filter_low.c", "(int64_t)high_word(p) * c", "(int64_t)high_word(s->vel) * c"),
     ("filter", L + "filter_high.c", "+ HALF - pos;", "- pos;"),
     ("filter", L + "filter.c", "cfg->b = coefficient(b, n, 31);", "cfg->b = coefficient(b, n, 31) - 1;"),
@@ -132,7 +141,7 @@ def changed(where, module, source, old, new):
     with open(os.path.join(ROOT, source)) as f:
         text = f.read()
     if old not in text:
-        raise ValueError("not in %s: %s" % (source, old))
+        raise ValueError("not in %s, whoever changed that changes its mutant: %s" % (source, old))
     public = source.startswith(H)
     path = os.path.join(where, "exhand" if public else "", os.path.basename(source))
     os.makedirs(os.path.dirname(path), exist_ok=True)
