@@ -70,7 +70,17 @@ uint32_t exh_hand_joints(const struct exh_hand_map *map, unsigned finger,
 
 /* --- joints to the fingertip --- */
 
-/* Rows of length 1 and square to each other, to 1e-6 (2^-20). */
+/* Of rows that are: the third is the first two's product, and not its mirror image. */
+static int right_handed(const int32_t rot_q30[3][3])
+{
+    const int32_t *x = rot_q30[0], *y = rot_q30[1];
+    const int64_t z0 = exh_mul_shr(x[1], y[2], 30) - exh_mul_shr(x[2], y[1], 30);
+    const int64_t z1 = exh_mul_shr(x[2], y[0], 30) - exh_mul_shr(x[0], y[2], 30);
+    const int64_t z2 = exh_mul_shr(x[0], y[1], 30) - exh_mul_shr(x[1], y[0], 30);
+    return z0 * rot_q30[2][0] + z1 * rot_q30[2][1] + z2 * rot_q30[2][2] > 0;
+}
+
+/* Rows of length 1 and square to each other, to 1e-6 (2^-20), right-handed. */
 static int is_rotation(const int32_t rot_q30[3][3])
 {
     const int64_t tol_q60 = INT64_C(1) << 40;
@@ -84,7 +94,7 @@ static int is_rotation(const int32_t rot_q30[3][3])
             if (dot_q60 > tol_q60 || dot_q60 < -tol_q60) { return 0; }
         }
     }
-    return 1;
+    return right_handed(rot_q30);
 }
 
 static int bones_ok(const struct exh_hand_bones *b)

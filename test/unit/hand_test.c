@@ -129,7 +129,7 @@ TEST(setup_refuses)
     }
     CHECK_EQ_I64(exh_hand_setup(&f, &exh_hit2_bones[0], &good), 0);
     CHECK_EQ_I64(exh_hand_setup(&f, &exh_hit2_bones[0], &least), 0);
-    for (unsigned i = 0; i < 7; i++) {
+    for (unsigned i = 0; i < 8; i++) {
         struct exh_hand_bones b = exh_hit2_bones[EXH_THUMB];
         switch (i) {
         case 0: b.len_m_q34[1] = 0; break;
@@ -138,6 +138,9 @@ TEST(setup_refuses)
         case 3: b.base_m_q32[1] = INT32_MIN; break;
         case 4: b.base_m_q32[2] = EXH_Q(126, 1000, 32); break;
         case 5: b.rot_q30[1][1] = -b.rot_q30[1][1]; break;
+        case 6: /* a left hand's: mirrored */
+            for (unsigned c = 0; c < 3; c++) { b.rot_q30[1][c] = -b.rot_q30[1][c]; }
+            break;
         default: b.rot_q30[2][0] = INT32_MIN; break;
         }
         CHECK(exh_hand_setup(&f, &b, &good) == -EXH_E_RANGE, "bones %u", i);

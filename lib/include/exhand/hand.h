@@ -81,7 +81,7 @@ struct exh_hand_finger {
 };
 
 /* Set-up (divides); bones must outlive f. -EXH_E_RANGE: a parameter or a bone outside its range
- * above, rot no rotation (axes not of length 1 or not square to each other, within 1e-6), or
+ * above, rot no rotation (axes not of length 1 or not square to each other, within 1e-6, or left-handed), or
  * both arm1 and arm2 + arm3 so small that a metre of string would turn them by more than 250 rad:
  * arm1^2 + (arm2 + arm3)^2 below (4 mm)^2. */
 int exh_hand_setup(struct exh_hand_finger *f, const struct exh_hand_bones *bones,
