@@ -200,7 +200,7 @@ test:
 .PHONY: coverage
 coverage:
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(B)/test/sim/coverage_test
-	@EXH_CASES=10000000 test/run.sh $(B)/test/sim/coverage_test
+	@LIMIT=86400 EXH_CASES=10000000 test/run.sh $(B)/test/sim/coverage_test
 
 # Stiff and extreme cases, under sanitizers: a build of its own.
 stress_obj := $(patsubst %.c,$(B)/posix/%.o,$(wildcard test/stress/*.c))
@@ -220,7 +220,7 @@ stress:
 	@$(B)/san/test/stress
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(prop_bin)
 	@echo "laws at $(STRESS_CASES) random cases each, under sanitizers, dealt to $(STRESS_PARTS) processes:"
-	@EXH_CASES=$(STRESS_CASES) PARTS=$(STRESS_PARTS) JOBS=$$(nproc) test/run.sh $(prop_bin)
+	@LIMIT=86400 EXH_CASES=$(STRESS_CASES) PARTS=$(STRESS_PARTS) JOBS=$$(nproc) test/run.sh $(prop_bin)
 
 ## Make the golden vectors anew from the model of docs/NUMERICS.md (ARGS=--check: compare only)
 .PHONY: golden

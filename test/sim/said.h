@@ -8,6 +8,7 @@
 #include "cli/option.h"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -44,6 +45,7 @@ static inline pid_t said_start(const char *dir, int (*command)(int, char **),
     CHECK(pid >= 0, "no process");
     if (pid != 0) { return pid; }
     setpgid(0, 0);
+    signal(SIGINT, SIG_DFL); /* whoever runs in the background is given it ignored */
     snprintf(path[0], sizeof path[0], "%s/said.out", dir);
     snprintf(path[1], sizeof path[1], "%s/said.err", dir);
     if (!freopen(path[0], "w", stdout) || !freopen(path[1], "w", stderr)) { _exit(99); }
