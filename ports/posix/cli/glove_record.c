@@ -69,7 +69,8 @@ static int run_logged(const struct glove_options *o, const struct posix_config *
     frames = 0;
     err = exh_loop(&exh_scene_glove, 0, &hooks);
     if (err < 0) { return complain_loop(o, err); }
-    if (frames * every <= last_tick - last_tick / 4) { /* as set up, the filter has another cut-off */
+    /* As set up, the filter has another cut-off. */
+    if (frames * (int64_t)every <= (int64_t)last_tick - last_tick / 4) {
         cli_complain("%ld frames in %lu ticks: a scan takes longer than %ld: --set every=... says more",
                      frames, last_tick + 1ul, every);
     }
