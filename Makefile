@@ -252,6 +252,36 @@ $(B)/i686/golden/golden_test: $(golden_src) test/support.c $(lib_src) $(wildcard
 test-i686: $(plain_bin) $(B)/i686/golden/golden_test
 	@EXH_CASES=100000 test/run.sh $^
 
+# --- anything into the packet parser ------------------------------------------------------
+
+FUZZ_SECONDS ?= 30
+FUZZ_SEED    ?= 1
+FUZZER       ?= plain
+fuzz_src     := test/fuzz/wire_fuzz.c test/fuzz/driver.c
+
+$(B)/fuzz/plain: $(fuzz_src:%.c=$(B)/test/san/%.o) $(lib_src:%.c=$(B)/test/san/%.o)
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(san) -o $@ $^
+$(B)/fuzz/libfuzzer: test/fuzz/wire_fuzz.c $(lib_src) $(wildcard lib/include/exhand/*.h) $(stamp)
+	@mkdir -p $(@D)
+	$(Q)clang $(filter-out -MMD -MP,$(base)) -D_POSIX_C_SOURCE=200809L $(san) -fsanitize=fuzzer -o $@ $(filter %.c,$^)
+
+## Hostile packets, under sanitizers (FUZZ_SECONDS=30 FUZZ_SEED=1 FUZZER=plain or libfuzzer)
+.PHONY: fuzz
+fuzz:
+	@$(MAKE) --no-print-directory $(if $(V),,-s) $(B)/fuzz/plain $(B)/fuzz/$(FUZZER)
+	@$(B)/fuzz/plain --check test/fuzz/corpus
+ifeq ($(FUZZER),plain)
+	@cd $(B)/fuzz && $(abspath $(B))/fuzz/plain $(FUZZ_SECONDS) $(FUZZ_SEED) $(CURDIR)/test/fuzz/corpus
+else
+	@mkdir -p $(B)/fuzz/found && cd $(B)/fuzz && ./libfuzzer -max_total_time=$(FUZZ_SECONDS) -max_len=1024 \
+	    -print_final_stats=1 found $(CURDIR)/test/fuzz/corpus
+endif
+
+.PHONY: fuzz-corpus
+fuzz-corpus: $(B)/fuzz/plain
+	@$(B)/fuzz/plain --write test/fuzz/corpus
+
 # --- the same bits everywhere -----------------------------------------------------------
 
 # Host programs by other compilers, optimisations and for 32 bits: name, CC, flags.
@@ -297,6 +327,7 @@ check:
 	@$(MAKE) --no-print-directory test-i686
 	@$(MAKE) --no-print-directory golden ARGS="--check --every 40"
 	@$(MAKE) --no-print-directory mutants
+	@$(MAKE) --no-print-directory fuzz
 	@$(MAKE) --no-print-directory demo > $(B)/demo.txt && tail -n 40 $(B)/demo.txt
 	@$(MAKE) --no-print-directory $(variants:%=variant-%)
 	@$(MAKE) --no-print-directory $(patsubst %,golden-%,$(filter-out i686%,$(variants)))
@@ -324,7 +355,7 @@ size:
 
 # Objects as they are shipped: no sanitizer, no audit hook. Linked without debug information,
 # which not every valgrind reads of every compiler; its profile needs the symbols alone.
-bench_obj := $(patsubst %,$(B)/posix/test/bench/%.o,kernels measure number estimate force path law filter glove hand scene minimal)
+bench_obj := $(patsubst %,$(B)/posix/test/bench/%.o,kernels measure number estimate force path law filter glove hand precontact scene minimal)
 bench_bin := $(B)/bench/kernels $(B)/bench/velocity $(B)/bench/speed
 $(B)/posix/test/bench/kernels.o: PORT_HOSTFLAGS += -DBENCH_FLAGS='"-std=c99 -O$(O)$(if $(CFLAGS), $(CFLAGS))"'
 $(B)/bench/kernels: $(bench_obj) $(B)/posix/examples/drop/drop.o

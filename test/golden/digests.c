@@ -73,6 +73,12 @@ const uint32_t digest_angle[GOLDEN_RATES] = {
 const uint32_t digest_hand[GOLDEN_RATES] = {
 #include "digest/hand.inc"
 };
+const uint32_t digest_precontact[GOLDEN_RATES] = {
+#include "digest/precontact.inc"
+};
+const uint32_t digest_wire[GOLDEN_RATES] = {
+#include "digest/wire.inc"
+};
 const uint32_t digest_drop[GOLDEN_RATES] = {
 #include "digest/drop.inc"
 };

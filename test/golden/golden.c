@@ -137,6 +137,19 @@ struct exh_period golden_period(uint32_t rate_Hz, uint32_t k)
     return k < GOLDEN_AGAIN ? first : again;
 }
 
+struct golden_turn golden_any_turn(struct golden_rng *r)
+{
+    const int64_t p = golden_draw(r, 1, 50);
+    const int64_t q = golden_draw(r, 1, 50);
+    return (struct golden_turn){p * p - q * q, 2 * p * q, p * p + q * q};
+}
+
+int32_t golden_q30(int64_t n, int64_t d)
+{
+    const int64_t twice = n * (INT64_C(1) << 31) + d; /* floor, where C truncates */
+    return (int32_t)(twice / (2 * d) - (twice % (2 * d) < 0));
+}
+
 int32_t golden_step(struct golden_rng *r)
 {
     const int32_t um = 4398047;

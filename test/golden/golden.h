@@ -10,6 +10,7 @@
 #include "exhand/bytes.h"
 #include "exhand/drive.h"
 #include "exhand/glove.h"
+#include "exhand/signal.h"
 #include "exhand/units.h"
 
 #include "check.h"
@@ -86,6 +87,19 @@ void golden_drive_par(struct exh_drive_par *p, struct golden_rng *r, uint32_t ra
 
 /* The sensors of some calibration of a glove. */
 void golden_glove_sensors(struct exh_glove_cal *cal, struct golden_rng *r);
+
+/* Cosine and sine of some angle: c/d and s/d. */
+struct golden_turn {
+    int64_t c, s, d;
+};
+struct golden_turn golden_any_turn(struct golden_rng *r);
+
+/* n / d in q30, rounded half up. */
+int32_t golden_q30(int64_t n, int64_t d);
+
+/* The parameters of signal.c. */
+#define GOLDEN_VALUES 8
+extern const struct exh_signal_table golden_signals;
 
 /* An encoder step, m q42. */
 int32_t golden_step(struct golden_rng *r);

@@ -112,9 +112,11 @@ MODULE(glove);
 MODULE(glove_cal);
 MODULE(angle);
 MODULE(hand);
+MODULE(precontact);
+MODULE(wire);
 MODULE(drop);
 
 TEST_MAIN("golden", first_tick_that_differs_is_told, fix, bytes, record, signal, quad, quad_ab,
           velocity_window, velocity_pole, velocity_foaw, velocity_track, contact, table, drive,
           safety, calibrate, probe, home, weigh, filter, quantizer, glove, glove_cal, angle, hand,
-          drop);
+          precontact, wire, drop);

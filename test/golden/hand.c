@@ -41,36 +41,17 @@ static void any_joint(struct golden_rng *r, struct exh_hand_joint *j)
     j->hi_turn_q32 = (int32_t)golden_draw(r, 0, INT32_MAX);
 }
 
-/* Cosine and sine of some angle: c/d and s/d. */
-struct turn {
-    int64_t c, s, d;
-};
-
-static struct turn any_turn(struct golden_rng *r)
-{
-    const int64_t p = golden_draw(r, 1, 50);
-    const int64_t q = golden_draw(r, 1, 50);
-    return (struct turn){p * p - q * q, 2 * p * q, p * p + q * q};
-}
-
-/* n / d in q30, rounded half up. */
-static int32_t q30_of(int64_t n, int64_t d)
-{
-    const int64_t twice = n * (INT64_C(1) << 31) + d; /* floor, where C truncates */
-    return (int32_t)(twice / (2 * d) - (twice % (2 * d) < 0));
-}
-
 static void any_bones(struct golden_rng *r, struct exh_hand_bones *b)
 {
-    struct turn t;
-    struct turn u;
+    struct golden_turn t;
+    struct golden_turn u;
     for (int i = 0; i < 3; i++) { b->len_m_q34[i] = (int32_t)golden_draw(r, 1, 687194767); }
-    t = any_turn(r);
-    u = any_turn(r);
+    t = golden_any_turn(r);
+    u = golden_any_turn(r);
     const int64_t rot[3][3] = {{t.c * u.d, -t.s * u.c, t.s * u.s},
                                {t.s * u.d, t.c * u.c, -t.c * u.s},
                                {0, u.s * t.d, u.c * t.d}};
-    for (int i = 0; i < 9; i++) { b->rot_q30[i / 3][i % 3] = q30_of(rot[i / 3][i % 3], t.d * u.d); }
+    for (int i = 0; i < 9; i++) { b->rot_q30[i / 3][i % 3] = golden_q30(rot[i / 3][i % 3], t.d * u.d); }
     for (int i = 0; i < 3; i++) {
         b->base_m_q32[i] = (int32_t)golden_draw(r, -536870912, 536870912);
     }

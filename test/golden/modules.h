@@ -33,6 +33,8 @@ GOLDEN_MODULE(glove);
 GOLDEN_MODULE(glove_cal);
 GOLDEN_MODULE(angle);
 GOLDEN_MODULE(hand);
+GOLDEN_MODULE(precontact);
+GOLDEN_MODULE(wire);
 GOLDEN_MODULE(drop);
 
 #endif

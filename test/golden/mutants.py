@@ -118,6 +118,31 @@ MUTANTS = (
     ("hand", L + "hand.c", "v_m_q34.z, 32) + 3)", "v_m_q34.z, 32) + 2)"),
     ("hand", L + "hand.c", "+ den / 2, den", ", den"),
     ("hand", L + "hand.c", "exh_clamp(want, j->lo_turn_q32, j->hi_turn_q32)", "(int32_t)want"),
+    ("precontact", L + "precontact.c", "+ cfg->pad_m_q60 + HALF_Q60;", "+ cfg->pad_m_q60;"),
+    ("precontact", L + "precontact.c", "par->printed_sign ? -pad_m_q30 : pad_m_q30", "pad_m_q30"),
+    ("precontact", L + "precontact.c", "<= 2 * tol_q60", "<= 4 * tol_q60"),
+    ("precontact", L + "precontact.c", "left == 0 || now.object != s->newest.object", "left == 0"),
+    ("precontact", L + "precontact.c", "!is_same(&now, &s->held)", "!is_same(&now, &s->newest)"),
+    ("precontact", L + "precontact.c", "in->touching || s->d", "s->d"),
+    ("precontact", L + "precontact.c", "(int64_t)par->d_lim_m_q30 - par->hyst_m_q30", "(int64_t)par->d_lim_m_q30"),
+    ("precontact", L + "precontact.c", "s->phase == EXH_PRECONTACT_TRACK ? freeze(s, cfg) : be_inside(s)",
+     "freeze(s, cfg)"),
+    ("precontact", L + "precontact.c", "if (left == 0) { return bits | be_idle(s); }",
+     "if (s->left_ticks == 0) { return bits | be_idle(s); }"),
+    ("precontact", H + "fix.h", "exh_shr_round(y_q30, 13 - shift)", "(y_q30 >> (13 - shift))"),
+    ("precontact", L + "advise.c", "return quot + (rem > 0);", "return quot;"),
+    ("precontact", L + "advise.c", "age_ns + tick_ns", "age_ns"),
+    ("wire", L + "wire.c", "ahead - 1u < UINT32_C(0x7FFFFFFF)", "ahead < UINT32_C(0x80000000)"),
+    ("wire", L + "wire.c", "late >= WINDOW", "late >= WINDOW - 1"),
+    ("wire", L + "wire.c", "rx->missing--;", ""),
+    ("wire", L + "wire.c", "rx->seen = UINT64_MAX;", "rx->seen = 1;"),
+    ("wire", L + "wire.c", "h.session == rx->former", "0"),
+    ("wire", L + "wire.c", "h->session == 0 ||", ""),
+    ("wire", L + "wire.c", "h->version != EXH_WIRE_VERSION", "0"),
+    ("wire", L + "wire.c", "demand(c, p->kind <= EXH_PLANE_HIT);", ""),
+    ("wire", L + "wire.c", "s->fingers >> f & 1 ||", "1 ||"),
+    ("wire", L + "wire.c", "len_B != HEAD_B + h->len_B + CRC_B", "len_B < HEAD_B + h->len_B + CRC_B"),
+    ("wire", L + "wire.c", "(int16_t)result, p->seq", "(int16_t)result, p->stamp_us"),
     ("drop", X + "drop.c", "s->quad.lost ? EXH_FAULT_ENCODER : 0u", "0u"),
     ("drop", X + "drop.c", "limits |= exh_drive_current", "limits = exh_drive_current"),
     ("drop", X + "drop.c", "exh_velocity_window_mps_q27(&s->velocity, &cfg->velocity, cnt)",
@@ -125,7 +150,8 @@ MUTANTS = (
 )
 
 # Where the inline functions of a header are called for a module.
-CALLS = {"fix": "test/golden/basics.c", "velocity_window": VELOCITY, "table": DRIVE, "angle": L + "angle.c"}
+CALLS = {"fix": "test/golden/basics.c", "velocity_window": VELOCITY, "table": DRIVE, "angle": L + "angle.c",
+         "precontact": L + "precontact.c"}
 
 
 def objects_but(original):

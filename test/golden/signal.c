@@ -14,9 +14,9 @@ static const struct exh_signal more_rows[] = {
     {0x7102, 30, EXH_WHEN_ANY, -1000, 1000, 0, "free", "", ""},
 };
 static const struct exh_signal_group groups[] = {{some_rows, 3, 2}, {more_rows, 2, 1}};
-static const struct exh_signal_table table = {groups, 2};
+const struct exh_signal_table golden_signals = {groups, 2};
 
-#define VALUES  8
+#define VALUES  GOLDEN_VALUES
 #define IMAGE_B (12 + 4 * VALUES + 4)
 
 static int64_t raw_of(struct golden_rng *r, const struct exh_signal *row)
@@ -46,7 +46,7 @@ static void one(struct golden *g, struct golden_rng *r, struct exh_params *p)
     uint16_t instance;
     uint32_t bad = 0;
     const struct exh_signal *row =
-        exh_signal_at(&table, (uint32_t)golden_draw(r, 0, VALUES - 1), &instance);
+        exh_signal_at(&golden_signals, (uint32_t)golden_draw(r, 0, VALUES - 1), &instance);
     uint16_t id = row->id;
     int64_t raw;
     int load = 0;
@@ -79,10 +79,10 @@ void golden_signal(struct golden *g, uint32_t rate_Hz)
     struct exh_params p;
     int32_t active[VALUES];
     int32_t staged[VALUES];
-    CHECK_EQ_I64(exh_signal_count(&table), VALUES);
+    CHECK_EQ_I64(exh_signal_count(&golden_signals), VALUES);
     while (g->tick < GOLDEN_TICKS) {
         if (g->tick == 0 || g->tick == GOLDEN_AGAIN) {
-            exh_params_init(&p, &table, active, staged);
+            exh_params_init(&p, &golden_signals, active, staged);
         }
         p.locked = g->tick >> 2 & 1;
         one(g, &r, &p);

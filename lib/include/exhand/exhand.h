@@ -8,6 +8,8 @@
  *   hand                         the glove's angles to the robot hand's joints and fingertips
  *   quad -> velocity -> contact -> drive -> safety (the gate)      one tick
  *   filter, quantizer            glove voltages to codes that stand still
+ *   precontact                   the virtual contact q_lim, frozen before it is felt
+ *   wire                         packets between controller and world
  *   calibrate, probe             tables of the box, and the motions that measure them
  *   record                       log and replay
  *   board                        what a port provides; only the loop calls it
@@ -34,6 +36,7 @@
 #include "exhand/fix.h"
 #include "exhand/glove.h"
 #include "exhand/hand.h"
+#include "exhand/precontact.h"
 #include "exhand/probe.h"
 #include "exhand/quad.h"
 #include "exhand/quantizer.h"
@@ -42,5 +45,6 @@
 #include "exhand/signal.h"
 #include "exhand/units.h"
 #include "exhand/velocity.h"
+#include "exhand/wire.h"
 
 #endif

@@ -12,6 +12,7 @@
 #define EXHAND_HAND_H
 
 #include "exhand/signal.h"
+#include "exhand/units.h"
 
 #include <stdint.h>
 
@@ -52,10 +53,6 @@ uint32_t exh_hand_joints(const struct exh_hand_map *map, unsigned finger,
                          const int32_t *sensor_turn_q32, int32_t *joint_turn_q32);
 
 /* --- joints to the fingertip --- */
-
-struct exh_vec3 {
-    int32_t x, y, z;
-};
 
 /* One finger as it is built, in the frame of the palm. */
 struct exh_hand_bones {

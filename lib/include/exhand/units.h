@@ -49,6 +49,11 @@ struct exh_period {
     uint32_t den; /* num/den within 50 us .. 1 s                               */
 };
 
+/* A point or a direction; which, and its unit and format, is in the name of the value. */
+struct exh_vec3 {
+    int32_t x, y, z;
+};
+
 /* 1 if it is within that range, but for the 1000 ppm by which a timer may miss it: what
  * the loop and a replay ask before they start. */
 static inline int exh_period_ok(struct exh_period T)

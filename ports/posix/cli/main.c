@@ -12,6 +12,7 @@ static const struct {
     const char *name, *what;
     int (*run)(int argc, char **argv);
 } command[] = {
+    {"advise", "how far before contact to freeze q_lim, how far to look", cli_advise},
     {"calibrate", "known masses, F0 and home: tables of force and current; or --glove, poses", cli_calibrate},
     {"drop", "the paper's falling-mass experiment on the simulated device", cli_drop},
     {"fit", "a plant that does what the paper's device did, by every reading", cli_fit},
@@ -44,9 +45,9 @@ int main(int argc, char **argv)
         }
     }
     if (strcmp(name, "--version") == 0) {
-        printf("exhand %d.%d.%d, record %d, board %d, parameters %d, calibration %d, of the glove %d\n", EXH_VERSION_MAJOR,
+        printf("exhand %d.%d.%d, record %d, board %d, parameters %d, calibration %d, of the glove %d, wire %d\n", EXH_VERSION_MAJOR,
                EXH_VERSION_MINOR, EXH_VERSION_PATCH, EXH_RECORD_VERSION, EXH_BOARD_VERSION,
-               EXH_PARAMS_VERSION, EXH_CALIB_VERSION, EXH_GLOVE_CAL_VERSION);
+               EXH_PARAMS_VERSION, EXH_CALIB_VERSION, EXH_GLOVE_CAL_VERSION, EXH_WIRE_VERSION);
         return cli_finish(0);
     }
     if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) {

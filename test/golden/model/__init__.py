@@ -1,9 +1,9 @@
 """The modules that have golden vectors: {name: (columns, run(rate) -> (row, state) a tick)}."""
 
-from . import (basics, calibrate, contact, drive, drop, filter, glove, glove_cal, hand, probe, quad, safety,
-               signal, velocity)
+from . import (basics, calibrate, contact, drive, drop, filter, glove, glove_cal, hand, precontact, probe, quad,
+               safety, signal, velocity, wire)
 
 MODULES = {}
 for part in (basics, signal, quad, velocity, contact, drive, safety, calibrate, filter, glove, glove_cal, hand,
-             drop, probe):
+             precontact, wire, drop, probe):
     MODULES.update(part.MODULES)

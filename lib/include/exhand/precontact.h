@@ -1,0 +1,195 @@
+/* Pre-contact: where the string will be when the finger touches, frozen before it does
+ * (the paper's eq. 2 and 3).
+ *
+ * The world tells one plane per finger, late and irregularly. In every tick the distance
+ * d = (P_C - P_F).n + t is computed here, negative before contact and 0 at touch, and
+ * while d < d_lim the virtual contact moves along: q_lim = q - s*d. From the first tick
+ * with d >= d_lim on, q_lim, the plane and the material stay as they are, whatever the
+ * world says, until the finger has left: the contact law touches no more and
+ * d < d_lim - hyst.
+ *
+ * Where no contact can be, q_lim is EXH_PRECONTACT_NEVER, which no string reaches. That
+ * is so when
+ *   - no plane has come yet, or the world said that there is none (no hit);
+ *   - the plane is older than age_max (only while q_lim moves along; a frozen one does
+ *     not age);
+ *   - the plane was born at d >= d_lim: it is new (the first, of another object than the
+ *     one before, or come while the finger was frozen) and d < d_lim has not been
+ *     seen with it. An object that appears around a finger, or is thrown onto it, gives no
+ *     force until the finger has left it once.
+ * A plane whose normal is no unit vector, or whose material does not exist, is refused: as
+ * if it had not come. What happened is counted, and is in the bits of every tick.
+ */
+#ifndef EXHAND_PRECONTACT_H
+#define EXHAND_PRECONTACT_H
+
+#include "exhand/bytes.h"
+#include "exhand/signal.h"
+#include "exhand/units.h"
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define EXH_PRECONTACT_NEVER INT32_MAX /* q_lim, m, q30: 2 m of string             */
+
+/* --- what the world tells --- */
+
+enum exh_plane_kind {
+    EXH_PLANE_UNTOLD, /* nothing about this finger                             */
+    EXH_PLANE_NONE,   /* the ray hit nothing                                   */
+    EXH_PLANE_HIT
+};
+
+/* For one finger, in the frame of the palm, which is the paper's {R}. Canonical is the plane
+ * of which `point` is the point nearest the origin, computed once per object: all messages
+ * about one plane are then the same bits, and so is the force. Any other point of the plane is
+ * taken as well, at an error of <= 1 LSB of d. */
+struct exh_plane {
+    uint8_t kind;     /* enum exh_plane_kind                                   */
+    uint8_t material; /* index                                                 */
+    uint16_t object;  /* whose surface: another number is another object       */
+    struct exh_vec3 normal_q30;  /* outward, of length 1 within 2^-17          */
+    struct exh_vec3 point_m_q30; /* any values                                 */
+};
+
+/* --- parameters --- */
+
+/* One material; rows in exh_material_rows[]. Taken at the freeze, so a change never
+ * reaches a contact that is there. */
+struct exh_material_par {
+    int32_t k_Npm_q10;   /* stiffness, N/m, 0 .. 10^6                          */
+    int32_t b_Nspm_q20;  /* damping, Ns/m, 0 .. 1000                           */
+    int32_t f_max_N_q20; /* its force limit, N, 0 .. 100; the drive's holds too */
+};
+#define EXH_MATERIAL_ROWS 3
+extern const struct exh_signal exh_material_rows[EXH_MATERIAL_ROWS];
+
+/* One finger; rows in exh_precontact_rows[]. */
+struct exh_precontact_par {
+    int32_t d_lim_m_q30;  /* freeze at d >= d_lim, m, -0.2 .. -10^-4            */
+    int32_t hyst_m_q30;   /* release at d < d_lim - hyst, m, 0 .. 0.05          */
+    int32_t scale_q24;    /* s: string metres per fingertip metre, 1/8 .. 8     */
+    int32_t from_slope;   /* 1: s from the fingertip's slope along the string
+                             instead, limited to 1/8 .. 8                      */
+    int32_t printed_sign; /* 1: d = (P_C - P_F).n - t, as the paper prints it   */
+    int32_t age_max_ms;   /* an older plane is none, ms, 1 .. 60000             */
+};
+#define EXH_PRECONTACT_ROWS 6
+extern const struct exh_signal exh_precontact_rows[EXH_PRECONTACT_ROWS];
+
+struct exh_precontact_cfg {
+    const struct exh_precontact_par *par; /* read at every tick                */
+    const struct exh_material_par *material;
+    int64_t pad_m_q60; /* t with its sign                                      */
+    uint32_t age_ticks;
+    uint8_t materials;
+};
+
+/* --- one finger --- */
+
+/* A plane as the tick uses it: n.P_C + t is what matters of its point. */
+struct exh_precontact_plane {
+    int64_t offset_m_q60;       /* and half an LSB of d                        */
+    struct exh_vec3 normal_q30; /* (0, 0, 0): no plane                         */
+    uint16_t object;
+    uint8_t material;
+};
+
+enum exh_precontact_phase {
+    EXH_PRECONTACT_IDLE,   /* no plane, or too old                             */
+    EXH_PRECONTACT_INSIDE, /* born at d >= d_lim                               */
+    EXH_PRECONTACT_TRACK,  /* q_lim moves along                                */
+    EXH_PRECONTACT_FROZEN  /* q_lim stands                                     */
+};
+
+/* A state of zeros is a finger that has been told nothing. The first four are the
+ * results of exh_precontact_step(). */
+struct exh_precontact {
+    int32_t d_m_q30;                /* INT32_MIN: there is no plane             */
+    int32_t lim_m_q30;              /* q_lim                                    */
+    struct exh_material_par taken;  /* at the last freeze; zeros before         */
+    uint8_t phase;                  /* enum exh_precontact_phase                */
+    struct exh_precontact_plane newest, held; /* told last; frozen              */
+    uint32_t left_ticks; /* until the newest is too old                         */
+    uint32_t frozen_n;   /* freezes; this and the counts below modulo 2^32      */
+    uint32_t born_n;     /* planes born at d >= d_lim                           */
+    uint32_t refused_n;  /* normal no unit vector, or no such material          */
+    uint32_t ignored_n;  /* told while frozen, and not what was frozen          */
+    uint32_t stale_n;    /* became too old while q_lim moved along              */
+};
+
+struct exh_precontact_in {
+    struct exh_vec3 tip_m_q30; /* P_F, of exh_hand_tip(); any values            */
+    struct exh_vec3 slope_q24; /* of exh_hand_tip_slope(); read with from_slope only */
+    int32_t pos_m_q30;         /* q, the same that the contact law gets         */
+    uint8_t touching;          /* what the contact law returned last            */
+};
+
+/* What a tick did. None of the first four: there is no plane. */
+enum exh_precontact_bit {
+    EXH_PRECONTACT_STANDS = 1u << 0,  /* phase FROZEN                           */
+    EXH_PRECONTACT_TRACKS = 1u << 1,  /* phase TRACK                            */
+    EXH_PRECONTACT_AROUND = 1u << 2,  /* phase INSIDE                           */
+    EXH_PRECONTACT_STALE = 1u << 3,   /* phase IDLE: the newest plane is too old */
+    EXH_PRECONTACT_BENT = 1u << 4,    /* s was limited: string and approach do not fit */
+    EXH_PRECONTACT_FREEZE = 1u << 5,  /* frozen in this tick: `taken` is new    */
+    EXH_PRECONTACT_RELEASE = 1u << 6  /* released in this tick: the newest plane counts again,
+                                         as one that has just come             */
+};
+
+/* Set-up (divides); par and the materials must outlive cfg. pad_m_q30: the pad's radius t,
+ * m, 0 .. 25 mm (exh_hand_par has it). -EXH_E_RANGE: a parameter outside its range above, or no
+ * material, or more than 255. Pad and its sign are those of planes told afterwards. */
+int exh_precontact_setup(struct exh_precontact_cfg *cfg, const struct exh_precontact_par *par,
+                         const struct exh_material_par *material, unsigned materials,
+                         int32_t pad_m_q30, struct exh_period T);
+
+/* What a message tells about this finger, age_ticks old; before the step of the tick. A frozen
+ * finger's q_lim, material, distance and release do not depend on it. 0, or -EXH_E_RANGE for a
+ * plane refused. */
+int exh_precontact_tell(struct exh_precontact *s, const struct exh_precontact_cfg *cfg,
+                        const struct exh_plane *plane, uint32_t age_ticks);
+
+/* One tick; call before the contact law and give it lim_m_q30. d is exact but for its one
+ * rounding (1/2 LSB) and saturates at +-2 m; q_lim is within 1/2 LSB of q - s*d, and s of the
+ * slope within 2^-25 + 2^-28*s; it saturates. Returns bits. With the law's own q, no input
+ * makes the law touch before the freeze, but for q at the format's end, 2 m. */
+uint32_t exh_precontact_step(struct exh_precontact *s, const struct exh_precontact_cfg *cfg,
+                             const struct exh_precontact_in *in);
+
+/* State through a cursor; what was read is brought back into range. */
+void exh_precontact_bytes(struct exh_bytes *c, struct exh_precontact *s);
+
+/* --- how far off to freeze, how far to look --- */
+
+struct exh_precontact_need {
+    int32_t speed_mps_q27;  /* fastest approach, m/s, 0 .. 16                   */
+    int32_t lag_us;         /* of the fingertip behind the string: glove frame, filter */
+    int32_t noise_m_q30;    /* of d, peak, m                                    */
+    int32_t age_us;         /* oldest the newest plane may be: frame + latency + jitter */
+    int32_t object_mps_q27; /* speed of the object (or of the hand's base in the world), m/s */
+    int32_t slide_m_q30;    /* tangential way from where the plane was taken to the contact, m */
+    int32_t radius_m_q30;   /* of the object's surface, m; 0: plane              */
+};
+struct exh_precontact_advice {
+    int32_t d_lim_m_q30;   /* freeze no nearer than this: -(v*(T + lag) + noise) */
+    int32_t ray_m_q30;     /* look at least this far: |d_lim| + v*(T + age) + noise */
+    int32_t error_m_q30;   /* of q_lim/s at the freeze: v_object*age + slide^2 / (2*radius) */
+    int32_t speed_mps_q27; /* fastest approach that the d_lim asked about allows */
+};
+
+/* Set-up or host (divides). d_lim_m_q30, < 0: the one to be judged, of which ray and speed are
+ * told; it is too small if it is above advice->d_lim_m_q30. All rounded to the safe side, the
+ * first within 2 LSB and 1 ns of motion. -EXH_E_RANGE: a need below 0, lag or age above 2 s,
+ * d_lim not below 0, or an answer beyond 2 m or 16 m/s (the speed stands at 16 m/s instead). */
+int exh_precontact_advise(struct exh_precontact_advice *advice,
+                          const struct exh_precontact_need *need, struct exh_period T,
+                          int32_t d_lim_m_q30);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,163 @@
+/* Wire: the packets between a controller and the world it feels (docs/WIRE.md).
+ *
+ * A packet may be lost, late, twice, out of order or damaged; nothing is sent again but
+ * parameters, by who set them. So each stands alone, and a receiver takes it only if it is
+ * newer than all before. Little-endian, byte by byte:
+ *
+ *    0  u16 magic 0x5758    2  u8 version    3  u8 type    4  u16 payload length
+ *    6  u32 session        10  u32 sequence 14  u32 time stamp, us
+ *   18  payload            then u32 CRC of all before
+ */
+#ifndef EXHAND_WIRE_H
+#define EXHAND_WIRE_H
+
+#include "exhand/bytes.h"
+#include "exhand/precontact.h"
+#include "exhand/signal.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define EXH_WIRE_VERSION  1
+#define EXH_WIRE_MAGIC    0x5758u
+#define EXH_WIRE_FINGERS  5
+#define EXH_WIRE_OVERHEAD 22  /* bytes around a payload                          */
+#define EXH_WIRE_MAX_B    256 /* no packet is longer                             */
+#define EXH_WIRE_NEVER_MS 65535u
+
+enum exh_wire_type {
+    EXH_WIRE_HELLO = 1, /* a sender's first packet, then now and then          */
+    EXH_WIRE_STATE = 2, /* controller -> world, one an exchange                */
+    EXH_WIRE_PLANES = 3, /* world -> controller, answers it                    */
+    EXH_WIRE_PARAM = 4, /* world -> controller: set a parameter                */
+    EXH_WIRE_ACK = 5    /* controller -> world: it was, or why not             */
+};
+
+enum exh_wire_role { EXH_WIRE_CONTROLLER, EXH_WIRE_WORLD };
+
+/* --- payloads; arrays by finger, thumb first; vectors x y z in the palm's frame --- */
+
+struct exh_wire_hello {
+    uint8_t role;         /* enum exh_wire_role                                */
+    uint32_t lib_version; /* EXH_VERSION_NUMBER                                */
+    uint32_t table_crc;   /* exh_signal_crc() of the parameters; 0: has none   */
+};
+
+struct exh_wire_state {
+    uint32_t tick;
+    uint8_t fingers;  /* mask: in use                                          */
+    uint8_t state;    /* enum exh_state                                        */
+    uint8_t frozen;   /* mask                                                  */
+    uint8_t touching; /* mask                                                  */
+    uint16_t age_ms;  /* of the newest planes; EXH_WIRE_NEVER_MS: never or longer */
+    uint32_t faults;  /* enum exh_fault                                        */
+    int32_t joint_turn_q32[EXH_WIRE_FINGERS][3]; /* theta: q0, q1, q2          */
+    int32_t tip_m_q30[EXH_WIRE_FINGERS][3];      /* P_F                        */
+    int32_t force_N_q20[EXH_WIRE_FINGERS];
+    int32_t d_m_q30[EXH_WIRE_FINGERS];
+    int32_t q_m_q30[EXH_WIRE_FINGERS];
+    int32_t q_lim_m_q30[EXH_WIRE_FINGERS];
+};
+
+struct exh_wire_plane {
+    uint8_t kind;           /* enum exh_plane_kind                             */
+    uint8_t material;       /* index                                           */
+    uint16_t object;        /* whose surface                                   */
+    int32_t normal_q30[3];  /* outward, of length 1                            */
+    int32_t point_m_q30[3]; /* the plane's point nearest the origin            */
+    int32_t hit_m_q30[3];   /* P_C, for drawing: the controller does not use it */
+};
+struct exh_wire_planes {
+    uint32_t echo_seq;      /* of the state answered, and its time stamp: the sender */
+    uint32_t echo_stamp_us; /* subtracts it from its clock and has the round trip  */
+    uint8_t fingers;        /* mask: told of; of the others kind is UNTOLD     */
+    struct exh_wire_plane plane[EXH_WIRE_FINGERS];
+};
+
+struct exh_wire_param {
+    uint16_t id, instance; /* as in the signal table                           */
+    int32_t value;         /* raw                                              */
+};
+struct exh_wire_ack {
+    struct exh_wire_param param; /* as asked                                   */
+    int16_t result;              /* 0: staged, applied between ticks; or -EXH_E_... */
+    uint32_t request_seq;
+};
+
+struct exh_wire_packet {
+    uint8_t type;
+    uint32_t seq, stamp_us;
+    union {
+        struct exh_wire_hello hello;
+        struct exh_wire_state state;
+        struct exh_wire_planes planes;
+        struct exh_wire_param param;
+        struct exh_wire_ack ack;
+    } u;
+};
+
+/* --- sending --- */
+
+struct exh_wire_tx {
+    uint32_t session; /* not 0; another at every start: of a clock, or a counter that survives */
+    uint32_t seq;     /* of the next packet, modulo 2^32                       */
+};
+
+/* Writes p (type and payload; seq and stamp_us are set here and left in p). Bytes written, or, in
+ * this order, -EXH_E_UNKNOWN (no such type), -EXH_E_RANGE (session 0, or a role, kind or mask
+ * that no receiver would take), -EXH_E_SHORT (cap_B too small; EXH_WIRE_MAX_B never is); then
+ * nothing is used up but what buf held. */
+int32_t exh_wire_write(struct exh_wire_tx *tx, struct exh_wire_packet *p, uint32_t stamp_us,
+                       void *buf, size_t cap_B);
+
+/* --- receiving --- */
+
+/* All zeros at first. Every packet raises exactly one of the counters, all but `missing`; modulo
+ * 2^32. */
+struct exh_wire_rx {
+    uint64_t seen;            /* bit k: seq - k came, or was before the HELLO  */
+    uint32_t seq;             /* newest accepted                               */
+    uint32_t session, former; /* the peer's, the one before it; 0: none         */
+    uint32_t accepted;
+    uint32_t missing;   /* sequence numbers skipped, less those that came late: lost */
+    uint32_t duplicate; /* came before, or was sent before its session's HELLO  */
+    uint32_t reordered; /* late: a newer one had come                          */
+    uint32_t old;       /* more than 63 late, or of the session before         */
+    uint32_t stranger;  /* of a session that has not said HELLO                */
+    uint32_t corrupt;   /* magic, length, CRC, or a value that cannot be       */
+    uint32_t version;   /* another than ours                                   */
+    uint32_t unknown;   /* type                                                */
+};
+
+/* One datagram. Its type, > 0, when it was accepted: only then *p is written, and more changes
+ * than a counter (and, of a reordered one, that it came). Else -EXH_E_SHORT, -EXH_E_CRC (also
+ * a value that cannot be), -EXH_E_VERSION, -EXH_E_UNKNOWN, -EXH_E_STATE (stranger),
+ * -EXH_E_STALE (duplicate, reordered, old). A HELLO of a new session is taken whatever its
+ * sequence number: the peer has started anew. Reads len_B bytes at most. */
+int exh_wire_take(struct exh_wire_rx *rx, struct exh_wire_packet *p, const void *buf,
+                  size_t len_B);
+
+/* The plane of one finger as precontact wants it. */
+struct exh_plane exh_wire_plane_of(const struct exh_wire_planes *planes, unsigned finger);
+
+/* What a PARAM packet asks for, staged; the answer to it. The loop applies between ticks. */
+struct exh_wire_ack exh_wire_stage(struct exh_params *params, const struct exh_wire_packet *p);
+
+/* Newest time of an exchange, us: now less the stamp that came back. */
+static inline uint32_t exh_wire_trip_us(uint32_t now_us, const struct exh_wire_planes *planes)
+{
+    return now_us - planes->echo_stamp_us;
+}
+
+/* State through a cursor: what a controller keeps of its link. */
+void exh_wire_tx_bytes(struct exh_bytes *c, struct exh_wire_tx *s);
+void exh_wire_rx_bytes(struct exh_bytes *c, struct exh_wire_rx *s);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,253 @@
+#include "exhand/precontact.h"
+
+#include "exhand/error.h"
+#include "exhand/fix.h"
+
+#define MATERIALS_MAX 255u
+#define PAD_MAX_M_Q30 EXH_Q(25, 1000, EXH_Q_POS)
+#define HALF_Q60      (INT64_C(1) << 29) /* of an LSB of d: rounds it half up */
+#define SCALE_MIN_Q24 (INT32_C(1) << 21)
+#define SCALE_MAX_Q24 (INT32_C(1) << 27)
+
+const struct exh_signal exh_material_rows[EXH_MATERIAL_ROWS] = {
+    {0x0B01, EXH_Q_K, EXH_WHEN_ANY, 0, EXH_Q(1000000, 1, EXH_Q_K), EXH_Q(20000, 1, EXH_Q_K),
+     "mat_k", "n_per_m", "stiffness of the material"},
+    {0x0B02, EXH_Q_B, EXH_WHEN_ANY, 0, EXH_Q(1000, 1, EXH_Q_B), EXH_Q(60, 1, EXH_Q_B), "mat_b",
+     "ns_per_m", "damping of the material"},
+    {0x0B03, EXH_Q_FORCE, EXH_WHEN_ANY, 0, EXH_Q(100, 1, EXH_Q_FORCE), EXH_Q(12, 1, EXH_Q_FORCE),
+     "mat_f_max", "n", "force limit of the material"},
+};
+
+const struct exh_signal exh_precontact_rows[EXH_PRECONTACT_ROWS] = {
+    {0x0C01, EXH_Q_POS, EXH_WHEN_ANY, -EXH_Q(2, 10, EXH_Q_POS), -EXH_Q(1, 10000, EXH_Q_POS),
+     -EXH_Q(45, 10000, EXH_Q_POS), "d_lim", "m", "q_lim is frozen at this distance, < 0"},
+    {0x0C02, EXH_Q_POS, EXH_WHEN_ANY, 0, EXH_Q(5, 100, EXH_Q_POS), EXH_Q(1, 1000, EXH_Q_POS),
+     "d_hyst", "m", "released this far before d_lim"},
+    {0x0C03, 24, EXH_WHEN_ANY, SCALE_MIN_Q24, SCALE_MAX_Q24, INT32_C(1) << 24, "string_per_tip", "",
+     "string metres per fingertip metre"},
+    {0x0C04, 0, EXH_WHEN_ANY, 0, 1, 0, "string_from_slope", "", "1: that of the joints instead"},
+    {0x0C05, 0, EXH_WHEN_SETUP, 0, 1, 0, "d_printed", "", "1: the sign of the pad as printed"},
+    {0x0C06, 0, EXH_WHEN_SETUP, 1, 60000, 2000, "age_max", "ms", "an older plane is none"},
+};
+
+/* n values of parameters against their rows: those in ROM have passed no other check. */
+static int in_rows(const struct exh_signal *row, const int32_t *v, int n)
+{
+    for (int i = 0; i < n; i++) {
+        if (v[i] < row[i].min || v[i] > row[i].max) { return 0; }
+    }
+    return 1;
+}
+
+int exh_precontact_setup(struct exh_precontact_cfg *cfg, const struct exh_precontact_par *par,
+                         const struct exh_material_par *material, unsigned materials,
+                         int32_t pad_m_q30, struct exh_period T)
+{
+    if (materials < 1 || materials > MATERIALS_MAX || pad_m_q30 < 0 || pad_m_q30 > PAD_MAX_M_Q30 ||
+        T.num == 0 || !in_rows(exh_precontact_rows, &par->d_lim_m_q30, EXH_PRECONTACT_ROWS)) {
+        return -EXH_E_RANGE;
+    }
+    for (unsigned i = 0; i < materials; i++) {
+        if (!in_rows(exh_material_rows, &material[i].k_Npm_q10, EXH_MATERIAL_ROWS)) {
+            return -EXH_E_RANGE;
+        }
+    }
+    cfg->par = par;
+    cfg->material = material;
+    cfg->materials = (uint8_t)materials;
+    cfg->pad_m_q60 =
+        (int64_t)(par->printed_sign ? -pad_m_q30 : pad_m_q30) * (INT64_C(1) << EXH_Q_POS);
+    /* At 20 kHz and a minute 1.2 million: far from any end. */
+    cfg->age_ticks = (uint32_t)exh_udiv64((uint64_t)(uint32_t)par->age_max_ms * T.den,
+                                          UINT64_C(1000) * T.num, NULL) +
+                     1;
+    return 0;
+}
+
+/* --- planes --- */
+
+static int64_t dot(const struct exh_vec3 *a, const struct exh_vec3 *b)
+{
+    return (int64_t)a->x * b->x + (int64_t)a->y * b->y + (int64_t)a->z * b->z;
+}
+
+/* | |n|^2 - 1 | <= 2^-16: from there on no product with any vector overflows, and d at 5 mm
+ * is right within 0.04 um. A normal of float has 2^-23. */
+static int is_unit(const struct exh_vec3 *n_q30)
+{
+    const uint64_t one_q60 = UINT64_C(1) << 60, tol_q60 = UINT64_C(1) << 44;
+    const uint64_t square_q60 = (uint64_t)((int64_t)n_q30->x * n_q30->x) +
+                                (uint64_t)((int64_t)n_q30->y * n_q30->y) +
+                                (uint64_t)((int64_t)n_q30->z * n_q30->z);
+    return square_q60 - (one_q60 - tol_q60) <= 2 * tol_q60;
+}
+
+static int is_same(const struct exh_precontact_plane *a, const struct exh_precontact_plane *b)
+{
+    return a->offset_m_q60 == b->offset_m_q60 && a->normal_q30.x == b->normal_q30.x &&
+           a->normal_q30.y == b->normal_q30.y && a->normal_q30.z == b->normal_q30.z &&
+           a->object == b->object && a->material == b->material;
+}
+
+int exh_precontact_tell(struct exh_precontact *s, const struct exh_precontact_cfg *cfg,
+                        const struct exh_plane *plane, uint32_t age_ticks)
+{
+    struct exh_precontact_plane now = {0, {0, 0, 0}, 0, 0};
+    uint32_t left = 0;
+    if (plane->kind == EXH_PLANE_UNTOLD) { return 0; }
+    if (plane->kind != EXH_PLANE_NONE) {
+        if (plane->kind != EXH_PLANE_HIT || plane->material >= cfg->materials ||
+            !is_unit(&plane->normal_q30)) {
+            s->refused_n++;
+            return -EXH_E_RANGE;
+        }
+        now.normal_q30 = plane->normal_q30;
+        now.offset_m_q60 = dot(&plane->normal_q30, &plane->point_m_q30) + cfg->pad_m_q60 + HALF_Q60;
+        now.object = plane->object;
+        now.material = plane->material;
+        left = age_ticks < cfg->age_ticks ? cfg->age_ticks - age_ticks : 0;
+    }
+    if (s->phase == EXH_PRECONTACT_FROZEN) {
+        s->ignored_n += !is_same(&now, &s->held);
+    } else if (left == 0 || now.object != s->newest.object) {
+        s->phase = EXH_PRECONTACT_IDLE;
+    }
+    s->newest = now;
+    s->left_ticks = left;
+    return 0;
+}
+
+/* --- the tick --- */
+
+static int32_t distance_m_q30(const struct exh_precontact_plane *p, const struct exh_vec3 *tip)
+{
+    return exh_sat32((p->offset_m_q60 - dot(&p->normal_q30, tip)) >> EXH_Q_POS);
+}
+
+/* s with the string's own slope: as q goes on by 1, d does by -(n.slope), and d has to go
+ * by -d. A finger that does not approach gets the end of the range. */
+static int32_t scale_of_slope(const struct exh_vec3 *normal_q30, const struct exh_vec3 *slope_q24,
+                              uint32_t *bits)
+{
+    const int64_t g_q24 = exh_shr_round(-dot(normal_q30, slope_q24), 30);
+    const int32_t kept_q24 = exh_clamp(g_q24, SCALE_MIN_Q24, SCALE_MAX_Q24);
+    if (kept_q24 != g_q24) { *bits |= EXH_PRECONTACT_BENT; }
+    return exh_recip_q24(kept_q24);
+}
+
+static uint32_t track(struct exh_precontact *s, const struct exh_precontact_par *par,
+                      const struct exh_precontact_in *in)
+{
+    uint32_t bits = EXH_PRECONTACT_TRACKS;
+    const int32_t scale_q24 = par->from_slope
+                                  ? scale_of_slope(&s->newest.normal_q30, &in->slope_q24, &bits)
+                                  : par->scale_q24;
+    s->lim_m_q30 = exh_clamp(in->pos_m_q30 - exh_mul_shr(scale_q24, s->d_m_q30, 24), INT32_MIN,
+                             EXH_PRECONTACT_NEVER);
+    s->phase = EXH_PRECONTACT_TRACK;
+    return bits;
+}
+
+/* q_lim stays what it was in the tick before. */
+static uint32_t freeze(struct exh_precontact *s, const struct exh_precontact_cfg *cfg)
+{
+    const uint8_t m = s->newest.material;
+    s->held = s->newest;
+    s->taken = cfg->material[m < cfg->materials ? m : 0]; /* restored by another set-up */
+    s->frozen_n++;
+    s->phase = EXH_PRECONTACT_FROZEN;
+    return EXH_PRECONTACT_STANDS | EXH_PRECONTACT_FREEZE;
+}
+
+static uint32_t be_inside(struct exh_precontact *s)
+{
+    s->born_n += s->phase != EXH_PRECONTACT_INSIDE;
+    s->lim_m_q30 = EXH_PRECONTACT_NEVER;
+    s->phase = EXH_PRECONTACT_INSIDE;
+    return EXH_PRECONTACT_AROUND;
+}
+
+static uint32_t be_idle(struct exh_precontact *s)
+{
+    const struct exh_vec3 *n = &s->newest.normal_q30;
+    const int stale = (n->x | n->y | n->z) != 0;
+    s->stale_n += stale && s->phase == EXH_PRECONTACT_TRACK;
+    s->d_m_q30 = INT32_MIN;
+    s->lim_m_q30 = EXH_PRECONTACT_NEVER;
+    s->phase = EXH_PRECONTACT_IDLE;
+    return stale ? EXH_PRECONTACT_STALE : 0;
+}
+
+uint32_t exh_precontact_step(struct exh_precontact *s, const struct exh_precontact_cfg *cfg,
+                             const struct exh_precontact_in *in)
+{
+    const struct exh_precontact_par *par = cfg->par;
+    const uint32_t left = s->left_ticks;
+    uint32_t bits = 0;
+    s->left_ticks = left - (left > 0);
+    if (s->phase == EXH_PRECONTACT_FROZEN) {
+        s->d_m_q30 = distance_m_q30(&s->held, &in->tip_m_q30);
+        if (in->touching || s->d_m_q30 >= (int64_t)par->d_lim_m_q30 - par->hyst_m_q30) {
+            return EXH_PRECONTACT_STANDS;
+        }
+        s->phase = EXH_PRECONTACT_IDLE;
+        bits = EXH_PRECONTACT_RELEASE;
+    }
+    if (left == 0) { return bits | be_idle(s); }
+    s->d_m_q30 = distance_m_q30(&s->newest, &in->tip_m_q30);
+    if (s->d_m_q30 < par->d_lim_m_q30) { return bits | track(s, par, in); }
+    return bits | (s->phase == EXH_PRECONTACT_TRACK ? freeze(s, cfg) : be_inside(s));
+}
+
+/* --- state --- */
+
+static void vec3_bytes(struct exh_bytes *c, struct exh_vec3 *v)
+{
+    exh_bytes_i32(c, &v->x);
+    exh_bytes_i32(c, &v->y);
+    exh_bytes_i32(c, &v->z);
+}
+
+/* What tell() could not have left there becomes no plane. */
+static int plane_bytes(struct exh_bytes *c, struct exh_precontact_plane *p)
+{
+    const int64_t most_q60 = INT64_C(1) << 62; /* beyond |n|*|P| + pad of any point */
+    exh_bytes_i64(c, &p->offset_m_q60);
+    vec3_bytes(c, &p->normal_q30);
+    exh_bytes_u16(c, &p->object);
+    exh_bytes_u8(c, &p->material);
+    if (is_unit(&p->normal_q30) && p->offset_m_q60 >= -most_q60 && p->offset_m_q60 <= most_q60) {
+        return 1;
+    }
+    *p = (struct exh_precontact_plane){0, {0, 0, 0}, 0, 0};
+    return 0;
+}
+
+static void taken_bytes(struct exh_bytes *c, int32_t *v)
+{
+    for (int i = 0; i < EXH_MATERIAL_ROWS; i++) {
+        exh_bytes_i32(c, &v[i]);
+        v[i] = exh_clamp(v[i], exh_material_rows[i].min, exh_material_rows[i].max);
+    }
+}
+
+void exh_precontact_bytes(struct exh_bytes *c, struct exh_precontact *s)
+{
+    int told, held;
+    exh_bytes_i32(c, &s->d_m_q30);
+    exh_bytes_i32(c, &s->lim_m_q30);
+    taken_bytes(c, &s->taken.k_Npm_q10);
+    exh_bytes_u8(c, &s->phase);
+    told = plane_bytes(c, &s->newest);
+    held = plane_bytes(c, &s->held);
+    exh_bytes_u32(c, &s->left_ticks);
+    exh_bytes_u32(c, &s->frozen_n);
+    exh_bytes_u32(c, &s->born_n);
+    exh_bytes_u32(c, &s->refused_n);
+    exh_bytes_u32(c, &s->ignored_n);
+    exh_bytes_u32(c, &s->stale_n);
+    if (s->phase > EXH_PRECONTACT_FROZEN || !(s->phase == EXH_PRECONTACT_FROZEN ? held : told)) {
+        s->phase = EXH_PRECONTACT_IDLE;
+    }
+    if (!told) { s->left_ticks = 0; }
+}

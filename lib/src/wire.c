@@ -1,0 +1,283 @@
+#include "exhand/wire.h"
+
+#include "exhand/error.h"
+
+#define HEAD_B     18u
+#define LEN_AT     4u
+#define CRC_B      4u
+#define FINGERS_OF ((1u << EXH_WIRE_FINGERS) - 1u)
+#define WINDOW     64 /* sequence numbers back that are remembered */
+
+struct head {
+    uint16_t magic;
+    uint8_t version, type;
+    uint16_t len_B;
+    uint32_t session, seq, stamp_us;
+};
+
+static void head_bytes(struct exh_bytes *c, struct head *h)
+{
+    exh_bytes_u16(c, &h->magic);
+    exh_bytes_u8(c, &h->version);
+    exh_bytes_u8(c, &h->type);
+    exh_bytes_u16(c, &h->len_B);
+    exh_bytes_u32(c, &h->session);
+    exh_bytes_u32(c, &h->seq);
+    exh_bytes_u32(c, &h->stamp_us);
+}
+
+/* --- payloads --- */
+
+/* A value that cannot be: the rest of the packet is not believed either. */
+static void demand(struct exh_bytes *c, int holds)
+{
+    if (!holds) { exh_bytes_fail(c); }
+}
+
+static void i32s_bytes(struct exh_bytes *c, int32_t *v, unsigned n)
+{
+    for (unsigned i = 0; i < n; i++) { exh_bytes_i32(c, &v[i]); }
+}
+
+static void hello_bytes(struct exh_bytes *c, struct exh_wire_hello *h)
+{
+    exh_bytes_u8(c, &h->role);
+    exh_bytes_u32(c, &h->lib_version);
+    exh_bytes_u32(c, &h->table_crc);
+    demand(c, h->role <= EXH_WIRE_WORLD);
+}
+
+static void state_bytes(struct exh_bytes *c, struct exh_wire_state *s)
+{
+    exh_bytes_u32(c, &s->tick);
+    exh_bytes_u8(c, &s->fingers);
+    exh_bytes_u8(c, &s->state);
+    exh_bytes_u8(c, &s->frozen);
+    exh_bytes_u8(c, &s->touching);
+    exh_bytes_u16(c, &s->age_ms);
+    exh_bytes_u32(c, &s->faults);
+    for (unsigned f = 0; f < EXH_WIRE_FINGERS; f++) {
+        i32s_bytes(c, s->joint_turn_q32[f], 3);
+        i32s_bytes(c, s->tip_m_q30[f], 3);
+        exh_bytes_i32(c, &s->force_N_q20[f]);
+        exh_bytes_i32(c, &s->d_m_q30[f]);
+        exh_bytes_i32(c, &s->q_m_q30[f]);
+        exh_bytes_i32(c, &s->q_lim_m_q30[f]);
+    }
+    demand(c, (s->fingers | s->frozen | s->touching) <= FINGERS_OF);
+}
+
+static void plane_bytes(struct exh_bytes *c, struct exh_wire_plane *p)
+{
+    exh_bytes_u8(c, &p->kind);
+    exh_bytes_u8(c, &p->material);
+    exh_bytes_u16(c, &p->object);
+    i32s_bytes(c, p->normal_q30, 3);
+    i32s_bytes(c, p->point_m_q30, 3);
+    i32s_bytes(c, p->hit_m_q30, 3);
+    demand(c, p->kind <= EXH_PLANE_HIT);
+}
+
+static void planes_bytes(struct exh_bytes *c, struct exh_wire_planes *s)
+{
+    exh_bytes_u32(c, &s->echo_seq);
+    exh_bytes_u32(c, &s->echo_stamp_us);
+    exh_bytes_u8(c, &s->fingers);
+    demand(c, s->fingers <= FINGERS_OF);
+    for (unsigned f = 0; f < EXH_WIRE_FINGERS; f++) {
+        plane_bytes(c, &s->plane[f]);
+        demand(c, s->fingers >> f & 1 || s->plane[f].kind == EXH_PLANE_UNTOLD);
+    }
+}
+
+static void param_bytes(struct exh_bytes *c, struct exh_wire_param *p)
+{
+    exh_bytes_u16(c, &p->id);
+    exh_bytes_u16(c, &p->instance);
+    exh_bytes_i32(c, &p->value);
+}
+
+/* The payload of p->type; no such type: 0. */
+static int payload_bytes(struct exh_bytes *c, struct exh_wire_packet *p)
+{
+    switch (p->type) {
+    case EXH_WIRE_HELLO: hello_bytes(c, &p->u.hello); return 1;
+    case EXH_WIRE_STATE: state_bytes(c, &p->u.state); return 1;
+    case EXH_WIRE_PLANES: planes_bytes(c, &p->u.planes); return 1;
+    case EXH_WIRE_PARAM: param_bytes(c, &p->u.param); return 1;
+    case EXH_WIRE_ACK:
+        param_bytes(c, &p->u.ack.param);
+        exh_bytes_i16(c, &p->u.ack.result);
+        exh_bytes_u32(c, &p->u.ack.request_seq);
+        return 1;
+    default: return 0;
+    }
+}
+
+/* --- sending --- */
+
+int32_t exh_wire_write(struct exh_wire_tx *tx, struct exh_wire_packet *p, uint32_t stamp_us,
+                       void *buf, size_t cap_B)
+{
+    struct head h = {EXH_WIRE_MAGIC, EXH_WIRE_VERSION, p->type, 0, tx->session, tx->seq, stamp_us};
+    struct exh_bytes c = exh_bytes_writer(buf, cap_B);
+    uint32_t end, crc;
+    head_bytes(&c, &h);
+    if (!payload_bytes(&c, p)) { return -EXH_E_UNKNOWN; }
+    end = c.at;
+    if (end == UINT32_MAX || tx->session == 0) { return -EXH_E_RANGE; }
+    if (cap_B < end + CRC_B) { return -EXH_E_SHORT; }
+    h.len_B = (uint16_t)(end - HEAD_B); /* now that it is known */
+    c.at = LEN_AT;
+    exh_bytes_u16(&c, &h.len_B);
+    c.at = end;
+    crc = exh_crc32(0, buf, end);
+    exh_bytes_u32(&c, &crc);
+    p->seq = tx->seq++;
+    p->stamp_us = stamp_us;
+    return (int32_t)c.at;
+}
+
+/* --- receiving --- */
+
+/* Whole, undamaged, and all its values possible: 0, else the error, counted. */
+static int read_packet(struct exh_wire_rx *rx, struct head *h, struct exh_wire_packet *p,
+                       const uint8_t *buf, size_t len_B)
+{
+    struct exh_bytes c = exh_bytes_reader(buf, len_B);
+    uint32_t crc = 0;
+    head_bytes(&c, h);
+    if (!exh_bytes_ok(&c) || len_B != HEAD_B + h->len_B + CRC_B) {
+        rx->corrupt++;
+        return -EXH_E_SHORT;
+    }
+    c.at = HEAD_B + h->len_B;
+    exh_bytes_u32(&c, &crc);
+    if (h->magic != EXH_WIRE_MAGIC || h->session == 0 ||
+        crc != exh_crc32(0, buf, HEAD_B + h->len_B)) {
+        rx->corrupt++;
+        return -EXH_E_CRC;
+    }
+    if (h->version != EXH_WIRE_VERSION) {
+        rx->version++;
+        return -EXH_E_VERSION;
+    }
+    p->type = h->type;
+    p->seq = h->seq;
+    p->stamp_us = h->stamp_us;
+    c.at = HEAD_B;
+    if (!payload_bytes(&c, p)) {
+        rx->unknown++;
+        return -EXH_E_UNKNOWN;
+    }
+    if (c.at != HEAD_B + h->len_B) { /* failed, or of another length */
+        rx->corrupt++;
+        return -EXH_E_CRC;
+    }
+    return 0;
+}
+
+static void begin_session(struct exh_wire_rx *rx, const struct head *h)
+{
+    rx->former = rx->session;
+    rx->session = h->session;
+    rx->seq = h->seq;
+    rx->seen = UINT64_MAX; /* what was sent before is not waited for */
+}
+
+/* 0 if newer than all before, else the error, counted. */
+static int in_order(struct exh_wire_rx *rx, const struct head *h)
+{
+    const uint32_t ahead = h->seq - rx->seq;
+    const uint32_t late = rx->seq - h->seq;
+    if (ahead - 1u < UINT32_C(0x7FFFFFFF)) {
+        rx->seen = ahead < WINDOW ? rx->seen << ahead | 1u : 1u;
+        rx->missing += ahead - 1u;
+        rx->seq = h->seq;
+        return 0;
+    }
+    if (late >= WINDOW) {
+        rx->old++;
+    } else if (rx->seen >> late & 1u) {
+        rx->duplicate++;
+    } else {
+        rx->seen |= UINT64_C(1) << late;
+        rx->missing--;
+        rx->reordered++;
+    }
+    return -EXH_E_STALE;
+}
+
+int exh_wire_take(struct exh_wire_rx *rx, struct exh_wire_packet *p, const void *buf, size_t len_B)
+{
+    struct exh_wire_packet now = {0};
+    struct head h;
+    int r = read_packet(rx, &h, &now, buf, len_B);
+    if (r < 0) { return r; }
+    if (h.session == rx->session) {
+        r = in_order(rx, &h);
+        if (r < 0) { return r; }
+    } else if (h.session == rx->former) {
+        rx->old++;
+        return -EXH_E_STALE;
+    } else if (h.type == EXH_WIRE_HELLO) {
+        begin_session(rx, &h);
+    } else {
+        rx->stranger++;
+        return -EXH_E_STATE;
+    }
+    rx->accepted++;
+    *p = now;
+    return h.type;
+}
+
+/* --- what is done with them --- */
+
+struct exh_plane exh_wire_plane_of(const struct exh_wire_planes *planes, unsigned finger)
+{
+    const struct exh_wire_plane *w = &planes->plane[finger];
+    const struct exh_plane p = {
+        w->kind,
+        w->material,
+        w->object,
+        {w->normal_q30[0], w->normal_q30[1], w->normal_q30[2]},
+        {w->point_m_q30[0], w->point_m_q30[1], w->point_m_q30[2]},
+    };
+    return p;
+}
+
+struct exh_wire_ack exh_wire_stage(struct exh_params *params, const struct exh_wire_packet *p)
+{
+    const struct exh_wire_param *ask = &p->u.param;
+    const int result = exh_params_stage(params, ask->id, ask->instance, ask->value);
+    const struct exh_wire_ack ack = {*ask, (int16_t)result, p->seq};
+    return ack;
+}
+
+/* --- state --- */
+
+void exh_wire_tx_bytes(struct exh_bytes *c, struct exh_wire_tx *s)
+{
+    exh_bytes_u32(c, &s->session);
+    exh_bytes_u32(c, &s->seq);
+}
+
+void exh_wire_rx_bytes(struct exh_bytes *c, struct exh_wire_rx *s)
+{
+    uint32_t lo = (uint32_t)(s->seen & UINT32_MAX), hi = (uint32_t)(s->seen >> 32);
+    exh_bytes_u32(c, &lo);
+    exh_bytes_u32(c, &hi);
+    s->seen = (uint64_t)hi << 32 | lo;
+    exh_bytes_u32(c, &s->seq);
+    exh_bytes_u32(c, &s->session);
+    exh_bytes_u32(c, &s->former);
+    exh_bytes_u32(c, &s->accepted);
+    exh_bytes_u32(c, &s->missing);
+    exh_bytes_u32(c, &s->duplicate);
+    exh_bytes_u32(c, &s->reordered);
+    exh_bytes_u32(c, &s->old);
+    exh_bytes_u32(c, &s->stranger);
+    exh_bytes_u32(c, &s->corrupt);
+    exh_bytes_u32(c, &s->version);
+    exh_bytes_u32(c, &s->unknown);
+}

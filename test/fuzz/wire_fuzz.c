@@ -1,0 +1,205 @@
+/* Whatever a socket brings: a controller's receiving end, fed with anything.
+ *
+ * An input is a row of datagrams, each behind three bytes: what is put right about it before it
+ * is sent, and its length (u16). Put right are, by bit: 0 magic and version, 1 length, 2 session,
+ * 3 sequence number, 4 CRC; so that a mutation reaches what lies behind the checks.
+ *
+ * What must hold: no read or write outside; a packet that is not accepted changes nothing
+ * but one counter; one that is accepted is, written anew, the same bytes; the law
+ * never touches before the freeze.
+ *
+ * LLVMFuzzerTestOneInput() is libFuzzer's; driver.c calls it without libFuzzer. */
+#include "exhand/error.h"
+#include "exhand/fix.h"
+#include "exhand/precontact.h"
+#include "exhand/wire.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define FIX_MAGIC   1u
+#define FIX_LENGTH  2u
+#define FIX_SESSION 4u
+#define FIX_SEQ     8u
+#define FIX_CRC     16u
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+#define MUST(cond) \
+    do { \
+        if (!(cond)) { \
+            fprintf(stderr, "%s:%d: %s\n", __FILE__, __LINE__, #cond); \
+            abort(); \
+        } \
+    } while (0)
+
+void exh_assert_failed(const char *file, int line)
+{
+    fprintf(stderr, "%s:%d: assertion\n", file, line);
+    abort();
+}
+
+#ifdef EXH_FIX_AUDIT
+void exh_fix_saturated(const char *file, int line)
+{
+    (void)file;
+    (void)line;
+}
+#endif
+
+static const struct exh_material_par material[2] = {{1 << 24, 1 << 24, 1 << 22}, {1, 1, 1}};
+static const struct exh_precontact_par par = {-5368709, 1073741, 1 << 24, 0, 0, 100};
+
+/* All that a packet may reach. */
+struct box {
+    struct exh_wire_rx rx;
+    struct exh_wire_packet last;
+    struct exh_precontact finger[EXH_WIRE_FINGERS];
+    int32_t active[EXH_MATERIAL_ROWS], staged[EXH_MATERIAL_ROWS];
+    uint8_t pending;
+};
+
+static uint32_t counters(const struct exh_wire_rx *rx)
+{
+    return rx->accepted + rx->duplicate + rx->reordered + rx->old + rx->stranger + rx->corrupt +
+           rx->version + rx->unknown;
+}
+
+/* The same but for what a refused packet may count. */
+static void must_be_unchanged(const struct box *was, const struct box *now)
+{
+    struct box is = *now;
+    is.rx.missing = was->rx.missing;
+    is.rx.duplicate = was->rx.duplicate;
+    is.rx.reordered = was->rx.reordered;
+    is.rx.old = was->rx.old;
+    is.rx.stranger = was->rx.stranger;
+    is.rx.corrupt = was->rx.corrupt;
+    is.rx.version = was->rx.version;
+    is.rx.unknown = was->rx.unknown;
+    if (now->rx.reordered != was->rx.reordered) { is.rx.seen = was->rx.seen; }
+    MUST(memcmp(&is, was, sizeof is) == 0);
+}
+
+static int was_frozen(const struct exh_precontact *s)
+{
+    return s->phase == EXH_PRECONTACT_FROZEN;
+}
+
+static void planes_came(struct box *b, const struct exh_precontact_cfg *cfg)
+{
+    for (unsigned f = 0; f < EXH_WIRE_FINGERS; f++) {
+        const struct exh_plane p = exh_wire_plane_of(&b->last.u.planes, f);
+        struct exh_precontact *s = &b->finger[f];
+        const struct exh_precontact was = *s;
+        const int r = exh_precontact_tell(s, cfg, &p, 0);
+        const struct exh_vec3 *n = &s->newest.normal_q30;
+        MUST(p.kind <= EXH_PLANE_HIT);
+        MUST(p.kind == EXH_PLANE_UNTOLD || b->last.u.planes.fingers >> f & 1);
+        MUST(s->newest.material < cfg->materials);
+        if (n->x | n->y | n->z) { /* a unit vector, within 2^-10 at least */
+            const int64_t x = n->x >> 15, y = n->y >> 15, z = n->z >> 15;
+            const int64_t off = x * x + y * y + z * z - (1 << 30);
+            MUST(off < 1 << 20 && off > -(1 << 20));
+        }
+        if (r < 0) {
+            struct exh_precontact is = *s;
+            is.refused_n--;
+            MUST(memcmp(&is, &was, sizeof is) == 0);
+        }
+        MUST(s->lim_m_q30 == was.lim_m_q30 && (s->phase == was.phase || !was_frozen(&was)));
+    }
+}
+
+/* Every finger's tick: it is where the world's bytes say, which is as hostile as can be. */
+static void tick(struct box *b, const struct exh_precontact_cfg *cfg, int on_the_plane)
+{
+    for (unsigned f = 0; f < EXH_WIRE_FINGERS; f++) {
+        struct exh_precontact *s = &b->finger[f];
+        const struct exh_wire_plane *p = &b->last.u.planes.plane[f];
+        const int32_t *at = on_the_plane ? p->point_m_q30 : p->hit_m_q30;
+        const struct exh_precontact_in in = {{at[0], at[1], at[2]}, {0, 0, 0}, at[0] / 2, 0};
+        const struct exh_precontact was = *s;
+        const uint32_t bits = exh_precontact_step(s, cfg, &in);
+        if (bits & EXH_PRECONTACT_STANDS) {
+            MUST(s->lim_m_q30 == was.lim_m_q30);
+        } else {
+            MUST(in.pos_m_q30 < s->lim_m_q30);
+        }
+        MUST(!(bits & EXH_PRECONTACT_FREEZE) || was.phase == EXH_PRECONTACT_TRACK);
+    }
+}
+
+static void same_bytes(const struct box *b, const uint8_t *packet, size_t len)
+{
+    struct exh_wire_packet p = b->last;
+    struct exh_wire_tx tx = {b->rx.session, p.seq};
+    uint8_t again[EXH_WIRE_MAX_B];
+    MUST(exh_wire_write(&tx, &p, p.stamp_us, again, sizeof again) == (int32_t)len);
+    MUST(memcmp(packet, again, len) == 0);
+}
+
+static void datagram(struct box *b, const struct exh_precontact_cfg *cfg, struct exh_params *params,
+                     const uint8_t *packet, size_t len)
+{
+    const struct box was = *b;
+    const int r = exh_wire_take(&b->rx, &b->last, packet, len);
+    MUST(counters(&b->rx) == counters(&was.rx) + 1);
+    if (r < 0) {
+        MUST(b->rx.accepted == was.rx.accepted);
+        must_be_unchanged(&was, b);
+        return;
+    }
+    MUST(r == b->last.type && b->rx.accepted == was.rx.accepted + 1);
+    same_bytes(b, packet, len);
+    if (r == EXH_WIRE_PLANES) {
+        planes_came(b, cfg);
+        tick(b, cfg, 0);
+        tick(b, cfg, 1);
+    } else if (r == EXH_WIRE_PARAM) {
+        const struct exh_wire_ack ack = exh_wire_stage(params, &b->last);
+        MUST(ack.result == 0 || memcmp(was.staged, b->staged, sizeof b->staged) == 0);
+    }
+}
+
+static void put(uint8_t *p, size_t len, size_t at, uint32_t v, unsigned n)
+{
+    for (unsigned i = 0; i < n && at + i < len; i++) { p[at + i] = (uint8_t)(v >> 8 * i & 0xFF); }
+}
+
+static void put_right(uint8_t *p, size_t len, unsigned what, const struct exh_wire_rx *rx)
+{
+    if (what & FIX_MAGIC) { put(p, len, 0, EXH_WIRE_MAGIC | EXH_WIRE_VERSION << 16, 3); }
+    if (what & FIX_LENGTH) { put(p, len, 4, (uint32_t)(len - EXH_WIRE_OVERHEAD), 2); }
+    if (what & FIX_SESSION) { put(p, len, 6, rx->session, 4); }
+    if (what & FIX_SEQ) { put(p, len, 10, rx->seq + 1, 4); }
+    if (what & FIX_CRC && len >= 4) { put(p, len, len - 4, exh_crc32(0, p, len - 4), 4); }
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    static const struct exh_signal_group group[] = {{exh_material_rows, EXH_MATERIAL_ROWS, 1}};
+    static const struct exh_signal_table table = {group, 1};
+    static struct box b;
+    struct exh_params params;
+    struct exh_precontact_cfg cfg;
+    const struct exh_period T = {1, 2000};
+
+    memset(&b, 0, sizeof b); /* padding, too: boxes are compared byte by byte */
+    exh_params_init(&params, &table, b.active, b.staged);
+    MUST(exh_precontact_setup(&cfg, &par, material, 2, 7516193, T) == 0);
+    while (size >= 3) {
+        const size_t asked = data[1] + 256u * data[2];
+        const size_t len = asked < size - 3 ? asked : size - 3;
+        uint8_t *packet = malloc(len + 1); /* its own piece, so that a byte too far is seen */
+        MUST(packet != NULL);
+        memcpy(packet, data + 3, len);
+        put_right(packet, len, data[0], &b.rx);
+        datagram(&b, &cfg, &params, packet, len);
+        free(packet);
+        data += 3 + len;
+        size -= 3 + len;
+    }
+    return 0;
+}

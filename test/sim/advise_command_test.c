@@ -1,0 +1,62 @@
+/* exhand advise freeze: the figures of the formulas, and what is too small is said with the
+ * number that is wanted. */
+#include "said.h"
+
+#define LEN(a) (sizeof(a) / sizeof((a)[0]))
+
+static struct said s;
+
+TEST(figures_and_judgements)
+{
+    static const struct {
+        const char *word[12];
+        int status;
+        const char *says;
+    } row[] = {
+        /* One sample at the paper's speed, 0.87 m/s: 0.435 mm; a frame of 10 ms and one: 9.135. */
+        {{"freeze"},
+         0,
+         "d_lim_mm=-0.436 ray_mm=9.571 age_ms=10.000 error_mm=0.000 speed_mps=0.8700"},
+        {{"freeze", "--rate", "90"}, 0, "d_lim_mm=-9.667 "},
+        {{"freeze", "--lag", "4", "--noise", "1"}, 0, "d_lim_mm=-4.916 "},
+        {{"freeze", "--link", "1", "--jitter", "5", "--fps", "400"}, 0, "age_ms=8.500 "},
+        {{"freeze", "--object-speed", "0.5", "--slide", "10", "--radius", "20"},
+         0,
+         "error_mm=7.500 "},
+        {{"freeze", "--d-lim", "-0.3"}, 1, "d_lim -0.300 mm: too little: make it -0.436 mm"},
+        {{"freeze", "--d-lim", "-0.436"}, 0, "d_lim -0.436 mm: enough"},
+        {{"freeze", "--d-lim", "-1"}, 0, "speed_mps=2.0000"},
+        {{"freeze", "--ray", "9.57"}, 1, "ray 9.570 mm: too little: make it 9.571 mm"},
+        {{"freeze", "--ray", "9.571"}, 0, "ray 9.571 mm: enough"},
+        {{"freeze", "--d-lim", "-5", "--ray", "14"},
+         1,
+         "ray 14.000 mm: too little: make it 14.136"},
+    };
+    char *dir = said_dir();
+    for (size_t i = 0; i < LEN(row); i++) {
+        const char *word[14] = {"advise"};
+        for (size_t k = 0; k < LEN(row[i].word) && row[i].word[k]; k++) {
+            word[k + 1] = row[i].word[k];
+        }
+        said(&s, dir, cli_advise, word);
+        CHECK(s.status == row[i].status && strstr(s.out, row[i].says) && s.err[0] == '\0',
+              "row %d: %d\n%s%s", (int)i, s.status, s.out, s.err);
+    }
+    said_clean(dir);
+}
+
+TEST(what_cannot_be_answered)
+{
+    char *dir = said_dir();
+    said(&s, dir, cli_advise, WORDS("advise", "freeze", "--speed", "10", "--lag", "2000"));
+    CHECK(s.status == 1 && strstr(s.err, "beyond 2 m"), "%s", s.err);
+    said(&s, dir, cli_advise, WORDS("advise", "gains"));
+    CHECK(s.status == 2 && strstr(s.err, "gains: nothing is known"), "%s", s.err);
+    said(&s, dir, cli_advise, WORDS("advise"));
+    CHECK(s.status == 2 && strstr(s.err, "a word is missing"), "%s", s.err);
+    said(&s, dir, cli_advise, WORDS("advise", "freeze", "--d-lim", "1"));
+    CHECK(s.status == 2 && strstr(s.err, "--d-lim: 1 (allowed -200..-0.1)"), "%s", s.err);
+    said_clean(dir);
+}
+
+TEST_MAIN("sim/advise_command", figures_and_judgements, what_cannot_be_answered);

@@ -1,0 +1,523 @@
+/* precontact.h by worked examples: a finger that comes down along -z onto the plane z = 0.1 m,
+ * pad 10 mm, so that it touches at z = 0.11; string and finger move alike. */
+#include "exhand/precontact.h"
+
+#include "exhand/error.h"
+
+#include "check.h"
+
+#define MM(x)  EXH_Q(x, 1000, EXH_Q_POS)
+#define ONE    (INT32_C(1) << 30)
+#define TICK   ((struct exh_period){1, 1000})
+#define TOUCH  MM(110)
+#define Q_AT_0 MM(200) /* q where z would be 0: q = 0.2 - z */
+
+static struct exh_material_par material[2] = {
+    {EXH_Q(20000, 1, EXH_Q_K), EXH_Q(60, 1, EXH_Q_B), EXH_Q(12, 1, EXH_Q_FORCE)},
+    {EXH_Q(500, 1, EXH_Q_K), EXH_Q(1, 1, EXH_Q_B), EXH_Q(3, 1, EXH_Q_FORCE)}};
+static struct exh_precontact_par par;
+static struct exh_precontact_cfg cfg;
+static struct exh_precontact s;
+static struct exh_precontact_in in;
+static uint32_t bits;
+
+static const struct exh_plane floor_plane = {EXH_PLANE_HIT, 0, 1, {0, 0, ONE}, {0, 0, MM(100)}};
+
+static void start(void)
+{
+    par = (struct exh_precontact_par){-MM(5), MM(1), INT32_C(1) << 24, 0, 0, 100};
+    s = (struct exh_precontact){0};
+    in = (struct exh_precontact_in){{0, 0, 0}, {0, 0, 0}, 0, 0};
+    CHECK_EQ_I64(exh_precontact_setup(&cfg, &par, material, 2, MM(10), TICK), 0);
+}
+
+/* One tick with the fingertip at height z. */
+static void at(int32_t z_m_q30)
+{
+    in.tip_m_q30.z = z_m_q30;
+    in.pos_m_q30 = Q_AT_0 - z_m_q30;
+    bits = exh_precontact_step(&s, &cfg, &in);
+}
+
+static void tell(struct exh_plane p)
+{
+    CHECK_EQ_I64(exh_precontact_tell(&s, &cfg, &p, 0), 0);
+}
+
+static void frozen_at_116(void)
+{
+    start();
+    tell(floor_plane);
+    at(MM(116));
+    at(MM(114));
+    CHECK(s.phase == EXH_PRECONTACT_FROZEN, "d = -4 mm");
+}
+
+TEST(distance_has_the_sign_of_the_text)
+{
+    start();
+    tell(floor_plane);
+    at(MM(150));
+    CHECK_EQ_I64(s.d_m_q30, MM(100) - MM(150) + MM(10));
+    at(TOUCH);
+    CHECK_EQ_I64(s.d_m_q30, MM(100) - MM(110) + MM(10));
+    at(MM(90));
+    CHECK_EQ_I64(s.d_m_q30, MM(100) - MM(90) + MM(10));
+    par.printed_sign = 1; /* of planes told from now on */
+    s = (struct exh_precontact){0};
+    CHECK_EQ_I64(exh_precontact_setup(&cfg, &par, material, 2, MM(10), TICK), 0);
+    tell(floor_plane);
+    at(MM(90));
+    CHECK_EQ_I64(s.d_m_q30, MM(100) - MM(90) - MM(10));
+}
+
+TEST(rounds_once_and_half_up)
+{
+    start();
+    CHECK_EQ_I64(exh_precontact_setup(&cfg, &par, material, 2, 0, TICK), 0);
+    /* (0.6, 0, 0.8) and a tip of 3, 5, 1 LSB: products add up before they are rounded. */
+    tell((struct exh_plane){EXH_PLANE_HIT, 0, 1, {644245094, 0, 858993459}, {0, 0, 0}});
+    in.tip_m_q30 = (struct exh_vec3){-3, 5, 0};
+    at(-1); /* 1.8 + 0.8 = 2.6 */
+    CHECK_EQ_I64(s.d_m_q30, 3);
+    in.tip_m_q30.x = -1;
+    at(1); /* 0.6 - 0.8 = -0.2 */
+    CHECK_EQ_I64(s.d_m_q30, 0);
+    tell((struct exh_plane){EXH_PLANE_HIT, 0, 1, {ONE, 0, 0}, {INT32_MAX, 0, 0}});
+    in.tip_m_q30.x = INT32_MIN; /* 4 m: saturates */
+    at(0);
+    CHECK_EQ_I64(s.d_m_q30, INT32_MAX);
+}
+
+TEST(no_plane_means_no_contact)
+{
+    start();
+    at(MM(150));
+    CHECK(s.lim_m_q30 == EXH_PRECONTACT_NEVER && s.d_m_q30 == INT32_MIN && bits == 0, "first tick");
+    tell((struct exh_plane){EXH_PLANE_UNTOLD, 9, 9, {1, 2, 3}, {4, 5, 6}});
+    at(MM(150));
+    CHECK(s.lim_m_q30 == EXH_PRECONTACT_NEVER && bits == 0, "untold");
+    tell((struct exh_plane){EXH_PLANE_NONE, 9, 9, {1, 2, 3}, {4, 5, 6}});
+    at(MM(90));
+    CHECK(s.lim_m_q30 == EXH_PRECONTACT_NEVER && bits == 0, "no hit");
+    CHECK(s.born_n == 0 && s.refused_n == 0 && s.stale_n == 0, "nothing to count");
+}
+
+TEST(tracks_freezes_and_releases)
+{
+    start();
+    tell(floor_plane);
+    at(MM(150));
+    CHECK(bits == EXH_PRECONTACT_TRACKS, "bits %" PRIx32, bits);
+    CHECK_EQ_I64(s.lim_m_q30, in.pos_m_q30 + -(int64_t)s.d_m_q30);
+    at(MM(116));
+    CHECK_EQ_I64(s.lim_m_q30, Q_AT_0 - MM(116) - (MM(100) - MM(116) + MM(10)));
+    {
+        const int32_t lim = s.lim_m_q30;
+        in.tip_m_q30.x = MM(3); /* along the plane: nothing */
+        at(MM(100) + MM(15)); /* d = -5 mm, and a rounding less or more */
+        at(MM(114));
+        CHECK(bits & EXH_PRECONTACT_STANDS, "frozen");
+        CHECK_EQ_I64(s.frozen_n, 1);
+        at(MM(60));
+        CHECK(s.lim_m_q30 >= lim - 1 && s.lim_m_q30 <= lim + 1, "stands");
+        at(MM(115) + MM(1) / 2); /* back beyond d_lim, within the hysteresis */
+        CHECK(bits == EXH_PRECONTACT_STANDS, "hysteresis");
+        at(MM(117));
+        CHECK(bits == (EXH_PRECONTACT_TRACKS | EXH_PRECONTACT_RELEASE), "released: %" PRIx32, bits);
+        CHECK_EQ_I64(s.lim_m_q30, (int64_t)in.pos_m_q30 - s.d_m_q30);
+    }
+    tell(floor_plane);
+    at(MM(117));
+    CHECK(bits & EXH_PRECONTACT_TRACKS, "again");
+    at(MM(114));
+    CHECK(bits & EXH_PRECONTACT_FREEZE, "again");
+}
+
+TEST(the_boundary_is_d_lim_itself)
+{
+    start();
+    CHECK_EQ_I64(exh_precontact_setup(&cfg, &par, material, 2, 0, TICK), 0);
+    tell((struct exh_plane){EXH_PLANE_HIT, 0, 1, {0, 0, ONE}, {0, 0, 0}});
+    at(MM(5) + 1);
+    CHECK(bits & EXH_PRECONTACT_TRACKS, "d = d_lim - 1");
+    at(MM(5));
+    CHECK(bits & EXH_PRECONTACT_FREEZE, "d = d_lim");
+    CHECK_EQ_I64(s.lim_m_q30, Q_AT_0);
+    at(MM(5) + MM(1));
+    CHECK(s.phase == EXH_PRECONTACT_FROZEN, "d = d_lim - hyst");
+    at(MM(5) + MM(1) + 1);
+    CHECK(bits & EXH_PRECONTACT_RELEASE, "d = d_lim - hyst - 1");
+}
+
+TEST(a_touching_finger_is_not_released)
+{
+    frozen_at_116();
+    in.touching = 1;
+    at(MM(150)); /* the glove says far, the string still pulls against the wall */
+    CHECK(s.phase == EXH_PRECONTACT_FROZEN, "held");
+    in.touching = 0;
+    at(MM(150));
+    CHECK(bits & EXH_PRECONTACT_RELEASE, "let go");
+}
+
+TEST(what_comes_while_frozen_is_ignored_and_counted)
+{
+    struct exh_plane other = floor_plane;
+    int32_t lim;
+    frozen_at_116();
+    lim = s.lim_m_q30;
+    tell(floor_plane);
+    CHECK_EQ_I64(s.ignored_n, 0);
+    other.point_m_q30.z = MM(120);
+    tell(other);
+    at(MM(112));
+    CHECK(s.ignored_n == 1 && s.lim_m_q30 == lim && s.d_m_q30 == MM(100) - MM(112) + MM(10),
+          "moved");
+    other.material = 1;
+    other.object = 2;
+    tell(other);
+    tell((struct exh_plane){EXH_PLANE_NONE, 0, 0, {0, 0, 0}, {0, 0, 0}});
+    at(MM(90));
+    CHECK(s.ignored_n == 3 && s.lim_m_q30 == lim && s.phase == EXH_PRECONTACT_FROZEN, "gone");
+    CHECK_EQ_I64(s.taken.k_Npm_q10, material[0].k_Npm_q10);
+    at(MM(150));
+    CHECK(s.lim_m_q30 == EXH_PRECONTACT_NEVER && bits == EXH_PRECONTACT_RELEASE,
+          "left, and there is none any more");
+}
+
+TEST(what_came_while_frozen_is_new_at_the_release)
+{
+    struct exh_plane p = floor_plane;
+    frozen_at_116();
+    p.point_m_q30.z = MM(120); /* it follows the finger that leaves */
+    tell(p);
+    at(MM(117));
+    CHECK(bits == (EXH_PRECONTACT_RELEASE | EXH_PRECONTACT_AROUND) && s.born_n == 1, "no snap");
+    CHECK(s.lim_m_q30 == EXH_PRECONTACT_NEVER && s.d_m_q30 == MM(120) - MM(117) + MM(10), "d");
+}
+
+TEST(born_inside_gives_no_contact_until_left)
+{
+    struct exh_plane p = floor_plane;
+    start();
+    tell(p);
+    at(MM(112));
+    CHECK(bits == EXH_PRECONTACT_AROUND, "bits %" PRIx32, bits);
+    CHECK(s.lim_m_q30 == EXH_PRECONTACT_NEVER && s.born_n == 1, "first");
+    tell(p);
+    at(MM(90));
+    CHECK(s.lim_m_q30 == EXH_PRECONTACT_NEVER && s.born_n == 1, "the same is counted once");
+    p.object = 7;
+    tell(p);
+    at(MM(90));
+    CHECK(s.born_n == 2, "another object");
+    at(MM(117));
+    CHECK(bits & EXH_PRECONTACT_TRACKS, "left");
+    at(MM(112));
+    CHECK(bits & EXH_PRECONTACT_FREEZE, "and back");
+}
+
+TEST(another_object_has_to_be_left_first)
+{
+    struct exh_plane p = floor_plane;
+    start();
+    tell(p);
+    at(MM(130));
+    p.object = 2;
+    p.point_m_q30.z = MM(125);
+    tell(p);
+    at(MM(129)); /* d = 6 mm from one tick to the next */
+    CHECK((bits & EXH_PRECONTACT_AROUND) && s.born_n == 1 && s.phase != EXH_PRECONTACT_FROZEN,
+          "thrown onto the finger");
+    p.point_m_q30.z = MM(100);
+    tell(p);
+    at(MM(129));
+    CHECK(bits & EXH_PRECONTACT_TRACKS, "it went");
+    p.object = 3;
+    tell(p);
+    at(MM(128));
+    CHECK(bits & EXH_PRECONTACT_TRACKS, "a third one as far off");
+}
+
+TEST(the_same_object_may_come_to_the_finger)
+{
+    struct exh_plane p = floor_plane;
+    int32_t lim;
+    start();
+    tell(p);
+    at(MM(116));
+    lim = s.lim_m_q30;
+    p.point_m_q30.z = MM(102);
+    tell(p);
+    at(MM(116));
+    CHECK((bits & EXH_PRECONTACT_FREEZE) && s.lim_m_q30 == lim, "q_lim of the tick before, eq. 3");
+    CHECK_EQ_I64(s.d_m_q30, MM(102) - MM(116) + MM(10));
+}
+
+TEST(a_stale_plane_is_none)
+{
+    start();
+    CHECK_EQ_I64(cfg.age_ticks, 101);
+    tell(floor_plane);
+    for (int i = 0; i < 101; i++) {
+        at(MM(150));
+        CHECK(bits & EXH_PRECONTACT_TRACKS, "tick %d", i);
+    }
+    at(MM(150));
+    CHECK(bits == EXH_PRECONTACT_STALE && s.lim_m_q30 == EXH_PRECONTACT_NEVER && s.stale_n == 1,
+          "too old: %" PRIx32, bits);
+    at(MM(112));
+    CHECK(bits == EXH_PRECONTACT_STALE && s.stale_n == 1, "counted once");
+    tell(floor_plane);
+    at(MM(112));
+    CHECK(bits & EXH_PRECONTACT_AROUND, "who came near unseen gets no contact");
+}
+
+TEST(a_message_may_be_old_when_it_comes)
+{
+    start();
+    tell(floor_plane);
+    at(MM(150));
+    CHECK_EQ_I64(exh_precontact_tell(&s, &cfg, &floor_plane, 101), 0);
+    at(MM(150)); /* refreshed by nothing: it did not become old here */
+    CHECK(bits == EXH_PRECONTACT_STALE && s.stale_n == 0, "too old from the start");
+    tell(floor_plane);
+    at(MM(150));
+    tell((struct exh_plane){EXH_PLANE_NONE, 0, 1, {0, 0, 0}, {0, 0, 0}});
+    tell(floor_plane); /* two messages in a tick: there was none between */
+    at(MM(112));
+    CHECK(bits == EXH_PRECONTACT_AROUND, "new again");
+    start();
+    CHECK_EQ_I64(exh_precontact_tell(&s, &cfg, &floor_plane, 100), 0);
+    at(MM(150));
+    CHECK(bits & EXH_PRECONTACT_TRACKS, "its last tick");
+    at(MM(150));
+    CHECK(bits & EXH_PRECONTACT_STALE, "over");
+    CHECK_EQ_I64(exh_precontact_tell(&s, &cfg, &floor_plane, UINT32_MAX), 0);
+    at(MM(150));
+    CHECK(bits & EXH_PRECONTACT_STALE, "never young");
+}
+
+TEST(a_frozen_plane_does_not_age)
+{
+    frozen_at_116();
+    for (int i = 0; i < 1000; i++) { at(MM(112)); }
+    CHECK(s.phase == EXH_PRECONTACT_FROZEN && s.stale_n == 0, "world gone for 1 s");
+    at(MM(150));
+    CHECK(bits == (EXH_PRECONTACT_RELEASE | EXH_PRECONTACT_STALE) && s.stale_n == 0,
+          "after it, nothing is known");
+}
+
+TEST(what_cannot_be_is_refused)
+{
+    struct exh_plane p = floor_plane;
+    start();
+    p.normal_q30.z = ONE - 1;
+    CHECK_EQ_I64(exh_precontact_tell(&s, &cfg, &p, 0), 0);
+    p.normal_q30.z = ONE - 8191; /* |n|^2 = 1 - 2^-16 + a little */
+    CHECK_EQ_I64(exh_precontact_tell(&s, &cfg, &p, 0), 0);
+    p.normal_q30.z = ONE - 8193;
+    CHECK_EQ_I64(exh_precontact_tell(&s, &cfg, &p, 0), -EXH_E_RANGE);
+    p.normal_q30.z = ONE + 8191;
+    CHECK_EQ_I64(exh_precontact_tell(&s, &cfg, &p, 0), 0);
+    p.normal_q30.z = ONE + 8193;
+    CHECK_EQ_I64(exh_precontact_tell(&s, &cfg, &p, 0), -EXH_E_RANGE);
+    p.normal_q30 = (struct exh_vec3){0, 0, 0};
+    CHECK_EQ_I64(exh_precontact_tell(&s, &cfg, &p, 0), -EXH_E_RANGE);
+    p.normal_q30 = (struct exh_vec3){INT32_MIN, INT32_MIN, INT32_MIN};
+    CHECK_EQ_I64(exh_precontact_tell(&s, &cfg, &p, 0), -EXH_E_RANGE);
+    p = floor_plane;
+    p.material = 2;
+    CHECK_EQ_I64(exh_precontact_tell(&s, &cfg, &p, 0), -EXH_E_RANGE);
+    p.material = 0;
+    p.kind = 3;
+    CHECK_EQ_I64(exh_precontact_tell(&s, &cfg, &p, 0), -EXH_E_RANGE);
+    CHECK_EQ_I64(s.refused_n, 6);
+    at(MM(150));
+    CHECK(bits & EXH_PRECONTACT_TRACKS, "the plane before goes on");
+}
+
+TEST(material_is_taken_at_the_freeze)
+{
+    struct exh_plane p = floor_plane;
+    const int32_t k = material[1].k_Npm_q10;
+    start();
+    p.material = 1;
+    tell(p);
+    at(MM(116));
+    CHECK_EQ_I64(s.taken.k_Npm_q10, 0);
+    material[1].k_Npm_q10 = k + 5;
+    at(MM(114));
+    material[1].k_Npm_q10 = k;
+    at(MM(113));
+    CHECK_EQ_I64(s.taken.k_Npm_q10, k + 5);
+    CHECK(s.taken.b_Nspm_q20 == material[1].b_Nspm_q20 &&
+              s.taken.f_max_N_q20 == material[1].f_max_N_q20,
+          "b, f_max");
+}
+
+TEST(scale_and_slope)
+{
+    start();
+    par.scale_q24 = INT32_C(3) << 23; /* 1.5 */
+    tell(floor_plane);
+    at(MM(130));
+    CHECK_EQ_I64(s.lim_m_q30, (int64_t)in.pos_m_q30 - (3 * (int64_t)s.d_m_q30 + 1) / 2);
+    par.from_slope = 1;
+    in.slope_q24 = (struct exh_vec3){5, 6, -(INT32_C(1) << 23)}; /* half as fast as the string */
+    at(MM(130));
+    CHECK_EQ_I64(s.lim_m_q30, in.pos_m_q30 - 2 * (int64_t)s.d_m_q30);
+    CHECK(!(bits & EXH_PRECONTACT_BENT), "fits");
+    in.slope_q24.z = 100; /* moves away from the plane */
+    at(MM(130));
+    CHECK_EQ_I64(s.lim_m_q30, in.pos_m_q30 - 8 * (int64_t)s.d_m_q30);
+    CHECK(bits & EXH_PRECONTACT_BENT, "limited");
+    in.slope_q24.z = INT32_MIN; /* 128 times as fast */
+    at(MM(130));
+    CHECK_EQ_I64(s.lim_m_q30, in.pos_m_q30 - (((int64_t)s.d_m_q30 + 4) >> 3));
+    CHECK(bits & EXH_PRECONTACT_BENT, "limited");
+    par.from_slope = 0;
+    par.scale_q24 = INT32_C(1) << 27;
+    at(INT32_MAX); /* 1.89 m off, 8 times as far */
+    CHECK_EQ_I64(s.lim_m_q30, EXH_PRECONTACT_NEVER);
+}
+
+TEST(set_up_refuses)
+{
+    struct exh_material_par odd[2];
+    start();
+    for (int i = 0; i < EXH_PRECONTACT_ROWS; i++) {
+        int32_t *v = &par.d_lim_m_q30 + i;
+        const int32_t was = *v;
+        *v = exh_precontact_rows[i].min - 1;
+        CHECK(exh_precontact_setup(&cfg, &par, material, 2, 0, TICK) == -EXH_E_RANGE, "row %d", i);
+        *v = exh_precontact_rows[i].max + 1;
+        CHECK(exh_precontact_setup(&cfg, &par, material, 2, 0, TICK) == -EXH_E_RANGE, "row %d", i);
+        *v = was;
+    }
+    for (int i = 0; i < EXH_MATERIAL_ROWS; i++) {
+        memcpy(odd, material, sizeof odd);
+        *(&odd[1].k_Npm_q10 + i) = exh_material_rows[i].max + 1;
+        CHECK(exh_precontact_setup(&cfg, &par, odd, 2, 0, TICK) == -EXH_E_RANGE, "row %d", i);
+        CHECK(exh_precontact_setup(&cfg, &par, odd, 1, 0, TICK) == 0, "row %d unused", i);
+    }
+    CHECK_EQ_I64(exh_precontact_setup(&cfg, &par, material, 0, 0, TICK), -EXH_E_RANGE);
+    CHECK_EQ_I64(exh_precontact_setup(&cfg, &par, material, 256, 0, TICK), -EXH_E_RANGE);
+    CHECK_EQ_I64(exh_precontact_setup(&cfg, &par, material, 2, -1, TICK), -EXH_E_RANGE);
+    CHECK_EQ_I64(exh_precontact_setup(&cfg, &par, material, 2, MM(25) + 1, TICK), -EXH_E_RANGE);
+    for (int i = 0; i < EXH_PRECONTACT_ROWS; i++) {
+        CHECK(exh_precontact_rows[i].dflt >= exh_precontact_rows[i].min &&
+                  exh_precontact_rows[i].dflt <= exh_precontact_rows[i].max,
+              "default %d", i);
+    }
+}
+
+TEST(state_round_trip)
+{
+    struct exh_precontact back = {0};
+    uint8_t buf[160], again[160];
+    struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
+    uint32_t n;
+    frozen_at_116();
+    s.ignored_n = 7;
+    exh_precontact_bytes(&c, &s);
+    n = c.at;
+    CHECK_EQ_I64(n, 8 + 12 + 2 * 23 + 24 + 1);
+    c = exh_bytes_reader(buf, n);
+    exh_precontact_bytes(&c, &back);
+    CHECK(exh_bytes_ok(&c), "reads");
+    c = exh_bytes_writer(again, sizeof again);
+    exh_precontact_bytes(&c, &back);
+    CHECK(memcmp(buf, again, n) == 0 && back.phase == EXH_PRECONTACT_FROZEN && back.ignored_n == 7,
+          "the same");
+}
+
+TEST(damaged_state_comes_back_into_range)
+{
+    struct exh_precontact back = {0};
+    uint8_t buf[160];
+    struct exh_bytes c;
+    start();
+    memset(buf, 0x7F, sizeof buf);
+    c = exh_bytes_reader(buf, sizeof buf);
+    exh_precontact_bytes(&c, &back);
+    CHECK(back.phase == EXH_PRECONTACT_IDLE && back.left_ticks == 0, "no plane");
+    CHECK(back.taken.f_max_N_q20 == exh_material_rows[2].max, "material");
+    CHECK(back.held.normal_q30.x == 0 && back.newest.offset_m_q60 == 0, "zeros");
+    for (int i = 0; i < 3; i++) {
+        const int64_t far = (INT64_C(1) << 62) + 1; /* than any plane */
+        frozen_at_116();
+        if (i == 0) { s.held.normal_q30.x = 1 << 24; } /* no unit vector */
+        if (i > 0) { s.held.offset_m_q60 = i == 1 ? far : -far; }
+        c = exh_bytes_writer(buf, sizeof buf);
+        exh_precontact_bytes(&c, &s);
+        c = exh_bytes_reader(buf, sizeof buf);
+        exh_precontact_bytes(&c, &back);
+        CHECK(back.phase == EXH_PRECONTACT_IDLE && back.held.normal_q30.z == 0, "held, %d", i);
+    }
+    s.newest = s.held;
+    tell(floor_plane);
+    s.phase = 200;
+    s.newest.material = 77; /* of a box with more materials */
+    c = exh_bytes_writer(buf, sizeof buf);
+    exh_precontact_bytes(&c, &s);
+    c = exh_bytes_reader(buf, sizeof buf);
+    exh_precontact_bytes(&c, &s);
+    CHECK(s.phase == EXH_PRECONTACT_IDLE && s.left_ticks > 0, "phase");
+    s.phase = EXH_PRECONTACT_TRACK;
+    at(MM(114));
+    CHECK((bits & EXH_PRECONTACT_FREEZE) && s.taken.k_Npm_q10 == material[0].k_Npm_q10, "index");
+}
+
+/* um, rounded. */
+static int64_t um(int32_t m_q30)
+{
+    return ((int64_t)m_q30 * 1000000 + (1 << 29)) >> 30;
+}
+
+TEST(advice)
+{
+    struct exh_precontact_need n = {EXH_Q(87, 100, EXH_Q_VEL), 0, 0, 16000, 0, 0, 0};
+    struct exh_precontact_advice a;
+    const struct exh_period slow = {1, 90}, fast = {1, 2000};
+    CHECK_EQ_I64(exh_precontact_advise(&a, &n, fast, -MM(5)), 0);
+    CHECK_EQ_I64(um(a.d_lim_m_q30), -435); /* one sample at 0.87 m/s and 2 kHz */
+    CHECK_EQ_I64(um(a.ray_m_q30), 5000 + 13920 + 435); /* 100 frames a second, 1 + 5 ms */
+    CHECK_EQ_I64(um(a.error_m_q30), 0);
+    CHECK_EQ_I64(a.speed_mps_q27, INT64_C(250) * MM(5)); /* 5 mm in 0.5 ms */
+    CHECK_EQ_I64(exh_precontact_advise(&a, &n, slow, -MM(5)), 0);
+    CHECK_EQ_I64(um(a.d_lim_m_q30), -9667);
+    n.lag_us = 4000;
+    n.noise_m_q30 = MM(1);
+    n.object_mps_q27 = EXH_Q(1, 2, EXH_Q_VEL);
+    n.slide_m_q30 = MM(10);
+    n.radius_m_q30 = MM(20);
+    CHECK_EQ_I64(exh_precontact_advise(&a, &n, fast, -MM(1) / 2), 0);
+    CHECK_EQ_I64(um(a.d_lim_m_q30), -4915); /* 0.87 m/s in 4.5 ms, and 1 mm */
+    CHECK_EQ_I64(um(a.error_m_q30), 8000 + 2500);
+    CHECK_EQ_I64(a.speed_mps_q27, 0);
+    n.noise_m_q30 = 0;
+    n.lag_us = 0;
+    CHECK_EQ_I64(exh_precontact_advise(&a, &n, fast, INT32_MIN + 1), -EXH_E_RANGE); /* ray */
+    CHECK_EQ_I64(exh_precontact_advise(&a, &n, fast, -EXH_Q(1, 1, EXH_Q_POS)), 0);
+    CHECK_EQ_I64(a.speed_mps_q27, INT32_MAX);
+    CHECK_EQ_I64(exh_precontact_advise(&a, &n, fast, 0), -EXH_E_RANGE);
+    n = (struct exh_precontact_need){1, 0, 0, 1, 1, 1, MM(20)};
+    CHECK_EQ_I64(exh_precontact_advise(&a, &n, fast, -MM(5)), 0);
+    CHECK(a.d_lim_m_q30 == -1 && a.ray_m_q30 == MM(5) + 1 && a.error_m_q30 == 2, "rounded up");
+    n.speed_mps_q27 = INT32_MAX;
+    n.lag_us = 2000000;
+    CHECK_EQ_I64(exh_precontact_advise(&a, &n, fast, -MM(5)), -EXH_E_RANGE);
+    n.speed_mps_q27 = -1;
+    CHECK_EQ_I64(exh_precontact_advise(&a, &n, fast, -MM(5)), -EXH_E_RANGE);
+}
+
+TEST_MAIN("unit/precontact", distance_has_the_sign_of_the_text, rounds_once_and_half_up,
+          no_plane_means_no_contact, tracks_freezes_and_releases, the_boundary_is_d_lim_itself,
+          a_touching_finger_is_not_released, what_comes_while_frozen_is_ignored_and_counted,
+          what_came_while_frozen_is_new_at_the_release, born_inside_gives_no_contact_until_left,
+          another_object_has_to_be_left_first, the_same_object_may_come_to_the_finger,
+          a_stale_plane_is_none, a_message_may_be_old_when_it_comes, a_frozen_plane_does_not_age,
+          what_cannot_be_is_refused, material_is_taken_at_the_freeze, scale_and_slope,
+          set_up_refuses, state_round_trip, damaged_state_comes_back_into_range, advice);

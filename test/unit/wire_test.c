@@ -1,0 +1,307 @@
+/* wire.h: every packet there and back, every bit flipped, every byte cut off, and whatever a
+ * link does to the order. */
+#include "exhand/wire.h"
+
+#include "exhand/error.h"
+
+#include "check.h"
+
+#define LEN(a) (sizeof(a) / sizeof((a)[0]))
+
+static uint8_t buf[EXH_WIRE_MAX_B];
+
+static struct exh_wire_packet sample(uint8_t type)
+{
+    struct exh_wire_packet p = {.type = type};
+    int32_t v = 0x01020304;
+    switch (type) {
+    case EXH_WIRE_HELLO: p.u.hello = (struct exh_wire_hello){EXH_WIRE_WORLD, 0x100, 0xABCD}; break;
+    case EXH_WIRE_STATE:
+        p.u.state.tick = 77;
+        p.u.state.fingers = 31;
+        p.u.state.state = 1;
+        p.u.state.frozen = 3;
+        p.u.state.touching = 2;
+        p.u.state.age_ms = EXH_WIRE_NEVER_MS;
+        p.u.state.faults = 0x80000001u;
+        for (unsigned f = 0; f < EXH_WIRE_FINGERS; f++) {
+            for (unsigned k = 0; k < 3; k++) {
+                p.u.state.joint_turn_q32[f][k] = v += 0x01010101;
+                p.u.state.tip_m_q30[f][k] = -(v += 77);
+            }
+            p.u.state.force_N_q20[f] = v += 5;
+            p.u.state.d_m_q30[f] = INT32_MIN;
+            p.u.state.q_m_q30[f] = v += 3;
+            p.u.state.q_lim_m_q30[f] = INT32_MAX;
+        }
+        break;
+    case EXH_WIRE_PLANES:
+        p.u.planes.echo_seq = 5;
+        p.u.planes.echo_stamp_us = 0xFFFFFFF0u;
+        p.u.planes.fingers = 3;
+        p.u.planes.plane[0] = (struct exh_wire_plane){EXH_PLANE_NONE, 0, 0, {0}, {0}, {0}};
+        p.u.planes.plane[1] = (struct exh_wire_plane){EXH_PLANE_HIT,   4,           0x1234,
+                                                      {0, 0, 1 << 30}, {0, 0, 100}, {5, -6, 100}};
+        break;
+    case EXH_WIRE_PARAM: p.u.param = (struct exh_wire_param){0x0401, 3, -9}; break;
+    default: p.u.ack = (struct exh_wire_ack){{0x0401, 3, -9}, -EXH_E_RANGE, 6}; break;
+    }
+    return p;
+}
+
+static uint32_t write_as(uint8_t type, uint32_t session, uint32_t seq)
+{
+    struct exh_wire_tx tx = {session, seq};
+    struct exh_wire_packet p = sample(type);
+    const int32_t n = exh_wire_write(&tx, &p, 1000, buf, sizeof buf);
+    CHECK(n > 0 && tx.seq == seq + 1, "type %d", type);
+    return (uint32_t)n;
+}
+
+/* Recomputes the CRC of what was changed. */
+static void seal(uint32_t n)
+{
+    uint32_t crc = exh_crc32(0, buf, n - 4);
+    struct exh_bytes c = exh_bytes_writer(buf + n - 4, 4);
+    exh_bytes_u32(&c, &crc);
+}
+
+static int take(struct exh_wire_rx *rx, uint32_t n)
+{
+    struct exh_wire_packet p;
+    return exh_wire_take(rx, &p, buf, n);
+}
+
+static struct exh_wire_rx met(uint32_t session, uint32_t seq)
+{
+    struct exh_wire_rx rx = {0};
+    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_HELLO, session, seq)), EXH_WIRE_HELLO);
+    return rx;
+}
+
+TEST(bytes_are_those_of_the_document)
+{
+    static const uint8_t param[] = {0x58, 0x57, 1, 4, 8,    0,    0x0D, 0xF0, 0xAD,
+                                    0xBA, 2,    0, 0, 0,    0xE8, 3,    0,    0,
+                                    0x01, 0x04, 3, 0, 0xF7, 0xFF, 0xFF, 0xFF};
+    static const uint32_t sizes[] = {31, 236, 231, 30, 36};
+    CHECK_EQ_I64(write_as(EXH_WIRE_PARAM, 0xBAADF00Du, 2), sizeof param + 4);
+    CHECK(memcmp(buf, param, sizeof param) == 0, "head and payload");
+    CHECK(buf[26] == (exh_crc32(0, param, sizeof param) & 0xFF), "CRC");
+    for (uint8_t t = 1; t <= 5; t++) { CHECK_EQ_I64(write_as(t, 1, 0), sizes[t - 1]); }
+}
+
+TEST(there_and_back)
+{
+    for (uint8_t t = 1; t <= 5; t++) {
+        struct exh_wire_rx rx = met(9, 0);
+        struct exh_wire_tx tx = {9, 1};
+        struct exh_wire_packet p = sample(t), back = {.type = 0};
+        uint8_t again[EXH_WIRE_MAX_B];
+        const int32_t n = exh_wire_write(&tx, &p, 0x12345678, buf, sizeof buf);
+        CHECK_EQ_I64(exh_wire_take(&rx, &back, buf, (size_t)n), t);
+        CHECK(back.type == t && back.seq == 1 && back.stamp_us == 0x12345678 && rx.accepted == 2,
+              "type %d", t);
+        tx.seq = 1;
+        CHECK_EQ_I64(exh_wire_write(&tx, &back, 0x12345678, again, sizeof again), n);
+        CHECK(memcmp(buf, again, (size_t)n) == 0, "type %d", t);
+    }
+}
+
+TEST(every_bit_flipped_and_every_byte_cut_off)
+{
+    for (uint8_t t = 1; t <= 5; t++) {
+        const struct exh_wire_rx start = met(9, 0);
+        const uint32_t n = write_as(t, 9, 1);
+        const struct exh_wire_packet before = sample(5);
+        for (uint32_t bit = 0; bit < 8 * n; bit++) {
+            struct exh_wire_rx rx = start;
+            struct exh_wire_packet p = before;
+            buf[bit / 8] = (uint8_t)(buf[bit / 8] ^ 1u << bit % 8);
+            CHECK(exh_wire_take(&rx, &p, buf, n) < 0 && rx.corrupt == 1, "bit %" PRIu32, bit);
+            rx.corrupt = 0;
+            CHECK(memcmp(&rx, &start, sizeof rx) == 0 && memcmp(&p, &before, sizeof p) == 0,
+                  "bit %" PRIu32 " changed a state", bit);
+            buf[bit / 8] = (uint8_t)(buf[bit / 8] ^ 1u << bit % 8);
+        }
+        for (uint32_t len = 0; len <= n + 1 && len <= sizeof buf; len++) {
+            struct exh_wire_rx rx = start;
+            if (len != n) { CHECK(take(&rx, len) < 0 && rx.corrupt == 1, "length %" PRIu32, len); }
+        }
+    }
+}
+
+TEST(values_that_cannot_be)
+{
+    static const struct {
+        uint8_t type;
+        uint32_t at;
+        uint8_t byte;
+        int want;
+    } bad[] = {
+        {EXH_WIRE_HELLO, 18, 2, -EXH_E_CRC}, /* role */
+        {EXH_WIRE_STATE, 18 + 4, 32, -EXH_E_CRC}, /* sixth finger */
+        {EXH_WIRE_STATE, 18 + 6, 128, -EXH_E_CRC},
+        {EXH_WIRE_STATE, 18 + 7, 64, -EXH_E_CRC},
+        {EXH_WIRE_PLANES, 18 + 8, 35, -EXH_E_CRC},
+        {EXH_WIRE_PLANES, 18 + 9, 3, -EXH_E_CRC}, /* kind */
+        {EXH_WIRE_PLANES, 18 + 9 + 2 * 40, 1, -EXH_E_CRC}, /* told of a finger not in the mask */
+        {EXH_WIRE_PARAM, 2, 2, -EXH_E_VERSION},
+        {EXH_WIRE_PARAM, 3, 0, -EXH_E_UNKNOWN},
+        {EXH_WIRE_PARAM, 3, 6, -EXH_E_UNKNOWN},
+        {EXH_WIRE_PARAM, 3, 5, -EXH_E_CRC}, /* another type of another length */
+        {EXH_WIRE_PARAM, 0, 0, -EXH_E_CRC},
+        {EXH_WIRE_PARAM, 4, 9, -EXH_E_SHORT},
+        {EXH_WIRE_PARAM, 6, 0, -EXH_E_CRC}, /* session 0, as 9 is the low byte */
+    };
+    for (size_t i = 0; i < LEN(bad); i++) {
+        const struct exh_wire_rx start = met(9, 0);
+        struct exh_wire_rx rx = start;
+        const uint32_t n = write_as(bad[i].type, 9, 1);
+        buf[bad[i].at] = bad[i].byte;
+        seal(n);
+        CHECK(take(&rx, n) == bad[i].want, "case %d", (int)i);
+        CHECK(rx.corrupt + rx.version + rx.unknown == 1 && rx.seq == start.seq, "case %d", (int)i);
+    }
+}
+
+TEST(only_what_is_newer)
+{
+    static const struct {
+        uint32_t seq;
+        int ok;
+        uint32_t missing, duplicate, reordered, old;
+    } step[] = {
+        {11, 1, 0, 0, 0, 0},    {11, 0, 0, 1, 0, 0},    {14, 1, 2, 1, 0, 0},
+        {13, 0, 1, 1, 1, 0},    {13, 0, 1, 2, 1, 0},    {9, 0, 1, 3, 1, 0},
+        {77, 1, 63, 3, 1, 0},   {14, 0, 63, 4, 1, 0},   {12, 0, 63, 4, 1, 1},
+        {15, 0, 62, 4, 2, 1},   {200, 1, 184, 4, 2, 1}, {136, 0, 184, 4, 2, 2},
+        {137, 0, 183, 4, 3, 2},
+    };
+    struct exh_wire_rx rx = met(9, 10);
+    for (size_t i = 0; i < LEN(step); i++) {
+        struct exh_wire_packet p = sample(EXH_WIRE_STATE);
+        const struct exh_wire_packet was = p;
+        const uint32_t n = write_as(EXH_WIRE_PARAM, 9, step[i].seq);
+        const int r = exh_wire_take(&rx, &p, buf, n);
+        CHECK(step[i].ok || memcmp(&p, &was, sizeof p) == 0, "step %d: written", (int)i);
+        CHECK(r == (step[i].ok ? EXH_WIRE_PARAM : -EXH_E_STALE), "step %d", (int)i);
+        CHECK(rx.missing == step[i].missing && rx.duplicate == step[i].duplicate &&
+                  rx.reordered == step[i].reordered && rx.old == step[i].old,
+              "step %d: %" PRIu32 " %" PRIu32 " %" PRIu32 " %" PRIu32, (int)i, rx.missing,
+              rx.duplicate, rx.reordered, rx.old);
+    }
+}
+
+TEST(sequence_numbers_wrap)
+{
+    struct exh_wire_rx rx = met(9, 0xFFFFFFFEu);
+    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PARAM, 9, 0xFFFFFFFFu)), EXH_WIRE_PARAM);
+    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PARAM, 9, 0)), EXH_WIRE_PARAM);
+    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PARAM, 9, 0xFFFFFFFFu)), -EXH_E_STALE);
+    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PARAM, 9, 0x7FFFFFFFu)), EXH_WIRE_PARAM);
+    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PARAM, 9, 0xFFFFFFFFu)), -EXH_E_STALE); /* half way */
+    CHECK_EQ_I64(rx.old, 1);
+}
+
+TEST(a_restart_is_seen_by_its_hello)
+{
+    struct exh_wire_rx rx = {0};
+    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PLANES, 9, 0)), -EXH_E_STATE);
+    CHECK(rx.stranger == 1 && rx.session == 0, "who are you?");
+    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_HELLO, 9, 1)), EXH_WIRE_HELLO);
+    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PLANES, 9, 50000)), EXH_WIRE_PLANES);
+    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PLANES, 10, 1)), -EXH_E_STATE);
+    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_HELLO, 10, 0)), EXH_WIRE_HELLO);
+    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PLANES, 9, 50001)), -EXH_E_STALE);
+    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_HELLO, 9, 50002)), -EXH_E_STALE);
+    CHECK_EQ_I64(rx.old, 2);
+    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PLANES, 10, 1)), EXH_WIRE_PLANES);
+    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_HELLO, 10, 0)), -EXH_E_STALE);
+    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_HELLO, 10, 2)), EXH_WIRE_HELLO);
+}
+
+TEST(writing_refuses)
+{
+    struct exh_wire_tx tx = {9, 4};
+    struct exh_wire_packet p = sample(EXH_WIRE_STATE);
+    CHECK_EQ_I64(exh_wire_write(&tx, &p, 0, buf, 235), -EXH_E_SHORT);
+    CHECK_EQ_I64(exh_wire_write(&tx, &p, 0, buf, 236), 236);
+    p.u.state.touching = 32;
+    CHECK_EQ_I64(exh_wire_write(&tx, &p, 0, buf, sizeof buf), -EXH_E_RANGE);
+    p = sample(EXH_WIRE_PLANES);
+    p.u.planes.plane[4].kind = EXH_PLANE_HIT;
+    CHECK_EQ_I64(exh_wire_write(&tx, &p, 0, buf, sizeof buf), -EXH_E_RANGE);
+    p.type = 0;
+    CHECK_EQ_I64(exh_wire_write(&tx, &p, 0, buf, sizeof buf), -EXH_E_UNKNOWN);
+    tx.session = 0;
+    p = sample(EXH_WIRE_HELLO);
+    CHECK_EQ_I64(exh_wire_write(&tx, &p, 0, buf, sizeof buf), -EXH_E_RANGE);
+    CHECK_EQ_I64(tx.seq, 5);
+}
+
+TEST(planes_and_round_trip)
+{
+    const struct exh_wire_packet p = sample(EXH_WIRE_PLANES);
+    const struct exh_plane none = exh_wire_plane_of(&p.u.planes, 0);
+    const struct exh_plane hit = exh_wire_plane_of(&p.u.planes, 1);
+    CHECK_EQ_I64(none.kind, EXH_PLANE_NONE);
+    CHECK(hit.kind == EXH_PLANE_HIT && hit.material == 4 && hit.object == 0x1234 &&
+              hit.normal_q30.z == 1 << 30 && hit.point_m_q30.z == 100 && hit.point_m_q30.x == 0,
+          "hit");
+    CHECK_EQ_I64(exh_wire_trip_us(0x10, &p.u.planes), 0x20);
+}
+
+TEST(parameters_are_staged_and_answered)
+{
+    static const struct exh_signal rows[] = {{0x0401, 10, EXH_WHEN_ANY, 0, 100, 5, "k", "", ""},
+                                             {0x0402, 10, EXH_WHEN_SETUP, 0, 100, 5, "b", "", ""}};
+    static const struct exh_signal_group group[] = {{rows, 2, 2}};
+    static const struct exh_signal_table table = {group, 1};
+    static const struct {
+        struct exh_wire_param ask;
+        int want;
+    } c[] = {{{0x0401, 1, 100}, 0},
+             {{0x0401, 1, 101}, -EXH_E_RANGE},
+             {{0x0401, 2, 1}, -EXH_E_UNKNOWN},
+             {{0x0402, 0, 6}, -EXH_E_STATE}};
+    int32_t active[4], staged[4];
+    struct exh_params params;
+    exh_params_init(&params, &table, active, staged);
+    params.locked = 1;
+    for (size_t i = 0; i < LEN(c); i++) {
+        struct exh_wire_packet p = {.type = EXH_WIRE_PARAM, .seq = 40 + (uint32_t)i};
+        struct exh_wire_ack ack;
+        p.u.param = c[i].ask;
+        ack = exh_wire_stage(&params, &p);
+        CHECK(ack.result == c[i].want && ack.request_seq == p.seq &&
+                  memcmp(&ack.param, &c[i].ask, sizeof ack.param) == 0,
+              "case %d", (int)i);
+    }
+    CHECK_EQ_I64(active[2], 5); /* instance 1 of k; applied between ticks, not here */
+    CHECK(exh_params_apply(&params) == 1 && active[2] == 100 && active[0] == 5, "applied");
+}
+
+TEST(state_round_trip)
+{
+    struct exh_wire_rx rx = met(9, 10), back = {0};
+    struct exh_wire_tx tx = {3, 4}, tx_back = {0, 0};
+    uint8_t b[80];
+    struct exh_bytes c = exh_bytes_writer(b, sizeof b);
+    (void)take(&rx, write_as(EXH_WIRE_PARAM, 9, 12));
+    (void)take(&rx, write_as(EXH_WIRE_PARAM, 8, 12));
+    exh_wire_rx_bytes(&c, &rx);
+    exh_wire_tx_bytes(&c, &tx);
+    CHECK_EQ_I64(c.at, 56 + 8);
+    c = exh_bytes_reader(b, c.at);
+    exh_wire_rx_bytes(&c, &back);
+    exh_wire_tx_bytes(&c, &tx_back);
+    CHECK(exh_bytes_ok(&c) && memcmp(&rx, &back, sizeof rx) == 0 &&
+              memcmp(&tx, &tx_back, sizeof tx) == 0,
+          "the same");
+}
+
+TEST_MAIN("unit/wire", bytes_are_those_of_the_document, there_and_back,
+          every_bit_flipped_and_every_byte_cut_off, values_that_cannot_be, only_what_is_newer,
+          sequence_numbers_wrap, a_restart_is_seen_by_its_hello, writing_refuses,
+          planes_and_round_trip, parameters_are_staged_and_answered, state_round_trip);
