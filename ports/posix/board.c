@@ -3,11 +3,11 @@
  * between exactly (tick, D/A output, servo sample, what the experimenter does). */
 #include "posix.h"
 
-#include "sim/bench.h"
-#include "sim/fall.h"
+#include "line.h"
+#include "sim/codes.h"
+#include "sim/exo.h"
+#include "sim/mass.h"
 #include "sim/operator.h"
-#include "sim/plant.h"
-#include "sim/random.h"
 
 #include "exhand/board.h"
 #include "exhand/error.h"
@@ -17,23 +17,21 @@
 #include <string.h>
 #include <time.h>
 
-const struct exh_board_info exh_board_info = {"posix", EXH_BOARD_VERSION, 1, 24, 20000};
+const struct exh_board_info exh_board_info = {"posix", EXH_BOARD_VERSION, EXH_FINGERS, 24, 20000};
 
-#define FAR_S 1e30
 #define OUTPUTS_MAX 256 /* on their way to the drive: 3 ticks + 10 ms at 20 kHz are 203 */
 
 struct output {
     double at_s;
-    double ref_A; /* 0 when disabled */
+    double ref_A[EXH_FINGERS]; /* 0 when disabled */
 };
 
 static struct {
     struct posix_config cfg;
     struct exh_period T;
-    struct sim_random rng;
-    struct plant plant;
-    struct fall fall;
-    struct bench bench; /* instead of the fall, if configured */
+    struct sim_mass mass;
+    struct sim_exo exo; /* if it has fingers, instead of the mass */
+    unsigned drives;    /* there are, and ready: one bit each */
     struct sim_glove glove;
     struct sim_operator hand;
     int16_t frame[SIM_GLOVE_SENSORS]; /* the glove's last, */
@@ -42,10 +40,6 @@ static struct {
     long frames;                      /* read of a recording */
     uint64_t tick;
     double now_s;
-    double grid; /* encoder phase, counts */
-    double latched_A;  /* D/A output */
-    double ref_A;      /* what the servo last sampled */
-    double servo_s;    /* its next sample */
     struct output queue[OUTPUTS_MAX];
     unsigned head, queued;
     int configured;
@@ -63,6 +57,9 @@ struct posix_config posix_config_default(void)
     c.falls = 1;
     c.glove_par = sim_glove_default();
     c.hand = sim_operator_default();
+    c.exo = sim_exo_default();
+    c.drives = 1;
+    c.line = posix_line_default();
     return c;
 }
 
@@ -89,7 +86,12 @@ int posix_interrupted(void)
 
 int posix_fall(void)
 {
-    return sim.fall.phase == FALL_FREE ? sim.fall.number : 0;
+    return !sim.exo.fingers && sim.mass.fall.phase == FALL_FREE ? sim.mass.fall.number : 0;
+}
+
+const struct sim_finger *posix_finger(unsigned i)
+{
+    return sim.exo.fingers >> i & 1 ? &sim.exo.finger[i] : NULL;
 }
 
 double posix_time_s(void)
@@ -99,7 +101,7 @@ double posix_time_s(void)
 
 const struct plant *posix_plant(void)
 {
-    return &sim.plant;
+    return &sim.mass.plant;
 }
 
 static double tick_time_s(uint64_t tick)
@@ -107,9 +109,44 @@ static double tick_time_s(uint64_t tick)
     return (double)tick * (double)sim.T.num / (double)sim.T.den;
 }
 
+/* One axis, and perhaps a hand in a glove beside it. */
+static void start_mass(void)
+{
+    const struct posix_config *c = &sim.cfg;
+    if (c->bench) {
+        sim_mass_bench(&sim.mass, &c->device, c->seed, c->wrong);
+    } else {
+        sim_mass_fall(&sim.mass, &c->device, c->seed, c->falls, (double)sim.T.num / (double)sim.T.den);
+    }
+    if (c->from_here) { sim_mass_put(&sim.mass, c->from_x_m, c->from_q_m); }
+    if (c->glove) {
+        sim_operator_start(&sim.hand, &c->hand, &sim.glove, &c->glove_par, c->seed);
+    }
+}
+
+/* A hand in exoskeleton and glove; what no finger in use bends rests as the operator's pose says. */
+static int start_fingers(void)
+{
+    if (sim_exo_start(&sim.exo, &sim.cfg.exo, &sim.cfg.device, sim.cfg.seed, sim.cfg.glove) < 0) {
+        return -1;
+    }
+    sim.drives |= sim.cfg.exo.fingers;
+    if (sim.cfg.glove) {
+        double rest_rad[SIM_GLOVE_SENSORS];
+        for (unsigned i = 0; i < SIM_GLOVE_SENSORS; i++) {
+            rest_rad[i] = sim_pose[sim.cfg.hand.pose].deg[i] * (6.283185307179586 / 360);
+        }
+        sim_exo_glove(&sim.exo, &sim.glove, &sim.cfg.glove_par, sim.cfg.seed, rest_rad);
+    }
+    return 0;
+}
+
 int exh_board_init(uint32_t rate_Hz, struct exh_period *achieved)
 {
-    if (!sim.configured) { sim.cfg = posix_config_default(); }
+    if (!sim.configured) { /* a box at rest, complete */
+        sim.cfg = posix_config_default();
+        sim.cfg.drives = (1u << EXH_FINGERS) - 1;
+    }
     if (sim.cfg.T.num != 0) {
         sim.T = sim.cfg.T;
     } else {
@@ -119,29 +156,19 @@ int exh_board_init(uint32_t rate_Hz, struct exh_period *achieved)
         sim.T.den > (uint64_t)exh_board_info.rate_max_Hz * sim.T.num) {
         return -EXH_E_RATE;
     }
-    sim.rng.state = sim.cfg.seed;
     sim.tick = 0;
     sim.now_s = 0;
-    sim.latched_A = sim.ref_A = 0;
     sim.head = sim.queued = 0;
-    sim.grid = sim_random_unit(&sim.rng);
-    if (sim.cfg.bench) {
-        bench_start(&sim.bench, &sim.plant, &sim.cfg.device, sim.cfg.wrong);
-        sim.fall.phase = FALL_HOLD; /* and stays so: the end comes by posix_stop() */
-    } else {
-        fall_start(&sim.fall, &sim.plant, &sim.cfg.device, &sim.rng, sim.cfg.falls,
-                   (double)sim.T.num / (double)sim.T.den);
-    }
-    if (sim.cfg.from_here) {
-        sim.plant.x_m = sim.cfg.from_x_m;
-        sim.plant.q_m = sim.cfg.from_q_m;
-    }
-    sim.servo_s = sim_random_unit(&sim.rng) / sim.cfg.device.servo_hz;
     sim.frame_s = -1;
     sim.frames = 0;
-    if (sim.cfg.glove) {
-        sim_operator_start(&sim.hand, &sim.cfg.hand, &sim.glove, &sim.cfg.glove_par, sim.cfg.seed);
+    sim.exo.fingers = 0;
+    sim.drives = sim.cfg.drives;
+    if (sim.cfg.exo.fingers) {
+        if (start_fingers() < 0) { return -EXH_E_ABSENT; }
+    } else {
+        start_mass();
     }
+    if (line_start(&sim.cfg.line, sim.cfg.seed) < 0) { return -EXH_E_IO; }
     stop = 0;
     *achieved = sim.T;
     return 0;
@@ -149,55 +176,40 @@ int exh_board_init(uint32_t rate_Hz, struct exh_period *achieved)
 
 void posix_bench(enum bench_place place, double mass_kg)
 {
-    bench_prepare(&sim.bench, &sim.plant, &sim.rng, place, mass_kg);
+    bench_prepare(&sim.mass.bench, &sim.mass.plant, &sim.mass.rng, place, mass_kg);
 }
 
 int posix_bench_ready(void)
 {
-    return bench_ready(&sim.bench);
+    return bench_ready(&sim.mass.bench);
 }
 
-static double earlier(double a, double b)
+static void advance_device(double until_s)
 {
-    return a < b ? a : b;
-}
-
-/* The plant by itself, up to the next event. */
-static void advance_plant(double dt_s)
-{
-    if (sim.cfg.bench) {
-        bench_advance(&sim.bench, &sim.plant, dt_s, sim.ref_A);
+    if (sim.exo.fingers) {
+        sim_exo_advance(&sim.exo, until_s);
     } else {
-        plant_advance(&sim.plant, &sim.cfg.device, dt_s, sim.ref_A, sim.fall.phase != FALL_FREE);
+        sim_mass_advance(&sim.mass, until_s);
     }
 }
 
-/* Everything that happens up to and at end_s. */
+/* Everything that happens up to and at end_s: outputs on their instants, whatever the device
+ * does between on its own. */
 static void advance_to(double end_s)
 {
-    const struct sim_device *d = &sim.cfg.device;
-    while (sim.now_s < end_s) {
-        const double output_s = sim.queued ? sim.queue[sim.head].at_s : FAR_S;
-        double next_s = earlier(end_s, earlier(sim.servo_s, output_s));
-        if (!sim.cfg.bench) { next_s = earlier(next_s, fall_next_s(&sim.fall)); }
-        if (next_s > sim.now_s) {
-            advance_plant(next_s - sim.now_s);
-            sim.now_s = next_s;
+    while (sim.queued && sim.queue[sim.head].at_s <= end_s) {
+        const struct output *o = &sim.queue[sim.head];
+        advance_device(o->at_s);
+        if (sim.exo.fingers) {
+            sim_exo_latch(&sim.exo, o->ref_A);
+        } else {
+            sim_mass_latch(&sim.mass, o->ref_A[0]);
         }
-        if (output_s <= sim.now_s) {
-            sim.latched_A = sim.queue[sim.head].ref_A;
-            sim.head = (sim.head + 1) % OUTPUTS_MAX;
-            sim.queued--;
-        }
-        if (sim.servo_s <= sim.now_s) {
-            sim.ref_A = sim.latched_A;
-            sim.servo_s += 1 / d->servo_hz;
-        }
-        if (!sim.cfg.bench && fall_step(&sim.fall, &sim.plant, d, &sim.rng, sim.now_s)) {
-            /* The servo's clock is not ours: its phase is chance at each fall. */
-            sim.servo_s = sim.now_s + sim_random_unit(&sim.rng) / d->servo_hz;
-        }
+        sim.head = (sim.head + 1) % OUTPUTS_MAX;
+        sim.queued--;
     }
+    advance_device(end_s);
+    sim.now_s = end_s;
 }
 
 static void follow_wall_clock(double t_s)
@@ -214,53 +226,49 @@ static void follow_wall_clock(double t_s)
     while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &at, NULL) != 0 && !interrupted) {}
 }
 
+/* The falls, or the fingers' scripts. */
+static int done(void)
+{
+    return sim.exo.fingers ? sim_exo_done(&sim.exo) : sim.mass.fall.phase == FALL_DONE;
+}
+
 int exh_board_wait(void)
 {
     const double at_s = tick_time_s(sim.tick);
     advance_to(at_s);
     if (sim.cfg.pace) { follow_wall_clock(at_s); }
+    line_advance(at_s);
     sim.tick++;
     if (sim.cfg.max_ticks && sim.tick > sim.cfg.max_ticks) { return -1; }
-    return stop || interrupted || sim.fall.phase == FALL_DONE ? -1 : 0;
-}
-
-static int64_t floor_count(double v)
-{
-    const int64_t i = (int64_t)v;
-    return (double)i > v ? i - 1 : i;
+    return stop || interrupted || done() ? -1 : 0;
 }
 
 int exh_board_read_drive(struct exh_drive_in *in)
 {
-    const struct sim_device *d = &sim.cfg.device;
-    const double mon_A = sim.plant.mon_A + d->mon_noise_a * sim_random_bell(&sim.rng);
-    const int64_t mon_raw = floor_count(mon_A / d->mon_apc + 0.5);
-    const double q_m = sim.cfg.bench ? bench_encoder_m(&sim.bench, &sim.plant) : sim.plant.q_m;
-    double jitter = 0;
-    int64_t cnt;
-
-    if (sim.cfg.enc_jitter_cnt > 0) {
-        jitter = sim.cfg.enc_jitter_cnt * (sim_random_unit(&sim.rng) - 0.5);
-    }
-    cnt = floor_count(q_m * d->decode / d->step_m + sim.grid + d->enc_start + jitter);
+    const double jitter_cnt = sim.cfg.enc_jitter_cnt;
     memset(in, 0, sizeof *in);
-    in->enc_raw[0] = (uint32_t)((uint64_t)cnt & 0xFFFFFF);
-    in->mon_raw[0] = (int16_t)(mon_raw > 32767 ? 32767 : mon_raw < -32768 ? -32768 : mon_raw);
-    in->din = EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_DRIVE0;
+    if (!sim.exo.fingers) { sim_mass_read(&sim.mass, jitter_cnt, &in->enc_raw[0], &in->mon_raw[0]); }
+    for (unsigned i = 0; i < EXH_FINGERS; i++) {
+        if (sim.exo.fingers >> i & 1) {
+            sim_finger_read(&sim.exo.finger[i], jitter_cnt, &in->enc_raw[i], &in->mon_raw[i]);
+        }
+    }
+    in->din = EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_DRIVE0 * sim.drives;
     return 0;
 }
 
 int exh_board_write_drive(const struct exh_drive_out *out)
 {
     const struct sim_device *d = &sim.cfg.device;
-    const double asked_A = ((double)out->dac_raw[0] - d->dac_zero) / d->dac_perA;
-    const double ref_A = asked_A > d->peak_a ? d->peak_a : asked_A < -d->peak_a ? -d->peak_a : asked_A;
+    const unsigned axes = sim.exo.fingers ? sim.exo.fingers : 1;
     const double T_s = (double)sim.T.num / (double)sim.T.den;
     struct output *o = &sim.queue[(sim.head + sim.queued) % OUTPUTS_MAX];
 
     if (sim.queued == OUTPUTS_MAX) { return -EXH_E_IO; }
     o->at_s = sim.now_s + d->delay_tick * T_s + d->delay_s;
-    o->ref_A = out->enable & 1 ? ref_A : 0;
+    for (unsigned i = 0; i < EXH_FINGERS && axes >> i; i++) {
+        o->ref_A[i] = sim_drive_A(d, out->dac_raw[i], out->enable >> i & 1);
+    }
     sim.queued++;
     return 0;
 }
@@ -268,7 +276,10 @@ int exh_board_write_drive(const struct exh_drive_out *out)
 void exh_board_safe(void)
 {
     sim.queued = 0;
-    sim.latched_A = sim.ref_A = 0;
+    sim_mass_safe(&sim.mass);
+    for (unsigned i = 0; i < EXH_FINGERS; i++) {
+        if (sim.exo.fingers >> i & 1) { sim_finger_safe(&sim.exo.finger[i]); }
+    }
 }
 
 void exh_board_halt(const char *why)
@@ -280,7 +291,9 @@ void exh_board_halt(const char *why)
 
 static void next_frame(void)
 {
-    if (sim.cfg.frame == NULL) {
+    if (sim.exo.fingers && sim.cfg.frame == NULL) {
+        sim_exo_frame(&sim.exo, &sim.glove, sim.now_s, sim.frame);
+    } else if (sim.cfg.frame == NULL) {
         sim_operator_frame(&sim.hand, &sim.glove, sim.now_s, sim.frame);
     } else {
         memcpy(sim.frame, sim.cfg.frame[sim.frames], sizeof sim.frame);
@@ -333,14 +346,11 @@ int exh_board_log(const void *rec, size_t len_B)
 
 int exh_board_link_send(const void *buf, size_t len_B)
 {
-    (void)buf;
-    (void)len_B;
-    return 0;
+    const int n = line_send(sim.now_s, buf, len_B);
+    return n < 0 ? -EXH_E_IO : n;
 }
 
 int exh_board_link_recv(void *buf, size_t cap_B)
 {
-    (void)buf;
-    (void)cap_B;
-    return 0;
+    return line_recv(sim.now_s, buf, cap_B);
 }

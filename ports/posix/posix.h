@@ -3,8 +3,11 @@
 #ifndef POSIX_H
 #define POSIX_H
 
+#include "line.h"
+
 #include "sim/bench.h"
 #include "sim/device.h"
+#include "sim/exo.h"
 #include "sim/operator.h"
 
 #include "exhand/units.h"
@@ -25,6 +28,12 @@ struct posix_config {
     unsigned wrong;          /* enum bench_wrong: what is wrong with the bench    */
     int from_here;           /* 1: the first fall begins at from_x_m, from_q_m   */
     double from_x_m, from_q_m; /* mass and string, 0 = virtual contact           */
+    struct sim_exo_par exo;  /* fingers not 0: fingers in an exoskeleton instead of falls
+                              * and bench; when all their scripts have ended the
+                              * board says stop                               */
+    unsigned drives;         /* bit i: drive of finger i is there and ready, besides those
+                              * of fingers in use                             */
+    struct posix_line line;  /* on: the link leads somewhere                     */
     double enc_jitter_cnt;   /* peak to peak, uniform: 1 makes a resting encoder change
                               * between two counts                             */
     int glove;               /* 1: there is a glove, and a hand in it           */
@@ -42,6 +51,9 @@ void posix_configure(const struct posix_config *c);
 
 /* The fall under observation, 1…, or 0 while the mass is held or lifted. */
 int posix_fall(void);
+
+/* A finger in use, or NULL (tests, pictures). */
+const struct sim_finger *posix_finger(unsigned i);
 
 /* The person at the bench prepares a place; ready some time later. */
 void posix_bench(enum bench_place place, double mass_kg);

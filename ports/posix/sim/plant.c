@@ -27,29 +27,78 @@ static double shrink(double v, double most)
     return v > most ? v - most : v < -most ? v + most : 0;
 }
 
-void plant_advance(struct plant *p, const struct sim_device *d, double dt_s, double ref_A,
-                   int held)
+/* What stays the same from sub-step to sub-step of h_s. */
+struct step {
+    double h_s, ref_A, kf_npa;
+    double keep_cur, keep_mon;
+    double h_mass, h_rotor; /* of a force, the change of speed                     */
+    double viscous; /* implicit                                            */
+};
+
+static struct step step_of(const struct sim_device *d, double h_s, double ref_A)
+{
+    struct step s;
+    s.h_s = h_s;
+    s.ref_A = ref_A;
+    s.kf_npa = d->kf_npa;
+    s.keep_cur = sim_exp_neg(TWO_PI * d->current_hz * h_s);
+    s.keep_mon = d->mon_lag_s > 0 ? sim_exp_neg(h_s / d->mon_lag_s) : 0;
+    s.h_mass = h_s / d->mass_kg;
+    s.h_rotor = h_s / d->rotor_kg;
+    s.viscous = 1 / (1 + s.h_rotor * d->viscous_nspm);
+    return s;
+}
+
+static void step_current(struct plant *p, const struct step *s)
+{
+    p->cur_A = s->ref_A + (p->cur_A - s->ref_A) * s->keep_cur;
+    p->mon_A = p->cur_A + (p->mon_A - p->cur_A) * s->keep_mon;
+}
+
+/* push_mps: what a force besides the string adds to the mass's speed; damp: what that force's
+ * own damping leaves of it (implicit). */
+static inline void step_string(struct plant *p, const struct sim_device *d, const struct step *s,
+                               double push_mps, double damp)
+{
+    const double stretch = p->x_m - p->q_m;
+    double T = d->cable_npm * stretch + d->cable_nspm * (p->v_mps - p->w_mps);
+    if (stretch < 0 || T < 0) { T = 0; }
+    p->v_mps = shrink((p->v_mps + push_mps - s->h_mass * T) * damp, s->h_mass * d->mu_mass * T);
+    p->w_mps = shrink((p->w_mps + s->h_rotor * (T - s->kf_npa * p->cur_A)) * s->viscous,
+                      s->h_rotor * (d->coulomb_n + d->mu_motor * T));
+    p->x_m += s->h_s * p->v_mps;
+    p->q_m += s->h_s * p->w_mps;
+}
+
+void plant_advance(struct plant *p, const struct sim_device *d, double dt_s, double ref_A, int held)
 {
     const int n = (int)(dt_s / d->substep_s) + 1;
-    const double h = dt_s / n;
-    const double keep_cur = sim_exp_neg(TWO_PI * d->current_hz * h);
-    const double keep_mon = d->mon_lag_s > 0 ? sim_exp_neg(h / d->mon_lag_s) : 0;
-    const double h_mass = h / d->mass_kg;
-    const double h_rotor = h / d->rotor_kg;
-    const double viscous = 1 / (1 + h_rotor * d->viscous_nspm); /* implicit */
-
+    const struct step s = step_of(d, dt_s / n, ref_A);
     for (int i = 0; i < n; i++) {
-        p->cur_A = ref_A + (p->cur_A - ref_A) * keep_cur;
-        p->mon_A = p->cur_A + (p->mon_A - p->cur_A) * keep_mon;
-        if (!held) {
-            const double stretch = p->x_m - p->q_m;
-            double T = d->cable_npm * stretch + d->cable_nspm * (p->v_mps - p->w_mps);
-            if (stretch < 0 || T < 0) { T = 0; }
-            p->v_mps = shrink(p->v_mps + h * SIM_GRAVITY - h_mass * T, h_mass * d->mu_mass * T);
-            p->w_mps = shrink((p->w_mps + h_rotor * (T - d->kf_npa * p->cur_A)) * viscous,
-                              h_rotor * (d->coulomb_n + d->mu_motor * T));
-            p->x_m += h * p->v_mps;
-            p->q_m += h * p->w_mps;
-        }
+        step_current(p, &s);
+        if (!held) { step_string(p, d, &s, s.h_s * SIM_GRAVITY, 1); }
+    }
+}
+
+static inline void stop(double *x_m, double *v_mps, double end_m)
+{
+    if (*x_m >= end_m) { return; }
+    *x_m = end_m;
+    if (*v_mps < 0) { *v_mps = 0; }
+}
+
+void plant_advance_hand(struct plant *p, const struct sim_device *d, double dt_s, double ref_A,
+                        const struct plant_hand *hand)
+{
+    const int n = (int)(dt_s / d->substep_s) + 1;
+    const struct step s = step_of(d, dt_s / n, ref_A);
+    const double damp = 1 / (1 + s.h_mass * hand->b_Nspm);
+    for (int i = 0; i < n; i++) {
+        const double ahead_m = hand->x_m + (i + 1) * s.h_s * hand->v_mps - p->x_m;
+        step_current(p, &s);
+        step_string(p, d, &s, s.h_mass * (hand->k_Npm * ahead_m + hand->b_Nspm * hand->v_mps),
+                    damp);
+        stop(&p->x_m, &p->v_mps, hand->end_m);
+        stop(&p->q_m, &p->w_mps, hand->end_m);
     }
 }

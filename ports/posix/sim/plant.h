@@ -28,6 +28,18 @@ struct plant {
 void plant_advance(struct plant *p, const struct sim_device *d, double dt_s, double ref_A,
                    int held);
 
+/* A hand moves the mass, which is then a finger: instead of its weight the force
+ *   k (target - x) + b (target' - x'),
+ * the damping implicit. The target is at x_m when the piece begins and moves at v_mps. Neither
+ * finger nor string goes beyond end_m, the straight finger: they stop there. */
+struct plant_hand {
+    double k_Npm, b_Nspm;
+    double x_m, v_mps;
+    double end_m;
+};
+void plant_advance_hand(struct plant *p, const struct sim_device *d, double dt_s, double ref_A,
+                        const struct plant_hand *hand);
+
 /* exp(-x) for x >= 0, from + - x /; relative error < 1e-12. */
 double sim_exp_neg(double x);
 

@@ -1,0 +1,108 @@
+#include "line.h"
+
+#include "udp.h"
+
+#include <string.h>
+
+static struct {
+    struct posix_line cfg;
+    struct sim_link link;
+    struct udp udp;
+    int udp_open;
+    uint64_t frames;
+} line;
+
+struct posix_line posix_line_default(void)
+{
+    struct posix_line c;
+    memset(&c, 0, sizeof c);
+    for (int k = 0; k < SIM_LINK_WAYS; k++) { c.way[k] = sim_link_default(); }
+    return c;
+}
+
+void line_stop(void)
+{
+    if (line.udp_open) { udp_close(&line.udp); }
+    line.udp_open = 0;
+}
+
+int line_start(const struct posix_line *cfg, uint64_t seed)
+{
+    line_stop();
+    line.cfg = *cfg;
+    line.frames = 0;
+    if (!cfg->on) { return 0; }
+    for (unsigned k = 0; k < SIM_LINK_WAYS; k++) {
+        sim_link_start(&line.link.way[k], &cfg->way[k], cfg->trace[k],
+                       seed ^ UINT64_C(0xD1B54A32D192ED03) * (k + 1));
+    }
+    if (cfg->udp_local != NULL) {
+        if (udp_open(&line.udp, cfg->udp_local, cfg->udp_peer) < 0) { return -1; }
+        line.udp_open = 1;
+    }
+    return 0;
+}
+
+struct sim_link *posix_link(void)
+{
+    return &line.link;
+}
+
+/* Between the ways and the socket. */
+static void pump(double now_s)
+{
+    uint8_t buf[SIM_LINK_PACKET_B];
+    int n;
+    while ((n = sim_link_recv(&line.link.way[SIM_LINK_OUT], now_s, buf, sizeof buf)) > 0) {
+        (void)udp_send(&line.udp, buf, (size_t)n);
+    }
+    while ((n = udp_recv(&line.udp, buf, sizeof buf)) > 0) {
+        (void)sim_link_send(&line.link.way[SIM_LINK_IN], now_s, buf, (size_t)n);
+    }
+}
+
+/* When the peer is next called. */
+static double frame_at_s(void)
+{
+    return line.cfg.frame_s > 0 ? line.cfg.frame_first_s + (double)line.frames * line.cfg.frame_s
+                                : sim_link_next_s(&line.link.way[SIM_LINK_OUT]);
+}
+
+static void frame(double t_s)
+{
+    uint8_t left[1];
+    line.frames++;
+    line.cfg.frame(line.cfg.ctx, &line.link, t_s);
+    if (line.cfg.frame_s > 0) { return; }
+    /* What it leaves would call it for ever. */
+    while (sim_link_next_s(&line.link.way[SIM_LINK_OUT]) <= t_s) {
+        (void)sim_link_recv(&line.link.way[SIM_LINK_OUT], t_s, left, 0);
+    }
+}
+
+void line_advance(double now_s)
+{
+    if (!line.cfg.on) { return; }
+    if (line.udp_open) {
+        pump(now_s);
+    } else if (line.cfg.frame != NULL) {
+        double t_s;
+        while ((t_s = frame_at_s()) <= now_s) { frame(t_s); }
+    }
+}
+
+int line_send(double now_s, const void *buf, size_t len_B)
+{
+    int n;
+    if (!line.cfg.on) { return 0; }
+    n = sim_link_send(&line.link.way[SIM_LINK_OUT], now_s, buf, len_B);
+    if (line.udp_open) { pump(now_s); }
+    return n;
+}
+
+int line_recv(double now_s, void *buf, size_t cap_B)
+{
+    if (!line.cfg.on) { return 0; }
+    if (line.udp_open) { pump(now_s); }
+    return sim_link_recv(&line.link.way[SIM_LINK_IN], now_s, buf, cap_B);
+}

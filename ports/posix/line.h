@@ -1,0 +1,38 @@
+/* Line: what the board's link functions lead to: two impaired ways (sim/link.h), and at their end
+ * a peer in this process or a UDP socket. */
+#ifndef LINE_H
+#define LINE_H
+
+#include "sim/link.h"
+
+struct posix_line {
+    int on;
+    struct sim_link_par way[SIM_LINK_WAYS]; /* SIM_LINK_OUT, SIM_LINK_IN          */
+    const struct sim_trace *trace[SIM_LINK_WAYS]; /* the caller's, or NULL        */
+    /* A peer in this process: called at its frames in virtual time, frame_first_s + n frame_s, or,
+     * with frame_s 0, whenever a packet arrives; it takes from the way out and gives into
+     * the way in, at t_s. NULL: none. */
+    void (*frame)(void *ctx, struct sim_link *link, double t_s);
+    void *ctx;
+    double frame_s, frame_first_s;
+    /* Or a socket: "127.0.0.1:4747" and where the peer is, NULL: whoever sends. Real time:
+     * for runs that follow the wall clock. */
+    const char *udp_local, *udp_peer;
+};
+
+struct posix_line posix_line_default(void);
+
+/* 0, or -1: no socket. */
+int line_start(const struct posix_line *cfg, uint64_t seed);
+void line_stop(void);
+
+/* Everything up to and at now_s. */
+void line_advance(double now_s);
+
+int line_send(double now_s, const void *buf, size_t len_B);
+int line_recv(double now_s, void *buf, size_t cap_B);
+
+/* The ways, for their counts and for changes on the way. */
+struct sim_link *posix_link(void);
+
+#endif

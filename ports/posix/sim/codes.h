@@ -1,0 +1,40 @@
+/* Codes of the simulated device's cards and drive. */
+#ifndef SIM_CODES_H
+#define SIM_CODES_H
+
+#include "device.h"
+#include "random.h"
+
+#include <stdint.h>
+
+static inline int64_t sim_floor(double v)
+{
+    const int64_t i = (int64_t)v;
+    return (double)i > v ? i - 1 : i;
+}
+
+/* The 24-bit counter at this string; grid: the encoder's phase, counts; jitter: counts. */
+static inline uint32_t sim_encoder_raw(const struct sim_device *d, double q_m, double grid,
+                                       double jitter)
+{
+    const int64_t cnt = sim_floor(q_m * d->decode / d->step_m + grid + d->enc_start + jitter);
+    return (uint32_t)((uint64_t)cnt & 0xFFFFFF);
+}
+
+/* The monitor at this current, with its noise. */
+static inline int16_t sim_monitor_raw(const struct sim_device *d, double mon_A, struct sim_random *r)
+{
+    const double noisy_A = mon_A + d->mon_noise_a * sim_random_bell(r);
+    const int64_t raw = sim_floor(noisy_A / d->mon_apc + 0.5);
+    return (int16_t)(raw > 32767 ? 32767 : raw < -32768 ? -32768 : raw);
+}
+
+/* What the drive makes of a D/A code: 0 if it is not enabled. */
+static inline double sim_drive_A(const struct sim_device *d, uint16_t dac_raw, int enabled)
+{
+    const double asked_A = ((double)dac_raw - d->dac_zero) / d->dac_perA;
+    const double ref_A = asked_A > d->peak_a ? d->peak_a : asked_A < -d->peak_a ? -d->peak_a : asked_A;
+    return enabled ? ref_A : 0;
+}
+
+#endif

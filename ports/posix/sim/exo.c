@@ -1,0 +1,146 @@
+#include "exo.h"
+
+#include <string.h>
+
+#define POINT_S 250e-6 /* between two points the fingers move on straight lines         */
+
+/* Sensors that bend: the knuckle's, and those of the joints beyond it; -1: none. */
+static const signed char bends[SIM_FINGERS][3] = {
+    {1, 2, -1}, {4, 5, 6}, {7, 8, 9}, {11, 12, 13}, {15, 16, 17}};
+
+struct sim_exo_par sim_exo_default(void)
+{
+    struct sim_exo_par p;
+    memset(&p, 0, sizeof p);
+    for (unsigned i = 0; i < SIM_FINGERS; i++) {
+        p.finger[i] = sim_finger_default();
+        p.path[i] = sim_path_default();
+    }
+    return p;
+}
+
+static int used(const struct sim_exo *e, unsigned i)
+{
+    return (int)(e->fingers >> i & 1);
+}
+
+/* --- the fingers --- */
+
+static void keep_point(struct sim_exo *e, double t_s)
+{
+    struct sim_exo_point *p;
+    if (!e->gloved) { return; }
+    if (e->points == SIM_EXO_POINTS) { /* nobody asked for so long: the oldest is of no use */
+        e->first = (e->first + 1) % SIM_EXO_POINTS;
+        e->points--;
+        e->torn = 1;
+    }
+    p = &e->point[(e->first + e->points) % SIM_EXO_POINTS];
+    e->points++;
+    p->t_s = t_s;
+    for (unsigned i = 0; i < SIM_FINGERS; i++) {
+        p->x_m[i] = used(e, i) ? e->finger[i].plant.x_m : 0;
+    }
+}
+
+int sim_exo_start(struct sim_exo *e, const struct sim_exo_par *p, const struct sim_device *d,
+                  uint64_t seed, int gloved)
+{
+    double later_s = 0;
+    if (p->fingers >> SIM_FINGERS) { return -1; }
+    e->fingers = p->fingers;
+    e->gloved = gloved;
+    e->first = e->points = 0;
+    e->torn = 0;
+    for (unsigned i = 0; i < SIM_FINGERS; i++) {
+        struct sim_path_par path = p->path[i];
+        if (!used(e, i)) { continue; }
+        path.first_s += later_s;
+        later_s += p->apart_s;
+        /* A seed of its own: what it does does not hang on which others there are. */
+        sim_finger_start(&e->finger[i], &p->finger[i], &path, &p->record[i], d,
+                         seed ^ UINT64_C(0x9E6C63D0876A9A47) * (i + 1));
+    }
+    keep_point(e, 0);
+    return 0;
+}
+
+static double newest_s(const struct sim_exo *e)
+{
+    return e->point[(e->first + e->points - 1) % SIM_EXO_POINTS].t_s;
+}
+
+void sim_exo_advance(struct sim_exo *e, double until_s)
+{
+    double to_s;
+    do {
+        to_s = e->gloved && newest_s(e) + POINT_S < until_s ? newest_s(e) + POINT_S : until_s;
+        for (unsigned i = 0; i < SIM_FINGERS; i++) {
+            if (used(e, i)) { sim_finger_advance(&e->finger[i], to_s); }
+        }
+        if (e->gloved && to_s > newest_s(e)) { keep_point(e, to_s); }
+    } while (to_s < until_s);
+}
+
+int sim_exo_done(const struct sim_exo *e)
+{
+    for (unsigned i = 0; i < SIM_FINGERS; i++) {
+        if (used(e, i) && e->finger[i].path.phase != SIM_PATH_DONE) { return 0; }
+    }
+    return 1;
+}
+
+void sim_exo_latch(struct sim_exo *e, const double ref_A[SIM_FINGERS])
+{
+    for (unsigned i = 0; i < SIM_FINGERS; i++) {
+        if (used(e, i)) { sim_finger_latch(&e->finger[i], ref_A[i]); }
+    }
+}
+
+/* --- the glove --- */
+
+void sim_exo_glove(struct sim_exo *e, struct sim_glove *g, const struct sim_glove_par *p,
+                   uint64_t seed, const double rest_rad[SIM_GLOVE_SENSORS])
+{
+    double at_rad[SIM_GLOVE_SENSORS];
+    memcpy(at_rad, rest_rad, sizeof at_rad);
+    for (unsigned i = 0; i < SIM_FINGERS; i++) {
+        for (int j = 0; j < 3 && used(e, i); j++) {
+            const struct sim_finger *f = &e->finger[i];
+            if (bends[i][j] >= 0) { at_rad[bends[i][j]] = f->bend_radpm[j > 0] * f->plant.x_m; }
+        }
+    }
+    sim_glove_start(g, p, seed, at_rad);
+}
+
+/* The way from the oldest point to the next, into the glove; the oldest is then done with. */
+static void feed(struct sim_exo *e, struct sim_glove *g)
+{
+    const struct sim_exo_point *a = &e->point[e->first];
+    const struct sim_exo_point *b = &e->point[(e->first + 1) % SIM_EXO_POINTS];
+    for (unsigned i = 0; i < SIM_FINGERS; i++) {
+        if (!used(e, i)) { continue; }
+        for (int j = 0; j < 3 && bends[i][j] >= 0; j++) {
+            const double bend = e->finger[i].bend_radpm[j > 0];
+            const double slope = bend * ((b->x_m[i] - a->x_m[i]) / (b->t_s - a->t_s));
+            const struct sim_curve x = {a->t_s, {bend * a->x_m[i], slope}, 0, 0, 0};
+            struct sim_lag *l = &g->angle_rad[bends[i][j]];
+            /* All that is left is many lags long: whatever was before has died out. */
+            if (e->torn) { sim_lag_start(l, l->tau_s, x.c[0]); }
+            sim_lag_follow(l, &x);
+        }
+    }
+    e->torn = 0;
+    e->first = (e->first + 1) % SIM_EXO_POINTS;
+    e->points--;
+}
+
+void sim_exo_frame(struct sim_exo *e, struct sim_glove *g, double tick_s,
+                   int16_t raw[SIM_GLOVE_SENSORS])
+{
+    for (unsigned i = 0; i < SIM_GLOVE_SENSORS; i++) {
+        const double held_s = sim_glove_held_s(&g->par, i, tick_s);
+        while (e->points > 1 && e->point[e->first].t_s <= held_s) { feed(e, g); }
+        raw[i] = sim_glove_convert(g, i, held_s);
+    }
+}

@@ -1,0 +1,100 @@
+/* Link: what a network does to packets, in virtual time, seeded.
+ *
+ * Each of two ways delays (constant, or with jitter of three kinds, or as a recorded trace says),
+ * loses, doubles, holds some back so that later ones overtake them, and has holes, in which
+ * nothing arrives. A packet arrives at sent + delay; two that arrive at once come in the order
+ * they were sent. What is on its way is bounded; what finds no room is dropped and counted.
+ *
+ * Chance is drawn apart for each of these, and once a packet, whatever is switched on: more
+ * loss does not change the delay of what still arrives.
+ */
+#ifndef SIM_LINK_H
+#define SIM_LINK_H
+
+#include "device.h"
+#include "random.h"
+#include "trace.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+#define SIM_LINK_PACKET_B 1472 /* what an Ethernet frame carries over UDP           */
+#define SIM_LINK_QUEUE    1024
+
+enum sim_link_jitter {
+    SIM_LINK_CONSTANT,
+    SIM_LINK_UNIFORM,   /* +- jitter                                             */
+    SIM_LINK_NORMAL,    /* deviation jitter / 3, clipped at +- jitter            */
+    SIM_LINK_CORRELATED /* the same, each with `memory` of the one before         */
+};
+
+/* Doubles only, in the order of the table in link.c; of one way. */
+struct sim_link_par {
+    double delay_s, jitter, jitter_s, memory; /* jitter: enum sim_link_jitter     */
+    double loss, duplicate, duplicate_s, reorder, reorder_s;
+    double hole_at_s, hole_s, hole_every_s;
+    double in_order, queue, trace_scale;
+};
+extern const struct sim_device_row sim_link_row[];
+extern const int sim_link_rows;
+
+/* A perfect link: nothing of all this. */
+struct sim_link_par sim_link_default(void);
+
+/* Sets one by name, as sim_device_set() does. */
+int sim_link_set(struct sim_link_par *p, const char *name, double value,
+                 const struct sim_device_row **row);
+
+/* sent + doubled = arrived + lost + in_hole + overflow + on their way. */
+struct sim_link_counts {
+    uint64_t sent;     /* handed in                                             */
+    uint64_t doubled;
+    uint64_t arrived;  /* handed out                                            */
+    uint64_t lost, in_hole, overflow;
+    uint64_t overtaken; /* of those that arrived: after one that was sent later   */
+    uint64_t too_long; /* not taken, or longer than the receiver's buffer        */
+};
+
+struct sim_link_packet {
+    double due_s, sent_s;
+    uint64_t number; /* of the packet, from 0; a double has its original's      */
+    uint64_t serial; /* of the copy: who came first among equals                */
+    uint16_t len_B;
+    uint8_t byte[SIM_LINK_PACKET_B];
+};
+
+struct sim_link_way {
+    struct sim_link_par par;
+    const struct sim_trace *trace; /* instead of delay's model, added to `delay`; NULL: none */
+    struct sim_random delay_rng, loss_rng, duplicate_rng, reorder_rng;
+    double wander;       /* correlated jitter's state, -1 .. 1 or a little more   */
+    double fresh;        /* what memory leaves for chance: sqrt(1 - memory^2)     */
+    double last_due_s;   /* of the latest so far                                 */
+    uint64_t next_number, next_serial, newest; /* newest: number + 1 that arrived */
+    uint16_t order[SIM_LINK_QUEUE]; /* slots by due time; then the free ones      */
+    unsigned queued;
+    struct sim_link_counts counts;
+    struct sim_link_packet slot[SIM_LINK_QUEUE];
+};
+
+enum { SIM_LINK_OUT, SIM_LINK_IN, SIM_LINK_WAYS }; /* from and to the controller   */
+
+struct sim_link {
+    struct sim_link_way way[SIM_LINK_WAYS];
+};
+
+/* Empty, at 0 s. trace: the caller's, or NULL. */
+void sim_link_start(struct sim_link_way *w, const struct sim_link_par *p,
+                    const struct sim_trace *trace, uint64_t seed);
+
+/* Takes a packet at t_s, not before the last: its length, whatever becomes of it, or -1:
+ * longer than any may be. */
+int sim_link_send(struct sim_link_way *w, double t_s, const void *buf, size_t len_B);
+
+/* The next that has arrived by t_s: its length, or 0: none. One longer than cap_B is dropped. */
+int sim_link_recv(struct sim_link_way *w, double t_s, void *buf, size_t cap_B);
+
+/* When the next arrives, 1e30: nothing is on its way. */
+double sim_link_next_s(const struct sim_link_way *w);
+
+#endif

@@ -1,0 +1,90 @@
+#include "mass.h"
+
+#include "codes.h"
+
+static void start(struct sim_mass *m, const struct sim_device *d, uint64_t seed)
+{
+    const struct sim_mass none = {.now_s = 0};
+    *m = none;
+    m->device = *d;
+    m->rng.state = seed;
+    m->grid = sim_random_unit(&m->rng);
+}
+
+void sim_mass_fall(struct sim_mass *m, const struct sim_device *d, uint64_t seed, int falls,
+                   double T_s)
+{
+    start(m, d, seed);
+    fall_start(&m->fall, &m->plant, d, &m->rng, falls, T_s);
+    m->servo_s = sim_random_unit(&m->rng) / d->servo_hz;
+}
+
+void sim_mass_bench(struct sim_mass *m, const struct sim_device *d, uint64_t seed, unsigned wrong)
+{
+    start(m, d, seed);
+    m->benched = 1;
+    m->fall.phase = FALL_HOLD; /* and stays so */
+    bench_start(&m->bench, &m->plant, d, wrong);
+    m->servo_s = sim_random_unit(&m->rng) / d->servo_hz;
+}
+
+void sim_mass_put(struct sim_mass *m, double x_m, double q_m)
+{
+    m->plant.x_m = x_m;
+    m->plant.q_m = q_m;
+}
+
+static double earlier(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+/* The plant by itself, up to the next event. */
+static void advance_plant(struct sim_mass *m, double dt_s)
+{
+    if (m->benched) {
+        bench_advance(&m->bench, &m->plant, dt_s, m->ref_A);
+    } else {
+        plant_advance(&m->plant, &m->device, dt_s, m->ref_A, m->fall.phase != FALL_FREE);
+    }
+}
+
+void sim_mass_advance(struct sim_mass *m, double until_s)
+{
+    const struct sim_device *d = &m->device;
+    while (m->now_s < until_s) {
+        double next_s = earlier(until_s, m->servo_s);
+        if (!m->benched) { next_s = earlier(next_s, fall_next_s(&m->fall)); }
+        if (next_s > m->now_s) {
+            advance_plant(m, next_s - m->now_s);
+            m->now_s = next_s;
+        }
+        if (m->servo_s <= m->now_s) {
+            m->ref_A = m->latched_A;
+            m->servo_s += 1 / d->servo_hz;
+        }
+        if (!m->benched && fall_step(&m->fall, &m->plant, d, &m->rng, m->now_s)) {
+            /* The servo's clock is not ours: its phase is chance at each fall. */
+            m->servo_s = m->now_s + sim_random_unit(&m->rng) / d->servo_hz;
+        }
+    }
+}
+
+void sim_mass_latch(struct sim_mass *m, double ref_A)
+{
+    m->latched_A = ref_A;
+}
+
+void sim_mass_safe(struct sim_mass *m)
+{
+    m->latched_A = m->ref_A = 0;
+}
+
+void sim_mass_read(struct sim_mass *m, double jitter_cnt, uint32_t *enc_raw, int16_t *mon_raw)
+{
+    const double q_m = m->benched ? bench_encoder_m(&m->bench, &m->plant) : m->plant.q_m;
+    double jitter = 0;
+    *mon_raw = sim_monitor_raw(&m->device, m->plant.mon_A, &m->rng);
+    if (jitter_cnt > 0) { jitter = jitter_cnt * (sim_random_unit(&m->rng) - 0.5); }
+    *enc_raw = sim_encoder_raw(&m->device, q_m, m->grid, jitter);
+}

@@ -1,0 +1,32 @@
+/* UDP over IPv4, one peer, never waiting. */
+#ifndef UDP_H
+#define UDP_H
+
+#include <netinet/in.h>
+#include <stddef.h>
+#include <stdint.h>
+
+struct udp {
+    int fd;                  /* < 0: closed                                     */
+    int learns;              /* the peer is whoever sent last                   */
+    int known;               /* there is a peer                                 */
+    struct sockaddr_in peer;
+    uint64_t strangers;      /* packets from others, dropped                    */
+    uint64_t unsent;         /* not taken by the system, or there was no peer yet */
+};
+
+/* Addresses are "host:port" in numbers, "127.0.0.1:4747"; port 0: any. peer NULL: whoever
+ * sends last, so that both sides may be restarted in any order. 0, or -1 with errno. */
+int udp_open(struct udp *u, const char *local, const char *peer);
+void udp_close(struct udp *u);
+
+/* The port it listens at. */
+unsigned udp_port(const struct udp *u);
+
+/* A whole packet: its length, or 0: not now. A peer that is not there is no error. */
+int udp_send(struct udp *u, const void *buf, size_t len_B);
+
+/* The next packet, or 0: none. One longer than cap_B is dropped, as are empty ones. */
+int udp_recv(struct udp *u, void *buf, size_t cap_B);
+
+#endif
