@@ -136,6 +136,48 @@ else
 	$(Q)$(or $(PORT_RUN),$(error PORT=$(PORT) cannot run images)) $(image) $(ARGS)
 endif
 
+# --- the world simulator ----------------------------------------------------------------
+
+# Its core needs a C compiler alone. Pictures and rays into meshes are in it where their packages are.
+have        = $(firstword $(wildcard $(addsuffix /$(1),/usr/include /usr/local/include)))
+world_gl   := $(and $(call have,SDL2/SDL_ttf.h),$(call have,GL/gl.h),$(call have,png.h))
+world_rays := $(if $(call have,embree3/rtcore.h),3,$(if $(call have,embree4/rtcore.h),4))
+world_pkgs := libsdl2-dev libsdl2-ttf-dev libgl-dev libegl-dev libgl1-mesa-dri libpng-dev fonts-dejavu-core
+world      := $(B)/posix/world
+
+world_opt  := main live alone bench solo link view gl gl_form gl_batch gl_solid gl_text picture_none mesh_embree mesh_none
+world_core := $(filter-out $(world_opt:%=examples/world/%.c),$(wildcard examples/world/*.c)) \
+              ports/posix/sim/lag.c ports/posix/sim/plant.c
+world_part := main live alone bench solo link view $(if $(world_gl),gl gl_form gl_batch gl_solid gl_text,picture_none)
+world_mesh := $(B)/posix/examples/world/$(if $(world_rays),mesh_embree,mesh_none).o
+world_core_obj := $(world_core:%.c=$(B)/posix/%.o)
+world_obj  := $(world_core_obj) $(world_mesh) $(world_part:%=$(B)/posix/examples/world/%.o) \
+              $(B)/posix/ports/posix/cli/option.o
+world_libs := $(if $(world_gl),-lSDL2 -lSDL2_ttf -lGL -lpng) $(if $(world_rays),-ldl) -lpthread -lm
+
+$(filter $(B)/posix/examples/world/%,$(world_obj)): PORT_HOSTFLAGS += -fno-math-errno \
+    $(if $(world_gl),-I$(dir $(call have,SDL2/SDL_ttf.h)) -D_REENTRANT) $(if $(world_rays),-DWORLD_EMBREE=$(world_rays))
+
+$(world): $(world_obj) $(B)/posix/libexhand.a
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(world_libs)
+
+## The world simulator, build/posix/world (pictures and meshes with the packages it names)
+.PHONY: world
+world:
+	@.ci/deps "the world's pictures" "test -f /usr/include/SDL2/SDL_ttf.h && test -f /usr/include/GL/gl.h && test -f /usr/include/png.h" $(world_pkgs) || true
+	@.ci/deps "the world's meshes" "ls /usr/include/embree*/rtcore.h" libembree-dev || true
+	@$(MAKE) --no-print-directory $(if $(V),,-s) $(world)
+
+$(B)/bench/rays: $(B)/posix/test/world/rays.o $(world_core_obj) $(world_mesh)
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(if $(world_rays),-ldl) -lm
+
+## Frames and rays a second of the world simulator, with and without culling; instructions of a ray
+.PHONY: bench-world
+bench-world: world $(B)/bench/rays
+	@command -v valgrind >/dev/null && test/world/rays.sh $(B)/bench/rays || echo "instructions: not counted: install valgrind"
+	@$(world) --bench --scene examples/world/scenes/collision.world $(ARGS)
+
 FIT_BUDGET ?= 6000
 
 ## Search for the plant by every reading of the analysis, hours (FIT_BUDGET=N plants); state in build/fit
@@ -147,7 +189,7 @@ fit: all
 # --- tests ----------------------------------------------------------------------
 
 san       := -fsanitize=address,undefined -fno-sanitize-recover=all
-test_dirs := unit prop sim board golden
+test_dirs := unit prop sim board golden world
 test_src  := $(foreach d,$(test_dirs),$(wildcard test/$(d)/*_test.c))
 test_bin  := $(test_src:test/%_test.c=$(B)/test/%_test)
 tflags     = $(base) $(CFLAGS) -Itest -DEXH_FIX_AUDIT
@@ -177,6 +219,11 @@ $(B)/posix/test/%.o: test/%.c $(stamp)
 $(B)/test/loop.o: examples/loop.c $(stamp)
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(base) $(CFLAGS) -Dexh_assert_failed=exh_loop_assert_failed -Wno-missing-prototypes -c $< -o $@
+# The virtual world; rays into meshes where their package is.
+$(B)/test/world/%_test: $(B)/posix/test/world/%_test.o $(B)/posix/test/support.o $(world_core_obj) $(world_mesh) \
+                        $(B)/posix/examples/world/solo.o $(B)/posix/examples/world/link.o $(B)/posix/libexhand.a
+	@mkdir -p $(@D)
+	$(Q)$(CC) -o $@ $^ -lcmocka $(if $(world_rays),-ldl) -lm
 # The port contract, on the port that runs here.
 $(B)/test/board/%_test: $(B)/posix/test/board/%_test.o $(B)/posix/test/support.o $(filter-out %/loop.o,$(sim_obj)) \
                         $(B)/posix/libexhand.a

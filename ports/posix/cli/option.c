@@ -6,12 +6,19 @@
 #include <stdlib.h>
 #include <string.h>
 
+const char *cli_program = "exhand";
 static const char *command = ""; /* for cli_complain() */
+
+/* Between the program and its command. */
+static const char *blank(const char *name)
+{
+    return cli_program[0] && name[0] ? " " : "";
+}
 
 void cli_complain(const char *format, ...)
 {
     va_list args;
-    fprintf(stderr, "exhand%s%s: ", command[0] ? " " : "", command);
+    fprintf(stderr, "%s%s%s: ", cli_program, blank(command), command);
     va_start(args, format);
     vfprintf(stderr, format, args);
     va_end(args);
@@ -27,7 +34,7 @@ int cli_finish(int status)
 
 static void help(const struct cli_command *c)
 {
-    printf("exhand %s %s\n%s\n", c->name, c->args, c->what);
+    printf("%s%s%s %s\n%s\n", cli_program, blank(c->name), c->name, c->args, c->what);
     for (int i = 0; i < c->options; i++) {
         const struct cli_option *o = &c->option[i];
         char left[40];
@@ -39,7 +46,8 @@ static void help(const struct cli_command *c)
 
 static int bad(const struct cli_command *c, const char *what, const char *why)
 {
-    cli_complain("%s: %s: `exhand %s --help` lists the options", what, why, c->name);
+    cli_complain("%s: %s: `%s%s%s --help` lists the options", what, why, cli_program,
+                 blank(c->name), c->name);
     return 2;
 }
 

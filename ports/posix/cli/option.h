@@ -31,7 +31,10 @@ struct cli_command {
  * 2 bad usage, said on stderr. */
 int cli_parse(const struct cli_command *c, int argc, char **argv, const char **operand);
 
-/* A whole line on stderr, after "exhand " and the command that is parsed or runs. */
+/* What stands before a command's name in messages: "exhand"; "" for a program that is one command. */
+extern const char *cli_program;
+
+/* A whole line on stderr, after that and the command that is parsed or runs. */
 #ifdef __GNUC__
 __attribute__((format(printf, 1, 2)))
 #endif

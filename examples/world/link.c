@@ -1,0 +1,152 @@
+#include "link.h"
+
+#include "exhand/exhand.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <netdb.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#define HELLO_EVERY_US 500000
+#define BURST          64 /* datagrams taken a frame, at most: a flood can't hold a frame up */
+
+/* "[HOST:]PORT" apart; host is "" where there is none. */
+static int part(const char *text, char host[128], char port[16])
+{
+    const char *colon = strrchr(text, ':');
+    const size_t len = colon ? (size_t)(colon - text) : 0;
+    if (len >= 128 || strlen(colon ? colon + 1 : text) >= 16) { return 1; }
+    memcpy(host, text, len);
+    host[len] = '\0';
+    strcpy(port, colon ? colon + 1 : text);
+    return port[0] == '\0';
+}
+
+static int look_up(const char *text, const char *host_if_none, int passive, struct addrinfo **to,
+                   char *error, size_t error_B)
+{
+    const struct addrinfo want = {.ai_socktype = SOCK_DGRAM, .ai_flags = passive ? AI_PASSIVE : 0};
+    char host[128], port[16];
+    int err;
+    if (part(text, host, port)) {
+        snprintf(error, error_B, "%.60s: give it as ADDRESS:PORT, such as 127.0.0.1:" LINK_PORT, text);
+        return 1;
+    }
+    err = getaddrinfo(host[0] ? host : host_if_none, port, &want, to);
+    if (err) {
+        snprintf(error, error_B, "%.60s: %s: give it as ADDRESS:PORT", text, gai_strerror(err));
+    }
+    return err != 0;
+}
+
+static int open_socket(struct link *l, const char *listen, const struct addrinfo *peer, char *error,
+                       size_t error_B)
+{
+    struct addrinfo *own = NULL;
+    const int family = peer ? peer->ai_family : AF_INET;
+    if (listen && look_up(listen, "127.0.0.1", 1, &own, error, error_B)) { return 1; }
+    l->fd = socket(own ? own->ai_family : family, SOCK_DGRAM, 0);
+    if (l->fd < 0 || fcntl(l->fd, F_SETFL, O_NONBLOCK) != 0 ||
+        (own && bind(l->fd, own->ai_addr, own->ai_addrlen) != 0)) {
+        snprintf(error, error_B, "%.60s: %s: choose another address or port", listen ? listen : "socket",
+                 strerror(errno));
+        freeaddrinfo(own);
+        return 1;
+    }
+    if (own) { freeaddrinfo(own); }
+    return 0;
+}
+
+int link_open(struct link *l, const char *listen, const char *peer, uint32_t session, char *error,
+              size_t error_B)
+{
+    struct addrinfo *to = NULL;
+    int bad;
+    memset(l, 0, sizeof *l);
+    l->fd = -1;
+    l->tx.session = session;
+    l->hello_us = -HELLO_EVERY_US;
+    if (peer && look_up(peer, "127.0.0.1", 0, &to, error, error_B)) { return 1; }
+    bad = open_socket(l, listen, to, error, error_B);
+    if (!bad && to) {
+        memcpy(&l->peer, to->ai_addr, to->ai_addrlen);
+        l->peer_B = to->ai_addrlen;
+        l->fixed = 1;
+    }
+    if (to) { freeaddrinfo(to); }
+    return bad;
+}
+
+void link_close(struct link *l)
+{
+    if (l->fd >= 0) { close(l->fd); }
+    l->fd = -1;
+}
+
+static int same_peer(const struct sockaddr_storage *a, const struct sockaddr_storage *b)
+{
+    const struct sockaddr_in *a4 = (const void *)a, *b4 = (const void *)b;
+    const struct sockaddr_in6 *a6 = (const void *)a, *b6 = (const void *)b;
+    if (a->ss_family != b->ss_family) { return 0; }
+    if (a->ss_family == AF_INET) {
+        return a4->sin_port == b4->sin_port && a4->sin_addr.s_addr == b4->sin_addr.s_addr;
+    }
+    return a6->sin6_port == b6->sin6_port &&
+           memcmp(&a6->sin6_addr, &b6->sin6_addr, sizeof a6->sin6_addr) == 0;
+}
+
+int link_receive(struct link *l, struct exh_wire_state *state)
+{
+    int newer = 0;
+    for (int i = 0; i < BURST; i++) {
+        unsigned char buf[2 * EXH_WIRE_MAX_B];
+        struct sockaddr_storage from;
+        socklen_t from_B = sizeof from;
+        struct exh_wire_packet p;
+        const ssize_t n = recvfrom(l->fd, buf, sizeof buf, 0, (struct sockaddr *)&from, &from_B);
+        if (n < 0) { break; }
+        if (l->fixed && !same_peer(&from, &l->peer)) { continue; }
+        if (exh_wire_take(&l->rx, &p, buf, (size_t)n) <= 0) { continue; }
+        l->peer = from;
+        l->peer_B = from_B;
+        if (p.type == EXH_WIRE_HELLO) { l->hello_us = -HELLO_EVERY_US; } /* it is new here: answer */
+        if (p.type != EXH_WIRE_STATE) { continue; }
+        *state = p.u.state;
+        l->echo_seq = p.seq;
+        l->echo_stamp_us = p.stamp_us;
+        newer = 1;
+    }
+    return newer;
+}
+
+static void put(struct link *l, struct exh_wire_packet *p, int64_t now_us)
+{
+    unsigned char buf[EXH_WIRE_MAX_B];
+    const int32_t n = exh_wire_write(&l->tx, p, (uint32_t)now_us, buf, sizeof buf);
+    const int sent = n > 0 && sendto(l->fd, buf, (size_t)n, 0, (const struct sockaddr *)&l->peer,
+                                     l->peer_B) == n;
+    l->sent += (unsigned long)sent;
+    l->unsent += (unsigned long)!sent;
+}
+
+void link_answer(struct link *l, struct exh_wire_planes *planes, int64_t now_us)
+{
+    struct exh_wire_packet p;
+    if (l->peer_B == 0) { return; }
+    memset(&p, 0, sizeof p);
+    if (now_us - l->hello_us >= HELLO_EVERY_US) {
+        p.type = EXH_WIRE_HELLO;
+        p.u.hello.role = EXH_WIRE_WORLD;
+        p.u.hello.lib_version = EXH_VERSION_NUMBER;
+        put(l, &p, now_us);
+        l->hello_us = now_us;
+    }
+    if (l->rx.session == 0) { return; }
+    p.type = EXH_WIRE_PLANES;
+    p.u.planes = *planes;
+    p.u.planes.echo_seq = l->echo_seq;
+    p.u.planes.echo_stamp_us = l->echo_stamp_us;
+    put(l, &p, now_us);
+}

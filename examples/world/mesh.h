@@ -1,0 +1,40 @@
+/* Triangle meshes: read from OBJ files; rays into them by Embree, which is loaded when the first
+ * mesh is, and only then: a world without one neither needs nor loads it. */
+#ifndef WORLD_MESH_H
+#define WORLD_MESH_H
+
+#include "shape.h"
+
+#include <stddef.h>
+
+#define MESH_TRIANGLES_MAX 4000000
+
+struct triangle {
+    int corner[3]; /* counter-clockwise seen from outside                       */
+};
+
+struct mesh {
+    struct v3 *point;
+    struct triangle *triangle;
+    int points, triangles;
+    double bound_m; /* of the ball around the origin that holds it             */
+    void *rays;     /* what mesh_cast() needs                                  */
+};
+
+/* Reads v and f lines of an OBJ file (polygons become fans; everything else is passed over) and
+ * scales it. NULL on failure, with "file:line: what: what to do" in error. */
+struct mesh *mesh_read(const char *path, double scale, char *error, size_t error_B);
+void mesh_free(struct mesh *m);
+
+/* Makes ready for rays; 0, or 1 with the reason in error: which package is missing. */
+int mesh_ready(struct mesh *m, char *error, size_t error_B);
+void mesh_unready(struct mesh *m);
+
+/* Where the ray (in the mesh's frame) enters at t and through which triangle: 1, or 0 for nowhere.
+ * A ray that meets a triangle from behind first started inside: the entry then lies behind it. */
+int mesh_cast(const struct mesh *m, const struct ray *r, double *t, int *triangle);
+
+/* Of one triangle: its outward normal, and a point on it. */
+struct v3 mesh_normal(const struct mesh *m, int triangle, struct v3 *on);
+
+#endif

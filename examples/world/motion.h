@@ -1,0 +1,31 @@
+/* How something moves: an offset (metres) and a turning about its own origin (roll, pitch, yaw)
+ * on top of where it stands, as functions of time alone. */
+#ifndef WORLD_MOTION_H
+#define WORLD_MOTION_H
+
+#include "vec.h"
+
+enum motion_kind { MOTION_NONE, MOTION_LINEAR, MOTION_SINE, MOTION_KEYS };
+
+struct motion_key {
+    double t_s;
+    struct v3 move_m, turn_rad;
+};
+
+struct motion {
+    enum motion_kind kind;
+    struct v3 move, turn; /* LINEAR: per second; SINE: amplitude                */
+    double hz, phase_rad; /* SINE                                              */
+    int loop;             /* KEYS: from the last on again with the first       */
+    int keys;
+    struct motion_key *key; /* at rising times; malloc                          */
+};
+
+/* Where `stand` is at t_s. */
+struct pose motion_at(const struct motion *m, const struct pose *stand, double t_s);
+
+/* What its origin never exceeds, m/s; and its turning, rad/s. */
+double motion_speed(const struct motion *m);
+double motion_turning(const struct motion *m);
+
+#endif

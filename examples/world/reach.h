@@ -1,0 +1,37 @@
+/* Which objects the hand can reach. One that can't sleeps until the time at which, at the
+ * highest speed of both, it could at the earliest; sleepers stand in a heap, the one that wakes first
+ * on top, and a frame looks at that one only. */
+#ifndef WORLD_REACH_H
+#define WORLD_REACH_H
+
+#include "scene.h"
+
+#include "exhand/wire.h"
+
+struct sleeper {
+    double wake_s;
+    unsigned object;
+};
+
+struct reach {
+    struct sleeper *asleep; /* heap                                              */
+    struct body *near;
+    unsigned char *placed;  /* of near[]: its pose is that of all times          */
+    int sleepers, nears;
+    int all;                /* nobody is put to sleep                            */
+    struct v3 centre;       /* in {R}: P_F and its ray stay within radius_m of it */
+    double radius_m, speed; /* of centre in {W}, at most                         */
+    double t_s;             /* of the last frame                                 */
+};
+
+/* 0, or 1 for no memory. */
+int reach_start(struct reach *r, const struct scene *s, const struct hand *h);
+void reach_stop(struct reach *r);
+
+/* All awake again: the hand was carried, or time went back. */
+void reach_wake(struct reach *r, const struct scene *s);
+
+/* Brings near[] to t_s, in {R}, which is `hand` in {W}. Returns how many places it computed. */
+unsigned reach_update(struct reach *r, const struct scene *s, const struct pose *hand, double t_s);
+
+#endif

@@ -1,0 +1,49 @@
+/* The world simulator's core: no clock, no socket, no graphics. A frame answers the hand's joints
+ * with the planes its fingers are about to touch.
+ *
+ * It computes only what the scene needs: a finger that is off casts no ray; an object out of the
+ * hand's reach sleeps until it could be in reach at the earliest, and costs nothing till then.
+ * Same scene, times and inputs: same bits, on every machine. */
+#ifndef WORLD_WORLD_H
+#define WORLD_WORLD_H
+
+#include "scene.h"
+
+#include "exhand/wire.h"
+
+#include <stddef.h>
+
+struct world_stats { /* since world_load() or as the caller cleared them         */
+    unsigned long frames, rays, hits;
+    unsigned long tests;   /* bodies asked whether a ray enters them             */
+    unsigned long culled;  /* bodies of these put aside by the ball around them  */
+    unsigned long slept;   /* objects not looked at, summed over the frames      */
+    unsigned long moved;   /* objects whose place was computed                   */
+};
+
+struct world;
+
+/* NULL on failure, with "file:line: what: what to do" in error. name stands for the file in
+ * messages, and meshes are looked for beside it. */
+struct world *world_load(const char *name, const char *text, char *error, size_t error_B);
+struct world *world_load_file(const char *path, char *error, size_t error_B);
+void world_free(struct world *w);
+
+const struct scene *world_scene(const struct world *w);
+const struct hand *world_hand(const struct world *w);
+
+/* 0: look at every object in every frame, for comparison. */
+void world_cull(struct world *w, int on);
+
+/* Carries the hand so far from where the scene has it at that time, in {W}. */
+void world_carry(struct world *w, struct v3 by_m);
+
+/* {R} in {W} at t_s. */
+struct pose world_hand_at(const struct world *w, double t_s);
+
+/* The planes of the fingers in use, in->fingers and the scene's; t_s, the scene's time, may also go
+ * back. echo_* of out are left alone. stats may be NULL. */
+void world_frame(struct world *w, const struct exh_wire_state *in, double t_s,
+                 struct exh_wire_planes *out, struct world_stats *stats);
+
+#endif
