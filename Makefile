@@ -86,14 +86,17 @@ $(image): $(image_obj) $(lib) $(PORT_LDSCRIPT)
 
 # The host program: every scene that has a subcommand, over the simulated device.
 cli_src := $(wildcard ports/posix/cli/*.c ports/posix/fit/*.c) examples/log.c examples/drop/drop.c \
-           examples/calibrate/calibrate.c examples/glove/glove.c
-cli_obj := $(cli_src:%.c=$(B)/posix/%.o)
+           examples/calibrate/calibrate.c examples/glove/glove.c examples/glove/cal.c $(wildcard examples/bilateral/*.c)
+# The world's core, without its pictures, answers in the same process.
+world_opt  := main live alone bench solo link view gl gl_form gl_batch gl_solid gl_text picture_none mesh_embree mesh_none
+world_core := $(filter-out $(world_opt:%=examples/world/%.c),$(wildcard examples/world/*.c))
+cli_obj := $(cli_src:%.c=$(B)/posix/%.o) $(world_core:%.c=$(B)/posix/%.o) $(B)/posix/examples/world/mesh_none.o
 sim_obj := $(patsubst %.c,$(B)/posix/%.o,$(wildcard ports/posix/*.c ports/posix/sim/*.c)) \
            $(B)/posix/examples/loop.o
 exhand  := $(B)/posix/exhand
 
 $(exhand): $(cli_obj) $(sim_obj) $(B)/posix/libexhand.a
-	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
 
 ifeq ($(PORT),posix)
 products := $(exhand)
@@ -109,7 +112,8 @@ all: $(lib) $(products)
 demo_runs := calibration:"calibrate --out $(B)/demo/calibration" table2:"drop --out $(B)/demo --spread 20" \
              stability:"drop --out $(B)/demo --sweep --grid 12x10 --falls 3" \
              friction:"drop --out $(B)/demo --friction 5 --falls 3" table1:"glove --selftest" \
-             glove:"glove --record $(B)/demo/glove.exh --does poses --seconds 5"
+             glove:"glove --record $(B)/demo/glove.exh --does poses --seconds 5" \
+             bilateral:"bilateral --out $(B)/demo/bilateral"
 
 ## The paper's first experiment on the simulated device: tables, plots, logs in build/demo
 .PHONY: demo
@@ -121,11 +125,11 @@ demo: all
 	    $(exhand) $${r#*:} > $(B)/demo/$${r%%:*}.txt || { s=$$?; cat $(B)/demo/$${r%%:*}.txt; exit $$s; }; \
 	done
 	@s=0; if command -v gnuplot >/dev/null; then \
-	    for g in pictures sweep friction calibration/pictures; do (cd $(B)/demo/$$(dirname $$g) && \
+	    for g in pictures sweep friction calibration/pictures bilateral/bilateral; do (cd $(B)/demo/$$(dirname $$g) && \
 	        gnuplot -c $$(basename $$g).gp "$(CURDIR)/ports/posix/cli/plot") || s=1; done; fi; \
-	for p in force_position fall stability friction calibration/calibration; do p=$(B)/demo/$$p.png; \
+	for p in force_position fall stability friction calibration/calibration bilateral/contact bilateral/force; do p=$(B)/demo/$$p.png; \
 	    if [ -s $$p ]; then echo "picture: $$p"; else echo "picture missing: $$p" >&2; fi; done; \
-	cat $(B)/demo/calibration.txt $(B)/demo/table1.txt $(B)/demo/stability.txt $(B)/demo/friction.txt $(B)/demo/table2.txt; exit $$s
+	cat $(B)/demo/bilateral.txt $(B)/demo/calibration.txt $(B)/demo/table1.txt $(B)/demo/stability.txt $(B)/demo/friction.txt $(B)/demo/table2.txt; exit $$s
 
 ## Run the host program (ARGS="drop --help") or the image of SCENE on PORT
 .PHONY: run
@@ -145,12 +149,9 @@ world_rays := $(if $(call have,embree3/rtcore.h),3,$(if $(call have,embree4/rtco
 world_pkgs := libsdl2-dev libsdl2-ttf-dev libgl-dev libegl-dev libgl1-mesa-dri libpng-dev fonts-dejavu-core
 world      := $(B)/posix/world
 
-world_opt  := main live alone bench solo link view gl gl_form gl_batch gl_solid gl_text picture_none mesh_embree mesh_none
-world_core := $(filter-out $(world_opt:%=examples/world/%.c),$(wildcard examples/world/*.c)) \
-              ports/posix/sim/lag.c ports/posix/sim/plant.c
 world_part := main live alone bench solo link view $(if $(world_gl),gl gl_form gl_batch gl_solid gl_text,picture_none)
 world_mesh := $(B)/posix/examples/world/$(if $(world_rays),mesh_embree,mesh_none).o
-world_core_obj := $(world_core:%.c=$(B)/posix/%.o)
+world_core_obj := $(patsubst %.c,$(B)/posix/%.o,$(world_core) ports/posix/sim/lag.c ports/posix/sim/plant.c)
 world_obj  := $(world_core_obj) $(world_mesh) $(world_part:%=$(B)/posix/examples/world/%.o) \
               $(B)/posix/ports/posix/cli/option.o
 world_libs := $(if $(world_gl),-lSDL2 -lSDL2_ttf -lGL -lpng) $(if $(world_rays),-ldl) -lpthread -lm
@@ -211,7 +212,7 @@ $(B)/test/prop/%_test: $(B)/test/san/test/prop/%_test.o
 $(B)/test/sim/%_test: $(B)/posix/test/sim/%_test.o $(B)/posix/test/support.o \
                       $(filter-out %/main.o %/loop.o,$(cli_obj) $(sim_obj)) $(B)/test/loop.o $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
-	$(Q)$(CC) -o $@ $^ -lcmocka
+	$(Q)$(CC) -o $@ $^ -lcmocka -lm
 $(B)/posix/test/%.o: test/%.c $(stamp)
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(base) $(PORT_HOSTFLAGS) $(CFLAGS) -Itest -c $< -o $@
@@ -254,7 +255,7 @@ stress_obj := $(patsubst %.c,$(B)/posix/%.o,$(wildcard test/stress/*.c))
 $(B)/test/stress: $(stress_obj) $(filter-out %/main.o %/loop.o,$(cli_obj) $(sim_obj)) \
                   $(B)/test/loop.o $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
-	$(Q)$(CC) $(LDFLAGS) -o $@ $^
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ -lm
 
 STRESS_CASES ?= 100000000
 STRESS_PARTS := 8
@@ -384,6 +385,9 @@ check:
 	@$(MAKE) --no-print-directory PORT=pc104 SCENE=minimal undef run
 	@$(MAKE) --no-print-directory PORT=pc104 SCENE=drop run
 	@$(MAKE) --no-print-directory PORT=pc104 SCENE=glove run
+	@$(MAKE) --no-print-directory PORT=pc104 SCENE=bilateral run
+	@$(MAKE) --no-print-directory world
+	@$(world) --headless --script --seconds 1 --scene examples/world/scenes/collision.world --png $(B)/world.png || [ $$? = 3 ]
 	@$(MAKE) --no-print-directory size
 	@$(MAKE) --no-print-directory bench
 

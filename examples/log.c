@@ -166,11 +166,22 @@ void exh_log_before(uint32_t tick, struct exh_scene_in *in)
     }
 }
 
+static void packets(uint32_t tick, struct exh_scene_mail *in)
+{
+    for (unsigned i = 0; i < in->packets; i++) {
+        struct exh_bytes c = begin(EXH_RECORD_PACKET, tick);
+        for (unsigned k = 0; k < in->len_B[i]; k++) { exh_bytes_u8(&c, &in->byte[i][k]); }
+        end(&c);
+    }
+}
+
 void exh_log_after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
 {
     struct exh_scene_in i = *in; /* a cursor takes what it may also fill */
     struct exh_drive_out o = *out;
-    struct exh_bytes c = begin(EXH_RECORD_FRAME, tick);
+    struct exh_bytes c;
+    if (scene->link) { packets(tick, scene->link->in); }
+    c = begin(EXH_RECORD_FRAME, tick);
     exh_log_frame_bytes(&c, scene, &i, &o, scene->signal);
     end(&c);
     /* Here and not in exh_log_before(), where it would delay the output. */

@@ -39,6 +39,25 @@ static int read_board(const struct exh_scene *sc, struct exh_scene_in *in, uint3
     return err;
 }
 
+static void read_link(const struct exh_scene_link *link)
+{
+    struct exh_scene_mail *in = link->in;
+    in->packets = 0;
+    while (in->packets < EXH_SCENE_PACKETS) {
+        const int n = link->recv(in->byte[in->packets], EXH_SCENE_PACKET_B);
+        if (n <= 0 || n > EXH_SCENE_PACKET_B) { return; }
+        in->len_B[in->packets++] = (uint16_t)n;
+    }
+}
+
+static void write_link(const struct exh_scene_link *link)
+{
+    link->write();
+    for (unsigned i = 0; i < link->out->packets; i++) {
+        (void)link->send(link->out->byte[i], link->out->len_B[i]);
+    }
+}
+
 int exh_loop(const struct exh_scene *sc, uint32_t rate_Hz, const struct exh_loop_hooks *hooks)
 {
     static const struct exh_loop_hooks none;
@@ -55,10 +74,12 @@ int exh_loop(const struct exh_scene *sc, uint32_t rate_Hz, const struct exh_loop
         in.missed = (uint32_t)missed;
         err = read_board(sc, &in, &glove_wait);
         if (err < 0) { break; }
+        if (sc->link) { read_link(sc->link); }
         if (h->before) { h->before(tick, &in); }
         if (sc->params) { exh_params_apply(sc->params); }
         sc->tick(&in, &out);
         err = exh_board_write_drive(&out);
+        if (sc->link) { write_link(sc->link); }
         if (h->after) { h->after(tick, &in, &out); }
         in.command = EXH_CMD_NONE;
         tick++;

@@ -23,6 +23,25 @@ struct exh_scene_in {
     struct exh_glove_in glove; /* its age counts from its conversion           */
 };
 
+/* Packets of one tick, in or out. What comes in excess of that waits for the next tick: at 90 Hz
+ * these are 720 a second. */
+#define EXH_SCENE_PACKETS  8
+#define EXH_SCENE_PACKET_B 256
+struct exh_scene_mail {
+    uint8_t packets;
+    uint16_t len_B[EXH_SCENE_PACKETS];
+    uint8_t byte[EXH_SCENE_PACKETS][EXH_SCENE_PACKET_B];
+};
+
+/* The link of a scene that has one. A link that is down is no reason to stop. */
+struct exh_scene_link {
+    int (*recv)(void *buf, size_t cap_B);       /* exh_board_link_recv          */
+    int (*send)(const void *buf, size_t len_B); /* exh_board_link_send          */
+    struct exh_scene_mail *in;  /* before a tick, by the loop: logged, as all that crosses inward */
+    struct exh_scene_mail *out; /* what is to be sent, by: */
+    void (*write)(void); /* behind the outputs, where it delays none of them      */
+};
+
 /* What set-up has to know of the board it runs on. */
 struct exh_scene_board {
     struct exh_period T; /* what its timer was programmed to                  */
@@ -39,6 +58,7 @@ struct exh_scene {
     /* exh_board_read_glove, or NULL: only a scene that names it links it. */
     int (*read_glove)(struct exh_glove_in *in);
     const int32_t *glove_every; /* asks for a frame every so many ticks; NULL: every tick */
+    const struct exh_scene_link *link; /* or NULL                             */
 
     /* Parameters to their defaults and unlocked; NULL without parameters. Before
      * staging any and before the loop. */

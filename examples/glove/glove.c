@@ -2,32 +2,9 @@
 
 #include "exhand/board.h"
 
-#define OWN_AT    (EXH_GLOVE_ROWS + EXH_HAND_ROWS)
-#define OWN_ROWS  4
-#define CAL_ROWS  8
-#define CAL_AT    (OWN_AT + OWN_ROWS)
-#define PARAMS    (CAL_AT + CAL_ROWS * EXH_GLOVE_SENSORS)
-
+#define PARAMS \
+    (EXH_GLOVE_ROWS + EXH_HAND_ROWS + GLOVE_OWN_ROWS + GLOVE_CAL_ROWS * EXH_GLOVE_SENSORS)
 #define ALL_SENSORS ((1 << EXH_GLOVE_SENSORS) - 1)
-
-static const struct exh_signal own_rows[OWN_ROWS] = {
-    {0x8401, 0, EXH_WHEN_SETUP, 1, 1000, 1, "every", "", "ticks from one glove frame to the next"},
-    {0x8402, 0, EXH_WHEN_SETUP, INT32_MIN, INT32_MAX, 0, "user", "", "whose calibration it is"},
-    {0x8403, 0, EXH_WHEN_SETUP, INT32_MIN, INT32_MAX, 0, "glove", "", "and of which glove"},
-    {0x8404, 0, EXH_WHEN_SETUP, 1, ALL_SENSORS, ALL_SENSORS, "present", "", "sensors that are there, bits"},
-};
-
-/* Instances: the sensors. What is allowed together glove.h says, and set-up asks. */
-static const struct exh_signal cal_rows[CAL_ROWS] = {
-    {0x8410, 15, EXH_WHEN_SETUP, INT32_MIN, INT32_MAX, 0, "cal_zero", "", "code of angle 0"},
-    {0x8411, 38, EXH_WHEN_SETUP, INT32_MIN, INT32_MAX, 0, "cal_gain", "turn", "angle per code"},
-    {0x8412, 30, EXH_WHEN_SETUP, INT32_MIN, INT32_MAX, 0, "cal_cross0", "", "of the angle of cal_of0"},
-    {0x8413, 30, EXH_WHEN_SETUP, INT32_MIN, INT32_MAX, 0, "cal_cross1", "", "of the angle of cal_of1"},
-    {0x8414, 0, EXH_WHEN_SETUP, INT16_MIN, INT16_MAX, 0, "cal_low", "", "lowest code calibrated"},
-    {0x8415, 0, EXH_WHEN_SETUP, INT16_MIN, INT16_MAX, 0, "cal_high", "", "highest code calibrated"},
-    {0x8416, 0, EXH_WHEN_SETUP, 0, 255, 255, "cal_of0", "", "sensor that pulls this one along, 255 none"},
-    {0x8417, 0, EXH_WHEN_SETUP, 0, 255, 255, "cal_of1", "", "another"},
-};
 
 #define ANGLE(i, name, help) \
     {(uint16_t)(0x8501 + (i)), 32, EXH_WHEN_OUTPUT, INT32_MIN, INT32_MAX, 0, (name), "turn", (help)}
@@ -97,8 +74,8 @@ static const struct exh_signal signal_rows[] = {
 
 static const struct exh_signal_group param_groups[] = {{exh_glove_rows, EXH_GLOVE_ROWS, 1},
                                                        {exh_hand_rows, EXH_HAND_ROWS, 1},
-                                                       {own_rows, OWN_ROWS, 1},
-                                                       {cal_rows, CAL_ROWS, EXH_GLOVE_SENSORS}};
+                                                       {glove_own_rows, GLOVE_OWN_ROWS, 1},
+                                                       {glove_cal_rows, GLOVE_CAL_ROWS, EXH_GLOVE_SENSORS}};
 static const struct exh_signal_table param_table = {param_groups, 4};
 static const struct exh_signal_group signal_groups[] = {{signal_rows, SIGNALS, 1}};
 static const struct exh_signal_table signal_table = {signal_groups, 1};
@@ -111,28 +88,12 @@ EXH_STATIC_ASSERT(glove_signals_match_rows,
 
 void glove_par_of_cal(struct glove_par *par, const struct exh_glove_cal *cal)
 {
-    par->own.user_id = exh_from_u32(cal->user_id);
-    par->own.glove_id = exh_from_u32(cal->glove_id);
-    par->own.present = (int32_t)cal->present;
-    for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
-        const struct exh_glove_sensor *s = &cal->sensor[i];
-        par->sensor[i] = (struct glove_sensor_par){
-            s->zero_raw_q15, s->gain_turnpraw_q38,  {s->cross_q30[0], s->cross_q30[1]},
-            s->low_raw,      s->high_raw, {s->of[0], s->of[1]}};
-    }
+    glove_rows_of_cal(&par->own, par->sensor, cal);
 }
 
 void glove_cal_of_par(struct exh_glove_cal *cal, const struct glove_par *par)
 {
-    *cal = (struct exh_glove_cal){.user_id = (uint32_t)par->own.user_id,
-                                  .glove_id = (uint32_t)par->own.glove_id,
-                                  .present = (uint32_t)par->own.present};
-    for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
-        const struct glove_sensor_par *s = &par->sensor[i];
-        cal->sensor[i] = (struct exh_glove_sensor){
-            s->zero_raw_q15, s->gain_turnpraw_q38, {s->cross_q30[0], s->cross_q30[1]},
-            (int16_t)s->low_raw, (int16_t)s->high_raw, {(uint8_t)s->of[0], (uint8_t)s->of[1]}};
-    }
+    glove_cal_of_rows(cal, &par->own, par->sensor);
 }
 
 /* --- frame --- */

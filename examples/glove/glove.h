@@ -4,20 +4,9 @@
 #define EXAMPLES_GLOVE_H
 
 #include "../scene.h"
+#include "cal.h"
 
 #include "exhand/exhand.h"
-
-/* Rows of the scene's own parameters. */
-struct glove_own_par {
-    int32_t every;              /* ticks from one glove frame to the next       */
-    int32_t user_id, glove_id;  /* whose calibration it is                      */
-    int32_t present;            /* bit i: there is a sensor i                   */
-};
-
-/* The calibration of one sensor as parameters, so that a log holds it. */
-struct glove_sensor_par {
-    int32_t zero_raw_q15, gain_turnpraw_q38, cross_q30[2], low_raw, high_raw, of[2];
-};
 
 /* All parameters, in the order of the scene's signal table. */
 struct glove_par {

@@ -131,7 +131,7 @@ static void put(struct link *l, struct exh_wire_packet *p, int64_t now_us)
     l->unsent += (unsigned long)!sent;
 }
 
-void link_answer(struct link *l, struct exh_wire_planes *planes, int64_t now_us)
+void link_answer(struct link *l, const struct exh_wire_planes *planes, int64_t now_us)
 {
     struct exh_wire_packet p;
     if (l->peer_B == 0) { return; }
@@ -143,7 +143,7 @@ void link_answer(struct link *l, struct exh_wire_planes *planes, int64_t now_us)
         put(l, &p, now_us);
         l->hello_us = now_us;
     }
-    if (l->rx.session == 0) { return; }
+    if (l->rx.session == 0 || planes == NULL) { return; }
     p.type = EXH_WIRE_PLANES;
     p.u.planes = *planes;
     p.u.planes.echo_seq = l->echo_seq;

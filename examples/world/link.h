@@ -31,7 +31,8 @@ void link_close(struct link *l);
 /* Takes what has come. 1 if a newer state is in *state. */
 int link_receive(struct link *l, struct exh_wire_state *state);
 
-/* Answers the newest state; says HELLO when it is time. */
-void link_answer(struct link *l, struct exh_wire_planes *planes, int64_t now_us);
+/* Says HELLO when it is time, and answers the newest state. planes NULL: they are not of that
+ * state's hand, and nobody is told them. */
+void link_answer(struct link *l, const struct exh_wire_planes *planes, int64_t now_us);
 
 #endif

@@ -89,7 +89,8 @@ static void one_exchange(struct live *l, struct exchange *x, double dt_s)
     }
     x->m.hand = world_hand_at(l->run->world, x->m.t_s);
     world_frame(l->run->world, &x->m.in, x->m.t_s, &x->m.out, &l->stats);
-    if (l->has_link) { link_answer(&l->link, &x->m.out, now_us()); }
+    /* The world's own hand is not the controller's: its planes would be felt where nothing is. */
+    if (l->has_link) { link_answer(&l->link, x->m.linked ? &x->m.out : NULL, now_us()); }
     x->done++;
     if (now - x->began_us >= 500000) {
         x->m.fps = (double)x->done * 1e6 / (double)(now - x->began_us);

@@ -4,6 +4,8 @@
 
 #include <string.h>
 
+#define PUMP 64 /* datagrams taken a call, at most: a flood holds no tick up */
+
 static struct {
     struct posix_line cfg;
     struct sim_link link;
@@ -56,7 +58,7 @@ static void pump(double now_s)
     while ((n = sim_link_recv(&line.link.way[SIM_LINK_OUT], now_s, buf, sizeof buf)) > 0) {
         (void)udp_send(&line.udp, buf, (size_t)n);
     }
-    while ((n = udp_recv(&line.udp, buf, sizeof buf)) > 0) {
+    for (int k = 0; k < PUMP && (n = udp_recv(&line.udp, buf, sizeof buf)) > 0; k++) {
         (void)sim_link_send(&line.link.way[SIM_LINK_IN], now_s, buf, (size_t)n);
     }
 }

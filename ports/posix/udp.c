@@ -8,6 +8,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#define LOOKS 64 /* at packets that are dropped, a call: a flood holds nobody up */
+
 static int address(struct sockaddr_in *a, const char *text)
 {
     char host[INET_ADDRSTRLEN];
@@ -91,7 +93,7 @@ static int is_peer(const struct udp *u, const struct sockaddr_in *from)
 
 int udp_recv(struct udp *u, void *buf, size_t cap_B)
 {
-    while (u->fd >= 0 && cap_B > 0) {
+    for (int looks = 0; looks < LOOKS && u->fd >= 0 && cap_B > 0; looks++) {
         struct sockaddr_in from;
         struct iovec to = {buf, cap_B};
         struct msghdr m;

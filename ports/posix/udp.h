@@ -26,7 +26,8 @@ unsigned udp_port(const struct udp *u);
 /* A whole packet: its length, or 0: not now. A peer that is not there is no error. */
 int udp_send(struct udp *u, const void *buf, size_t len_B);
 
-/* The next packet, or 0: none. One longer than cap_B is dropped, as are empty ones. */
+/* The next packet, or 0: none, or too much that is none for one call. One longer than cap_B is
+ * dropped, as are empty ones. */
 int udp_recv(struct udp *u, void *buf, size_t cap_B);
 
 #endif

@@ -105,7 +105,7 @@ static void put_send(struct golden *g, struct golden_rng *r, int32_t said[2])
     struct exh_wire_packet p;
     struct exh_wire_tx nobody = {0, 0};
     struct exh_wire_tx *tx = &world.tx;
-    uint8_t body[GOLDEN_BODY_B];
+    uint8_t body[GOLDEN_BODY_B] = {0};
     struct exh_bytes c = exh_bytes_reader(body, sizeof body);
     uint32_t stamp_us;
     uint32_t cap_B = 256;

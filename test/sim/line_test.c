@@ -243,6 +243,30 @@ TEST(strangers_and_cut_packets_are_dropped)
     udp_close(&b);
 }
 
+/* As many as a socket keeps of them, and then the one that counts: no call takes them all. */
+TEST(a_flood_is_taken_in_parts)
+{
+    struct udp a, b, c;
+    char at[32], to[32];
+    uint8_t buf[8] = {0};
+    int calls = 1;
+    CHECK_EQ_I64(udp_open(&a, "127.0.0.1:0", NULL), 0);
+    snprintf(at, sizeof at, "127.0.0.1:%u", udp_port(&a));
+    CHECK_EQ_I64(udp_open(&b, "127.0.0.1:0", at), 0);
+    snprintf(to, sizeof to, "127.0.0.1:%u", udp_port(&b));
+    CHECK_EQ_I64(udp_open(&c, "127.0.0.1:0", to), 0);
+    CHECK_EQ_I64(udp_send(&b, buf, 8), 8); /* a knows b now */
+    CHECK_EQ_I64(udp_recv(&a, buf, sizeof buf), 8);
+    for (int i = 0; i < 150; i++) { CHECK_EQ_I64(udp_send(&c, buf, 8), 8); }
+    CHECK_EQ_I64(udp_send(&a, buf, 8), 8);
+    while (calls < 10 && udp_recv(&b, buf, sizeof buf) == 0) { calls++; }
+    CHECK_EQ_I64(calls, 3);
+    CHECK_EQ_I64((int64_t)b.strangers, 150);
+    udp_close(&a);
+    udp_close(&b);
+    udp_close(&c);
+}
+
 /* ---- Two processes -------------------------------------------------------------------------------- */
 
 static void sleep_ms(long ms)
@@ -418,5 +442,6 @@ TEST(a_socket_behind_a_bad_way)
 TEST_MAIN("line", a_link_that_is_off_takes_nothing, a_peer_in_this_process_answers_in_virtual_time,
           a_peer_that_takes_nothing_stops_nobody, too_long_a_packet_is_an_error,
           a_bad_line_is_its_seed, bad_addresses_are_refused, strangers_and_cut_packets_are_dropped,
+          a_flood_is_taken_in_parts,
           two_processes_survive_each_others_restart, world_in_a_namespace,
           controller_in_a_namespace, two_network_namespaces, a_socket_behind_a_bad_way);

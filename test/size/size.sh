@@ -40,10 +40,17 @@ build()
         "$b/$port/$scene.elf"
 }
 
+# shared PORT SCENE ENDING: what it has with another scene
+shared()
+{
+    [ "$2" != bilateral ] || echo "$b/$1/examples/glove/cal.$3"
+}
+
 # objects PORT SCENE: everything compiled from C for that image
 objects()
 {
-    find "$b/$1/lib" "$b/$1/examples/loop.ci" "$b/$1/examples/$2" "$b/$1/$2" -name '*.ci' |
+    # shellcheck disable=SC2046 # the names of our objects have no blanks
+    find "$b/$1/lib" "$b/$1/examples/loop.ci" "$b/$1/examples/$2" "$b/$1/$2" $(shared "$1" "$2" ci) -name '*.ci' |
         sed 's/\.ci$/.o/' | sort
 }
 
@@ -113,7 +120,7 @@ callgrind()
     tool=$b/ticks-$1
     # shellcheck disable=SC2046 # the names of our objects have no blanks
     "$cc" -std=c99 -O2 -g -Ilib/include -Iexamples "-DEXH_SCENE=exh_scene_$1" "$here/ticks.c" \
-        $(find "$b/template/examples/$1" -name '*.o') "$b/template/libexhand.a" -o "$tool"
+        $(find "$b/template/examples/$1" -name '*.o') $(shared template "$1" o) "$b/template/libexhand.a" -o "$tool"
     "$tool" "$ticks"
     if ! command -v valgrind >/dev/null 2>&1; then
         note "valgrind: not found: no instructions for posix"
@@ -167,7 +174,7 @@ pc104_row()
 }
 
 mkdir -p "$b"
-[ $# -gt 0 ] || set -- minimal drop glove
+[ $# -gt 0 ] || set -- minimal drop glove bilateral
 : >"$b/table.txt"
 for scene in "$@"; do
     [ -r "examples/$scene/scene.mk" ] || { note "$scene: no examples/$scene/scene.mk"; continue; }

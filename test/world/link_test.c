@@ -126,6 +126,20 @@ TEST(either_end_may_start_anew)
     close(c.fd), link_close(&world);
 }
 
+TEST(without_planes_it_says_hello_alone)
+{
+    struct exh_wire_state s;
+    struct controller c;
+    open_world(1);
+    open_controller(&c, 2);
+    say(&c, EXH_WIRE_HELLO, 0);
+    CHECK(!link_receive(&world, &s), "a hello is no state");
+    for (int64_t t_us = 0; t_us < 2000000; t_us += 10000) { link_answer(&world, NULL, t_us); }
+    hear(&c);
+    CHECK(c.hellos == 4 && c.answers == 0, "%d hellos, %d answers", c.hellos, c.answers);
+    close(c.fd), link_close(&world);
+}
+
 TEST(noise_changes_nothing)
 {
     struct exh_wire_state s, before;
@@ -173,4 +187,5 @@ TEST(bad_addresses_are_refused_in_words)
 }
 
 TEST_MAIN("world: the link", a_state_is_taken_and_answered_with_its_own_number, either_end_may_start_anew,
+          without_planes_it_says_hello_alone,
           noise_changes_nothing, a_given_peer_is_the_only_one_listened_to, bad_addresses_are_refused_in_words);

@@ -30,7 +30,8 @@ enum exh_record_type {
     EXH_RECORD_EVENT = 3,
     EXH_RECORD_KEYFRAME = 4,
     EXH_RECORD_DROPPED = 5, /* u32: records lost before this one                */
-    EXH_RECORD_END = 6      /* u32: records lost in all                         */
+    EXH_RECORD_END = 6,     /* u32: records lost in all                         */
+    EXH_RECORD_PACKET = 7   /* bytes: came over the link for the frame that follows */
 };
 
 enum exh_event_type {

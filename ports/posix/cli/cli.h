@@ -4,6 +4,7 @@
 #define CLI_CLI_H
 
 int cli_advise(int argc, char **argv);
+int cli_bilateral(int argc, char **argv);
 int cli_calibrate(int argc, char **argv);
 int cli_calibrate_glove(int argc, char **argv); /* `exhand calibrate --glove` */
 int cli_drop(int argc, char **argv);

@@ -2,6 +2,7 @@
 
 #include "option.h"
 
+#include "bilateral/bilateral.h"
 #include "drop/drop.h"
 #include "glove/glove.h"
 
@@ -13,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const struct exh_scene *const scenes[] = {&exh_scene_drop, &exh_scene_glove};
+static const struct exh_scene *const scenes[] = {&exh_scene_drop, &exh_scene_glove, &exh_scene_bilateral};
 
 static const struct exh_scene *scene_by_name(const char *name)
 {

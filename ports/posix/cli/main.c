@@ -13,6 +13,7 @@ static const struct {
     int (*run)(int argc, char **argv);
 } command[] = {
     {"advise", "how far before contact to freeze q_lim, how far to look", cli_advise},
+    {"bilateral", "hand, glove, link and world: contacts as in the paper's second experiment", cli_bilateral},
     {"calibrate", "known masses, F0 and home: tables of force and current; or --glove, poses", cli_calibrate},
     {"drop", "the paper's falling-mass experiment on the simulated device", cli_drop},
     {"fit", "a plant that does what the paper's device did, by every reading", cli_fit},

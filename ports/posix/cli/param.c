@@ -25,6 +25,16 @@ const struct exh_signal *cli_signal_find(const struct exh_signal_table *t, const
     return NULL;
 }
 
+/* Of every finger, material or whatever there are several of. */
+static int stage_all(struct exh_params *p, uint16_t id, int32_t raw)
+{
+    int err = 0;
+    for (uint16_t k = 0; err == 0 && (k == 0 || exh_signal_find(p->table, id, k) >= 0); k++) {
+        err = exh_params_stage(p, id, k, raw);
+    }
+    return err;
+}
+
 int cli_param_set(struct exh_params *p, const char *name, double value)
 {
     const struct exh_signal *row = cli_signal_find(p->table, name, NULL);
@@ -38,7 +48,7 @@ int cli_param_set(struct exh_params *p, const char *name, double value)
     scaled = value * (double)(INT64_C(1) << row->frac);
     scaled += scaled < 0 ? -0.5 : 0.5; /* the cast cuts it off */
     if (scaled > -2147483649.0 && scaled < 2147483648.0) {
-        err = exh_params_stage(p, row->id, 0, (int32_t)scaled);
+        err = stage_all(p, row->id, (int32_t)scaled);
     }
     if (err == -EXH_E_RANGE) { /* 12 digits: the ends as they are printed are allowed */
         cli_complain("%s: %.12g (allowed %.12g..%.12g%s%s): choose a value in that range", name, value,
@@ -55,7 +65,9 @@ void cli_signal_print(FILE *f, const struct exh_signal_table *t)
     static const char *const when[] = {"output", "set-up", "any time"};
     const uint32_t n = exh_signal_count(t);
     for (uint32_t i = 0; i < n; i++) {
-        const struct exh_signal *r = exh_signal_at(t, i, NULL);
+        uint16_t instance;
+        const struct exh_signal *r = exh_signal_at(t, i, &instance);
+        if (instance > 0) { continue; }
         fprintf(f, "  %-13s %-8s %14.12g  %14.12g .. %-14.12g %-8s %s\n", r->name, r->unit,
                 cli_signal_value(r, r->dflt), cli_signal_value(r, r->min),
                 cli_signal_value(r, r->max), when[r->when], r->help);

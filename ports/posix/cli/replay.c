@@ -106,12 +106,31 @@ static int on_frame(struct replay *p, const struct exh_record *r)
     }
     if (sc->params != NULL) { exh_params_apply(sc->params); }
     sc->tick(&p->in, &p->out);
+    if (sc->link) {
+        sc->link->write();
+        sc->link->in->packets = 0;
+    }
     memcpy(p->ours, sc->signal, exh_signal_count(sc->signals) * sizeof(int32_t));
     p->digest = exh_crc32(p->digest, r->payload, r->len_B);
     if (p->ticks++ == 0) { p->first_tick = p->log.tick; }
     p->expect_tick = p->log.tick + 1;
     memset(&p->in, 0, sizeof p->in);
     return compare(p, &rec);
+}
+
+/* It waits for the frame of its tick. */
+static int on_packet(struct replay *p, const struct exh_record *r)
+{
+    struct exh_scene_mail *in = p->log.scene->link ? p->log.scene->link->in : NULL;
+    if (!p->running) { return 0; }
+    if (in == NULL || in->packets == EXH_SCENE_PACKETS || r->len_B > EXH_SCENE_PACKET_B) {
+        printf("tick %" PRIu64 ": a packet that the scene could not have got: the log is damaged\n",
+               p->log.tick);
+        return 1;
+    }
+    in->len_B[in->packets] = r->len_B;
+    memcpy(in->byte[in->packets++], r->payload, r->len_B);
+    return 0;
 }
 
 static int on_keyframe(struct replay *p, const struct exh_record *r)
@@ -187,6 +206,7 @@ static int replay(struct replay *p)
         case EXH_RECORD_FRAME: err = on_frame(p, &r); break;
         case EXH_RECORD_KEYFRAME: err = on_keyframe(p, &r); break;
         case EXH_RECORD_EVENT: err = on_event(p, &r); break;
+        case EXH_RECORD_PACKET: err = on_packet(p, &r); break;
         default: break;
         }
     }

@@ -1,0 +1,260 @@
+#include "bilateral.h"
+
+#include "exhand/board.h"
+
+/* Fingers in use first: the gate opens the first n places. */
+static void place_fingers(struct bilateral_cfg *cfg, uint32_t mask)
+{
+    unsigned at = 0;
+    cfg->n = 0;
+    for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
+        if (mask >> f & 1u) {
+            cfg->at[at++] = (uint8_t)f;
+            cfg->n++;
+        }
+    }
+    for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
+        if (!(mask >> f & 1u)) { cfg->at[at++] = (uint8_t)f; }
+    }
+}
+
+int bilateral_setup(struct bilateral_cfg *cfg, struct bilateral *s, const struct bilateral_par *par,
+                    struct exh_scene_board board)
+{
+    const uint64_t num = (uint64_t)board.T.num * (uint32_t)par->glove_own.every;
+    int err;
+    cfg->par = par;
+    place_fingers(cfg, (uint32_t)par->own.fingers);
+    if (cfg->n == 0) { return -EXH_E_RANGE; }
+    if (num > UINT32_MAX) { return -EXH_E_RATE; }
+    glove_cal_of_rows(&cfg->cal, &par->glove_own, par->sensor);
+    err = exh_glove_setup(&cfg->glove, &par->glove, &cfg->cal,
+                          (struct exh_period){(uint32_t)num, board.T.den});
+    for (unsigned k = 0; err == 0 && k < cfg->n; k++) {
+        err = bilateral_finger_setup(cfg, s, k, board);
+    }
+    bilateral_wire_setup(&cfg->wire, &s->wire, (uint32_t)par->own.session, board.T);
+    return err;
+}
+
+/* --- the tick --- */
+
+static void see(struct bilateral *s, const struct bilateral_cfg *cfg, const struct exh_scene_in *in)
+{
+    static const struct exh_plane none = {.kind = EXH_PLANE_NONE};
+    const uint32_t before = s->glove_faults;
+    int32_t angle_turn_q32[EXH_GLOVE_SENSORS];
+    if (!in->glove_new) { return; }
+    s->glove_faults = exh_glove_step(&s->glove, &cfg->glove, &in->glove, angle_turn_q32);
+    s->worn = 1;
+    for (unsigned k = 0; k < cfg->n; k++) {
+        const unsigned f = cfg->at[k];
+        struct bilateral_finger *now = &s->finger[f];
+        bilateral_finger_see(now, cfg, f, angle_turn_q32);
+        /* Held angles make a distance that is not: no contact from now on. One that is frozen
+         * hangs on the string alone, and stays. */
+        if (bilateral_finger_is_blind(s, cfg, f) && !(before & cfg->finger[f].sensors)) {
+            (void)exh_precontact_tell(&now->precontact, &cfg->finger[f].precontact, &none, 0);
+        }
+    }
+}
+
+/* Position and velocity of all fingers in use; the causes of faults they are. */
+static uint32_t sense(struct bilateral *s, const struct bilateral_cfg *cfg,
+                      const struct exh_drive_in *in, struct bilateral_paper *p)
+{
+    uint32_t raised = 0;
+    for (unsigned k = 0; k < cfg->n; k++) {
+        const unsigned f = cfg->at[k];
+        struct bilateral_finger *now = &s->finger[f];
+        const struct bilateral_finger_cfg *c = &cfg->finger[f];
+        const int32_t cnt = exh_quad_extend(&now->quad, &c->quad, in->enc_raw[f]);
+        p[f].q_m_q30 = exh_quad_pos_m_q30(&cfg->par->quad[f], cnt);
+        p[f].qd_mps_q27 = exh_velocity_window_mps_q27(&now->velocity, &c->velocity, cnt);
+        if (now->quad.lost) { raised |= EXH_FAULT_ENCODER; }
+    }
+    return raised;
+}
+
+/* The drives' inputs by place. */
+static uint32_t din_by_place(const struct bilateral_cfg *cfg, uint32_t din)
+{
+    uint32_t placed = din & (EXH_DIN_ESTOP | EXH_DIN_DEADMAN);
+    for (unsigned k = 0; k < cfg->n; k++) {
+        if (din & (uint32_t)EXH_DIN_DRIVE0 << cfg->at[k]) { placed |= (uint32_t)EXH_DIN_DRIVE0 << k; }
+    }
+    return placed;
+}
+
+/* The gate's codes from places back to fingers. */
+static void out_by_finger(const struct bilateral_cfg *cfg, const struct exh_drive_out *placed,
+                          struct exh_drive_out *out)
+{
+    out->enable = 0;
+    out->alive = placed->alive;
+    for (unsigned k = 0; k < BILATERAL_FINGERS; k++) {
+        out->dac_raw[cfg->at[k]] = placed->dac_raw[k];
+        out->enable = (uint8_t)(out->enable | (placed->enable >> k & 1u) << cfg->at[k]);
+    }
+}
+
+static void tell_finger(struct bilateral_more *m, const struct bilateral_finger *s)
+{
+    const struct exh_precontact *p = &s->precontact;
+    for (unsigned j = 0; j < EXH_HAND_JOINTS; j++) { m->joint_turn_q32[j] = s->joint_turn_q32[j]; }
+    m->clamped = s->clamped;
+    m->tip_m_q30 = s->tip_m_q30;
+    m->freezes = exh_from_u32(p->frozen_n);
+    m->born = exh_from_u32(p->born_n);
+    m->refused = exh_from_u32(p->refused_n);
+    m->ignored = exh_from_u32(p->ignored_n);
+    m->stale = exh_from_u32(p->stale_n);
+}
+
+static int32_t at_most(uint32_t v)
+{
+    return v < INT32_MAX ? (int32_t)v : INT32_MAX;
+}
+
+static void tell_box(struct bilateral_box *b, const struct bilateral *s,
+                     const struct exh_scene_in *in)
+{
+    const struct exh_wire_rx *rx = &s->wire.rx;
+    b->state = s->safety.state;
+    b->faults = (int32_t)s->safety.faults;
+    b->present = (int32_t)s->safety.present;
+    b->glove_faults = (int32_t)s->glove_faults;
+    b->glove_age = in->glove.age_ticks;
+    b->age = at_most(s->wire.age_ticks);
+    b->trip_us = at_most(s->wire.trip_us);
+    b->set = exh_from_u32(s->wire.set);
+    b->accepted = exh_from_u32(rx->accepted);
+    b->missing = exh_from_u32(rx->missing);
+    b->duplicate = exh_from_u32(rx->duplicate);
+    b->reordered = exh_from_u32(rx->reordered);
+    b->old = exh_from_u32(rx->old);
+    b->stranger = exh_from_u32(rx->stranger);
+    b->corrupt = exh_from_u32(rx->corrupt);
+    b->version = exh_from_u32(rx->version);
+    b->unknown = exh_from_u32(rx->unknown);
+}
+
+void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,
+                    const struct exh_scene_in *in, const struct exh_scene_mail *mail,
+                    struct exh_params *params, struct exh_drive_out *out,
+                    struct bilateral_signals *sig)
+{
+    const uint32_t lost = sense(s, cfg, &in->drive, sig->paper);
+    const struct exh_safety_in box = {din_by_place(cfg, in->drive.din), lost, in->missed,
+                                      in->command, cfg->n};
+    const int run = exh_safety_step(&s->safety, &cfg->par->safety, box) == EXH_STATE_RUN;
+    struct exh_current_ledger i[BILATERAL_FINGERS];
+    uint32_t limits[BILATERAL_FINGERS];
+    struct exh_drive_out placed;
+
+    bilateral_wire_take(s, cfg, mail, in->missed, params);
+    see(s, cfg, in);
+    for (unsigned k = 0; k < cfg->n; k++) {
+        const unsigned f = cfg->at[k];
+        limits[k] = bilateral_finger_feel(s, cfg, k, run, &i[k], &sig->paper[f], &sig->more[f].bits);
+    }
+    exh_gate(&s->safety, cfg->drive, cfg->n, i, limits, &placed);
+    out_by_finger(cfg, &placed, out);
+    for (unsigned k = 0; k < cfg->n; k++) {
+        const unsigned f = cfg->at[k];
+        sig->paper[f].i_des_A_q26 = i[k].coded_A_q26;
+        sig->paper[f].f_mon_N_q20 = exh_drive_monitor_N_q20(&cfg->drive[k], in->drive.mon_raw[f]);
+        sig->more[f].limits = (int32_t)limits[k];
+        tell_finger(&sig->more[f], &s->finger[f]);
+    }
+    tell_box(&sig->box, s, in);
+}
+
+void bilateral_bytes(struct exh_bytes *c, struct bilateral *s)
+{
+    for (unsigned f = 0; f < BILATERAL_FINGERS; f++) { bilateral_finger_bytes(c, &s->finger[f]); }
+    exh_safety_bytes(c, &s->safety);
+    exh_glove_bytes(c, &s->glove);
+    bilateral_wire_bytes(c, &s->wire);
+    exh_bytes_u8(c, &s->worn);
+    exh_bytes_u32(c, &s->glove_faults);
+}
+
+/* --- the one instance of this image --- */
+
+static struct bilateral_par active, staged;
+static struct exh_params params;
+static struct bilateral_signals signals;
+static struct bilateral_cfg cfg;
+static struct bilateral state;
+static struct exh_scene_mail mail_in, mail_out;
+
+static void defaults(void)
+{
+    exh_params_init(&params, &bilateral_params, (int32_t *)&active, (int32_t *)&staged);
+    glove_rows_of_cal(&active.glove_own, active.sensor, &exh_glove_cal_default);
+    active.glove.fc_Hz_q16 = EXH_Q(200, 1, EXH_Q_RAW); /* it lags little: 1.1 ms */
+    for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
+        active.precontact[f].from_slope = 1;
+        active.precontact[f].d_lim_m_q30 = -EXH_Q(10, 1000, EXH_Q_POS);
+    }
+    staged = active;
+}
+
+int bilateral_stage_cal(const struct exh_glove_cal *cal, struct exh_glove_bad *bad)
+{
+    const int err = exh_glove_cal_valid(cal, bad);
+    if (err == 0) {
+        glove_rows_of_cal(&staged.glove_own, staged.sensor, cal);
+        params.pending = 1;
+    }
+    return err;
+}
+
+static int setup(struct exh_scene_board board)
+{
+    static const struct bilateral power_on;
+    static const struct bilateral_signals silence;
+    state = power_on;
+    signals = silence;
+    mail_in.packets = mail_out.packets = 0;
+    /* Into the parameters: the log's header has it, or no replay would be the same. */
+    if (active.own.session == 0) {
+        active.own.session = staged.own.session = (int32_t)(exh_board_cycles() >> 1 | 1u);
+    }
+    return bilateral_setup(&cfg, &state, &active, board);
+}
+
+static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
+{
+    bilateral_tick(&state, &cfg, in, &mail_in, &params, out, &signals);
+}
+
+static void write_mail(void)
+{
+    bilateral_write(&state, &cfg, &signals, &mail_out);
+}
+
+static void state_bytes(struct exh_bytes *c)
+{
+    bilateral_bytes(c, &state);
+}
+
+static const struct exh_scene_link wire = {exh_board_link_recv, exh_board_link_send, &mail_in,
+                                           &mail_out, write_mail};
+
+const struct exh_scene exh_scene_bilateral = {
+    .name = "bilateral",
+    .rate_Hz = 2000,
+    .fingers = BILATERAL_FINGERS,
+    .params = &params,
+    .signals = &bilateral_outputs,
+    .signal = (int32_t *)&signals,
+    .read_glove = exh_board_read_glove,
+    .glove_every = &active.glove_own.every,
+    .link = &wire,
+    .defaults = defaults,
+    .setup = setup,
+    .tick = tick,
+    .state = state_bytes,
+};

@@ -1,0 +1,194 @@
+/* The full box as a scene (the paper's bilateral controller): glove to fingertips, fingertips over
+ * a link to a world, planes back, virtual contacts frozen before they are touched, forces. A
+ * finger that is not in use costs nothing. */
+#ifndef EXAMPLES_BILATERAL_H
+#define EXAMPLES_BILATERAL_H
+
+#include "../glove/cal.h"
+#include "../scene.h"
+
+#include "exhand/exhand.h"
+
+#define BILATERAL_FINGERS   EXH_FINGERS
+#define BILATERAL_MATERIALS 8
+
+/* Rows of the scene's own parameters. */
+struct bilateral_own_par {
+    int32_t fingers;     /* mask: which are in use, thumb in bit 0               */
+    int32_t state_every; /* ticks from one state packet to the next              */
+    int32_t session;     /* of the link; 0: made up at set-up, of the board's cycle counter */
+};
+
+/* All parameters, in the order of the scene's table. */
+struct bilateral_par {
+    struct exh_quad_par quad[BILATERAL_FINGERS];
+    struct exh_velocity_par velocity[BILATERAL_FINGERS];
+    struct exh_contact_par contact[BILATERAL_FINGERS]; /* k and b are the material's */
+    struct exh_drive_par drive[BILATERAL_FINGERS];
+    int32_t kf_NpA_q20[BILATERAL_FINGERS];
+    struct exh_hand_par hand[BILATERAL_FINGERS];
+    struct exh_precontact_par precontact[BILATERAL_FINGERS];
+    struct exh_material_par material[BILATERAL_MATERIALS];
+    struct exh_safety_par safety;
+    struct exh_glove_par glove;
+    struct bilateral_own_par own;
+    struct glove_own_par glove_own;
+    struct glove_sensor_par sensor[EXH_GLOVE_SENSORS];
+};
+
+/* The paper's nine are these and time. */
+struct bilateral_paper {
+    int32_t q_m_q30;
+    int32_t qd_mps_q27;
+    int32_t f_des_N_q20;
+    int32_t i_des_A_q26;
+    int32_t c;
+    int32_t f_mon_N_q20;
+    int32_t d_m_q30;     /* INT32_MIN: there is no plane                         */
+    int32_t q_lim_m_q30; /* EXH_PRECONTACT_NEVER: no contact can be              */
+};
+
+struct bilateral_more {
+    int32_t bits;   /* enum exh_precontact_bit                                  */
+    int32_t limits; /* enum exh_limit                                          */
+    int32_t joint_turn_q32[EXH_HAND_JOINTS];
+    int32_t clamped; /* bit j: joint j at a limit                              */
+    struct exh_vec3 tip_m_q30;
+    int32_t freezes, born, refused, ignored, stale; /* counts, of exh_precontact */
+};
+
+struct bilateral_box {
+    int32_t state;        /* enum exh_state                                    */
+    int32_t faults;       /* enum exh_fault, latched                           */
+    int32_t present;      /* enum exh_fault: why RUN or CLEAR is refused        */
+    int32_t glove_faults; /* bit i: sensor i                                   */
+    int32_t glove_age;    /* ticks                                             */
+    int32_t age;          /* ticks since the newest planes came; INT32_MAX: never */
+    int32_t trip_us;      /* how old the question was that they answered        */
+    int32_t set;          /* parameters set over the link                       */
+    int32_t accepted, missing, duplicate, reordered, old, stranger, corrupt, version, unknown;
+};
+
+struct bilateral_signals {
+    struct bilateral_paper paper[BILATERAL_FINGERS];
+    struct bilateral_more more[BILATERAL_FINGERS];
+    struct bilateral_box box;
+};
+
+extern const struct exh_signal_table bilateral_params, bilateral_outputs;
+
+/* --- one finger --- */
+
+struct bilateral_finger_cfg {
+    struct exh_quad_cfg quad;
+    struct exh_velocity_window_cfg velocity;
+    struct exh_hand_finger hand;
+    struct exh_precontact_cfg precontact;
+    struct exh_knot force_to_cur[2], cur_to_force[2];
+    uint32_t sensors; /* bit i: sensor i moves it                              */
+};
+
+struct bilateral_finger {
+    struct exh_quad quad;
+    struct exh_velocity_window velocity;
+    struct exh_contact contact;
+    struct exh_drive drive;
+    struct exh_precontact precontact;
+    int32_t joint_turn_q32[EXH_HAND_JOINTS]; /* these four of the newest glove frame */
+    struct exh_vec3 tip_m_q30, slope_q24;
+    uint8_t clamped;
+};
+
+/* --- the link --- */
+
+struct bilateral_wire_cfg {
+    uint64_t tick_us_q20; /* a tick                                            */
+    uint32_t ticks_per_us_q32;
+    uint32_t ms_per_tick_q20;
+    uint32_t table_crc; /* what parameters there are                           */
+};
+
+struct bilateral_wire {
+    struct exh_wire_tx tx;
+    struct exh_wire_rx rx;
+    uint64_t now_us_q20; /* our clock: ticks since set-up, missed ones too; modulo 2^44 us */
+    uint32_t age_ticks;  /* since the newest planes; UINT32_MAX: never          */
+    uint32_t trip_us;
+    uint32_t exchanges;
+    uint32_t set;
+    uint32_t wait_ticks; /* to the next exchange                               */
+    uint8_t acks;        /* answers to be given at the end of this tick          */
+    struct exh_wire_ack ack[EXH_SCENE_PACKETS];
+};
+
+/* --- all --- */
+
+struct bilateral_cfg {
+    const struct bilateral_par *par;
+    struct exh_glove_cal cal;
+    struct exh_glove_cfg glove;
+    struct bilateral_finger_cfg finger[BILATERAL_FINGERS];
+    /* By place: fingers in use come first, then the others. */
+    struct exh_drive_cfg drive[BILATERAL_FINGERS];
+    uint8_t at[BILATERAL_FINGERS]; /* which finger is at this place             */
+    uint8_t n;                     /* in use                                    */
+    struct bilateral_wire_cfg wire;
+};
+
+struct bilateral {
+    struct bilateral_finger finger[BILATERAL_FINGERS];
+    struct exh_safety safety;
+    struct exh_glove glove;
+    struct bilateral_wire wire;
+    uint8_t worn;          /* a glove frame has come                           */
+    uint32_t glove_faults; /* in the newest                                    */
+    /* Parameters as a material changes them; made anew in every tick. */
+    struct exh_drive_par drive_now[BILATERAL_FINGERS];
+};
+
+/* Configuration from parameters; cfg keeps pointers to par and to s. 0 or -EXH_E…. */
+int bilateral_setup(struct bilateral_cfg *cfg, struct bilateral *s, const struct bilateral_par *par,
+                    struct exh_scene_board board);
+
+/* One tick; params: where packets stage what they ask for. */
+void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,
+                    const struct exh_scene_in *in, const struct exh_scene_mail *mail,
+                    struct exh_params *params, struct exh_drive_out *out,
+                    struct bilateral_signals *sig);
+
+/* Behind it: the packets that go out. */
+void bilateral_write(struct bilateral *s, const struct bilateral_cfg *cfg,
+                     const struct bilateral_signals *sig, struct exh_scene_mail *out);
+
+void bilateral_bytes(struct exh_bytes *c, struct bilateral *s);
+
+/* --- parts (finger.c, wire.c) --- */
+
+int bilateral_finger_setup(struct bilateral_cfg *cfg, struct bilateral *s, unsigned place,
+                           struct exh_scene_board board);
+void bilateral_wire_setup(struct bilateral_wire_cfg *cfg, struct bilateral_wire *s,
+                          uint32_t session, struct exh_period T);
+void bilateral_wire_take(struct bilateral *s, const struct bilateral_cfg *cfg,
+                         const struct exh_scene_mail *in, uint32_t missed,
+                         struct exh_params *params);
+void bilateral_wire_bytes(struct exh_bytes *c, struct bilateral_wire *s);
+void bilateral_finger_bytes(struct exh_bytes *c, struct bilateral_finger *s);
+
+/* 1: one of its sensors is not believed, and nobody knows where the finger is. */
+int bilateral_finger_is_blind(const struct bilateral *s, const struct bilateral_cfg *cfg,
+                              unsigned f);
+/* From the newest glove frame. */
+void bilateral_finger_see(struct bilateral_finger *s, const struct bilateral_cfg *cfg, unsigned f,
+                          const int32_t *angle_turn_q32);
+/* Position to force and current. Returns limit bits. */
+uint32_t bilateral_finger_feel(struct bilateral *s, const struct bilateral_cfg *cfg,
+                               unsigned place, int run, struct exh_current_ledger *i,
+                               struct bilateral_paper *p, int32_t *bits);
+
+/* Stages a calibration in the scene's parameters, between defaults() and set-up: 0, or
+ * -EXH_E_RANGE with *bad (may be NULL). */
+int bilateral_stage_cal(const struct exh_glove_cal *cal, struct exh_glove_bad *bad);
+
+extern const struct exh_scene exh_scene_bilateral;
+
+#endif

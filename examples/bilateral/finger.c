@@ -1,0 +1,131 @@
+#include "bilateral.h"
+
+static uint32_t sensors_of(const struct exh_hand_map *map, unsigned f)
+{
+    uint32_t mask = 0;
+    for (unsigned j = 0; j < EXH_HAND_JOINTS; j++) {
+        for (unsigned t = 0; t < EXH_HAND_TERMS; t++) {
+            const struct exh_hand_joint *joint = &map->joint[f][j];
+            if (joint->gain_q24[t] != 0) { mask |= UINT32_C(1) << joint->sensor[t]; }
+        }
+    }
+    return mask;
+}
+
+int bilateral_finger_is_blind(const struct bilateral *s, const struct bilateral_cfg *cfg,
+                              unsigned f)
+{
+    return (s->glove_faults & cfg->finger[f].sensors) != 0;
+}
+
+int bilateral_finger_setup(struct bilateral_cfg *cfg, struct bilateral *s, unsigned place,
+                           struct exh_scene_board board)
+{
+    const unsigned f = cfg->at[place];
+    const struct bilateral_par *par = cfg->par;
+    const struct exh_drive_par *drive = &par->drive[f];
+    struct bilateral_finger_cfg *c = &cfg->finger[f];
+    const struct exh_velocity_scale scale = {par->quad[f].step_m_q42, board.T};
+    const struct exh_table to_cur = {c->force_to_cur, 2}, to_force = {c->cur_to_force, 2};
+    const int32_t peak_N_q20 =
+        exh_sat32(exh_mul_shr(par->kf_NpA_q20[f], drive->i_peak_A_q26, EXH_Q_CUR));
+    int err;
+
+    /* Straight lines until the box is calibrated; the monitor's also below zero. */
+    c->force_to_cur[0] = (struct exh_knot){0, 0, {0, 0}};
+    c->force_to_cur[1] = (struct exh_knot){peak_N_q20, drive->i_peak_A_q26, {0, 0}};
+    c->cur_to_force[0] = (struct exh_knot){-drive->i_peak_A_q26, -peak_N_q20, {0, 0}};
+    c->cur_to_force[1] = (struct exh_knot){drive->i_peak_A_q26, peak_N_q20, {0, 0}};
+    s->drive_now[f] = *drive;
+    c->sensors = sensors_of(&exh_hit2_map, f);
+    err = exh_table_set(c->force_to_cur, 2);
+    if (err == 0) { err = exh_table_set(c->cur_to_force, 2); }
+    if (err == 0) { err = exh_quad_setup(&c->quad, &par->quad[f], board.T, board.enc_bits); }
+    if (err == 0) { err = exh_velocity_window_setup(&c->velocity, scale, &par->velocity[f]); }
+    if (err == 0) {
+        err = exh_drive_setup(&cfg->drive[place], &s->drive_now[f], board.T, to_cur, to_force);
+    }
+    if (err == 0) { err = exh_hand_setup(&c->hand, &exh_hit2_bones[f], &par->hand[f]); }
+    if (err == 0) {
+        err = exh_precontact_setup(&c->precontact, &par->precontact[f], par->material,
+                                   BILATERAL_MATERIALS, par->hand[f].pad_m_q30, board.T);
+    }
+    return err;
+}
+
+void bilateral_finger_see(struct bilateral_finger *s, const struct bilateral_cfg *cfg, unsigned f,
+                          const int32_t *angle_turn_q32)
+{
+    s->clamped = (uint8_t)exh_hand_joints(&exh_hit2_map, f, angle_turn_q32, s->joint_turn_q32);
+    if (cfg->par->precontact[f].from_slope) {
+        exh_hand_tip_slope(&cfg->finger[f].hand, s->joint_turn_q32, &s->tip_m_q30, &s->slope_q24);
+    } else {
+        exh_hand_tip(&cfg->finger[f].hand, s->joint_turn_q32, &s->tip_m_q30);
+    }
+}
+
+/* The law and the drive with the material of the plane that is frozen. Else there is no contact,
+ * and the drive's own limit holds. */
+static struct exh_contact_par touch(struct bilateral *s, const struct bilateral_cfg *cfg,
+                                    unsigned f)
+{
+    const struct exh_precontact *p = &s->finger[f].precontact;
+    const int32_t f_max_N_q20 = cfg->par->drive[f].f_max_N_q20;
+    struct exh_contact_par law = cfg->par->contact[f];
+    law.k_Npm_q10 = p->taken.k_Npm_q10;
+    law.b_Nspm_q20 = p->taken.b_Nspm_q20;
+    s->drive_now[f] = cfg->par->drive[f];
+    if (p->phase == EXH_PRECONTACT_FROZEN && p->taken.f_max_N_q20 < f_max_N_q20) {
+        s->drive_now[f].f_max_N_q20 = p->taken.f_max_N_q20;
+    }
+    return law;
+}
+
+uint32_t bilateral_finger_feel(struct bilateral *s, const struct bilateral_cfg *cfg,
+                               unsigned place, int run, struct exh_current_ledger *i,
+                               struct bilateral_paper *p, int32_t *bits)
+{
+    const unsigned f = cfg->at[place];
+    struct bilateral_finger *now = &s->finger[f];
+    const struct exh_precontact_in where = {now->tip_m_q30, now->slope_q24, p->q_m_q30,
+                                            now->contact.touching};
+    struct exh_contact_in q = {p->q_m_q30, p->qd_mps_q27, EXH_PRECONTACT_NEVER};
+    struct exh_contact_par law;
+    struct exh_force_ledger force;
+    uint32_t limits;
+
+    p->d_m_q30 = INT32_MIN;
+    *bits = 0;
+    if (s->worn) { /* before the first frame nobody knows where the finger is */
+        *bits = (int32_t)exh_precontact_step(&now->precontact, &cfg->finger[f].precontact, &where);
+        p->d_m_q30 = now->precontact.d_m_q30;
+        q.lim_m_q30 = now->precontact.lim_m_q30;
+    }
+    law = touch(s, cfg, f);
+    p->c = exh_contact_law(&now->contact, &law, q, &force);
+    limits = exh_drive_force(&now->drive, &cfg->drive[place], run, &force);
+    limits |= exh_drive_current(&now->drive, &cfg->drive[place], &force, i);
+    p->f_des_N_q20 = force.force_N_q20;
+    p->q_lim_m_q30 = q.lim_m_q30;
+    return limits;
+}
+
+static void vec3_bytes(struct exh_bytes *c, struct exh_vec3 *v)
+{
+    exh_bytes_i32(c, &v->x);
+    exh_bytes_i32(c, &v->y);
+    exh_bytes_i32(c, &v->z);
+}
+
+void bilateral_finger_bytes(struct exh_bytes *c, struct bilateral_finger *s)
+{
+    exh_quad_bytes(c, &s->quad);
+    exh_velocity_window_bytes(c, &s->velocity);
+    exh_contact_bytes(c, &s->contact);
+    exh_drive_bytes(c, &s->drive);
+    exh_precontact_bytes(c, &s->precontact);
+    for (unsigned j = 0; j < EXH_HAND_JOINTS; j++) { exh_bytes_i32(c, &s->joint_turn_q32[j]); }
+    vec3_bytes(c, &s->tip_m_q30);
+    vec3_bytes(c, &s->slope_q24);
+    exh_bytes_u8(c, &s->clamped);
+}

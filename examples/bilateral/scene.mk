@@ -1,0 +1,2 @@
+SCENE_DESC := the full box: five fingers with glove, link, pre-contact and contact; one costs one
+SCENE_SRC  := $(wildcard examples/bilateral/*.c) examples/glove/cal.c

@@ -1,0 +1,178 @@
+#include "bilateral.h"
+
+/* In this many exchanges, until planes come and then: a world that missed one hears the next. */
+#define HELLO_AT_FIRST 8u
+#define HELLO_THEN     128u
+#define US_Q        20
+
+void bilateral_wire_setup(struct bilateral_wire_cfg *cfg, struct bilateral_wire *s,
+                          uint32_t session, struct exh_period T)
+{
+    uint64_t rest;
+    const uint64_t whole_us = exh_udiv64(UINT64_C(1000000) * T.num, T.den, &rest);
+    cfg->tick_us_q20 = (whole_us << US_Q) + exh_udiv64(rest << US_Q, T.den, NULL);
+    cfg->ms_per_tick_q20 = (uint32_t)exh_udiv64(cfg->tick_us_q20, 1000, NULL);
+    cfg->ticks_per_us_q32 =
+        (uint32_t)exh_udiv64((uint64_t)T.den << 32, UINT64_C(1000000) * T.num, NULL);
+    cfg->table_crc = exh_signal_crc(&bilateral_params);
+    s->tx.session = session;
+    s->age_ticks = UINT32_MAX;
+}
+
+static uint32_t now_us(const struct bilateral_wire *s)
+{
+    return (uint32_t)(s->now_us_q20 >> US_Q);
+}
+
+/* --- in --- */
+
+/* The planes are as old as the question they answer, at the most. Of a finger that nobody has seen
+ * yet, or whose sensors are not believed, none is kept: a distance to it would be a guess. */
+static void take_planes(struct bilateral *s, const struct bilateral_cfg *cfg,
+                        const struct exh_wire_planes *planes)
+{
+    struct bilateral_wire *w = &s->wire;
+    uint32_t age_ticks;
+    w->trip_us = exh_wire_trip_us(now_us(w), planes);
+    w->age_ticks = 0;
+    age_ticks = (uint32_t)((uint64_t)w->trip_us * cfg->wire.ticks_per_us_q32 >> 32);
+    for (unsigned k = 0; k < cfg->n; k++) {
+        const unsigned f = cfg->at[k];
+        const struct exh_plane plane = exh_wire_plane_of(planes, f);
+        if (!s->worn || bilateral_finger_is_blind(s, cfg, f)) { continue; }
+        (void)exh_precontact_tell(&s->finger[f].precontact, &cfg->finger[f].precontact, &plane,
+                                  age_ticks); /* a refused one it counts itself */
+    }
+}
+
+/* What pulls without a contact (f0) and what limits every pull are the box's own: no world, and
+ * nobody else who can send a packet, sets them. */
+static struct exh_wire_ack stage(struct exh_params *params, const struct exh_wire_packet *p)
+{
+    const struct exh_wire_param *ask = &p->u.param;
+    const int own = ask->id >> 8 == exh_contact_rows[0].id >> 8 ||
+                    ask->id >> 8 == exh_drive_rows[0].id >> 8;
+    const struct exh_wire_ack refused = {*ask, -EXH_E_STATE, p->seq};
+    return own ? refused : exh_wire_stage(params, p);
+}
+
+void bilateral_wire_take(struct bilateral *s, const struct bilateral_cfg *cfg,
+                         const struct exh_scene_mail *in, uint32_t missed,
+                         struct exh_params *params)
+{
+    struct bilateral_wire *w = &s->wire;
+    w->now_us_q20 += cfg->wire.tick_us_q20 * (missed + UINT64_C(1));
+    w->age_ticks += w->age_ticks < UINT32_MAX;
+    w->acks = 0;
+    for (unsigned i = 0; i < in->packets; i++) {
+        struct exh_wire_packet p;
+        const uint32_t former = w->rx.former;
+        const int type = exh_wire_take(&w->rx, &p, in->byte[i], in->len_B[i]);
+        if (w->rx.former != former) { w->exchanges = 0; } /* a world that does not know us yet */
+        if (type == EXH_WIRE_PLANES) {
+            take_planes(s, cfg, &p.u.planes);
+        } else if (type == EXH_WIRE_PARAM) {
+            const struct exh_wire_ack ack = stage(params, &p);
+            w->set += ack.result == 0;
+            w->ack[w->acks++] = ack;
+        }
+    }
+}
+
+/* --- out --- */
+
+static void put(struct bilateral_wire *w, struct exh_scene_mail *out, struct exh_wire_packet *p)
+{
+    int32_t n;
+    if (out->packets == EXH_SCENE_PACKETS) { return; }
+    n = exh_wire_write(&w->tx, p, now_us(w), out->byte[out->packets], EXH_SCENE_PACKET_B);
+    if (n > 0) { out->len_B[out->packets++] = (uint16_t)n; }
+}
+
+static void put_hello(struct bilateral_wire *w, const struct bilateral_wire_cfg *cfg,
+                      struct exh_scene_mail *out)
+{
+    struct exh_wire_packet p = {.type = EXH_WIRE_HELLO};
+    p.u.hello = (struct exh_wire_hello){EXH_WIRE_CONTROLLER, EXH_VERSION_NUMBER,
+                                        cfg->table_crc};
+    put(w, out, &p);
+}
+
+static void finger_of(struct exh_wire_state *to, const struct bilateral *s,
+                      const struct bilateral_paper *p, unsigned f)
+{
+    const struct bilateral_finger *now = &s->finger[f];
+    for (unsigned j = 0; j < EXH_HAND_JOINTS; j++) {
+        to->joint_turn_q32[f][j] = now->joint_turn_q32[j];
+    }
+    to->tip_m_q30[f][0] = now->tip_m_q30.x;
+    to->tip_m_q30[f][1] = now->tip_m_q30.y;
+    to->tip_m_q30[f][2] = now->tip_m_q30.z;
+    to->force_N_q20[f] = p->f_des_N_q20;
+    to->d_m_q30[f] = p->d_m_q30;
+    to->q_m_q30[f] = p->q_m_q30;
+    to->q_lim_m_q30[f] = p->q_lim_m_q30;
+    to->fingers = (uint8_t)(to->fingers | 1u << f);
+    if (now->precontact.phase == EXH_PRECONTACT_FROZEN) {
+        to->frozen = (uint8_t)(to->frozen | 1u << f);
+    }
+    if (p->c) { to->touching = (uint8_t)(to->touching | 1u << f); }
+}
+
+static uint16_t age_ms(const struct bilateral_wire *w, const struct bilateral_wire_cfg *cfg)
+{
+    const uint64_t ms = (uint64_t)w->age_ticks * cfg->ms_per_tick_q20 >> US_Q;
+    return (uint16_t)(ms < EXH_WIRE_NEVER_MS ? ms : EXH_WIRE_NEVER_MS);
+}
+
+static void put_state(struct bilateral *s, const struct bilateral_cfg *cfg,
+                      const struct bilateral_signals *sig, struct exh_scene_mail *out)
+{
+    struct exh_wire_packet p = {.type = EXH_WIRE_STATE};
+    p.u.state.tick = s->safety.tick;
+    p.u.state.state = s->safety.state;
+    p.u.state.faults = s->safety.faults;
+    p.u.state.age_ms = age_ms(&s->wire, &cfg->wire);
+    for (unsigned k = 0; k < cfg->n; k++) {
+        finger_of(&p.u.state, s, &sig->paper[cfg->at[k]], cfg->at[k]);
+    }
+    put(&s->wire, out, &p);
+}
+
+void bilateral_write(struct bilateral *s, const struct bilateral_cfg *cfg,
+                     const struct bilateral_signals *sig, struct exh_scene_mail *out)
+{
+    struct bilateral_wire *w = &s->wire;
+    const uint32_t state_every = (uint32_t)cfg->par->own.state_every;
+    out->packets = 0;
+    if (w->wait_ticks == 0 || w->wait_ticks >= state_every) { /* set shorter meanwhile */
+        const uint32_t every = w->age_ticks == UINT32_MAX ? HELLO_AT_FIRST : HELLO_THEN;
+        w->wait_ticks = state_every;
+        if ((w->exchanges++ & (every - 1)) == 0) { put_hello(w, &cfg->wire, out); }
+        put_state(s, cfg, sig, out);
+    }
+    w->wait_ticks--;
+    for (unsigned i = 0; i < w->acks; i++) { /* what has no room is asked for again */
+        struct exh_wire_packet p = {.type = EXH_WIRE_ACK};
+        p.u.ack = w->ack[i];
+        put(w, out, &p);
+    }
+    w->acks = 0;
+}
+
+/* --- state --- */
+
+void bilateral_wire_bytes(struct exh_bytes *c, struct bilateral_wire *s)
+{
+    int64_t now_us_q20 = exh_from_u64(s->now_us_q20);
+    exh_wire_tx_bytes(c, &s->tx);
+    exh_wire_rx_bytes(c, &s->rx);
+    exh_bytes_i64(c, &now_us_q20);
+    s->now_us_q20 = (uint64_t)now_us_q20;
+    exh_bytes_u32(c, &s->age_ticks);
+    exh_bytes_u32(c, &s->trip_us);
+    exh_bytes_u32(c, &s->exchanges);
+    exh_bytes_u32(c, &s->set);
+    exh_bytes_u32(c, &s->wait_ticks);
+    s->acks = 0; /* none between two ticks */
+}

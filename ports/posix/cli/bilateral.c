@@ -1,0 +1,167 @@
+/* exhand bilateral: the paper's second experiment. */
+#include "bilateral.h"
+
+#include "cli.h"
+#include "option.h"
+
+#include "world/world.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static int load_scene(struct bilateral_options *o)
+{
+    char why[700];
+    if (o->scene == NULL) { return 0; }
+    o->run.scene = world_load_file(o->scene, why, sizeof why);
+    if (o->run.scene == NULL) {
+        cli_complain("--scene: %s", why);
+        return 2;
+    }
+    o->run.board.exo.fingers &= world_scene(o->run.scene)->fingers;
+    if (o->run.board.exo.fingers == 0) {
+        cli_complain("--scene: %s: holds none of the fingers in use: choose others with --fingers", o->scene);
+        return 2;
+    }
+    return 0;
+}
+
+static void defaults(struct bilateral_options *o)
+{
+    static struct run_setting own = {"mat_f_max", 40};
+    memset(o, 0, sizeof *o);
+    o->seed = 1;
+    o->approaches = 5;
+    o->jobs = jobs_cores();
+    o->link = "none";
+    o->record_Hz = 100;
+    o->setting[o->settings++] = own; /* the paper has no limit but the drive's */
+    o->run.board = posix_config_default();
+    o->run.board.exo = sim_exo_default();
+    o->run.board.exo.fingers = 1u << EXH_INDEX;
+    o->run.k_Npm = o->run.b_Nspm = -1;
+    o->run.at_m = 0.03;
+    o->run.fps = 400;
+    o->run.until_s = 1e30;
+    (void)bilateral_take_speeds(o, "slow,natural,fast");
+}
+
+/* Whether a run with these parameters begins at all: 0, or 2 after a line on stderr. */
+static int probe(const struct bilateral_options *o)
+{
+    struct bilateral_run_cfg c = bilateral_at_speed(o, o->speed[0].mps);
+    struct bilateral_run r;
+    int err;
+    if (o->udp) { return 0; }
+    c.board.max_ticks = 1;
+    err = bilateral_run(&c, &r);
+    bilateral_run_free(&r);
+    return err < 0 ? 2 : 0;
+}
+
+/* One run, as it was recorded, instead of approaches. */
+static int load_record(struct bilateral_options *o)
+{
+    int err;
+    if (o->record == NULL) { return 0; }
+    if (o->sweep || o->check || o->hands || o->crisp) {
+        cli_complain("--record: what was recorded is played once: leave out --sweep, --check, --hands, --crisp");
+        return 2;
+    }
+    err = hand_record_read(&o->hand, o->record, o->record_Hz, &o->run.board.exo);
+    if (err) { return err; }
+    hand_record_use(&o->hand, &o->run.board.exo);
+    o->speeds = 1;
+    (void)snprintf(o->speed[0].name, BILATERAL_NAME_B, "recorded");
+    return 0;
+}
+
+static int go(struct bilateral_options *o, double rate_Hz)
+{
+    int err = load_scene(o);
+    if (err == 0) { err = load_record(o); }
+    if (err) { return err; }
+    o->run.rate_Hz = (uint32_t)(rate_Hz + 0.5);
+    if (o->scene == NULL && o->run.k_Npm < 0) { o->run.k_Npm = 20000; }
+    if (o->scene == NULL && o->run.b_Nspm < 0) { o->run.b_Nspm = 60; }
+    if (o->udp) {
+        o->run.board.line.on = 1;
+        o->run.board.line.udp_local = "0.0.0.0:0";
+        o->run.board.line.udp_peer = o->udp;
+        o->run.board.pace = 1;
+    }
+    if (o->sweep + (o->check > 0) + o->hands + o->crisp > 1) {
+        cli_complain("--sweep, --check, --hands, --crisp: one at a time");
+        return 2;
+    }
+    if (o->out) { err = bilateral_out_open(o->out); }
+    if (err) { return err; }
+    err = probe(o);
+    if (err) { return err; }
+    err = o->sweep   ? bilateral_sweep(o)
+          : o->check ? bilateral_check(o)
+          : o->hands ? bilateral_hands(o)
+          : o->crisp ? bilateral_crisp(o)
+                     : bilateral_experiment(o);
+    world_free(o->run.scene);
+    sim_trace_free(&o->trace);
+    hand_record_free(&o->hand);
+    return err;
+}
+
+int cli_bilateral(int argc, char **argv)
+{
+    static struct bilateral_options o;
+    int list = 0, err;
+    double rate_Hz = 2000;
+    const struct cli_call speeds = {bilateral_take_speeds, &o}, fingers = {bilateral_take_fingers, &o}, link = {bilateral_take_link, &o};
+    const struct cli_call setting = {bilateral_take_setting, &o}, device = {bilateral_take_device, &o}, pose = {bilateral_take_pose, &o};
+    union {
+        const struct cli_call *view;
+        void *to;
+    } u[6] = {{&speeds}, {&fingers}, {&link}, {&setting}, {&device}, {&pose}};
+    const struct cli_option option[] = {
+        {"speed", CLI_CALL, u[0].to, 0, 0, "V[,V...]", "slow, natural, fast or m/s of string (these three)"},
+        {"fingers", CLI_CALL, u[1].to, 0, 0, "F[,F...]", "thumb, index, middle, ring, little or all (index)"},
+        {"record", CLI_TEXT, &o.record, 0, 0, "FILE", "the fingers do what a glove recorded, instead of approaches"},
+        {"record-rate", CLI_REAL, &o.record_Hz, 0.1, 10000, "HZ", "of its rows, if they have no clock (100)"},
+        {"approaches", CLI_INT, &o.approaches, 1, BILATERAL_CONTACTS_MAX, "N", "at each speed (5)"},
+        {"at", CLI_REAL, &o.run.at_m, 0.008, 0.06, "M", "the wall stands where so much string is out (0.030)"},
+        {"pose", CLI_CALL, u[5].to, 0, 0, "NAME", "the hand, where no finger in use bends it (flat)"},
+        {"scene", CLI_TEXT, &o.scene, 0, 0, "FILE", "a scene of the world simulator instead of walls"},
+        {"rate", CLI_REAL, &rate_Hz, 1, 20000, "HZ", "of the loop (2000)"},
+        {"k", CLI_REAL, &o.run.k_Npm, 0, 1e6, "N/M", "stiffness (20000; with --scene its materials')"},
+        {"b", CLI_REAL, &o.run.b_Nspm, 0, 1e3, "NS/M", "damping (60; with --scene its materials')"},
+        {"link", CLI_CALL, u[2].to, 0, 0, "SPEC", "none, trace=FILE (round trips), delay=S,jitter=S,loss=SHARE,... (none)"},
+        {"fps", CLI_REAL, &o.run.fps, 1, 2000, "N", "frames of the world a second (400)"},
+        {"ray", CLI_REAL, &o.run.ray_m, 0, 1, "M", "a wall is not seen from farther off (no limit)"},
+        {"world-from", CLI_REAL, &o.run.from_s, 0, 1e9, "S", "the world is not there before (0)"},
+        {"world-until", CLI_REAL, &o.run.until_s, 0, 1e30, "S", "it dies then (never)"},
+        {"udp", CLI_TEXT, &o.udp, 0, 0, "HOST:PORT", "the world is another process there; in real time"},
+        {"seed", CLI_INT, &o.seed, 0, 1e9, "N", "of all chance in the simulation (1)"},
+        {"out", CLI_TEXT, &o.out, 0, 0, "DIR", "write logs, CSVs and what pictures need there"},
+        {"set", CLI_CALL, u[3].to, 0, 0, "NAME=VALUE", "a parameter of the scene, of all fingers"},
+        {"device", CLI_CALL, u[4].to, 0, 0, "NAME=VALUE", "a value of the simulated hand, glove or motors"},
+        {"sweep", CLI_FLAG, &o.sweep, 0, 0, NULL, "stiffness and missed contacts over delay, jitter and loss"},
+        {"check", CLI_INT, &o.check, 1, 1e6, "N", "random approaches: none may be felt before its freeze"},
+        {"hands", CLI_FLAG, &o.hands, 0, 0, NULL, "27 fingers and hands: settling and stiffness of each"},
+        {"crisp", CLI_FLAG, &o.crisp, 0, 0, NULL, "how fast force rises, over a grid of k and b"},
+        {"jobs", CLI_INT, &o.jobs, 1, 1024, "N", "processes at a time, of all but the experiment (one a core)"},
+        {"params", CLI_FLAG, &list, 0, 0, NULL, "list all values, with units and ranges"},
+    };
+    const struct cli_command c = {
+        "bilateral", "[options]",
+        "The paper's second experiment: a hand in glove and exoskeleton approaches a virtual object at\n"
+        "three speeds. A world simulator at the other end of a link says where its surface is; the\n"
+        "contact is frozen before it is touched and rendered here alone, whatever the link does.",
+        option, (int)(sizeof option / sizeof option[0]), 0};
+
+    defaults(&o);
+    err = cli_parse(&c, argc, argv, NULL);
+    if (err) { return err == 1 ? 0 : err; }
+    if (list) {
+        bilateral_print_params();
+        return 0;
+    }
+    return go(&o, rate_Hz);
+}

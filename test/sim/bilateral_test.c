@@ -1,0 +1,499 @@
+/* The full box in closed loop with a hand, a link and a world: what is felt hangs on the plane that
+ * was known before the contact, and on nothing the link does after. */
+#include "check.h"
+
+#include "cli/bilateral_run.h"
+#include "udp.h"
+
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#define LEN(a) (sizeof(a) / sizeof((a)[0]))
+
+static struct bilateral_run_cfg plain(unsigned fingers, double mps, int approaches)
+{
+    static const struct run_setting f_max = {"mat_f_max", 40};
+    struct bilateral_run_cfg c;
+    memset(&c, 0, sizeof c);
+    c.rate_Hz = 2000;
+    c.board = posix_config_default();
+    c.board.exo = sim_exo_default();
+    c.board.exo.fingers = fingers;
+    c.setting = &f_max;
+    c.settings = 1;
+    c.k_Npm = 20000;
+    c.b_Nspm = 60;
+    c.at_m = 0.03;
+    c.fps = 400;
+    c.until_s = 1e30;
+    c.fit_scale = c.keep = 1;
+    for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
+        c.board.exo.path[f].speed_mps = mps;
+        c.board.exo.path[f].approaches = approaches;
+    }
+    return c;
+}
+
+static struct bilateral_run run(const struct bilateral_run_cfg *c)
+{
+    struct bilateral_run r;
+    CHECK_EQ_I64(bilateral_run(c, &r), 0);
+    CHECK_EQ_I64(r.faults, 0);
+    for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
+        CHECK(r.finger[f].unfrozen == 0, "finger %u: %ld ticks of contact before its freeze", f,
+              r.finger[f].unfrozen);
+    }
+    return r;
+}
+
+/* The first freeze of a finger, as a sample. */
+static size_t freeze_of(const struct bilateral_track *t)
+{
+    for (size_t i = 0; i < t->n; i++) {
+        if (t->at[i].bits & EXH_PRECONTACT_FREEZE) { return i; }
+    }
+    CHECK(0, "no freeze");
+    return 0;
+}
+
+static size_t contact_of(const struct bilateral_track *t)
+{
+    for (size_t i = 0; i < t->n; i++) {
+        if (t->at[i].raw.c) { return i; }
+    }
+    CHECK(0, "no contact");
+    return 0;
+}
+
+static int same_felt(const struct bilateral_paper *a, const struct bilateral_paper *b)
+{
+    return a->q_m_q30 == b->q_m_q30 && a->qd_mps_q27 == b->qd_mps_q27 &&
+           a->f_des_N_q20 == b->f_des_N_q20 && a->i_des_A_q26 == b->i_des_A_q26 && a->c == b->c &&
+           a->f_mon_N_q20 == b->f_mon_N_q20;
+}
+
+/* Every bit of what finger f felt, moved and was commanded from its freeze to the end, and how it
+ * moved before. q_lim and d: while the plane of this approach is held. */
+static void check_same(const struct bilateral_run *a, const struct bilateral_run *b, unsigned f,
+                       const char *what)
+{
+    const struct bilateral_track *s = &a->finger[f], *t = &b->finger[f];
+    const size_t freeze = freeze_of(s);
+    CHECK(s->n == t->n, "%s: %zu ticks, %zu", what, s->n, t->n);
+    CHECK(freeze_of(t) == freeze, "%s: frozen in tick %zu, %zu", what, freeze, freeze_of(t));
+    for (size_t i = 0; i < s->n && i < t->n; i++) {
+        if (same_felt(&s->at[i].raw, &t->at[i].raw) && s->at[i].x_m == t->at[i].x_m &&
+            (i < freeze || !(s->at[i].bits & EXH_PRECONTACT_STANDS) ||
+             (s->at[i].raw.d_m_q30 == t->at[i].raw.d_m_q30 &&
+              s->at[i].raw.q_lim_m_q30 == t->at[i].raw.q_lim_m_q30))) {
+            continue;
+        }
+        CHECK(0, "%s: tick %zu differs, %zd after the freeze: F %d and %d, q_lim %d and %d", what, i,
+              (ssize_t)(i - freeze), s->at[i].raw.f_des_N_q20, t->at[i].raw.f_des_N_q20,
+              s->at[i].raw.q_lim_m_q30, t->at[i].raw.q_lim_m_q30);
+        return;
+    }
+}
+
+/* ---- Whatever the link does --------------------------------------------------------------- */
+
+static struct bilateral_run perfect;
+
+static void over(struct bilateral_run_cfg c, const char *what)
+{
+    struct bilateral_run r = run(&c);
+    CHECK(r.box.accepted > 20, "%s: %d packets", what, r.box.accepted);
+    CHECK(r.finger[EXH_INDEX].contacts > 0, "%s: no contact", what);
+    check_same(&perfect, &r, EXH_INDEX, what);
+    bilateral_run_free(&r);
+}
+
+static void over_recorded(struct bilateral_run_cfg c, const char *file, enum sim_trace_kind kind)
+{
+    const char *data = getenv("EXH_DATA") ? getenv("EXH_DATA") : "../shared/data";
+    struct sim_trace trace = {NULL, 0};
+    char path[512], why[256];
+    snprintf(path, sizeof path, "%s/%s", data, file);
+    if (access(path, R_OK) != 0) {
+        check_note("%s: not there: not tested; EXH_DATA names the place of data", path);
+        return;
+    }
+    CHECK(sim_trace_read(&trace, path, kind, why, sizeof why) == 0, "%s", why);
+    for (int w = 0; w < SIM_LINK_WAYS; w++) {
+        c.board.line.trace[w] = &trace;
+        c.board.line.way[w].trace_scale = 0.5;
+    }
+    over(c, file);
+    sim_trace_free(&trace);
+}
+
+TEST(the_force_is_the_same_to_the_bit_over_every_link)
+{
+    static const double speed[] = {0.05, 0.87, 1.2};
+    for (size_t i = 0; i < LEN(speed); i++) {
+        const struct bilateral_run_cfg c = plain(1u << EXH_INDEX, speed[i], 2);
+        struct bilateral_run_cfg bad = c;
+        perfect = run(&c);
+        CHECK(perfect.finger[EXH_INDEX].freezes >= 2, "%ld freezes", perfect.finger[EXH_INDEX].freezes);
+        over_recorded(c, "net-ethernet-direct/ethernet-no_load.csv.xz", SIM_TRACE_ROUND);
+        over_recorded(c, "net-internet-ping/experimental.dat", SIM_TRACE_MS);
+        for (int w = 0; w < SIM_LINK_WAYS; w++) {
+            struct sim_link_par *p = &bad.board.line.way[w];
+            p->hole_at_s = 0.45; /* it begins before the first approach, and nothing is known of the contact */
+            p->hole_s = 1;
+            p->hole_every_s = 1.25;
+        }
+        over(bad, "holes of a second");
+        bad = c;
+        for (int w = 0; w < SIM_LINK_WAYS; w++) {
+            struct sim_link_par *p = &bad.board.line.way[w];
+            p->delay_s = 0.08;
+            p->jitter = SIM_LINK_UNIFORM;
+            p->jitter_s = 0.08;
+            p->loss = 0.3;
+            p->duplicate = p->reorder = 0.2;
+        }
+        over(bad, "0..160 ms each way, 30 % lost, doubled, reordered");
+        bad = c;
+        bad.fps = 60;
+        over(bad, "60 frames a second");
+        bilateral_run_free(&perfect);
+    }
+}
+
+/* The other way round: were a plane told later, or another, the trace would differ. */
+TEST(another_plane_makes_another_force)
+{
+    struct bilateral_run_cfg c = plain(1u << EXH_INDEX, 0.87, 1);
+    struct bilateral_run a = run(&c), b;
+    c.at_m += 100e-6;
+    b = run(&c);
+    CHECK(a.finger[EXH_INDEX].digest != b.finger[EXH_INDEX].digest, "a wall 0.1 mm off feels the same");
+    bilateral_run_free(&a);
+    bilateral_run_free(&b);
+}
+
+/* A wall that comes 5 mm nearer while the finger presses: nothing of it until the finger has left. */
+TEST(what_moves_while_it_is_touched_is_not_felt)
+{
+    struct bilateral_run_cfg c = plain(1u << EXH_INDEX, 0.87, 2);
+    struct bilateral_run a = run(&c), b;
+    const struct bilateral_track *s = &a.finger[EXH_INDEX], *t;
+    size_t i;
+    c.jump_s = (double)contact_of(s) / c.rate_Hz + 0.2;
+    c.jump_m = 0.005;
+    b = run(&c);
+    t = &b.finger[EXH_INDEX];
+    for (i = 0; i < s->n && i < t->n && same_felt(&s->at[i].raw, &t->at[i].raw); i++) {}
+    CHECK(i < s->n && s->at[i].approach == 2, "differs in tick %zu, approach %d", i, s->at[i].approach);
+    CHECK(((const struct bilateral_signals *)(const void *)exh_scene_bilateral.signal)->more[EXH_INDEX].ignored > 100,
+          "it was not seen to move");
+    bilateral_run_free(&a);
+    bilateral_run_free(&b);
+}
+
+/* ---- Worlds that come and go ---------------------------------------------------------------- */
+
+TEST(a_world_that_dies_in_contact_leaves_loop_and_force_as_they_were)
+{
+    struct bilateral_run_cfg c = plain(1u << EXH_INDEX, 0.87, 1);
+    struct bilateral_run killed;
+    double contact_s;
+    perfect = run(&c);
+    contact_s = (double)contact_of(&perfect.finger[EXH_INDEX]) / c.rate_Hz;
+    for (int k = 0; k < 3; k++) { /* before the contact but frozen, at its beginning, in its middle */
+        c.until_s = contact_s + (k - 1) * 0.005 + (k == 2) * 0.2;
+        killed = run(&c);
+        CHECK(killed.answers < perfect.answers, "it was not killed");
+        check_same(&perfect, &killed, EXH_INDEX, "a killed world");
+        bilateral_run_free(&killed);
+    }
+    bilateral_run_free(&perfect);
+}
+
+/* It comes back as another process; the controller says and hears HELLO again. */
+TEST(a_world_may_start_anew_in_contact)
+{
+    struct bilateral_run_cfg c = plain(1u << EXH_INDEX, 0.87, 2);
+    struct bilateral_run again;
+    perfect = run(&c);
+    c.until_s = (double)contact_of(&perfect.finger[EXH_INDEX]) / c.rate_Hz + 0.1;
+    c.again_s = c.until_s + 0.3;
+    again = run(&c);
+    CHECK(again.finger[EXH_INDEX].freezes == 2, "%ld freezes", again.finger[EXH_INDEX].freezes);
+    CHECK(again.box.age < 20, "nothing has come for %d ticks", again.box.age);
+    check_same(&perfect, &again, EXH_INDEX, "a world started anew");
+    bilateral_run_free(&perfect);
+    bilateral_run_free(&again);
+}
+
+/* Between any two good packets come three that are not. */
+TEST(hostile_packets_change_nothing)
+{
+    struct bilateral_run_cfg c = plain(1u << EXH_INDEX, 0.87, 1);
+    struct bilateral_run r;
+    perfect = run(&c);
+    c.hostile = 3;
+    r = run(&c);
+    CHECK(r.box.corrupt + r.box.version + r.box.unknown > 1000, "%d refused", r.box.corrupt);
+    CHECK_EQ_I64(r.box.accepted, perfect.box.accepted);
+    check_same(&perfect, &r, EXH_INDEX, "hostile packets");
+    bilateral_run_free(&r);
+    bilateral_run_free(&perfect);
+}
+
+/* ---- Two processes ------------------------------------------------------------------------ */
+
+/* A world in a process of its own, one frame in 2.5 ms, for so long or until it is killed. */
+static pid_t world_process(const char *local, uint32_t session, const struct peer_world *world)
+{
+    static struct sim_link link;
+    static struct peer peer;
+    const struct peer_cfg cfg = {.world = world, .until_s = 1e30};
+    const pid_t pid = fork();
+    struct udp udp;
+    CHECK(pid >= 0, "no process");
+    if (pid != 0) { return pid; }
+    (void)alarm(30); /* it may be left behind by a test that fails */
+    if (udp_open(&udp, local, NULL) < 0) { _exit(9); }
+    for (int w = 0; w < SIM_LINK_WAYS; w++) {
+        const struct sim_link_par p = sim_link_default();
+        sim_link_start(&link.way[w], &p, NULL, 1);
+    }
+    peer_start(&peer, &cfg, session);
+    for (int i = 0; i < 8000; i++) {
+        const struct timespec frame = {0, 2500000};
+        const double t_s = i * 0.0025;
+        uint8_t buf[SIM_LINK_PACKET_B];
+        int n;
+        while ((n = udp_recv(&udp, buf, sizeof buf)) > 0) {
+            (void)sim_link_send(&link.way[SIM_LINK_OUT], t_s, buf, (size_t)n);
+        }
+        peer_frame(&peer, &link, t_s);
+        while ((n = sim_link_recv(&link.way[SIM_LINK_IN], t_s, buf, sizeof buf)) > 0) {
+            (void)udp_send(&udp, buf, (size_t)n);
+        }
+        (void)nanosleep(&frame, NULL);
+    }
+    _exit(0);
+}
+
+static void kill_world(pid_t pid)
+{
+    CHECK(kill(pid, SIGKILL) == 0 && waitpid(pid, NULL, 0) == pid, "the world had ended");
+}
+
+static void wait_ms(long ms)
+{
+    const struct timespec t = {ms / 1000, ms % 1000 * 1000000};
+    (void)nanosleep(&t, NULL);
+}
+
+/* First one, then another in its place after so long, as long as this test runs. */
+static pid_t two_worlds(const char *local, const struct peer_world *world, int first_ms, int pause_ms)
+{
+    const pid_t pid = fork();
+    pid_t child;
+    if (pid != 0) { return pid; }
+    (void)setpgid(0, 0);
+    (void)alarm(30);
+    child = world_process(local, 11, world);
+    wait_ms(first_ms);
+    kill_world(child);
+    wait_ms(pause_ms);
+    (void)world_process(local, 12, world);
+    for (;;) { (void)pause(); }
+}
+
+TEST(two_processes_survive_each_others_restart)
+{
+    struct bilateral_run_cfg c = plain(1u << EXH_INDEX, 0.87, 1);
+    const struct bilateral_finger_is w = {EXH_INDEX, c.board.exo.finger[EXH_INDEX].arm_m, c.board.hand.pose};
+    struct peer_world world = {.ray_m = 0};
+    char local[32];
+    pid_t pid;
+    snprintf(local, sizeof local, "127.0.0.1:%u", 20000u + (unsigned)getpid() % 20000u);
+    world.wall.fingers = 1u << EXH_INDEX;
+    bilateral_wall(&world.wall.plane[EXH_INDEX], &w, c.at_m);
+    perfect = run(&c); /* in virtual time */
+    c.board.exo.path[EXH_INDEX].hold_s = 0.3;
+    pid = two_worlds(local, &world, 700, 100);
+    setpgid(pid, pid);
+    c.board.line.on = c.board.pace = 1;
+    c.board.line.udp_local = "127.0.0.1:0";
+    c.board.line.udp_peer = local;
+    for (uint64_t k = 1; k <= 2; k++) { /* the second is a controller started anew, of the same seed */
+        struct bilateral_run r;
+        const struct bilateral_track *s = &perfect.finger[EXH_INDEX], *t = &r.finger[EXH_INDEX];
+        size_t i = 0, freeze;
+        r = run(&c);
+        CHECK(t->freezes >= 1 && t->contacts >= 1, "run %d: %ld freezes, %ld contacts", (int)k, t->freezes,
+              t->contacts);
+        CHECK(r.box.age < 1000, "run %d: nothing has come for %d ticks", (int)k, r.box.age);
+        freeze = freeze_of(t);
+        for (i = 0; i < freeze + 200 && same_felt(&s->at[i].raw, &t->at[i].raw); i++) {}
+        CHECK(i == freeze + 200, "run %d: tick %zu is not what it is in virtual time", (int)k, i);
+        bilateral_run_free(&r);
+    }
+    (void)kill(-pid, SIGKILL);
+    (void)waitpid(pid, NULL, 0);
+    bilateral_run_free(&perfect);
+}
+
+/* ---- No plane in time ----------------------------------------------------------------------- */
+
+/* What is allowed where no contact can be: to pull the slack string in. */
+static void check_nothing_felt(const struct bilateral_run *r, const char *what)
+{
+    const struct bilateral_track *t = &r->finger[EXH_INDEX];
+    const int32_t f0_N_q20 = exh_contact_rows[2].dflt;
+    CHECK(t->contacts == 0 && t->freezes == 0, "%s: %ld contacts, %ld freezes", what, t->contacts,
+          t->freezes);
+    for (size_t i = 0; i < t->n; i++) {
+        if (t->at[i].raw.f_des_N_q20 > f0_N_q20) {
+            CHECK(0, "%s: %d LSB of force in tick %zu", what, t->at[i].raw.f_des_N_q20, i);
+            return;
+        }
+    }
+}
+
+TEST(without_a_plane_in_time_nothing_is_felt)
+{
+    static const struct run_setting young[] = {{"mat_f_max", 40}, {"age_max", 200}};
+    struct bilateral_run_cfg c = plain(1u << EXH_INDEX, 0.87, 1);
+    struct bilateral_run r;
+    c.from_s = 1e30;
+    r = run(&c);
+    check_nothing_felt(&r, "no world");
+    CHECK_EQ_I64(r.box.age, INT32_MAX);
+    CHECK_EQ_I64(r.box.accepted, 0);
+    bilateral_run_free(&r);
+
+    /* It is there, and dies before the approach: its plane becomes too old. */
+    c.from_s = 0;
+    c.until_s = 0.2;
+    c.setting = young;
+    c.settings = 2;
+    r = run(&c);
+    check_nothing_felt(&r, "stale");
+    CHECK(r.finger[EXH_INDEX].at[r.finger[EXH_INDEX].n - 1].bits & EXH_PRECONTACT_STALE, "not stale");
+    bilateral_run_free(&r);
+
+    /* It comes when the finger is past the surface: not before it has left once. */
+    c = plain(1u << EXH_INDEX, 0.87, 1);
+    c.from_s = 0.7;
+    r = run(&c);
+    CHECK(r.finger[EXH_INDEX].contacts == 0, "a plane born around the finger was felt");
+    CHECK(r.finger[EXH_INDEX].at[1600].bits & EXH_PRECONTACT_AROUND, "%d", r.finger[EXH_INDEX].at[1600].bits);
+    bilateral_run_free(&r);
+}
+
+/* ---- Five fingers --------------------------------------------------------------------------- */
+
+/* The glove lets its channels know of each other a little: here it does not. */
+static struct bilateral_run_cfg apart(unsigned fingers)
+{
+    struct bilateral_run_cfg c = plain(fingers, 0.87, 1);
+    c.board.glove_par.couple = c.board.glove_par.settle_s = 0;
+    return c;
+}
+
+TEST(five_fingers_are_in_contact_at_once_and_each_as_if_alone)
+{
+    struct bilateral_run_cfg c = apart(31);
+    struct bilateral_run five = run(&c);
+    size_t together = 0;
+    for (size_t i = 0; i < five.finger[0].n; i++) {
+        int n = 0;
+        for (unsigned f = 0; f < BILATERAL_FINGERS; f++) { n += five.finger[f].at[i].raw.c; }
+        together += n == BILATERAL_FINGERS;
+    }
+    CHECK(together > 1000, "%zu ticks with five contacts", together);
+    for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
+        struct bilateral_run_cfg alone = apart(1u << f);
+        struct bilateral_run one = run(&alone);
+        const struct bilateral_track *s = &one.finger[f], *t = &five.finger[f];
+        CHECK(s->n <= t->n, "%zu ticks alone, %zu", s->n, t->n);
+        for (size_t i = 0; i < s->n && i < t->n; i++) {
+            if (same_felt(&s->at[i].raw, &t->at[i].raw)) { continue; }
+            CHECK(0, "finger %u, tick %zu: %d LSB of force alone, %d among five", f, i,
+                  s->at[i].raw.f_des_N_q20, t->at[i].raw.f_des_N_q20);
+            break;
+        }
+        bilateral_run_free(&one);
+    }
+    bilateral_run_free(&five);
+}
+
+TEST(a_finger_that_is_off_has_no_current_and_no_drive)
+{
+    const struct bilateral_signals *sig = (const void *)exh_scene_bilateral.signal;
+    struct bilateral_run_cfg c = plain(1u << EXH_RING, 0.87, 1);
+    struct bilateral_run r = run(&c);
+    for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
+        const int on = f == EXH_RING;
+        CHECK((sig->paper[f].q_m_q30 != 0) == on, "finger %u: q %d", f, sig->paper[f].q_m_q30);
+        CHECK((sig->more[f].freezes != 0) == on, "finger %u: %d freezes", f, sig->more[f].freezes);
+    }
+    bilateral_run_free(&r);
+}
+
+/* ---- Parameters over the link ------------------------------------------------------------- */
+
+TEST(parameters_come_over_the_link_are_answered_and_never_reach_a_contact)
+{
+    static const struct exh_wire_param want[] = {
+        {0x0B01, 0, 5000 << 10}, {0x0B01, 1, 7000 << 10}, {0x0B01, 200, 1 << 10}, {0x0B02, 0, -1},
+        {0x0601, 0, 0},          {0x9999, 0, 0}};
+    struct bilateral_run_cfg c = plain(1u << EXH_INDEX, 0.87, 2);
+    struct bilateral_run r;
+    c.want = want;
+    c.wants = (int)LEN(want);
+    r = run(&c);
+    CHECK_EQ_I64(r.acked, (int)LEN(want));
+    CHECK_EQ_I64(r.refused, 4); /* no such instance, out of range, only before the loop, no such row */
+    CHECK_EQ_I64(r.box.set, 2);
+    /* The plane's material is 0: softer from the first contact on. */
+    CHECK(((const struct bilateral_par *)(const void *)exh_scene_bilateral.params->active)->material[0].k_Npm_q10 ==
+          5000 << 10, "it was not applied");
+    bilateral_run_free(&r);
+
+}
+
+TEST(a_material_that_changes_in_contact_acts_from_the_next_freeze_on)
+{
+    static const struct exh_wire_param soft = {0x0B01, 0, 5000 << 10};
+    struct bilateral_run_cfg c = plain(1u << EXH_INDEX, 0.87, 2);
+    struct bilateral_run a = run(&c), b;
+    const struct bilateral_track *s = &a.finger[EXH_INDEX], *t;
+    const size_t contact = contact_of(s);
+    size_t i, differ = 0;
+    c.want = &soft;
+    c.wants = 1;
+    c.param_from_s = (double)contact / c.rate_Hz + 0.01;
+    b = run(&c);
+    t = &b.finger[EXH_INDEX];
+    CHECK_EQ_I64(b.acked, 1);
+    CHECK_EQ_I64(b.refused, 0);
+    for (i = 0; i < s->n && i < t->n && differ == 0; i++) {
+        if (!same_felt(&s->at[i].raw, &t->at[i].raw)) { differ = i; }
+    }
+    CHECK(differ > 0 && s->at[differ].approach == 2, "differs in approach %d", s->at[differ].approach);
+    bilateral_run_free(&a);
+    bilateral_run_free(&b);
+}
+
+TEST_MAIN("bilateral", the_force_is_the_same_to_the_bit_over_every_link,
+          another_plane_makes_another_force, what_moves_while_it_is_touched_is_not_felt,
+          a_world_that_dies_in_contact_leaves_loop_and_force_as_they_were,
+          a_world_may_start_anew_in_contact, hostile_packets_change_nothing,
+          two_processes_survive_each_others_restart, without_a_plane_in_time_nothing_is_felt,
+          five_fingers_are_in_contact_at_once_and_each_as_if_alone,
+          a_finger_that_is_off_has_no_current_and_no_drive,
+          parameters_come_over_the_link_are_answered_and_never_reach_a_contact,
+          a_material_that_changes_in_contact_acts_from_the_next_freeze_on);

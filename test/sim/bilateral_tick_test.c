@@ -1,0 +1,209 @@
+/* The full box a tick at a time, with packets and glove frames made here: what is felt while nobody
+ * knows where the finger is, and what goes out. */
+#include "check.h"
+
+#include "bilateral/bilateral.h"
+
+#include <string.h>
+
+#define F        EXH_INDEX
+#define RATE_HZ  1000
+#define STAMP_US 1000u /* a tick */
+
+static struct bilateral_par par;
+static struct bilateral_cfg cfg;
+static struct bilateral box;
+static struct exh_scene_mail in, out;
+static struct exh_scene_in from_board;
+static struct bilateral_signals sig;
+static struct exh_wire_tx world;
+static uint32_t tick_n;
+
+static void start(void)
+{
+    static const struct bilateral off;
+    exh_scene_bilateral.defaults();
+    memcpy(&par, exh_scene_bilateral.params->active, sizeof par);
+    par.own.session = 7;
+    box = off;
+    memset(&from_board, 0, sizeof from_board);
+    memset(&in, 0, sizeof in);
+    for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
+        from_board.glove.raw[i] = (int16_t)(exh_glove_cal_default.sensor[i].zero_raw_q15 >> 15);
+    }
+    world = (struct exh_wire_tx){3, 0};
+    tick_n = 0;
+    CHECK_EQ_I64(bilateral_setup(&cfg, &box, &par, (struct exh_scene_board){{1, RATE_HZ}, 16}), 0);
+}
+
+static void post(struct exh_wire_packet *p)
+{
+    const int32_t n = exh_wire_write(&world, p, 0, in.byte[in.packets], EXH_SCENE_PACKET_B);
+    CHECK(n > 0, "%d", (int)n);
+    in.len_B[in.packets++] = (uint16_t)n;
+}
+
+static void hello(void)
+{
+    struct exh_wire_packet p = {.type = EXH_WIRE_HELLO};
+    p.u.hello.role = EXH_WIRE_WORLD;
+    post(&p);
+}
+
+/* A plane 50 mm before the fingertip, across x. */
+static void planes(void)
+{
+    struct exh_wire_packet p = {.type = EXH_WIRE_PLANES};
+    struct exh_wire_plane *w = &p.u.planes.plane[F];
+    p.u.planes.echo_stamp_us = tick_n * STAMP_US;
+    p.u.planes.fingers = 1u << F;
+    w->kind = EXH_PLANE_HIT;
+    w->normal_q30[0] = 1 << 30;
+    w->point_m_q30[0] =
+        box.finger[F].tip_m_q30.x - par.hand[F].pad_m_q30 - EXH_Q(5, 100, EXH_Q_POS);
+    post(&p);
+}
+
+/* Packets of a kind in what goes out. */
+static int tick(int glove_new, int type)
+{
+    struct exh_drive_out drive;
+    int n = 0;
+    from_board.glove_new = (uint8_t)glove_new;
+    bilateral_tick(&box, &cfg, &from_board, &in, exh_scene_bilateral.params, &drive, &sig);
+    bilateral_write(&box, &cfg, &sig, &out);
+    in.packets = 0;
+    tick_n++;
+    for (unsigned i = 0; i < out.packets; i++) { n += out.byte[i][3] == type; }
+    return n;
+}
+
+static int phase(void)
+{
+    return box.finger[F].precontact.phase;
+}
+
+TEST(a_plane_told_before_the_first_glove_frame_is_not_kept)
+{
+    start();
+    hello();
+    planes();
+    for (int k = 0; k < 60000; k++) { (void)tick(0, 0); } /* a minute without a glove */
+    (void)tick(1, 0);
+    CHECK_EQ_I64(phase(), EXH_PRECONTACT_IDLE);
+    CHECK_EQ_I64(sig.paper[F].q_lim_m_q30, EXH_PRECONTACT_NEVER);
+    planes();
+    (void)tick(1, 0);
+    CHECK_EQ_I64(phase(), EXH_PRECONTACT_TRACK);
+}
+
+TEST(a_finger_whose_sensor_is_not_believed_has_no_contact)
+{
+    static const struct {
+        int sensor, blind;
+    } at[] = {{EXH_GLOVE_INDEX_MPJ, 1}, {EXH_GLOVE_PINKIE_MPJ, 0}};
+    for (size_t i = 0; i < sizeof at / sizeof at[0]; i++) {
+        int16_t *raw = &from_board.glove.raw[at[i].sensor];
+        int16_t good;
+        start();
+        good = *raw;
+        hello();
+        (void)tick(1, 0);
+        planes();
+        (void)tick(1, 0);
+        CHECK_EQ_I64(box.glove_faults, 0);
+        CHECK_EQ_I64(phase(), EXH_PRECONTACT_TRACK);
+        *raw = INT16_MAX;
+        for (int k = 0; k < 20; k++) {
+            planes();
+            (void)tick(1, 0);
+        }
+        CHECK_EQ_I64(box.glove_faults, INT64_C(1) << at[i].sensor);
+        CHECK_EQ_I64(phase(), at[i].blind ? EXH_PRECONTACT_IDLE : EXH_PRECONTACT_TRACK);
+        CHECK_EQ_I64(sig.paper[F].q_lim_m_q30 == EXH_PRECONTACT_NEVER, at[i].blind);
+        *raw = good;
+        for (int k = 0; k < 300; k++) { (void)tick(1, 0); }
+        CHECK_EQ_I64(box.glove_faults, 0);
+        planes();
+        (void)tick(1, 0);
+        CHECK_EQ_I64(phase(), EXH_PRECONTACT_TRACK);
+    }
+}
+
+TEST(a_frozen_contact_outlives_a_sensor)
+{
+    int32_t lim;
+    start();
+    hello();
+    (void)tick(1, 0);
+    planes();
+    (void)tick(1, 0);
+    par.precontact[F].d_lim_m_q30 = -EXH_Q(6, 100, EXH_Q_POS); /* nearer than that it is */
+    (void)tick(1, 0);
+    CHECK_EQ_I64(phase(), EXH_PRECONTACT_FROZEN);
+    lim = sig.paper[F].q_lim_m_q30;
+    from_board.glove.raw[EXH_GLOVE_INDEX_MPJ] = INT16_MAX;
+    for (int k = 0; k < 20; k++) { (void)tick(1, 0); }
+    CHECK_EQ_I64(phase(), EXH_PRECONTACT_FROZEN);
+    CHECK_EQ_I64(sig.paper[F].q_lim_m_q30, lim);
+}
+
+TEST(a_world_that_has_started_anew_is_greeted_at_once)
+{
+    int hellos = 0;
+    start();
+    hello();
+    for (int k = 0; k < 500; k++) {
+        planes();
+        (void)tick(1, 0);
+    }
+    world = (struct exh_wire_tx){4, 0};
+    hello();
+    for (int k = 0; k < par.own.state_every; k++) { hellos += tick(1, EXH_WIRE_HELLO); }
+    CHECK_EQ_I64(hellos, 1);
+}
+
+TEST(a_shorter_time_between_states_acts_at_once)
+{
+    start();
+    par.own.state_every = 10000;
+    CHECK_EQ_I64(tick(1, EXH_WIRE_STATE), 1);
+    CHECK_EQ_I64(tick(1, EXH_WIRE_STATE), 0);
+    par.own.state_every = 5;
+    CHECK_EQ_I64(tick(1, EXH_WIRE_STATE), 1);
+    for (int k = 0; k < 4; k++) { CHECK_EQ_I64(tick(1, EXH_WIRE_STATE), 0); }
+    CHECK_EQ_I64(tick(1, EXH_WIRE_STATE), 1);
+    box.wire.wait_ticks = UINT32_MAX; /* restored from what nobody wrote */
+    CHECK_EQ_I64(tick(1, EXH_WIRE_STATE), 1);
+}
+
+/* What is staged by a packet that asks for it. */
+static int asked(uint16_t id, uint16_t instance, int32_t value)
+{
+    struct exh_params *p = exh_scene_bilateral.params;
+    struct exh_wire_packet ask = {.type = EXH_WIRE_PARAM};
+    ask.u.param = (struct exh_wire_param){id, instance, value};
+    post(&ask);
+    CHECK_EQ_I64(tick(1, EXH_WIRE_ACK), 1);
+    return p->staged[exh_signal_find(p->table, id, instance)] == value;
+}
+
+TEST(no_packet_sets_a_pull_or_its_limit)
+{
+    start();
+    hello();
+    CHECK(asked(exh_material_rows[0].id, 3, 1000), "a material is the world's");
+    for (int i = 0; i < EXH_CONTACT_ROWS; i++) {
+        CHECK(!asked(exh_contact_rows[i].id, F, exh_contact_rows[i].max), "%s",
+              exh_contact_rows[i].name);
+    }
+    for (int i = 0; i < 3; i++) {
+        CHECK(!asked(exh_drive_rows[i].id, F, exh_drive_rows[i].max), "%s", exh_drive_rows[i].name);
+    }
+    CHECK_EQ_I64(box.wire.set, 1);
+}
+
+TEST_MAIN("bilateral, tick by tick", a_plane_told_before_the_first_glove_frame_is_not_kept,
+          a_finger_whose_sensor_is_not_believed_has_no_contact, a_frozen_contact_outlives_a_sensor,
+          a_world_that_has_started_anew_is_greeted_at_once,
+          a_shorter_time_between_states_acts_at_once, no_packet_sets_a_pull_or_its_limit);
