@@ -110,13 +110,6 @@ uint32_t bilateral_finger_feel(struct bilateral *s, const struct bilateral_cfg *
     return limits;
 }
 
-static void vec3_bytes(struct exh_bytes *c, struct exh_vec3 *v)
-{
-    exh_bytes_i32(c, &v->x);
-    exh_bytes_i32(c, &v->y);
-    exh_bytes_i32(c, &v->z);
-}
-
 void bilateral_finger_bytes(struct exh_bytes *c, struct bilateral_finger *s)
 {
     exh_quad_bytes(c, &s->quad);
@@ -125,7 +118,7 @@ void bilateral_finger_bytes(struct exh_bytes *c, struct bilateral_finger *s)
     exh_drive_bytes(c, &s->drive);
     exh_precontact_bytes(c, &s->precontact);
     for (unsigned j = 0; j < EXH_HAND_JOINTS; j++) { exh_bytes_i32(c, &s->joint_turn_q32[j]); }
-    vec3_bytes(c, &s->tip_m_q30);
-    vec3_bytes(c, &s->slope_q24);
+    exh_bytes_vec3(c, &s->tip_m_q30);
+    exh_bytes_vec3(c, &s->slope_q24);
     exh_bytes_u8(c, &s->clamped);
 }

@@ -201,19 +201,12 @@ uint32_t exh_precontact_step(struct exh_precontact *s, const struct exh_preconta
 
 /* --- state --- */
 
-static void vec3_bytes(struct exh_bytes *c, struct exh_vec3 *v)
-{
-    exh_bytes_i32(c, &v->x);
-    exh_bytes_i32(c, &v->y);
-    exh_bytes_i32(c, &v->z);
-}
-
 /* What tell() could not have left there becomes no plane. */
 static int plane_bytes(struct exh_bytes *c, struct exh_precontact_plane *p)
 {
     const int64_t most_q60 = INT64_C(1) << 62; /* beyond |n|*|P| + pad of any point */
     exh_bytes_i64(c, &p->offset_m_q60);
-    vec3_bytes(c, &p->normal_q30);
+    exh_bytes_vec3(c, &p->normal_q30);
     exh_bytes_u16(c, &p->object);
     exh_bytes_u8(c, &p->material);
     if (is_unit(&p->normal_q30) && p->offset_m_q60 >= -most_q60 && p->offset_m_q60 <= most_q60) {

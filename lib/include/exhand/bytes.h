@@ -7,6 +7,8 @@
 #ifndef EXHAND_BYTES_H
 #define EXHAND_BYTES_H
 
+#include "exhand/units.h"
+
 #include <stddef.h>
 #include <stdint.h>
 
@@ -48,6 +50,14 @@ void exh_bytes_i16(struct exh_bytes *c, int16_t *v);
 void exh_bytes_u32(struct exh_bytes *c, uint32_t *v);
 void exh_bytes_i32(struct exh_bytes *c, int32_t *v);
 void exh_bytes_i64(struct exh_bytes *c, int64_t *v);
+
+/* x, y, z in this order. */
+static inline void exh_bytes_vec3(struct exh_bytes *c, struct exh_vec3 *v)
+{
+    exh_bytes_i32(c, &v->x);
+    exh_bytes_i32(c, &v->y);
+    exh_bytes_i32(c, &v->z);
+}
 
 /* CRC-32, reflected 0xEDB88320, start and final 0xFFFFFFFF; the check value of
  * "123456789" is 0xCBF43926. crc is 0 at first, the last result to go on. */
