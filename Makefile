@@ -492,4 +492,5 @@ clean:
 	rm -rf $(B)
 
 .SECONDARY:
--include $(shell find $(B) -name '*.d' 2>/dev/null)
+# Not of the machine that `make fresh` makes there.
+-include $(shell find $(B) -path $(B)/fresh -prune -o -type f -name '*.d' -print 2>/dev/null)
