@@ -137,6 +137,10 @@ static void tell_box(struct bilateral_box *b, const struct bilateral *s,
     b->corrupt = exh_from_u32(rx->corrupt);
     b->version = exh_from_u32(rx->version);
     b->unknown = exh_from_u32(rx->unknown);
+    b->far = exh_from_u32(rx->far);
+    b->silences = exh_from_u32(rx->silences);
+    b->differs = (int32_t)s->wire.differs;
+    b->odd = exh_from_u32(s->wire.odd);
 }
 
 void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,

@@ -17,6 +17,7 @@ struct bilateral_own_par {
     int32_t fingers;     /* mask: which are in use, thumb in bit 0               */
     int32_t state_every; /* ticks from one state packet to the next              */
     int32_t session;     /* of the link; 0: made up at set-up, of the board's cycle counter */
+    int32_t quiet_ms;    /* nothing heard for so long: a HELLO begins anew      */
 };
 
 /* All parameters, in the order of the scene's table. */
@@ -67,6 +68,9 @@ struct bilateral_box {
     int32_t trip_us;      /* how old the question was that they answered        */
     int32_t set;          /* parameters set over the link                       */
     int32_t accepted, missing, duplicate, reordered, old, stranger, corrupt, version, unknown;
+    int32_t far, silences;
+    int32_t differs; /* enum exh_wire_differs, of the newest HELLO              */
+    int32_t odd;     /* HELLOs that differed                                   */
 };
 
 struct bilateral_signals {
@@ -105,7 +109,7 @@ struct bilateral_wire_cfg {
     uint64_t tick_us_q20; /* a tick                                            */
     uint32_t ticks_per_us_q32;
     uint32_t ms_per_tick_q20;
-    uint32_t table_crc; /* what parameters there are                           */
+    struct exh_wire_hello hello; /* ours                                       */
 };
 
 struct bilateral_wire {
@@ -117,6 +121,8 @@ struct bilateral_wire {
     uint32_t exchanges;
     uint32_t set;
     uint32_t wait_ticks; /* to the next exchange                               */
+    uint32_t differs;    /* enum exh_wire_differs, of the newest HELLO          */
+    uint32_t odd;        /* HELLOs that differed                               */
     uint8_t acks;        /* answers to be given at the end of this tick          */
     struct exh_wire_ack ack[EXH_SCENE_PACKETS];
 };

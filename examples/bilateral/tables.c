@@ -10,7 +10,8 @@ static const struct exh_signal kf_rows[] = {
 static const struct exh_signal own_rows[] = {
     {0x8610, 0, EXH_WHEN_SETUP, 1, MASK, 1 << EXH_INDEX, "fingers", "", "in use, bits: 1 thumb .. 16 little"},
     {0x8611, 0, EXH_WHEN_ANY, 1, 10000, 5, "state_every", "", "ticks from one state packet to the next"},
-    {0x8612, 0, EXH_WHEN_SETUP, 0, INT32_MAX, 0, "session", "", "of the link; 0: of the board's cycle counter"},
+    {0x8612, 0, EXH_WHEN_SETUP, 0, INT32_MAX, 0, "session", "", "of the link, another at every start; 0: of the board's cycle counter"},
+    {0x8613, 0, EXH_WHEN_ANY, 100, 60000, 1000, "quiet", "ms", "nothing heard for so long: any hello begins anew"},
 };
 
 #define OUT(id, frac, min, max, name, unit, help) \
@@ -65,6 +66,10 @@ static const struct exh_signal box_rows[] = {
     ANY(0x872E, 0, "corrupt", "", "damaged"),
     ANY(0x872F, 0, "version", "", "of another version"),
     ANY(0x8730, 0, "unknown", "", "of no known type"),
+    ANY(0x8731, 0, "far", "", "numbered too far ahead"),
+    ANY(0x8732, 0, "silences", "", "nothing heard for too long"),
+    OUT(0x8733, 0, 0, 7, "differs", "", "of the world: 1 its role, 2 its version, 4 its table"),
+    ANY(0x8734, 0, "odd", "", "hellos that differed"),
 };
 
 #define LEN(a)     (sizeof(a) / sizeof((a)[0]))

@@ -1,6 +1,7 @@
 #include "bilateral.h"
 
-/* In this many exchanges, until planes come and then: a world that missed one hears the next. */
+/* In this many exchanges, until planes come and in a silence, and else: a world that missed one
+ * hears the next. */
 #define HELLO_AT_FIRST 8u
 #define HELLO_THEN     128u
 #define US_Q        20
@@ -14,7 +15,8 @@ void bilateral_wire_setup(struct bilateral_wire_cfg *cfg, struct bilateral_wire 
     cfg->ms_per_tick_q20 = (uint32_t)exh_udiv64(cfg->tick_us_q20, 1000, NULL);
     cfg->ticks_per_us_q32 =
         (uint32_t)exh_udiv64((uint64_t)T.den << 32, UINT64_C(1000000) * T.num, NULL);
-    cfg->table_crc = exh_signal_crc(&bilateral_params);
+    cfg->hello = (struct exh_wire_hello){EXH_WIRE_CONTROLLER, EXH_VERSION_NUMBER,
+                                         exh_signal_crc(&bilateral_params)};
     s->tx.session = session;
     s->age_ticks = UINT32_MAX;
 }
@@ -61,15 +63,22 @@ void bilateral_wire_take(struct bilateral *s, const struct bilateral_cfg *cfg,
                          struct exh_params *params)
 {
     struct bilateral_wire *w = &s->wire;
+    const uint32_t before_us = now_us(w);
     w->now_us_q20 += cfg->wire.tick_us_q20 * (missed + UINT64_C(1));
+    if (exh_wire_pass(&w->rx, now_us(w) - before_us, 1000u * (uint32_t)cfg->par->own.quiet_ms)) {
+        w->exchanges = 0; /* perhaps it does not know us any more */
+    }
     w->age_ticks += w->age_ticks < UINT32_MAX;
     w->acks = 0;
     for (unsigned i = 0; i < in->packets; i++) {
         struct exh_wire_packet p;
-        const uint32_t former = w->rx.former;
+        const uint32_t session = w->rx.session;
         const int type = exh_wire_take(&w->rx, &p, in->byte[i], in->len_B[i]);
-        if (w->rx.former != former) { w->exchanges = 0; } /* a world that does not know us yet */
-        if (type == EXH_WIRE_PLANES) {
+        if (w->rx.session != session) { w->exchanges = 0; } /* a world that does not know us yet */
+        if (type == EXH_WIRE_HELLO) {
+            w->differs = exh_wire_differs(&cfg->wire.hello, &p.u.hello);
+            w->odd += w->differs != 0;
+        } else if (type == EXH_WIRE_PLANES) {
             take_planes(s, cfg, &p.u.planes);
         } else if (type == EXH_WIRE_PARAM) {
             const struct exh_wire_ack ack = stage(params, &p);
@@ -93,8 +102,7 @@ static void put_hello(struct bilateral_wire *w, const struct bilateral_wire_cfg 
                       struct exh_scene_mail *out)
 {
     struct exh_wire_packet p = {.type = EXH_WIRE_HELLO};
-    p.u.hello = (struct exh_wire_hello){EXH_WIRE_CONTROLLER, EXH_VERSION_NUMBER,
-                                        cfg->table_crc};
+    p.u.hello = cfg->hello;
     put(w, out, &p);
 }
 
@@ -146,7 +154,8 @@ void bilateral_write(struct bilateral *s, const struct bilateral_cfg *cfg,
     const uint32_t state_every = (uint32_t)cfg->par->own.state_every;
     out->packets = 0;
     if (w->wait_ticks == 0 || w->wait_ticks >= state_every) { /* set shorter meanwhile */
-        const uint32_t every = w->age_ticks == UINT32_MAX ? HELLO_AT_FIRST : HELLO_THEN;
+        const int alone = w->age_ticks == UINT32_MAX || w->rx.open;
+        const uint32_t every = alone ? HELLO_AT_FIRST : HELLO_THEN;
         w->wait_ticks = state_every;
         if ((w->exchanges++ & (every - 1)) == 0) { put_hello(w, &cfg->wire, out); }
         put_state(s, cfg, sig, out);
@@ -174,5 +183,8 @@ void bilateral_wire_bytes(struct exh_bytes *c, struct bilateral_wire *s)
     exh_bytes_u32(c, &s->exchanges);
     exh_bytes_u32(c, &s->set);
     exh_bytes_u32(c, &s->wait_ticks);
+    exh_bytes_u32(c, &s->differs);
+    s->differs &= EXH_WIRE_ROLE | EXH_WIRE_LIB | EXH_WIRE_TABLE;
+    exh_bytes_u32(c, &s->odd);
     s->acks = 0; /* none between two ticks */
 }

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #define HELLO_EVERY_US 500000
+#define QUIET_US       1000000 /* nothing heard for so long: any HELLO begins anew    */
 #define BURST          64 /* datagrams taken a frame, at most: a flood can't hold a frame up */
 
 /* "[HOST:]PORT" apart; host is "" where there is none. */
@@ -97,9 +98,33 @@ static int same_peer(const struct sockaddr_storage *a, const struct sockaddr_sto
            memcmp(&a6->sin6_addr, &b6->sin6_addr, sizeof a6->sin6_addr) == 0;
 }
 
-int link_receive(struct link *l, struct exh_wire_state *state)
+static struct exh_wire_hello hello_of_ours(void)
+{
+    const struct exh_wire_hello h = {EXH_WIRE_WORLD, EXH_VERSION_NUMBER, 0};
+    return h;
+}
+
+static void take_hello(struct link *l, const struct exh_wire_hello *theirs)
+{
+    const struct exh_wire_hello ours = hello_of_ours();
+    l->theirs = *theirs;
+    l->differs = exh_wire_differs(&ours, theirs);
+    l->odd += l->differs != 0;
+    l->hello_us = -HELLO_EVERY_US; /* it is new here: answer */
+}
+
+static void let_pass(struct link *l, int64_t now_us)
+{
+    const int64_t us = now_us - l->heard_us;
+    const uint32_t passed_us = us < 0 ? 0 : us < UINT32_MAX ? (uint32_t)us : UINT32_MAX;
+    (void)exh_wire_pass(&l->rx, passed_us, QUIET_US);
+    l->heard_us = now_us;
+}
+
+int link_receive(struct link *l, struct exh_wire_state *state, int64_t now_us)
 {
     int newer = 0;
+    let_pass(l, now_us);
     for (int i = 0; i < BURST; i++) {
         unsigned char buf[2 * EXH_WIRE_MAX_B];
         struct sockaddr_storage from;
@@ -107,11 +132,14 @@ int link_receive(struct link *l, struct exh_wire_state *state)
         struct exh_wire_packet p;
         const ssize_t n = recvfrom(l->fd, buf, sizeof buf, 0, (struct sockaddr *)&from, &from_B);
         if (n < 0) { break; }
-        if (l->fixed && !same_peer(&from, &l->peer)) { continue; }
+        if (l->fixed && !same_peer(&from, &l->peer)) {
+            l->strangers++;
+            continue;
+        }
         if (exh_wire_take(&l->rx, &p, buf, (size_t)n) <= 0) { continue; }
         l->peer = from;
         l->peer_B = from_B;
-        if (p.type == EXH_WIRE_HELLO) { l->hello_us = -HELLO_EVERY_US; } /* it is new here: answer */
+        if (p.type == EXH_WIRE_HELLO) { take_hello(l, &p.u.hello); }
         if (p.type != EXH_WIRE_STATE) { continue; }
         *state = p.u.state;
         l->echo_seq = p.seq;
@@ -138,8 +166,7 @@ void link_answer(struct link *l, const struct exh_wire_planes *planes, int64_t n
     memset(&p, 0, sizeof p);
     if (now_us - l->hello_us >= HELLO_EVERY_US) {
         p.type = EXH_WIRE_HELLO;
-        p.u.hello.role = EXH_WIRE_WORLD;
-        p.u.hello.lib_version = EXH_VERSION_NUMBER;
+        p.u.hello = hello_of_ours();
         put(l, &p, now_us);
         l->hello_us = now_us;
     }

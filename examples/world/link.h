@@ -20,6 +20,11 @@ struct link {
     struct exh_wire_rx rx;
     uint32_t echo_seq, echo_stamp_us;
     int64_t hello_us; /* when the last HELLO went out                             */
+    int64_t heard_us; /* when it was last looked what came                        */
+    struct exh_wire_hello theirs;
+    unsigned differs; /* enum exh_wire_differs, of the newest HELLO               */
+    unsigned long odd; /* HELLOs that differed                                    */
+    unsigned long strangers; /* from elsewhere than the peer that was given       */
     unsigned long sent, unsent;
 };
 
@@ -28,8 +33,8 @@ int link_open(struct link *l, const char *listen, const char *peer, uint32_t ses
               size_t error_B);
 void link_close(struct link *l);
 
-/* Takes what has come. 1 if a newer state is in *state. */
-int link_receive(struct link *l, struct exh_wire_state *state);
+/* Takes what has come till now. 1 if a newer state is in *state. */
+int link_receive(struct link *l, struct exh_wire_state *state, int64_t now_us);
 
 /* Says HELLO when it is time, and answers the newest state. planes NULL: they are not of that
  * state's hand, and nobody is told them. */

@@ -79,7 +79,7 @@ static void one_exchange(struct live *l, struct exchange *x, double dt_s)
     const int64_t now = now_us();
     take_wishes(l, x);
     if (!x->m.paused) { x->m.t_s += dt_s; }
-    if (l->has_link && link_receive(&l->link, &x->m.in)) { x->state_us = now; }
+    if (l->has_link && link_receive(&l->link, &x->m.in, now)) { x->state_us = now; }
     x->m.linked = x->state_us && now - x->state_us < LINK_LOST_US;
     x->m.age_ms = x->state_us ? (double)(now - x->state_us) / 1000 : -1;
     x->m.lost = l->link.rx.missing;

@@ -1,6 +1,7 @@
 #include "exhand/wire.h"
 
 #include "exhand/error.h"
+#include "exhand/safety.h"
 
 #define HEAD_B     18u
 #define LEN_AT     4u
@@ -64,7 +65,7 @@ static void state_bytes(struct exh_bytes *c, struct exh_wire_state *s)
         exh_bytes_i32(c, &s->q_m_q30[f]);
         exh_bytes_i32(c, &s->q_lim_m_q30[f]);
     }
-    demand(c, (s->fingers | s->frozen | s->touching) <= FINGERS_OF);
+    demand(c, (s->fingers | s->frozen | s->touching) <= FINGERS_OF && s->state <= EXH_STATE_FAULT);
 }
 
 static void plane_bytes(struct exh_bytes *c, struct exh_wire_plane *p)
@@ -179,22 +180,33 @@ static int read_packet(struct exh_wire_rx *rx, struct head *h, struct exh_wire_p
 
 static void begin_session(struct exh_wire_rx *rx, const struct head *h)
 {
-    rx->former = rx->session;
+    if (h->session != rx->session) { rx->former = rx->session; }
     rx->session = h->session;
     rx->seq = h->seq;
     rx->seen = UINT64_MAX; /* what was sent before is not waited for */
 }
 
-/* 0 if newer than all before, else the error, counted. */
-static int in_order(struct exh_wire_rx *rx, const struct head *h)
+/* Of the session: newer than all before, and not by too much. */
+static int is_next(const struct exh_wire_rx *rx, const struct head *h)
 {
-    const uint32_t ahead = h->seq - rx->seq;
+    return h->session == rx->session && h->seq - rx->seq - 1u < EXH_WIRE_AHEAD;
+}
+
+/* The peer has started anew; or none has been heard for long, and this one is there. */
+static int begins(const struct exh_wire_rx *rx, const struct head *h)
+{
+    if (h->type != EXH_WIRE_HELLO) { return 0; }
+    if (h->session == rx->session) { return rx->open && h->seq != rx->seq; }
+    return rx->open || h->session != rx->former;
+}
+
+/* Of the session, and not next: the error, counted. */
+static int out_of_order(struct exh_wire_rx *rx, const struct head *h)
+{
     const uint32_t late = rx->seq - h->seq;
-    if (ahead - 1u < UINT32_C(0x7FFFFFFF)) {
-        rx->seen = ahead < WINDOW ? rx->seen << ahead | 1u : 1u;
-        rx->missing += ahead - 1u;
-        rx->seq = h->seq;
-        return 0;
+    if (late > UINT32_C(0x80000000)) {
+        rx->far++;
+        return -EXH_E_RANGE;
     }
     if (late >= WINDOW) {
         rx->old++;
@@ -208,30 +220,65 @@ static int in_order(struct exh_wire_rx *rx, const struct head *h)
     return -EXH_E_STALE;
 }
 
+static int refuse(struct exh_wire_rx *rx, const struct head *h)
+{
+    if (h->session == rx->session) { return out_of_order(rx, h); }
+    if (h->session == rx->former) {
+        rx->old++;
+        return -EXH_E_STALE;
+    }
+    rx->stranger++;
+    return -EXH_E_STATE;
+}
+
+static void advance(struct exh_wire_rx *rx, const struct head *h)
+{
+    const uint32_t ahead = h->seq - rx->seq;
+    rx->seen = ahead < WINDOW ? rx->seen << ahead | 1u : 1u;
+    rx->missing += ahead - 1u;
+    rx->seq = h->seq;
+}
+
+int exh_wire_pass(struct exh_wire_rx *rx, uint32_t passed_us, uint32_t limit_us)
+{
+    const uint32_t was = rx->open;
+    if (rx->session == 0) { return 0; } /* any HELLO begins */
+    rx->quiet_us = passed_us < UINT32_MAX - rx->quiet_us ? rx->quiet_us + passed_us : UINT32_MAX;
+    rx->open = rx->quiet_us >= limit_us;
+    if (rx->open <= was) { return 0; }
+    rx->silences++;
+    return 1;
+}
+
 int exh_wire_take(struct exh_wire_rx *rx, struct exh_wire_packet *p, const void *buf, size_t len_B)
 {
     struct exh_wire_packet now = {0};
     struct head h;
     int r = read_packet(rx, &h, &now, buf, len_B);
     if (r < 0) { return r; }
-    if (h.session == rx->session) {
-        r = in_order(rx, &h);
-        if (r < 0) { return r; }
-    } else if (h.session == rx->former) {
-        rx->old++;
-        return -EXH_E_STALE;
-    } else if (h.type == EXH_WIRE_HELLO) {
+    if (is_next(rx, &h)) {
+        advance(rx, &h);
+    } else if (begins(rx, &h)) {
         begin_session(rx, &h);
     } else {
-        rx->stranger++;
-        return -EXH_E_STATE;
+        return refuse(rx, &h);
     }
     rx->accepted++;
+    rx->quiet_us = 0;
+    rx->open = 0;
     *p = now;
     return h.type;
 }
 
 /* --- what is done with them --- */
+
+uint32_t exh_wire_differs(const struct exh_wire_hello *ours, const struct exh_wire_hello *theirs)
+{
+    const int tables = ours->table_crc != 0 && theirs->table_crc != 0;
+    return (ours->role == theirs->role ? EXH_WIRE_ROLE : 0u) |
+           (ours->lib_version != theirs->lib_version ? EXH_WIRE_LIB : 0u) |
+           (tables && ours->table_crc != theirs->table_crc ? EXH_WIRE_TABLE : 0u);
+}
 
 struct exh_plane exh_wire_plane_of(const struct exh_wire_planes *planes, unsigned finger)
 {
@@ -271,6 +318,9 @@ void exh_wire_rx_bytes(struct exh_bytes *c, struct exh_wire_rx *s)
     exh_bytes_u32(c, &s->seq);
     exh_bytes_u32(c, &s->session);
     exh_bytes_u32(c, &s->former);
+    exh_bytes_u32(c, &s->quiet_us);
+    exh_bytes_u32(c, &s->open);
+    s->open = s->open != 0;
     exh_bytes_u32(c, &s->accepted);
     exh_bytes_u32(c, &s->missing);
     exh_bytes_u32(c, &s->duplicate);
@@ -280,4 +330,6 @@ void exh_wire_rx_bytes(struct exh_bytes *c, struct exh_wire_rx *s)
     exh_bytes_u32(c, &s->corrupt);
     exh_bytes_u32(c, &s->version);
     exh_bytes_u32(c, &s->unknown);
+    exh_bytes_u32(c, &s->far);
+    exh_bytes_u32(c, &s->silences);
 }

@@ -2,9 +2,13 @@
 
 #include "udp.h"
 
+#include "exhand/wire.h"
+
+#include <math.h>
 #include <string.h>
 
-#define PUMP 64 /* datagrams taken a call, at most: a flood holds no tick up */
+#define PUMP     64 /* datagrams taken a call, at most: a flood holds no tick up */
+#define QUIET_US 1000000 /* the socket's peer: nothing heard for so long, any HELLO begins anew */
 
 static struct {
     struct posix_line cfg;
@@ -12,6 +16,8 @@ static struct {
     struct udp udp;
     int udp_open;
     uint64_t frames;
+    struct exh_wire_rx rx; /* what comes to the socket, for whom it comes from      */
+    double heard_s;
 } line;
 
 struct posix_line posix_line_default(void)
@@ -33,6 +39,8 @@ int line_start(const struct posix_line *cfg, uint64_t seed)
     line_stop();
     line.cfg = *cfg;
     line.frames = 0;
+    memset(&line.rx, 0, sizeof line.rx);
+    line.heard_s = 0;
     if (!cfg->on) { return 0; }
     for (unsigned k = 0; k < SIM_LINK_WAYS; k++) {
         sim_link_start(&line.link.way[k], &cfg->way[k], cfg->trace[k],
@@ -50,15 +58,25 @@ struct sim_link *posix_link(void)
     return &line.link;
 }
 
+/* Answers go to whoever sent the newest good packet; a flood of others turns them nowhere. */
+static void learn(const void *buf, size_t len_B)
+{
+    struct exh_wire_packet p;
+    if (exh_wire_take(&line.rx, &p, buf, len_B) > 0) { udp_learn(&line.udp); }
+}
+
 /* Between the ways and the socket. */
 static void pump(double now_s)
 {
     uint8_t buf[SIM_LINK_PACKET_B];
     int n;
+    (void)exh_wire_pass(&line.rx, (uint32_t)fmin(1e6 * (now_s - line.heard_s), 4e9), QUIET_US);
+    line.heard_s = now_s;
     while ((n = sim_link_recv(&line.link.way[SIM_LINK_OUT], now_s, buf, sizeof buf)) > 0) {
         (void)udp_send(&line.udp, buf, (size_t)n);
     }
     for (int k = 0; k < PUMP && (n = udp_recv(&line.udp, buf, sizeof buf)) > 0; k++) {
+        if (line.udp.learns) { learn(buf, (size_t)n); }
         (void)sim_link_send(&line.link.way[SIM_LINK_IN], now_s, buf, (size_t)n);
     }
 }

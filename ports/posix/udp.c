@@ -107,14 +107,19 @@ int udp_recv(struct udp *u, void *buf, size_t cap_B)
         if (n < 0 && errno == EINTR) { continue; }
         if (n < 0) { return 0; }
         if (n == 0 || m.msg_flags & MSG_TRUNC) { continue; }
-        if (u->learns) {
-            u->peer = from;
-            u->known = 1;
-        } else if (!is_peer(u, &from)) {
+        if (!u->learns && !is_peer(u, &from)) {
             u->strangers++;
             continue;
         }
+        u->from = from;
         return (int)n;
     }
     return 0;
+}
+
+void udp_learn(struct udp *u)
+{
+    if (!u->learns) { return; }
+    u->peer = u->from;
+    u->known = 1;
 }

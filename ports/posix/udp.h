@@ -8,15 +8,17 @@
 
 struct udp {
     int fd;                  /* < 0: closed                                     */
-    int learns;              /* the peer is whoever sent last                   */
+    int learns;              /* the peer is whom udp_learn() says               */
     int known;               /* there is a peer                                 */
     struct sockaddr_in peer;
+    struct sockaddr_in from; /* who sent the newest packet                      */
     uint64_t strangers;      /* packets from others, dropped                    */
     uint64_t unsent;         /* not taken by the system, or there was no peer yet */
 };
 
-/* Addresses are "host:port" in numbers, "127.0.0.1:4747"; port 0: any. peer NULL: whoever
- * sends last, so that both sides may be restarted in any order. 0, or -1 with errno. */
+/* Addresses are "host:port" in numbers, "127.0.0.1:4747"; port 0: any. peer NULL:
+ * whoever sent what udp_learn() was called for, so that both sides may be restarted in any order.
+ * 0, or -1 with errno. */
 int udp_open(struct udp *u, const char *local, const char *peer);
 void udp_close(struct udp *u);
 
@@ -29,5 +31,9 @@ int udp_send(struct udp *u, const void *buf, size_t len_B);
 /* The next packet, or 0: none, or too much that is none for one call. One longer than cap_B is
  * dropped, as are empty ones. */
 int udp_recv(struct udp *u, void *buf, size_t cap_B);
+
+/* The packet just received was whole and wanted: its sender is the peer from now on, unless one was
+ * given. Never to be called for a packet that was not checked: anybody could turn the answers away. */
+void udp_learn(struct udp *u);
 
 #endif

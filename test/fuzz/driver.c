@@ -112,6 +112,27 @@ static void make_files(void)
         }
     }
     {
+        struct input *in = &files[files_n++];
+        struct exh_wire_tx tx = {9, 100}, gone = {7, 3};
+        strcpy(in->name, "silence"); /* one that is long gone is heard once more */
+        add_packet(in, &tx, 0, packet_of(EXH_WIRE_HELLO));
+        add_packet(in, &gone, 0, packet_of(EXH_WIRE_HELLO));
+        add_packet(in, &tx, 32, packet_of(EXH_WIRE_HELLO));
+        add_packet(in, &tx, 64, packet_of(EXH_WIRE_PARAM));
+        add_packet(in, &tx, 128, packet_of(EXH_WIRE_HELLO));
+    }
+    {
+        struct input *in = &files[files_n++];
+        struct exh_wire_tx tx = {9, 100};
+        strcpy(in->name, "far");
+        add_packet(in, &tx, 0, packet_of(EXH_WIRE_HELLO));
+        for (unsigned i = 0; i < 3; i++) {
+            static const uint32_t seq[] = {100 + EXH_WIRE_AHEAD, 101 + 2 * EXH_WIRE_AHEAD, 101};
+            tx.seq = seq[i];
+            add_packet(in, &tx, i == 2 ? 64 : 0, packet_of(i == 2 ? EXH_WIRE_HELLO : EXH_WIRE_PARAM));
+        }
+    }
+    {
         static const uint8_t few[] = {0x58, 0x57, 1, 3, 0xFF, 0xFF};
         struct input *in = &files[files_n++];
         strcpy(in->name, "short");

@@ -2,11 +2,13 @@
  *
  * An input is a row of datagrams, each behind three bytes: what is put right about it before it
  * is sent, and its length (u16). Put right are, by bit: 0 magic and version, 1 length, 2 session,
- * 3 sequence number, 4 CRC; so that a mutation reaches what lies behind the checks.
+ * 3 sequence number, 4 CRC; so that a mutation reaches what lies behind the checks. Bit 5: some
+ * time passes before it, 6: a silence; 7: it comes twice.
  *
  * What must hold: no read or write outside; a packet that is not accepted changes nothing
- * but one counter; one that is accepted is, written anew, the same bytes; the law
- * never touches before the freeze.
+ * but one counter; one that is accepted is, written anew, the same bytes, and next or a HELLO
+ * that may begin; after it all, a silence and its HELLO, any peer is heard; the law never touches
+ * before the freeze.
  *
  * LLVMFuzzerTestOneInput() is libFuzzer's; driver.c calls it without libFuzzer. */
 #include "exhand/error.h"
@@ -23,6 +25,10 @@
 #define FIX_SESSION 4u
 #define FIX_SEQ     8u
 #define FIX_CRC     16u
+#define A_WHILE     32u
+#define A_SILENCE   64u
+#define TWICE       128u
+#define LIMIT_US    1000000u
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
@@ -63,7 +69,7 @@ struct box {
 static uint32_t counters(const struct exh_wire_rx *rx)
 {
     return rx->accepted + rx->duplicate + rx->reordered + rx->old + rx->stranger + rx->corrupt +
-           rx->version + rx->unknown;
+           rx->version + rx->unknown + rx->far;
 }
 
 /* The same but for what a refused packet may count. */
@@ -78,6 +84,7 @@ static void must_be_unchanged(const struct box *was, const struct box *now)
     is.rx.corrupt = was->rx.corrupt;
     is.rx.version = was->rx.version;
     is.rx.unknown = was->rx.unknown;
+    is.rx.far = was->rx.far;
     if (now->rx.reordered != was->rx.reordered) { is.rx.seen = was->rx.seen; }
     MUST(memcmp(&is, was, sizeof is) == 0);
 }
@@ -140,6 +147,43 @@ static void same_bytes(const struct box *b, const uint8_t *packet, size_t len)
     MUST(memcmp(packet, again, len) == 0);
 }
 
+/* It is next and not too far ahead, or a HELLO that may begin. */
+static void heard(const struct exh_wire_rx *was, const struct exh_wire_rx *is, uint32_t seq, int type)
+{
+    const uint32_t ahead = is->seq - was->seq;
+    const int same = is->session == was->session;
+    MUST(is->session != 0 && is->seq == seq && is->open == 0 && is->quiet_us == 0);
+    if (same && ahead - 1 < EXH_WIRE_AHEAD) { return; }
+    MUST(type == EXH_WIRE_HELLO && (was->open || !same));
+    MUST(!same || ahead != 0);
+    MUST(was->open || is->session != was->former);
+    MUST(is->former == (same ? was->former : was->session));
+}
+
+static void time_goes_by(struct exh_wire_rx *rx, unsigned what)
+{
+    const struct exh_wire_rx was = *rx;
+    const uint32_t us = what & A_SILENCE ? LIMIT_US : what & A_WHILE ? LIMIT_US / 2 : 0;
+    const int now = exh_wire_pass(rx, us, LIMIT_US);
+    MUST(rx->silences == was.silences + (uint32_t)now);
+    MUST(rx->open == (rx->session != 0 && rx->quiet_us >= LIMIT_US));
+    MUST(rx->quiet_us >= was.quiet_us && rx->seq == was.seq && rx->session == was.session);
+}
+
+/* Whatever has come before. */
+static void must_hear(struct exh_wire_rx *rx, uint32_t session)
+{
+    struct exh_wire_tx tx = {session, rx->seq - 1};
+    struct exh_wire_packet p = {.type = EXH_WIRE_HELLO};
+    uint8_t buf[EXH_WIRE_MAX_B];
+    int32_t n = exh_wire_write(&tx, &p, 0, buf, sizeof buf);
+    (void)exh_wire_pass(rx, LIMIT_US, LIMIT_US);
+    MUST(exh_wire_take(rx, &p, buf, (size_t)n) == EXH_WIRE_HELLO);
+    p.type = EXH_WIRE_PARAM;
+    n = exh_wire_write(&tx, &p, 0, buf, sizeof buf);
+    MUST(exh_wire_take(rx, &p, buf, (size_t)n) == EXH_WIRE_PARAM);
+}
+
 static void datagram(struct box *b, const struct exh_precontact_cfg *cfg, struct exh_params *params,
                      const uint8_t *packet, size_t len)
 {
@@ -152,6 +196,7 @@ static void datagram(struct box *b, const struct exh_precontact_cfg *cfg, struct
         return;
     }
     MUST(r == b->last.type && b->rx.accepted == was.rx.accepted + 1);
+    heard(&was.rx, &b->rx, b->last.seq, r);
     same_bytes(b, packet, len);
     if (r == EXH_WIRE_PLANES) {
         planes_came(b, cfg);
@@ -196,10 +241,14 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         MUST(packet != NULL);
         memcpy(packet, data + 3, len);
         put_right(packet, len, data[0], &b.rx);
+        time_goes_by(&b.rx, data[0]);
         datagram(&b, &cfg, &params, packet, len);
+        if (data[0] & TWICE) { datagram(&b, &cfg, &params, packet, len); }
         free(packet);
         data += 3 + len;
         size -= 3 + len;
     }
+    if (b.rx.former != 0) { must_hear(&b.rx, b.rx.former); }
+    must_hear(&b.rx, b.rx.session ? b.rx.session : 1);
     return 0;
 }

@@ -66,12 +66,12 @@ static void forge(struct golden_rng *r, struct datagram *d)
 /* The packet with a number near an end of what is taken; the sender goes on from a newer one. */
 static void number(struct golden_rng *r, struct datagram *d)
 {
-    static const int64_t end[] = {-64, -64, 0, INT64_C(1) << 31};
+    static const int64_t end[] = {-64, 0, 65536, INT64_C(1) << 31};
     struct exh_bytes c = exh_bytes_writer(d->b + 10, 4);
     const int64_t near = end[golden_draw(r, 0, 3)];
     const int64_t on = near + golden_draw(r, -1, 1);
     uint32_t seq = world.rx.seq + (uint32_t)on;
-    if (on > 0 && on < INT64_C(1) << 31) { world.tx.seq = seq + 1; }
+    if (on > 0 && on <= 65536) { world.tx.seq = seq + 1; }
     exh_bytes_u32(&c, &seq);
     put_crc(d);
 }
@@ -86,6 +86,7 @@ static uint8_t any_type(struct golden_rng *r)
         type = EXH_WIRE_HELLO;
         world.begun = 1;
     }
+    if (world.rx.open && golden_draw(r, 0, 1) != 0) { type = EXH_WIRE_HELLO; }
     return type;
 }
 
@@ -138,6 +139,10 @@ static void any_arriving(struct golden_rng *r, int64_t how, struct datagram *d)
     (void)memset(d, 0, sizeof *d);
     if (n == 0) { return; }
     *d = world.sent[n - 1];
+    if (world.rx.open && golden_draw(r, 0, 1) != 0) { /* of any session, from any time */
+        *d = world.sent[golden_draw(r, 0, (int64_t)n - 1)];
+        return;
+    }
     if (how < 2 || how == 6) {
         const uint32_t back = (uint32_t)golden_draw(r, 1, how == 6 ? 6 : 80);
         *d = world.sent[n - 1 - (back < n ? back : n - 1)];
@@ -217,6 +222,15 @@ static uint32_t values_crc(void)
     return exh_crc32(0, b, c.at);
 }
 
+/* Time goes by, at times more than a second of it. */
+static void put_time(struct golden *g, struct golden_rng *r)
+{
+    static const uint32_t long_us[] = {1, 999999, 1000000, UINT32_MAX};
+    const int rest = golden_draw(r, 0, 7) == 0;
+    const uint32_t us = rest ? long_us[golden_draw(r, 0, 3)] : (uint32_t)golden_draw(r, 0, 2);
+    golden_put(g, exh_wire_pass(&world.rx, us, 1000000));
+}
+
 void golden_wire(struct golden *g, uint32_t rate_Hz)
 {
     static struct datagram d;
@@ -227,6 +241,7 @@ void golden_wire(struct golden *g, uint32_t rate_Hz)
         int32_t said[2];
         if (g->tick == 0 || g->tick == GOLDEN_AGAIN) { begin(&r); }
         if (g->tick == 128) { world.params.locked = 1; }
+        put_time(g, &r);
         put_send(g, &r, said);
         how = golden_draw(&r, 0, 15);
         any_arriving(&r, how, &d);

@@ -101,6 +101,7 @@ void golden_body_any(struct golden_rng *r, int64_t type, uint8_t *b)
     if (type == EXH_WIRE_HELLO) { b[0] &= 1; }
     if (type == EXH_WIRE_STATE) {
         b[4] &= 31;
+        b[5] %= 3;
         b[6] &= 31;
         b[7] &= 31;
     }
@@ -130,11 +131,15 @@ static void spoil_planes(struct golden_rng *r, uint8_t *b)
 /* One value that cannot be. */
 void golden_body_spoil(struct golden_rng *r, int64_t type, uint8_t *b)
 {
-    static const uint8_t mask[] = {4, 6, 7};
+    static const uint8_t mask[] = {4, 6, 7, 5};
     if (type == EXH_WIRE_HELLO) { b[0] = (uint8_t)golden_draw(r, 2, 255); }
     if (type == EXH_WIRE_STATE) {
-        const uint8_t i = mask[golden_draw(r, 0, 2)];
-        b[i] |= (uint8_t)(32 << golden_draw(r, 0, 2));
+        const uint8_t i = mask[golden_draw(r, 0, 3)];
+        if (i == 5) {
+            b[i] = (uint8_t)golden_draw(r, 3, 255);
+        } else {
+            b[i] |= (uint8_t)(32 << golden_draw(r, 0, 2));
+        }
     }
     if (type == EXH_WIRE_PLANES) { spoil_planes(r, b); }
 }

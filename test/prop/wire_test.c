@@ -17,7 +17,7 @@ static struct exh_wire_packet any_packet(uint8_t type)
     } else if (type == EXH_WIRE_STATE) {
         p.u.state.fingers = check_u64() & 31;
         p.u.state.frozen = check_u64() & 31;
-        p.u.state.state = (uint8_t)check_u64();
+        p.u.state.state = (uint8_t)(check_u64() % 3);
         for (unsigned f = 0; f < EXH_WIRE_FINGERS; f++) {
             p.u.state.tip_m_q30[f][f % 3] = check_i32();
             p.u.state.q_lim_m_q30[f] = check_i32();
@@ -40,7 +40,7 @@ static struct exh_wire_packet any_packet(uint8_t type)
 static uint32_t counted(const struct exh_wire_rx *rx)
 {
     return rx->accepted + rx->duplicate + rx->reordered + rx->old + rx->stranger + rx->corrupt +
-           rx->version + rx->unknown;
+           rx->version + rx->unknown + rx->far;
 }
 
 TEST(there_and_back)
@@ -160,5 +160,35 @@ TEST(what_gets_through_is_in_order_and_each_once)
     CHECK(seen[0] == 0 || (seen[1] && seen[2] && seen[3] && seen[4]), "all kinds seen");
 }
 
+/* Before a good peer speaks, anything that is whole has come: any types, sessions, numbers. */
+TEST(a_good_peer_is_heard_after_a_silence_and_a_hello)
+{
+    while (check_case(200)) {
+        struct exh_wire_tx good = {5, (uint32_t)check_u64()};
+        struct exh_wire_rx rx = {0};
+        struct exh_wire_packet p;
+        uint8_t b[EXH_WIRE_MAX_B];
+        const uint32_t limit_us = 1 + (uint32_t)(check_u64() % 5000000);
+        int32_t n;
+        for (int k = 0; k < 100; k++) {
+            struct exh_wire_tx any = {3 + (uint32_t)(check_u64() % 4), (uint32_t)check_u64()};
+            if (check_u64() & 1) { any.seq = rx.seq + (uint32_t)check_i32_in(-70, 70000); }
+            p = any_packet((uint8_t)(check_u64() % 3 ? 1 : 1 + check_u64() % 5));
+            n = exh_wire_write(&any, &p, 0, b, sizeof b);
+            (void)exh_wire_take(&rx, &p, b, (size_t)n);
+            (void)exh_wire_pass(&rx, (uint32_t)(check_u64() % limit_us), limit_us);
+        }
+        if (rx.session == good.session && rx.seq == good.seq) { good.seq++; }
+        (void)exh_wire_pass(&rx, limit_us, limit_us);
+        p = any_packet(EXH_WIRE_HELLO);
+        n = exh_wire_write(&good, &p, 0, b, sizeof b);
+        CHECK(exh_wire_take(&rx, &p, b, (size_t)n) == EXH_WIRE_HELLO, "deaf");
+        p = any_packet(EXH_WIRE_PLANES);
+        n = exh_wire_write(&good, &p, 0, b, sizeof b);
+        CHECK(exh_wire_take(&rx, &p, b, (size_t)n) == EXH_WIRE_PLANES, "deaf");
+    }
+}
+
 TEST_MAIN("prop/wire", there_and_back, noise_is_no_packet,
-          what_gets_through_is_in_order_and_each_once);
+          what_gets_through_is_in_order_and_each_once,
+          a_good_peer_is_heard_after_a_silence_and_a_hello);

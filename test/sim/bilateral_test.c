@@ -254,6 +254,7 @@ static pid_t world_process(const char *local, uint32_t session, const struct pee
 {
     static struct sim_link link;
     static struct peer peer;
+    static struct exh_wire_rx rx;
     const struct peer_cfg cfg = {.world = world, .until_s = 1e30};
     const pid_t pid = fork();
     struct udp udp;
@@ -272,6 +273,8 @@ static pid_t world_process(const char *local, uint32_t session, const struct pee
         uint8_t buf[SIM_LINK_PACKET_B];
         int n;
         while ((n = udp_recv(&udp, buf, sizeof buf)) > 0) {
+            struct exh_wire_packet p;
+            if (exh_wire_take(&rx, &p, buf, (size_t)n) > 0) { udp_learn(&udp); }
             (void)sim_link_send(&link.way[SIM_LINK_OUT], t_s, buf, (size_t)n);
         }
         peer_frame(&peer, &link, t_s);

@@ -46,7 +46,7 @@ static void post(struct exh_wire_packet *p)
 static void hello(void)
 {
     struct exh_wire_packet p = {.type = EXH_WIRE_HELLO};
-    p.u.hello.role = EXH_WIRE_WORLD;
+    p.u.hello = (struct exh_wire_hello){EXH_WIRE_WORLD, EXH_VERSION_NUMBER, 0};
     post(&p);
 }
 
@@ -163,6 +163,70 @@ TEST(a_world_that_has_started_anew_is_greeted_at_once)
     CHECK_EQ_I64(hellos, 1);
 }
 
+/* What is heard again after it: planes of world 3, whose HELLO comes twice a second. */
+static uint32_t deaf_ticks(void)
+{
+    const uint32_t accepted = box.wire.rx.accepted;
+    for (uint32_t k = 0; k < 5 * RATE_HZ; k++) {
+        if (k % (RATE_HZ / 2) == 250) { hello(); }
+        planes();
+        (void)tick(1, 0);
+        if (box.wire.rx.accepted > accepted + 1) { return k; }
+    }
+    return UINT32_MAX;
+}
+
+TEST(no_packet_makes_the_box_deaf_for_longer_than_a_silence)
+{
+    struct exh_wire_tx real;
+    int hellos = 0;
+    start();
+    world.session = 2, hello(); /* its number is of long ago when it comes again */
+    world = (struct exh_wire_tx){4, 0}, hello();
+    world = (struct exh_wire_tx){3, 50}, hello();
+    (void)tick(1, 0);
+    real = world;
+    world = (struct exh_wire_tx){2, 9}, hello();
+    world = real;
+    CHECK(deaf_ticks() <= 1500, "a HELLO of old");
+    CHECK_EQ_I64(box.wire.rx.silences, 1);
+
+    real = world;
+    world.seq += 60000, planes();
+    (void)tick(1, 0);
+    world = real;
+    CHECK(deaf_ticks() <= 1500, "a number far ahead");
+
+    real = world;
+    world.seq += 0x70000000, planes();
+    (void)tick(1, 0);
+    world = real;
+    CHECK_EQ_I64(deaf_ticks(), 1);
+    CHECK_EQ_I64(sig.box.far, 1);
+
+    for (int k = 0; k < 1200; k++) { (void)tick(1, 0); } /* in a silence it says HELLO more often */
+    for (int k = 0; k < 8 * par.own.state_every; k++) { hellos += tick(1, EXH_WIRE_HELLO); }
+    CHECK_EQ_I64(hellos, 1);
+}
+
+TEST(a_world_that_differs_is_told_by_bits)
+{
+    struct exh_wire_packet p = {.type = EXH_WIRE_HELLO};
+    start();
+    p.u.hello = cfg.wire.hello;
+    p.u.hello.role = EXH_WIRE_WORLD;
+    post(&p);
+    (void)tick(1, 0);
+    CHECK(sig.box.differs == 0 && sig.box.odd == 0, "%d", sig.box.differs);
+    p.u.hello.role = EXH_WIRE_CONTROLLER;
+    p.u.hello.lib_version++;
+    p.u.hello.table_crc ^= 1;
+    post(&p);
+    (void)tick(1, 0);
+    CHECK_EQ_I64(sig.box.differs, EXH_WIRE_ROLE | EXH_WIRE_LIB | EXH_WIRE_TABLE);
+    CHECK_EQ_I64(sig.box.odd, 1);
+}
+
 TEST(a_shorter_time_between_states_acts_at_once)
 {
     start();
@@ -206,4 +270,5 @@ TEST(no_packet_sets_a_pull_or_its_limit)
 TEST_MAIN("bilateral, tick by tick", a_plane_told_before_the_first_glove_frame_is_not_kept,
           a_finger_whose_sensor_is_not_believed_has_no_contact, a_frozen_contact_outlives_a_sensor,
           a_world_that_has_started_anew_is_greeted_at_once,
+          no_packet_makes_the_box_deaf_for_longer_than_a_silence, a_world_that_differs_is_told_by_bits,
           a_shorter_time_between_states_acts_at_once, no_packet_sets_a_pull_or_its_limit);

@@ -7,6 +7,7 @@
 
 #include "exhand/board.h"
 #include "exhand/error.h"
+#include "exhand/wire.h"
 
 #include <signal.h>
 #include <stdio.h>
@@ -236,6 +237,9 @@ TEST(strangers_and_cut_packets_are_dropped)
     CHECK_EQ_I64(udp_send(&b, buf, 64), 64);
     CHECK_EQ_I64(udp_send(&b, buf, 10), 10);
     CHECK_EQ_I64(udp_recv(&a, buf, 63), 10); /* the one that does not fit is gone */
+    CHECK_EQ_I64(udp_send(&a, buf, 8), 0); /* nobody has looked at it */
+    udp_learn(&a);
+    udp_learn(&b); /* has its peer */
     CHECK_EQ_I64(udp_send(&a, buf, 8), 8);
     CHECK_EQ_I64(udp_recv(&b, buf, sizeof buf), 8);
     CHECK_EQ_I64(udp_open(&c, at, NULL), -1); /* taken; and c leaks nothing */
@@ -257,6 +261,7 @@ TEST(a_flood_is_taken_in_parts)
     CHECK_EQ_I64(udp_open(&c, "127.0.0.1:0", to), 0);
     CHECK_EQ_I64(udp_send(&b, buf, 8), 8); /* a knows b now */
     CHECK_EQ_I64(udp_recv(&a, buf, sizeof buf), 8);
+    udp_learn(&a);
     for (int i = 0; i < 150; i++) { CHECK_EQ_I64(udp_send(&c, buf, 8), 8); }
     CHECK_EQ_I64(udp_send(&a, buf, 8), 8);
     while (calls < 10 && udp_recv(&b, buf, sizeof buf) == 0) { calls++; }
@@ -265,6 +270,52 @@ TEST(a_flood_is_taken_in_parts)
     udp_close(&a);
     udp_close(&b);
     udp_close(&c);
+}
+
+static void post(struct udp *u, struct exh_wire_tx *tx, uint8_t type, int spoil)
+{
+    struct exh_wire_packet p;
+    uint8_t buf[EXH_WIRE_MAX_B];
+    int32_t n;
+    memset(&p, 0, sizeof p);
+    p.type = type;
+    n = exh_wire_write(tx, &p, 0, buf, sizeof buf);
+    if (spoil) { buf[n - 1] ^= 1; }
+    CHECK_EQ_I64(udp_send(u, buf, (size_t)n), n);
+}
+
+/* A controller that waits for its world: nobody's junk turns its answers away. */
+TEST(the_peer_is_whose_packet_was_good)
+{
+    struct posix_config c = linked();
+    struct exh_wire_tx good = {5, 0}, bad = {6, 0}, ours = {7, 0};
+    struct udp u, world, other;
+    char at[32];
+    uint8_t buf[EXH_WIRE_MAX_B];
+    CHECK_EQ_I64(udp_open(&u, "127.0.0.1:0", NULL), 0); /* a port that is free */
+    snprintf(at, sizeof at, "127.0.0.1:%u", udp_port(&u));
+    udp_close(&u);
+    c.line.udp_local = at;
+    start(&c);
+    CHECK(udp_open(&world, "127.0.0.1:0", at) == 0 && udp_open(&other, "127.0.0.1:0", at) == 0, "sockets");
+    post(&world, &good, EXH_WIRE_HELLO, 0);
+    for (int n = 0; n < 20; n++) {
+        post(&other, &bad, EXH_WIRE_HELLO, 1);   /* damaged */
+        post(&other, &bad, EXH_WIRE_PLANES, 0);  /* of nobody who has said HELLO */
+        CHECK_EQ_I64(exh_board_wait(), 0);
+        while (exh_board_link_recv(buf, sizeof buf) > 0) {}
+        CHECK_EQ_I64(exh_board_link_send(&ours, sizeof ours), sizeof ours);
+        CHECK(udp_recv(&world, buf, sizeof buf) == sizeof ours, "tick %d: no answer", n);
+        CHECK_EQ_I64(udp_recv(&other, buf, sizeof buf), 0);
+    }
+    post(&other, &bad, EXH_WIRE_HELLO, 0); /* the world has started anew, elsewhere */
+    CHECK_EQ_I64(exh_board_wait(), 0);
+    while (exh_board_link_recv(buf, sizeof buf) > 0) {}
+    CHECK_EQ_I64(exh_board_link_send(&ours, sizeof ours), sizeof ours);
+    CHECK_EQ_I64(udp_recv(&other, buf, sizeof buf), sizeof ours);
+    udp_close(&world);
+    udp_close(&other);
+    line_stop();
 }
 
 /* ---- Two processes -------------------------------------------------------------------------------- */
@@ -283,6 +334,7 @@ static void be_world(const char *at, int mark)
     for (int ms = 0; ms < 60000; ms++) { /* never for ever */
         int v[2];
         while (udp_recv(&u, v, sizeof v) == sizeof v) {
+            udp_learn(&u);
             v[1] = mark;
             (void)udp_send(&u, v, sizeof v);
         }
@@ -442,6 +494,6 @@ TEST(a_socket_behind_a_bad_way)
 TEST_MAIN("line", a_link_that_is_off_takes_nothing, a_peer_in_this_process_answers_in_virtual_time,
           a_peer_that_takes_nothing_stops_nobody, too_long_a_packet_is_an_error,
           a_bad_line_is_its_seed, bad_addresses_are_refused, strangers_and_cut_packets_are_dropped,
-          a_flood_is_taken_in_parts,
+          a_flood_is_taken_in_parts, the_peer_is_whose_packet_was_good,
           two_processes_survive_each_others_restart, world_in_a_namespace,
           controller_in_a_namespace, two_network_namespaces, a_socket_behind_a_bad_way);

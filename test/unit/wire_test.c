@@ -141,6 +141,8 @@ TEST(values_that_cannot_be)
     } bad[] = {
         {EXH_WIRE_HELLO, 18, 2, -EXH_E_CRC}, /* role */
         {EXH_WIRE_STATE, 18 + 4, 32, -EXH_E_CRC}, /* sixth finger */
+        {EXH_WIRE_STATE, 18 + 5, 3, -EXH_E_CRC}, /* no such state */
+        {EXH_WIRE_STATE, 18 + 5, 255, -EXH_E_CRC},
         {EXH_WIRE_STATE, 18 + 6, 128, -EXH_E_CRC},
         {EXH_WIRE_STATE, 18 + 7, 64, -EXH_E_CRC},
         {EXH_WIRE_PLANES, 18 + 8, 35, -EXH_E_CRC},
@@ -199,9 +201,105 @@ TEST(sequence_numbers_wrap)
     CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PARAM, 9, 0xFFFFFFFFu)), EXH_WIRE_PARAM);
     CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PARAM, 9, 0)), EXH_WIRE_PARAM);
     CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PARAM, 9, 0xFFFFFFFFu)), -EXH_E_STALE);
-    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PARAM, 9, 0x7FFFFFFFu)), EXH_WIRE_PARAM);
-    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PARAM, 9, 0xFFFFFFFFu)), -EXH_E_STALE); /* half way */
+    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PARAM, 9, 0x80000000u)), -EXH_E_STALE); /* half way */
     CHECK_EQ_I64(rx.old, 1);
+    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PARAM, 9, 0x7FFFFFFFu)), -EXH_E_RANGE);
+    CHECK_EQ_I64(rx.far, 1);
+}
+
+TEST(far_ahead_is_not_believed)
+{
+    static const uint32_t ahead[] = {EXH_WIRE_AHEAD + 1, 0x12345678u, 0x7FFFFFFFu};
+    struct exh_wire_rx rx = met(9, 0xFFFFFFF0u);
+    for (uint8_t type = 1; type <= 5; type++) {
+        for (size_t i = 0; i < LEN(ahead); i++) {
+            struct exh_wire_rx was = rx;
+            CHECK_EQ_I64(take(&rx, write_as(type, 9, rx.seq + ahead[i])), -EXH_E_RANGE);
+            was.far++;
+            CHECK(memcmp(&was, &rx, sizeof rx) == 0, "type %d, ahead %d", type, (int)i);
+        }
+    }
+    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PLANES, 9, 0xFFFFFFF1u)), EXH_WIRE_PLANES);
+    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PLANES, 9, rx.seq + EXH_WIRE_AHEAD)), EXH_WIRE_PLANES);
+    CHECK_EQ_I64(rx.missing, EXH_WIRE_AHEAD - 1);
+}
+
+#define LIMIT_US 1000000u
+
+/* What makes it deaf to session 9 has come; session 9 goes on from 101, and is heard again after
+ * the silence and its next HELLO. */
+static void recovers(struct exh_wire_rx *rx)
+{
+    uint32_t seq = 101;
+    const struct exh_wire_rx was = *rx;
+    CHECK(take(rx, write_as(EXH_WIRE_PLANES, 9, seq++)) < 0, "not deaf");
+    CHECK(take(rx, write_as(EXH_WIRE_HELLO, 9, seq++)) < 0, "not deaf");
+    CHECK_EQ_I64(exh_wire_pass(rx, LIMIT_US - 1, LIMIT_US), 0);
+    CHECK(take(rx, write_as(EXH_WIRE_HELLO, 9, seq++)) < 0, "too early");
+    CHECK_EQ_I64(exh_wire_pass(rx, 1, LIMIT_US), 1);
+    CHECK_EQ_I64(exh_wire_pass(rx, 1, LIMIT_US), 0);
+    CHECK(rx->silences == was.silences + 1 && rx->open == 1, "a silence is counted once");
+    CHECK(take(rx, write_as(EXH_WIRE_PLANES, 9, seq++)) < 0, "a HELLO is what begins");
+    CHECK_EQ_I64(take(rx, write_as(EXH_WIRE_HELLO, 9, seq++)), EXH_WIRE_HELLO);
+    CHECK(rx->open == 0 && rx->quiet_us == 0, "heard");
+    CHECK_EQ_I64(take(rx, write_as(EXH_WIRE_PLANES, 9, seq++)), EXH_WIRE_PLANES);
+    CHECK(rx->accepted == was.accepted + 2 && rx->missing == was.missing, "counts go on");
+}
+
+TEST(no_packet_makes_it_deaf_for_good)
+{
+    struct exh_wire_rx rx = met(8, 5);
+    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_HELLO, 9, 100)), EXH_WIRE_HELLO);
+    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_HELLO, 7, 3)), EXH_WIRE_HELLO); /* long gone, and late */
+    recovers(&rx);
+
+    rx = met(9, 100);
+    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_ACK, 9, 100 + EXH_WIRE_AHEAD)), EXH_WIRE_ACK);
+    recovers(&rx);
+
+    rx = met(9, 100);
+    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PLANES, 9, 60000)), EXH_WIRE_PLANES);
+    CHECK(take(&rx, write_as(EXH_WIRE_HELLO, 9, 0)) < 0, "started anew, and of the same session");
+    CHECK_EQ_I64(exh_wire_pass(&rx, LIMIT_US, LIMIT_US), 1);
+    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_HELLO, 9, 1)), EXH_WIRE_HELLO);
+    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PLANES, 9, 2)), EXH_WIRE_PLANES);
+}
+
+TEST(silence_is_only_what_is_heard_of_nobody)
+{
+    struct exh_wire_rx rx = {0};
+    CHECK(exh_wire_pass(&rx, UINT32_MAX, 1) == 0 && rx.silences == 0, "nobody was there");
+    rx = met(9, 100);
+    for (uint32_t k = 1; k < 50; k++) {
+        CHECK_EQ_I64(exh_wire_pass(&rx, LIMIT_US - 1, LIMIT_US), 0);
+        CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PLANES, 9, 100 + k)), EXH_WIRE_PLANES);
+    }
+    (void)exh_wire_pass(&rx, UINT32_MAX - 1, LIMIT_US);
+    (void)exh_wire_pass(&rx, 7, LIMIT_US); /* no wrap */
+    CHECK(rx.open && rx.quiet_us == UINT32_MAX && rx.silences == 1, "%" PRIu32, rx.quiet_us);
+    /* What went on meanwhile is next, and taken at once; the newest once more is not. */
+    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PLANES, 9, 9000)), EXH_WIRE_PLANES);
+    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_HELLO, 9, 9001)), EXH_WIRE_HELLO);
+    (void)exh_wire_pass(&rx, LIMIT_US, LIMIT_US);
+    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_HELLO, 9, 9001)), -EXH_E_STALE);
+    CHECK_EQ_I64(rx.duplicate, 1);
+}
+
+TEST(what_differs_is_said_by_name)
+{
+    const struct exh_wire_hello ours = {EXH_WIRE_CONTROLLER, 0x100, 0xABCD};
+    static const struct {
+        struct exh_wire_hello theirs;
+        uint32_t want;
+    } c[] = {{{EXH_WIRE_WORLD, 0x100, 0xABCD}, 0},
+             {{EXH_WIRE_WORLD, 0x100, 0}, 0}, /* has no table */
+             {{EXH_WIRE_CONTROLLER, 0x100, 0xABCD}, EXH_WIRE_ROLE},
+             {{EXH_WIRE_WORLD, 0x101, 0xABCD}, EXH_WIRE_LIB},
+             {{EXH_WIRE_WORLD, 0x100, 0xABCE}, EXH_WIRE_TABLE},
+             {{EXH_WIRE_CONTROLLER, 0, 1}, EXH_WIRE_ROLE | EXH_WIRE_LIB | EXH_WIRE_TABLE}};
+    for (size_t i = 0; i < LEN(c); i++) {
+        CHECK_EQ_I64(exh_wire_differs(&ours, &c[i].theirs), c[i].want);
+    }
 }
 
 TEST(a_restart_is_seen_by_its_hello)
@@ -290,9 +388,10 @@ TEST(state_round_trip)
     struct exh_bytes c = exh_bytes_writer(b, sizeof b);
     (void)take(&rx, write_as(EXH_WIRE_PARAM, 9, 12));
     (void)take(&rx, write_as(EXH_WIRE_PARAM, 8, 12));
+    (void)exh_wire_pass(&rx, 123, 100);
     exh_wire_rx_bytes(&c, &rx);
     exh_wire_tx_bytes(&c, &tx);
-    CHECK_EQ_I64(c.at, 56 + 8);
+    CHECK_EQ_I64(c.at, 72 + 8);
     c = exh_bytes_reader(b, c.at);
     exh_wire_rx_bytes(&c, &back);
     exh_wire_tx_bytes(&c, &tx_back);
@@ -303,5 +402,6 @@ TEST(state_round_trip)
 
 TEST_MAIN("unit/wire", bytes_are_those_of_the_document, there_and_back,
           every_bit_flipped_and_every_byte_cut_off, values_that_cannot_be, only_what_is_newer,
-          sequence_numbers_wrap, a_restart_is_seen_by_its_hello, writing_refuses,
+          sequence_numbers_wrap, far_ahead_is_not_believed, no_packet_makes_it_deaf_for_good,
+          silence_is_only_what_is_heard_of_nobody, what_differs_is_said_by_name, a_restart_is_seen_by_its_hello, writing_refuses,
           planes_and_round_trip, parameters_are_staged_and_answered, state_round_trip);

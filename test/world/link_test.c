@@ -68,7 +68,7 @@ static void hear(struct controller *c)
 static int frame(struct exh_wire_state *state, int64_t t_us)
 {
     struct exh_wire_planes planes;
-    const int newer = link_receive(&world, state);
+    const int newer = link_receive(&world, state, t_us);
     memset(&planes, 0, sizeof planes);
     planes.fingers = 1;
     link_answer(&world, &planes, t_us);
@@ -133,7 +133,7 @@ TEST(without_planes_it_says_hello_alone)
     open_world(1);
     open_controller(&c, 2);
     say(&c, EXH_WIRE_HELLO, 0);
-    CHECK(!link_receive(&world, &s), "a hello is no state");
+    CHECK(!link_receive(&world, &s, 0), "a hello is no state");
     for (int64_t t_us = 0; t_us < 2000000; t_us += 10000) { link_answer(&world, NULL, t_us); }
     hear(&c);
     CHECK(c.hellos == 4 && c.answers == 0, "%d hellos, %d answers", c.hellos, c.answers);

@@ -54,7 +54,8 @@ void exh_board_halt(const char *why);
 /* The newest frame of the glove (glove.h) and its age. 0 or -EXH_E_IO. */
 int exh_board_read_glove(struct exh_glove_in *in);
 
-/* A free-running cycle or instruction counter, modulo 2^32. */
+/* A free-running cycle or instruction counter, modulo 2^32. Where it begins anew with each start, a
+ * scene that has a link needs a `session` that does not (docs/WIRE.md). */
 uint32_t exh_board_cycles(void);
 
 /* Takes a whole record or nothing, without blocking: bytes taken, 0 if full. */

@@ -2,7 +2,7 @@
  *
  * A packet may be lost, late, twice, out of order or damaged; nothing is sent again but
  * parameters, by who set them. So each stands alone, and a receiver takes it only if it is
- * newer than all before. Little-endian, byte by byte:
+ * newer than all before; after a silence a HELLO begins anew. Little-endian, byte by byte:
  *
  *    0  u16 magic 0x5758    2  u8 version    3  u8 type    4  u16 payload length
  *    6  u32 session        10  u32 sequence 14  u32 time stamp, us
@@ -28,6 +28,7 @@ extern "C" {
 #define EXH_WIRE_OVERHEAD 22  /* bytes around a payload                          */
 #define EXH_WIRE_MAX_B    256 /* no packet is longer                             */
 #define EXH_WIRE_NEVER_MS 65535u
+#define EXH_WIRE_AHEAD    65536u /* sequence numbers that may be skipped at once, and one */
 
 enum exh_wire_type {
     EXH_WIRE_HELLO = 1, /* a sender's first packet, then now and then          */
@@ -46,6 +47,14 @@ struct exh_wire_hello {
     uint32_t lib_version; /* EXH_VERSION_NUMBER                                */
     uint32_t table_crc;   /* exh_signal_crc() of the parameters; 0: has none   */
 };
+
+/* What is not as it should be about a peer that has said HELLO: it is heard, and told of. */
+enum exh_wire_differs {
+    EXH_WIRE_ROLE = 1u << 0,   /* the same as ours: two controllers, two worlds, an echo */
+    EXH_WIRE_LIB = 1u << 1,    /* another version of the library                */
+    EXH_WIRE_TABLE = 1u << 2   /* another table of parameters; not if either has none */
+};
+uint32_t exh_wire_differs(const struct exh_wire_hello *ours, const struct exh_wire_hello *theirs);
 
 struct exh_wire_state {
     uint32_t tick;
@@ -103,7 +112,8 @@ struct exh_wire_packet {
 /* --- sending --- */
 
 struct exh_wire_tx {
-    uint32_t session; /* not 0; another at every start: of a clock, or a counter that survives */
+    uint32_t session; /* not 0; another at every start: of a clock, or a counter that survives.
+                       * The same again costs a silence: then its HELLO is taken  */
     uint32_t seq;     /* of the next packet, modulo 2^32                       */
 };
 
@@ -116,12 +126,14 @@ int32_t exh_wire_write(struct exh_wire_tx *tx, struct exh_wire_packet *p, uint32
 
 /* --- receiving --- */
 
-/* All zeros at first. Every packet raises exactly one of the counters, all but `missing`; modulo
- * 2^32. */
+/* All zeros at first. Every packet raises exactly one of the counters, all but `missing` and
+ * `silences`; modulo 2^32. */
 struct exh_wire_rx {
     uint64_t seen;            /* bit k: seq - k came, or was before the HELLO  */
     uint32_t seq;             /* newest accepted                               */
     uint32_t session, former; /* the peer's, the one before it; 0: none         */
+    uint32_t quiet_us;        /* since the last that was accepted; 2^32 - 1: longer, too */
+    uint32_t open;            /* 1: for too long                                */
     uint32_t accepted;
     uint32_t missing;   /* sequence numbers skipped, less those that came late: lost */
     uint32_t duplicate; /* came before, or was sent before its session's HELLO  */
@@ -131,13 +143,23 @@ struct exh_wire_rx {
     uint32_t corrupt;   /* magic, length, CRC, or a value that cannot be       */
     uint32_t version;   /* another than ours                                   */
     uint32_t unknown;   /* type                                                */
+    uint32_t far;       /* more than EXH_WIRE_AHEAD ahead                      */
+    uint32_t silences;  /* how often it became open                            */
 };
+
+/* So much time has passed: to be called now and then, in every tick or frame, before packets are
+ * taken. With nothing accepted for limit_us or longer the receiver is open: the next HELLO, of
+ * whatever session and number, begins anew, be it that of the session before. So no packet makes
+ * it deaf for longer than limit_us and a HELLO's time, not one of a session long gone, not a
+ * forged one far ahead. 1 if it has become open now. */
+int exh_wire_pass(struct exh_wire_rx *rx, uint32_t passed_us, uint32_t limit_us);
 
 /* One datagram. Its type, > 0, when it was accepted: only then *p is written, and more changes
  * than a counter (and, of a reordered one, that it came). Else -EXH_E_SHORT, -EXH_E_CRC (also
  * a value that cannot be), -EXH_E_VERSION, -EXH_E_UNKNOWN, -EXH_E_STATE (stranger),
- * -EXH_E_STALE (duplicate, reordered, old). A HELLO of a new session is taken whatever its
- * sequence number: the peer has started anew. Reads len_B bytes at most. */
+ * -EXH_E_STALE (duplicate, reordered, old), -EXH_E_RANGE (far). A HELLO of a new session is taken
+ * whatever its sequence number: the peer has started anew. So is, of an open receiver, any HELLO
+ * but the newest packet itself once more. Reads len_B bytes at most. */
 int exh_wire_take(struct exh_wire_rx *rx, struct exh_wire_packet *p, const void *buf,
                   size_t len_B);
 

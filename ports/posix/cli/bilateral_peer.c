@@ -4,10 +4,12 @@
 
 #include "exhand/exhand.h"
 
+#include <math.h>
 #include <string.h>
 
 #define HELLO_EVERY_S 0.5
 #define PARAM_EVERY_S 0.05
+#define QUIET_US      1000000 /* nothing heard for so long: any HELLO begins anew */
 
 double peer_gap_m(const struct exh_wire_plane *p, const int32_t tip_m_q30[3])
 {
@@ -142,6 +144,8 @@ void peer_frame(void *ctx, struct sim_link *link, double t_s)
     int n, there;
     if (p->cfg.again_s > 0 && t_s >= p->cfg.again_s && !p->born_again) { start_anew(p); }
     there = t_s >= p->cfg.from_s && t_s < p->cfg.until_s;
+    (void)exh_wire_pass(&p->rx, (uint32_t)fmin(1e6 * (t_s - p->heard_s), 4e9), QUIET_US);
+    p->heard_s = t_s;
     while ((n = sim_link_recv(&link->way[SIM_LINK_OUT], t_s, buf, sizeof buf)) > 0) {
         if (there) { take(p, buf, (size_t)n); }
     }

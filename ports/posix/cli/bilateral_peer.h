@@ -46,6 +46,7 @@ struct peer {
     struct exh_wire_state state;
     uint32_t echo_seq, echo_stamp_us;
     double hello_s, param_s;       /* when the last went out                     */
+    double heard_s;                /* when it last looked what came              */
     unsigned acked, refused;       /* masks of parameters                       */
     uint64_t frames, answers;
     int told;                      /* a state has come                          */

@@ -9,7 +9,8 @@ from .signal import VALUES, Params
 HELLO, TELL, PLANES, PARAM, ACK = range(1, 6)
 LENGTH = {HELLO: 9, TELL: 214, PLANES: 209, PARAM: 8, ACK: 14}
 MASKS = {TELL: (4, 6, 7), PLANES: (8,)}
-COUNTS = "accepted missing duplicate reordered old stranger corrupt version unknown".split()
+COUNTS = "accepted missing duplicate reordered old stranger corrupt version unknown far silences".split()
+AHEAD, QUIET = 1 << 16, 1000000
 
 
 def sealed(head):
@@ -18,7 +19,7 @@ def sealed(head):
 
 def may_be(kind, body):
     """1 if the payload's values can be."""
-    if kind == HELLO and body[0] > 1 or any(body[i] > 31 for i in MASKS.get(kind, ())):
+    if kind == HELLO and body[0] > 1 or kind == TELL and body[5] > 2 or any(body[i] > 31 for i in MASKS.get(kind, ())):
         return 0
     if kind == PLANES:
         told = [body[9 + 40 * f] for f in range(5)]
@@ -44,10 +45,10 @@ class Sender:
 
 
 class Receiver:
-    pack = Struct("<Q12I").pack
+    pack = Struct("<Q16I").pack
 
     def __init__(self):
-        self.seen = self.seq = self.session = self.former = 0
+        self.seen = self.seq = self.session = self.former = self.quiet = self.open = 0
         self.count = dict.fromkeys(COUNTS, 0)
 
     def wrong(self, name, err):
@@ -67,23 +68,38 @@ class Receiver:
             return self.wrong("unknown", UNKNOWN)
         if n != LENGTH[kind] or not may_be(kind, p[18:-4]):
             return self.wrong("corrupt", CRC)
-        if session == self.session:
-            return self.newer(kind, seq)
-        if session == self.former:
-            return self.wrong("old", STALE)
-        if kind != HELLO:
-            return self.wrong("stranger", STATE)
-        self.former, self.session, self.seq, self.seen = self.session, session, seq, (1 << 64) - 1
+        ahead, same = seq - self.seq & M32, session == self.session
+        if same and 1 <= ahead <= AHEAD:
+            self.seq, self.seen = seq, (self.seen << min(ahead, 64) | 1) & (1 << 64) - 1
+            self.count["missing"] = self.count["missing"] + ahead - 1 & M32
+            return self.accepted(kind)
+        if kind == HELLO and (self.open and not (same and ahead == 0) or session not in (self.session, self.former)):
+            if not same:
+                self.former = self.session
+            self.session, self.seq, self.seen = session, seq, (1 << 64) - 1
+            return self.accepted(kind)
+        if same:
+            return self.not_next(ahead)
+        return self.wrong("old", STALE) if session == self.former else self.wrong("stranger", STATE)
+
+    def accepted(self, kind):
         self.count["accepted"] += 1
+        self.quiet = self.open = 0
         return kind
 
-    def newer(self, kind, seq):
-        ahead, count = seq - self.seq & M32, self.count
-        if 1 <= ahead < 1 << 31:
-            self.seq, self.seen = seq, (self.seen << min(ahead, 64) | 1) & (1 << 64) - 1
-            count["accepted"] += 1
-            count["missing"] = count["missing"] + ahead - 1 & M32
-            return kind
+    def wait(self, time):
+        was = self.open
+        if self.session == 0:
+            return 0
+        self.quiet = min(self.quiet + time, M32)
+        self.open = int(self.quiet >= QUIET)
+        self.count["silences"] += self.open > was
+        return int(self.open > was)
+
+    def not_next(self, ahead):
+        count = self.count
+        if ahead and ahead < 1 << 31:
+            return self.wrong("far", RANGE)
         back = -ahead & M32
         if back >= 64:
             return self.wrong("old", STALE)
@@ -94,7 +110,7 @@ class Receiver:
         return self.wrong("reordered", STALE)
 
     def state(self):
-        return self.pack(self.seen, self.seq, self.session, self.former, *(self.count[c] for c in COUNTS))
+        return self.pack(self.seen, self.seq, self.session, self.former, self.quiet, self.open, *(self.count[c] for c in COUNTS))
 
 
 # --- stimuli ---
@@ -115,6 +131,8 @@ def any_body(rng, kind):
         body[0] &= 1
     for i in MASKS.get(kind, ()):
         body[i] &= 31
+    if kind == TELL:
+        body[5] %= 3
     if kind == PLANES:
         for f in range(5):
             told = rng.draw(0, 2)
@@ -127,8 +145,11 @@ def spoil(rng, kind, body):
     if kind == HELLO:
         body[0] = rng.draw(2, 255)
     elif kind == TELL:
-        i = MASKS[TELL][rng.draw(0, 2)]
-        body[i] |= 32 << rng.draw(0, 2)
+        i = (4, 6, 7, 5)[rng.draw(0, 3)]
+        if i == 5:
+            body[5] = rng.draw(3, 255)
+        else:
+            body[i] |= 32 << rng.draw(0, 2)
     elif kind == PLANES:
         how, f = rng.draw(0, 2), rng.draw(0, 4)
         if how == 0:
@@ -179,6 +200,8 @@ class World:
         kind = rng.draw(1, 5) if rng.draw(0, 31) else rng.draw(6, 255) % 255
         if not self.begun and rng.draw(0, 1):
             kind, self.begun = HELLO, 1
+        if self.rx.open and rng.draw(0, 1):
+            kind = HELLO
         body = any_body(rng, kind)
         if rng.draw(0, 3) == 0:
             spoil(rng, kind, body)
@@ -196,6 +219,8 @@ class World:
         how, n = rng.draw(0, 15), len(self.sent)
         if n == 0:
             return how, b""
+        if self.rx.open and rng.draw(0, 1):
+            return how, self.sent[rng.draw(0, n - 1)]  # of any session, from any time
         if how < 2 or how == 6:
             return how, self.sent[n - 1 - min(n - 1, rng.draw(1, 6 if how == 6 else 80))]
         p = self.sent[-1]
@@ -214,9 +239,9 @@ class World:
 
     def numbered(self, rng, p):
         """The packet with a number near an end of what is taken; the sender goes on from a newer one."""
-        on = (-64, -64, 0, 1 << 31)[rng.draw(0, 3)] + rng.draw(-1, 1)
+        on = (-64, 0, AHEAD, 1 << 31)[rng.draw(0, 3)] + rng.draw(-1, 1)
         seq = self.rx.seq + on & M32
-        if 0 < on < 1 << 31:
+        if 0 < on <= AHEAD:
             self.tx.seq = seq + 1 & M32
         return sealed(p[:10] + pack("<I", seq) + p[14:-4])
 
@@ -247,17 +272,18 @@ def wire(rate):
             w = World(rng)
         if k == 128:
             w.params.locked = 1
+        quiet = w.rx.wait((1, 999999, 1000000, M32)[rng.draw(0, 3)] if rng.draw(0, 7) == 0 else rng.draw(0, 2))
         sent = w.send(rng)
         how, p = w.arriving(rng)
         row = w.taken(p)
         twice = w.rx.take(p) if how == 8 else 0
         if k % 8 == 7:
             w.params.apply()
-        yield ((*sent[:2], how, len(p), *sent[2:], *row, twice, w.values()),
+        yield ((quiet, *sent[:2], how, len(p), *sent[2:], *row, twice, w.values()),
                pack("<II", w.tx.session, w.tx.seq) + w.rx.state())
 
 
-WIRE = ("type cap how len | written crc taken seq stamp_us payload plane trip_us ack_id ack_value ack_result "
+WIRE = ("quiet type cap how len | written crc taken seq stamp_us payload plane trip_us ack_id ack_value ack_result "
         "ack_seq twice values")
 
 MODULES = {"wire": (WIRE, wire)}
