@@ -14,7 +14,7 @@ $(error B="$(B)": the place to build in must be named, and without blanks)
 endif
 
 include ports/$(PORT)/port.mk
-include examples/$(SCENE)/scene.mk
+include $(or $(wildcard examples/$(SCENE)/scene.mk test/hil/$(SCENE)/scene.mk),examples/$(SCENE)/scene.mk)
 
 ifeq ($(origin CC),default)
 CC := $(CROSS)gcc
@@ -329,6 +329,27 @@ endif
 .PHONY: fuzz-corpus
 fuzz-corpus: $(B)/fuzz/plain
 	@$(B)/fuzz/plain --write test/fuzz/corpus
+
+# --- the pc104 image in the loop ----------------------------------------------------------
+
+HIL_TICKS ?= 1000000
+HIL_FEW   ?= 10000
+
+unicorn := $(abspath $(B))/unicorn
+hil_obj := $(patsubst %.c,$(B)/posix/%.o,$(wildcard test/hil/*.c) ports/posix/cli/option.c)
+$(filter $(B)/posix/test/hil/%,$(hil_obj)): PORT_HOSTFLAGS += -isystem $(unicorn)/include
+$(B)/test/hil: $(hil_obj)
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(unicorn)/lib/libunicorn.so.2 -Wl,-rpath,$(unicorn)/lib
+
+## The pc104 images in closed loop under a processor emulator (HIL_TICKS=1000000 HIL_FEW=10000)
+.PHONY: hil
+hil:
+	@B=$(B) test/hil/unicorn.sh
+	@.ci/deps "the pc104 image" i686-linux-gnu-gcc gcc-i686-linux-gnu || exit 3
+	@$(MAKE) --no-print-directory $(if $(V),,-s) $(B)/test/hil
+	@for s in minimal drop bilateral slow; do $(MAKE) --no-print-directory $(if $(V),,-s) PORT=pc104 SCENE=$$s all || exit 1; done
+	@B=$(B) TICKS=$(HIL_TICKS) FEW=$(HIL_FEW) test/hil/hil.sh
 
 # --- the same bits everywhere -----------------------------------------------------------
 

@@ -1,0 +1,2 @@
+SCENE_DESC := test: every hundredth tick takes two and a half periods
+SCENE_SRC  := test/hil/slow/slow.c
