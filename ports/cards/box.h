@@ -25,83 +25,103 @@ enum exh_box_card { EXH_BOX_A, EXH_BOX_B, EXH_BOX_GLOVE, EXH_BOX_CARDS };
 
 /* When what a tick hands over was converted. */
 enum exh_box_when {
-    EXH_BOX_NEVER, /* not at all; its codes are 0                              */
-    EXH_BOX_NOW,   /* in the tick that reads it: the tick waits for the converter */
-    EXH_BOX_LAST   /* begun when the one before was read, while that tick computed: no wait.
-                    * The first of all is read twice                           */
+    EXH_BOX_NEVER, /* not at all: monitors and supply are 0, the glove is absent */
+    EXH_BOX_NOW,   /* in the tick that reads it, which waits for the converter    */
+    EXH_BOX_LAST,  /* begun when the one before was read: no wait while a tick is longer than a
+                    * conversion. The first read waits, and hands over what the second does too:
+                    * the n-th read (n = 0, 1, …) has the input of the tick of read max(n-1, 0) */
+    EXH_BOX_WHENS
 };
 
 struct exh_box_config {
-    uint16_t s526_base[2];
-    uint16_t mm32xat_base;
-    uint8_t fingers;       /* 1: board A alone; 2..5: A and B                  */
-    uint8_t monitor;       /* current monitors, enum exh_box_when              */
-    uint8_t supply;        /* 1: the supply is converted with them             */
-    uint8_t glove;         /* enum exh_box_when; EXH_BOX_NEVER: no glove card   */
-    uint8_t din_invert[2]; /* pins of A, B whose healthy level is 0, bits 0..3 */
-    uint8_t out_invert[2]; /* pins of A, B whose active level is 0, bits 4..7  */
-    uint16_t dac_span_raw; /* codes either side of 0 A that ever go out: the drive ends there */
+    uint16_t s526_base[2];    /* multiples of 0x40, 0x100 .. 0xFFC0               */
+    uint16_t mm32xat_base;    /* a place its jumpers have                         */
+    uint8_t fingers;          /* 1: board A alone; 2..5: A and B                  */
+    uint8_t monitor;          /* current monitors, enum exh_box_when              */
+    uint8_t supply;           /* 1: the supply is converted with them             */
+    uint8_t glove;            /* enum exh_box_when; EXH_BOX_NEVER: its card is not touched */
+    uint8_t din_invert[2];  /* of A, B: input pins 0..3 whose healthy level is 0 */
+    uint8_t out_invert[2]; /* output pins 4..7 whose active level is 0         */
+    uint16_t dac_span_raw;    /* codes either side of 0 A that ever go out        */
     struct exh_s526_par s526;
     struct exh_mm32xat_par mm32xat;
 };
 
-/* Bases 0x2C0, 0x280, 0x300; five fingers, monitors in their own tick, supply, no glove. */
+/* Bases 0x2C0, 0x280, 0x300; five fingers, monitors and supply in their own tick, no glove;
+ * +-12184 codes: +-3.75 V, the drive's whole range. */
 extern const struct exh_box_config exh_box_default;
 
-/* What went wrong, where: "S526 A at 0x02C0: A/D reference 10 V implausible: got …". */
+/* What is looked at in a configuration: fault.at of a configuration that is refused. */
+enum exh_box_row {
+    EXH_BOX_ROW_BASE_A,
+    EXH_BOX_ROW_BASE_B,
+    EXH_BOX_ROW_BASE_GLOVE,
+    EXH_BOX_ROW_OVERLAP, /* of their register blocks                              */
+    EXH_BOX_ROW_FINGERS,
+    EXH_BOX_ROW_MONITOR,
+    EXH_BOX_ROW_GLOVE,
+    EXH_BOX_ROW_SPAN,
+    EXH_BOX_ROW_WAIT, /* a limit of 0, or above 60000 us                          */
+    EXH_BOX_ROW_SCAN, /* channels, interval, lost_limit                           */
+    EXH_BOX_ROWS
+};
+
+/* What went wrong, and where. */
 struct exh_box_error {
-    int16_t code;        /* 0: nothing; else -EXH_E_ABSENT, -EXH_E_IO, -EXH_E_RANGE */
-    uint8_t card;        /* enum exh_box_card; EXH_BOX_CARDS: the configuration */
-    uint8_t open;        /* 1: while opening, 0: in a tick                      */
-    uint16_t base;       /* of that card                                       */
+    int16_t code;  /* 0: nothing; else -EXH_E_ABSENT, -EXH_E_IO, -EXH_E_RANGE     */
+    uint8_t card;  /* enum exh_box_card; EXH_BOX_CARDS: the configuration         */
+    uint16_t base; /* of that card                                                */
     struct exh_card_fault fault;
+};
+
+struct exh_box_report {
+    uint8_t used[EXH_BOX_CARDS];               /* 0: not touched                  */
+    uint16_t base[EXH_BOX_CARDS];
+    struct exh_box_error error[EXH_BOX_CARDS]; /* code 0: passed                  */
+    struct exh_s526_id s526[2];                /* of those that passed            */
 };
 
 /* What happened and was dealt with; nothing of it is an error alone. */
 struct exh_box_counts {
-    uint32_t ticks;             /* exh_box_read_drive() done                    */
-    uint32_t clamped;           /* D/A codes beyond dac_span_raw                */
-    uint32_t quad[EXH_FINGERS]; /* illegal transitions an encoder input captured */
-    uint32_t glove_frames;      /* scans handed over                            */
+    uint32_t reads;             /* exh_box_read_drive() that ended well           */
+    uint32_t clamped;           /* D/A codes beyond dac_span_raw                  */
+    uint32_t overtaken;         /* writes into which exh_box_safe() fell          */
+    uint32_t quad[EXH_FINGERS]; /* illegal transitions an encoder input captured  */
+    uint32_t glove_frames;      /* scans handed over                              */
     uint32_t glove_waits;       /* asked for while the scan still ran: the last again */
-    uint32_t glove_short;       /* scans with samples missing,                  */
-    uint32_t glove_long;        /* with too many,                               */
-    uint32_t glove_overflow;    /* and FIFOs that overflowed: thrown away, FIFO reset */
-    uint32_t safe;              /* calls of exh_box_safe()                      */
+    uint32_t glove_short;       /* scans with samples missing,                    */
+    uint32_t glove_long;        /* with too many,                                 */
+    uint32_t glove_overflow;    /* from a FIFO that overflowed: dropped, FIFO reset */
 };
 
-struct exh_box_report {
-    struct exh_box_error error[EXH_BOX_CARDS]; /* of each card; code 0: it passed */
-    uint8_t used[EXH_BOX_CARDS];               /* 0: not touched               */
-    struct exh_s526_id s526[2];
-    struct exh_mm32xat_id mm32xat;
-};
-
-/* Finds, tests and calibrates the cards that the configuration uses, all of them, so that the
- * report names all that is wrong; outputs zero, drives off. 0 or the first card's
- * -EXH_E_ABSENT, -EXH_E_IO; -EXH_E_RANGE: the configuration. May be called again. report may be
- * NULL. */
+/* Finds, tests and calibrates all cards that the configuration uses, so that the report names
+ * all that is wrong; outputs at zero, drives off. 0 or the first card's -EXH_E_ABSENT,
+ * -EXH_E_IO; -EXH_E_RANGE: the configuration. May be called again. report may be NULL. */
 int exh_box_open(const struct exh_box_config *config, struct exh_box_report *report);
 
-/* As exh_board_read_drive(), …write_drive(), …read_glove(). On an error outputs are safe before
- * they return -EXH_E_IO, and stay so, whatever is written, until the box is opened anew;
- * exh_box_error() has the cause. -EXH_E_ABSENT: not opened, or a glove without its card. */
+/* As exh_board_read_drive(), …write_drive(), …read_glove(). On an error the outputs are safe
+ * before they return -EXH_E_IO, and stay so, whatever is written, until the box is opened anew;
+ * exh_box_error() has the cause. -EXH_E_ABSENT: not open, or a glove that is not used. */
 int exh_box_read_drive(struct exh_drive_in *in);
 int exh_box_write_drive(const struct exh_drive_out *out);
 int exh_box_read_glove(struct exh_glove_in *in);
 
-/* Drives disabled, D/A at 0 A: any time, from any context, any number of times, also between
- * any two accesses of the others. EXH_BOX_SAFE_ACCESSES port accesses a board, no wait. Touches
- * no port before exh_box_open() has found the board's signature there. */
+/* Drives disabled, D/A at 0 V: any time, from any context, any number of times, also between
+ * any two accesses of the others. EXH_S526_SAFE_ACCESSES port accesses a board, no wait. Boards
+ * whose signature was never seen are not written to. */
 void exh_box_safe(void);
 
-const struct exh_box_error *exh_box_error(void); /* the first since opened; code 0: none */
-const struct exh_box_counts *exh_box_counts(void);
+/* The first since it was opened; code 0: none. */
+const struct exh_box_error *exh_box_error(void);
 
-/* "S526 A" and the like; never NULL. */
+/* Up to now. */
+void exh_box_counts(struct exh_box_counts *counts);
+
+/* "S526 A", …; never NULL. */
 const char *exh_box_card_text(unsigned card);
 
-/* One line without its end into text, always terminated; characters without it. */
+/* "S526 B at 0x0280: detect: no answer, all ones" and the like into text, always terminated where
+ * cap_B > 0; its length without the end. */
 size_t exh_box_error_text(char *text, size_t cap_B, const struct exh_box_error *e);
 
 #endif

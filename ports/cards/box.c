@@ -1,0 +1,464 @@
+/* Configuration, wiring, opening and the tick of the box. Text is text.c. */
+#include "box.h"
+
+#include "exhand/error.h"
+
+#include <stddef.h>
+
+/* --- wiring: this is all of it (docs/CARDS.md) --- */
+
+struct place {
+    uint8_t card, at; /* at: counter and D/A and A/D channel, or pin, or A/D channel */
+};
+struct wiring {
+    struct place axis[EXH_FINGERS], ready[EXH_FINGERS], enable[EXH_FINGERS];
+    struct place estop, deadman, alive, supply;
+};
+
+#define A(n) \
+    { \
+        EXH_BOX_A, n \
+    }
+#define B(n) \
+    { \
+        EXH_BOX_B, n \
+    }
+static const struct wiring one_finger = {
+    .axis = {A(0)},
+    .ready = {A(0)},
+    .enable = {A(4)},
+    .estop = A(1),
+    .deadman = A(2),
+    .alive = A(5),
+    .supply = A(4),
+};
+static const struct wiring all_fingers = {
+    .axis = {A(0), A(1), A(2), A(3), B(0)},
+    .ready = {A(0), A(1), A(2), A(3), B(0)},
+    .enable = {A(4), A(5), A(6), A(7), B(4)},
+    .estop = B(1),
+    .deadman = B(2),
+    .alive = B(5),
+    .supply = B(4),
+};
+#undef A
+#undef B
+
+const struct exh_box_config exh_box_default = {
+    .s526_base = {0x2C0, 0x280},
+    .mm32xat_base = 0x300,
+    .fingers = EXH_FINGERS,
+    .monitor = EXH_BOX_NOW,
+    .supply = 1,
+    .glove = EXH_BOX_NEVER,
+    .dac_span_raw = 12184,
+    .s526 = EXH_S526_PAR_DEFAULT,
+    .mm32xat = EXH_MM32XAT_PAR_DEFAULT,
+};
+
+static struct {
+    struct exh_box_config cfg;
+    const struct wiring *wiring;
+    struct exh_s526 s526[2];
+    struct exh_mm32xat mm32xat;
+    unsigned boards; /* S526 in use                                         */
+    unsigned axes[2]; /* fingers on each                                     */
+    uint8_t lines_off[2]; /* output pins with nothing active                     */
+    uint8_t open, started; /* started: an A/D scan begun by the last read          */
+    struct exh_box_error error;
+    struct exh_box_counts counts;
+    int16_t frame[EXH_MM32XAT_CHANNELS]; /* the last of the glove                 */
+    uint32_t frame_read, scan_read; /* counts.reads when it and the running scan began */
+    uint8_t framed;
+    volatile uint32_t safe_calls;
+} box;
+
+void exh_box_safe(void)
+{
+    box.safe_calls++;
+    for (unsigned i = 0; i < 2; i++) {
+        if (box.s526[i].live) { exh_s526_safe(&box.s526[i]); }
+    }
+}
+
+/* Outputs first, then the words. The first fault stays. */
+static int fail(unsigned card, uint16_t base, int code, const struct exh_card_fault *f)
+{
+    exh_box_safe();
+    if (box.error.code == 0) {
+        box.error.code = (int16_t)code;
+        box.error.card = (uint8_t)card;
+        box.error.base = base;
+        box.error.fault = *f;
+    }
+    return code;
+}
+
+/* --- configuration --- */
+
+static int overlap(uint16_t a, uint16_t b, unsigned size_b)
+{
+    return a < b + size_b && b < a + 0x40u;
+}
+
+static int base_ok(uint16_t base)
+{
+    return (base & 0x3Fu) == 0 && base >= 0x100;
+}
+
+static int glove_base_ok(uint16_t base)
+{
+    static const uint16_t jumpers[] = {0x100, 0x140, 0x180, 0x200, 0x280, 0x300, 0x340, 0x380};
+    for (unsigned i = 0; i < sizeof jumpers / sizeof jumpers[0]; i++) {
+        if (base == jumpers[i]) { return 1; }
+    }
+    return 0;
+}
+
+static int bases(const struct exh_box_config *c, int32_t *value)
+{
+    const int second = c->fingers > 1, glove = c->glove != EXH_BOX_NEVER;
+    *value = c->s526_base[0];
+    if (!base_ok(c->s526_base[0])) { return EXH_BOX_ROW_BASE_A; }
+    if (second) {
+        *value = c->s526_base[1];
+        if (!base_ok(c->s526_base[1])) { return EXH_BOX_ROW_BASE_B; }
+        if (overlap(c->s526_base[0], c->s526_base[1], 0x40)) { return EXH_BOX_ROW_OVERLAP; }
+    }
+    if (!glove) { return EXH_BOX_ROWS; }
+    *value = c->mm32xat_base;
+    if (!glove_base_ok(c->mm32xat_base)) { return EXH_BOX_ROW_BASE_GLOVE; }
+    if (overlap(c->s526_base[0], c->mm32xat_base, 0x10) ||
+        (second && overlap(c->s526_base[1], c->mm32xat_base, 0x10))) {
+        return EXH_BOX_ROW_OVERLAP;
+    }
+    return EXH_BOX_ROWS;
+}
+
+static int wait_ok(uint32_t us, int32_t *value)
+{
+    *value = (int32_t)us;
+    return us >= 1 && us <= 60000;
+}
+
+/* The row that is wrong, with its value, or EXH_BOX_ROWS. */
+static int wrong(const struct exh_box_config *c, int32_t *value)
+{
+    const struct exh_mm32xat_par *m = &c->mm32xat;
+    *value = c->fingers;
+    if (c->fingers < 1 || c->fingers > EXH_FINGERS) { return EXH_BOX_ROW_FINGERS; }
+    *value = c->monitor;
+    if (c->monitor >= EXH_BOX_WHENS) { return EXH_BOX_ROW_MONITOR; }
+    *value = c->glove;
+    if (c->glove >= EXH_BOX_WHENS) { return EXH_BOX_ROW_GLOVE; }
+    *value = c->dac_span_raw;
+    if (c->dac_span_raw > INT16_MAX) { return EXH_BOX_ROW_SPAN; }
+    if (!wait_ok(c->s526.ad_wait_us, value) || !wait_ok(c->s526.da_wait_us, value) ||
+        !wait_ok(c->s526.ee_wait_us, value)) {
+        return EXH_BOX_ROW_WAIT;
+    }
+    if (c->glove != EXH_BOX_NEVER) {
+        if (!wait_ok(m->scan_wait_us, value) || !wait_ok(m->settle_us, value) ||
+            !wait_ok(m->reset_us, value) || !wait_ok(m->set_us, value)) {
+            return EXH_BOX_ROW_WAIT;
+        }
+        *value = m->channels;
+        if (m->channels < EXH_GLOVE_SENSORS || m->channels > EXH_MM32XAT_CHANNELS ||
+            m->interval > 3 || m->lost_limit == 0) {
+            return EXH_BOX_ROW_SCAN;
+        }
+    }
+    return bases(c, value);
+}
+
+/* --- opening --- */
+
+static void wire(const struct exh_box_config *c)
+{
+    const struct wiring *w = c->fingers == 1 ? &one_finger : &all_fingers;
+    box.cfg = *c;
+    box.wiring = w;
+    box.boards = c->fingers == 1 ? 1 : 2;
+    for (unsigned i = 0; i < 2; i++) {
+        box.axes[i] = 0;
+        box.lines_off[i] = c->out_invert[i] & 0xF0u;
+    }
+    for (unsigned i = 0; i < c->fingers; i++) { box.axes[w->axis[i].card]++; }
+}
+
+/* A/D channels of a board: its fingers' monitors, and the supply where it is wired. */
+static unsigned ad_mask(unsigned board)
+{
+    unsigned mask = 0;
+    if (box.cfg.monitor == EXH_BOX_NEVER) { return 0; }
+    for (unsigned i = 0; i < box.cfg.fingers; i++) {
+        if (box.wiring->axis[i].card == board) { mask |= 1u << box.wiring->axis[i].at; }
+    }
+    if (box.cfg.supply && box.wiring->supply.card == board) { mask |= 1u << box.wiring->supply.at; }
+    return mask;
+}
+
+static void note(struct exh_box_report *r, unsigned card, uint16_t base, int err,
+                 const struct exh_card_fault *f)
+{
+    if (err < 0) { (void)fail(card, base, err, f); }
+    if (r == NULL) { return; }
+    r->used[card] = 1;
+    r->base[card] = base;
+    r->error[card].code = (int16_t)err;
+    r->error[card].card = (uint8_t)card;
+    r->error[card].base = base;
+    if (err < 0) { r->error[card].fault = *f; }
+}
+
+static void forget(struct exh_box_report *report)
+{
+    static const struct exh_box_counts no_counts;
+    static const struct exh_box_error no_error;
+    exh_box_safe();
+    box.open = box.started = box.framed = 0;
+    box.counts = no_counts;
+    box.error = no_error;
+    box.frame_read = box.scan_read = 0;
+    for (unsigned i = 0; i < 2; i++) { box.s526[i].live = 0; }
+    if (report) {
+        static const struct exh_box_report nothing;
+        *report = nothing;
+    }
+}
+
+int exh_box_open(const struct exh_box_config *config, struct exh_box_report *report)
+{
+    struct exh_card_fault f = {EXH_CARD_CONFIG, 0, 0, 0, 0, 0};
+    int32_t value = 0;
+    int row;
+    forget(report);
+    row = wrong(config, &value);
+    if (row != EXH_BOX_ROWS) {
+        (void)exh_card_fault(&f, EXH_CARD_BAD_VALUE, (unsigned)row, value, 0, 0);
+        return fail(EXH_BOX_CARDS, 0, -EXH_E_RANGE, &f);
+    }
+    wire(config);
+    for (unsigned i = 0; i < box.boards; i++) {
+        const int err = exh_s526_open(&box.s526[i], config->s526_base[i], ad_mask(i),
+                                      box.lines_off[i], &config->s526, &f);
+        note(report, i, config->s526_base[i], err, &f);
+        if (report) { report->s526[i] = box.s526[i].id; }
+    }
+    if (config->glove != EXH_BOX_NEVER) {
+        const int err = exh_mm32xat_open(&box.mm32xat, config->mm32xat_base, &config->mm32xat, &f);
+        note(report, EXH_BOX_GLOVE, config->mm32xat_base, err, &f);
+    }
+    box.open = box.error.code == 0;
+    return box.error.code;
+}
+
+/* --- inputs --- */
+
+static void ad_start(void)
+{
+    for (unsigned i = 0; i < box.boards; i++) {
+        if (box.s526[i].ad_mask) { exh_s526_ad_start(&box.s526[i]); }
+    }
+    box.started = 1;
+}
+
+static void counts_in(struct exh_drive_in *in)
+{
+    for (unsigned i = 0; i < box.cfg.fingers; i++) {
+        const struct place p = box.wiring->axis[i];
+        in->enc_raw[i] = exh_s526_count(&box.s526[p.card], p.at);
+    }
+}
+
+static uint32_t level(const uint8_t *pins, struct place p)
+{
+    return pins[p.card] >> p.at & 1u;
+}
+
+static uint32_t din(const uint8_t *pins)
+{
+    const struct wiring *w = box.wiring;
+    uint32_t bits =
+        level(pins, w->estop) * EXH_DIN_ESTOP | level(pins, w->deadman) * EXH_DIN_DEADMAN;
+    for (unsigned i = 0; i < box.cfg.fingers; i++) {
+        bits |= level(pins, w->ready[i]) * (uint32_t)EXH_DIN_DRIVE0 << i;
+    }
+    return bits;
+}
+
+/* Lines and quadrature errors of one board. */
+static int lines_in(unsigned i, uint8_t *pins, struct exh_card_fault *f)
+{
+    int err = exh_s526_lines(&box.s526[i], pins, f);
+    *pins ^= box.cfg.din_invert[i];
+    if (err == 0 && box.cfg.s526.quad_check && box.axes[i]) {
+        err = exh_s526_quad(&box.s526[i], box.axes[i], f);
+    }
+    return err;
+}
+
+/* Results of the scan; a board without one is asked whether it is still there. What it answered
+ * before, it answered if it is. */
+static int monitors_in(unsigned i, int16_t code[2][EXH_S526_AD], struct exh_card_fault *f)
+{
+    return box.s526[i].ad_mask ? exh_s526_ad_read(&box.s526[i], code[i], f)
+                               : exh_s526_alive(&box.s526[i], f);
+}
+
+static void monitors_out(struct exh_drive_in *in, int16_t code[2][EXH_S526_AD])
+{
+    const struct place s = box.wiring->supply;
+    for (unsigned i = 0; i < box.cfg.fingers; i++) {
+        in->mon_raw[i] = code[box.wiring->axis[i].card][box.wiring->axis[i].at];
+    }
+    in->supply_raw = code[s.card][s.at];
+}
+
+/* The conversion runs while the counters are read. */
+int exh_box_read_drive(struct exh_drive_in *in)
+{
+    static const struct exh_drive_in nothing;
+    struct exh_card_fault f = {0, 0, 0, 0, 0, 0};
+    int16_t code[2][EXH_S526_AD] = {{0}};
+    uint8_t pins[2] = {0, 0};
+    *in = nothing;
+    if (box.error.code) { return -EXH_E_IO; }
+    if (!box.open) { return -EXH_E_ABSENT; }
+    if (!box.started) { ad_start(); }
+    counts_in(in);
+    for (unsigned i = 0; i < box.boards; i++) {
+        const int err = lines_in(i, &pins[i], &f);
+        if (err < 0) { return fail(i, box.s526[i].base, err, &f); }
+    }
+    for (unsigned i = 0; i < box.boards; i++) {
+        const int err = monitors_in(i, code, &f);
+        if (err < 0) { return fail(i, box.s526[i].base, err, &f); }
+    }
+    box.started = 0;
+    if (box.cfg.monitor == EXH_BOX_LAST) { ad_start(); }
+    in->din = din(pins);
+    monitors_out(in, code);
+    box.counts.reads++;
+    return 0;
+}
+
+/* --- outputs --- */
+
+static uint16_t clamped(uint16_t raw)
+{
+    const int32_t zero = EXH_S526_DA_ZERO, span = box.cfg.dac_span_raw;
+    if (raw >= zero - span && raw <= zero + span) { return raw; }
+    box.counts.clamped++;
+    return (uint16_t)(raw < zero ? zero - span : zero + span);
+}
+
+static void put_lines(const struct exh_drive_out *out)
+{
+    const struct wiring *w = box.wiring;
+    unsigned lines[2] = {0, 0};
+    for (unsigned i = 0; i < box.cfg.fingers; i++) {
+        lines[w->enable[i].card] |= (out->enable >> i & 1u) << w->enable[i].at;
+    }
+    lines[w->alive.card] |= (out->alive & 1u) << w->alive.at;
+    for (unsigned i = 0; i < box.boards; i++) {
+        exh_s526_lines_put(&box.s526[i], lines[i] ^ box.lines_off[i]);
+    }
+}
+
+/* exh_box_safe() may fall between any two accesses here. What it put is then overwritten, for
+ * as long as it takes to see that: it is asked for again before anything is put out, and after. */
+int exh_box_write_drive(const struct exh_drive_out *out)
+{
+    const uint32_t calls = box.safe_calls;
+    if (box.error.code) {
+        exh_box_safe();
+        return -EXH_E_IO;
+    }
+    if (!box.open) { return -EXH_E_ABSENT; }
+    for (unsigned i = 0; i < box.cfg.fingers; i++) {
+        const struct place p = box.wiring->axis[i];
+        exh_s526_da_put(&box.s526[p.card], p.at, clamped(out->dac_raw[i]));
+    }
+    if (box.safe_calls == calls) {
+        for (unsigned i = 0; i < box.boards; i++) {
+            if (box.axes[i]) { exh_s526_da_start(&box.s526[i]); }
+        }
+        put_lines(out);
+    }
+    if (box.safe_calls != calls) {
+        box.counts.overtaken++;
+        exh_box_safe();
+    }
+    return 0;
+}
+
+/* --- glove --- */
+
+static void glove_start(void)
+{
+    exh_mm32xat_start(&box.mm32xat);
+    box.scan_read = box.counts.reads;
+}
+
+/* Takes the scan that runs, if it has ended or is worth waiting for. */
+static int glove_take(struct exh_card_fault *f)
+{
+    struct exh_mm32xat *m = &box.mm32xat;
+    int got;
+    if (box.cfg.glove == EXH_BOX_LAST && m->running) {
+        got = exh_mm32xat_done(m, f);
+        if (got == 0) { box.counts.glove_waits++; }
+        if (got <= 0) { return got; }
+    } else {
+        glove_start();
+        got = exh_mm32xat_wait(m, f);
+        if (got < 0) { return got; }
+    }
+    got = exh_mm32xat_read(m, box.frame, f);
+    if (got < 0) { return got; }
+    if (got > 0) {
+        box.frame_read = box.scan_read;
+        box.framed = 1;
+        box.counts.glove_frames++;
+    }
+    if (box.cfg.glove == EXH_BOX_LAST) { glove_start(); }
+    return 0;
+}
+
+int exh_box_read_glove(struct exh_glove_in *in)
+{
+    struct exh_card_fault f = {EXH_CARD_SCAN, 0, 0, 0, 0, 0};
+    uint32_t age;
+    int err;
+    if (box.error.code) { return -EXH_E_IO; }
+    if (!box.open || box.cfg.glove == EXH_BOX_NEVER) { return -EXH_E_ABSENT; }
+    err = glove_take(&f);
+    if (err < 0) { return fail(EXH_BOX_GLOVE, box.mm32xat.base, err, &f); }
+    age = box.framed ? box.counts.reads - box.frame_read : UINT16_MAX;
+    for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) { in->raw[i] = box.framed ? box.frame[i] : 0; }
+    in->age_ticks = (uint16_t)(age < UINT16_MAX ? age : UINT16_MAX);
+    return 0;
+}
+
+/* --- what happened --- */
+
+const struct exh_box_error *exh_box_error(void)
+{
+    return &box.error;
+}
+
+void exh_box_counts(struct exh_box_counts *counts)
+{
+    *counts = box.counts;
+    for (unsigned i = 0; i < EXH_FINGERS; i++) { counts->quad[i] = 0; }
+    if (box.wiring) {
+        for (unsigned i = 0; i < box.cfg.fingers; i++) {
+            const struct place p = box.wiring->axis[i];
+            counts->quad[i] = box.s526[p.card].quad[p.at];
+        }
+    }
+    counts->glove_short = box.mm32xat.shorts;
+    counts->glove_long = box.mm32xat.longs;
+    counts->glove_overflow = box.mm32xat.overflows;
+}

@@ -1,0 +1,164 @@
+/* What a tick needs of the card. Opening it is s526_open.c. */
+#include "s526_reg.h"
+#include "wait.h"
+
+#include "exhand/error.h"
+#include "exhand/fix.h"
+
+/* So many updates in a row may end without their flag: one may still be under way when the
+ * flags are looked at, and one lost to a flag cleared in the same instant. */
+#define DA_UNSEEN 3
+
+int s526_wait(const struct exh_s526 *s, unsigned flags, uint32_t limit_us, unsigned what,
+              unsigned at, uint16_t *isr, struct exh_card_fault *f)
+{
+    struct exh_wait w = exh_wait_us(limit_us);
+    do {
+        *isr = s526_in(s, S526_ISR);
+        /* All flags at once are no flags: the EEPROM's is only ever set where it is waited for. */
+        if (*isr == S526_ALL_ONES) { return exh_card_fault(f, EXH_CARD_EMPTY, at, *isr, 0, 0); }
+        if (*isr & flags) { return 0; }
+    } while (exh_wait_more(&w));
+    return exh_card_fault(f, what, at, *isr, 0, 0);
+}
+
+/* --- inputs --- */
+
+/* The read of the low word latches all 24 bits. */
+uint32_t exh_s526_count(const struct exh_s526 *s, unsigned axis)
+{
+    const uint32_t low = s526_in(s, s526_counter(axis, S526_LOW));
+    const uint32_t high = s526_in(s, s526_counter(axis, S526_HIGH)) & 0xFFu;
+    return high << 16 | low;
+}
+
+int exh_s526_quad(struct exh_s526 *s, unsigned axes, struct exh_card_fault *f)
+{
+    const unsigned axis = s->quad_next < axes ? s->quad_next : 0;
+    const unsigned at = s526_counter(axis, S526_CONTROL);
+    s->quad_next = (uint8_t)(axis + 1);
+    if (!(s526_in(s, at) & S526_ECAP)) { return 0; }
+    s526_out(s, at, S526_ECAP);
+    s->quad[axis]++;
+    f->phase = EXH_CARD_INPUT;
+    return s->quad[axis] <= s->par.quad_limit
+               ? 0
+               : exh_card_fault(f, EXH_CARD_QUADRATURE, axis, (int32_t)s->quad[axis], 0,
+                                s->par.quad_limit);
+}
+
+int exh_s526_alive(const struct exh_s526 *s, struct exh_card_fault *f)
+{
+    const uint16_t got = s526_in(s, S526_EEC);
+    f->phase = EXH_CARD_INPUT;
+    return got == s->id.signature
+               ? 0
+               : exh_card_fault(f, got == S526_ALL_ONES ? EXH_CARD_EMPTY : EXH_CARD_SIGNATURE, 0,
+                                got, s->id.signature, s->id.signature);
+}
+
+int exh_s526_lines(const struct exh_s526 *s, uint8_t *pins, struct exh_card_fault *f)
+{
+    const uint8_t before = s->lines;
+    const uint8_t got = (uint8_t)(s526_in(s, S526_DIO) & 0xFFu);
+    const uint8_t lines = got & S526_DIO_LINES;
+    *pins = got;
+    f->phase = EXH_CARD_INPUT;
+    /* They may have been made safe before this read, or after it. */
+    return !s->par.line_check || lines == before || lines == s->lines
+               ? 0
+               : exh_card_fault(f, EXH_CARD_LINES, 0, lines, before, before);
+}
+
+static unsigned lowest(unsigned mask)
+{
+    unsigned k = 0;
+    while (!(mask >> k & 1u)) { k++; }
+    return k;
+}
+
+/* The word that starts also selects the result that is read first. */
+void exh_s526_ad_start(const struct exh_s526 *s)
+{
+    s526_out(s, S526_ADC,
+             (s->par.settle ? S526_AD_SETTLE : 0u) | s->ad_mask * (unsigned)S526_AD_CONVERT0 |
+                 lowest(s->ad_mask) << 1 | S526_AD_START);
+}
+
+/* An update since the last look must have ended by now; the flags say so in the same read. */
+static int da_done(struct exh_s526 *s, uint16_t isr, struct exh_card_fault *f)
+{
+    if (isr & S526_DA_DONE) { s->da_sent = 0; }
+    return !s->par.da_check || s->da_sent < DA_UNSEEN
+               ? 0
+               : exh_card_fault(f, EXH_CARD_DA_TIMEOUT, 0, isr, 0, 0);
+}
+
+int exh_s526_ad_read(struct exh_s526 *s, int16_t *code, struct exh_card_fault *f)
+{
+    const unsigned first = lowest(s->ad_mask);
+    uint16_t isr;
+    int err;
+    f->phase = EXH_CARD_MONITOR;
+    err = s526_wait(s, S526_AD_DONE, s->par.ad_wait_us, EXH_CARD_AD_TIMEOUT, 0, &isr, f);
+    if (err < 0) { return err; }
+    /* Only what was seen: an update that ends between read and write keeps its flag. */
+    s526_out(s, S526_ISR, isr & (S526_AD_DONE | S526_DA_DONE));
+    for (unsigned k = first; k < EXH_S526_AD; k++) {
+        if (!(s->ad_mask >> k & 1u)) { continue; }
+        if (k > first) { s526_out(s, S526_ADC, k << 1); }
+        code[k] = exh_s526_ad_code(&s->id.ad, s526_result(s));
+    }
+    return da_done(s, isr, f);
+}
+
+/* --- outputs --- */
+
+void exh_s526_da_put(const struct exh_s526 *s, unsigned channel, uint16_t nominal)
+{
+    s526_out(s, S526_DAC, channel << 1);
+    s526_out(s, S526_ADD, exh_s526_da_code(&s->id.da[channel], nominal));
+}
+
+void exh_s526_da_start(struct exh_s526 *s)
+{
+    if (s->da_sent < DA_UNSEEN) { s->da_sent++; }
+    s526_out(s, S526_DAC, S526_DA_START);
+}
+
+void exh_s526_lines_put(struct exh_s526 *s, unsigned lines)
+{
+    s->lines = (uint8_t)(lines & S526_DIO_LINES);
+    s526_out(s, S526_DIO, S526_DIO_OUT4 | s->lines);
+}
+
+/* The drives first: one access takes their enables. Then twice the same: the first update may
+ * fall into one that is under way; when the second comes, that one is over. */
+void exh_s526_safe(struct exh_s526 *s)
+{
+    s->lines = s->lines_off;
+    for (int pass = 0; pass < 2; pass++) {
+        s526_out(s, S526_DIO, S526_DIO_OUT4 | s->lines_off);
+        for (unsigned k = 0; k < EXH_S526_AXES; k++) {
+            s526_out(s, S526_DAC, k << 1);
+            s526_out(s, S526_ADD, s->da_zero_raw[k]);
+        }
+        s526_out(s, S526_DAC, S526_DA_START);
+    }
+}
+
+/* --- calibration --- */
+
+uint16_t exh_s526_da_code(const struct exh_s526_da *da, uint16_t nominal)
+{
+    const int64_t code_q30 = (int64_t)da->gain_q30 * ((int32_t)nominal - EXH_S526_DA_ZERO) +
+                             (int64_t)da->zero_raw_q14 * (1 << (30 - 14));
+    return (uint16_t)exh_clamp(exh_shr_round(code_q30, 30) + EXH_S526_DA_ZERO, 0, UINT16_MAX);
+}
+
+int16_t exh_s526_ad_code(const struct exh_s526_ad *ad, int16_t code)
+{
+    const int64_t from_zero_q14 = (int64_t)code * (1 << 14) - ad->zero_raw_q14;
+    return (int16_t)exh_clamp(exh_shr_round(from_zero_q14 * ad->gain_q30, 14 + 30), INT16_MIN,
+                              INT16_MAX);
+}

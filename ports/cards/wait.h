@@ -1,0 +1,34 @@
+/* A wait that ends: by time, and by polls where time stands still. */
+#ifndef CARDS_WAIT_H
+#define CARDS_WAIT_H
+
+#include "io.h"
+
+/* A poll is an access to the ISA bus, 0.4 us at the least: on a machine whose time runs, time
+ * ends a wait; where it stands, this many polls do, after 6 to 30 times as long. */
+#define EXH_WAIT_POLLS_PER_US 16u
+
+struct exh_wait {
+    uint32_t limit_us, start_us, polls;
+};
+
+static inline struct exh_wait exh_wait_us(uint32_t limit_us)
+{
+    const struct exh_wait w = {limit_us, 0, 0};
+    return w;
+}
+
+/* After a poll that found nothing: is there to be another? Between two looks at the time lies
+ * a poll, so whoever was held up in between is not told that the card was. The first poll
+ * costs no look at the time. */
+static inline int exh_wait_more(struct exh_wait *w)
+{
+    const uint32_t now_us = exh_io_time_us();
+    if (w->polls == 0) { w->start_us = now_us; }
+    if (w->polls++ >= w->limit_us * EXH_WAIT_POLLS_PER_US) { return 0; }
+    if (w->limit_us == 0) { return 0; }
+    if (now_us - w->start_us > w->limit_us) { w->limit_us = 0; } /* one more poll */
+    return 1;
+}
+
+#endif
