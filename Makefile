@@ -190,7 +190,7 @@ fit: all
 # --- tests ----------------------------------------------------------------------
 
 san       := -fsanitize=address,undefined -fno-sanitize-recover=all
-test_dirs := unit prop sim board golden world
+test_dirs := unit prop emu sim board golden world
 test_src  := $(foreach d,$(test_dirs),$(wildcard test/$(d)/*_test.c))
 test_bin  := $(test_src:test/%_test.c=$(B)/test/%_test)
 tflags     = $(base) $(CFLAGS) -Itest -DEXH_FIX_AUDIT
@@ -205,6 +205,12 @@ $(B)/test/unit/%_test: $(B)/test/san/test/unit/%_test.o
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(san) -o $@ $^ -lcmocka
 $(B)/test/prop/%_test: $(B)/test/san/test/prop/%_test.o
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(san) -o $@ $^ -lcmocka
+
+# The emulated cards, at their registers.
+emu_src := $(wildcard ports/posix/emu/[!b]*.c)
+$(B)/test/emu/%_test: $(B)/test/san/test/emu/%_test.o $(B)/test/san/test/support.o $(emu_src:%.c=$(B)/test/san/%.o)
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(san) -o $@ $^ -lcmocka
 
@@ -283,7 +289,8 @@ mutants: $(B)/test/golden/golden_test
 # The library's tests again for a 32-bit CPU, where there is no CMocka: own printer. What overflows
 # there and not in 64 bits traps.
 trap := -fsanitize=undefined -fsanitize-undefined-trap-on-error
-plain_bin := $(patsubst test/%_test.c,$(B)/i686/%_test,$(filter test/unit/% test/prop/%,$(test_src)))
+plain_bin := $(patsubst test/%_test.c,$(B)/i686/%_test,$(filter test/unit/% test/prop/% test/emu/%,$(test_src)))
+$(filter $(B)/i686/emu/%,$(plain_bin)): $(emu_src) $(wildcard test/emu/*.h ports/posix/emu/*.h)
 $(plain_bin): $(B)/i686/%_test: test/%_test.c test/support.c $(lib_src) $(wildcard test/*.h lib/include/exhand/*.h lib/src/*.h) \
               $(stamp)
 	@mkdir -p $(@D)
@@ -402,6 +409,7 @@ check:
 	@$(MAKE) --no-print-directory $(patsubst %,golden-%,$(filter-out i686%,$(variants)))
 	@test/sim/bits.sh $(B)/bits $(B)/demo $(variants:%=$(B)/variant/%/posix/exhand)
 	@$(MAKE) --no-print-directory undef undef-cortex-m3 undef-cortex-m0
+	@$(MAKE) --no-print-directory PORT=pc104 SCENE=minimal undef-emu
 	@$(MAKE) --no-print-directory PORT=template SCENE=minimal all
 	@$(MAKE) --no-print-directory PORT=pc104 SCENE=minimal undef run
 	@$(MAKE) --no-print-directory PORT=pc104 SCENE=drop run
@@ -419,6 +427,13 @@ check:
 undef: $(lib)
 	$(Q)test/size/undef.sh $(lib) $(CROSS)nm $(PORT_HELPERS)
 	$(Q)test/size/banned.sh $(lib) $(CROSS)objdump
+
+# The emulated cards, as they go into an image.
+$(out)/libemu.a: $(emu_src:%.c=$(out)/%.o)
+	$(Q)rm -f $@ && $(CROSS)ar rcD $@ $^
+.PHONY: undef-emu
+undef-emu: $(out)/libemu.a
+	$(Q)test/size/undef.sh $< $(CROSS)nm $(PORT_HELPERS)
 
 ## Bytes, stack, instructions per tick and library symbols of each scene and port
 .PHONY: size
