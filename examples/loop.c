@@ -21,10 +21,10 @@ static int set_up(const struct exh_scene *sc, uint32_t rate_Hz, struct exh_scene
 
 /* Everything that crosses inward from the board at this tick. *wait: ticks to the next glove
  * frame, counted, since a division has no place in a tick. The board may have none newer than
- * the last: that one is a tick older than it was. */
+ * the last: that one is older by this tick and those missed. */
 static int read_board(const struct exh_scene *sc, struct exh_scene_in *in, uint32_t *wait)
 {
-    const uint32_t same = in->glove.age_ticks + 1u;
+    const uint32_t same = in->glove.age_ticks + 1u + in->missed;
     int err = exh_board_read_drive(&in->drive);
     if (err < 0 || sc->read_glove == NULL) { return err; }
     in->glove_new = 0;

@@ -39,23 +39,21 @@ int bilateral_setup(struct bilateral_cfg *cfg, struct bilateral *s, const struct
 
 /* --- the tick --- */
 
+static void age_glove(struct bilateral *s, const struct exh_scene_in *in)
+{
+    s->glove_age_ticks =
+        s->worn && in->glove.age_ticks < UINT16_MAX ? in->glove.age_ticks : UINT32_MAX;
+}
+
 static void see(struct bilateral *s, const struct bilateral_cfg *cfg, const struct exh_scene_in *in)
 {
-    static const struct exh_plane none = {.kind = EXH_PLANE_NONE};
-    const uint32_t before = s->glove_faults;
     int32_t angle_turn_q32[EXH_GLOVE_SENSORS];
     if (!in->glove_new) { return; }
-    s->glove_faults = exh_glove_step(&s->glove, &cfg->glove, &in->glove, angle_turn_q32);
     s->worn = 1;
+    age_glove(s, in);
+    s->glove_faults = exh_glove_step(&s->glove, &cfg->glove, &in->glove, angle_turn_q32);
     for (unsigned k = 0; k < cfg->n; k++) {
-        const unsigned f = cfg->at[k];
-        struct bilateral_finger *now = &s->finger[f];
-        bilateral_finger_see(now, cfg, f, angle_turn_q32);
-        /* Held angles make a distance that is not: no contact from now on. One that is frozen
-         * hangs on the string alone, and stays. */
-        if (bilateral_finger_is_blind(s, cfg, f) && !(before & cfg->finger[f].sensors)) {
-            (void)exh_precontact_tell(&now->precontact, &cfg->finger[f].precontact, &none, 0);
-        }
+        bilateral_finger_see(&s->finger[cfg->at[k]], cfg, cfg->at[k], angle_turn_q32);
     }
 }
 
@@ -109,6 +107,7 @@ static void tell_finger(struct bilateral_more *m, const struct bilateral_finger 
     m->refused = exh_from_u32(p->refused_n);
     m->ignored = exh_from_u32(p->ignored_n);
     m->stale = exh_from_u32(p->stale_n);
+    m->let_go = exh_from_u32(p->let_go_n);
 }
 
 static int32_t at_most(uint32_t v)
@@ -156,6 +155,10 @@ void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,
     uint32_t limits[BILATERAL_FINGERS];
     struct exh_drive_out placed;
 
+    age_glove(s, in);
+    for (unsigned k = 0; k < cfg->n; k++) {
+        exh_precontact_skip(&s->finger[cfg->at[k]].precontact, in->missed);
+    }
     bilateral_wire_take(s, cfg, mail, in->missed, params);
     see(s, cfg, in);
     for (unsigned k = 0; k < cfg->n; k++) {

@@ -55,7 +55,7 @@ struct bilateral_more {
     int32_t joint_turn_q32[EXH_HAND_JOINTS];
     int32_t clamped; /* bit j: joint j at a limit                              */
     struct exh_vec3 tip_m_q30;
-    int32_t freezes, born, refused, ignored, stale; /* counts, of exh_precontact */
+    int32_t freezes, born, refused, ignored, stale, let_go; /* counts, of exh_precontact */
 };
 
 struct bilateral_box {
@@ -148,8 +148,10 @@ struct bilateral {
     struct bilateral_wire wire;
     uint8_t worn;          /* a glove frame has come                           */
     uint32_t glove_faults; /* in the newest                                    */
-    /* Parameters as a material changes them; made anew in every tick. */
+    /* Made anew in every tick: parameters as a material changes them; how old what the glove says is,
+     * UINT32_MAX: it has not said anything, or not for very long. */
     struct exh_drive_par drive_now[BILATERAL_FINGERS];
+    uint32_t glove_age_ticks;
 };
 
 /* Configuration from parameters; cfg keeps pointers to par and to s. 0 or -EXH_E…. */
@@ -180,8 +182,9 @@ void bilateral_wire_take(struct bilateral *s, const struct bilateral_cfg *cfg,
 void bilateral_wire_bytes(struct exh_bytes *c, struct bilateral_wire *s);
 void bilateral_finger_bytes(struct exh_bytes *c, struct bilateral_finger *s);
 
-/* 1: one of its sensors is not believed, and nobody knows where the finger is. */
-int bilateral_finger_is_blind(const struct bilateral *s, const struct bilateral_cfg *cfg,
+/* The age of what is known of where it is; UINT32_MAX: nothing, as one of its sensors is not
+ * believed: held angles make a distance that is not. */
+uint32_t bilateral_finger_age(const struct bilateral *s, const struct bilateral_cfg *cfg,
                               unsigned f);
 /* From the newest glove frame. */
 void bilateral_finger_see(struct bilateral_finger *s, const struct bilateral_cfg *cfg, unsigned f,

@@ -12,10 +12,10 @@ static uint32_t sensors_of(const struct exh_hand_map *map, unsigned f)
     return mask;
 }
 
-int bilateral_finger_is_blind(const struct bilateral *s, const struct bilateral_cfg *cfg,
+uint32_t bilateral_finger_age(const struct bilateral *s, const struct bilateral_cfg *cfg,
                               unsigned f)
 {
-    return (s->glove_faults & cfg->finger[f].sensors) != 0;
+    return s->glove_faults & cfg->finger[f].sensors ? UINT32_MAX : s->glove_age_ticks;
 }
 
 int bilateral_finger_setup(struct bilateral_cfg *cfg, struct bilateral *s, unsigned place,
@@ -88,19 +88,15 @@ uint32_t bilateral_finger_feel(struct bilateral *s, const struct bilateral_cfg *
     const unsigned f = cfg->at[place];
     struct bilateral_finger *now = &s->finger[f];
     const struct exh_precontact_in where = {now->tip_m_q30, now->slope_q24, p->q_m_q30,
-                                            now->contact.touching};
+                                            bilateral_finger_age(s, cfg, f), now->contact.touching};
     struct exh_contact_in q = {p->q_m_q30, p->qd_mps_q27, EXH_PRECONTACT_NEVER};
     struct exh_contact_par law;
     struct exh_force_ledger force;
     uint32_t limits;
 
-    p->d_m_q30 = INT32_MIN;
-    *bits = 0;
-    if (s->worn) { /* before the first frame nobody knows where the finger is */
-        *bits = (int32_t)exh_precontact_step(&now->precontact, &cfg->finger[f].precontact, &where);
-        p->d_m_q30 = now->precontact.d_m_q30;
-        q.lim_m_q30 = now->precontact.lim_m_q30;
-    }
+    *bits = (int32_t)exh_precontact_step(&now->precontact, &cfg->finger[f].precontact, &where);
+    p->d_m_q30 = now->precontact.d_m_q30;
+    q.lim_m_q30 = now->precontact.lim_m_q30;
     law = touch(s, cfg, f);
     p->c = exh_contact_law(&now->contact, &law, q, &force);
     limits = exh_drive_force(&now->drive, &cfg->drive[place], run, &force);

@@ -32,7 +32,7 @@ static const struct exh_signal paper_rows[] = {
 };
 
 static const struct exh_signal more_rows[] = {
-    POS(0x8710, 0, "frozen", "", "1 q_lim stands, 2 moves, 4 inside, 8 stale, 16 bent, 32 freeze, 64 release"),
+    POS(0x8710, 0, "frozen", "", "1 q_lim stands, 2 moves, 4 inside, 8 stale, 16 bent, 32 freeze, 64 release, 128 blind, 256 doubt, 512 let go"),
     POS(0x8711, 0, "limits", "", "limits acting, bits"),
     ANY(0x8712, 32, "q0", "turn", "robot: sideways"),
     ANY(0x8713, 32, "q1", "turn", "knuckle"),
@@ -46,6 +46,7 @@ static const struct exh_signal more_rows[] = {
     ANY(0x871B, 0, "refused", "", "planes refused"),
     ANY(0x871C, 0, "ignored", "", "planes that moved while frozen"),
     ANY(0x871D, 0, "stale", "", "planes that became too old"),
+    ANY(0x871E, 0, "let_go", "", "contacts that the glove denied, or could not confirm"),
 };
 
 static const struct exh_signal box_rows[] = {

@@ -41,7 +41,7 @@ static void take_planes(struct bilateral *s, const struct bilateral_cfg *cfg,
     for (unsigned k = 0; k < cfg->n; k++) {
         const unsigned f = cfg->at[k];
         const struct exh_plane plane = exh_wire_plane_of(planes, f);
-        if (!s->worn || bilateral_finger_is_blind(s, cfg, f)) { continue; }
+        if (bilateral_finger_age(s, cfg, f) == UINT32_MAX) { continue; }
         (void)exh_precontact_tell(&s->finger[f].precontact, &cfg->finger[f].precontact, &plane,
                                   age_ticks); /* a refused one it counts itself */
     }
@@ -68,6 +68,7 @@ void bilateral_wire_take(struct bilateral *s, const struct bilateral_cfg *cfg,
     if (exh_wire_pass(&w->rx, now_us(w) - before_us, 1000u * (uint32_t)cfg->par->own.quiet_ms)) {
         w->exchanges = 0; /* perhaps it does not know us any more */
     }
+    w->age_ticks += missed < UINT32_MAX - w->age_ticks ? missed : UINT32_MAX - w->age_ticks;
     w->age_ticks += w->age_ticks < UINT32_MAX;
     w->acks = 0;
     for (unsigned i = 0; i < in->packets; i++) {

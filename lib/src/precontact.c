@@ -28,6 +28,11 @@ const struct exh_signal exh_precontact_rows[EXH_PRECONTACT_ROWS] = {
     {0x0C04, 0, EXH_WHEN_ANY, 0, 1, 0, "string_from_slope", "", "1: that of the joints instead"},
     {0x0C05, 0, EXH_WHEN_SETUP, 0, 1, 0, "d_printed", "", "1: the sign of the pad as printed"},
     {0x0C06, 0, EXH_WHEN_SETUP, 1, 60000, 2000, "age_max", "ms", "an older plane is none"},
+    {0x0C07, EXH_Q_POS, EXH_WHEN_ANY, 0, EXH_Q(5, 100, EXH_Q_POS), EXH_Q(5, 1000, EXH_Q_POS),
+     "d_doubt", "m", "touching so far before d_lim and d_hyst is in doubt"},
+    {0x0C08, 0, EXH_WHEN_SETUP, 1, 60000, 100, "doubt_max", "ms",
+     "a contact longer in doubt is let go"},
+    {0x0C09, 0, EXH_WHEN_SETUP, 1, 60000, 50, "tip_age_max", "ms", "an older fingertip is unknown"},
 };
 
 /* n values of parameters against their rows: those in ROM have passed no other check. */
@@ -37,6 +42,12 @@ static int in_rows(const struct exh_signal *row, const int32_t *v, int n)
         if (v[i] < row[i].min || v[i] > row[i].max) { return 0; }
     }
     return 1;
+}
+
+/* The first number of ticks that lasts longer. At 20 kHz and a minute 1.2 million: far from any end. */
+static uint32_t more_than(int32_t ms, struct exh_period T)
+{
+    return (uint32_t)exh_udiv64((uint64_t)(uint32_t)ms * T.den, UINT64_C(1000) * T.num, NULL) + 1;
 }
 
 int exh_precontact_setup(struct exh_precontact_cfg *cfg, const struct exh_precontact_par *par,
@@ -57,10 +68,9 @@ int exh_precontact_setup(struct exh_precontact_cfg *cfg, const struct exh_precon
     cfg->materials = (uint8_t)materials;
     cfg->pad_m_q60 =
         (int64_t)(par->printed_sign ? -pad_m_q30 : pad_m_q30) * (INT64_C(1) << EXH_Q_POS);
-    /* At 20 kHz and a minute 1.2 million: far from any end. */
-    cfg->age_ticks = (uint32_t)exh_udiv64((uint64_t)(uint32_t)par->age_max_ms * T.den,
-                                          UINT64_C(1000) * T.num, NULL) +
-                     1;
+    cfg->age_ticks = more_than(par->age_max_ms, T);
+    cfg->doubt_ticks = more_than(par->doubt_ms, T);
+    cfg->tip_ticks = more_than(par->tip_age_max_ms, T);
     return 0;
 }
 
@@ -167,10 +177,10 @@ static uint32_t be_inside(struct exh_precontact *s)
     return EXH_PRECONTACT_AROUND;
 }
 
-static uint32_t be_idle(struct exh_precontact *s)
+static uint32_t be_idle(struct exh_precontact *s, uint32_t left)
 {
     const struct exh_vec3 *n = &s->newest.normal_q30;
-    const int stale = (n->x | n->y | n->z) != 0;
+    const int stale = left == 0 && (n->x | n->y | n->z) != 0;
     s->stale_n += stale && s->phase == EXH_PRECONTACT_TRACK;
     s->d_m_q30 = INT32_MIN;
     s->lim_m_q30 = EXH_PRECONTACT_NEVER;
@@ -178,25 +188,60 @@ static uint32_t be_idle(struct exh_precontact *s)
     return stale ? EXH_PRECONTACT_STALE : 0;
 }
 
+/* One that is frozen: EXH_PRECONTACT_RELEASE among the bits if it is so no longer. */
+static uint32_t stand(struct exh_precontact *s, const struct exh_precontact_cfg *cfg,
+                      const struct exh_precontact_in *in, uint32_t blind)
+{
+    const int64_t free_m_q30 = (int64_t)cfg->par->d_lim_m_q30 - cfg->par->hyst_m_q30;
+    s->d_m_q30 = distance_m_q30(&s->held, &in->tip_m_q30);
+    if (blind || (in->touching && s->d_m_q30 < free_m_q30 - cfg->par->doubt_m_q30)) {
+        s->doubt_ticks += s->doubt_ticks < UINT32_MAX;
+        if (s->doubt_ticks <= cfg->doubt_ticks) {
+            return EXH_PRECONTACT_STANDS | EXH_PRECONTACT_DOUBT;
+        }
+        s->let_go_n++;
+        s->lim_m_q30 = EXH_PRECONTACT_NEVER;
+        s->phase = EXH_PRECONTACT_IDLE;
+        return EXH_PRECONTACT_RELEASE | EXH_PRECONTACT_DOUBT | EXH_PRECONTACT_LETGO;
+    }
+    s->doubt_ticks = 0;
+    if (in->touching || s->d_m_q30 >= free_m_q30) { return EXH_PRECONTACT_STANDS; }
+    s->phase = EXH_PRECONTACT_IDLE;
+    return EXH_PRECONTACT_RELEASE;
+}
+
+void exh_precontact_skip(struct exh_precontact *s, uint32_t missed)
+{
+    s->left_ticks -= missed < s->left_ticks ? missed : s->left_ticks;
+    if (s->doubt_ticks > 0) {
+        s->doubt_ticks +=
+            missed < UINT32_MAX - s->doubt_ticks ? missed : UINT32_MAX - s->doubt_ticks;
+    }
+}
+
 uint32_t exh_precontact_step(struct exh_precontact *s, const struct exh_precontact_cfg *cfg,
                              const struct exh_precontact_in *in)
 {
     const struct exh_precontact_par *par = cfg->par;
-    const uint32_t left = s->left_ticks;
-    uint32_t bits = 0;
+    /* More there cannot be, but in bytes. */
+    const uint32_t left = s->left_ticks < cfg->age_ticks ? s->left_ticks : cfg->age_ticks;
+    const uint32_t blind = in->tip_age_ticks >= cfg->tip_ticks ? EXH_PRECONTACT_BLIND : 0;
+    const int resumed = s->resumed;
+    uint32_t bits = blind;
+    s->resumed = 0;
     s->left_ticks = left - (left > 0);
     if (s->phase == EXH_PRECONTACT_FROZEN) {
-        s->d_m_q30 = distance_m_q30(&s->held, &in->tip_m_q30);
-        if (in->touching || s->d_m_q30 >= (int64_t)par->d_lim_m_q30 - par->hyst_m_q30) {
-            return EXH_PRECONTACT_STANDS;
-        }
-        s->phase = EXH_PRECONTACT_IDLE;
-        bits = EXH_PRECONTACT_RELEASE;
+        bits |= stand(s, cfg, in, blind);
+        if (bits & (EXH_PRECONTACT_STANDS | EXH_PRECONTACT_LETGO)) { return bits; }
     }
-    if (left == 0) { return bits | be_idle(s); }
+    s->doubt_ticks = 0;
+    if (left == 0 || blind) { return bits | be_idle(s, left); }
     s->d_m_q30 = distance_m_q30(&s->newest, &in->tip_m_q30);
     if (s->d_m_q30 < par->d_lim_m_q30) { return bits | track(s, par, in); }
-    return bits | (s->phase == EXH_PRECONTACT_TRACK ? freeze(s, cfg) : be_inside(s));
+    if (s->phase != EXH_PRECONTACT_TRACK || (resumed && in->pos_m_q30 >= s->lim_m_q30)) {
+        return bits | be_inside(s);
+    }
+    return bits | freeze(s, cfg);
 }
 
 /* --- state --- */
@@ -239,6 +284,9 @@ void exh_precontact_bytes(struct exh_bytes *c, struct exh_precontact *s)
     exh_bytes_u32(c, &s->refused_n);
     exh_bytes_u32(c, &s->ignored_n);
     exh_bytes_u32(c, &s->stale_n);
+    exh_bytes_u32(c, &s->doubt_ticks);
+    exh_bytes_u32(c, &s->let_go_n);
+    if (c->mode == EXH_BYTES_READ) { s->resumed = 1; }
     if (s->phase > EXH_PRECONTACT_FROZEN || !(s->phase == EXH_PRECONTACT_FROZEN ? held : told)) {
         s->phase = EXH_PRECONTACT_IDLE;
     }

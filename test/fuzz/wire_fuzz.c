@@ -55,7 +55,7 @@ void exh_fix_saturated(const char *file, int line)
 #endif
 
 static const struct exh_material_par material[2] = {{1 << 24, 1 << 24, 1 << 22}, {1, 1, 1}};
-static const struct exh_precontact_par par = {-5368709, 1073741, 1 << 24, 0, 0, 100};
+static const struct exh_precontact_par par = {-5368709, 1073741, 1 << 24, 0, 0, 100, 5368709, 100, 50};
 
 /* All that a packet may reach. */
 struct box {
@@ -126,7 +126,7 @@ static void tick(struct box *b, const struct exh_precontact_cfg *cfg, int on_the
         struct exh_precontact *s = &b->finger[f];
         const struct exh_wire_plane *p = &b->last.u.planes.plane[f];
         const int32_t *at = on_the_plane ? p->point_m_q30 : p->hit_m_q30;
-        const struct exh_precontact_in in = {{at[0], at[1], at[2]}, {0, 0, 0}, at[0] / 2, 0};
+        const struct exh_precontact_in in = {{at[0], at[1], at[2]}, {0, 0, 0}, at[0] / 2, 0, 0};
         const struct exh_precontact was = *s;
         const uint32_t bits = exh_precontact_step(s, cfg, &in);
         if (bits & EXH_PRECONTACT_STANDS) {

@@ -63,6 +63,14 @@ static void again(struct exh_precontact_par *p, struct golden_rng *r)
     p->d_lim_m_q30 = d < 107375 ? -107375 : -d;
     p->hyst_m_q30 = smaller(r, 0, 53687091, 3);
     p->scale_q24 = (int32_t)golden_draw(r, 1 << 21, 1 << 27);
+    p->doubt_m_q30 = smaller(r, 0, 53687091, 6);
+}
+
+/* Milliseconds of a few ticks. */
+static int32_t any_ms(struct golden_rng *r, int64_t lo, int64_t hi, uint32_t rate_Hz)
+{
+    const int32_t ms = (int32_t)(golden_draw(r, lo, hi) * 1000 / rate_Hz);
+    return ms < 1 ? 1 : ms;
 }
 
 /* All parameters and set-up; the options are the bits of the finger's number. */
@@ -74,8 +82,9 @@ static void any_setup(unsigned f, struct golden_rng *r, uint32_t rate_Hz, struct
     p->from_slope = (int32_t)(f & 1);
     p->printed_sign = (int32_t)(f >> 1 & 1);
     again(p, r);
-    p->age_max_ms = (int32_t)(golden_draw(r, 2, 60) * 1000 / rate_Hz);
-    if (p->age_max_ms < 1) { p->age_max_ms = 1; }
+    p->age_max_ms = any_ms(r, 2, 60, rate_Hz);
+    p->doubt_ms = any_ms(r, 1, 3, rate_Hz);
+    p->tip_age_max_ms = any_ms(r, 1, 8, rate_Hz);
     pad = (int32_t)golden_draw(r, 0, 26843545);
     materials = (unsigned)golden_draw(r, 1, MOST);
     CHECK_EQ_I64(exh_precontact_setup(&world.cfg[f], p, world.material, materials, pad, T), 0);
@@ -122,6 +131,10 @@ static int refused(int64_t how, struct exh_period T)
     case 13: pad = -1; break;
     case 14: pad = 1 << 25; break;
     case 15: world.material[254].k_Npm_q10 = -1; break;
+    case 16: p.doubt_m_q30 = -1; break;
+    case 17: p.doubt_m_q30 = 1 << 26; break;
+    case 18: p.doubt_ms = (T.num & 1) != 0 ? 0 : 60001; break;
+    case 19: p.tip_age_max_ms = (T.num & 1) != 0 ? 0 : 60001; break;
     default: break;
     }
     err = exh_precontact_setup(&cfg, &p, world.material, materials, pad, T);
@@ -173,9 +186,9 @@ static struct exh_precontact_in any_in(unsigned f, uint32_t k, int64_t d, struct
     int32_t tip[3];
     int32_t slope[3];
     int32_t g;
-    if (golden_draw(r, 0, 3) == 0) {
+    if (golden_draw(r, 0, 1) == 0) {
         d = par->d_lim_m_q30 - (world.cfg[f].pad_m_q60 >> 30);
-        d -= golden_draw(r, -(1 << 16), 2 * (int64_t)par->hyst_m_q30);
+        d -= golden_draw(r, -(1 << 16), 2 * ((int64_t)par->hyst_m_q30 + par->doubt_m_q30));
     }
     for (int i = 0; i < 3; i++) { tip[i] = exh_sat32(o->point[i] - (o->n[i] * d >> 30)); }
     if (extreme && golden_draw(r, 0, 1) != 0) {
@@ -191,7 +204,11 @@ static struct exh_precontact_in any_in(unsigned f, uint32_t k, int64_t d, struct
     in.tip_m_q30 = vec(tip);
     in.slope_q24 = vec(slope);
     in.touching = 0;
-    if (golden_draw(r, 0, 3) == 0) { in.touching = (uint8_t)golden_draw(r, 1, 255); }
+    if (golden_draw(r, 0, 1) == 0) { in.touching = (uint8_t)golden_draw(r, 1, 255); }
+    in.tip_age_ticks = 0;
+    if (golden_draw(r, 0, 7) == 0) {
+        in.tip_age_ticks = (uint32_t)(world.cfg[f].tip_ticks + golden_draw(r, 0, 2) - 1);
+    }
     return in;
 }
 
@@ -249,6 +266,7 @@ static void one_finger(unsigned f, uint32_t k, int32_t d, int32_t pos, struct go
     const int64_t age = how == 29 ? golden_draw(r, old - 1, old + 2) : golden_draw(r, 0, 3);
     struct exh_precontact_in in = any_in(f, k, d, r);
     in.pos_m_q30 = pos;
+    if (golden_draw(r, 0, 2) == 0) { exh_precontact_skip(s, (uint32_t)golden_draw(r, 0, 4)); }
     row[0] = plane.kind;
     row[1] = age;
     row[2] = in.touching;
@@ -274,7 +292,7 @@ void golden_precontact(struct golden *g, uint32_t rate_Hz)
         int64_t row[FINGERS][7];
         int said;
         set_up(&r, rate_Hz, k);
-        said = refused(golden_draw(&r, 0, 15), T);
+        said = refused(golden_draw(&r, 0, 19), T);
         for (unsigned f = 0; f < FINGERS; f++) {
             one_finger(f, k, way[f].at[k], pos[f].at[k], &r, row[f]);
         }

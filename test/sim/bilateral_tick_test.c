@@ -146,6 +146,102 @@ TEST(a_frozen_contact_outlives_a_sensor)
     for (int k = 0; k < 20; k++) { (void)tick(1, 0); }
     CHECK_EQ_I64(phase(), EXH_PRECONTACT_FROZEN);
     CHECK_EQ_I64(sig.paper[F].q_lim_m_q30, lim);
+    for (int k = 0; k < par.precontact[F].doubt_ms; k++) { (void)tick(1, 0); }
+    CHECK(phase() == EXH_PRECONTACT_IDLE && sig.more[F].let_go == 1, "but not for ever");
+}
+
+/* The index frozen before its wall, and then so much string out that the law touches. */
+static void press(int32_t by_m_q30)
+{
+    start();
+    par.contact[F].k_Npm_q10 = 0; /* it is the material's */
+    hello();
+    from_board.drive.din = UINT32_MAX;
+    from_board.command = EXH_CMD_RUN;
+    (void)tick(1, 0);
+    planes();
+    (void)tick(1, 0);
+    par.precontact[F].d_lim_m_q30 = -EXH_Q(6, 100, EXH_Q_POS);
+    (void)tick(1, 0);
+    CHECK_EQ_I64(phase(), EXH_PRECONTACT_FROZEN);
+    for (int64_t out_m_q30 = 0; out_m_q30 < sig.paper[F].q_lim_m_q30 + (int64_t)by_m_q30;) {
+        from_board.drive.enc_raw[F]++;
+        out_m_q30 += exh_quad_pos_m_q30(&par.quad[F], 1);
+        planes();
+        (void)tick(1, 0);
+    }
+    CHECK(sig.paper[F].c && sig.paper[F].f_des_N_q20 > EXH_Q(1, 1, EXH_Q_FORCE), "%d LSB of force",
+          sig.paper[F].f_des_N_q20);
+}
+
+/* The string's zero has slipped, or the hand has let go of the glove: it pulls, whatever the finger does,
+ * until the glove has said for long enough that there is nothing. */
+TEST(a_wall_that_the_glove_denies_does_not_pull_for_ever)
+{
+    int n = 0;
+    int32_t before;
+    press(EXH_Q(1, 1000, EXH_Q_POS));
+    (void)tick(1, 0);
+    CHECK(!(sig.more[F].bits & EXH_PRECONTACT_DOUBT), "within the margin");
+    par.precontact[F].d_lim_m_q30 = -EXH_Q(1, 100, EXH_Q_POS); /* now 50 mm are far from it */
+    before = sig.paper[F].f_des_N_q20;
+    while (sig.paper[F].f_des_N_q20 > EXH_Q(1, 10, EXH_Q_FORCE) && n < 1000) {
+        const int64_t most = (int64_t)par.drive[F].slew_down_Nps * (1 << 20) / RATE_HZ;
+        planes();
+        (void)tick(1, 0);
+        CHECK(before - sig.paper[F].f_des_N_q20 <= most + 1, "faster than the drive may");
+        before = sig.paper[F].f_des_N_q20;
+        n++;
+    }
+    CHECK(n > par.precontact[F].doubt_ms && n < par.precontact[F].doubt_ms + 50, "%d ticks", n);
+    CHECK_EQ_I64(sig.more[F].let_go, 1);
+    CHECK_EQ_I64(sig.paper[F].c, 0);
+}
+
+TEST(an_old_glove_frame)
+{
+    const int old = 50; /* ms, the default */
+    start();
+    hello();
+    (void)tick(1, 0);
+    planes();
+    (void)tick(1, 0);
+    from_board.glove.age_ticks = (uint16_t)old;
+    (void)tick(0, 0);
+    CHECK_EQ_I64(phase(), EXH_PRECONTACT_TRACK);
+    from_board.glove.age_ticks++;
+    (void)tick(0, 0);
+    CHECK(phase() == EXH_PRECONTACT_IDLE && sig.paper[F].q_lim_m_q30 == EXH_PRECONTACT_NEVER,
+          "tracking: there is no contact");
+    from_board.glove.age_ticks = 0;
+    (void)tick(1, 0);
+    CHECK_EQ_I64(phase(), EXH_PRECONTACT_TRACK);
+    press(EXH_Q(1, 1000, EXH_Q_POS));
+    from_board.glove.age_ticks = UINT16_MAX;
+    for (int k = 0; k <= par.precontact[F].doubt_ms; k++) {
+        (void)tick(0, 0);
+        CHECK(sig.paper[F].c, "frozen: the string alone, tick %d", k);
+    }
+    (void)tick(0, 0);
+    CHECK(!sig.paper[F].c && sig.more[F].let_go == 1, "but not for ever");
+}
+
+TEST(missed_ticks_make_planes_older)
+{
+    start();
+    hello();
+    (void)tick(1, 0);
+    planes();
+    from_board.missed = 5000;
+    tick_n += 5000;
+    in.packets = 0;
+    planes(); /* told after the gap: it is new */
+    (void)tick(1, 0);
+    CHECK(phase() == EXH_PRECONTACT_TRACK && sig.box.age == 0, "new");
+    from_board.missed = (uint32_t)par.precontact[F].age_max_ms;
+    (void)tick(1, 0);
+    CHECK(phase() == EXH_PRECONTACT_IDLE && sig.more[F].stale == 1, "stale");
+    CHECK_EQ_I64(sig.box.age, par.precontact[F].age_max_ms + 1);
 }
 
 TEST(a_world_that_has_started_anew_is_greeted_at_once)
@@ -269,6 +365,8 @@ TEST(no_packet_sets_a_pull_or_its_limit)
 
 TEST_MAIN("bilateral, tick by tick", a_plane_told_before_the_first_glove_frame_is_not_kept,
           a_finger_whose_sensor_is_not_believed_has_no_contact, a_frozen_contact_outlives_a_sensor,
+          a_wall_that_the_glove_denies_does_not_pull_for_ever, an_old_glove_frame,
+          missed_ticks_make_planes_older,
           a_world_that_has_started_anew_is_greeted_at_once,
           no_packet_makes_the_box_deaf_for_longer_than_a_silence, a_world_that_differs_is_told_by_bits,
           a_shorter_time_between_states_acts_at_once, no_packet_sets_a_pull_or_its_limit);

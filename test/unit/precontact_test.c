@@ -2,6 +2,7 @@
  * pad 10 mm, so that it touches at z = 0.11; string and finger move alike. */
 #include "exhand/precontact.h"
 
+#include "exhand/contact.h"
 #include "exhand/error.h"
 
 #include "check.h"
@@ -25,9 +26,9 @@ static const struct exh_plane floor_plane = {EXH_PLANE_HIT, 0, 1, {0, 0, ONE}, {
 
 static void start(void)
 {
-    par = (struct exh_precontact_par){-MM(5), MM(1), INT32_C(1) << 24, 0, 0, 100};
+    par = (struct exh_precontact_par){-MM(5), MM(1), INT32_C(1) << 24, 0, 0, 100, MM(5), 10, 20};
     s = (struct exh_precontact){0};
-    in = (struct exh_precontact_in){{0, 0, 0}, {0, 0, 0}, 0, 0};
+    in = (struct exh_precontact_in){{0, 0, 0}, {0, 0, 0}, 0, 0, 0};
     CHECK_EQ_I64(exh_precontact_setup(&cfg, &par, material, 2, MM(10), TICK), 0);
 }
 
@@ -159,6 +160,112 @@ TEST(a_touching_finger_is_not_released)
     in.touching = 0;
     at(MM(150));
     CHECK(bits & EXH_PRECONTACT_RELEASE, "let go");
+}
+
+/* The string's zero has slipped by 60 mm: the law goes on touching wherever the finger is. */
+TEST(a_contact_that_the_glove_denies_is_let_go)
+{
+    const uint32_t doubt = EXH_PRECONTACT_STANDS | EXH_PRECONTACT_DOUBT;
+    struct exh_contact law = {0, 0, 0, 0};
+    const struct exh_contact_par wall = {EXH_Q(20000, 1, EXH_Q_K), 0, 0, 0, MM(1)};
+    struct exh_force_ledger f;
+    int n = 0, c = 1;
+    frozen_at_116();
+    CHECK_EQ_I64(cfg.doubt_ticks, 11);
+    in.touching = 1;
+    at(MM(115) + MM(6)); /* d = d_lim - hyst - doubt */
+    CHECK(bits == EXH_PRECONTACT_STANDS && s.doubt_ticks == 0, "not more than the margin");
+    for (int i = 0; i < 11; i++) {
+        at(MM(115) + MM(6) + 2);
+        CHECK(bits == doubt, "tick %d: %" PRIx32, i, bits);
+    }
+    at(MM(112)); /* the glove had been wrong */
+    CHECK(bits == EXH_PRECONTACT_STANDS && s.doubt_ticks == 0, "it was there");
+    for (n = 0; c && n < 100; n++) {
+        at(MM(150));
+        in.pos_m_q30 += MM(60);
+        c = exh_contact_law(&law, &wall, (struct exh_contact_in){in.pos_m_q30, 0, s.lim_m_q30}, &f);
+        in.touching = (uint8_t)c;
+    }
+    CHECK(n == 12 && f.spring_N_q20 == 0, "force in %d ticks", n);
+    CHECK(bits == (EXH_PRECONTACT_RELEASE | EXH_PRECONTACT_DOUBT | EXH_PRECONTACT_LETGO), "%" PRIx32, bits);
+    CHECK(s.let_go_n == 1 && s.lim_m_q30 == EXH_PRECONTACT_NEVER, "counted");
+    tell(floor_plane);
+    at(MM(150));
+    CHECK(bits == EXH_PRECONTACT_TRACKS && s.doubt_ticks == 0, "as new");
+}
+
+/* Nothing of a doubt hangs on what is told meanwhile. */
+TEST(a_doubt_hangs_on_no_message)
+{
+    struct exh_plane p = floor_plane;
+    frozen_at_116();
+    in.touching = 1;
+    for (int i = 0; i < 11; i++) {
+        p.point_m_q30.z += MM(1);
+        tell(p);
+        at(MM(150));
+        CHECK(bits & EXH_PRECONTACT_DOUBT, "tick %d", i);
+    }
+    at(MM(150));
+    CHECK(bits & EXH_PRECONTACT_LETGO, "let go");
+}
+
+TEST(an_unknown_fingertip)
+{
+    start();
+    CHECK_EQ_I64(cfg.tip_ticks, 21);
+    tell(floor_plane);
+    in.tip_age_ticks = 20;
+    at(MM(150));
+    CHECK(bits == EXH_PRECONTACT_TRACKS, "as old as may be");
+    in.tip_age_ticks = 21;
+    at(MM(150));
+    CHECK(bits == EXH_PRECONTACT_BLIND && s.lim_m_q30 == EXH_PRECONTACT_NEVER &&
+              s.d_m_q30 == INT32_MIN && s.stale_n == 0, "tracking: no contact, %" PRIx32, bits);
+    in.tip_age_ticks = 0;
+    at(MM(112));
+    CHECK(bits == EXH_PRECONTACT_AROUND, "came near unseen");
+    at(MM(150));
+    at(MM(114));
+    CHECK(bits & EXH_PRECONTACT_FREEZE, "left, and back");
+    in.tip_age_ticks = UINT32_MAX;
+    for (int i = 0; i < 11; i++) {
+        in.touching = i & 1;
+        at(MM(150));
+        CHECK(bits == (EXH_PRECONTACT_STANDS | EXH_PRECONTACT_DOUBT | EXH_PRECONTACT_BLIND),
+              "tick %d: %" PRIx32, i, bits);
+    }
+    at(MM(150));
+    CHECK((bits & EXH_PRECONTACT_LETGO) && s.let_go_n == 1, "frozen: the string alone for 10 ms");
+    at(MM(150));
+    CHECK(bits == EXH_PRECONTACT_BLIND, "and then none");
+}
+
+TEST(missed_ticks_age_a_plane_and_a_doubt)
+{
+    start();
+    tell(floor_plane);
+    at(MM(150));
+    exh_precontact_skip(&s, 99);
+    at(MM(150));
+    CHECK(bits == EXH_PRECONTACT_TRACKS, "its last tick");
+    at(MM(150));
+    CHECK(bits == EXH_PRECONTACT_STALE && s.stale_n == 1, "over");
+    exh_precontact_skip(&s, UINT32_MAX);
+    CHECK(s.left_ticks == 0 && s.doubt_ticks == 0, "no less than none");
+    frozen_at_116();
+    in.touching = 1;
+    at(MM(150));
+    exh_precontact_skip(&s, 10);
+    at(MM(150));
+    CHECK(bits & EXH_PRECONTACT_LETGO, "12 ticks");
+    frozen_at_116();
+    in.touching = 1;
+    at(MM(150));
+    exh_precontact_skip(&s, UINT32_MAX);
+    at(MM(150));
+    CHECK(bits & EXH_PRECONTACT_LETGO, "and no wrap");
 }
 
 TEST(what_comes_while_frozen_is_ignored_and_counted)
@@ -423,7 +530,7 @@ TEST(state_round_trip)
     s.ignored_n = 7;
     exh_precontact_bytes(&c, &s);
     n = c.at;
-    CHECK_EQ_I64(n, 8 + 12 + 2 * 23 + 24 + 1);
+    CHECK_EQ_I64(n, 8 + 12 + 2 * 23 + 32 + 1);
     c = exh_bytes_reader(buf, n);
     exh_precontact_bytes(&c, &back);
     CHECK(exh_bytes_ok(&c), "reads");
@@ -468,6 +575,44 @@ TEST(damaged_state_comes_back_into_range)
     s.phase = EXH_PRECONTACT_TRACK;
     at(MM(114));
     CHECK((bits & EXH_PRECONTACT_FREEZE) && s.taken.k_Npm_q10 == material[0].k_Npm_q10, "index");
+}
+
+static void round_trip(void)
+{
+    uint8_t buf[160];
+    struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
+    exh_precontact_bytes(&c, &s);
+    c = exh_bytes_reader(buf, c.at);
+    s = (struct exh_precontact){0};
+    exh_precontact_bytes(&c, &s);
+    CHECK(exh_bytes_ok(&c), "reads");
+}
+
+TEST(restored_tracking_touches_nothing_at_once)
+{
+    start();
+    tell(floor_plane);
+    at(MM(116));
+    s.lim_m_q30 = INT32_MIN;
+    s.left_ticks = UINT32_MAX;
+    round_trip();
+    at(MM(114));
+    CHECK(bits == EXH_PRECONTACT_AROUND && s.lim_m_q30 == EXH_PRECONTACT_NEVER, "%" PRIx32, bits);
+    CHECK(s.left_ticks == cfg.age_ticks - 1, "%" PRIu32 " left", s.left_ticks);
+    start(); /* and what was written goes on as if it had not been */
+    tell(floor_plane);
+    at(MM(116));
+    round_trip();
+    at(MM(114));
+    CHECK((bits & EXH_PRECONTACT_FREEZE) && s.lim_m_q30 > in.pos_m_q30, "frozen");
+    start();
+    tell(floor_plane);
+    at(MM(116));
+    round_trip();
+    at(MM(116));
+    s.lim_m_q30 = INT32_MIN; /* no: of bytes, the first tick alone */
+    at(MM(114));
+    CHECK(bits & EXH_PRECONTACT_FREEZE, "frozen");
 }
 
 /* um, rounded. */
@@ -515,9 +660,12 @@ TEST(advice)
 
 TEST_MAIN("unit/precontact", distance_has_the_sign_of_the_text, rounds_once_and_half_up,
           no_plane_means_no_contact, tracks_freezes_and_releases, the_boundary_is_d_lim_itself,
-          a_touching_finger_is_not_released, what_comes_while_frozen_is_ignored_and_counted,
+          a_touching_finger_is_not_released,
+          a_contact_that_the_glove_denies_is_let_go, a_doubt_hangs_on_no_message,
+          an_unknown_fingertip, missed_ticks_age_a_plane_and_a_doubt, what_comes_while_frozen_is_ignored_and_counted,
           what_came_while_frozen_is_new_at_the_release, born_inside_gives_no_contact_until_left,
           another_object_has_to_be_left_first, the_same_object_may_come_to_the_finger,
           a_stale_plane_is_none, a_message_may_be_old_when_it_comes, a_frozen_plane_does_not_age,
           what_cannot_be_is_refused, material_is_taken_at_the_freeze, scale_and_slope,
-          set_up_refuses, state_round_trip, damaged_state_comes_back_into_range, advice);
+          set_up_refuses, state_round_trip, damaged_state_comes_back_into_range,
+          restored_tracking_touches_nothing_at_once, advice);

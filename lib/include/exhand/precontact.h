@@ -8,11 +8,18 @@
  * world says, until the finger has left: the contact law touches no more and
  * d < d_lim - hyst.
  *
+ * Whether the law touches, the string alone says, and its zero may slip. So what stands is held
+ * against the glove: it is in doubt while the law touches and d < d_lim - hyst - doubt, and
+ * while the fingertip is unknown. In doubt in more than doubt_ms of ticks on end, it is let go:
+ * there is no contact, and the force falls as fast as the drive lets it. d is that of the plane
+ * taken at the freeze, so that nothing of this hangs on the link.
+ *
  * Where no contact can be, q_lim is EXH_PRECONTACT_NEVER, which no string reaches. That
  * is so when
  *   - no plane has come yet, or the world said that there is none (no hit);
  *   - the plane is older than age_max (only while q_lim moves along; a frozen one does
  *     not age);
+ *   - the fingertip is older than tip_age_max, or unknown, and nothing is frozen;
  *   - the plane was born at d >= d_lim: it is new (the first, of another object than the
  *     one before, or come while the finger was frozen) and d < d_lim has not been
  *     seen with it. An object that appears around a finger, or is thrown onto it, gives no
@@ -76,15 +83,18 @@ struct exh_precontact_par {
                              instead, limited to 1/8 .. 8                      */
     int32_t printed_sign; /* 1: d = (P_C - P_F).n - t, as the paper prints it   */
     int32_t age_max_ms;   /* an older plane is none, ms, 1 .. 60000             */
+    int32_t doubt_m_q30;  /* touching at d < d_lim - hyst - this is in doubt, m, 0 .. 0.05 */
+    int32_t doubt_ms;     /* let go after so long in doubt, ms, 1 .. 60000      */
+    int32_t tip_age_max_ms; /* an older fingertip is unknown, ms, 1 .. 60000    */
 };
-#define EXH_PRECONTACT_ROWS 6
+#define EXH_PRECONTACT_ROWS 9
 extern const struct exh_signal exh_precontact_rows[EXH_PRECONTACT_ROWS];
 
 struct exh_precontact_cfg {
     const struct exh_precontact_par *par; /* read at every tick                */
     const struct exh_material_par *material;
     int64_t pad_m_q60; /* t with its sign                                      */
-    uint32_t age_ticks;
+    uint32_t age_ticks, doubt_ticks, tip_ticks;
     uint8_t materials;
 };
 
@@ -119,16 +129,20 @@ struct exh_precontact {
     uint32_t refused_n;  /* normal no unit vector, or no such material          */
     uint32_t ignored_n;  /* told while frozen, and not what was frozen          */
     uint32_t stale_n;    /* became too old while q_lim moved along              */
+    uint32_t doubt_ticks; /* in doubt on end                                    */
+    uint32_t let_go_n;   /* contacts let go                                     */
+    uint8_t resumed;     /* read from bytes, no step yet; not in the bytes      */
 };
 
 struct exh_precontact_in {
     struct exh_vec3 tip_m_q30; /* P_F, of exh_hand_tip(); any values            */
     struct exh_vec3 slope_q24; /* of exh_hand_tip_slope(); read with from_slope only */
     int32_t pos_m_q30;         /* q, the same that the contact law gets         */
+    uint32_t tip_age_ticks;    /* since P_F was measured; UINT32_MAX: it is unknown */
     uint8_t touching;          /* what the contact law returned last            */
 };
 
-/* What a tick did. None of the first four: there is no plane. */
+/* What a tick did. None of the first four: there is no plane, or no fingertip. */
 enum exh_precontact_bit {
     EXH_PRECONTACT_STANDS = 1u << 0,  /* phase FROZEN                           */
     EXH_PRECONTACT_TRACKS = 1u << 1,  /* phase TRACK                            */
@@ -136,8 +150,12 @@ enum exh_precontact_bit {
     EXH_PRECONTACT_STALE = 1u << 3,   /* phase IDLE: the newest plane is too old */
     EXH_PRECONTACT_BENT = 1u << 4,    /* s was limited: string and approach do not fit */
     EXH_PRECONTACT_FREEZE = 1u << 5,  /* frozen in this tick: `taken` is new    */
-    EXH_PRECONTACT_RELEASE = 1u << 6  /* released in this tick: the newest plane counts again,
+    EXH_PRECONTACT_RELEASE = 1u << 6, /* released in this tick: the newest plane counts again,
                                          as one that has just come             */
+    EXH_PRECONTACT_BLIND = 1u << 7,   /* the fingertip is too old, or unknown   */
+    EXH_PRECONTACT_DOUBT = 1u << 8,   /* what stands is in doubt                */
+    EXH_PRECONTACT_LETGO = 1u << 9    /* let go in this tick, RELEASE with it: no contact in
+                                         this one; in the next the newest plane counts again */
 };
 
 /* Set-up (divides); par and the materials must outlive cfg. pad_m_q30: the pad's radius t,
@@ -153,6 +171,10 @@ int exh_precontact_setup(struct exh_precontact_cfg *cfg, const struct exh_precon
 int exh_precontact_tell(struct exh_precontact *s, const struct exh_precontact_cfg *cfg,
                         const struct exh_plane *plane, uint32_t age_ticks);
 
+/* Ticks that were missed, before tell() and step() of the next: the plane told last is so much
+ * older, and a doubt has lasted so much longer. */
+void exh_precontact_skip(struct exh_precontact *s, uint32_t missed);
+
 /* One tick; call before the contact law and give it lim_m_q30. d is exact but for its one
  * rounding (1/2 LSB) and saturates at +-2 m; q_lim is within 1/2 LSB of q - s*d, and s of the
  * slope within 2^-25 + 2^-28*s; it saturates. Returns bits. With the law's own q, no input
@@ -160,7 +182,8 @@ int exh_precontact_tell(struct exh_precontact *s, const struct exh_precontact_cf
 uint32_t exh_precontact_step(struct exh_precontact *s, const struct exh_precontact_cfg *cfg,
                              const struct exh_precontact_in *in);
 
-/* State through a cursor; what was read is brought back into range. */
+/* State through a cursor; what was read is brought back into range. A q_lim that was to be frozen
+ * in the first tick after it is not if it touches at once: the plane counts as born there. */
 void exh_precontact_bytes(struct exh_bytes *c, struct exh_precontact *s);
 
 /* --- how far off to freeze, how far to look --- */

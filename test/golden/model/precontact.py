@@ -9,7 +9,8 @@ FINGERS = 4
 NEVER = MAX32
 UNTOLD, NONE, HIT = range(3)
 IDLE, INSIDE, TRACK, FROZEN = range(4)
-STANDS, TRACKS, AROUND, STALE, BENT, FREEZE, RELEASE = (1 << i for i in range(7))
+STANDS, TRACKS, AROUND, STALE, BENT, FREEZE, RELEASE, BLIND, DOUBT, LETGO = (1 << i for i in range(10))
+RESTORED = 100  # the first tick after the state was read back
 NO_PLANE = 0, (0, 0, 0), 0, 0
 
 
@@ -33,7 +34,9 @@ class Par:
     def __init__(self, rng, f, rate):
         self.from_slope, self.printed_sign = f & 1, f >> 1 & 1
         self.again(rng)
-        self.age_max = clamp(rng.draw(2, 60) * 1000 // rate, 1, 60000)
+        self.age_max = max(1, rng.draw(2, 60) * 1000 // rate)
+        self.doubt_max = max(1, rng.draw(1, 3) * 1000 // rate)
+        self.tip_age_max = max(1, rng.draw(1, 8) * 1000 // rate)
         self.pad, self.materials = rng.draw(0, 26843545), rng.draw(1, 3)
 
     def again(self, rng):
@@ -43,21 +46,26 @@ class Par:
         self.hyst = rng.draw(0, 53687091)
         self.hyst >>= rng.draw(0, 3)
         self.scale = rng.draw(1 << 21, 1 << 27)
+        self.doubt = rng.draw(0, 53687091)
+        self.doubt >>= rng.draw(0, 6)
 
 
 class Finger:
     plane = Struct("<q3iHB").pack
-    first, last = Struct("<5iB").pack, Struct("<6I").pack
+    first, last = Struct("<5iB").pack, Struct("<8I").pack
 
     def __init__(self):
         self.d, self.lim, self.taken, self.phase = 0, 0, (0, 0, 0), IDLE
         self.newest = self.held = NO_PLANE
         self.left = self.frozen = self.born = self.refused = self.ignored = self.stale = 0
+        self.doubts = self.let_go = 0
+        self.resumed = False
 
     def setup(self, par, T):
         self.par, self.materials = par, par.materials
         self.pad = (-par.pad if par.printed_sign else par.pad) << 30
-        self.age_ticks = par.age_max * T[1] // (1000 * T[0]) + 1
+        self.age_ticks, self.doubt_ticks, self.tip_ticks = (
+            ms * T[1] // (1000 * T[0]) + 1 for ms in (par.age_max, par.doubt_max, par.tip_age_max))
 
     def tell(self, kind, material, number, n, point, age):
         if kind == UNTOLD:
@@ -83,21 +91,38 @@ class Finger:
         g = clamp(want, 1 << 21, 1 << 27)
         return inverse(g), BENT if g != want else 0
 
-    def step(self, tip, slope, pos, touching, material):
-        bits = self.phases(tip, slope, pos, touching, material)
-        return bits | (0, AROUND, TRACKS, STANDS)[self.phase]
+    def skip(self, missed):
+        self.left = max(0, self.left - missed)
+        if self.doubts:
+            self.doubts = min(self.doubts + missed, (1 << 32) - 1)
 
-    def phases(self, tip, slope, pos, touching, material):
-        left, self.left = self.left, max(0, self.left - 1)
-        par, bits = self.par, 0
+    def step(self, tip, slope, age, pos, touching, material):
+        blind = age >= self.tip_ticks
+        bits = self.phases(tip, slope, blind, pos, touching, material)
+        self.resumed = False
+        return bits | (0, AROUND, TRACKS, STANDS)[self.phase] | (BLIND if blind else 0)
+
+    def phases(self, tip, slope, blind, pos, touching, material):
+        left = min(self.left, self.age_ticks)
+        self.left = max(0, left - 1)
+        par, bits, doubts = self.par, 0, self.doubts
+        self.doubts = 0
         if self.phase == FROZEN:
             self.d = sat32((self.held[0] - dot(self.held[1], tip)) >> 30)
-            if touching or self.d >= par.d_lim - par.hyst:
+            free = par.d_lim - par.hyst
+            if blind or touching and self.d < free - par.doubt:
+                self.doubts = min(doubts + 1, (1 << 32) - 1)
+                if self.doubts <= self.doubt_ticks:
+                    return DOUBT
+                self.let_go += 1
+                self.lim, self.phase = NEVER, IDLE
+                return RELEASE | DOUBT | LETGO
+            if touching or self.d >= free:
                 return 0
             self.phase, bits = IDLE, RELEASE
-        if left == 0:
+        if left == 0 or blind:
             self.d, self.lim = MIN32, NEVER
-            if self.newest[1] != (0, 0, 0):
+            if left == 0 and self.newest[1] != (0, 0, 0):
                 bits |= STALE
                 self.stale += self.phase == TRACK
             self.phase = IDLE
@@ -107,7 +132,7 @@ class Finger:
             s, bent = self.scale(slope)
             self.lim, self.phase = sat32(pos - shr(s * self.d, 24)), TRACK
             return bits | bent
-        if self.phase == TRACK:
+        if self.phase == TRACK and not (self.resumed and pos >= self.lim):
             self.held, self.phase = self.newest, FROZEN
             self.taken = material[self.held[3] if self.held[3] < self.materials else 0]
             self.frozen += 1
@@ -119,12 +144,12 @@ class Finger:
     def state(self):
         return (self.first(self.d, self.lim, *self.taken, self.phase) +
                 b"".join(self.plane(p[0], *p[1], p[2], p[3]) for p in (self.newest, self.held)) +
-                self.last(self.left, self.frozen, self.born, self.refused, self.ignored, self.stale))
+                self.last(self.left, self.frozen, self.born, self.refused, self.ignored, self.stale, self.doubts, self.let_go))
 
 
 # --- what is asked for at set-up ---
 
-SPOILT = 16
+SPOILT = 20
 
 
 def refused(how):
@@ -215,10 +240,10 @@ def any_told(rng, finger, objects, at, f):
 
 
 def any_in(rng, k, obj, finger, d):
-    """(fingertip, slope, touching), about d before the object, now and then about d_lim."""
+    """(fingertip, slope, touching, age), about d before the object, now and then about d_lim."""
     n, point = obj[:2]
-    if rng.draw(0, 3) == 0:
-        d = finger.par.d_lim - (finger.pad >> 30) - rng.draw(-(1 << 16), 2 * finger.par.hyst)
+    if rng.draw(0, 1) == 0:
+        d = finger.par.d_lim - (finger.pad >> 30) - rng.draw(-(1 << 16), 2 * finger.par.hyst + 2 * finger.par.doubt)
     tip = [sat32(p - (a * d >> 30)) for a, p in zip(n, point)]
     if (176 <= k < AGAIN or k >= 248) and rng.draw(0, 1):
         tip = [rng.draw(MIN32, MAX32) for _ in range(3)]
@@ -227,7 +252,8 @@ def any_in(rng, k, obj, finger, d):
     slope = [-(a * g >> 30) + rng.draw(-65536, 65536) for a in n]
     if rng.draw(0, 15) == 0:
         slope = [rng.draw(MIN32, MAX32) for _ in range(3)]
-    return tip, slope, rng.draw(1, 255) if rng.draw(0, 3) == 0 else 0
+    touching = rng.draw(1, 255) if rng.draw(0, 1) == 0 else 0
+    return tip, slope, touching, finger.tip_ticks + rng.draw(0, 2) - 1 if rng.draw(0, 7) == 0 else 0
 
 
 def precontact(rate):
@@ -249,9 +275,12 @@ def precontact(rate):
         said, row = refused(rng.draw(0, SPOILT - 1)), []
         for f, s in enumerate(finger):
             told = any_told(rng, s, objects, at, f)
-            tip, slope, touching = any_in(rng, k, objects[at[f]], s, way[f][k])
+            tip, slope, touching, tip_age = any_in(rng, k, objects[at[f]], s, way[f][k])
+            if rng.draw(0, 2) == 0:
+                s.skip(rng.draw(0, 4))
+            s.resumed = k == RESTORED
             err = s.tell(*told)
-            bits = s.step(tip, slope, pos[f][k], touching, material)
+            bits = s.step(tip, slope, tip_age, pos[f][k], touching, material)
             row.append((told[0], told[5], touching, err, bits, s.d, s.lim))
         yield ((*(v[i] for i in range(7) for v in row), said, *advise(T, *any_need(rng))),
                b"".join(s.state() for s in finger))
