@@ -46,6 +46,7 @@ int bilateral_finger_setup(struct bilateral_cfg *cfg, struct bilateral *s, unsig
         err = exh_drive_setup(&cfg->drive[place], &s->drive_now[f], board.T, to_cur, to_force);
     }
     if (err == 0) { err = exh_hand_setup(&c->hand, &exh_hit2_bones[f], &par->hand[f]); }
+    if (err == 0) { err = exh_hand_follow(&c->hand, &exh_hit2_map, f); }
     if (err == 0) {
         err = exh_precontact_setup(&c->precontact, &par->precontact[f], par->material,
                                    BILATERAL_MATERIALS, par->hand[f].pad_m_q30, board.T);
@@ -58,7 +59,10 @@ void bilateral_finger_see(struct bilateral_finger *s, const struct bilateral_cfg
 {
     s->clamped = (uint8_t)exh_hand_joints(&exh_hit2_map, f, angle_turn_q32, s->joint_turn_q32);
     if (cfg->par->precontact[f].from_slope) {
-        exh_hand_tip_slope(&cfg->finger[f].hand, s->joint_turn_q32, &s->tip_m_q30, &s->slope_q24);
+        struct exh_hand_finger hand = cfg->finger[f].hand; /* joints at a limit stand still */
+        if (s->clamped & 1u << 1) { hand.pull_radpm_q20[0] = 0; }
+        if (s->clamped & 1u << 2) { hand.pull_radpm_q20[1] = 0; }
+        exh_hand_tip_slope(&hand, s->joint_turn_q32, &s->tip_m_q30, &s->slope_q24);
     } else {
         exh_hand_tip(&cfg->finger[f].hand, s->joint_turn_q32, &s->tip_m_q30);
     }

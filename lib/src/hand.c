@@ -12,17 +12,18 @@
 #define ARM_MIN_M_Q30  EXH_Q(4, 1000, EXH_Q_POS)
 #define LEN_MAX_M_Q34  EXH_Q(120, 1000, 34)
 #define BASE_MAX_M_Q32 EXH_Q(125, 1000, 32)
+#define PULL_MAX_RADPM_Q20 EXH_Q(250, 1, 20)
 
 /* The arms are ours, and not measured: cables guided 20, 16 and 12 mm from the joints'
  * axes (thicker there, and less room towards the tip) give 61 mm of string from straight to bent
  * in full; exoskeletons of this kind are said to move 60 to 90 mm. */
 const struct exh_signal exh_hand_rows[EXH_HAND_ROWS] = {
     {0x0A01, EXH_Q_POS, EXH_WHEN_SETUP, 0, ARM_MAX_M_Q30, EXH_Q(20, 1000, EXH_Q_POS), "arm1", "m",
-     "string per radian of the proximal joint"},
+     "string per radian of the knuckle"},
     {0x0A02, EXH_Q_POS, EXH_WHEN_SETUP, 0, ARM_MAX_M_Q30, EXH_Q(16, 1000, EXH_Q_POS), "arm2", "m",
-     "string per radian of the middle joint"},
+     "string per radian of the joint beyond"},
     {0x0A03, EXH_Q_POS, EXH_WHEN_SETUP, 0, ARM_MAX_M_Q30, EXH_Q(12, 1000, EXH_Q_POS), "arm3", "m",
-     "string per radian of the distal joint"},
+     "string per radian of the last joint"},
     {0x0A04, EXH_Q_POS, EXH_WHEN_SETUP, 0, PAD_MAX_M_Q30, EXH_Q(105, 10000, EXH_Q_POS), "pad", "m",
      "radius of the fingertip's pad"},
 };
@@ -44,7 +45,9 @@ int exh_hand_map_check(const struct exh_hand_map *map)
 {
     for (unsigned f = 0; f < EXH_HAND_FINGERS; f++) {
         for (unsigned j = 0; j < EXH_HAND_JOINTS; j++) {
-            if (!joint_ok(&map->joint[f][j])) { return -EXH_E_RANGE; }
+            if (!joint_ok(&map->joint[f][j]) || map->bent[f][j] >= EXH_HAND_SENSORS) {
+                return -EXH_E_RANGE;
+            }
         }
     }
     return 0;
@@ -133,6 +136,31 @@ int exh_hand_setup(struct exh_hand_finger *f, const struct exh_hand_bones *bones
         const uint64_t den = square_q60 >> 14;
         f->pull_radpm_q20[i] = (int32_t)exh_udiv64((arm_m_q30[i] << 36) + den / 2, den, NULL);
     }
+    return 0;
+}
+
+/* How a sensor turns per metre of string. */
+static int64_t rate_radpm_q20(const struct exh_hand_finger *f, const uint8_t *bent, uint8_t sensor)
+{
+    if (sensor == bent[0]) { return f->pull_radpm_q20[0]; }
+    return sensor == bent[1] || sensor == bent[2] ? f->pull_radpm_q20[1] : 0;
+}
+
+int exh_hand_follow(struct exh_hand_finger *f, const struct exh_hand_map *map, unsigned finger)
+{
+    int32_t pull_radpm_q20[2];
+    for (unsigned i = 0; i < 2; i++) {
+        const struct exh_hand_joint *j = &map->joint[finger][1 + i];
+        int64_t sum_q44 = 0; /* below 2^54 */
+        for (unsigned t = 0; t < EXH_HAND_TERMS; t++) {
+            sum_q44 += j->gain_q24[t] * rate_radpm_q20(f, map->bent[finger], j->sensor[t]);
+        }
+        sum_q44 = exh_shr_round(sum_q44, 44 - 20);
+        if (sum_q44 > PULL_MAX_RADPM_Q20 || sum_q44 < -PULL_MAX_RADPM_Q20) { return -EXH_E_RANGE; }
+        pull_radpm_q20[i] = (int32_t)sum_q44;
+    }
+    f->pull_radpm_q20[0] = pull_radpm_q20[0];
+    f->pull_radpm_q20[1] = pull_radpm_q20[1];
     return 0;
 }
 

@@ -81,7 +81,8 @@ const struct exh_hand_bones exh_hit2_bones[EXH_HAND_FINGERS] = {
             {pij, dij}, MIDDLE_LIMITS \
     }
 
-const struct exh_hand_map exh_hit2_map = {{
+const struct exh_hand_map exh_hit2_map = {
+    .joint = {
     [EXH_THUMB] =
         {/* Turning across the palm moves the robot's thumb against q0. */
          {-SPAN_BIAS(-15, 15, -60, 130),
@@ -110,4 +111,10 @@ const struct exh_hand_map exh_hit2_map = {{
                      SIDE_LIMITS},
                     KNUCKLE(EXH_GLOVE_PINKIE_MPJ),
                     CURL(EXH_GLOVE_PINKIE_PIJ, EXH_GLOVE_PINKIE_DIJ, -40, 275)},
-}};
+},
+    .bent = {{EXH_GLOVE_THUMB_MPJ, EXH_GLOVE_THUMB_IJ, EXH_GLOVE_THUMB_IJ},
+             {EXH_GLOVE_INDEX_MPJ, EXH_GLOVE_INDEX_PIJ, EXH_GLOVE_INDEX_DIJ},
+             {EXH_GLOVE_MIDDLE_MPJ, EXH_GLOVE_MIDDLE_PIJ, EXH_GLOVE_MIDDLE_DIJ},
+             {EXH_GLOVE_RING_MPJ, EXH_GLOVE_RING_PIJ, EXH_GLOVE_RING_DIJ},
+             {EXH_GLOVE_PINKIE_MPJ, EXH_GLOVE_PINKIE_PIJ, EXH_GLOVE_PINKIE_DIJ}},
+};

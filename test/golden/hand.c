@@ -73,6 +73,12 @@ static void any_hand(struct golden_rng *r, struct some_hand *h)
         par.arm2_m_q30 = (int32_t)golden_draw(r, 0, 53687091);
         par.arm3_m_q30 = (int32_t)golden_draw(r, 0, 53687091);
         CHECK_EQ_I64(exh_hand_setup(&h->finger[f], &h->bones[f], &par), 0);
+        for (unsigned j = 0; j < 2; j++) {
+            h->map.bent[f][j] = h->map.joint[f][1 + j].sensor[golden_draw(r, 0, 1)];
+        }
+        h->map.bent[f][2] = h->map.joint[f][1 + golden_draw(r, 0, 1)].sensor[golden_draw(r, 0, 1)];
+        /* Where it is refused, the finger is as it was. */
+        if (golden_draw(r, 0, 3) != 0) { (void)exh_hand_follow(&h->finger[f], &h->map, f); }
     }
     CHECK_EQ_I64(exh_hand_map_check(&h->map), 0);
 }

@@ -117,6 +117,7 @@ MUTANTS = (
     ("hand", L + "hand.c", "exh_shr_round(sum_q56, 56 - 32)", "(sum_q56 >> (56 - 32))"),
     ("hand", L + "hand.c", "v_m_q34.z, 32) + 3)", "v_m_q34.z, 32) + 2)"),
     ("hand", L + "hand.c", "+ den / 2, den", ", den"),
+    ("hand", L + "hand.c", "sensor == bent[1] || sensor == bent[2]", "sensor == bent[1]"),
     ("hand", L + "hand.c", "exh_clamp(want, j->lo_turn_q32, j->hi_turn_q32)", "(int32_t)want"),
     ("precontact", L + "precontact.c", "+ cfg->pad_m_q60 + HALF_Q60;", "+ cfg->pad_m_q60;"),
     ("precontact", L + "precontact.c", "par->printed_sign ? -pad_m_q30 : pad_m_q30", "pad_m_q30"),

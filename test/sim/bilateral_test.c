@@ -178,6 +178,32 @@ TEST(another_plane_makes_another_force)
     bilateral_run_free(&b);
 }
 
+/* The slope knows the way without having been fitted: where the string says contact, there is one. What is left
+ * is how far the fingertip lags behind the string. */
+TEST(s_of_the_slope_finds_the_wall_with_every_finger)
+{
+    static const double at_m[] = {0.015, 0.03, 0.05};
+    double worst_mm = 0;
+    for (unsigned k = 0; k < LEN(at_m) * BILATERAL_FINGERS; k++) {
+        const unsigned f = k % BILATERAL_FINGERS;
+        struct bilateral_run_cfg c = plain(1u << f, 0.02, 1);
+        struct bilateral_run r;
+        const struct bilateral_track *t = &r.finger[f];
+        const struct bilateral_sample *s;
+        double off_mm;
+        c.fit_scale = 0;
+        c.at_m = at_m[k / BILATERAL_FINGERS];
+        r = run(&c);
+        s = &t->at[contact_of(t)];
+        off_mm = 1e3 * (s->raw.q_lim_m_q30 / 1073741824.0 - t->touch_m + t->at[0].x_m -
+                        t->at[0].raw.q_m_q30 / 1073741824.0);
+        if (off_mm > worst_mm || -off_mm > worst_mm) { worst_mm = off_mm > 0 ? off_mm : -off_mm; }
+        CHECK(off_mm < 0.6 && off_mm > -0.6, "finger %u, wall at %g m: %.2f mm off", f, c.at_m, off_mm);
+        bilateral_run_free(&r);
+    }
+    check_note("s of the slope: the wall within %.2f mm of string, five fingers, three places", worst_mm);
+}
+
 /* A wall that comes 5 mm nearer while the finger presses: nothing of it until the finger has left. */
 TEST(what_moves_while_it_is_touched_is_not_felt)
 {
@@ -492,7 +518,7 @@ TEST(a_material_that_changes_in_contact_acts_from_the_next_freeze_on)
 }
 
 TEST_MAIN("bilateral", the_force_is_the_same_to_the_bit_over_every_link,
-          another_plane_makes_another_force, what_moves_while_it_is_touched_is_not_felt,
+          another_plane_makes_another_force, s_of_the_slope_finds_the_wall_with_every_finger, what_moves_while_it_is_touched_is_not_felt,
           a_world_that_dies_in_contact_leaves_loop_and_force_as_they_were,
           a_world_may_start_anew_in_contact, hostile_packets_change_nothing,
           two_processes_survive_each_others_restart, without_a_plane_in_time_nothing_is_felt,

@@ -221,19 +221,87 @@ TEST(spans_end_at_the_limits)
 
 TEST(map_check_refuses)
 {
-    for (unsigned i = 0; i < 4; i++) {
+    for (unsigned i = 0; i < 5; i++) {
         struct exh_hand_map m = exh_hit2_map;
         struct exh_hand_joint *j = &m.joint[EXH_LITTLE][2];
         switch (i) {
         case 0: j->sensor[1] = EXH_HAND_SENSORS; break;
         case 1: j->gain_q24[0] = EXH_HAND_GAIN_MAX_Q24 + 1; break;
         case 2: j->gain_q24[0] = INT32_MIN; break;
+        case 3: m.bent[EXH_LITTLE][2] = EXH_HAND_SENSORS; break;
         default: j->lo_turn_q32 = j->hi_turn_q32 + 1; break;
         }
         CHECK(exh_hand_map_check(&m) == -EXH_E_RANGE, "map %u", i);
     }
 }
 
+/* Robot joints and tip of a finger of which so much string is out, as the wearer's joints share it. */
+static void pulled(const struct exh_hand_finger *own, const struct exh_hand_finger *f, unsigned i,
+                   int64_t out_um, int32_t *q, struct exh_vec3 *tip)
+{
+    const uint8_t *bent = exh_hit2_map.bent[i];
+    int32_t sensor[EXH_HAND_SENSORS] = {0};
+    for (unsigned k = 0; k < 3; k++) { /* 683.565 LSB are 1 urad */
+        sensor[bent[k]] =
+            (int32_t)((own->pull_radpm_q20[k > 0] * out_um >> 10) * 683565 / 1000 >> 10);
+    }
+    CHECK(exh_hand_joints(&exh_hit2_map, i, sensor, q) == 0, "at a limit");
+    exh_hand_tip(f, q, tip);
+}
+
+/* The string bends the wearer, the map the robot: what the slope says is what the tip does. */
+TEST(slope_is_that_of_the_string_through_the_map)
+{
+    for (unsigned i = 0; i < EXH_HAND_FINGERS; i++) {
+        const struct exh_hand_finger own = finger(i);
+        struct exh_hand_finger f = own;
+        CHECK_EQ_I64(exh_hand_follow(&f, &exh_hit2_map, i), 0);
+        for (int64_t out_um = 2000; out_um <= 30000; out_um += 4000) {
+            struct exh_vec3 before, after, tip, slope;
+            int32_t q[EXH_HAND_JOINTS];
+            pulled(&own, &f, i, out_um - 500, q, &before);
+            pulled(&own, &f, i, out_um + 500, q, &after);
+            pulled(&own, &f, i, out_um, q, &tip);
+            exh_hand_tip_slope(&f, q, &tip, &slope);
+            for (int c = 0; c < 3; c++) { /* 1 mm of string: within 1 um, a thousandth */
+                const int64_t went = (int64_t)(&after.x)[c] - (&before.x)[c];
+                const int64_t said = (int64_t)(&slope.x)[c] * (1 << 6) / 1000;
+                CHECK(went - said <= 1100 && said - went <= 1100,
+                      "finger %u, %d um, axis %d: %d LSB, slope says %d", i, (int)out_um, c,
+                      (int)went, (int)said);
+            }
+        }
+    }
+}
+
+TEST(follow_by_hand)
+{
+    struct exh_hand_map m = exh_hit2_map;
+    const struct exh_hand_finger own = finger(EXH_THUMB);
+    struct exh_hand_finger f = own;
+    struct exh_hand_joint *j = m.joint[EXH_THUMB];
+    const int32_t w1 = own.pull_radpm_q20[0], w2 = own.pull_radpm_q20[1];
+    j[1].gain_q24[0] = 3 << 23; /* 1.5 of the knuckle */
+    j[1].gain_q24[1] = -(1 << 24); /* and abduction, which no string moves */
+    j[2].gain_q24[0] = 1 << 24;
+    j[2].gain_q24[1] = -(1 << 25);
+    CHECK_EQ_I64(exh_hand_follow(&f, &m, EXH_THUMB), 0);
+    CHECK_EQ_I64(f.pull_radpm_q20[0], (3 * (int64_t)w1 + 1) / 2);
+    CHECK_EQ_I64(f.pull_radpm_q20[1], w1 - 2 * (int64_t)w2);
+    for (int sign = -1; sign <= 1; sign += 2) { /* 24 rad/m, 8 times, and more */
+        struct exh_hand_par par = defaults();
+        par.arm1_m_q30 = 0;
+        par.arm2_m_q30 = par.arm3_m_q30 = EXH_Q(4, 1000, 30);
+        CHECK_EQ_I64(exh_hand_setup(&f, &exh_hit2_bones[0], &par), 0); /* 125 rad/m */
+        j[2].gain_q24[0] = 0;
+        j[2].gain_q24[1] = sign * (5 << 23);
+        CHECK_EQ_I64(exh_hand_follow(&f, &m, EXH_THUMB), -EXH_E_RANGE);
+        CHECK(f.pull_radpm_q20[0] == 0 && f.pull_radpm_q20[1] > 0, "as it was");
+        j[2].gain_q24[1] = sign * (3 << 23);
+        CHECK_EQ_I64(exh_hand_follow(&f, &m, EXH_THUMB), 0);
+    }
+}
+
 TEST_MAIN("unit/hand", published_vectors, turns_are_turns, slope_on_paper, setup_refuses,
           map_of_the_hand_is_sound, a_finger_follows_its_own_sensors, spans_end_at_the_limits,
-          map_check_refuses);
+          map_check_refuses, slope_is_that_of_the_string_through_the_map, follow_by_hand);

@@ -39,10 +39,12 @@ struct exh_hand_joint {
 };
 struct exh_hand_map {
     struct exh_hand_joint joint[EXH_HAND_FINGERS][EXH_HAND_JOINTS];
+    /* Sensors of the wearer's own joints that the string bends: arm1's, and the two beyond it. */
+    uint8_t bent[EXH_HAND_FINGERS][3]; /* below EXH_HAND_SENSORS; a thumb has one beyond, twice */
 };
 extern const struct exh_hand_map exh_hit2_map;
 
-/* 0 if every sensor, gain and pair of limits is as said above, -EXH_E_RANGE otherwise: for
+/* 0 if every sensor, also those bent, gain and pair of limits is as said above, -EXH_E_RANGE otherwise: for
  * maps that come from outside. Set-up. */
 int exh_hand_map_check(const struct exh_hand_map *map);
 
@@ -64,9 +66,10 @@ extern const struct exh_hand_bones exh_hit2_bones[EXH_HAND_FINGERS];
 
 /* Parameters of one finger; rows in exh_hand_rows[]. */
 struct exh_hand_par {
-    int32_t arm1_m_q30; /* string per radian of q1, m, 0 .. 50 mm; ours, not measured */
-    int32_t arm2_m_q30; /* of q2 */
-    int32_t arm3_m_q30; /* of q3 */
+    int32_t arm1_m_q30; /* string per radian of the wearer's knuckle, m, 0 .. 50 mm; ours, not
+                           measured. With exh_hand_setup() alone q1 is that knuckle */
+    int32_t arm2_m_q30; /* of the joint beyond it; q2 */
+    int32_t arm3_m_q30; /* of the last; q3 */
     int32_t pad_m_q30; /* radius of the pad, m, 0 .. 25 mm: so far from P_F is the skin */
 };
 #define EXH_HAND_ROWS 4
@@ -74,7 +77,7 @@ extern const struct exh_signal exh_hand_rows[EXH_HAND_ROWS];
 
 struct exh_hand_finger {
     const struct exh_hand_bones *bones;
-    int32_t pull_radpm_q20[2]; /* turning of q1 and of q2 per metre of string */
+    int32_t pull_radpm_q20[2]; /* turning of q1 and of q2 per metre of string, +-250 rad/m */
 };
 
 /* Set-up (divides); bones must outlive f. -EXH_E_RANGE: a parameter or a bone outside its range
@@ -83,6 +86,11 @@ struct exh_hand_finger {
  * arm1^2 + (arm2 + arm3)^2 below (4 mm)^2. */
 int exh_hand_setup(struct exh_hand_finger *f, const struct exh_hand_bones *bones,
                    const struct exh_hand_par *par);
+
+/* Set-up, behind it: the string bends the wearer's joints, and the robot's follow them as the map has it,
+ * each by gain times as much. A joint at its limit does not turn: the caller makes its pull 0. Error
+ * <= 1/2 LSB more, and that of the gains. -EXH_E_RANGE: above 250 rad/m; f is as it was. */
+int exh_hand_follow(struct exh_hand_finger *f, const struct exh_hand_map *map, unsigned finger);
 
 /* The middle of the pad, P_F, in the palm's frame, m, q30, of the joints q0, q1, q2 (q3 = q2),
  * which may be any angles. Error against exact kinematics of these angles and bones <= 2.15 LSB

@@ -44,6 +44,15 @@ class Finger:
         d = (r[0] ** 2 + r[1] ** 2) >> 14
         self.pull = [((v << 36) + (d >> 1)) // d for v in r]
 
+    def follow(self, of_finger, bent):
+        """The pulls with the map's gains."""
+        def rate(sensor):
+            return self.pull[0] if sensor == bent[0] else self.pull[1] if sensor in bent[1:] else 0
+
+        pull = [shr(sum(g * rate(s) for g, s in zip(gain, term)), 24) for _, gain, term, _, _ in of_finger[1:]]
+        if max(map(abs, pull)) <= 250 << 20:
+            self.pull = pull
+
     def tip_slope(self, q):
         """P_F and its derivative along the string."""
         (s0, c0), (s1, c1), (s2, c2) = map(sincos, q)
@@ -100,6 +109,11 @@ def hand(rate):
             for _ in range(5):
                 maps.append(any_map(rng))
                 fingers.append(any_finger(rng))
+                bent = [maps[-1][1 + j][2][rng.draw(0, 1)] for j in range(2)]
+                last = rng.draw(0, 1)
+                bent.append(maps[-1][1 + last][2][rng.draw(0, 1)])
+                if rng.draw(0, 3):
+                    fingers[-1].follow(maps[-1], bent)
         sensor = [waves[i & 3][k] ^ i for i in range(22)]
         f = k % 5
         bits, q = joints(maps[f], sensor)
