@@ -88,7 +88,7 @@ $(image): $(image_obj) $(lib) $(PORT_LDSCRIPT)
 cli_src := $(wildcard ports/posix/cli/*.c ports/posix/fit/*.c) examples/log.c examples/drop/drop.c \
            examples/calibrate/calibrate.c examples/glove/glove.c examples/glove/cal.c $(wildcard examples/bilateral/*.c)
 # The world's core, without its pictures, answers in the same process.
-world_opt  := main live alone bench solo link view gl gl_form gl_batch gl_solid gl_text picture_none mesh_embree mesh_none
+world_opt  := main live alone bench solo link link_param view gl gl_form gl_batch gl_solid gl_text picture_none mesh_embree mesh_none
 world_core := $(filter-out $(world_opt:%=examples/world/%.c),$(wildcard examples/world/*.c))
 cli_obj := $(cli_src:%.c=$(B)/posix/%.o) $(world_core:%.c=$(B)/posix/%.o) $(B)/posix/examples/world/mesh_none.o
 sim_obj := $(patsubst %.c,$(B)/posix/%.o,$(wildcard ports/posix/*.c ports/posix/sim/*.c)) \
@@ -149,11 +149,11 @@ world_rays := $(if $(call have,embree3/rtcore.h),3,$(if $(call have,embree4/rtco
 world_pkgs := libsdl2-dev libsdl2-ttf-dev libgl-dev libegl-dev libgl1-mesa-dri libpng-dev fonts-dejavu-core
 world      := $(B)/posix/world
 
-world_part := main live alone bench solo link view $(if $(world_gl),gl gl_form gl_batch gl_solid gl_text,picture_none)
+world_part := main live alone bench solo link link_param view $(if $(world_gl),gl gl_form gl_batch gl_solid gl_text,picture_none)
 world_mesh := $(B)/posix/examples/world/$(if $(world_rays),mesh_embree,mesh_none).o
 world_core_obj := $(patsubst %.c,$(B)/posix/%.o,$(world_core) ports/posix/sim/lag.c ports/posix/sim/plant.c)
 world_obj  := $(world_core_obj) $(world_mesh) $(world_part:%=$(B)/posix/examples/world/%.o) \
-              $(B)/posix/ports/posix/cli/option.o
+              $(B)/posix/ports/posix/cli/option.o $(B)/posix/examples/bilateral/tables.o $(B)/posix/examples/glove/cal.o
 world_libs := $(if $(world_gl),-lSDL2 -lSDL2_ttf -lGL -lpng) $(if $(world_rays),-ldl) -lpthread -lm
 
 $(filter $(B)/posix/examples/world/%,$(world_obj)): PORT_HOSTFLAGS += -fno-math-errno \
@@ -168,6 +168,12 @@ world:
 	@.ci/deps "the world's pictures" "test -f /usr/include/SDL2/SDL_ttf.h && test -f /usr/include/GL/gl.h && test -f /usr/include/png.h" $(world_pkgs) || true
 	@.ci/deps "the world's meshes" "ls /usr/include/embree*/rtcore.h" libembree-dev || true
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(world)
+
+## The command and the world program over UDP: two processes, and two network namespaces where it may
+.PHONY: two-computers
+two-computers:
+	@$(MAKE) --no-print-directory $(if $(V),,-s) $(exhand) $(world)
+	@test/world/two_computers.sh $(exhand) $(world)
 
 $(B)/bench/rays: $(B)/posix/test/world/rays.o $(world_core_obj) $(world_mesh)
 	@mkdir -p $(@D)
@@ -228,7 +234,8 @@ $(B)/test/loop.o: examples/loop.c $(stamp)
 	$(Q)$(CC) $(base) $(CFLAGS) -Dexh_assert_failed=exh_loop_assert_failed -Wno-missing-prototypes -c $< -o $@
 # The virtual world; rays into meshes where their package is.
 $(B)/test/world/%_test: $(B)/posix/test/world/%_test.o $(B)/posix/test/support.o $(world_core_obj) $(world_mesh) \
-                        $(B)/posix/examples/world/solo.o $(B)/posix/examples/world/link.o $(B)/posix/libexhand.a
+                        $(B)/posix/examples/world/solo.o $(B)/posix/examples/world/link.o \
+                        $(B)/posix/examples/world/link_param.o $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) -o $@ $^ -lcmocka $(if $(world_rays),-ldl) -lm
 # The port contract, on the port that runs here.
@@ -415,7 +422,7 @@ check:
 	@$(MAKE) --no-print-directory PORT=pc104 SCENE=drop run
 	@$(MAKE) --no-print-directory PORT=pc104 SCENE=glove run
 	@$(MAKE) --no-print-directory PORT=pc104 SCENE=bilateral run
-	@$(MAKE) --no-print-directory world
+	@$(MAKE) --no-print-directory world two-computers
 	@$(world) --headless --script --seconds 1 --scene examples/world/scenes/collision.world --png $(B)/world.png || [ $$? = 3 ]
 	@$(MAKE) --no-print-directory size
 	@$(MAKE) --no-print-directory bench

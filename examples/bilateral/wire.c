@@ -47,15 +47,17 @@ static void take_planes(struct bilateral *s, const struct bilateral_cfg *cfg,
     }
 }
 
-/* What pulls without a contact (f0) and what limits every pull are the box's own: no world, and
- * nobody else who can send a packet, sets them. */
+/* Materials are the world's, and nothing else: they are taken at a freeze, and the drive's own limit
+ * holds beside theirs. What pulls without a contact (f0), what limits a pull, and where and when a
+ * contact is (s, d_lim, and all that a frozen finger stands on) are the box's own: no world, and
+ * nobody else who can send a packet, sets them, frozen or not. */
 static struct exh_wire_ack stage(struct exh_params *params, const struct exh_wire_packet *p)
 {
     const struct exh_wire_param *ask = &p->u.param;
-    const int own = ask->id >> 8 == exh_contact_rows[0].id >> 8 ||
-                    ask->id >> 8 == exh_drive_rows[0].id >> 8;
+    const int known = exh_signal_find(params->table, ask->id, ask->instance) >= 0;
+    const int worlds = ask->id >> 8 == exh_material_rows[0].id >> 8;
     const struct exh_wire_ack refused = {*ask, -EXH_E_STATE, p->seq};
-    return own ? refused : exh_wire_stage(params, p);
+    return known && !worlds ? refused : exh_wire_stage(params, p);
 }
 
 void bilateral_wire_take(struct bilateral *s, const struct bilateral_cfg *cfg,

@@ -1,4 +1,4 @@
-#include "link.h"
+#include "link_part.h"
 
 #include "exhand/exhand.h"
 
@@ -98,19 +98,39 @@ static int same_peer(const struct sockaddr_storage *a, const struct sockaddr_sto
            memcmp(&a6->sin6_addr, &b6->sin6_addr, sizeof a6->sin6_addr) == 0;
 }
 
-static struct exh_wire_hello hello_of_ours(void)
+static struct exh_wire_hello hello_of_ours(const struct link *l)
 {
-    const struct exh_wire_hello h = {EXH_WIRE_WORLD, EXH_VERSION_NUMBER, 0};
+    const struct exh_wire_hello h = {EXH_WIRE_WORLD, EXH_VERSION_NUMBER, l->table_crc};
     return h;
 }
 
 static void take_hello(struct link *l, const struct exh_wire_hello *theirs)
 {
-    const struct exh_wire_hello ours = hello_of_ours();
+    const struct exh_wire_hello ours = hello_of_ours(l);
     l->theirs = *theirs;
     l->differs = exh_wire_differs(&ours, theirs);
     l->odd += l->differs != 0;
     l->hello_us = -HELLO_EVERY_US; /* it is new here: answer */
+}
+
+/* It has just begun: what is odd about it. */
+static void say_what_differs(const struct link *l)
+{
+    const struct exh_wire_hello ours = hello_of_ours(l);
+    char text[200];
+    if (l->say == NULL) { return; }
+    if (l->differs & EXH_WIRE_ROLE) { l->say("the peer is a world, too: give the address of a controller"); }
+    if (l->differs & EXH_WIRE_LIB) {
+        snprintf(text, sizeof text, "the controller has version %#lx of the library, this world %#lx: build both of one",
+                 (unsigned long)l->theirs.lib_version, (unsigned long)ours.lib_version);
+        l->say(text);
+    }
+    if (l->differs & EXH_WIRE_TABLE) {
+        snprintf(text, sizeof text,
+                 "the controller's table of parameters is %08lx, this world's %08lx: build both of one",
+                 (unsigned long)l->theirs.table_crc, (unsigned long)ours.table_crc);
+        l->say(text);
+    }
 }
 
 static void let_pass(struct link *l, int64_t now_us)
@@ -130,6 +150,7 @@ int link_receive(struct link *l, struct exh_wire_state *state, int64_t now_us)
         struct sockaddr_storage from;
         socklen_t from_B = sizeof from;
         struct exh_wire_packet p;
+        const uint32_t session = l->rx.session, was_open = l->rx.open;
         const ssize_t n = recvfrom(l->fd, buf, sizeof buf, 0, (struct sockaddr *)&from, &from_B);
         if (n < 0) { break; }
         if (l->fixed && !same_peer(&from, &l->peer)) {
@@ -140,6 +161,11 @@ int link_receive(struct link *l, struct exh_wire_state *state, int64_t now_us)
         l->peer = from;
         l->peer_B = from_B;
         if (p.type == EXH_WIRE_HELLO) { take_hello(l, &p.u.hello); }
+        if (l->rx.session != session || (p.type == EXH_WIRE_HELLO && was_open)) {
+            say_what_differs(l);
+            link_params_anew(l, now_us);
+        }
+        if (p.type == EXH_WIRE_ACK) { link_params_answered(l, &p.u.ack); }
         if (p.type != EXH_WIRE_STATE) { continue; }
         *state = p.u.state;
         l->echo_seq = p.seq;
@@ -149,7 +175,7 @@ int link_receive(struct link *l, struct exh_wire_state *state, int64_t now_us)
     return newer;
 }
 
-static void put(struct link *l, struct exh_wire_packet *p, int64_t now_us)
+void link_put(struct link *l, struct exh_wire_packet *p, int64_t now_us)
 {
     unsigned char buf[EXH_WIRE_MAX_B];
     const int32_t n = exh_wire_write(&l->tx, p, (uint32_t)now_us, buf, sizeof buf);
@@ -166,14 +192,16 @@ void link_answer(struct link *l, const struct exh_wire_planes *planes, int64_t n
     memset(&p, 0, sizeof p);
     if (now_us - l->hello_us >= HELLO_EVERY_US) {
         p.type = EXH_WIRE_HELLO;
-        p.u.hello = hello_of_ours();
-        put(l, &p, now_us);
+        p.u.hello = hello_of_ours(l);
+        link_put(l, &p, now_us);
         l->hello_us = now_us;
     }
-    if (l->rx.session == 0 || planes == NULL) { return; }
+    if (l->rx.session == 0) { return; }
+    link_params_ask(l, now_us);
+    if (planes == NULL || link_params_hold(l, now_us)) { return; }
     p.type = EXH_WIRE_PLANES;
     p.u.planes = *planes;
     p.u.planes.echo_seq = l->echo_seq;
     p.u.planes.echo_stamp_us = l->echo_stamp_us;
-    put(l, &p, now_us);
+    link_put(l, &p, now_us);
 }

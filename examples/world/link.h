@@ -3,13 +3,26 @@
 #ifndef WORLD_LINK_H
 #define WORLD_LINK_H
 
+#include "scene.h"
+
+#include "exhand/signal.h"
 #include "exhand/wire.h"
 
 #include <netinet/in.h>
 #include <stddef.h>
 #include <sys/socket.h>
 
-#define LINK_PORT "5758"
+#define LINK_PORT  "5758"
+#define LINK_WANTS (3 * SCENE_MATERIALS_MAX)
+
+/* A value that the controller is to have. */
+struct link_want {
+    struct exh_wire_param param;
+    const struct exh_signal *row;
+    char name[SCENE_NAME_B]; /* of the material                                 */
+    int answered;
+    int64_t asked_us;
+};
 
 struct link {
     int fd;
@@ -26,12 +39,27 @@ struct link {
     unsigned long odd; /* HELLOs that differed                                    */
     unsigned long strangers; /* from elsewhere than the peer that was given       */
     unsigned long sent, unsent;
+    uint32_t table_crc; /* of the parameters the world was built for; 0: of none   */
+    struct link_want want[LINK_WANTS];
+    int wants, waiting; /* how many; and have no answer                           */
+    int impatient;      /* some got none for long: planes go out without           */
+    int64_t anew_us;    /* since when it is this controller                        */
+    unsigned long refused;
+    void (*say)(const char *text); /* a line about what is wrong; or NULL           */
 };
 
 /* listen: "[ADDRESS:]PORT" or NULL; peer: "HOST:PORT" or NULL. 0, or 1 with the reason. */
 int link_open(struct link *l, const char *listen, const char *peer, uint32_t session, char *error,
               size_t error_B);
 void link_close(struct link *l);
+
+/* The scene's materials, each checked against its row, are what the controller is to have: asked
+ * for when it has said HELLO and till it answers, and again of one that has started anew. Planes wait
+ * for the answers, but for no longer than a second. What is refused here or there is said. */
+void link_materials(struct link *l, const struct scene *s);
+
+/* One value of one material; 1: refused. */
+int link_want(struct link *l, const char *name, const struct exh_signal *row, unsigned instance, double value);
 
 /* Takes what has come till now. 1 if a newer state is in *state. */
 int link_receive(struct link *l, struct exh_wire_state *state, int64_t now_us);

@@ -7,6 +7,7 @@
 #include "solo.h"
 #include "view.h"
 
+#include "bilateral/bilateral.h"
 #include "cli/option.h"
 
 #include <pthread.h>
@@ -288,10 +289,10 @@ static void report(const struct live *l)
     const struct exh_wire_rx *rx = &l->link.rx;
     printf("frames %lu  rays %lu  hits %lu", s->frames, s->rays, s->hits);
     if (l->has_link) {
-        printf("  sent %lu  taken %lu  lost %lu  late %lu  twice %lu  bad %lu", l->link.sent,
+        printf("  sent %lu  taken %lu  lost %lu  late %lu  twice %lu  bad %lu  refused %lu", l->link.sent,
                (unsigned long)rx->accepted, (unsigned long)rx->missing,
                (unsigned long)rx->reordered + rx->old, (unsigned long)rx->duplicate,
-               (unsigned long)rx->corrupt + rx->version + rx->unknown + rx->stranger);
+               (unsigned long)rx->corrupt + rx->version + rx->unknown + rx->stranger + rx->far, l->link.refused);
     }
     putchar('\n');
 }
@@ -309,6 +310,11 @@ static int go(struct live *l)
     pthread_join(thread, NULL);
     report(l);
     return status;
+}
+
+static void complain(const char *text)
+{
+    cli_complain("%s", text);
 }
 
 int run_live(struct run *r)
@@ -329,6 +335,9 @@ int run_live(struct run *r)
             return 2;
         }
         l.has_link = 1;
+        l.link.say = complain;
+        l.link.table_crc = exh_signal_crc(&bilateral_params);
+        link_materials(&l.link, world_scene(r->world));
     }
     pthread_mutex_init(&l.lock, NULL);
     status = go(&l);

@@ -4,6 +4,8 @@
 
 #include "bilateral/bilateral.h"
 
+#include "exhand/error.h"
+
 #include <string.h>
 
 #define F        EXH_INDEX
@@ -337,29 +339,74 @@ TEST(a_shorter_time_between_states_acts_at_once)
     CHECK_EQ_I64(tick(1, EXH_WIRE_STATE), 1);
 }
 
-/* What is staged by a packet that asks for it. */
+/* The answer to a packet that asks for a value; what it staged: as said. */
 static int asked(uint16_t id, uint16_t instance, int32_t value)
 {
     struct exh_params *p = exh_scene_bilateral.params;
-    struct exh_wire_packet ask = {.type = EXH_WIRE_PARAM};
+    struct exh_wire_packet ask = {.type = EXH_WIRE_PARAM}, answer = {.type = 0};
+    struct exh_wire_rx rx = {0};
+    const int32_t at = exh_signal_find(p->table, id, instance);
+    const int32_t was = at < 0 ? 0 : p->staged[at];
+    int32_t n;
+    uint8_t buf[EXH_WIRE_MAX_B];
     ask.u.param = (struct exh_wire_param){id, instance, value};
     post(&ask);
     CHECK_EQ_I64(tick(1, EXH_WIRE_ACK), 1);
-    return p->staged[exh_signal_find(p->table, id, instance)] == value;
+    for (unsigned i = 0; i < out.packets; i++) {
+        struct exh_wire_tx tx = {(uint32_t)par.own.session, 0};
+        struct exh_wire_packet hello_to = {.type = EXH_WIRE_HELLO};
+        tx.seq = box.wire.tx.seq - 20;
+        n = exh_wire_write(&tx, &hello_to, 0, buf, sizeof buf);
+        rx = (struct exh_wire_rx){0};
+        (void)exh_wire_take(&rx, &answer, buf, (size_t)n);
+        if (out.byte[i][3] == EXH_WIRE_ACK) {
+            CHECK_EQ_I64(exh_wire_take(&rx, &answer, out.byte[i], out.len_B[i]), EXH_WIRE_ACK);
+        }
+    }
+    CHECK(answer.u.ack.param.id == id && answer.u.ack.param.value == value, "another answer");
+    if (at >= 0) {
+        CHECK_EQ_I64(p->staged[at], answer.u.ack.result == 0 ? value : was);
+        p->staged[at] = was;
+    }
+    return answer.u.ack.result;
 }
 
-TEST(no_packet_sets_a_pull_or_its_limit)
+static void no_packet_sets(uint32_t *tried)
 {
+    const struct exh_signal_table *t = &bilateral_params;
+    for (uint32_t k = 0; k < exh_signal_count(t); k++) {
+        uint16_t instance;
+        const struct exh_signal *row = exh_signal_at(t, k, &instance);
+        const int32_t now = exh_scene_bilateral.params->staged[k];
+        if (row->id >> 8 == exh_material_rows[0].id >> 8) { continue; }
+        CHECK(asked(row->id, instance, now == row->max ? row->min : row->max) == -EXH_E_STATE, "%s %d", row->name,
+              instance);
+        ++*tried;
+    }
+}
+
+/* Nothing but materials: not what pulls without a contact or limits a pull, not where a contact is,
+ * while a finger is frozen or not. */
+TEST(no_packet_sets_what_is_the_boxs_own)
+{
+    uint32_t tried = 0;
     start();
     hello();
-    CHECK(asked(exh_material_rows[0].id, 3, 1000), "a material is the world's");
-    for (int i = 0; i < EXH_CONTACT_ROWS; i++) {
-        CHECK(!asked(exh_contact_rows[i].id, F, exh_contact_rows[i].max), "%s",
-              exh_contact_rows[i].name);
-    }
-    for (int i = 0; i < 3; i++) {
-        CHECK(!asked(exh_drive_rows[i].id, F, exh_drive_rows[i].max), "%s", exh_drive_rows[i].name);
-    }
+    (void)tick(1, 0);
+    no_packet_sets(&tried);
+    planes();
+    (void)tick(1, 0);
+    par.precontact[F].d_lim_m_q30 = -EXH_Q(6, 100, EXH_Q_POS);
+    (void)tick(1, 0);
+    CHECK_EQ_I64(phase(), EXH_PRECONTACT_FROZEN);
+    no_packet_sets(&tried);
+    CHECK_EQ_I64(phase(), EXH_PRECONTACT_FROZEN);
+    CHECK(tried > 200, "%d", (int)tried);
+    CHECK_EQ_I64(box.wire.set, 0);
+    CHECK_EQ_I64(asked(exh_material_rows[0].id, 3, 1000), 0);
+    CHECK_EQ_I64(asked(exh_material_rows[0].id, BILATERAL_MATERIALS, 1000), -EXH_E_UNKNOWN);
+    CHECK_EQ_I64(asked(exh_material_rows[1].id, 0, exh_material_rows[1].max + 1), -EXH_E_RANGE);
+    CHECK_EQ_I64(asked(0x9999, 0, 1), -EXH_E_UNKNOWN);
     CHECK_EQ_I64(box.wire.set, 1);
 }
 
@@ -369,4 +416,4 @@ TEST_MAIN("bilateral, tick by tick", a_plane_told_before_the_first_glove_frame_i
           missed_ticks_make_planes_older,
           a_world_that_has_started_anew_is_greeted_at_once,
           no_packet_makes_the_box_deaf_for_longer_than_a_silence, a_world_that_differs_is_told_by_bits,
-          a_shorter_time_between_states_acts_at_once, no_packet_sets_a_pull_or_its_limit);
+          a_shorter_time_between_states_acts_at_once, no_packet_sets_what_is_the_boxs_own);

@@ -3,6 +3,8 @@
 
 #include "world/link.h"
 
+#include "exhand/exhand.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -17,6 +19,7 @@ struct controller {
 };
 
 static struct link world;
+static struct exh_wire_hello said_hello = {EXH_WIRE_CONTROLLER, EXH_VERSION_NUMBER, 0};
 static char port[16];
 
 static void open_world(uint32_t session)
@@ -46,6 +49,7 @@ static void say(struct controller *c, int type, int32_t joint)
     int32_t n;
     memset(&p, 0, sizeof p);
     p.type = (uint8_t)type;
+    if (type == EXH_WIRE_HELLO) { p.u.hello = said_hello; }
     if (type == EXH_WIRE_STATE) { p.u.state.joint_turn_q32[0][0] = joint; }
     n = exh_wire_write(&c->tx, &p, 1234, buf, sizeof buf);
     CHECK(n > 0 && sendto(c->fd, buf, (size_t)n, 0, (struct sockaddr *)&c->to, sizeof c->to) == n, "%d", (int)n);
@@ -140,6 +144,162 @@ TEST(without_planes_it_says_hello_alone)
     close(c.fd), link_close(&world);
 }
 
+/* --- what the controller is to have --- */
+
+static char heard[2000];
+static struct scene scene;
+static struct scene_material material[3] = {{"wood", 50000, 60, 10, {0}}, {"tar", 1500, 2000, 6, {0}}, {"air", 0, 0, 0, {0}}};
+
+static void listen_to(const char *text)
+{
+    strncat(heard, text, sizeof heard - strlen(heard) - 2);
+    strcat(heard, "\n");
+}
+
+static void open_wanting(uint32_t session)
+{
+    open_world(session);
+    heard[0] = '\0';
+    scene.material = material;
+    scene.materials = 3;
+    world.say = listen_to;
+    link_materials(&world, &scene);
+}
+
+/* Takes what has come; of every nth PARAM the answer is lost. */
+static int params(struct controller *c, struct exh_wire_param asked[200], unsigned lose)
+{
+    unsigned char buf[2 * EXH_WIRE_MAX_B];
+    struct exh_wire_packet p;
+    ssize_t n;
+    int k = 0;
+    while ((n = recv(c->fd, buf, sizeof buf, MSG_DONTWAIT)) > 0) {
+        const int type = exh_wire_take(&c->rx, &p, buf, (size_t)n);
+        struct exh_wire_packet ack;
+        int32_t len;
+        c->answers += type == EXH_WIRE_PLANES;
+        if (type != EXH_WIRE_PARAM || k == 200) { continue; }
+        asked[k++] = p.u.param;
+        if (check_u64() % 10 < lose) { continue; }
+        memset(&ack, 0, sizeof ack);
+        ack.type = EXH_WIRE_ACK;
+        ack.u.ack.param = p.u.param;
+        ack.u.ack.result = p.u.param.instance == 2 ? -EXH_E_UNKNOWN : 0; /* has no third material */
+        len = exh_wire_write(&c->tx, &ack, 0, buf, sizeof buf);
+        (void)!sendto(c->fd, buf, (size_t)len, 0, (struct sockaddr *)&c->to, sizeof c->to);
+    }
+    return k;
+}
+
+TEST(materials_are_asked_for_until_they_are_answered_and_again_of_a_new_controller)
+{
+    struct exh_wire_state s;
+    struct controller c;
+    struct exh_wire_param asked[200];
+    open_wanting(1);
+    CHECK(world.wants == 8 && strcmp(heard, "material tar: mat_b 2000 ns_per_m: not between 0 and 1000: not sent, the "
+                                            "controller's own holds\n") == 0, "%s", heard);
+    for (uint32_t life = 2; life < 5; life++) {
+        unsigned seen = 0, most = 0;
+        int t = 0;
+        open_controller(&c, life);
+        heard[0] = '\0';
+        say(&c, EXH_WIRE_HELLO, 0);
+        for (; t < 800 && (t == 0 || world.waiting); t++) {
+            int k;
+            say(&c, EXH_WIRE_STATE, t);
+            (void)frame(&s, (int64_t)life * 100000000 + t * 2500);
+            CHECK(c.answers == 0, "planes before the materials");
+            k = params(&c, asked, 5);
+            most = k > (int)most ? (unsigned)k : most;
+            for (int i = 0; i < k; i++) {
+                seen |= 1u << (3 * asked[i].instance + (asked[i].id & 15) - 1);
+                if (asked[i].instance == 0 && asked[i].id == exh_material_rows[0].id) {
+                    CHECK_EQ_I64(asked[i].value, 50000 << 10);
+                }
+            }
+        }
+        CHECK(seen == 0x1EF && world.waiting == 0 && t < 800, "life %d: %#x, %d wait", (int)life, seen, world.waiting);
+        CHECK(most <= 2, "%u at once", most);
+        CHECK(strstr(heard, "material air: mat_k 0 n_per_m: refused by the controller: ") &&
+                  !strstr(heard, "wood") && !strstr(heard, "tar"), "%s", heard);
+        (void)frame(&s, (int64_t)life * 100000000 + t * 2500);
+        CHECK(params(&c, asked, 0) == 0 && c.answers > 0, "it asks on, or tells no planes");
+        for (int k = 0; k < 100; k++) { (void)frame(&s, (int64_t)life * 100000000 + (t + k) * 2500); }
+        CHECK_EQ_I64(params(&c, asked, 0), 0);
+        close(c.fd);
+    }
+    link_close(&world);
+}
+
+TEST(a_controller_that_answers_nothing_gets_planes_all_the_same)
+{
+    struct exh_wire_state s;
+    struct controller c;
+    struct exh_wire_param asked[200];
+    int first = -1, n = 0;
+    open_wanting(1);
+    open_controller(&c, 2);
+    heard[0] = '\0';
+    say(&c, EXH_WIRE_HELLO, 0);
+    for (int t = 0; t < 1000; t++) {
+        say(&c, EXH_WIRE_STATE, t);
+        (void)frame(&s, t * 2500);
+        n += params(&c, asked, 10);
+        if (first < 0 && c.answers > 0) { first = t; }
+    }
+    CHECK_EQ_I64(first, 400); /* a second */
+    CHECK(n > 180 && n <= 200, "%d asked in 2.5 s", n); /* 8 ten times a second */
+    CHECK(strstr(heard, "no answer (8 of 8 are without)"), "%s", heard);
+    close(c.fd), link_close(&world);
+}
+
+TEST(a_peer_that_differs_is_named)
+{
+    struct exh_wire_state s;
+    struct controller c;
+    open_wanting(1);
+    world.table_crc = 0x1234;
+    open_controller(&c, 2);
+    said_hello = (struct exh_wire_hello){EXH_WIRE_WORLD, EXH_VERSION_NUMBER + 1, 0x4321};
+    heard[0] = '\0';
+    say(&c, EXH_WIRE_HELLO, 0);
+    (void)frame(&s, 0);
+    CHECK(strstr(heard, "is a world, too") && strstr(heard, "of the library") && strstr(heard, "00004321"), "%s", heard);
+    CHECK_EQ_I64((int64_t)world.odd, 1);
+    said_hello = (struct exh_wire_hello){EXH_WIRE_CONTROLLER, EXH_VERSION_NUMBER, 0};
+    close(c.fd), link_close(&world);
+}
+
+/* A late HELLO of one that is long gone, then a number far ahead. */
+TEST(it_is_not_deaf_for_good)
+{
+    struct exh_wire_state s;
+    struct controller c, old;
+    int64_t t_us = 0;
+    open_world(1);
+    open_controller(&old, 7), say(&old, EXH_WIRE_HELLO, 0), (void)frame(&s, t_us);
+    open_controller(&c, 8), say(&c, EXH_WIRE_HELLO, 0), (void)frame(&s, t_us);
+    close(c.fd), open_controller(&c, 9), say(&c, EXH_WIRE_HELLO, 0), (void)frame(&s, t_us);
+    for (int how = 0; how < 2; how++) {
+        int k = 0, heard_it = 0;
+        if (how == 0) {
+            say(&old, EXH_WIRE_HELLO, 0);
+        } else {
+            c.tx.seq += 60000, say(&c, EXH_WIRE_STATE, 1), c.tx.seq -= 60001;
+        }
+        (void)frame(&s, t_us);
+        for (; k < 1000 && !heard_it; k++) {
+            t_us += 2500;
+            if (k % 50 == 49) { say(&c, EXH_WIRE_HELLO, 0); }
+            say(&c, EXH_WIRE_STATE, 2);
+            heard_it = frame(&s, t_us);
+        }
+        CHECK(heard_it && k > 380 && k <= 451, "deaf for %d frames", k);
+    }
+    close(old.fd), close(c.fd), link_close(&world);
+}
+
 TEST(noise_changes_nothing)
 {
     struct exh_wire_state s, before;
@@ -188,4 +348,7 @@ TEST(bad_addresses_are_refused_in_words)
 
 TEST_MAIN("world: the link", a_state_is_taken_and_answered_with_its_own_number, either_end_may_start_anew,
           without_planes_it_says_hello_alone,
+          materials_are_asked_for_until_they_are_answered_and_again_of_a_new_controller,
+          a_controller_that_answers_nothing_gets_planes_all_the_same, a_peer_that_differs_is_named,
+          it_is_not_deaf_for_good,
           noise_changes_nothing, a_given_peer_is_the_only_one_listened_to, bad_addresses_are_refused_in_words);

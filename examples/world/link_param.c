@@ -1,0 +1,113 @@
+/* What the world wants of the controller: asked for until it is answered, and again of a controller that
+ * has started anew. */
+#include "link_part.h"
+
+#include "exhand/exhand.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#define AGAIN_US   100000  /* without an answer for so long: it is asked for again           */
+#define A_FRAME    2       /* asked for at once: a tick of the controller takes few packets   */
+#define PATIENT_US 1000000 /* without an answer for so long it goes on without               */
+
+static void say(const struct link *l, const struct link_want *w, const char *format, ...)
+{
+    char text[300];
+    va_list args;
+    int n;
+    if (l->say == NULL) { return; }
+    n = snprintf(text, sizeof text, "material %s: %s %.9g %s: ", w->name, w->row->name,
+                 (double)w->param.value / (double)(INT64_C(1) << w->row->frac), w->row->unit);
+    va_start(args, format);
+    vsnprintf(text + n, sizeof text - (size_t)n, format, args);
+    va_end(args);
+    l->say(text);
+}
+
+int link_want(struct link *l, const char *name, const struct exh_signal *row, unsigned instance, double value)
+{
+    const double one = (double)(INT64_C(1) << row->frac), raw = value * one;
+    struct link_want w = {{row->id, (uint16_t)instance, 0}, row, "", 0, 0};
+    if (l->wants == LINK_WANTS) { return 1; }
+    snprintf(w.name, sizeof w.name, "%s", name);
+    w.param.value = raw > -2147483648.0 && raw < 2147483647.0 ? (int32_t)(raw < 0 ? raw - 0.5 : raw + 0.5) : INT32_MAX;
+    if (!(raw >= row->min && raw <= row->max)) {
+        say(l, &w, "not between %.9g and %.9g: not sent, the controller's own holds", row->min / one, row->max / one);
+        l->refused++;
+        return 1;
+    }
+    l->want[l->wants++] = w;
+    return 0;
+}
+
+void link_materials(struct link *l, const struct scene *s)
+{
+    for (int i = 0; i < s->materials; i++) {
+        const struct scene_material *m = &s->material[i];
+        const double value[EXH_MATERIAL_ROWS] = {m->k, m->b, m->f_max};
+        for (int r = 0; r < EXH_MATERIAL_ROWS; r++) {
+            (void)link_want(l, m->name, &exh_material_rows[r], (unsigned)i, value[r]);
+        }
+    }
+    l->waiting = l->wants;
+}
+
+void link_params_anew(struct link *l, int64_t now_us)
+{
+    for (int i = 0; i < l->wants; i++) {
+        l->want[i].answered = 0;
+        l->want[i].asked_us = now_us - AGAIN_US;
+    }
+    l->waiting = l->wants;
+    l->anew_us = now_us;
+    l->impatient = 0;
+}
+
+void link_params_answered(struct link *l, const struct exh_wire_ack *a)
+{
+    for (int i = 0; i < l->wants; i++) {
+        struct link_want *w = &l->want[i];
+        const struct exh_wire_param *p = &w->param;
+        if (w->answered || p->id != a->param.id || p->instance != a->param.instance || p->value != a->param.value) {
+            continue;
+        }
+        w->answered = 1;
+        l->waiting--;
+        if (a->result == 0) { continue; }
+        l->refused++;
+        say(l, w, "refused by the controller: %s", exh_error_text(a->result));
+    }
+}
+
+void link_params_ask(struct link *l, int64_t now_us)
+{
+    int asked = 0;
+    for (int i = 0; i < l->wants && asked < A_FRAME; i++) {
+        struct link_want *w = &l->want[i];
+        struct exh_wire_packet p;
+        if (w->answered || now_us - w->asked_us < AGAIN_US) { continue; }
+        memset(&p, 0, sizeof p);
+        p.type = EXH_WIRE_PARAM;
+        p.u.param = w->param;
+        link_put(l, &p, now_us);
+        w->asked_us = now_us;
+        asked++;
+    }
+}
+
+int link_params_hold(struct link *l, int64_t now_us)
+{
+    if (l->waiting == 0 || l->impatient) { return 0; }
+    if (now_us - l->anew_us < PATIENT_US) { return 1; }
+    l->impatient = 1;
+    for (int i = 0; i < l->wants; i++) {
+        if (!l->want[i].answered) {
+            say(l, &l->want[i], "no answer (%d of %d are without): the controller's own holds till then", l->waiting,
+                l->wants);
+            break;
+        }
+    }
+    return 0;
+}
