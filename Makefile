@@ -91,7 +91,8 @@ cli_src := $(wildcard ports/posix/cli/*.c ports/posix/fit/*.c) examples/log.c ex
 world_opt  := main live alone bench solo link link_param view gl gl_form gl_batch gl_solid gl_text picture_none mesh_embree mesh_none
 world_core := $(filter-out $(world_opt:%=examples/world/%.c),$(wildcard examples/world/*.c))
 cli_obj := $(cli_src:%.c=$(B)/posix/%.o) $(world_core:%.c=$(B)/posix/%.o) $(B)/posix/examples/world/mesh_none.o
-sim_obj := $(patsubst %.c,$(B)/posix/%.o,$(wildcard ports/posix/*.c ports/posix/sim/*.c)) \
+sim_obj := $(patsubst %.c,$(B)/posix/%.o,$(wildcard ports/posix/*.c ports/posix/sim/*.c ports/posix/emu/*.c \
+                                                    ports/cards/*.c)) \
            $(B)/posix/examples/loop.o
 exhand  := $(B)/posix/exhand
 
@@ -242,7 +243,7 @@ $(B)/test/world/%_test: $(B)/posix/test/world/%_test.o $(B)/posix/test/support.o
 $(B)/test/board/%_test: $(B)/posix/test/board/%_test.o $(B)/posix/test/support.o $(filter-out %/loop.o,$(sim_obj)) \
                         $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
-	$(Q)$(CC) -o $@ $^ -lcmocka
+	$(Q)$(CC) -o $@ $^ -lcmocka -lm
 
 # Golden vectors: the objects as they are shipped, at every rate.
 golden_src := $(wildcard test/golden/*.c) examples/drop/drop.c

@@ -3,6 +3,7 @@
  * between exactly (tick, D/A output, servo sample, what the experimenter does). */
 #include "posix.h"
 
+#include "cards.h"
 #include "line.h"
 #include "sim/codes.h"
 #include "sim/exo.h"
@@ -141,8 +142,17 @@ static int start_fingers(void)
     return 0;
 }
 
+/* The cards of the fingers that are there, from the thumb on. */
+static int start_cards(void)
+{
+    unsigned fingers = 1;
+    while (fingers < EXH_FINGERS && sim.drives >> fingers) { fingers++; }
+    return cards_start(&sim.cfg.cards, fingers, sim.cfg.glove);
+}
+
 int exh_board_init(uint32_t rate_Hz, struct exh_period *achieved)
 {
+    int err = 0;
     if (!sim.configured) { /* a box at rest, complete */
         sim.cfg = posix_config_default();
         sim.cfg.drives = (1u << EXH_FINGERS) - 1;
@@ -171,7 +181,8 @@ int exh_board_init(uint32_t rate_Hz, struct exh_period *achieved)
     if (line_start(&sim.cfg.line, sim.cfg.seed) < 0) { return -EXH_E_IO; }
     stop = 0;
     *achieved = sim.T;
-    return 0;
+    if (sim.cfg.cards.how) { err = start_cards(); }
+    return err;
 }
 
 void posix_bench(enum bench_place place, double mass_kg)
@@ -238,6 +249,7 @@ int exh_board_wait(void)
     advance_to(at_s);
     if (sim.cfg.pace) { follow_wall_clock(at_s); }
     line_advance(at_s);
+    if (sim.cfg.cards.how) { cards_at(at_s); }
     sim.tick++;
     if (sim.cfg.max_ticks && sim.tick > sim.cfg.max_ticks) { return -1; }
     return stop || interrupted || done() ? -1 : 0;
@@ -254,10 +266,11 @@ int exh_board_read_drive(struct exh_drive_in *in)
         }
     }
     in->din = EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_DRIVE0 * sim.drives;
-    return 0;
+    return sim.cfg.cards.how ? cards_read_drive(in) : 0;
 }
 
-int exh_board_write_drive(const struct exh_drive_out *out)
+/* The device gets these codes, when its delay is over. */
+static int put_out(const struct exh_drive_out *out)
 {
     const struct sim_device *d = &sim.cfg.device;
     const unsigned axes = sim.exo.fingers ? sim.exo.fingers : 1;
@@ -273,8 +286,23 @@ int exh_board_write_drive(const struct exh_drive_out *out)
     return 0;
 }
 
+int exh_board_write_drive(const struct exh_drive_out *out)
+{
+    struct exh_drive_out seen;
+    int err, put;
+    if (!sim.cfg.cards.how) { return put_out(out); }
+    err = cards_write_drive(out, &seen);
+    put = put_out(&seen);
+    return err ? err : put;
+}
+
 void exh_board_safe(void)
 {
+    if (sim.cfg.cards.how) {
+        struct exh_drive_out seen;
+        cards_safe(&seen);
+        if (seen.enable) { return; } /* the device is not */
+    }
     sim.queued = 0;
     sim_mass_safe(&sim.mass);
     for (unsigned i = 0; i < EXH_FINGERS; i++) {
@@ -309,7 +337,13 @@ int exh_board_read_glove(struct exh_glove_in *in)
     const double scan_s = SIM_GLOVE_SENSORS * sim.cfg.glove_par.interval_s;
     uint64_t age;
     if (!sim.cfg.glove) { return -EXH_E_ABSENT; }
-    if (sim.frame_s < 0 || sim.now_s >= sim.frame_s + scan_s * 0.999999) { next_frame(); }
+    if (sim.frame_s < 0 || sim.now_s >= sim.frame_s + scan_s * 0.999999) {
+        next_frame();
+        if (sim.cfg.cards.how) {
+            const int err = cards_read_glove(sim.frame);
+            if (err < 0) { return err; }
+        }
+    }
     memcpy(in->raw, sim.frame, sizeof sim.frame);
     age = sim.tick - sim.frame_tick;
     in->age_ticks = (uint16_t)(age < UINT16_MAX ? age : UINT16_MAX);

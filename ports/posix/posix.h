@@ -3,6 +3,7 @@
 #ifndef POSIX_H
 #define POSIX_H
 
+#include "cards.h"
 #include "line.h"
 
 #include "sim/bench.h"
@@ -33,6 +34,7 @@ struct posix_config {
                               * board says stop                               */
     unsigned drives;         /* bit i: drive of finger i is there and ready, besides those
                               * of fingers in use                             */
+    struct posix_cards cards; /* how: all codes go through drivers and emulated cards */
     struct posix_line line;  /* on: the link leads somewhere                     */
     double enc_jitter_cnt;   /* peak to peak, uniform: 1 makes a resting encoder change
                               * between two counts                             */

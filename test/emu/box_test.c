@@ -63,6 +63,11 @@ TEST(accesses_take_time)
     t_ns = box.time_ns;
     outw(0x8000 | 0x20 | 1, A + 0x06);
     CHECK_EQ_I64(inw(A + 0x0E), 4);
+    outb(0x04, MM + 7);
+    outb(21, MM + 3);
+    outb(0, MM);
+    CHECK_EQ_I64(inb(MM + 8) & 0x80, 0);
+    CHECK_EQ_I64(inb(MM + 6), 11);
     CHECK_EQ_I64((int64_t)(box.time_ns - t_ns), 0);
 }
 

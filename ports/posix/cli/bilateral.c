@@ -138,6 +138,7 @@ int cli_bilateral(int argc, char **argv)
         {"world-from", CLI_REAL, &o.run.from_s, 0, 1e9, "S", "the world is not there before (0)"},
         {"world-until", CLI_REAL, &o.run.until_s, 0, 1e30, "S", "it dies then (never)"},
         {"udp", CLI_TEXT, &o.udp, 0, 0, "HOST:PORT", "the world is another process there; in real time"},
+        {"cards", CLI_FLAG, &o.cards, 0, 0, NULL, "through the drivers and emulated cards: the same bits"},
         {"seed", CLI_INT, &o.seed, 0, 1e9, "N", "of all chance in the simulation (1)"},
         {"out", CLI_TEXT, &o.out, 0, 0, "DIR", "write logs, CSVs and what pictures need there"},
         {"set", CLI_CALL, u[3].to, 0, 0, "NAME=VALUE", "a parameter of the scene, of all fingers"},

@@ -22,7 +22,7 @@ struct bilateral_options {
     struct bilateral_speed speed[BILATERAL_SPEEDS_MAX];
     int speeds;
     int64_t approaches, seed, jobs, check;
-    int sweep, hands, crisp, own_scale;         /* own_scale: s was set, it is not fitted      */
+    int sweep, hands, crisp, cards, own_scale;  /* own_scale: s was set, it is not fitted      */
     const char *scene, *out, *udp, *link, *record;
     double record_Hz;
     struct run_setting setting[BILATERAL_SETTINGS_MAX];

@@ -14,6 +14,7 @@ struct bilateral_run_cfg bilateral_at_speed(const struct bilateral_options *o, d
     c.setting = o->setting;
     c.settings = o->settings;
     c.board.seed = (uint64_t)o->seed;
+    c.board.cards.how = o->cards ? POSIX_CARDS_INSTANT : POSIX_CARDS_NONE;
     c.fit_scale = !o->own_scale;
     for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
         c.board.exo.path[f].speed_mps = mps;

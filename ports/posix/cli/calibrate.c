@@ -24,7 +24,7 @@ struct calibrate_options {
     int64_t rate_Hz, seed, id, finger, day, valid_days; /* as CLI_INT writes them */
     double residual_N;
     double mass_kg[CALIBRATE_MASSES], hung_kg[CALIBRATE_MASSES];
-    int masses, hung, pace;
+    int masses, hung, pace, cards;
     const char *out, *check;
     struct calibration_setting setting[SETTINGS_MAX];
     int settings;
@@ -363,6 +363,7 @@ static int calibrate(const struct calibrate_options *o)
     c.board.device = o->device;
     c.board.seed = (uint64_t)o->seed;
     c.board.pace = o->pace;
+    c.board.cards.how = o->cards ? POSIX_CARDS_INSTANT : POSIX_CARDS_NONE;
     c.board.wrong = o->wrong;
     if (o->out != NULL && outfile_dir(o->out, "calibration.bin") != 0) { return 2; }
     (void)sigaction(SIGINT, &stop, NULL);
@@ -406,6 +407,7 @@ int cli_calibrate(int argc, char **argv)
         {"day", CLI_INT, &o.day, 0, 4294967295.0, "N", "today, in days since 1970 (the clock's)"},
         {"valid", CLI_INT, &o.valid_days, 0, 36525, "DAYS", "stale after that (90)"},
         {"seed", CLI_INT, &o.seed, 0, 1e9, "N", "of all chance in the simulation (1)"},
+        {"cards", CLI_FLAG, &o.cards, 0, 0, NULL, "through the drivers and emulated cards: the same bits"},
         {"pace", CLI_FLAG, &o.pace, 0, 0, NULL, "follow the wall clock, for people who watch"},
         {"set", CLI_CALL, u[1].to, 0, 0, "NAME=VALUE", "a parameter of the scene"},
         {"device", CLI_CALL, u[2].to, 0, 0, "NAME=VALUE", "a value of the simulated device"},

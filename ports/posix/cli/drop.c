@@ -27,7 +27,7 @@ struct drop_options {
     int rates, rates_given;
     double k_Npm, b_Nspm, scale; /* < 0: the paper's at that rate                 */
     int64_t falls, seed, jobs, spread, friction;
-    int pace, sweep, check, readings;
+    int pace, cards, sweep, check, readings;
     const char *out, *grid, *shard;
     struct run_setting setting[SETTINGS_MAX];
     int settings;
@@ -155,6 +155,7 @@ static struct run_cfg job_cfg(const struct drop_options *o, int rate_i, double s
     c.board.falls = o->falls < 0 ? 10 : (int)o->falls;
     c.board.T = o->T;
     c.board.pace = o->pace;
+    c.board.cards.how = o->cards ? POSIX_CARDS_INSTANT : POSIX_CARDS_NONE;
     return c;
 }
 
@@ -372,6 +373,7 @@ int cli_drop(int argc, char **argv)
         {"seed", CLI_INT, &o.seed, 0, 1e9, "N", "of all chance in the simulation (1)"},
         {"out", CLI_TEXT, &o.out, 0, 0, "DIR", "write logs, CSVs of the falls and tables there"},
         {"jobs", CLI_INT, &o.jobs, 1, 1024, "N", "processes at a time (one a core)"},
+        {"cards", CLI_FLAG, &o.cards, 0, 0, NULL, "through the drivers and emulated cards: the same bits"},
         {"pace", CLI_FLAG, &o.pace, 0, 0, NULL, "follow the wall clock, for people who watch"},
         {"set", CLI_CALL, u[2].to, 0, 0, "NAME=VALUE", "a parameter of the scene"},
         {"device", CLI_CALL, u[3].to, 0, 0, "NAME=VALUE", "a value of the simulated device"},

@@ -195,6 +195,7 @@ int cli_glove(int argc, char **argv)
         {"span", CLI_REAL, &o.span_V, 0.001, 20, "V", "all that a joint's signal can be (20)"},
         {"travel", CLI_REAL, &o.travel_m, 1e-6, 2, "M", "a finger's string (0.034)"},
         {"span-current", CLI_REAL, &o.span_A, 0.001, 100, "A", "all that a motor's current can be (6.6)"},
+        {"cards", CLI_FLAG, &o.cards, 0, 0, NULL, "the board's codes through the drivers and emulated cards: the same bits"},
         {"seed", CLI_INT, &o.seed, 0, 9e15, "N", "of the simulation"},
         {"set", CLI_CALL, u[0].to, 0, 0, "NAME=VALUE", "a parameter of the scene"},
         {"device", CLI_CALL, u[1].to, 0, 0, "NAME=VALUE", "one of the simulation"},

@@ -11,7 +11,7 @@
 #include <stdint.h>
 
 struct glove_options {
-    int selftest, skew, tips, deg;
+    int selftest, skew, tips, deg, cards;
     const char *csv, *log, *record, *play, *calibration, *unit, *does, *pose;
     double rate_Hz;             /* 0: not said                                  */
     double seconds;             /* 0: not said                                  */

@@ -114,6 +114,7 @@ int glove_record(const struct glove_options *o)
     c.device = o->device;
     c.glove_par = o->chain;
     c.seed = (uint64_t)o->seed;
+    c.cards.how = o->cards ? POSIX_CARDS_INSTANT : POSIX_CARDS_NONE;
     c.bench = c.glove = 1;
     c.T = glove_period(o->rate_Hz);
     if (err == 0) { err = try_once(o, c); }

@@ -76,6 +76,7 @@ int glove_rest_board(struct glove_rest *r, const struct glove_options *o)
     c.device = o->device;
     c.glove_par = o->chain;
     c.seed = (uint64_t)o->seed;
+    c.cards.how = o->cards ? POSIX_CARDS_INSTANT : POSIX_CARDS_NONE;
     c.bench = c.glove = 1;
     c.enc_jitter_cnt = 1;
     c.T = glove_period(rate_Hz);

@@ -172,7 +172,8 @@ void emu_hasten(struct emu_box *b)
         struct emu_s526_config *c = &b->s526[i].cfg;
         c->settle_ns = c->convert_ns = c->update_ns = c->eeprom_ns = 0;
     }
-    b->mm.cfg.wait_ns = b->mm.cfg.dac_ns = b->mm.cfg.reset_ns = 0;
+    for (unsigned i = 0; i < 4; i++) { b->mm.cfg.scan_ns[i] = 0; }
+    b->mm.cfg.convert_ns = b->mm.cfg.wait_ns = b->mm.cfg.dac_ns = b->mm.cfg.reset_ns = 0;
 }
 
 /* --- words --- */

@@ -87,8 +87,8 @@ void emu_out(struct emu_box *b, uint16_t port, unsigned width_B, uint32_t value)
 
 void emu_advance_ns(struct emu_box *b, uint64_t ns);
 
-/* From now on nothing takes time but a scan of the glove: a bus without cost, for a simulation
- * that is to give the same bits with the cards and without. */
+/* From now on nothing takes time: a simulation in which a tick is an instant gives the same bits
+ * with the cards and without. */
 void emu_hasten(struct emu_box *b);
 
 /* What the driver does now. */
