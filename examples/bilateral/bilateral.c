@@ -27,6 +27,9 @@ int bilateral_setup(struct bilateral_cfg *cfg, struct bilateral *s, const struct
     place_fingers(cfg, (uint32_t)par->own.fingers);
     if (cfg->n == 0) { return -EXH_E_RANGE; }
     if (num > UINT32_MAX) { return -EXH_E_RATE; }
+    /* Every value of both in range: no overflow. */
+    cfg->rest_ticks = (uint32_t)exh_udiv64((uint64_t)(uint32_t)par->own.f0_rest_ms * board.T.den,
+                                           UINT64_C(1000) * board.T.num, NULL) + 1;
     glove_cal_of_rows(&cfg->cal, &par->glove_own, par->sensor);
     err = exh_glove_setup(&cfg->glove, &par->glove, &cfg->cal,
                           (struct exh_period){(uint32_t)num, board.T.den});

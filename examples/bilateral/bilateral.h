@@ -18,6 +18,7 @@ struct bilateral_own_par {
     int32_t state_every; /* ticks from one state packet to the next              */
     int32_t session;     /* of the link; 0: made up at set-up, of the board's cycle counter */
     int32_t quiet_ms;    /* nothing heard for so long: a HELLO begins anew      */
+    int32_t f0_rest_ms;  /* a string that has run out no farther for so long is wound in */
 };
 
 /* All parameters, in the order of the scene's table. */
@@ -98,6 +99,8 @@ struct bilateral_finger {
     struct exh_contact contact;
     struct exh_drive drive;
     struct exh_precontact precontact;
+    int32_t out_m_q30;   /* how far the string has run out                      */
+    uint32_t rest_ticks; /* since then                                          */
     int32_t joint_turn_q32[EXH_HAND_JOINTS]; /* these four of the newest glove frame */
     struct exh_vec3 tip_m_q30, slope_q24;
     uint8_t clamped;
@@ -138,6 +141,7 @@ struct bilateral_cfg {
     struct exh_drive_cfg drive[BILATERAL_FINGERS];
     uint8_t at[BILATERAL_FINGERS]; /* which finger is at this place             */
     uint8_t n;                     /* in use                                    */
+    uint32_t rest_ticks;           /* f0_rest                                   */
     struct bilateral_wire_cfg wire;
 };
 

@@ -85,6 +85,22 @@ static struct exh_contact_par touch(struct bilateral *s, const struct bilateral_
     return law;
 }
 
+/* The finger that met no wall, or left one in haste, went back without the string, which hangs slack and
+ * does not move: for the law it never ran in, and F0 would not act. Having rested, it counts as running in,
+ * until it runs out by F0's band again. In contact it is taut. */
+static void wind_in(struct bilateral_finger *s, uint32_t rest_ticks)
+{
+    struct exh_contact *c = &s->contact;
+    if (c->touching || c->inward || c->turn_m_q30 != s->out_m_q30) {
+        s->rest_ticks = 0;
+    } else if (s->rest_ticks < rest_ticks) {
+        s->rest_ticks++;
+    } else {
+        c->inward = 1;
+    }
+    s->out_m_q30 = c->turn_m_q30;
+}
+
 uint32_t bilateral_finger_feel(struct bilateral *s, const struct bilateral_cfg *cfg,
                                unsigned place, int run, struct exh_current_ledger *i,
                                struct bilateral_paper *p, int32_t *bits)
@@ -103,6 +119,7 @@ uint32_t bilateral_finger_feel(struct bilateral *s, const struct bilateral_cfg *
     q.lim_m_q30 = now->precontact.lim_m_q30;
     law = touch(s, cfg, f);
     p->c = exh_contact_law(&now->contact, &law, q, &force);
+    wind_in(now, cfg->rest_ticks);
     limits = exh_drive_force(&now->drive, &cfg->drive[place], run, &force);
     limits |= exh_drive_current(&now->drive, &cfg->drive[place], &force, i);
     p->f_des_N_q20 = force.force_N_q20;
@@ -117,6 +134,8 @@ void bilateral_finger_bytes(struct exh_bytes *c, struct bilateral_finger *s)
     exh_contact_bytes(c, &s->contact);
     exh_drive_bytes(c, &s->drive);
     exh_precontact_bytes(c, &s->precontact);
+    exh_bytes_i32(c, &s->out_m_q30);
+    exh_bytes_u32(c, &s->rest_ticks);
     for (unsigned j = 0; j < EXH_HAND_JOINTS; j++) { exh_bytes_i32(c, &s->joint_turn_q32[j]); }
     exh_bytes_vec3(c, &s->tip_m_q30);
     exh_bytes_vec3(c, &s->slope_q24);

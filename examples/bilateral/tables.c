@@ -12,6 +12,7 @@ static const struct exh_signal own_rows[] = {
     {0x8611, 0, EXH_WHEN_ANY, 1, 10000, 5, "state_every", "", "ticks from one state packet to the next"},
     {0x8612, 0, EXH_WHEN_SETUP, 0, INT32_MAX, 0, "session", "", "of the link, another at every start; 0: of the board's cycle counter"},
     {0x8613, 0, EXH_WHEN_ANY, 100, 60000, 1000, "quiet", "ms", "nothing heard for so long: any hello begins anew"},
+    {0x8614, 0, EXH_WHEN_SETUP, 1, 60000, 20, "f0_rest", "ms", "a string that runs out no farther for so long is wound in"},
 };
 
 #define OUT(id, frac, min, max, name, unit, help) \

@@ -422,6 +422,43 @@ TEST(without_a_plane_in_time_nothing_is_felt)
     bilateral_run_free(&r);
 }
 
+/* String that hangs between finger and motor, mm. */
+static double slack_mm(const struct bilateral_track *t, size_t i)
+{
+    return 1e3 * ((t->at[i].raw.q_m_q30 - t->at[0].raw.q_m_q30) / 1073741824.0 - t->at[i].x_m + t->at[0].x_m);
+}
+
+/* A finger that met no wall goes back faster than F0 can follow, and then moves no string in: it must
+ * not stay slack, or the next wall is as far too far out. */
+TEST(a_slack_string_is_wound_in)
+{
+    struct bilateral_run_cfg c = plain(1u << EXH_INDEX, 0.87, 2);
+    const struct bilateral_track *t;
+    struct bilateral_run r;
+    double most_mm = 0, left_mm, off_mm;
+    size_t i = 0, contact, most = 0, wound = 0;
+    c.from_s = 1.5; /* between the first approach and the second */
+    c.board.exo.path[EXH_INDEX].rest_s = 4;
+    r = run(&c);
+    t = &r.finger[EXH_INDEX];
+    for (; i < t->n && t->at[i].approach < 2; i++) {
+        if (slack_mm(t, i) > most_mm) { most_mm = slack_mm(t, most = i); }
+        if (slack_mm(t, i) > 0.5) { wound = i; }
+    }
+    CHECK(i > 1 && i < t->n, "no second approach");
+    left_mm = slack_mm(t, i - 1);
+    contact = contact_of(t);
+    CHECK(t->at[contact].approach == 2, "felt in approach %d", t->at[contact].approach);
+    off_mm = 1e3 * ((t->at[contact].raw.q_lim_m_q30 - t->at[0].raw.q_m_q30) / 1073741824.0 - t->touch_m +
+                    t->at[0].x_m);
+    CHECK(left_mm < 0.5 && off_mm < 1.5 && off_mm > -1.5, "%.2f mm slack of %.1f, the wall %.2f mm off",
+          left_mm, most_mm, off_mm);
+    CHECK(most_mm > 5, "it was never slack: %.2f mm", most_mm);
+    check_note("slack after a missed contact: %.1f mm at most, wound in within %.2f s; %.2f mm before the next "
+               "approach, whose wall is %.2f mm off", most_mm, (double)(wound - most) / c.rate_Hz, left_mm, off_mm);
+    bilateral_run_free(&r);
+}
+
 /* ---- Five fingers --------------------------------------------------------------------------- */
 
 /* The glove lets its channels know of each other a little: here it does not. */
@@ -522,6 +559,7 @@ TEST_MAIN("bilateral", the_force_is_the_same_to_the_bit_over_every_link,
           a_world_that_dies_in_contact_leaves_loop_and_force_as_they_were,
           a_world_may_start_anew_in_contact, hostile_packets_change_nothing,
           two_processes_survive_each_others_restart, without_a_plane_in_time_nothing_is_felt,
+          a_slack_string_is_wound_in,
           five_fingers_are_in_contact_at_once_and_each_as_if_alone,
           a_finger_that_is_off_has_no_current_and_no_drive,
           parameters_come_over_the_link_are_answered_and_never_reach_a_contact,
