@@ -197,7 +197,7 @@ fit: all
 # --- tests ----------------------------------------------------------------------
 
 san       := -fsanitize=address,undefined -fno-sanitize-recover=all
-test_dirs := unit prop emu sim board golden world
+test_dirs := unit prop cards emu sim board golden world
 test_src  := $(foreach d,$(test_dirs),$(wildcard test/$(d)/*_test.c))
 test_bin  := $(test_src:test/%_test.c=$(B)/test/%_test)
 tflags     = $(base) $(CFLAGS) -Itest -DEXH_FIX_AUDIT
@@ -218,6 +218,15 @@ $(B)/test/prop/%_test: $(B)/test/san/test/prop/%_test.o
 # The emulated cards, at their registers.
 emu_src := $(wildcard ports/posix/emu/[!b]*.c)
 $(B)/test/emu/%_test: $(B)/test/san/test/emu/%_test.o $(B)/test/san/test/support.o $(emu_src:%.c=$(B)/test/san/%.o)
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(san) -o $@ $^ -lcmocka
+
+# Drivers of the cards, over a bus that a test scripts.
+cards_src := $(wildcard ports/cards/*.c)
+$(filter $(B)/test/cards/%,$(test_bin)): $(B)/test/san/test/cards/bus.o $(cards_src:%.c=$(B)/test/san/%.o) \
+                                         $(B)/test/san/test/support.o $(lib_src:%.c=$(B)/test/san/%.o)
+$(B)/test/san/test/cards/%.o $(B)/test/san/ports/cards/%.o: tflags += -Iports
+$(B)/test/cards/%_test: $(B)/test/san/test/cards/%_test.o
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(san) -o $@ $^ -lcmocka
 
@@ -305,6 +314,13 @@ $(plain_bin): $(B)/i686/%_test: test/%_test.c test/support.c $(lib_src) $(wildca
 	$(Q)i686-linux-gnu-gcc -static $(filter-out -MMD -MP,$(tflags)) $(trap) -D_POSIX_C_SOURCE=200809L \
 	    -DEXH_CHECK_PLAIN -o $@ $(filter %.c,$^)
 
+cards_bin := $(patsubst test/%_test.c,$(B)/i686/%_test,$(filter test/cards/%,$(test_src)))
+$(cards_bin): $(B)/i686/%_test: test/%_test.c test/cards/bus.c test/support.c $(cards_src) $(lib_src) \
+              $(wildcard test/*.h test/cards/*.h ports/cards/*.h lib/include/exhand/*.h) $(stamp)
+	@mkdir -p $(@D)
+	$(Q)i686-linux-gnu-gcc -static $(filter-out -MMD -MP,$(tflags)) $(trap) -Iports -D_POSIX_C_SOURCE=200809L \
+	    -DEXH_CHECK_PLAIN -o $@ $(filter %.c,$^)
+
 $(B)/i686/golden/golden_test: $(golden_src) test/support.c $(lib_src) $(wildcard test/*.h test/golden/*.h \
                               test/golden/digest/*.inc lib/include/exhand/*.h) $(stamp)
 	@mkdir -p $(@D)
@@ -312,7 +328,7 @@ $(B)/i686/golden/golden_test: $(golden_src) test/support.c $(lib_src) $(wildcard
 	    -DEXH_CHECK_PLAIN -o $@ $(filter %.c,$^)
 
 .PHONY: test-i686
-test-i686: $(plain_bin) $(B)/i686/golden/golden_test
+test-i686: $(plain_bin) $(cards_bin) $(B)/i686/golden/golden_test
 	@EXH_CASES=100000 test/run.sh $^
 
 # --- anything into the packet parser ------------------------------------------------------

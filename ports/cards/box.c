@@ -76,9 +76,7 @@ static struct {
 void exh_box_safe(void)
 {
     box.safe_calls++;
-    for (unsigned i = 0; i < 2; i++) {
-        if (box.s526[i].live) { exh_s526_safe(&box.s526[i]); }
-    }
+    exh_s526_safe(box.s526, 2);
 }
 
 /* Outputs first, then the words. The first fault stays. */
@@ -92,6 +90,18 @@ static int fail(unsigned card, uint16_t base, int code, const struct exh_card_fa
         box.error.fault = *f;
     }
     return code;
+}
+
+/* Of an S526 in a tick; one that died answers all sorts of questions wrongly. */
+static int board_fails(unsigned i, int err, struct exh_card_fault *f)
+{
+    struct exh_card_fault dead = *f;
+    exh_box_safe();
+    if (exh_s526_alive(&box.s526[i], &dead) < 0 && dead.what == EXH_CARD_EMPTY) {
+        f->what = dead.what;
+        f->lo = f->hi = 0;
+    }
+    return fail(i, box.s526[i].base, err, f);
 }
 
 /* --- configuration --- */
@@ -329,11 +339,11 @@ int exh_box_read_drive(struct exh_drive_in *in)
     counts_in(in);
     for (unsigned i = 0; i < box.boards; i++) {
         const int err = lines_in(i, &pins[i], &f);
-        if (err < 0) { return fail(i, box.s526[i].base, err, &f); }
+        if (err < 0) { return board_fails(i, err, &f); }
     }
     for (unsigned i = 0; i < box.boards; i++) {
         const int err = monitors_in(i, code, &f);
-        if (err < 0) { return fail(i, box.s526[i].base, err, &f); }
+        if (err < 0) { return board_fails(i, err, &f); }
     }
     box.started = 0;
     if (box.cfg.monitor == EXH_BOX_LAST) { ad_start(); }
@@ -384,8 +394,8 @@ int exh_box_write_drive(const struct exh_drive_out *out)
         for (unsigned i = 0; i < box.boards; i++) {
             if (box.axes[i]) { exh_s526_da_start(&box.s526[i]); }
         }
-        put_lines(out);
     }
+    if (box.safe_calls == calls) { put_lines(out); }
     if (box.safe_calls != calls) {
         box.counts.overtaken++;
         exh_box_safe();

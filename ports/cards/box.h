@@ -106,9 +106,10 @@ int exh_box_read_drive(struct exh_drive_in *in);
 int exh_box_write_drive(const struct exh_drive_out *out);
 int exh_box_read_glove(struct exh_glove_in *in);
 
-/* Drives disabled, D/A at 0 V: any time, from any context, any number of times, also between
- * any two accesses of the others. EXH_S526_SAFE_ACCESSES port accesses a board, no wait. Boards
- * whose signature was never seen are not written to. */
+/* Drives disabled, by the first access to each board, then D/A at 0 V: any time, from any
+ * context, any number of times, also between any two accesses of the others.
+ * EXH_S526_SAFE_ACCESSES port accesses a board, no wait. Boards whose signature was never seen
+ * are not written to. */
 void exh_box_safe(void);
 
 /* The first since it was opened; code 0: none. */

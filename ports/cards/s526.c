@@ -51,10 +51,9 @@ int exh_s526_alive(const struct exh_s526 *s, struct exh_card_fault *f)
 {
     const uint16_t got = s526_in(s, S526_EEC);
     f->phase = EXH_CARD_INPUT;
-    return got == s->id.signature
-               ? 0
-               : exh_card_fault(f, got == S526_ALL_ONES ? EXH_CARD_EMPTY : EXH_CARD_SIGNATURE, 0,
-                                got, s->id.signature, s->id.signature);
+    if (got == s->id.signature) { return 0; }
+    if (got == S526_ALL_ONES) { return exh_card_fault(f, EXH_CARD_EMPTY, S526_EEC, got, 0, 0); }
+    return exh_card_fault(f, EXH_CARD_SIGNATURE, S526_EEC, got, s->id.signature, s->id.signature);
 }
 
 int exh_s526_lines(const struct exh_s526 *s, uint8_t *pins, struct exh_card_fault *f)
@@ -132,18 +131,32 @@ void exh_s526_lines_put(struct exh_s526 *s, unsigned lines)
     s526_out(s, S526_DIO, S526_DIO_OUT4 | s->lines);
 }
 
-/* The drives first: one access takes their enables. Then twice the same: the first update may
- * fall into one that is under way; when the second comes, that one is over. */
-void exh_s526_safe(struct exh_s526 *s)
+static void lines_off(struct exh_s526 *s)
 {
     s->lines = s->lines_off;
+    s526_out(s, S526_DIO, S526_DIO_OUT4 | s->lines_off);
+}
+
+static void da_zero(const struct exh_s526 *s)
+{
+    for (unsigned k = 0; k < EXH_S526_AXES; k++) {
+        s526_out(s, S526_DAC, k << 1);
+        s526_out(s, S526_ADD, s->da_zero_raw[k]);
+    }
+    s526_out(s, S526_DAC, S526_DA_START);
+}
+
+/* The drives first: one access a board takes their enables. All of it twice: the first update
+ * may fall into one that is under way; when the second comes, that one is over. */
+void exh_s526_safe(struct exh_s526 *s, unsigned n)
+{
     for (int pass = 0; pass < 2; pass++) {
-        s526_out(s, S526_DIO, S526_DIO_OUT4 | s->lines_off);
-        for (unsigned k = 0; k < EXH_S526_AXES; k++) {
-            s526_out(s, S526_DAC, k << 1);
-            s526_out(s, S526_ADD, s->da_zero_raw[k]);
+        for (unsigned i = 0; i < n; i++) {
+            if (s[i].live) { lines_off(&s[i]); }
         }
-        s526_out(s, S526_DAC, S526_DA_START);
+        for (unsigned i = 0; i < n; i++) {
+            if (s[i].live) { da_zero(&s[i]); }
+        }
     }
 }
 

@@ -58,7 +58,7 @@ struct exh_s526_id {
 
 struct exh_s526 {
     uint16_t base;
-    uint16_t ad_mask;  /* bit k: channel k is scanned                            */
+    uint32_t ad_mask;  /* bit k: channel k is scanned                            */
     uint8_t live;      /* its signature was seen: its outputs may be written     */
     volatile uint8_t lines; /* pins 4..7 as last written                              */
     uint8_t lines_off; /* what they are when all is off                          */
@@ -98,9 +98,10 @@ void exh_s526_da_put(const struct exh_s526 *s, unsigned channel, uint16_t nomina
 void exh_s526_da_start(struct exh_s526 *s);                      /* all that were put (1) */
 void exh_s526_lines_put(struct exh_s526 *s, unsigned lines);     /* pins 4..7 (1) */
 
-/* Lines off, D/A at 0 V: from anywhere, between any two accesses of the others. */
-#define EXH_S526_SAFE_ACCESSES 20
-void exh_s526_safe(struct exh_s526 *s);
+/* Lines off, D/A at 0 V, of those of n cards that are live, from anywhere, between any two
+ * accesses of the others. */
+#define EXH_S526_SAFE_ACCESSES 20 /* a card */
+void exh_s526_safe(struct exh_s526 *s, unsigned n);
 
 /* --- seen by tests --- */
 

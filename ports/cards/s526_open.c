@@ -35,8 +35,11 @@ static int detect(struct exh_s526 *s, struct exh_card_fault *f)
     f->phase = EXH_CARD_DETECT;
     s->id.signature = got;
     if (got == 0x526A || got == 0x526B) { return 0; }
-    (void)exh_card_fault(f, got == S526_ALL_ONES ? EXH_CARD_EMPTY : EXH_CARD_SIGNATURE, 0, got,
-                         0x526A, 0x526B);
+    if (got == S526_ALL_ONES) {
+        (void)exh_card_fault(f, EXH_CARD_EMPTY, S526_EEC, got, 0, 0);
+    } else {
+        (void)exh_card_fault(f, EXH_CARD_SIGNATURE, S526_EEC, got, 0x526A, 0x526B);
+    }
     return -EXH_E_ABSENT;
 }
 
@@ -291,7 +294,7 @@ int exh_s526_open(struct exh_s526 *s, uint16_t base, unsigned ad_mask, unsigned 
 {
     int err;
     s->base = base;
-    s->ad_mask = (uint16_t)ad_mask;
+    s->ad_mask = ad_mask;
     s->lines_off = (uint8_t)(lines_off & S526_DIO_LINES);
     s->par = *par;
     s->id.nominal = 0;
@@ -303,14 +306,13 @@ int exh_s526_open(struct exh_s526 *s, uint16_t base, unsigned ad_mask, unsigned 
     err = detect(s, f);
     if (err < 0) { return err; }
     s->live = 1;
-    exh_s526_safe(s); /* whatever ran before */
+    exh_s526_safe(s, 1); /* whatever ran before */
     err = self_test(s, f);
     if (err == 0) { err = eeprom(s, f); }
     if (err == 0) { err = calibrate(s, f); }
-    exh_s526_safe(s); /* with its own codes of 0 V */
+    exh_s526_safe(s, 1); /* with its own codes of 0 V */
     if (err < 0 && s526_in(s, S526_EEC) == S526_ALL_ONES) { /* it died meanwhile */
-        return exh_card_fault(f, EXH_CARD_EMPTY, f->at, S526_ALL_ONES, s->id.signature,
-                              s->id.signature);
+        return exh_card_fault(f, EXH_CARD_EMPTY, S526_EEC, S526_ALL_ONES, 0, 0);
     }
     return err;
 }
