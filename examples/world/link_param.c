@@ -4,7 +4,6 @@
 
 #include "exhand/exhand.h"
 
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -12,18 +11,17 @@
 #define A_FRAME    2       /* asked for at once: a tick of the controller takes few packets   */
 #define PATIENT_US 1000000 /* without an answer for so long it goes on without               */
 
-static void say(const struct link *l, const struct link_want *w, const char *format, ...)
+static void say(const struct link *l, const struct link_want *w, double value, const char *what)
 {
-    char text[300];
-    va_list args;
-    int n;
+    char text[400];
     if (l->say == NULL) { return; }
-    n = snprintf(text, sizeof text, "material %s: %s %.9g %s: ", w->name, w->row->name,
-                 (double)w->param.value / (double)(INT64_C(1) << w->row->frac), w->row->unit);
-    va_start(args, format);
-    vsnprintf(text + n, sizeof text - (size_t)n, format, args);
-    va_end(args);
+    snprintf(text, sizeof text, "material %s: %s %.9g %s: %s", w->name, w->row->name, value, w->row->unit, what);
     l->say(text);
+}
+
+static double value_of(const struct link_want *w)
+{
+    return (double)w->param.value / (double)(INT64_C(1) << w->row->frac);
 }
 
 int link_want(struct link *l, const char *name, const struct exh_signal *row, unsigned instance, double value)
@@ -32,12 +30,15 @@ int link_want(struct link *l, const char *name, const struct exh_signal *row, un
     struct link_want w = {{row->id, (uint16_t)instance, 0}, row, "", 0, 0};
     if (l->wants == LINK_WANTS) { return 1; }
     snprintf(w.name, sizeof w.name, "%s", name);
-    w.param.value = raw > -2147483648.0 && raw < 2147483647.0 ? (int32_t)(raw < 0 ? raw - 0.5 : raw + 0.5) : INT32_MAX;
     if (!(raw >= row->min && raw <= row->max)) {
-        say(l, &w, "not between %.9g and %.9g: not sent, the controller's own holds", row->min / one, row->max / one);
+        char why[120];
+        snprintf(why, sizeof why, "not between %.9g and %.9g: not sent, the controller's own holds", row->min / one,
+                 row->max / one);
+        say(l, &w, value, why);
         l->refused++;
         return 1;
     }
+    w.param.value = (int32_t)(raw < 0 ? raw - 0.5 : raw + 0.5);
     l->want[l->wants++] = w;
     return 0;
 }
@@ -70,6 +71,7 @@ void link_params_answered(struct link *l, const struct exh_wire_ack *a)
     for (int i = 0; i < l->wants; i++) {
         struct link_want *w = &l->want[i];
         const struct exh_wire_param *p = &w->param;
+        char why[200];
         if (w->answered || p->id != a->param.id || p->instance != a->param.instance || p->value != a->param.value) {
             continue;
         }
@@ -77,7 +79,8 @@ void link_params_answered(struct link *l, const struct exh_wire_ack *a)
         l->waiting--;
         if (a->result == 0) { continue; }
         l->refused++;
-        say(l, w, "refused by the controller: %s", exh_error_text(a->result));
+        snprintf(why, sizeof why, "refused by the controller: %s", exh_error_text(a->result));
+        say(l, w, value_of(w), why);
     }
 }
 
@@ -104,8 +107,10 @@ int link_params_hold(struct link *l, int64_t now_us)
     l->impatient = 1;
     for (int i = 0; i < l->wants; i++) {
         if (!l->want[i].answered) {
-            say(l, &l->want[i], "no answer (%d of %d are without): the controller's own holds till then", l->waiting,
-                l->wants);
+            char why[120];
+            snprintf(why, sizeof why, "no answer (%d of %d are without): the controller's own holds till then",
+                     l->waiting, l->wants);
+            say(l, &l->want[i], value_of(&l->want[i]), why);
             break;
         }
     }

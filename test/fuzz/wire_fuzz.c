@@ -196,6 +196,7 @@ static void datagram(struct box *b, const struct exh_precontact_cfg *cfg, struct
         return;
     }
     MUST(r == b->last.type && b->rx.accepted == was.rx.accepted + 1);
+    if (r == EXH_WIRE_HELLO) { MUST(exh_wire_differs(&b->last.u.hello, &b->last.u.hello) == EXH_WIRE_ROLE); }
     heard(&was.rx, &b->rx, b->last.seq, r);
     same_bytes(b, packet, len);
     if (r == EXH_WIRE_PLANES) {

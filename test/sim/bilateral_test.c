@@ -276,6 +276,22 @@ TEST(hostile_packets_change_nothing)
 /* ---- Two processes ------------------------------------------------------------------------ */
 
 /* A world in a process of its own, one frame in 2.5 ms, for so long or until it is killed. */
+static int confuse_at; /* in this frame of it; 0: never */
+
+/* What a network may still have held: a HELLO of a world long gone; and a number far ahead. */
+static void confuse(struct udp *udp, const struct peer *peer)
+{
+    struct exh_wire_tx gone = {3, 77}, far = {peer->tx.session, peer->tx.seq + 60000};
+    struct exh_wire_packet p = {.type = EXH_WIRE_PLANES};
+    uint8_t buf[EXH_WIRE_MAX_B];
+    int32_t n = exh_wire_write(&far, &p, 0, buf, sizeof buf);
+    (void)udp_send(udp, buf, (size_t)n);
+    p.type = EXH_WIRE_HELLO;
+    p.u.hello = (struct exh_wire_hello){EXH_WIRE_WORLD, EXH_VERSION_NUMBER, 0};
+    n = exh_wire_write(&gone, &p, 0, buf, sizeof buf);
+    (void)udp_send(udp, buf, (size_t)n);
+}
+
 static pid_t world_process(const char *local, uint32_t session, const struct peer_world *world)
 {
     static struct sim_link link;
@@ -307,6 +323,7 @@ static pid_t world_process(const char *local, uint32_t session, const struct pee
         while ((n = sim_link_recv(&link.way[SIM_LINK_IN], t_s, buf, sizeof buf)) > 0) {
             (void)udp_send(&udp, buf, (size_t)n);
         }
+        if (i == confuse_at && i > 0) { confuse(&udp, &peer); }
         (void)nanosleep(&frame, NULL);
     }
     _exit(0);
@@ -372,6 +389,35 @@ TEST(two_processes_survive_each_others_restart)
     (void)kill(-pid, SIGKILL);
     (void)waitpid(pid, NULL, 0);
     bilateral_run_free(&perfect);
+}
+
+/* 0.75 s after the world has begun comes what makes a receiver deaf that only counts on: it is
+ * deaf for a second and a HELLO's time, and what is felt later is as ever. */
+TEST(two_processes_are_not_deaf_for_good)
+{
+    struct bilateral_run_cfg c = plain(1u << EXH_INDEX, 0.1, 2);
+    const struct bilateral_finger_is w = {EXH_INDEX, c.board.exo.finger[EXH_INDEX].arm_m, c.board.hand.pose};
+    struct peer_world world = {.ray_m = 0};
+    struct bilateral_run r;
+    char local[32];
+    pid_t pid;
+    snprintf(local, sizeof local, "127.0.0.1:%u", 20000u + (unsigned)(getpid() + 1) % 20000u);
+    world.wall.fingers = 1u << EXH_INDEX;
+    bilateral_wall(&world.wall.plane[EXH_INDEX], &w, c.at_m);
+    confuse_at = 300;
+    pid = world_process(local, 11, &world);
+    confuse_at = 0;
+    c.board.line.on = c.board.pace = 1;
+    c.board.line.udp_local = "127.0.0.1:0";
+    c.board.line.udp_peer = local;
+    r = run(&c);
+    CHECK(r.ticks > 5 * c.rate_Hz, "%d ticks: over too soon to tell", (int)r.ticks);
+    CHECK_EQ_I64(r.box.silences, 1);
+    CHECK(r.box.age < 100, "nothing has come for %d ticks", r.box.age);
+    CHECK(r.box.old + r.box.duplicate + r.box.reordered > 300, "%d old: was it confused?", r.box.old);
+    CHECK_EQ_I64(r.finger[EXH_INDEX].freezes, 2);
+    kill_world(pid);
+    bilateral_run_free(&r);
 }
 
 /* ---- No plane in time ----------------------------------------------------------------------- */
@@ -558,7 +604,8 @@ TEST_MAIN("bilateral", the_force_is_the_same_to_the_bit_over_every_link,
           another_plane_makes_another_force, s_of_the_slope_finds_the_wall_with_every_finger, what_moves_while_it_is_touched_is_not_felt,
           a_world_that_dies_in_contact_leaves_loop_and_force_as_they_were,
           a_world_may_start_anew_in_contact, hostile_packets_change_nothing,
-          two_processes_survive_each_others_restart, without_a_plane_in_time_nothing_is_felt,
+          two_processes_survive_each_others_restart, two_processes_are_not_deaf_for_good,
+          without_a_plane_in_time_nothing_is_felt,
           a_slack_string_is_wound_in,
           five_fingers_are_in_contact_at_once_and_each_as_if_alone,
           a_finger_that_is_off_has_no_current_and_no_drive,

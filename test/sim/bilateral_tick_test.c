@@ -274,7 +274,7 @@ static uint32_t deaf_ticks(void)
     return UINT32_MAX;
 }
 
-TEST(no_packet_makes_the_box_deaf_for_longer_than_a_silence)
+TEST(no_packet_makes_the_box_deaf_for_good)
 {
     struct exh_wire_tx real;
     int hellos = 0;
@@ -415,5 +415,5 @@ TEST_MAIN("bilateral, tick by tick", a_plane_told_before_the_first_glove_frame_i
           a_wall_that_the_glove_denies_does_not_pull_for_ever, an_old_glove_frame,
           missed_ticks_make_planes_older,
           a_world_that_has_started_anew_is_greeted_at_once,
-          no_packet_makes_the_box_deaf_for_longer_than_a_silence, a_world_that_differs_is_told_by_bits,
+          no_packet_makes_the_box_deaf_for_good, a_world_that_differs_is_told_by_bits,
           a_shorter_time_between_states_acts_at_once, no_packet_sets_what_is_the_boxs_own);

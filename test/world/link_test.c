@@ -191,7 +191,7 @@ static int params(struct controller *c, struct exh_wire_param asked[200], unsign
     return k;
 }
 
-TEST(materials_are_asked_for_until_they_are_answered_and_again_of_a_new_controller)
+TEST(materials_are_asked_for_until_answered)
 {
     struct exh_wire_state s;
     struct controller c;
@@ -232,7 +232,7 @@ TEST(materials_are_asked_for_until_they_are_answered_and_again_of_a_new_controll
     link_close(&world);
 }
 
-TEST(a_controller_that_answers_nothing_gets_planes_all_the_same)
+TEST(who_answers_nothing_gets_planes_all_the_same)
 {
     struct exh_wire_state s;
     struct controller c;
@@ -348,7 +348,7 @@ TEST(bad_addresses_are_refused_in_words)
 
 TEST_MAIN("world: the link", a_state_is_taken_and_answered_with_its_own_number, either_end_may_start_anew,
           without_planes_it_says_hello_alone,
-          materials_are_asked_for_until_they_are_answered_and_again_of_a_new_controller,
-          a_controller_that_answers_nothing_gets_planes_all_the_same, a_peer_that_differs_is_named,
+          materials_are_asked_for_until_answered,
+          who_answers_nothing_gets_planes_all_the_same, a_peer_that_differs_is_named,
           it_is_not_deaf_for_good,
           noise_changes_nothing, a_given_peer_is_the_only_one_listened_to, bad_addresses_are_refused_in_words);
