@@ -88,7 +88,7 @@ $(image): $(image_obj) $(lib) $(PORT_LDSCRIPT)
 cli_src := $(wildcard ports/posix/cli/*.c ports/posix/fit/*.c) examples/log.c examples/drop/drop.c \
            examples/calibrate/calibrate.c examples/glove/glove.c examples/glove/cal.c $(wildcard examples/bilateral/*.c)
 # The world's core, without its pictures, answers in the same process.
-world_opt  := main live alone bench solo link link_param view gl gl_form gl_batch gl_solid gl_text picture_none mesh_embree mesh_none
+world_opt  := main live alone bench solo link link_param view gl gl_form gl_batch gl_solid gl_layer gl_text picture_none mesh_embree mesh_none
 world_core := $(filter-out $(world_opt:%=examples/world/%.c),$(wildcard examples/world/*.c))
 cli_obj := $(cli_src:%.c=$(B)/posix/%.o) $(world_core:%.c=$(B)/posix/%.o) $(B)/posix/examples/world/mesh_none.o
 sim_obj := $(patsubst %.c,$(B)/posix/%.o,$(wildcard ports/posix/*.c ports/posix/sim/*.c ports/posix/emu/*.c \
@@ -150,7 +150,7 @@ world_rays := $(if $(call have,embree3/rtcore.h),3,$(if $(call have,embree4/rtco
 world_pkgs := libsdl2-dev libsdl2-ttf-dev libgl-dev libegl-dev libgl1-mesa-dri libpng-dev fonts-dejavu-core
 world      := $(B)/posix/world
 
-world_part := main live alone bench solo link link_param view $(if $(world_gl),gl gl_form gl_batch gl_solid gl_text,picture_none)
+world_part := main live alone bench solo link link_param view $(if $(world_gl),gl gl_form gl_batch gl_solid gl_layer gl_text,picture_none)
 world_mesh := $(B)/posix/examples/world/$(if $(world_rays),mesh_embree,mesh_none).o
 world_core_obj := $(patsubst %.c,$(B)/posix/%.o,$(world_core) ports/posix/sim/lag.c ports/posix/sim/plant.c)
 world_obj  := $(world_core_obj) $(world_mesh) $(world_part:%=$(B)/posix/examples/world/%.o) \

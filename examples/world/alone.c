@@ -26,8 +26,7 @@ static int save(struct alone *a, const char *path)
     a->m.eye = view_eye(&a->view);
     a->m.look = a->view.look;
     world_draw(a->run->world, &a->m, &a->list);
-    picture_paint(a->picture, &a->list);
-    if (picture_save(a->picture, path, why, sizeof why)) {
+    if (picture_save(a->picture, &a->list, path, why, sizeof why)) {
         cli_complain("%s", why);
         return 1;
     }

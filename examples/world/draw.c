@@ -53,6 +53,7 @@ static void objects(const struct scene *s, double t_s, struct draw_list *list)
                       ? o->shape.half_m
                       : v3(o->shape.radius_m, o->shape.radius_m, o->shape.half_m.z);
         i->mesh = o->shape.mesh;
+        i->still = o->motion.kind == MOTION_NONE;
         paint(i, c[0], c[1], c[2], 1);
     }
 }

@@ -24,6 +24,7 @@ struct draw_item {
     int which; /* object or finger                                              */
     struct pose at; /* in {W}                                                   */
     struct v3 size;
+    int still;       /* neither it nor its colour ever changes                    */
     int hidden;      /* CAPSULE: ends that are within other bodies: 0, 1 (that at -z), 2 */
     float colour[4]; /* red, green, blue, opacity                               */
     const struct mesh *mesh;
@@ -38,6 +39,7 @@ struct draw_text {
 };
 struct draw_rect {
     int x, y, w, h;
+    int panel; /* all texts and other rectangles lie on one                       */
     float colour[4];
 };
 

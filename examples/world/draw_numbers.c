@@ -5,10 +5,10 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { WHITE, GREY, BLUE, AMBER, RED, DARK };
+enum { WHITE, GREY, BLUE, AMBER, RED };
 static const float ink[][4] = {{0.97F, 0.97F, 0.97F, 1}, {0.74F, 0.77F, 0.81F, 1},
                                {0.52F, 0.79F, 1, 1},     {1, 0.78F, 0.30F, 1},
-                               {1, 0.46F, 0.42F, 1},     {0.13F, 0.15F, 0.19F, 1}};
+                               {1, 0.46F, 0.42F, 1}};
 
 #ifdef __GNUC__
 __attribute__((format(printf, 6, 7)))
@@ -31,7 +31,7 @@ static void say(struct draw_list *l, int x, int y, int colour, int how, const ch
 
 static void rect(struct draw_list *l, int x, int y, int w, int h, float r, float g, float b, float opaque)
 {
-    const struct draw_rect q = {x, y, w, h, {r, g, b, opaque}};
+    const struct draw_rect q = {x, y, w, h, opaque < 1, {r, g, b, opaque}};
     if (l->rects < (int)(sizeof l->rect / sizeof l->rect[0])) { l->rect[l->rects++] = q; }
 }
 
@@ -67,7 +67,7 @@ static void finger_row(const struct draw_moment *m, struct draw_list *l, int f, 
 
 static void fingers(const struct draw_moment *m, struct draw_list *l)
 {
-    rect(l, 12, -142, 424, 130, 0.07F, 0.09F, 0.12F, 0.72F);
+    rect(l, 12, -168, 424, 156, 0.07F, 0.09F, 0.12F, 0.72F);
     say(l, 206, -136, GREY, 1, "d mm");
     say(l, 292, -136, GREY, 1, "q_lim mm");
     say(l, 346, -136, GREY, 1, "F N");
@@ -117,7 +117,9 @@ void draw_numbers(const struct world *w, const struct draw_moment *m, struct dra
     say(l, 24, 18, WHITE, 2, "%s", title[0] ? title : "world");
     link_state(m, l);
     fingers(m, l);
-    say(l, 14, -184, DARK, 0, "red bars: contact forces");
-    say(l, 14, -164, DARK, 0, "discs: planes - blue near, amber frozen, red in contact");
+    say(l, 24, -162, WHITE, 0, "red bars: forces    planes:");
+    say(l, 220, -162, BLUE, 0, "near");
+    say(l, 264, -162, AMBER, 0, "frozen");
+    say(l, 324, -162, RED, 0, "in contact");
     if (m->help) { keys(l); }
 }

@@ -12,7 +12,8 @@ struct picture {
     SDL_GLContext context;
     struct gl_solid solid;
     struct gl_text text;
-    int width, height;
+    struct gl_layers layers;
+    int width, height, headless, layered; /* layered: so is the picture last painted */
 };
 
 static GLuint shader(GLenum kind, const char *text, char *error, size_t error_B)
@@ -66,7 +67,10 @@ static int open_window(struct picture *p, const struct picture_want *want, int s
 
 static int open_all(struct picture *p, const struct picture_want *want, char *error, size_t error_B)
 {
-    if (want->headless) { SDL_SetHint(SDL_HINT_VIDEODRIVER, "offscreen"); }
+    if (want->headless) {
+        SDL_SetHint(SDL_HINT_VIDEODRIVER, "offscreen");
+        SDL_setenv("LP_NUM_THREADS", "0", 0); /* Mesa without a card: no threads to wait for */
+    }
     if (SDL_Init(SDL_INIT_VIDEO) != 0) {
         snprintf(error, error_B, "no display: %s: use --headless", SDL_GetError());
         return 1;
@@ -76,7 +80,9 @@ static int open_all(struct picture *p, const struct picture_want *want, char *er
                                  "--headless without --png and --video", SDL_GetError());
         return 1;
     }
+    p->headless = want->headless;
     p->solid.fine = want->samples > 1;
+    p->layers.never = want->samples > 1;
     SDL_GL_SetSwapInterval(want->headless ? 0 : 1);
     return gl_solid_open(&p->solid, error, error_B) || gl_text_open(&p->text, error, error_B);
 }
@@ -96,6 +102,7 @@ void picture_close(struct picture *p)
 {
     if (p == NULL) { return; }
     if (p->context) {
+        gl_layers_close(&p->layers);
         gl_solid_close(&p->solid);
         gl_text_close(&p->text);
         SDL_GL_DeleteContext(p->context);
@@ -105,18 +112,70 @@ void picture_close(struct picture *p)
     free(p);
 }
 
-void picture_paint(struct picture *p, const struct draw_list *list)
+static void paint_all(struct picture *p, const struct draw_list *list)
+{
+    gl_text_back(&p->text, p->width, p->height);
+    gl_solid_fill(&p->solid, list, GL_PART_ALL, p->width, p->height);
+    gl_solid_paint(&p->solid, list);
+    gl_text_paint(&p->text, list, p->width, p->height);
+}
+
+static struct gl_patch both(const struct gl_patch *a, const struct gl_patch *b)
+{
+    if (a->x1 <= a->x0) { return *b; }
+    if (b->x1 <= b->x0) { return *a; }
+    return (struct gl_patch){a->x0 < b->x0 ? a->x0 : b->x0, a->y0 < b->y0 ? a->y0 : b->y0,
+                             a->x1 > b->x1 ? a->x1 : b->x1, a->y1 > b->y1 ? a->y1 : b->y1};
+}
+
+/* Numbers not older than they may be; fresh: all of now. */
+static void paint_layers(struct picture *p, const struct draw_list *list, int fresh)
+{
+    const GLbitfield all = GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT;
+    const int anew = gl_layers_moved(&p->layers, list), old = gl_layers_old(&p->layers, list);
+    const struct gl_patch before = p->layers.moving, full = {0, 0, p->width, p->height};
+    struct gl_patch patch;
+    if (anew) {
+        gl_layer_on(&p->layers, GL_STILL);
+        gl_text_back(&p->text, p->width, p->height);
+        gl_solid_fill(&p->solid, list, GL_PART_STILL, p->width, p->height);
+        gl_solid_paint(&p->solid, list);
+    }
+    if (anew || old || fresh) {
+        gl_layers_panels(&p->layers, GL_STILL, GL_NUMBERS, list);
+        gl_layer_on(&p->layers, GL_NUMBERS);
+        gl_text_paint(&p->text, list, p->width, p->height);
+    }
+    p->layers.moving = gl_solid_fill(&p->solid, list, GL_PART_MOVING, p->width, p->height);
+    patch = anew || old || fresh ? full : both(&before, &p->layers.moving);
+    gl_layer_copy(&p->layers, GL_STILL, GL_WHOLE, all, &patch);
+    gl_layer_on(&p->layers, GL_WHOLE);
+    gl_solid_paint(&p->solid, list);
+    gl_layers_panels(&p->layers, GL_NUMBERS, GL_WHOLE, list);
+    gl_layer_on(&p->layers, GL_WHOLE);
+}
+
+static void paint(struct picture *p, const struct draw_list *list, int fresh)
 {
     SDL_GL_GetDrawableSize(p->window, &p->width, &p->height);
+    p->layered = gl_layers_fit(&p->layers, p->width, p->height) == 0;
     glViewport(0, 0, p->width, p->height);
-    gl_text_back(&p->text, p->width, p->height);
-    gl_solid_paint(&p->solid, list, p->width, p->height);
-    gl_solid_paint_clear(&p->solid, list);
-    gl_text_paint(&p->text, list, p->width, p->height);
+    if (p->layered) { paint_layers(p, list, fresh); } else { paint_all(p, list); }
+}
+
+void picture_paint(struct picture *p, const struct draw_list *list)
+{
+    paint(p, list, 0);
 }
 
 void picture_show(struct picture *p)
 {
+    const struct gl_patch all = {0, 0, p->width, p->height};
+    if (p->layered && p->headless) { return; } /* nobody sees it; picture_save() reads the layer */
+    if (p->layered) {
+        gl_layer_copy(&p->layers, GL_WHOLE, -1, GL_COLOR_BUFFER_BIT, &all);
+        gl_layer_on(&p->layers, -1);
+    }
     SDL_GL_SwapWindow(p->window);
 }
 
@@ -146,11 +205,14 @@ static int write_png(FILE *f, const unsigned char *pixel, int width, int height)
     return 0;
 }
 
-int picture_save(struct picture *p, const char *path, char *error, size_t error_B)
+int picture_save(struct picture *p, const struct draw_list *list, const char *path, char *error, size_t error_B)
 {
-    unsigned char *pixel = malloc((size_t)p->width * (size_t)p->height * 3);
+    unsigned char *pixel;
     FILE *f = fopen(path, "wb");
-    int bad = pixel == NULL || f == NULL;
+    int bad;
+    paint(p, list, 1);
+    pixel = malloc((size_t)p->width * (size_t)p->height * 3);
+    bad = pixel == NULL || f == NULL;
     if (!bad) {
         glPixelStorei(GL_PACK_ALIGNMENT, 1);
         glReadPixels(0, 0, p->width, p->height, GL_RGB, GL_UNSIGNED_BYTE, pixel);

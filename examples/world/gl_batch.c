@@ -112,7 +112,7 @@ static void set_round(struct brush *b, struct gl_forms *f, int form)
     const struct draw_item *i = b->item;
     const struct v3 to = v3_sub(b->eye, i->at.at), axis = i->at.turn.z;
     const int round = f->form[form].strips > 0;
-    const struct v3 main = form == GL_FORM_SHADE ? gl_light : is_long(i) ? axis : to;
+    const struct v3 main = form == GL_FORM_SHADE || form == GL_FORM_DIM ? gl_light : is_long(i) ? axis : to;
     const struct v3 next = round && is_long(i) ? to : axis;
     struct m3 *t = &b->turn;
     if (frame_from_z(t, main, next) && frame_from_z(t, main, v3(1, 0, 0))) { frame_from_z(t, main, v3(0, 1, 0)); }

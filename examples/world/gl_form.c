@@ -144,6 +144,7 @@ static void make_form(struct gl_forms *m, int form)
     case GL_FORM_TUBE: make_round(m, &m->form[form], 8, 1); break;
     case GL_FORM_DOT: make_disc(m, 8, 1); break;
     case GL_FORM_SHADE: make_shade(m, 8); break;
+    case GL_FORM_DIM: make_shade(m, 4); break;
     case GL_FORM_FLOOR: make_floor(m); break;
     case GL_FORM_BOX: make_box(m); break;
     case GL_FORM_DISC:

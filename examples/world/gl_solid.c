@@ -149,6 +149,11 @@ static void set_plane(GLint to, struct v3 n, struct v3 at)
     glUniform4f(to, (float)n.x, (float)n.y, (float)n.z, (float)v3_dot(n, at));
 }
 
+static int mine(const struct gl_solid *g, const struct draw_item *i)
+{
+    return g->part & (i->still ? GL_PART_STILL : GL_PART_MOVING);
+}
+
 /* All meshes, or their shadows on a floor. */
 static void meshes(struct gl_solid *g, const struct draw_list *l, const struct draw_item *floor)
 {
@@ -168,7 +173,7 @@ static void meshes(struct gl_solid *g, const struct draw_list *l, const struct d
     }
     for (int k = 0; k < l->items; k++) {
         const struct draw_item *i = &l->item[k];
-        if (i->kind != DRAW_MESH) { continue; }
+        if (i->kind != DRAW_MESH || !mine(g, i)) { continue; }
         if (floor == NULL) { glUniform4fv(g->colour, 1, i->colour); }
         mesh(g, i);
     }
@@ -177,7 +182,7 @@ static void meshes(struct gl_solid *g, const struct draw_list *l, const struct d
 /* --- what goes into the batch, in the order it is painted --- */
 
 /* How round is round: corners cost, too. Finest when pixels are sampled many times, for pictures that
- * stay; of the rest large objects; a tube's outline is straight. */
+ * stay; of the rest large objects; the palm least: outlines are the same. */
 static int form_of(const struct gl_solid *g, const struct draw_item *i, int shade)
 {
     switch (i->kind) {
@@ -188,10 +193,16 @@ static int form_of(const struct gl_solid *g, const struct draw_item *i, int shad
     case DRAW_DISC: return GL_FORM_DISC;
     case DRAW_MESH: return -1;
     }
-    if (shade) { return GL_FORM_SHADE; }
+    if (shade) { return g->fine || i->what == DRAW_OBJECT ? GL_FORM_SHADE : GL_FORM_DIM; }
     if (i->what == DRAW_RAY) { return GL_FORM_DOT; }
     if (g->fine || (i->what == DRAW_OBJECT && i->size.x > 0.018)) { return GL_FORM_FINE; }
-    return i->hidden == 2 ? GL_FORM_TUBE : GL_FORM_BALL;
+    return i->hidden == 2 || (i->what == DRAW_HAND && i->which < 0) ? GL_FORM_TUBE : GL_FORM_BALL;
+}
+
+/* Not a finger's joint: those of the links beside it cover all but its rim. */
+static int has_shadow(const struct draw_item *i)
+{
+    return i->what == DRAW_OBJECT || (i->what == DRAW_HAND && (i->which < 0 || i->size.z > 0));
 }
 
 static void add_bodies(struct gl_solid *g, const struct draw_list *l, const struct draw_item *floor)
@@ -199,8 +210,8 @@ static void add_bodies(struct gl_solid *g, const struct draw_list *l, const stru
     for (int k = 0; k < l->items; k++) {
         const struct draw_item *i = &l->item[k];
         const int form = form_of(g, i, floor != NULL);
-        if (i->kind == DRAW_SQUARE || form < 0 || i->colour[3] < 1) { continue; }
-        if (floor && i->what != DRAW_OBJECT && i->what != DRAW_HAND) { continue; }
+        if (i->kind == DRAW_SQUARE || form < 0 || i->colour[3] < 1 || !mine(g, i)) { continue; }
+        if (floor && !has_shadow(i)) { continue; }
         gl_batch_add(&g->batch, &g->forms, i, form, l->eye, floor);
     }
 }
@@ -222,7 +233,7 @@ static void add_floors(struct gl_solid *g, const struct draw_list *l, int middle
     f->indices = middle ? GL_FLOOR_MIDDLE : all.indices - GL_FLOOR_MIDDLE;
     f->index += middle ? 0 : GL_FLOOR_MIDDLE;
     for (int k = 0; k < l->items; k++) {
-        if (l->item[k].kind != DRAW_SQUARE) { continue; }
+        if (l->item[k].kind != DRAW_SQUARE || !mine(g, &l->item[k])) { continue; }
         gl_batch_add(&g->batch, &g->forms, &l->item[k], GL_FORM_FLOOR, l->eye, NULL);
     }
     *f = all;
@@ -250,7 +261,7 @@ static void add_glasses(struct gl_solid *g, const struct draw_list *l)
         const struct draw_item *i = &l->item[k];
         const double far = v3_len(v3_sub(i->at.at, l->eye));
         int j = n;
-        if (i->kind == DRAW_SQUARE || form_of(g, i, 0) < 0 || i->colour[3] >= 1) { continue; }
+        if (i->kind == DRAW_SQUARE || form_of(g, i, 0) < 0 || i->colour[3] >= 1 || !mine(g, i)) { continue; }
         for (; j > 0 && g->depth[j - 1] < far; j--) {
             g->depth[j] = g->depth[j - 1];
             g->order[j] = g->order[j - 1];
@@ -266,7 +277,7 @@ static void add_glasses(struct gl_solid *g, const struct draw_list *l)
 
 /* --- painting --- */
 
-static void set_eye(GLint to, const struct draw_list *l, double width, double height)
+static void set_view(float e[16], const struct draw_list *l, double width, double height)
 {
     const double f = 1 / tan(0.5 * 38 * 0.017453292519943295), lo = 0.02, hi = 20;
     const struct v3 z = v3_unit(v3_sub(l->eye, l->look)), x = v3_unit(v3_cross(v3(0, 0, 1), z));
@@ -275,9 +286,34 @@ static void set_eye(GLint to, const struct draw_list *l, double width, double he
     const double ex = -v3_dot(x, l->eye), ey = -v3_dot(y, l->eye), ez = -v3_dot(z, l->eye);
     const double m[16] = {sx * x.x, f * y.x, a * z.x, -z.x, sx * x.y, f * y.y, a * z.y,     -z.y,
                           sx * x.z, f * y.z, a * z.z, -z.z, sx * ex,  f * ey,  a * ez + b, -ez};
-    float e[16];
     for (int i = 0; i < 16; i++) { e[i] = (float)m[i]; }
-    glUniformMatrix4fv(to, 1, GL_FALSE, e);
+}
+
+/* Where the batch will be seen, in pixels; all of the screen if some of it is beside the eye. */
+static struct gl_patch reach(const struct gl_solid *g, int width, int height)
+{
+    const struct gl_patch all = {0, 0, width, height};
+    const float *e = g->view;
+    float x0 = 1, y0 = 1, x1 = -1, y1 = -1;
+    for (int k = 0; k < g->batch.vertices; k++) {
+        const float *p = g->batch.vertex[k].place;
+        const float w = e[3] * p[0] + e[7] * p[1] + e[11] * p[2] + e[15];
+        const float x = (e[0] * p[0] + e[4] * p[1] + e[8] * p[2] + e[12]) / w;
+        const float y = (e[1] * p[0] + e[5] * p[1] + e[9] * p[2] + e[13]) / w;
+        if (!(w > 0.001F)) { return all; }
+        x0 = x < x0 ? x : x0;
+        y0 = y < y0 ? y : y0;
+        x1 = x > x1 ? x : x1;
+        y1 = y > y1 ? y : y1;
+    }
+    if (x1 < x0 || y1 < y0) { return (struct gl_patch){0, 0, 0, 0}; }
+    x0 = x0 < -1 ? -1 : x0;
+    y0 = y0 < -1 ? -1 : y0;
+    x1 = x1 > 1 ? 1 : x1;
+    y1 = y1 > 1 ? 1 : y1;
+    return (struct gl_patch){(int)((x0 + 1) * 0.5F * (float)width) - 2, (int)((y0 + 1) * 0.5F * (float)height) - 2,
+                             (int)((x1 + 1) * 0.5F * (float)width) + 3,
+                             (int)((y1 + 1) * 0.5F * (float)height) + 3};
 }
 
 static void fill(struct gl_solid *g, const struct draw_list *l, const struct draw_item *floor, int mark[])
@@ -299,6 +335,7 @@ static void fill(struct gl_solid *g, const struct draw_list *l, const struct dra
 
 static void section(struct gl_solid *g, int program, int which)
 {
+    if (g->mark[which] == g->mark[which + 1]) { return; }
     glUseProgram(g->program[program]);
     gl_batch_paint(&g->batch, GL_TRIANGLES, g->mark[which], g->mark[which + 1]);
 }
@@ -311,7 +348,7 @@ static void paint_shadows(struct gl_solid *g, const struct draw_list *l, const s
     glStencilOp(GL_KEEP, GL_KEEP, GL_INCR);
     glEnable(GL_CULL_FACE);
     section(g, GL_SHADE, GL_SHADOWS);
-    if (g->meshes) {
+    if (g->has_meshes) {
         meshes(g, l, floor);
         gl_batch_bind(&g->batch);
     }
@@ -319,34 +356,48 @@ static void paint_shadows(struct gl_solid *g, const struct draw_list *l, const s
     glDisable(GL_STENCIL_TEST);
 }
 
-/* What hides most comes first: pixels cost. */
-void gl_solid_paint(struct gl_solid *g, const struct draw_list *l, double width, double height)
+static int has_meshes(const struct gl_solid *g, const struct draw_list *l)
 {
-    fill(g, l, floor_of(l), g->mark);
-    glUseProgram(g->mesh_program);
-    set_eye(g->eye, l, width, height);
-    for (int i = 0; i < GL_PROGRAMS; i++) {
-        glUseProgram(g->program[i]);
-        set_eye(g->program_eye[i], l, width, height);
+    for (int k = 0; k < l->items; k++) {
+        if (l->item[k].kind == DRAW_MESH && mine(g, &l->item[k])) { return 1; }
     }
+    return 0;
+}
+
+struct gl_patch gl_solid_fill(struct gl_solid *g, const struct draw_list *l, int part, int width, int height)
+{
+    const struct draw_item *floor = floor_of(l);
+    const struct gl_patch all = {0, 0, width, height};
+    const int moves = floor && !floor->still; /* and on it all shadows             */
+    g->part = !moves ? part : part & GL_PART_MOVING ? GL_PART_ALL : 0;
+    set_view(g->view, l, width, height);
+    fill(g, l, floor, g->mark);
+    g->has_meshes = has_meshes(g, l);
+    return g->has_meshes ? all : reach(g, width, height);
+}
+
+/* What hides most comes first: pixels cost. */
+static void paint_bodies(struct gl_solid *g, const struct draw_list *l)
+{
     glEnable(GL_DEPTH_TEST);
     glEnable(GL_CULL_FACE);
-    meshes(g, l, NULL);
+    if (g->has_meshes) {
+        glUseProgram(g->mesh_program);
+        glUniformMatrix4fv(g->eye, 1, GL_FALSE, g->view);
+        meshes(g, l, NULL);
+    }
     gl_batch_send(&g->batch);
     gl_batch_bind(&g->batch);
     section(g, GL_PLAIN, GL_BODIES);
     glDisable(GL_CULL_FACE);
     section(g, GL_FLOOR, GL_MIDDLES);
-    glDisable(GL_DEPTH_TEST);
 }
 
-void gl_solid_paint_clear(struct gl_solid *g, const struct draw_list *l)
+static void paint_clear(struct gl_solid *g, const struct draw_list *l)
 {
     const struct draw_item *floor = floor_of(l);
-    glEnable(GL_DEPTH_TEST);
     glEnable(GL_BLEND);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-    gl_batch_bind(&g->batch);
     section(g, GL_FLOOR, GL_EDGES);
     glDepthMask(GL_FALSE);
     if (floor) { paint_shadows(g, l, floor); }
@@ -354,4 +405,14 @@ void gl_solid_paint_clear(struct gl_solid *g, const struct draw_list *l)
     glDepthMask(GL_TRUE);
     glDisable(GL_BLEND);
     glDisable(GL_DEPTH_TEST);
+}
+
+void gl_solid_paint(struct gl_solid *g, const struct draw_list *l)
+{
+    for (int i = 0; i < GL_PROGRAMS; i++) {
+        glUseProgram(g->program[i]);
+        glUniformMatrix4fv(g->program_eye[i], 1, GL_FALSE, g->view);
+    }
+    paint_bodies(g, l);
+    paint_clear(g, l);
 }

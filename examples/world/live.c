@@ -233,7 +233,7 @@ static int look(struct live *l, struct looking *v)
     if (news) {
         world_draw(l->run->world, &m, &v->list);
         picture_paint(v->picture, &v->list);
-        if (!ended || l->run->png == NULL) { picture_show(v->picture); }
+        picture_show(v->picture);
         v->drawn++;
     } else if (!ended) {
         sleep_till(now + 500);
@@ -274,8 +274,7 @@ static int watch(struct live *l)
         if (take_keys(l, &v)) { leave(l); }
     }
     if (r->png) {
-        picture_paint(v.picture, &v.list);
-        bad = picture_save(v.picture, r->png, why, sizeof why);
+        bad = picture_save(v.picture, &v.list, r->png, why, sizeof why);
     }
     if (bad) { cli_complain("%s", why); }
     picture_close(v.picture);

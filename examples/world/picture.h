@@ -20,13 +20,13 @@ struct picture_want {
 struct picture *picture_open(const struct picture_want *want, char *error, size_t error_B);
 void picture_close(struct picture *p);
 
-/* Paints; it is seen after picture_show(), and must be saved before. */
+/* Paints; it is seen after picture_show(). The numbers may be those of 50 ms ago. */
 void picture_paint(struct picture *p, const struct draw_list *list);
 void picture_show(struct picture *p);
 void picture_wait(struct picture *p); /* until it is painted, for measuring      */
 
-/* As PNG; 0, or 1 with the reason in error. */
-int picture_save(struct picture *p, const char *path, char *error, size_t error_B);
+/* Paints, all numbers of now, and writes as PNG; 0, or 1 with the reason in error. */
+int picture_save(struct picture *p, const struct draw_list *list, const char *path, char *error, size_t error_B);
 
 /* What was pressed since the last call: keys as their characters, arrows as below; 0: nothing
  * more. Turning and zooming by mouse is added to the view. */

@@ -33,9 +33,9 @@ void picture_wait(struct picture *p)
     (void)p;
 }
 
-int picture_save(struct picture *p, const char *path, char *error, size_t error_B)
+int picture_save(struct picture *p, const struct draw_list *list, const char *path, char *error, size_t error_B)
 {
-    (void)p, (void)path;
+    (void)p, (void)list, (void)path;
     return picture_open(NULL, error, error_B) == NULL;
 }
 
