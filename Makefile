@@ -90,14 +90,22 @@ cli_src := $(wildcard ports/posix/cli/*.c ports/posix/fit/*.c) examples/log.c ex
 # The world's core, without its pictures, answers in the same process.
 world_opt  := main live alone bench solo link link_param view gl gl_form gl_batch gl_solid gl_layer gl_text picture_none mesh_embree mesh_none
 world_core := $(filter-out $(world_opt:%=examples/world/%.c),$(wildcard examples/world/*.c))
-cli_obj := $(cli_src:%.c=$(B)/posix/%.o) $(world_core:%.c=$(B)/posix/%.o) $(B)/posix/examples/world/mesh_none.o
+
+# Rays into meshes where the package is, this compiler sees it, and what is linked can load it when it runs.
+have        = $(firstword $(wildcard $(addsuffix /$(1),/usr/include /usr/local/include)))
+sees        = $(if $(call have,$(1)),$(shell $(CC) $(CFLAGS) -include $(1) -fsyntax-only -xc /dev/null 2>/dev/null && echo yes))
+world_rays := $(if $(filter -static,$(LDFLAGS)),,$(if $(call sees,embree3/rtcore.h),3,$(if $(call sees,embree4/rtcore.h),4)))
+world_mesh := $(B)/posix/examples/world/$(if $(world_rays),mesh_embree,mesh_none).o
+
+cli_obj := $(cli_src:%.c=$(B)/posix/%.o) $(world_core:%.c=$(B)/posix/%.o) $(world_mesh)
+cli_libs := $(if $(world_rays),-ldl) -lm
 sim_obj := $(patsubst %.c,$(B)/posix/%.o,$(wildcard ports/posix/*.c ports/posix/sim/*.c ports/posix/emu/*.c \
                                                     ports/cards/*.c)) \
            $(B)/posix/examples/loop.o
 exhand  := $(B)/posix/exhand
 
 $(exhand): $(cli_obj) $(sim_obj) $(B)/posix/libexhand.a
-	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(cli_libs)
 
 ifeq ($(PORT),posix)
 products := $(exhand)
@@ -144,14 +152,11 @@ endif
 # --- the world simulator ----------------------------------------------------------------
 
 # Its core needs a C compiler alone. Pictures and rays into meshes are in it where their packages are.
-have        = $(firstword $(wildcard $(addsuffix /$(1),/usr/include /usr/local/include)))
 world_gl   := $(and $(call have,SDL2/SDL_ttf.h),$(call have,GL/gl.h),$(call have,png.h))
-world_rays := $(if $(call have,embree3/rtcore.h),3,$(if $(call have,embree4/rtcore.h),4))
 world_pkgs := libsdl2-dev libsdl2-ttf-dev libgl-dev libegl-dev libgl1-mesa-dri libpng-dev fonts-dejavu-core
 world      := $(B)/posix/world
 
 world_part := main live alone bench solo link link_param view $(if $(world_gl),gl gl_form gl_batch gl_solid gl_layer gl_text,picture_none)
-world_mesh := $(B)/posix/examples/world/$(if $(world_rays),mesh_embree,mesh_none).o
 world_core_obj := $(patsubst %.c,$(B)/posix/%.o,$(world_core) ports/posix/sim/lag.c ports/posix/sim/plant.c)
 world_obj  := $(world_core_obj) $(world_mesh) $(world_part:%=$(B)/posix/examples/world/%.o) \
               $(B)/posix/ports/posix/cli/option.o $(B)/posix/examples/bilateral/tables.o $(B)/posix/examples/glove/cal.o
@@ -234,7 +239,7 @@ $(B)/test/cards/%_test: $(B)/test/san/test/cards/%_test.o
 $(B)/test/sim/%_test: $(B)/posix/test/sim/%_test.o $(B)/posix/test/support.o \
                       $(filter-out %/main.o %/loop.o,$(cli_obj) $(sim_obj)) $(B)/test/loop.o $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
-	$(Q)$(CC) -o $@ $^ -lcmocka -lm
+	$(Q)$(CC) -o $@ $^ -lcmocka $(cli_libs)
 $(B)/posix/test/%.o: test/%.c $(stamp)
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(base) $(PORT_HOSTFLAGS) $(CFLAGS) -Itest -c $< -o $@
@@ -278,7 +283,7 @@ stress_obj := $(patsubst %.c,$(B)/posix/%.o,$(wildcard test/stress/*.c))
 $(B)/test/stress: $(stress_obj) $(filter-out %/main.o %/loop.o,$(cli_obj) $(sim_obj)) \
                   $(B)/test/loop.o $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
-	$(Q)$(CC) $(LDFLAGS) -o $@ $^ -lm
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(cli_libs)
 
 STRESS_CASES ?= 100000000
 STRESS_PARTS := 8
