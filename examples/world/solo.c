@@ -42,7 +42,7 @@ static void pose_finger(const struct solo *s, const struct world *w, int f, stru
     const double b = s->bend[f];
     out->joint_turn_q32[f][0] = 0;
     out->joint_turn_q32[f][1] = turn_q32(b * finger_hi_rad[1] * 0.82);
-    out->joint_turn_q32[f][2] = turn_q32(b * finger_hi_rad[2] * 0.80);
+    out->joint_turn_q32[f][2] = turn_q32(b * finger_hi_rad[2] * (f == 0 ? 1 : 0.80)); /* a thumb meets the others */
     finger_at(at, world_hand(w), (unsigned)f, out->joint_turn_q32[f]);
 }
 
