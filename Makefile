@@ -68,8 +68,8 @@ $(lib): $(lib_obj)
 
 # --- what is linked -----------------------------------------------------------
 
-image     := $(out)/$(SCENE).elf
-image_obj := $(patsubst %,$(out)/$(SCENE)/%.o,$(basename examples/image.c $(PORT_SRC))) \
+image     := $(out)/$(SCENE)$(PORT_SUFFIX).elf
+image_obj := $(patsubst %,$(out)/$(SCENE)/%.o,$(basename $(or $(PORT_MAIN),examples/image.c examples/deadman.c) $(PORT_SRC))) \
              $(out)/examples/loop.o $(SCENE_SRC:%.c=$(out)/%.o)
 
 # These know which scene they serve: one set of objects per scene.
@@ -83,6 +83,13 @@ $(out)/$(SCENE)/%.o: %.S $(stamp)
 $(image): $(image_obj) $(lib) $(PORT_LDSCRIPT)
 	$(Q)$(CC) $(PORT_LDFLAGS) $(LDFLAGS) -Wl,--gc-sections,-Map=$(@:.elf=.map) \
 	    $(PORT_LDSCRIPT:%=-T %) $(image_obj) $(lib) -o $@
+
+# What the machine boots from, where that is not the image itself.
+boot := $(if $(PORT_ISO),$(image:.elf=.iso))
+$(boot): $(image) $(PORT_ISO) FORCE
+	@.ci/deps "$@" "command -v grub-mkrescue && command -v xorriso && command -v mformat && ls /usr/lib/grub/i386-pc/multiboot.mod" \
+	    grub-pc-bin grub-common xorriso mtools || exit 3
+	$(Q)$(PORT_ISO) $(image) $@ $(ARGS)
 
 # The host program: every scene that has a subcommand, over the simulated device.
 cli_src := $(wildcard ports/posix/cli/*.c ports/posix/fit/*.c) examples/log.c examples/drop/drop.c \
@@ -139,6 +146,11 @@ demo: all
 	for p in force_position fall stability friction calibration/calibration bilateral/contact bilateral/force; do p=$(B)/demo/$$p.png; \
 	    if [ -s $$p ]; then echo "picture: $$p"; else echo "picture missing: $$p" >&2; fi; done; \
 	cat $(B)/demo/bilateral.txt $(B)/demo/calibration.txt $(B)/demo/table1.txt $(B)/demo/stability.txt $(B)/demo/friction.txt $(B)/demo/table2.txt; exit $$s
+
+## Build the image of SCENE on PORT and what the machine boots from (ARGS: its options, kept there)
+.PHONY: image
+image: $(image) $(boot)
+	@ls -l $^ | awk '{print $$NF ": " $$5 " bytes"}'
 
 ## Run the host program (ARGS="drop --help") or the image of SCENE on PORT
 .PHONY: run
@@ -440,14 +452,23 @@ check:
 	@$(MAKE) --no-print-directory undef undef-cortex-m3 undef-cortex-m0
 	@$(MAKE) --no-print-directory PORT=pc104 SCENE=minimal undef-emu
 	@$(MAKE) --no-print-directory PORT=template SCENE=minimal all
-	@$(MAKE) --no-print-directory PORT=pc104 SCENE=minimal undef run
-	@$(MAKE) --no-print-directory PORT=pc104 SCENE=drop run
-	@$(MAKE) --no-print-directory PORT=pc104 SCENE=glove run
-	@$(MAKE) --no-print-directory PORT=pc104 SCENE=bilateral run
+	@$(MAKE) --no-print-directory PORT=pc104 SCENE=minimal undef
+	@$(MAKE) --no-print-directory boot
 	@$(MAKE) --no-print-directory world two-computers
 	@$(world) --headless --script --seconds 1 --scene examples/world/scenes/collision.world --png $(B)/world.png || [ $$? = 3 ]
 	@$(MAKE) --no-print-directory size
 	@$(MAKE) --no-print-directory bench
+
+boot_scenes := minimal drop glove bilateral calibrate
+
+## Boot images of PORT=pc104 under QEMU, from an ISO too: what must end well, safe or refused
+.PHONY: boot
+boot: all
+	@.ci/deps "booting" qemu-system-i386 qemu-system-x86 || exit 3
+	@for c in real none; do for s in $(boot_scenes); do \
+	    $(MAKE) --no-print-directory $(if $(V),,-s) PORT=pc104 SCENE=$$s CARDS=$$c all || exit; done; done
+	@$(MAKE) --no-print-directory -s PORT=pc104 SCENE=drop CARDS=none image ARGS="ticks=500 k=1000"
+	@EXHAND=$(exhand) test/pc104/boot.sh $(B)/pc104
 
 # --- figures ------------------------------------------------------------------------
 

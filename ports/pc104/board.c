@@ -1,94 +1,139 @@
-/* PC/104 board, first stage: processor, timer and serial line are real, the cards
- * are constants. It shows that scene and library run on the bare machine. */
+/* The board's functions: the box (ports/cards), the timer, the two ways out for records. */
 #include "pc104.h"
 
-#include "exhand/board.h"
-#include "exhand/error.h"
+#include "box.h"
 #include "io.h"
+
+#include "exhand/error.h"
 
 #include <limits.h>
 
-#define TICKS_DEFAULT 1000u /* an emulator has no other way to say "enough" */
-#define DAC_ZERO_RAW  32768u
-#define DEADMAN_TICK  200u
-/* Debug exit of emulators: status 2 * value + 1. Neither may look like a failure
- * of the emulator itself, which is 1. Real machines have nothing at this port. */
-enum { EXIT_PORT = 0xF4, EXIT_DONE = 0x10, EXIT_FAILED = 0x11 };
+/* Debug exit of emulators. Real machines have nothing at this port. */
+#define EXIT_PORT 0xF4u
 enum { STOP = -1 };
 
-/* 24-bit counters of the encoder cards; 19906 Hz is divisor 60 less 1000 ppm. */
+/* 24-bit counters of the encoder cards. The 8254, where it has to do, reaches 19906 Hz alone. */
 const struct exh_board_info exh_board_info = {
     .name = "pc104",
     .version = EXH_BOARD_VERSION,
     .fingers = EXH_FINGERS,
     .enc_bits = 24,
-    .rate_max_Hz = 19906,
+    .rate_max_Hz = 20000,
 };
 
 static struct {
-    uint32_t wanted, run, missed, seen;      /* ticks */
+    const struct exh_scene *scene;
+    uint32_t run, missed; /* ticks */
     uint32_t tick_start, tick_min, tick_max; /* cycles of the scene's tick alone */
-    uint8_t started;
+    uint8_t ready, opened, started;
 } run = {.tick_min = UINT32_MAX};
 
-static struct exh_drive_out applied; /* what the cards would hold */
-static struct exh_drive_out last;    /* the last frame of the loop */
+static struct exh_drive_out last; /* the last frame of the loop */
+static uint8_t exit_code;
+
+void pc104_board_for(const struct exh_scene *sc)
+{
+    run.scene = sc;
+}
+
+uint32_t pc104_tick(void)
+{
+    return run.run;
+}
+
+int pc104_board_clock(void)
+{
+    const int err = run.ready ? 0 : pc104_timer_choose(pc104_par.timer);
+    run.ready = err == 0;
+    if (err < 0) { exit_code = PC104_EXIT_TIMER; }
+    return err;
+}
 
 int exh_board_init(uint32_t rate_Hz, struct exh_period *achieved)
 {
+    struct exh_box_config config;
+    struct exh_box_report report;
+    int err;
+
     exh_board_safe();
-    const int err = pc104_timer_set(rate_Hz, achieved);
+    err = pc104_board_clock();
     if (err < 0) { return err; }
-    pc104_say_banner(rate_Hz, *achieved);
-    run.wanted = pc104_option_u32("ticks", TICKS_DEFAULT);
-    return 0;
+    exit_code = PC104_EXIT_RATE;
+    err = pc104_timer_set(rate_Hz, achieved);
+    if (err < 0) { return err; }
+    pc104_box_config(run.scene, &config);
+    err = exh_box_open(&config, &report);
+    pc104_box_say(&report);
+    exit_code = err == -EXH_E_RANGE ? PC104_EXIT_OPTION : PC104_EXIT_ABSENT;
+    if (err < 0) { return err; }
+    run.opened = 1;
+    exit_code = PC104_EXIT_RATE;
+    err = pc104_load_fits(rate_Hz);
+    if (err < 0) { return err; }
+    exit_code = 0;
+    if (exh_box_error()->code != 0) { return -EXH_E_IO; } /* a card that passed and then failed */
+    return exh_box_open(&config, NULL); /* as new: what was read in vain is forgotten */
 }
 
 int exh_board_wait(void)
 {
-    if (run.run == run.wanted) { return STOP; }
+    uint32_t missed;
+    if (run.started) { pc104_load_end(); }
+    if (pc104_par.ticks && run.run == (uint32_t)pc104_par.ticks) { return STOP; }
     if (!run.started) { /* set-up and its text are not missed ticks */
-        run.seen = pc104_timer_start();
+        pc104_timer_start();
         run.started = 1;
     }
-    const uint32_t now = pc104_timer_wait(run.seen);
-    const uint32_t missed = now - run.seen - 1;
-    run.seen = now;
+    if (pc104_timer_wait(&missed) < 0) {
+        pc104_halt(PC104_EXIT_TIMER, "timer: no tick for four periods, by the second clock");
+    }
+    pc104_load_missed(missed);
     run.run++;
     run.missed = missed > UINT32_MAX - run.missed ? UINT32_MAX : run.missed + missed;
+    pc104_load_begin();
+    if (pc104_par.provoke && run.run == (uint32_t)pc104_par.provoke_tick) {
+        pc104_provoke(pc104_par.provoke);
+    }
     return missed > INT_MAX ? INT_MAX : (int)missed;
+}
+
+/* The scene's tick lies between the last thing that is read and what is written. */
+static int read_done(int err)
+{
+    run.tick_start = exh_board_cycles();
+    return err;
 }
 
 int exh_board_read_drive(struct exh_drive_in *in)
 {
-    /* A hand that takes hold of the dead-man switch after a while. */
-    *in = (struct exh_drive_in){.din = EXH_DIN_ESTOP | (run.run > DEADMAN_TICK ? EXH_DIN_DEADMAN : 0)};
-    for (unsigned i = 0; i < EXH_FINGERS; i++) {
-        in->din |= (uint32_t)EXH_DIN_DRIVE0 << i;
-    }
-    run.tick_start = exh_board_cycles();
-    return 0;
+    return read_done(exh_box_read_drive(in));
+}
+
+int exh_board_read_glove(struct exh_glove_in *in)
+{
+    return read_done(exh_box_read_glove(in));
 }
 
 int exh_board_write_drive(const struct exh_drive_out *out)
 {
     const uint32_t tick = exh_board_cycles() - run.tick_start;
-    run.tick_min = tick < run.tick_min ? tick : run.tick_min;
-    run.tick_max = tick > run.tick_max ? tick : run.tick_max;
-    last = applied = *out;
-    return 0;
+    if (run.started) {
+        run.tick_min = tick < run.tick_min ? tick : run.tick_min;
+        run.tick_max = tick > run.tick_max ? tick : run.tick_max;
+    }
+    last = *out;
+    return exh_box_write_drive(out);
 }
 
 void exh_board_safe(void)
 {
-    for (unsigned i = 0; i < EXH_FINGERS; i++) {
-        applied.dac_raw[i] = DAC_ZERO_RAW;
-    }
-    applied.enable = 0;
+    exh_box_safe();
 }
 
 static void report(void)
 {
+    if (run.opened) { pc104_box_report(); }
+    if (run.run == 0) { return; }
     pc104_say("ticks ");
     pc104_say_u32(run.run);
     pc104_say(" run, ");
@@ -97,7 +142,9 @@ static void report(void)
     pc104_say_u32(run.tick_min);
     pc104_say(" .. ");
     pc104_say_u32(run.tick_max);
-    pc104_say("\ndac");
+    pc104_say("\n");
+    pc104_load_report();
+    pc104_say("dac");
     for (unsigned i = 0; i < EXH_FINGERS; i++) {
         pc104_say(" ");
         pc104_say_u32(last.dac_raw[i]);
@@ -107,27 +154,31 @@ static void report(void)
     pc104_say("\n");
 }
 
+void pc104_halt(uint8_t code, const char *why)
+{
+    exit_code = code;
+    exh_board_halt(why);
+}
+
 void exh_board_halt(const char *why)
 {
+    const int done = pc104_same_text(why, "done");
     __asm__ volatile("cli" : : : "memory");
     exh_board_safe();
-    if (run.run) { report(); }
+    report();
     pc104_say(why);
     pc104_say("\n");
-    pc104_out8(EXIT_PORT, pc104_same_text(why, "done") ? EXIT_DONE : EXIT_FAILED);
+    pc104_out8(EXIT_PORT, done ? PC104_EXIT_DONE : exit_code ? exit_code : PC104_EXIT_FAILED);
     for (;;) { /* only a reset helps */
         __asm__ volatile("cli; hlt");
     }
 }
 
-/* --- only where the scene calls them; a scene that wants a log or the link does not link
- * before their cards are here --- */
+/* --- only where the scene calls them --- */
 
-int exh_board_read_glove(struct exh_glove_in *in)
+int exh_board_log(const void *rec, size_t len_B)
 {
-    /* A hand at rest, somewhere in the middle of every sensor. */
-    *in = (struct exh_glove_in){.age_ticks = 0};
-    return 0;
+    return pc104_log_take(rec, len_B);
 }
 
 /* No network card yet: nobody is there. */

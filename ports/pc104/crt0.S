@@ -5,7 +5,6 @@
  */
     .set MB_MAGIC, 0x1BADB002
     .set MB_FLAGS, 0                /* no modules, no video: nothing asked of the loader */
-    .set STACK_B, 16384
 
     .section .multiboot, "a"
     .balign 4
@@ -27,7 +26,7 @@ _start:
     movl %ecx, %fs
     movl %ecx, %gs
     movl %ecx, %ss
-    movl $stack_top, %esp
+    movl $__stack_top, %esp         /* ldscripts/pc104.ld, as the guard below it */
     movl %eax, %edx                 /* rep stosl needs EAX */
     movl $__bss_start, %edi
     movl $__bss_end, %ecx
@@ -39,26 +38,29 @@ _start:
     movl %ebx, pc104_boot_info
     call pc104_uart_open            /* from here on an exception can say its name */
     call pc104_trap_open
+    call pc104_cmdline_open         /* may lie anywhere, so before the guard */
+    call pc104_guard_open
     call main
 2:  cli                             /* main() does not return; if it does, stop */
     hlt
     jmp 2b
     .size _start, . - _start
 
-    .section .rodata.gdt, "a"
+    .section .data.gdt, "aw"
     .balign 8
-gdt:
+    .globl pc104_gdt
+pc104_gdt:
     .quad 0
     .quad 0x00CF9A000000FFFF        /* 0x08: code, base 0, 4 GiB */
     .quad 0x00CF92000000FFFF        /* 0x10: data, base 0, 4 GiB */
+    .quad 0                         /* 0x18, 0x20: tasks, guard.c */
+    .quad 0
 gdt_pointer:
-    .word gdt_pointer - gdt - 1
-    .long gdt
+    .word gdt_pointer - pc104_gdt - 1
+    .long pc104_gdt
 
     .section .bss.start, "aw", @nobits
-    .balign 16
-    .skip STACK_B
-stack_top:
+    .balign 4
     .globl pc104_boot_magic, pc104_boot_info
 pc104_boot_magic:
     .skip 4

@@ -1,62 +1,137 @@
+/* The boot command line: name=value, by the rows below, the box's (boxpar.c) and the scene's. A
+ * word that is none of them, or a value outside its range, stops the image before anything moves. */
 #include "pc104.h"
 
-#include <stddef.h>
+#include "exhand/error.h"
+#include "exhand/exhand.h"
 
-#define MB_LOADED      0x2BADB002u /* a multiboot loader was here             */
-#define MB_HAS_CMDLINE (1u << 2)
-#define CMDLINE_MAX    512u /* whoever wrote it: look no further       */
+#define TICKS_MAX 2000000000
 
-/* Head of the structure that the loader left; the rest does not concern us. */
-struct multiboot_info {
-    uint32_t flags, mem_lower, mem_upper, boot_device, cmdline;
+static const struct exh_signal rows[] = {
+    {0xA001, 0, EXH_WHEN_SETUP, 0, 20000, 0, "rate", "hz", "ticks a second; 0: the scene's"},
+    {0xA002, 0, EXH_WHEN_SETUP, 0, TICKS_MAX, 0, "ticks", "", "then stop; 0: never"},
+    {0xA003, 0, EXH_WHEN_SETUP, 0, 2, 0, "timer", "", "which makes the ticks"},
+    {0xA004, 0, EXH_WHEN_SETUP, 0, 2, 0, "log", "", "where records go"},
+    {0xA005, 0, EXH_WHEN_SETUP, 0, TICKS_MAX, 100, "overload_max", "",
+     "missed ticks tolerated in all"},
+    {0xA006, 0, EXH_WHEN_SETUP, 0, TICKS_MAX, 64, "grace", "",
+     "first ticks, in which they do not count"},
+    {0xA007, 0, EXH_WHEN_SETUP, 2, 10000, 20, "hang", "", "periods after which a tick is hung"},
+    {0xA008, 0, EXH_WHEN_SETUP, 0, 1000000, 0, "budget", "us",
+     "stated cost of a tick; 0: measured"},
+    {0xA009, 0, EXH_WHEN_SETUP, 0, 1000, 25, "headroom", "percent", "left free above that cost"},
+    {0xA00A, 0, EXH_WHEN_SETUP, 0, 11, 0, "provoke", "", "a failure to be seen ending safe"},
+    {0xA00B, 0, EXH_WHEN_SETUP, 0, TICKS_MAX, 100, "provoke_at", "", "in this tick"},
+};
+static const struct exh_signal_group groups[] = {{rows, sizeof rows / sizeof rows[0], 1}};
+const struct exh_signal_table pc104_option_table = {groups, 1};
+EXH_STATIC_ASSERT(pc104_par_matches_rows,
+                  sizeof(struct pc104_par) == sizeof(int32_t) * (sizeof rows / sizeof rows[0]));
+
+/* Values that are words, in the order of their enums. */
+static const struct {
+    const char *name, *const word[12];
+} words[] = {
+    {"timer", {"auto", "hpet", "pit"}},
+    {"log", {"off", "serial", "debug"}},
+    {"provoke",
+     {"none", "divide", "opcode", "null", "write", "stack", "nmi", "spurious", "hang", "slow",
+      "timer", "assert"}},
 };
 
-static const char *cmdline(void)
-{
-    const struct multiboot_info *info;
+struct pc104_par pc104_par;
 
-    if (pc104_boot_magic != MB_LOADED) { return NULL; }
-    info = (const struct multiboot_info *)pc104_boot_info;
-    return info->flags & MB_HAS_CMDLINE ? (const char *)info->cmdline : NULL;
-}
-
-/* The value behind "name=" when text starts with it, else NULL. */
-static const char *value_of(const char *text, const char *name)
+static void refuse(const char *name, const char *value)
 {
-    while (*name && *text == *name) {
-        text++;
-        name++;
+    pc104_say("option ");
+    pc104_say(name);
+    if (value) {
+        pc104_say("=");
+        pc104_say(value);
     }
-    return *name == 0 && *text == '=' ? text + 1 : NULL;
+    pc104_say(": ");
 }
 
-/* Decimal digits up to a blank or the end; anything else is not a number. */
-static int parse_u32(const char *text, uint32_t *value)
+void pc104_refuse_range(const struct exh_signal *row, const char *value)
 {
-    uint32_t v = 0;
-    int digits = 0;
-
-    for (; *text >= '0' && *text <= '9' && digits < 9; text++, digits++) {
-        v = v * 10 + (uint32_t)(*text - '0');
-    }
-    if (digits == 0 || (*text != 0 && *text != ' ')) { return 0; }
-    *value = v;
-    return 1;
+    refuse(row->name, value);
+    pc104_say("allowed ");
+    pc104_say_fixed(row->min, row->frac);
+    pc104_say("..");
+    pc104_say_fixed(row->max, row->frac);
+    pc104_say(row->unit[0] ? " " : "");
+    pc104_say(row->unit);
+    pc104_say("\n");
+    pc104_halt(PC104_EXIT_OPTION, "option refused: nothing was started");
 }
 
-uint32_t pc104_option_u32(const char *name, uint32_t otherwise)
+/* One of its words, or -1 if it takes none: then -2 where it takes others. */
+static int32_t word_of(const char *name, const char *value)
 {
-    const char *text = cmdline();
-    uint32_t value = otherwise;
-    char before = ' ';
-
-    for (unsigned i = 0; text && text[i] && i < CMDLINE_MAX; i++) {
-        const char *digits = before == ' ' ? value_of(&text[i], name) : NULL;
-        if (digits && !parse_u32(digits, &value)) {
-            pc104_say(name);
-            pc104_say(": not a number of 1 to 9 digits, default taken\n");
+    for (unsigned i = 0; i < sizeof words / sizeof words[0]; i++) {
+        if (!pc104_same_text(words[i].name, name)) { continue; }
+        for (int32_t k = 0; k < 12 && words[i].word[k]; k++) {
+            if (pc104_same_text(words[i].word[k], value)) { return k; }
         }
-        before = text[i];
+        refuse(name, value);
+        pc104_say("one of");
+        for (unsigned k = 0; k < 12 && words[i].word[k]; k++) {
+            pc104_say(" ");
+            pc104_say(words[i].word[k]);
+        }
+        pc104_say("\n");
+        pc104_halt(PC104_EXIT_OPTION, "option refused: nothing was started");
     }
-    return value;
+    return -1;
+}
+
+int32_t pc104_value_of(const struct exh_signal *row, const char *value)
+{
+    int32_t raw = word_of(row->name, value);
+    if (raw < 0 && (pc104_number(value, row->frac, &raw) < 0 || raw < row->min || raw > row->max)) {
+        pc104_refuse_range(row, value);
+    }
+    return raw;
+}
+
+static int table_option(const struct exh_signal_table *t, int32_t *to, const char *name,
+                        const char *value)
+{
+    for (uint32_t i = 0; i < exh_signal_count(t); i++) {
+        const struct exh_signal *row = exh_signal_at(t, i, NULL);
+        if (pc104_same_text(row->name, name)) {
+            to[i] = pc104_value_of(row, value);
+            return 1;
+        }
+    }
+    return 0;
+}
+
+static void defaults(const struct exh_signal_table *t, int32_t *to)
+{
+    for (uint32_t i = 0; i < exh_signal_count(t); i++) { to[i] = exh_signal_at(t, i, NULL)->dflt; }
+}
+
+void pc104_options(const struct exh_scene *sc)
+{
+    const char *name, *value;
+    unsigned at = 0;
+
+    defaults(&pc104_option_table, (int32_t *)&pc104_par);
+    defaults(&pc104_box_table, (int32_t *)&pc104_box_par);
+    while (pc104_cmdline_next(&at, &name, &value)) {
+        if (value && (table_option(&pc104_option_table, (int32_t *)&pc104_par, name, value) ||
+                      table_option(&pc104_box_table, (int32_t *)&pc104_box_par, name, value) ||
+                      pc104_scene_option(sc, name, value))) {
+            pc104_say("set ");
+            pc104_say(name);
+            pc104_say(" ");
+            pc104_say(value);
+            pc104_say("\n");
+            continue;
+        }
+        refuse(name, value);
+        pc104_say(value ? "no such parameter of image, box or scene\n" : "not name=value\n");
+        pc104_halt(PC104_EXIT_OPTION, "option refused: nothing was started");
+    }
 }

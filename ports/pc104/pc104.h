@@ -2,6 +2,9 @@
 #ifndef PC104_H
 #define PC104_H
 
+#include "scene.h"
+
+#include "exhand/board.h"
 #include "exhand/units.h"
 
 #include <stdint.h>
@@ -10,34 +13,177 @@
  * time is given up, so that a missing UART costs a moment and never the program --- */
 void pc104_uart_open(void);
 void pc104_uart_put(char c);
+unsigned pc104_uart_offer(const uint8_t *byte, unsigned n); /* taken at once: 0 .. n */
 
 /* --- say.c: text for people, over the UART --- */
 void pc104_say(const char *text);
 void pc104_say_u32(uint32_t value);
 void pc104_say_hex(uint32_t value);
+void pc104_say_fixed(int64_t raw, unsigned frac); /* raw * 2^-frac, at most 12 decimals */
 int pc104_same_text(const char *a, const char *b);
-void pc104_say_banner(uint32_t rate_Hz, struct exh_period T);
 
-/* --- option.c: "name=number" on the multiboot command line --- */
-uint32_t pc104_option_u32(const char *name, uint32_t otherwise);
+/* --- cmdline.c: the words the loader was given, copied before paging hides nothing of
+ * them by accident --- */
+void pc104_cmdline_open(void);
+/* The next "name=value"; 0 at the end. Both point into the copy. A word without '=' comes with
+ * value NULL. *at starts as 0. */
+int pc104_cmdline_next(unsigned *at, const char **name, const char **value);
 
-/* --- timer.c: the 8254 that makes the ticks --- */
+/* --- number.c: decimal text to raw values and back, without rounding twice --- */
+/* "-12.5e-3" times 2^frac, rounded half away from zero. 0, or -EXH_E_UNKNOWN (not a number of
+ * at most 18 digits), -EXH_E_RANGE (no int32). */
+int pc104_number(const char *text, unsigned frac, int32_t *raw);
+
+/* --- option.c: what may stand on the command line; halts on what may not --- */
+enum pc104_provoke { /* for commissioning: shows on the real box that a failure ends safe */
+                     PC104_PROVOKE_NONE,
+                     PC104_PROVOKE_DIVIDE,
+                     PC104_PROVOKE_OPCODE,
+                     PC104_PROVOKE_NULL,
+                     PC104_PROVOKE_WRITE,
+                     PC104_PROVOKE_STACK,
+                     PC104_PROVOKE_NMI,
+                     PC104_PROVOKE_SPURIOUS,
+                     PC104_PROVOKE_HANG,
+                     PC104_PROVOKE_SLOW,
+                     PC104_PROVOKE_TIMER,
+                     PC104_PROVOKE_ASSERT
+};
+enum pc104_log { PC104_LOG_OFF, PC104_LOG_SERIAL, PC104_LOG_DEBUG };
+enum pc104_source { PC104_TIMER_AUTO, PC104_TIMER_HPET, PC104_TIMER_PIT };
+
+/* Rows in option.c, in this order. */
+struct pc104_par {
+    int32_t rate_Hz; /* 0: the scene's                                    */
+    int32_t ticks; /* then stop; 0: never                               */
+    int32_t timer; /* enum pc104_source                                 */
+    int32_t log; /* enum pc104_log                                    */
+    int32_t overload_max; /* missed ticks tolerated in all, after the grace    */
+    int32_t grace_ticks; /* first ticks in which they do not count            */
+    int32_t hang_ticks; /* periods after which a tick counts as hung         */
+    int32_t budget_us; /* stated cost of a tick; 0: measured                */
+    int32_t headroom_pct; /* of the cost, to be left free                      */
+    int32_t provoke; /* enum pc104_provoke                                */
+    int32_t provoke_tick; /* at this tick                                      */
+};
+extern struct pc104_par pc104_par;
+extern const struct exh_signal_table pc104_option_table;
+/* Rows in box.c, in this order. */
+struct pc104_box_par {
+    int32_t s526_a, s526_b, mm32xat; /* base addresses                          */
+    int32_t monitor, supply, scan;
+    int32_t din_invert_a, din_invert_b, out_invert_a, out_invert_b;
+    int32_t ad_settle, ee_nominal;
+    int32_t interval, scan_words;
+};
+extern struct pc104_box_par pc104_box_par;
+extern const struct exh_signal_table pc104_box_table;
+void pc104_options(const struct exh_scene *sc);
+int32_t pc104_value_of(const struct exh_signal *row, const char *value); /* halts if it is none */
+void pc104_refuse_range(const struct exh_signal *row, const char *value); /* halts */
+
+/* --- provoke.c --- */
+void pc104_provoke(int32_t what);
+
+/* --- scene_full.c, or scene_rom.c for a scene of constants without log --- */
+int pc104_scene_option(const struct exh_scene *sc, const char *name,
+                       const char *value); /* 0: not one of its */
+void pc104_scene_ready(const struct exh_scene *sc);
+void pc104_scene_dry(const struct exh_scene *sc, uint32_t tick, const struct exh_scene_in *in,
+                     const struct exh_drive_out *out);
+void pc104_scene_start(const struct exh_scene *sc, struct exh_scene_board board);
+void pc104_scene_before(uint32_t tick, struct exh_scene_in *in);
+void pc104_scene_after(uint32_t tick, const struct exh_scene_in *in,
+                       const struct exh_drive_out *out);
+void pc104_scene_end(void);
+int pc104_idle(void); /* something to do while waiting: 0 if nothing is left */
+int pc104_log_take(const void *rec, size_t len_B); /* as exh_board_log() */
+
+/* --- hpet.c, pit.c: counters of known frequency that interrupt on IRQ 0 --- */
+struct pc104_timer {
+    const char *name;
+    uint32_t Hz;
+    uint32_t counts_max; /* longest period                                      */
+};
+/* Finds it and sees it count. 0, or -EXH_E_ABSENT or -EXH_E_IO with *why set. */
+int pc104_hpet_open(struct pc104_timer *t, const char **why);
+uint32_t pc104_hpet_now(void); /* modulo 2^32 */
+void pc104_hpet_start(uint32_t first, uint32_t counts);
+void pc104_hpet_stop(void);
+int pc104_pit_open(struct pc104_timer *t, const char **why);
+void pc104_pit_load(uint32_t divisor); /* 1 .. 65536: counts down from it, an interrupt at each 0 */
+uint32_t pc104_pit_count(void); /* as it stands, divisor .. 1                 */
 #define PC104_PIT_HZ 1193182u
+
+/* --- second.c: the local APIC's timer, which only watches the first --- */
+int pc104_second_open(void); /* 1 if there is one; after pc104_timer_set() */
+void pc104_second_arm(void);
+void pc104_second_disarm(void);
+extern volatile uint32_t pc104_second_fired;
+
+/* --- timer.c: the one of them that makes the ticks --- */
+int pc104_timer_choose(int32_t wanted); /* enum pc104_source; 0 or -EXH_E_ABSENT        */
 /* Refuses as exh_board_init() does. Interrupts stay off. */
 int pc104_timer_set(uint32_t rate_Hz, struct exh_period *achieved);
-/* Deviation of a period from a rate, in counts of the PIT in one second. */
-uint32_t pc104_timer_off_Hz(uint32_t rate_Hz, uint32_t divisor);
-uint32_t pc104_timer_start(void);               /* ticks so far; the next is a whole period away */
-uint32_t pc104_timer_wait(uint32_t seen_ticks); /* sleeps until there are others; modulo 2^32 */
+uint32_t pc104_timer_highest_Hz(uint32_t cost_counts); /* whose period is no shorter   */
+void pc104_timer_start(void);
+int pc104_timer_wait(uint32_t *missed); /* sleeps until a tick is due; < 0: the timer is dead */
+uint32_t pc104_timer_now(void); /* counts, modulo 2^32                         */
+uint32_t pc104_timer_counts(void); /* in a period                                 */
+uint32_t pc104_timer_Hz(void);
+uint32_t pc104_timer_us(uint32_t counts);
+void pc104_timer_kill(void); /* stops it behind everybody's back: a test */
+
+/* --- load.c: what a tick costs, and too much of it --- */
+void pc104_load_scene(const struct exh_scene *sc); /* times dry ticks of it               */
+int pc104_load_fits(uint32_t rate_Hz); /* 0 or -EXH_E_RATE, said              */
+void pc104_load_begin(void); /* a tick has begun, */
+void pc104_load_end(void); /* and ended                           */
+void pc104_load_missed(uint32_t missed); /* halts when there were too many       */
+void pc104_load_report(void);
+extern const struct exh_signal_table pc104_load_table;
+const int32_t *pc104_load_signals(void); /* values of that table, as they are now */
+
+/* --- guard.c: paging with a guard below the stack; a stack of its own for double faults --- */
+void pc104_guard_open(void);
+int pc104_guard_hit(uint32_t address);
+uint32_t pc104_guard_eip(void); /* where the double fault came from */
 
 /* --- trap.c: interrupts, and processor exceptions that say their name. Opened, as
  * the UART, before main() --- */
 void pc104_trap_open(void);
-void pc104_fault(uint32_t vector, uint32_t error, uint32_t eip);
+struct pc104_frame {
+    uint32_t vector, error, eip, cs, eflags;
+};
+void pc104_fault(struct pc104_frame frame);
+void pc104_double_fault(void);
+void pc104_hung(uint32_t eip);
+#define PC104_VECTOR_SECOND   48u
+#define PC104_VECTOR_SPURIOUS 63u
+
+/* --- board.c --- */
+enum pc104_exit { /* what emulators are told at the end: status 2 * value + 1           */
+                  PC104_EXIT_DONE = 0x10,
+                  PC104_EXIT_FAILED =
+                      0x11, /* none may look like a failure of the emulator itself, 1   */
+                  PC104_EXIT_ABSENT = 0x12,
+                  PC104_EXIT_OPTION = 0x13,
+                  PC104_EXIT_FAULT = 0x14,
+                  PC104_EXIT_RATE = 0x15,
+                  PC104_EXIT_OVERLOAD = 0x16,
+                  PC104_EXIT_TIMER = 0x17
+};
+void pc104_halt(uint8_t code, const char *why);
+uint32_t pc104_tick(void); /* run so far */
+void pc104_board_for(const struct exh_scene *sc); /* before exh_loop() */
+int pc104_board_clock(void); /* finds the timer; by exh_board_init() if not before */
 
 /* --- crt0.S, vectors.S --- */
-extern const uint32_t pc104_boot_magic;     /* what the loader left in EAX          */
-extern const uint32_t pc104_boot_info;      /* and in EBX: physical address         */
-extern const volatile uint32_t pc104_ticks; /* written by the timer interrupt alone */
+extern const uint32_t pc104_boot_magic; /* what the loader left in EAX          */
+extern const uint32_t pc104_boot_info; /* and in EBX: physical address         */
+extern volatile uint32_t pc104_ticks; /* interrupts of the timer              */
+extern volatile uint32_t pc104_tick_began; /* their number when the tick began     */
+extern volatile uint32_t pc104_hang_ticks; /* 0: nobody looks                      */
+extern volatile uint32_t pc104_spurious; /* interrupts nobody asked for          */
 
 #endif

@@ -1,11 +1,22 @@
-PORT_DESC     := bare-metal 32-bit x86 (i686), multiboot; no cards yet
+PORT_DESC     := bare-metal 32-bit x86 (i686), multiboot; CARDS=real, or none for a smoke image
 CROSS         ?= i686-linux-gnu-
-PORT_SRC      := ports/pc104/crt0.S ports/pc104/vectors.S ports/pc104/board.c \
-                 ports/pc104/timer.c ports/pc104/trap.c ports/pc104/uart.c ports/pc104/say.c \
-                 ports/pc104/option.c ports/pc104/mem.c
+# real: the drivers over port instructions. none: constants instead of cards.
+CARDS         ?= real
+cards_real    := $(wildcard ports/cards/*.c) ports/pc104/port_io.c
+cards_none    := ports/pc104/cards_none.c
+$(if $(cards_$(CARDS)),,$(error CARDS=$(CARDS): one of real, none))
+PORT_SUFFIX   := $(if $(filter-out real,$(CARDS)),-$(CARDS))
+PORT_MAIN     := ports/pc104/main.c examples/deadman.c
+pc104_parts   := crt0.S vectors.S board.c box.c timer.c hpet.c pit.c second.c load.c guard.c trap.c uart.c say.c \
+                 number.c cmdline.c option.c provoke.c mem.c
+# A scene of constants without log (SCENE_ROM in its scene.mk) links neither parameters nor records.
+PORT_SRC       = $(pc104_parts:%=ports/pc104/%) $(cards_$(CARDS)) \
+                 $(if $(SCENE_ROM),ports/pc104/scene_rom.c,ports/pc104/scene_full.c examples/log.c)
+PORT_HOSTFLAGS := -Iports
 # No FPU, MMX or SSE register is ever touched, so none has to be set up or saved.
 PORT_CFLAGS   := -m32 -march=i686 -ffreestanding -fno-pic -fno-pie -fno-stack-protector \
                  -fcf-protection=none -fno-asynchronous-unwind-tables -mgeneral-regs-only
-PORT_LDFLAGS  := -m32 -nostdlib -static -no-pie -Wl,--build-id=none,-z,noexecstack
+PORT_LDFLAGS  := -m32 -nostdlib -static -no-pie -Wl,--build-id=none,-z,noexecstack,-z,max-page-size=4096
 PORT_LDSCRIPT := ldscripts/pc104.ld
 PORT_RUN      := ports/pc104/run.sh
+PORT_ISO      := ports/pc104/iso.sh

@@ -1,12 +1,16 @@
 #!/bin/sh
-# Runs an image under QEMU: run.sh IMAGE [OPTION...], e.g. run.sh build/pc104/minimal.elf ticks=5000
-# Exit status: 0 the image said "done", 1 it did not (or took too long), 2 bad usage, 3 no QEMU.
-# Environment: QEMU_CPU (n270), QEMU_FLAGS (none), TIMEOUT_s (60).
-# Counting instructions with the time stamp counter: QEMU_FLAGS="-icount shift=0,sleep=off".
+# Runs an image under QEMU: run.sh IMAGE [OPTION...], e.g. run.sh build/pc104/minimal-none.elf ticks=5000
+# IMAGE: an ELF, or an .iso that GRUB on it boots (its options are inside).
+# Exit status: 0 the image said "done", 1 it did not (or took too long), 2 bad usage or it refused
+# an option, 3 no QEMU, 4 cards absent or broken, 5 processor exception, 6 rate refused,
+# 7 overload, 8 timer absent or dead.
+# Environment: QEMU_CPU (n270), QEMU_FLAGS (virtual time, 8 ns an instruction), TIMEOUT_s (60), RECORDS (a file for what
+# log=debug puts out).
+# QEMU_FLAGS="-icount shift=0,sleep=off" counts instructions; QEMU_FLAGS= takes the host's time, whose
+# other work then shows as missed ticks.
 set -u
 
 qemu="qemu-system-i386"
-exit_done=33 # board.c writes 0x10 to the debug port: 2 * 0x10 + 1
 
 if [ $# -lt 1 ] || [ ! -r "$1" ]; then
     echo "${1:-image}: not readable: usage: $0 IMAGE [OPTION...]" >&2
@@ -17,17 +21,29 @@ if ! command -v "$qemu" >/dev/null 2>&1; then
     exit 3
 fi
 image=$1
+flags=${QEMU_FLAGS--icount shift=3,sleep=off}
 shift
+case $image in
+*.iso) from="-m 64 -boot d -cdrom" ;;
+*) from="-m 16 -kernel" ;;
+esac
+[ -z "${RECORDS:-}" ] || from="-debugcon file:$RECORDS $from"
 
-# shellcheck disable=SC2086 # QEMU_FLAGS is a list of words
-timeout "${TIMEOUT_s:-60}" "$qemu" -cpu "${QEMU_CPU:-n270}" -m 16 -kernel "$image" -append "$*" \
+# shellcheck disable=SC2086 # lists of words
+timeout "${TIMEOUT_s:-60}" "$qemu" -cpu "${QEMU_CPU:-n270}" $from "$image" ${1:+-append "$*"} \
     -nodefaults -display none -serial stdio -monitor none -no-reboot \
-    -device isa-debug-exit,iobase=0xf4,iosize=4 ${QEMU_FLAGS:-} </dev/null
+    -device isa-debug-exit,iobase=0xf4,iosize=4 $flags </dev/null
 status=$?
-[ "$status" -eq "$exit_done" ] && exit 0
-if [ "$status" -eq 124 ]; then
-    echo "$image: still running after ${TIMEOUT_s:-60} s (TIMEOUT_s): stopped" >&2
-else
-    echo "$image: did not end with \"done\" (status $status of $qemu)" >&2
-fi
+# board.c writes its pc104_exit, v, to the debug port: 2 v + 1
+case $status in
+33) exit 0 ;;
+37) exit 4 ;;
+39) exit 2 ;;
+41) exit 5 ;;
+43) exit 6 ;;
+45) exit 7 ;;
+47) exit 8 ;;
+124) echo "$image: still running after ${TIMEOUT_s:-60} s (TIMEOUT_s): stopped" >&2 ;;
+*) echo "$image: did not end with \"done\" (status $status of $qemu)" >&2 ;;
+esac
 exit 1

@@ -1,17 +1,5 @@
 #include "pc104.h"
 
-#include "exhand/board.h"
-#include "exhand/exhand.h"
-
-/* The build names the scene of an image as the C name of its descriptor. */
-#define TEXT_OF(x) #x
-#define TEXT(x)    TEXT_OF(x)
-#ifdef EXH_SCENE
-#define SCENE_NAME (&TEXT(EXH_SCENE)[sizeof "exh_scene_" - 1])
-#else
-#define SCENE_NAME "none"
-#endif
-
 void pc104_say(const char *text)
 {
     for (; *text; text++) {
@@ -50,29 +38,18 @@ int pc104_same_text(const char *a, const char *b)
     return *a == *b;
 }
 
-void pc104_say_banner(uint32_t rate_Hz, struct exh_period T)
+/* Exact for up to 12 fraction bits' worth of decimals, cut behind. */
+void pc104_say_fixed(int64_t raw, unsigned frac)
 {
-    const uint32_t version[] = {EXH_VERSION_MAJOR, EXH_VERSION_MINOR, EXH_VERSION_PATCH};
-
-    pc104_say("exhand ");
-    for (unsigned i = 0; i < 3; i++) {
-        pc104_say(i ? "." : "");
-        pc104_say_u32(version[i]);
+    uint64_t magnitude = raw < 0 ? UINT64_C(0) - (uint64_t)raw : (uint64_t)raw;
+    const uint64_t mask = (UINT64_C(1) << frac) - 1;
+    uint64_t rest = magnitude & mask; /* frac <= 60 */
+    pc104_say(raw < 0 ? "-" : "");
+    pc104_say_u32((uint32_t)(magnitude >> frac));
+    pc104_say(rest ? "." : "");
+    for (unsigned n = 0; rest && n < 12; n++) {
+        rest *= 10;
+        pc104_uart_put((char)('0' + (char)(rest >> frac)));
+        rest &= mask;
     }
-    pc104_say(", board ");
-    pc104_say(exh_board_info.name);
-    pc104_say(" version ");
-    pc104_say_u32(exh_board_info.version);
-    pc104_say(", scene ");
-    pc104_say(SCENE_NAME);
-    pc104_say("\nrate ");
-    pc104_say_u32(rate_Hz);
-    pc104_say(" Hz asked, period ");
-    pc104_say_u32(T.num);
-    pc104_say("/");
-    pc104_say_u32(T.den);
-    pc104_say(" s, ");
-    /* at most 1193 of them: the product stays below 2^32 */
-    pc104_say_u32(pc104_timer_off_Hz(rate_Hz, T.num) * 1000000u / PC104_PIT_HZ);
-    pc104_say(" ppm off\n");
 }

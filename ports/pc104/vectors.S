@@ -1,5 +1,7 @@
 /* Entries of the interrupt table. They touch no C until something is wrong. */
 
+    .set APIC_END, 0xFEE000B0
+
 /* One 16-byte stub per vector: makes the stack the same with and without the
  * error code that some exceptions push, adds the vector, and tells C. */
     .section .text.pc104_vectors, "ax"
@@ -7,7 +9,7 @@
     .set vector, 0
     .balign 16
 pc104_vectors:
-    .rept 48
+    .rept 64
     .balign 16
     .if vector != 8 && vector != 17 && (vector < 10 || vector > 14)
     pushl $0
@@ -24,12 +26,13 @@ to_fault:
     incl fault_depth
     cmpl $1, fault_depth
     jne 1f
-    call pc104_fault                /* (vector, error, eip), as they lie; no return */
+    call pc104_fault                /* its frame as it lies; no return */
 1:  cli
     hlt
     jmp 1b
 
-/* Timer: counts. The count goes on while a tick overruns, so none is lost. */
+/* Timer: counts. The count goes on while a tick overruns, so none is lost. A tick that does not
+ * end within pc104_hang_ticks of them (0: none is running) is given up. */
     .section .text.pc104_irq0, "ax"
     .globl pc104_irq0
 pc104_irq0:
@@ -37,24 +40,67 @@ pc104_irq0:
     incl pc104_ticks
     movb $0x20, %al                 /* non-specific end of interrupt */
     outb %al, $0x20
-    popl %eax
+    cmpl $0, pc104_hang_ticks
+    je 1f
+    movl pc104_ticks, %eax
+    subl pc104_tick_began, %eax
+    cmpl pc104_hang_ticks, %eax
+    ja 2f
+1:  popl %eax
     iret
+2:  cld
+    movl 4(%esp), %eax              /* where it was interrupted */
+    pushl %eax
+    call pc104_hung                 /* (eip); no return */
+3:  cli
+    hlt
+    jmp 3b
 
 /* The 8259 answers 7 when a request vanishes before it is acknowledged; the line
  * is masked, so it is never a real one, and such a one must not be ended. */
     .section .text.pc104_irq7, "ax"
     .globl pc104_irq7
 pc104_irq7:
+    incl pc104_spurious
     iret
 
-    .section .bss.pc104_ticks, "aw", @nobits
+/* So does the second one, but the first has seen a real request on line 2, which is ended. */
+    .section .text.pc104_irq15, "ax"
+    .globl pc104_irq15
+pc104_irq15:
+    pushl %eax
+    incl pc104_spurious
+    movb $0x20, %al
+    outb %al, $0x20
+    popl %eax
+    iret
+
+    .section .text.pc104_second_irq, "ax"
+    .globl pc104_second_irq
+pc104_second_irq:
+    movl $1, pc104_second_fired
+    movl $0, APIC_END
+    iret
+
+    .section .text.pc104_apic_spurious, "ax"
+    .globl pc104_apic_spurious
+pc104_apic_spurious:                /* not ended, as the 8259's */
+    incl pc104_spurious
+    iret
+
+    .section .bss.pc104_counts, "aw", @nobits
     .balign 4
-    .globl pc104_ticks
+    .globl pc104_ticks, pc104_tick_began, pc104_hang_ticks, pc104_spurious, pc104_second_fired
 pc104_ticks:
     .skip 4
-
-    .section .bss.pc104_fault_depth, "aw", @nobits
-    .balign 4
+pc104_tick_began:
+    .skip 4
+pc104_hang_ticks:
+    .skip 4
+pc104_spurious:
+    .skip 4
+pc104_second_fired:
+    .skip 4
 fault_depth:
     .skip 4
 

@@ -7,8 +7,9 @@
 #   posix  library and scene as this machine's compiler makes them, in an image linked against
 #          ports/template: the simulator around them would drown them. Instructions by callgrind,
 #          over 2000 ticks into the wall and back.
-#   pc104  the real image. Instructions by its own count under QEMU (time stamp counter, one per
-#          instruction); with nothing moving, as its cards are constants.
+#   pc104  the image with constants for cards (CARDS=none), which is what runs under QEMU.
+#          Instructions by its own count there (time stamp counter, one per instruction); with
+#          nothing moving.
 #
 # Environment: MAKE (make), B (build). A missing cross compiler, emulator or valgrind
 # leaves "-" in the table and says so.
@@ -165,7 +166,7 @@ pc104_row()
         note "${cross}gcc: not found: no pc104 (package gcc-i686-linux-gnu)"
         return
     fi
-    build pc104 "$1" "CROSS=$cross" "CC=${cross}gcc"
+    build pc104 "$1" "CROSS=$cross" "CC=${cross}gcc" CARDS=none PORT_SUFFIX=
     library_symbols pc104 "$1" "${cross}nm" >"$b/symbols.txt"
     compare_symbols pc104 "$1"
     bytes=$("${cross}size" "$b/pc104/$1.elf" | awk 'NR == 2 { print $1, $2, $3 }')

@@ -5,7 +5,8 @@ Each OBJECT was compiled by gcc with -fcallgraph-info=su: its call graph lies be
 ending .ci. The deepest path from the root is printed, the bytes first. Indirect calls: the few
 function pointers of this project stand in constant tables (struct exh_scene, struct
 exh_loop_hooks), so an indirect call is taken to reach any function whose address is in the data
-of any object. A function whose address is taken only by code is not seen: give it a table.
+of any object; but one in the log (exh_log_*) only what a scene's own table points to: it calls the
+scene's state(), while the loop's hooks call the log. A function whose address is taken only by code is not seen: give it a table.
 Functions without a graph (assembler, the C library) count as nothing and are named.
 
 Exit status: 0 bounded, 1 not (recursion, a frame of unknown size), 2 bad usage, 3 no objdump.
@@ -44,17 +45,24 @@ def read_graph(obj, frames, calls):
 
 
 def addresses_in_data(obj, objdump):
-    """Names that the data of an object points to."""
+    """(Name, whether a scene's table has it) of what the data of an object points to."""
     text = subprocess.run([objdump, '-r', obj], check=True, capture_output=True, text=True).stdout
-    names, is_data = set(), False
+    names, is_data, of_scene = set(), False, False
     for line in text.splitlines():
         section = SECTION.match(line)
         relocation = RELOCATION.match(line)
         if section:
             is_data = re.match(r'\.(data|rodata)', section.group(1)) is not None
+            of_scene = 'exh_scene_' in section.group(1)
         elif relocation and is_data:
-            names.add(re.sub(r'^\.text\.|[+-]0x[0-9a-f]+$', '', relocation.group(1)))
+            names.add((re.sub(r'^\.text\.|[+-]0x[0-9a-f]+$', '', relocation.group(1)), of_scene))
     return names
+
+
+def reached(caller, tables):
+    """Titles that an indirect call of this caller may reach."""
+    in_log = caller.rsplit(':', 1)[-1].startswith('exh_log_')
+    return sorted(title for title, of_scene in tables.items() if of_scene or not in_log)
 
 
 def deepest(title, graph, done, path):
@@ -71,7 +79,7 @@ def deepest(title, graph, done, path):
             raise Unbounded(f'{title}: frame is {kind} (static)')
         below = [deepest(callee, graph, done, path + [title])
                  for target in sorted(calls.get(title, ()))
-                 for callee in (tables if target == INDIRECT else [target])]
+                 for callee in (reached(title, tables) if target == INDIRECT else [target])]
         worst = max(below, default=(0, []), key=lambda chain: chain[0])
         done[title] = (size + worst[0], [title] + worst[1])
     return done[title]
@@ -83,16 +91,16 @@ def main():
     parser.add_argument('--objdump', default='objdump')
     parser.add_argument('objects', nargs='+', metavar='OBJECT')
     args = parser.parse_args()
-    frames, calls, tables, names = {}, {}, set(), {}
+    frames, calls, tables, names = {}, {}, {}, {}
     try:
         per_object = [(obj, read_graph(obj, frames, calls)) for obj in args.objects]
         for _, titles in per_object:
             names.update((t, t) for t in titles.values())
         for obj, titles in per_object:
-            for name in addresses_in_data(obj, args.objdump):
+            for name, of_scene in addresses_in_data(obj, args.objdump):
                 title = titles.get(name, names.get(name))
                 if title:
-                    tables.add(title)
+                    tables[title] = tables.get(title, False) or of_scene
     except FileNotFoundError as missing:
         print(f'{missing.filename}: not found: compile with -fcallgraph-info=su, '
               'or install the binutils', file=sys.stderr)
@@ -102,7 +110,7 @@ def main():
         return 2
     unknown = set()
     try:
-        size, path = deepest(args.root, (frames, calls, sorted(tables), unknown), {}, [])
+        size, path = deepest(args.root, (frames, calls, tables, unknown), {}, [])
     except Unbounded as why:
         print(why, file=sys.stderr)
         return 1

@@ -1,0 +1,13 @@
+/* Who runs a firmware image: taking hold of the dead-man switch clears a fault whose cause is
+ * gone and runs the scene; letting go stops it. A switch that is closed at power-on, and so may
+ * be stuck, has to be let go first. Hooks for the loop. */
+#ifndef EXAMPLES_DEADMAN_H
+#define EXAMPLES_DEADMAN_H
+
+#include "scene.h"
+
+void exh_deadman_start(const struct exh_scene *sc, struct exh_scene_board board);
+/* Sets in->command. */
+void exh_deadman_before(uint32_t tick, struct exh_scene_in *in);
+
+#endif

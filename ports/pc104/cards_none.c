@@ -1,0 +1,69 @@
+/* CARDS=none: constants instead of cards, for a smoke image that runs on any emulator. Encoders
+ * and monitors 0, glove codes 0, every input healthy; a hand takes hold of the dead-man switch
+ * after a while. */
+#include "pc104.h"
+
+#include "cards/box.h"
+
+#include "exhand/error.h"
+
+#define DEADMAN_TICK 200u
+
+const struct exh_box_config exh_box_default = {.fingers = EXH_FINGERS};
+
+static uint8_t glove;
+
+int exh_box_open(const struct exh_box_config *config, struct exh_box_report *report)
+{
+    glove = config->glove != EXH_BOX_NEVER;
+    if (report) { *report = (struct exh_box_report){.used = {0}}; }
+    return 0;
+}
+
+int exh_box_read_drive(struct exh_drive_in *in)
+{
+    *in = (struct exh_drive_in){.din = EXH_DIN_ESTOP |
+                                       (pc104_tick() > DEADMAN_TICK ? EXH_DIN_DEADMAN : 0)};
+    for (unsigned i = 0; i < EXH_FINGERS; i++) { in->din |= (uint32_t)EXH_DIN_DRIVE0 << i; }
+    return 0;
+}
+
+int exh_box_write_drive(const struct exh_drive_out *out)
+{
+    (void)out;
+    return 0;
+}
+
+int exh_box_read_glove(struct exh_glove_in *in)
+{
+    *in = (struct exh_glove_in){.age_ticks = 0};
+    return glove ? 0 : -EXH_E_ABSENT;
+}
+
+void exh_box_safe(void)
+{
+}
+
+const struct exh_box_error *exh_box_error(void)
+{
+    static const struct exh_box_error none;
+    return &none;
+}
+
+void exh_box_counts(struct exh_box_counts *counts)
+{
+    *counts = (struct exh_box_counts){.reads = 0};
+}
+
+const char *exh_box_card_text(unsigned card)
+{
+    (void)card;
+    return "no card";
+}
+
+size_t exh_box_error_text(char *text, size_t cap_B, const struct exh_box_error *e)
+{
+    (void)e;
+    if (cap_B) { text[0] = '\0'; }
+    return 0;
+}

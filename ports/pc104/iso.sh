@@ -1,0 +1,33 @@
+#!/bin/sh
+# A bootable ISO of an image: iso.sh IMAGE ISO [OPTION...]; GRUB 2 on it starts the image with
+# these options after two seconds, in which others can be typed (e).
+# Exit status: 0 made, 1 not, 2 bad usage, 3 a tool is missing.
+set -eu
+
+if [ $# -lt 2 ] || [ ! -r "$1" ]; then
+    echo "${1:-image}: not readable: usage: $0 IMAGE ISO [OPTION...]" >&2
+    exit 2
+fi
+image=$1 iso=$2
+shift 2
+for tool in grub-mkrescue xorriso mformat; do
+    command -v "$tool" >/dev/null 2>&1 ||
+        { echo "$tool: not found: install grub-pc-bin grub-common xorriso mtools" >&2; exit 3; }
+done
+modules=/usr/lib/grub/i386-pc
+[ -r "$modules/multiboot.mod" ] || { echo "$modules: not found: install grub-pc-bin" >&2; exit 3; }
+
+tree=$(mktemp -d)
+trap 'rm -rf "$tree"' EXIT
+mkdir -p "$tree/boot/grub"
+cp "$image" "$tree/boot/exhand.elf"
+cat >"$tree/boot/grub/grub.cfg" <<EOF
+set timeout=${ISO_TIMEOUT_s:-2}
+menuentry "exhand $(basename "$image" .elf) $*" {
+    multiboot /boot/exhand.elf $*
+}
+EOF
+grub-mkrescue -d "$modules" --install-modules="multiboot iso9660 biosdisk normal part_msdos" \
+    --fonts= --locales= --themes= -o "$iso.new" "$tree" >"$tree/said" 2>&1 ||
+    { cat "$tree/said" >&2; rm -f "$iso.new"; exit 1; }
+mv "$iso.new" "$iso"

@@ -1,0 +1,117 @@
+#!/bin/bash
+# Boots images under QEMU in every way that must end well, safe or refused: boot.sh DIR
+# DIR holds the images of all scenes, SCENE.elf and SCENE-none.elf (CARDS=none), and drop-none.iso.
+# Each case: exit status of ports/pc104/run.sh, what the image must have said, its options. Virtual
+# time; yet QEMU's HPET loses one tick in some 10^5 (its 8254 none), so with it one may be missed.
+# EXHAND names the host program, which replays the records.
+# Exit status: 0 all as told, 1 not, 2 bad usage, 3 no QEMU.
+set -u
+
+run=ports/pc104/run.sh
+exhand=${EXHAND:-build/posix/exhand}
+[ $# -eq 1 ] && [ -r "$1/drop-none.elf" ] || { echo "usage: $0 DIR" >&2; exit 2; }
+image=$1/drop-none.elf
+out=$(mktemp -d)
+trap 'rm -rf "$out"' EXIT
+cases=0 failed=0
+
+fail() # WHAT
+{
+    echo "boot: $*" >&2
+    tr -d '\r' <"$out/said" >&2
+    failed=$((failed + 1))
+}
+
+# boots STATUS PATTERN OPTION...: the pattern, extended, must match a line
+boots()
+{
+    local want=$1 pattern=$2 status
+    shift 2
+    cases=$((cases + 1))
+    RECORDS="$out/records" TIMEOUT_s=60 $run "$image" "$@" >"$out/said" 2>"$out/err"
+    status=$?
+    [ "$status" = 3 ] && { cat "$out/err" >&2; exit 3; }
+    [ "$status" = "$want" ] || { fail "options '$*': status $status, want $want"; return; }
+    tr -d '\r' <"$out/said" | grep -aqE "$pattern" || fail "options '$*': no line '$pattern'"
+}
+
+# says PATTERN: the last image said that, too
+says()
+{
+    tr -d '\r' <"$out/said" | grep -aqE "$1" || fail "no line '$1'"
+}
+
+# Well.
+boots 0 '^rate 2000 Hz asked, timer HPET of 100000000 Hz, period 1/2000 s, 0 ppm off$' ticks=4000
+says '^exhand [0-9.]+, wire [0-9]+, record [0-9]+, board pc104 version 1, scene drop$'
+says '^second clock local APIC$'
+says '^budget measured: scene [0-9.]+ us, cards [0-9.]+ us, with headroom [0-9.]+ us$'
+says '^ticks 4000 run, [01] missed$'
+says '^tick_max [0-9]+ ns$'
+says '^tick_bin 4000( 0){16}$'
+says ', enable 0x00000001$' # the dead-man switch was taken: it ran
+says '^done$'
+boots 0 'period 1111111/100000000 s, 0.0' rate=90 ticks=300
+boots 0 '^ticks 2000 run, [01] missed$' rate=20000 ticks=2000
+boots 0 'timer 8254 of 1193182 Hz, period 1193/1193182 s, 152' timer=pit rate=1000 ticks=1000
+says '^ticks 1000 run, 0 missed$'
+
+# Records of bare metal, replayed here bit for bit.
+if [ -x "$exhand" ]; then
+    boots 0 '^records lost 0$' log=debug ticks=3000 k=1234.5 q_lim=0.05 b=12
+    "$exhand" replay "$out/records" >"$out/replay" 2>&1 || { fail "replay"; cat "$out/replay" >&2; }
+    grep -q '3000 ticks from tick 0 and 3 keyframes identical' "$out/replay" || { fail "replay"; cat "$out/replay" >&2; }
+    boots 0 '^records lost 0$' log=serial ticks=1000 rate=1000
+fi
+
+# Refused.
+boots 2 '^option k=2e7: allowed 0\.\.' k=2e7
+boots 2 '^option stiffness=1: no such parameter' stiffness=1
+boots 2 '^option timer=quartz: one of auto hpet pit$' timer=quartz
+boots 2 '^option k=1x: allowed' k=1x
+boots 2 '^option k: not name=value$' k
+boots 2 '^option rate=20001: allowed 0..20000 hz$' rate=20001
+boots 6 '^rate 20000 Hz \(the 8254 does not come within 1000 ppm of it\): take 19906$' timer=pit rate=20000
+boots 6 '^rate 2000 Hz: a tick costs more than its period: take at most 1333 Hz$' budget=600 rate=2000
+boots 0 'done' budget=600 rate=1333 ticks=100
+
+# Safe. What is provoked shows that the outputs were made safe before it was told.
+boots 5 '^divide error, vector 0, error 0x00000000, eip 0x001[0-9a-f]+, tick 300$' provoke=divide provoke_at=300
+boots 5 '^invalid opcode, vector 6, ' provoke=opcode
+boots 5 '^page fault, vector 14, error 0x00000000, .* address 0x00000010, tick 100$' provoke=null
+boots 5 '^page fault, vector 14, error 0x00000003, ' provoke=write
+boots 5 '^stack overflow, vector 8, ' provoke=stack
+boots 5 '^NMI, vector 2, ' provoke=nmi
+boots 0 '^irq_spurious 2$' provoke=spurious ticks=300
+boots 7 '^overload: a tick hangs$' provoke=hang
+boots 7 '^overload: more ticks missed than overload_max allows$' provoke=slow
+says '^tick_missed 10[12]$'
+boots 7 'overload_max allows$' provoke=slow overload_max=0
+says '^tick_missed [12]$'
+boots 0 '^tick_missed 10[0-9]$' provoke=slow overload_max=0 grace=400 ticks=300
+boots 8 '^timer: no tick for four periods, by the second clock$' provoke=timer
+boots 8 '^timer: no tick for four periods, by the second clock$' provoke=timer timer=pit rate=1000
+boots 1 '^ports/pc104/provoke.c:[0-9]+$' provoke=assert
+
+# Nothing there: every card that the scene uses is named with its address.
+image=$1/drop.elf
+boots 4 '^card S526 A at 0x02C0: detect: no answer' ticks=10
+boots 4 '^card S526 A at 0x0240: detect: no answer' s526_a=576
+image=$1/bilateral.elf
+boots 4 '^card S526 A at 0x02C0: detect: no answer' ticks=10
+says '^card S526 B at 0x0280: detect: no answer'
+says '^card MM-32X-AT at 0x0300: detect: no answer'
+image=$1/calibrate.elf
+boots 4 'S526 A' ticks=10
+
+# The other scenes, and the ISO.
+for scene in minimal glove bilateral; do
+    image=$1/$scene-none.elf
+    boots 0 '^ticks 1000 run, [01] missed$' ticks=1000
+done
+image=$1/drop-none.iso
+boots 0 '^ticks 500 run, [01] missed$'
+says '^set k 1000$'
+
+echo "boot: $((cases - failed)) of $cases ways to boot end as they must"
+[ "$failed" = 0 ]
