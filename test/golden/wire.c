@@ -66,9 +66,10 @@ static void forge(struct golden_rng *r, struct datagram *d)
 /* The packet with a number near an end of what is taken; the sender goes on from a newer one. */
 static void number(struct golden_rng *r, struct datagram *d)
 {
-    static const int64_t end[] = {-64, 0, 65536, INT64_C(1) << 31};
+    static const int64_t half = INT64_C(1) << 31;
+    const int64_t end[] = {-64, half, -64, half, -64, half, -64, 0, 65536};
     struct exh_bytes c = exh_bytes_writer(d->b + 10, 4);
-    const int64_t near = end[golden_draw(r, 0, 3)];
+    const int64_t near = end[golden_draw(r, 0, 8)];
     const int64_t on = near + golden_draw(r, -1, 1);
     uint32_t seq = world.rx.seq + (uint32_t)on;
     if (on > 0 && on <= 65536) { world.tx.seq = seq + 1; }
@@ -154,7 +155,7 @@ static void any_arriving(struct golden_rng *r, int64_t how, struct datagram *d)
     if (how == 3) { d->len = (uint32_t)golden_draw(r, 0, (int64_t)d->len - 1); }
     if (how == 4) { d->len += (uint32_t)golden_draw(r, 1, 8); }
     if (how == 5 || how == 10) { forge(r, d); }
-    if (how == 9 || how == 11) { number(r, d); }
+    if (how == 9 || (how >= 11 && how <= 13)) { number(r, d); }
 }
 
 static uint32_t body_crc(struct exh_wire_packet *p)
@@ -226,7 +227,7 @@ static uint32_t values_crc(void)
 static void put_time(struct golden *g, struct golden_rng *r)
 {
     static const uint32_t long_us[] = {1, 999999, 1000000, UINT32_MAX};
-    const int rest = golden_draw(r, 0, 7) == 0;
+    const int rest = golden_draw(r, 0, 3) == 0;
     const uint32_t us = rest ? long_us[golden_draw(r, 0, 3)] : (uint32_t)golden_draw(r, 0, 2);
     golden_put(g, exh_wire_pass(&world.rx, us, 1000000));
 }

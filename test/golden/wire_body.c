@@ -131,10 +131,10 @@ static void spoil_planes(struct golden_rng *r, uint8_t *b)
 /* One value that cannot be. */
 void golden_body_spoil(struct golden_rng *r, int64_t type, uint8_t *b)
 {
-    static const uint8_t mask[] = {4, 6, 7, 5};
+    static const uint8_t mask[] = {4, 6, 7, 5, 5};
     if (type == EXH_WIRE_HELLO) { b[0] = (uint8_t)golden_draw(r, 2, 255); }
     if (type == EXH_WIRE_STATE) {
-        const uint8_t i = mask[golden_draw(r, 0, 3)];
+        const uint8_t i = mask[golden_draw(r, 0, 4)];
         if (i == 5) {
             b[i] = (uint8_t)golden_draw(r, 3, 255);
         } else {

@@ -145,7 +145,7 @@ def spoil(rng, kind, body):
     if kind == HELLO:
         body[0] = rng.draw(2, 255)
     elif kind == TELL:
-        i = (4, 6, 7, 5)[rng.draw(0, 3)]
+        i = (4, 6, 7, 5, 5)[rng.draw(0, 4)]
         if i == 5:
             body[5] = rng.draw(3, 255)
         else:
@@ -233,13 +233,13 @@ class World:
             p = p + bytes(rng.draw(1, 8))
         elif how in (5, 10):
             p = forged(rng, p)
-        elif how in (9, 11):
+        elif how in (9, 11, 12, 13):
             p = self.numbered(rng, p)
         return how, bytes(p)
 
     def numbered(self, rng, p):
         """The packet with a number near an end of what is taken; the sender goes on from a newer one."""
-        on = (-64, 0, AHEAD, 1 << 31)[rng.draw(0, 3)] + rng.draw(-1, 1)
+        on = (-64, 1 << 31, -64, 1 << 31, -64, 1 << 31, -64, 0, AHEAD)[rng.draw(0, 8)] + rng.draw(-1, 1)
         seq = self.rx.seq + on & M32
         if 0 < on <= AHEAD:
             self.tx.seq = seq + 1 & M32
@@ -272,7 +272,7 @@ def wire(rate):
             w = World(rng)
         if k == 128:
             w.params.locked = 1
-        quiet = w.rx.wait((1, 999999, 1000000, M32)[rng.draw(0, 3)] if rng.draw(0, 7) == 0 else rng.draw(0, 2))
+        quiet = w.rx.wait((1, 999999, 1000000, M32)[rng.draw(0, 3)] if rng.draw(0, 3) == 0 else rng.draw(0, 2))
         sent = w.send(rng)
         how, p = w.arriving(rng)
         row = w.taken(p)
