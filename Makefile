@@ -272,7 +272,8 @@ $(B)/test/board/%_test: $(B)/posix/test/board/%_test.o $(B)/posix/test/support.o
 	$(Q)$(CC) -o $@ $^ -lcmocka -lm
 
 # Golden vectors: the objects as they are shipped, at every rate.
-golden_src := $(wildcard test/golden/*.c) examples/drop/drop.c
+golden_src := $(wildcard test/golden/*.c) examples/drop/drop.c examples/glove/cal.c \
+              $(wildcard examples/bilateral/*.c)
 $(B)/test/golden/golden_test: $(golden_src:%.c=$(B)/posix/%.o) $(B)/posix/test/support.o $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) -o $@ $^ -lcmocka
@@ -570,7 +571,7 @@ fmt:
 ## Draw the block diagrams in docs/ from the signal and device tables
 .PHONY: diagrams
 diagrams: all
-	$(Q)for d in overview setup identification; do $(exhand) diagram $$d > docs/$$d.svg || exit 1; done
+	$(Q)for d in overview setup identification principle geometry bilateral; do $(exhand) diagram $$d > docs/$$d.svg || exit 1; done
 
 ## Remove everything that was built
 .PHONY: clean

@@ -33,7 +33,7 @@ static void any_sensor(struct golden_rng *r, int i, int present, struct exh_glov
     }
 }
 
-static struct exh_glove_par any_par(struct golden_rng *r, struct exh_period T)
+struct exh_glove_par golden_glove_par(struct golden_rng *r, struct exh_period T)
 {
     const int64_t most = (((int64_t)T.den << 15) - 1) / T.num;
     const int64_t least = (T.den >> 5) / T.num + 1;
@@ -75,7 +75,7 @@ void golden_glove_sensors(struct exh_glove_cal *cal, struct golden_rng *r)
 static void wear(struct worn *g, struct golden_rng *r, struct exh_period T)
 {
     (void)memset(g, 0, sizeof *g);
-    g->par = any_par(r, T);
+    g->par = golden_glove_par(r, T);
     golden_glove_sensors(&g->cal, r);
     CHECK_EQ_I64(exh_glove_setup(&g->cfg, &g->par, &g->cal, T), 0);
 }

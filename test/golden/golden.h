@@ -20,7 +20,7 @@
 #define GOLDEN_RESTORE 100u /* the state before this tick is read back from its bytes */
 #define GOLDEN_RATES   2000u
 #define GOLDEN_COLUMNS 40u
-#define GOLDEN_STATE_B 1024u
+#define GOLDEN_STATE_B 4096u
 
 /* One tick's values and state, then what becomes of them. */
 struct golden {
@@ -87,6 +87,9 @@ void golden_drive_par(struct exh_drive_par *p, struct golden_rng *r, uint32_t ra
 
 /* The sensors of some calibration of a glove. */
 void golden_glove_sensors(struct exh_glove_cal *cal, struct golden_rng *r);
+
+/* Any parameters of a glove read with this period. */
+struct exh_glove_par golden_glove_par(struct golden_rng *r, struct exh_period T);
 
 /* Cosine and sine of some angle: c/d and s/d. */
 struct golden_turn {

@@ -115,8 +115,9 @@ MODULE(hand);
 MODULE(precontact);
 MODULE(wire);
 MODULE(drop);
+MODULE(bilateral);
 
 TEST_MAIN("golden", first_tick_that_differs_is_told, fix, bytes, record, signal, quad, quad_ab,
           velocity_window, velocity_pole, velocity_foaw, velocity_track, contact, table, drive,
           safety, calibrate, probe, home, weigh, filter, quantizer, glove, glove_cal, angle, hand,
-          precontact, wire, drop);
+          precontact, wire, drop, bilateral);

@@ -36,5 +36,6 @@ GOLDEN_MODULE(hand);
 GOLDEN_MODULE(precontact);
 GOLDEN_MODULE(wire);
 GOLDEN_MODULE(drop);
+GOLDEN_MODULE(bilateral);
 
 #endif

@@ -22,7 +22,7 @@ B, CC = os.environ.get("B", "build"), os.environ.get("CC", "cc").split()
 LEAST = 0.95
 FLAGS = "-std=c99 -O1 -w -Ilib/include -Ilib/src -Iexamples -Itest -D_POSIX_C_SOURCE=200809L".split()
 
-L, H, X = "lib/src/", "lib/include/exhand/", "examples/drop/"
+L, H, X, Y = "lib/src/", "lib/include/exhand/", "examples/drop/", "examples/bilateral/"
 VELOCITY, QUAD, DRIVE, SAFETY = L + "velocity.c", L + "quad.c", L + "drive.c", L + "safety.c"
 
 # module, source, text, what stands there instead. A changed header is compiled into the module's own
@@ -153,6 +153,12 @@ MUTANTS = (
     ("wire", L + "wire.c", "s->fingers >> f & 1 ||", "1 ||"),
     ("wire", L + "wire.c", "len_B != HEAD_B + h->len_B + CRC_B", "len_B < HEAD_B + h->len_B + CRC_B"),
     ("wire", L + "wire.c", "(int16_t)result, p->seq", "(int16_t)result, p->stamp_us"),
+    ("bilateral", Y + "bilateral.c", "(uint32_t)EXH_DIN_DRIVE0 << cfg->at[k]", "(uint32_t)EXH_DIN_DRIVE0 << k"),
+    ("bilateral", Y + "bilateral.c", "out->dac_raw[cfg->at[k]] =", "out->dac_raw[k] ="),
+    ("bilateral", Y + "finger.c", "law.k_Npm_q10 = p->taken.k_Npm_q10;", "law.k_Npm_q10 = 0;"),
+    ("bilateral", Y + "finger.c", "if (p->phase == EXH_PRECONTACT_FROZEN &&", "if ("),
+    ("bilateral", Y + "wire.c", "w->set += ack.result == 0;", "w->set++;"),
+    ("bilateral", Y + "wire.c", "w->wait_ticks == 0 || w->wait_ticks >= state_every", "w->wait_ticks == 0"),
     ("drop", X + "drop.c", "s->quad.lost ? EXH_FAULT_ENCODER : 0u", "0u"),
     ("drop", X + "drop.c", "limits |= exh_drive_current", "limits = exh_drive_current"),
     ("drop", X + "drop.c", "exh_velocity_window_mps_q27(&s->velocity, &cfg->velocity, cnt)",

@@ -87,12 +87,12 @@ class Receiver:
         self.quiet = self.open = 0
         return kind
 
-    def wait(self, time):
+    def wait(self, time, limit=QUIET):
         was = self.open
         if self.session == 0:
             return 0
         self.quiet = min(self.quiet + time, M32)
-        self.open = int(self.quiet >= QUIET)
+        self.open = int(self.quiet >= limit)
         self.count["silences"] += self.open > was
         return int(self.open > was)
 
