@@ -265,6 +265,8 @@ $(B)/test/world/%_test: $(B)/posix/test/world/%_test.o $(B)/posix/test/support.o
                         $(B)/posix/examples/world/link_param.o $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) -o $@ $^ -lcmocka $(if $(world_rays),-ldl) -lm
+$(B)/test/world/window_test: | $(world)
+$(B)/posix/test/world/window_test.o: PORT_HOSTFLAGS += -DWORLD_PROGRAM='"$(world)"'
 # The port contract, on the port that runs here.
 $(B)/test/board/%_test: $(B)/posix/test/board/%_test.o $(B)/posix/test/support.o $(filter-out %/loop.o,$(sim_obj)) \
                         $(B)/posix/libexhand.a

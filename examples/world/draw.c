@@ -152,3 +152,15 @@ void draw_free(struct draw_list *list)
     free(list->item);
     memset(list, 0, sizeof *list);
 }
+
+void draw_write(FILE *to, const struct draw_list *list)
+{
+    for (int k = 0; k < list->texts; k++) {
+        fprintf(to, "text %d %d %s\n", list->text[k].x, list->text[k].y, list->text[k].text);
+    }
+    for (int k = 0; k < list->items; k++) {
+        const struct draw_item *i = &list->item[k];
+        fprintf(to, "item %d %d %d %.6f %.6f %.6f\n", (int)i->kind, (int)i->what, i->which, i->at.at.x, i->at.at.y,
+                i->at.at.z);
+    }
+}

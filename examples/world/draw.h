@@ -5,6 +5,8 @@
 
 #include "world.h"
 
+#include <stdio.h>
+
 #define DRAW_BAR_M_PER_N 0.006 /* height of a force bar                          */
 
 enum draw_kind {
@@ -72,6 +74,9 @@ struct draw_moment {
 void world_draw(const struct world *w, const struct draw_moment *m,
                 struct draw_list *list);
 void draw_free(struct draw_list *list);
+
+/* One line a thing: `text X Y WORDS`, or `item KIND WHAT WHICH X Y Z` by the numbers above, in metres. */
+void draw_write(FILE *to, const struct draw_list *list);
 
 /* Parts of world_draw(). */
 struct draw_item *draw_add(struct draw_list *list, enum draw_kind kind, enum draw_what what, int which);

@@ -253,6 +253,18 @@ static void leave(struct live *l)
     pthread_mutex_unlock(&l->lock);
 }
 
+static int leave_list(const struct draw_list *list, const char *path)
+{
+    FILE *f = fopen(path, "w");
+    int bad = f == NULL;
+    if (f) {
+        draw_write(f, list);
+        bad = fclose(f) != 0;
+    }
+    if (bad) { cli_complain("%s: give a file that can be written", path); }
+    return bad;
+}
+
 static int watch(struct live *l)
 {
     const struct run *r = l->run;
@@ -277,6 +289,7 @@ static int watch(struct live *l)
         bad = picture_save(v.picture, &v.list, r->png, why, sizeof why);
     }
     if (bad) { cli_complain("%s", why); }
+    bad |= r->list && leave_list(&v.list, r->list);
     picture_close(v.picture);
     draw_free(&v.list);
     return bad;

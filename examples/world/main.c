@@ -18,6 +18,7 @@
     {"headless", CLI_FLAG, &(r).headless, 0, 0, NULL, "no window; without a link: as fast as it goes"}, \
     {"script", CLI_FLAG, &(r).script, 0, 0, NULL, "without a controller, fingers close and open by themselves"}, \
     {"png", CLI_TEXT, &(r).png, 0, 0, "FILE", "leave the last picture there"}, \
+    {"list", CLI_TEXT, &(r).list, 0, 0, "FILE", "leave there what the window showed last, as words and numbers"}, \
     {"video", CLI_TEXT, &(r).video, 0, 0, "DIR", "leave pictures there (--headless, no link)"}, \
     {"video-fps", CLI_REAL, &(r).video_fps, 1, 400, "N", "so many a second; 25"}, \
     {"width", CLI_INT, &(r).width, 160, 8192, "PIXELS", "of the picture; 960"}, \

@@ -7,7 +7,7 @@
 #include <stdint.h>
 
 struct run {
-    const char *scene, *listen, *peer, *png, *video;
+    const char *scene, *listen, *peer, *png, *list, *video;
     double fps, seconds, video_fps;
     int64_t frames, width, height, samples; /* frames 0: no end                  */
     int headless, script, bench;
