@@ -144,6 +144,60 @@ TEST(without_monitors_a_board_is_asked_for_its_name)
     fails(exh_box_read_drive(&in), EXH_BOX_B, EXH_CARD_EMPTY);
 }
 
+/* What the cards ask of a tick, at 1 us an access, 15 us of settling and 10 us a channel, glove
+ * samples 10 us apart: the table of docs/CARDS.md. Ticks follow each other without a pause or
+ * every period_us. */
+struct figure {
+    uint8_t fingers, monitor, glove;
+    uint16_t period_us, accesses, time_us; /* the most a tick took */
+};
+
+static void figure(const struct figure *want)
+{
+    struct exh_box_config c = five();
+    unsigned accesses = 0, time_us = 0;
+    c.fingers = want->fingers;
+    c.monitor = want->monitor;
+    c.glove = want->glove;
+    opened(c);
+    for (unsigned i = 0; i < 2; i++) {
+        bus.s526[i].settle_us = 15;
+        bus.s526[i].channel_us = 10;
+    }
+    bus.mm.sample_us = 10;
+    for (int n = 0; n < 50; n++) {
+        const uint32_t from_us = bus.time_us;
+        bus_clear();
+        CHECK_EQ_I64(exh_box_read_drive(&in), 0);
+        if (c.glove) { CHECK_EQ_I64(exh_box_read_glove(&glove), 0); }
+        CHECK_EQ_I64(put(1), 0);
+        if (n >= 10) { /* the first waits for what it starts, and holds up those behind it */
+            accesses = bus.n > accesses ? bus.n : accesses;
+            time_us = bus.time_us - from_us > time_us ? bus.time_us - from_us : time_us;
+        }
+        while (bus.time_us - from_us < want->period_us) { bus.time_us++; }
+    }
+    CHECK(accesses == want->accesses && time_us == want->time_us,
+          "%u fingers, monitors %u, glove %u: %u accesses, %u us", c.fingers, c.monitor, c.glove,
+          accesses, time_us);
+}
+
+TEST(figures_of_a_tick)
+{
+    static const struct figure figures[] = {
+        {1, EXH_BOX_NEVER, EXH_BOX_NEVER, 50, 9, 9},
+        {1, EXH_BOX_NOW, EXH_BOX_NEVER, 50, 44, 44},
+        {1, EXH_BOX_LAST, EXH_BOX_NEVER, 50, 14, 14},
+        {5, EXH_BOX_NEVER, EXH_BOX_NEVER, 100, 30, 30},
+        {5, EXH_BOX_NOW, EXH_BOX_NEVER, 100, 83, 83},
+        {5, EXH_BOX_LAST, EXH_BOX_NEVER, 100, 44, 44},
+        {5, EXH_BOX_NOW, EXH_BOX_LAST, 500, 132, 132},
+        {5, EXH_BOX_LAST, EXH_BOX_LAST, 500, 93, 93},
+        {5, EXH_BOX_NOW, EXH_BOX_NOW, 500, 351, 351},
+    };
+    for (unsigned i = 0; i < sizeof figures / sizeof figures[0]; i++) { figure(&figures[i]); }
+}
+
 /* ---- wiring --------------------------------------------------------------------------- */
 
 TEST(every_finger_has_its_counter_monitor_and_output)
@@ -616,9 +670,9 @@ TEST(what_is_not_used_may_be_anything)
     opened(c);
 }
 
-TEST_MAIN("box", five_fingers_take_30_and_14_accesses, one_finger_takes_10_and_4_of_one_board,
-          monitors_of_the_last_tick_take_no_wait, monitors_in_the_tick_are_that_tick_s,
-          without_monitors_a_board_is_asked_for_its_name,
+TEST_MAIN("box", figures_of_a_tick, five_fingers_take_30_and_14_accesses,
+          one_finger_takes_10_and_4_of_one_board, monitors_of_the_last_tick_take_no_wait,
+          monitors_in_the_tick_are_that_tick_s, without_monitors_a_board_is_asked_for_its_name,
           every_finger_has_its_counter_monitor_and_output, every_input_pin_has_its_meaning,
           every_output_pin_has_its_meaning, codes_are_applied_together,
           codes_beyond_the_drive_s_range_are_clamped_and_counted,

@@ -21,6 +21,9 @@ static void convert(struct fake_s526 *c, uint16_t value)
     }
     if (value & 0x6000) { c->ad_noise = (int16_t)-c->ad_noise; }
     c->wait = c->late;
+    c->done_us = bus.time_us + (value & 0x8000 ? c->settle_us : 0);
+    for (unsigned k = 0; k < 10; k++) { c->done_us += value >> (5 + k) & 1 ? c->channel_us : 0; }
+    if (c->done_us != bus.time_us) { c->wait = UINT16_MAX; }
     if (!c->wait) { c->isr = (uint16_t)(c->isr | (4u & ~c->mute)); }
 }
 
@@ -82,7 +85,10 @@ static uint16_t s526_in(struct fake_s526 *c, unsigned at)
     case 0x08: return c->ad_converted[c->ad_select];
     case 0x0A: return (uint16_t)(c->pins | c->pins_stuck | (c->dio & 0x800 ? c->dio & 0xF0 : 0xF0));
     case 0x0E:
-        if (c->wait && --c->wait == 0) { c->isr = (uint16_t)(c->isr | (4u & ~c->mute)); }
+        if (c->wait == UINT16_MAX && bus.time_us - c->done_us < UINT32_MAX / 2) { c->wait = 1; }
+        if (c->wait && c->wait != UINT16_MAX && --c->wait == 0) {
+            c->isr = (uint16_t)(c->isr | (4u & ~c->mute));
+        }
         return c->isr;
     case 0x32: return c->ee[c->ee_at];
     case 0x34: return c->signature;
@@ -98,6 +104,8 @@ static void scan(struct fake_mm *m)
     const unsigned channels = m->reg[3] + 1u, n = channels - m->drop + m->more;
     CHECK(m->reg[7] == 4 && m->reg[9] == 0 && m->reg[2] == 0, "scan not set up");
     m->busy = m->stuck ? 255 : m->busy_for;
+    m->done_us = bus.time_us + m->sample_us * channels;
+    if (m->read == m->samples) { m->read = m->samples = 0; }
     for (unsigned k = 0; k < n && m->samples < 1024; k++) {
         m->fifo[m->samples++] = m->in[k % channels];
     }
@@ -140,7 +148,8 @@ static uint8_t mm_in(struct fake_mm *m, unsigned at)
         return (uint8_t)(m->reg[7] | (m->overflow ? 0x10 : 0) | (m->read == m->samples ? 0x80 : 0));
     case 8:
         if (m->stuck) { return m->misc | 0x80; }
-        if (m->busy) { m->busy--; }
+        if (m->sample_us) { m->busy = bus.time_us - m->done_us > UINT32_MAX / 2; }
+        if (m->busy && !m->sample_us) { m->busy--; }
         return (uint8_t)(m->misc | (m->busy ? 0x80 : 0));
     case 11:
         if (m->settle_stuck) { return 0x80; }

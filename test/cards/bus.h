@@ -18,6 +18,7 @@ struct fake_s526 {
     uint16_t mute;       /* flags that never come                              */
     uint16_t late;       /* so many reads of ISR before A/D's flag             */
     uint16_t wait;
+    uint32_t settle_us, channel_us, done_us; /* 0, 0: at once                  */
     uint16_t ee[64], ee_at;
     int16_t ad[10];      /* what channels and references read                  */
     int16_t ad_noise;    /* references alternate by it                         */
@@ -39,6 +40,7 @@ struct fake_mm {
     uint8_t misc; /* what register 8 reads when idle: 0x60                      */
     uint8_t busy, busy_for, stuck; /* reads of register 8 that a scan lasts     */
     uint8_t settle_for, settle, settle_stuck;
+    uint32_t sample_us, done_us;
     int16_t in[32];
     int16_t fifo[1024];
     unsigned samples, read, drop, more; /* drop, more: samples of the next scans */
