@@ -19,15 +19,15 @@ modules=/usr/lib/grub/i386-pc
 
 tree=$(mktemp -d)
 trap 'rm -rf "$tree"' EXIT
-mkdir -p "$tree/boot/grub"
-cp "$image" "$tree/boot/exhand.elf"
-cat >"$tree/boot/grub/grub.cfg" <<EOF
+mkdir -p "$tree/disc/boot/grub"
+cp "$image" "$tree/disc/boot/exhand.elf"
+cat >"$tree/disc/boot/grub/grub.cfg" <<EOF
 set timeout=${ISO_TIMEOUT_s:-2}
 menuentry "exhand $(basename "$image" .elf) $*" {
     multiboot /boot/exhand.elf $*
 }
 EOF
 grub-mkrescue -d "$modules" --install-modules="multiboot iso9660 biosdisk normal part_msdos" \
-    --fonts= --locales= --themes= -o "$iso.new" "$tree" >"$tree/said" 2>&1 ||
+    --fonts= --locales= --themes= -o "$iso.new" "$tree/disc" >"$tree/said" 2>&1 ||
     { cat "$tree/said" >&2; rm -f "$iso.new"; exit 1; }
 mv "$iso.new" "$iso"

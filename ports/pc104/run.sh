@@ -1,6 +1,7 @@
 #!/bin/sh
 # Runs an image under QEMU: run.sh IMAGE [OPTION...], e.g. run.sh build/pc104/minimal-none.elf ticks=5000
-# IMAGE: an ELF, or an .iso that GRUB on it boots (its options are inside).
+# IMAGE: an ELF, or an .iso that GRUB on it boots (its options are inside). An ELF that is told no
+# ticks= runs 1000, so that it ends.
 # Exit status: 0 the image said "done", 1 it did not (or took too long), 2 bad usage or it refused
 # an option, 3 no QEMU, 4 cards absent or broken, 5 processor exception, 6 rate refused,
 # 7 overload, 8 timer absent or dead.
@@ -25,7 +26,10 @@ flags=${QEMU_FLAGS--icount shift=3,sleep=off}
 shift
 case $image in
 *.iso) from="-m 64 -boot d -cdrom" ;;
-*) from="-m 16 -kernel" ;;
+*)
+    from="-m 16 -kernel"
+    case " $* " in *" ticks="*) ;; *) set -- "$@" ticks=1000 ;; esac
+    ;;
 esac
 [ -z "${RECORDS:-}" ] || from="-debugcon file:$RECORDS $from"
 

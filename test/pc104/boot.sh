@@ -13,6 +13,7 @@ exhand=${EXHAND:-build/posix/exhand}
 image=$1/drop-none.elf
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
+virtual="-icount shift=3,sleep=off"
 cases=0 failed=0
 
 fail() # WHAT
@@ -92,6 +93,14 @@ boots 0 '^tick_missed 10[0-9]$' provoke=slow overload_max=0 grace=400 ticks=300
 boots 8 '^timer: no tick for four periods, by the second clock$' provoke=timer
 boots 8 '^timer: no tick for four periods, by the second clock$' provoke=timer timer=pit rate=1000
 boots 1 '^ports/pc104/provoke.c:[0-9]+$' provoke=assert
+
+# Other machines: no HPET, nothing but what a PC/AT had, no local APIC.
+QEMU_FLAGS="$virtual -M q35" boots 0 'timer HPET of' ticks=500
+QEMU_FLAGS="$virtual -no-hpet" boots 0 'timer 8254 of' ticks=500
+says '^timer HPET: not there$'
+QEMU_FLAGS="$virtual -no-hpet" boots 8 '^timer HPET: not there$' timer=hpet
+QEMU_FLAGS="$virtual -M isapc" boots 0 '^ticks 500 run, 0 missed$' ticks=500
+QEMU_CPU=n270,-apic boots 0 '^second clock none: ' ticks=500
 
 # Nothing there: every card that the scene uses is named with its address.
 image=$1/drop.elf
