@@ -94,6 +94,63 @@ TEST(no_random_approach_is_felt_before_its_freeze)
     said(&s, dir, cli_bilateral, WORDS("bilateral", "--check", "50"));
     CHECK(s.status == 0 && strstr(s.out, "50 random approaches") && strstr(s.out, " 0 before the freeze"),
           "%d: %s%s", s.status, s.out, s.err);
+    CHECK(strstr(s.out, "foretold by the advice") && strstr(s.out, ", 0 without;"), "%s", s.out);
+    said_clean(dir);
+}
+
+/* Lines of a file; the first into head, of LINE_B. */
+#define LINE_B 512
+static long lines_of(const char *path, char *head)
+{
+    char line[LINE_B];
+    long n = 0;
+    FILE *f = fopen(path, "r");
+    head[0] = '\0';
+    if (f == NULL) { return -1; }
+    while (fgets(line, sizeof line, f) != NULL) {
+        if (n++ == 0) { strcpy(head, line); }
+    }
+    fclose(f);
+    return n;
+}
+
+TEST(the_papers_nine_signals_are_logged_tick_by_tick)
+{
+    const char *dir = said_dir();
+    static struct said s;
+    char head[LINE_B];
+    long n;
+    said(&s, dir, cli_bilateral,
+         WORDS("bilateral", "--speed", "natural", "--approaches", "1", "--rate", "1000", "--out", dir));
+    CHECK(s.status == 0, "%d: %s", s.status, s.err);
+    n = lines_of(said_path(dir, "bilateral_natural_index.csv"), head);
+    CHECK(strcmp(head, "t_s,q_m,qd_m_per_s,f_des_n,i_des_a,c,f_mon_n,d_m,q_lim_m\n") == 0, "%s", head);
+    CHECK(n > 2000 && n < 4000, "%ld lines", n); /* rest, approach, hold, withdrawal: 2 to 4 s */
+    said_clean(dir);
+}
+
+TEST(over_hands_there_is_a_row_each)
+{
+    const char *dir = said_dir();
+    static struct said s;
+    char head[LINE_B];
+    said(&s, dir, cli_bilateral, WORDS("bilateral", "--hands", "--approaches", "1", "--out", dir));
+    CHECK(s.status == 0 && strstr(s.out, "paper 25 ms"), "%d: %s%s", s.status, s.out, s.err);
+    CHECK_EQ_I64(lines_of(said_path(dir, "hands.csv"), head), 81);
+    said_clean(dir);
+}
+
+/* From the freeze on nothing hangs on the world, and without one in time nothing is felt. */
+TEST(a_world_that_dies_or_never_comes_is_told_beside_a_perfect_link)
+{
+    const char *dir = said_dir();
+    static struct said s;
+    said(&s, dir, cli_bilateral,
+         WORDS("bilateral", "--speed", "natural", "--approaches", "1", "--world-until", "0.56"));
+    CHECK(s.status == 0 && strstr(s.out, "index the same bits from the first freeze on"), "%d: %s%s", s.status, s.out,
+          s.err);
+    said(&s, dir, cli_bilateral, WORDS("bilateral", "--speed", "natural", "--approaches", "1", "--world-from", "9"));
+    CHECK(s.status == 0 && strstr(s.out, "index felt nothing"), "%d: %s%s", s.status, s.out, s.err);
     said_clean(dir);
 }
 
@@ -234,5 +291,7 @@ TEST_MAIN("bilateral_command", a_log_replays_bit_for_bit_without_a_world,
           a_log_of_a_session_that_was_made_up_replays,
           a_log_without_a_packet_does_not_replay, no_random_approach_is_felt_before_its_freeze,
           a_d_lim_that_is_too_small_is_told_with_the_one_wanted, files_and_tables_are_left_behind,
+          the_papers_nine_signals_are_logged_tick_by_tick, over_hands_there_is_a_row_each,
+          a_world_that_dies_or_never_comes_is_told_beside_a_perfect_link,
           a_rehabilitation_session_keeps_each_fingers_force_cap, every_scene_of_simple_bodies_runs,
           a_recorded_hand_moves_the_fingers, bad_usage_is_refused_by_name);

@@ -42,7 +42,7 @@ TEST(a_name_that_is_no_row_is_told)
         {0, 0, 9, 9, "a", {"{p:k}"}}, {0, 0, 9, 9, "a", {"{p:no_such}"}},
         {0, 0, 9, 9, "a", {"{s:no_such}"}}, {0, 0, 9, 9, "a", {"{d:no_such}"}}};
     for (int i = 0; i < 4; i++) {
-        const struct diagram d = {"test", "test", 9, 9, &box[i], 1, NULL, 0};
+        const struct diagram d = {"test", "test", 9, 9, &box[i], 1, NULL, 0, NULL};
         FILE *f = tmpfile();
         CHECK(f != NULL && diagram_draw(f, &d) == (i != 0), "box %d", i);
         fclose(f);

@@ -145,7 +145,7 @@ int cli_bilateral(int argc, char **argv)
         {"device", CLI_CALL, u[4].to, 0, 0, "NAME=VALUE", "a value of the simulated hand, glove or motors"},
         {"sweep", CLI_FLAG, &o.sweep, 0, 0, NULL, "stiffness and missed contacts over delay, jitter and loss"},
         {"check", CLI_INT, &o.check, 1, 1e6, "N", "random approaches: none may be felt before its freeze"},
-        {"hands", CLI_FLAG, &o.hands, 0, 0, NULL, "27 fingers and hands: settling and stiffness of each"},
+        {"hands", CLI_FLAG, &o.hands, 0, 0, NULL, "80 fingers and hands: settling and stiffness of each"},
         {"crisp", CLI_FLAG, &o.crisp, 0, 0, NULL, "how fast force rises, over a grid of k and b"},
         {"jobs", CLI_INT, &o.jobs, 1, 1024, "N", "processes at a time, of all but the experiment (one a core)"},
         {"params", CLI_FLAG, &list, 0, 0, NULL, "list all values, with units and ranges"},

@@ -71,6 +71,9 @@ void bilateral_csv(FILE *f, const struct bilateral_result *r);
 void bilateral_print_advice(FILE *f, const struct bilateral_options *o,
                             const struct bilateral_result *r, int n);
 
+/* After a run: what the advice for d_lim and the ray goes by, over a perfect link. */
+struct exh_precontact_need bilateral_need(const struct bilateral_options *o, double scale, double mps);
+
 /* bilateral_out.c: DIR. 0, or 1 or 2 after a line on stderr. */
 int bilateral_out_open(const char *dir);
 FILE *bilateral_out_file(const char *dir, const char *name);

@@ -13,7 +13,8 @@
 
 struct outcome {
     int done, felt, unfrozen, early, late, missed, unplanned;
-    double speed_mps, at_m, off_m;
+    int foreseen; /* by the advice the world looks too near, or answers too late   */
+    double speed_mps, at_m, off_m, want_m, ray_m, loss;
     unsigned finger;
 };
 
@@ -65,6 +66,37 @@ static struct bilateral_run_cfg random_cfg(const struct bilateral_options *o, in
     return c;
 }
 
+/* The longest that what is known may be old, without loss: a state, a frame, both ways. */
+static double age_s(const struct bilateral_run_cfg *c, int state_every)
+{
+    double s = 1 / c->fps + (1.0 + state_every) / c->rate_Hz;
+    for (int w = 0; w < SIM_LINK_WAYS; w++) {
+        const struct sim_link_par *p = &c->board.line.way[w];
+        s += p->delay_s + (p->jitter != SIM_LINK_CONSTANT ? p->jitter_s : 0);
+    }
+    return s;
+}
+
+/* Whether the advice foretells that the plane may not be there in time. */
+static void advise(const struct bilateral_options *given, const struct bilateral_run_cfg *c, double scale,
+                   struct outcome *out)
+{
+    const struct bilateral_par *par = (const void *)exh_scene_bilateral.params->active;
+    const struct exh_period T = {1, c->rate_Hz};
+    const double old_s = age_s(c, par->own.state_every);
+    struct bilateral_options o = *given;
+    struct exh_precontact_need need;
+    struct exh_precontact_advice a;
+    o.run = *c;
+    need = bilateral_need(&o, scale > 0 ? scale : 1, out->speed_mps * (1 + c->board.exo.path[out->finger].vary));
+    need.age_us = old_s < 2 ? (int32_t)(1e6 * old_s) : 2000000;
+    out->ray_m = c->ray_m;
+    out->loss = c->board.line.way[0].loss;
+    if (exh_precontact_advise(&a, &need, T, par->precontact[out->finger].d_lim_m_q30) < 0) { return; }
+    out->want_m = ldexp(a.ray_m_q30, -EXH_Q_POS);
+    out->foreseen = c->ray_m > 0 ? out->want_m > c->ray_m : old_s > c->board.exo.path[out->finger].first_s;
+}
+
 static void work(const void *ctx, int i, void *result)
 {
     const struct bilateral_options *o = ctx;
@@ -81,12 +113,36 @@ static void work(const void *ctx, int i, void *result)
         out->unfrozen = t->unfrozen > 0;
         out->missed = contact.missed;
         out->off_m = contact.off_m;
+        advise(o, &c, t->scale, out);
         /* A finger that gets nearer than half of d_lim's way before its freeze is too late. */
         out->early = out->felt && contact.early;
         out->unplanned = out->felt && !contact.frozen;
         out->late = out->felt && contact.off_m > 2e-3;
     }
     bilateral_run_free(&r);
+}
+
+/* The policy where no plane comes in time is no contact; why it did not come, the advice says. */
+static void say_missed(const struct outcome *r, int n)
+{
+    int missed = 0, foreseen = 0, lossy = 0, cautious = 0, told = 0;
+    double shortest_m = 1, longest_m = 0;
+    for (int i = 0; i < n; i++) {
+        told += r[i].foreseen;
+        cautious += r[i].foreseen && r[i].felt;
+        if (!r[i].done || r[i].felt) { continue; }
+        missed++;
+        foreseen += r[i].foreseen;
+        lossy += !r[i].foreseen && r[i].loss > 0;
+        if (r[i].foreseen && r[i].ray_m > 0) {
+            if (r[i].want_m < shortest_m) { shortest_m = r[i].want_m; }
+            if (r[i].want_m > longest_m) { longest_m = r[i].want_m; }
+        }
+    }
+    if (missed == 0) { return; }
+    printf("not felt: %d, %d of them foretold by the advice (the world has to see walls from %.0f .. %.0f mm, and saw them\n"
+           "from 15 .. 60), %d others with packets lost, %d without; foretold and felt all the same: %d of %d\n", missed, foreseen,
+           1e3 * shortest_m, 1e3 * longest_m, lossy, missed - foreseen - lossy, cautious, told);
 }
 
 int bilateral_check(const struct bilateral_options *o)
@@ -118,6 +174,7 @@ int bilateral_check(const struct bilateral_options *o)
     printf("%d random approaches in closed loop: %d felt, %d before the freeze; %d missed: no plane in time\n"
            "place, less where pad and object touch: %.2f .. %.2f mm of string (%d more than 1 mm early, %d "
            "more than 2 mm late)\n", done, felt, unfrozen, missed, 1e3 * low_m, 1e3 * high_m, early, late);
+    say_missed(r, n);
     free(r);
     return ran ? ran : unfrozen || done < n ? 1 : 0;
 }

@@ -142,8 +142,7 @@ static const struct bilateral_par *par(void)
     return (const struct bilateral_par *)(const void *)exh_scene_bilateral.params->active;
 }
 
-static struct exh_precontact_need need_of(const struct bilateral_options *o,
-                                          const struct bilateral_result *r, double mps)
+struct exh_precontact_need bilateral_need(const struct bilateral_options *o, double scale, double mps)
 {
     const struct exh_glove_par *g = &par()->glove;
     const double fc_Hz = g->fc_Hz_q16 / 65536.0;
@@ -155,7 +154,7 @@ static struct exh_precontact_need need_of(const struct bilateral_options *o,
     const double codes = ldexp(1, 16 - g->bits) + g->hyst_raw_q16 / 65536.0;
     const double turn = ldexp(fabs((double)par()->sensor[4].gain_turnpraw_q38), -38) * codes;
     const struct exh_precontact_need n = {
-        .speed_mps_q27 = fixed(mps / r->scale, EXH_Q_VEL),
+        .speed_mps_q27 = fixed(mps / scale, EXH_Q_VEL),
         .lag_us = (int32_t)ceil(1e6 * lag_s),
         .noise_m_q30 = fixed(0.2 * TWO_PI * turn, EXH_Q_POS),
         .age_us = (int32_t)ceil(1e6 / o->run.fps),
@@ -170,7 +169,7 @@ void bilateral_print_advice(FILE *f, const struct bilateral_options *o,
         const struct exh_period T = {1, o->run.rate_Hz};
         const int32_t d_lim = par()->precontact[r[i].finger].d_lim_m_q30;
         const double fastest = r[i].speed->mps * (1 + o->run.board.exo.path[r[i].finger].vary);
-        const struct exh_precontact_need need = need_of(o, &r[i], fastest);
+        const struct exh_precontact_need need = bilateral_need(o, r[i].scale, fastest);
         struct exh_precontact_advice a;
         if (exh_precontact_advise(&a, &need, T, d_lim) < 0) { continue; }
         fprintf(f, "%sd_lim %.2f mm, %s at %.2f m/s: %s %.2f mm (fingertip %.2f m/s, lag %.2f ms, noise %.2f mm)\n",

@@ -4,6 +4,7 @@
 #include "option.h"
 #include "param.h"
 
+#include "bilateral/bilateral.h"
 #include "drop/drop.h"
 #include "sim/device.h"
 
@@ -13,9 +14,8 @@
 static const struct {
     const char *ascii, *text;
 } unit[] = {
-    {"n", "N"},           {"a", "A"},           {"m_per_s", "m/s"}, {"n_per_m", "N/m"},
-    {"ns_per_m", "Ns/m"}, {"n_per_a", "N/A"},   {"hz", "Hz"},       {"n_per_s", "N/s"},
-    {"per_a", "per A"},   {"n_per_v", "N/V"},
+    {"n", "N"},         {"a", "A"},   {"m_per_s", "m/s"}, {"n_per_m", "N/m"}, {"ns_per_m", "Ns/m"},
+    {"n_per_a", "N/A"}, {"hz", "Hz"}, {"n_per_s", "N/s"}, {"per_a", "per A"}, {"n_per_v", "N/V"},
 };
 
 static const char *unit_text(const char *ascii)
@@ -26,18 +26,21 @@ static const char *unit_text(const char *ascii)
     return ascii;
 }
 
-static int parameter(char *to, size_t cap, const char *name)
+/* As the scene sets them out. */
+static int parameter(char *to, size_t cap, const struct exh_scene *sc, const char *name)
 {
-    const struct exh_signal *r = cli_signal_find(exh_scene_drop.params->table, name, NULL);
+    const struct exh_params *p = sc->params;
+    const struct exh_signal *r = cli_signal_find(p->table, name, NULL);
     if (r == NULL) { return 1; }
-    snprintf(to, cap, "%s %.5g%s%s", name, cli_signal_value(r, r->dflt), r->unit[0] ? " " : "",
-             unit_text(r->unit));
+    snprintf(to, cap, "%s %.5g%s%s", name,
+             cli_signal_value(r, p->active[exh_signal_find(p->table, r->id, 0)]),
+             r->unit[0] ? " " : "", unit_text(r->unit));
     return 0;
 }
 
-static int output(char *to, size_t cap, const char *name)
+static int output(char *to, size_t cap, const struct exh_scene *sc, const char *name)
 {
-    const struct exh_signal *r = cli_signal_find(exh_scene_drop.signals, name, NULL);
+    const struct exh_signal *r = cli_signal_find(sc->signals, name, NULL);
     if (r == NULL) { return 1; }
     snprintf(to, cap, "%s%s%s", name, r->unit[0] ? " in " : "", unit_text(r->unit));
     return 0;
@@ -54,10 +57,21 @@ static int device(char *to, size_t cap, const char *name)
     return 1;
 }
 
+static int row_of(char *to, size_t cap, char kind, const char *name)
+{
+    switch (kind) {
+    case 'p': return parameter(to, cap, &exh_scene_drop, name);
+    case 's': return output(to, cap, &exh_scene_drop, name);
+    case 'P': return parameter(to, cap, &exh_scene_bilateral, name);
+    case 'S': return output(to, cap, &exh_scene_bilateral, name);
+    default: return device(to, cap, name);
+    }
+}
+
 /* The text with every {kind:name} replaced, in a buffer that the next call reuses. */
 static const char *expand(const char *text, int *failed)
 {
-    static char out[160];
+    static char out[320];
     size_t n = 0;
     while (*text != '\0' && n + 64 < sizeof out) {
         char name[32] = "", row[64];
@@ -66,7 +80,7 @@ static const char *expand(const char *text, int *failed)
             out[n++] = *text++;
             continue;
         }
-        if ((kind == 'p' ? parameter : kind == 's' ? output : device)(row, sizeof row, name)) {
+        if (row_of(row, sizeof row, kind, name)) {
             cli_complain("{%c:%s}: no such row: mend the diagram", kind, name);
             *failed = 1;
             row[0] = '\0';
@@ -104,6 +118,7 @@ int diagram_draw(FILE *f, const struct diagram *d)
 {
     int failed = 0;
     exh_scene_drop.defaults();
+    exh_scene_bilateral.defaults();
     fprintf(f,
             "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 %d %d' font-family='DejaVu "
             "Sans, sans-serif' font-size='18' text-anchor='middle'>\n"
@@ -117,22 +132,31 @@ int diagram_draw(FILE *f, const struct diagram *d)
     fprintf(f, "<text class='title' x='%d' y='36'>%s</text>\n", 5 * d->w, d->title);
     for (int i = 0; i < d->boxes; i++) { draw_box(f, &d->box[i], &failed); }
     for (int i = 0; i < d->wires; i++) { draw_wire(f, &d->wire[i], &failed); }
+    for (int i = 0; d->svg != NULL && d->svg[i] != NULL; i++) {
+        fprintf(f, "%s\n", expand(d->svg[i], &failed));
+    }
     fprintf(f, "</svg>\n");
     return failed;
 }
 
 int cli_diagram(int argc, char **argv)
 {
-    const struct cli_command c = {"diagram", "NAME",
-                                  "Draws a block diagram as SVG on standard output, from the signal "
-                                  "and device tables: overview, setup or identification.",
-                                  NULL, 0, 1};
+    const struct cli_command c = {
+        "diagram",
+        "NAME",
+        "Draws a block diagram as SVG on standard output, from the signal "
+        "and device tables: overview, setup, identification, principle, geometry or bilateral.",
+        NULL,
+        0,
+        1};
     const char *name = NULL;
     const int err = cli_parse(&c, argc, argv, &name);
     if (err) { return err == 1 ? 0 : err; }
     for (int i = 0; i < diagrams_n; i++) {
         if (strcmp(name, diagrams[i].name) == 0) { return diagram_draw(stdout, &diagrams[i]); }
     }
-    cli_complain("%s: no such diagram (overview, setup, identification)", name);
+    cli_complain(
+        "%s: no such diagram (overview, setup, identification, principle, geometry, bilateral)",
+        name);
     return 2;
 }

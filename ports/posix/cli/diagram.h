@@ -6,8 +6,8 @@
 #include <stdio.h>
 
 /* In a text, {p:k} becomes a parameter of the drop scene with its default and unit,
- * {s:q} an output with its unit, {d:mass} a value of the simulated device. Places are
- * px / 10. */
+ * {s:q} an output with its unit, {P:mat_k} and {S:d} those of the bilateral scene, {d:mass} a value
+ * of the simulated device. Places are px / 10. */
 struct diagram_box {
     int x, y, w, h;
     const char *title;
@@ -26,6 +26,7 @@ struct diagram {
     int boxes;
     const struct diagram_wire *wire;
     int wires;
+    const char *const *svg; /* what is neither, line by line, px; NULL ends it, NULL: nothing */
 };
 
 extern const struct diagram diagrams[];

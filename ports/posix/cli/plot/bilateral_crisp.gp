@@ -28,8 +28,8 @@ set lmargin at screen 0.115; set rmargin at screen 0.845
 set tmargin at screen 0.86; set bmargin at screen 0.115
 set xlabel 'stiffness k (kN/m)' textcolor rgb ink
 set ylabel 'damping b (Ns/m)' textcolor rgb ink
-set label 1 sprintf("{/:Bold Crispness} of a contact at %s m/s", speed) at screen 0.47, screen 0.965 center textcolor rgb ink
-set key at screen 0.47, screen 0.915 center top horizontal Left reverse maxrows 1 samplen 1.0 width -4 textcolor rgb ink
+set label 1 sprintf("{/:Bold Crispness}: how fast force rises in a contact at %s m/s", speed) at screen 0.47, screen 0.965 center textcolor rgb ink
+set key at screen 0.47, screen 0.925 center top horizontal Left reverse maxrows 1 samplen 0.6 width -2 font ',17' textcolor rgb ink
 stats data using (column('k_n_per_m')/1e3) name 'K' nooutput
 stats data using (column('b_ns_per_m')) name 'B' nooutput
 set xrange [K_min - 1.6 : K_max + 1.6]

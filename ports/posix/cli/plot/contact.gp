@@ -19,7 +19,7 @@ if (!exists("before_ms")) before_ms = 10
 if (!exists("after_ms")) after_ms = 110
 
 n = words(files)
-width = 190.0 + 720*n
+width = 190.0 + 765*n
 set terminal pngcairo size width,1080 font 'DejaVu Sans,20' linewidth 1.6 background '#ffffff'
 set output out_contact
 set datafile separator ','
@@ -56,7 +56,8 @@ plot NaN with points ls 1 ps 1.4 title 'force commanded F_{des}', \
      NaN with lines ls 2 title 'force by the current monitor F_{mon}', \
      NaN with lines ls 3 title 'velocity dq/dt', NaN with lines ls 4 title 'contact begins'
 set key off
-set label 9 sprintf('k = %s N/m, b = %s Ns/m, link: %s', k, b, link) at screen 0.5, screen 0.93 center \
+limit = f_top > 21.5 && f_top < 22.6 ? '; force ends at 22 N, the drive at its 6.6 A' : ''
+set label 9 sprintf('k = %s N/m, b = %s Ns/m, link: %s%s', k, b, link, limit) at screen 0.5, screen 0.93 center \
     noenhanced textcolor rgb ink font ',17'
 set border 3 lc rgb ink lw 0.8
 set tics nomirror out scale 0.5 textcolor rgb ink
@@ -69,8 +70,8 @@ do for [i = 1:n] {
     T0 = real(word(contacts, i))
     FILE = word(files, i).'.csv'
     ms = "(column('t_s') - T0)*1e3"
-    set lmargin at screen (130.0 + 720*(i-1)) / width
-    set rmargin at screen (130.0 + 720*(i-1) + 660) / width
+    set lmargin at screen (130.0 + 765*(i-1)) / width
+    set rmargin at screen (130.0 + 765*(i-1) + 660) / width
     S = real(word(settles, i))
     set title sprintf("{/:Bold %s}, %s: %s m/s at contact\n%s", word(names, i), word(fingers, i), \
         word(speeds, i), T0 < 0 ? 'no contact' : S < 0 ? 'F_{mon} does not stay within 5 % of its end' : \
