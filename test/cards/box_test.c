@@ -216,6 +216,32 @@ TEST(every_finger_has_its_counter_monitor_and_output)
     }
 }
 
+/* Two to four fingers: B has none, but the supply, the stop and the dead-man. */
+TEST(a_board_without_a_finger_has_the_rest)
+{
+    for (uint8_t fingers = 2; fingers < 5; fingers++) {
+        struct exh_box_config c = five();
+        c.fingers = fingers;
+        opened(c);
+        bus.s526[1].ad[4] = 4321;
+        bus.s526[1].pins = 6;
+        CHECK_EQ_I64(exh_box_read_drive(&in), 0);
+        CHECK_EQ_I64(bus.n, 9 + 4 * fingers); /* B: start, pins, flags and their end, result */
+        CHECK_EQ_I64(in.supply_raw, 4321);
+        CHECK_EQ_I64(in.din,
+                     EXH_DIN_ESTOP | EXH_DIN_DEADMAN | ((1u << fingers) - 1) * EXH_DIN_DRIVE0);
+        bus_clear();
+        CHECK_EQ_I64(put(1), 0);
+        CHECK_EQ_I64(bus.n, 2 * fingers + 3); /* no update of B */
+        c.supply = 0;
+        opened(c);
+        CHECK_EQ_I64(exh_box_read_drive(&in), 0);
+        CHECK_EQ_I64(in.supply_raw, 0);
+        bus.s526[1].base = 0;
+        fails(exh_box_read_drive(&in), EXH_BOX_B, EXH_CARD_EMPTY);
+    }
+}
+
 static uint32_t din_of(unsigned pins_a, unsigned pins_b)
 {
     bus.s526[0].pins = (uint8_t)pins_a;
@@ -405,6 +431,34 @@ TEST(opening_anew_ends_a_fault)
     CHECK_EQ_I64(exh_box_read_drive(&in), 0);
     CHECK_EQ_I64(put(1), 0);
     CHECK_EQ_I64(bus.s526[1].da_out[0], 32768 + 500);
+}
+
+/* Also what the box before used and this one does not. */
+TEST(opening_makes_safe_what_was_used_before)
+{
+    struct exh_box_config c = one();
+    opened(five());
+    CHECK_EQ_I64(put(1), 0);
+    c.s526_base[0] = 0x280;
+    CHECK_EQ_I64(exh_box_open(&c, NULL), 0);
+    CHECK(bus_safe(), "board A left on");
+}
+
+TEST(what_is_not_certain_can_be_left_out)
+{
+    struct exh_box_config c = five();
+    c.s526.line_check = c.s526.da_check = c.s526.quad_check = 0;
+    bus_reset();
+    bus.s526[0].pins_stuck = 0x40;
+    bus.s526[1].ecap[0] = bus.s526[1].ecap_set[0] = 1;
+    CHECK_EQ_I64(exh_box_open(&c, NULL), 0);
+    bus.s526[0].mute = 2;
+    bus_clear();
+    for (int n = 0; n < 100; n++) {
+        CHECK_EQ_I64(exh_box_read_drive(&in), 0);
+        CHECK_EQ_I64(put(1), 0);
+    }
+    CHECK_EQ_I64(bus.n, 100 * 42);
 }
 
 /* ---- safe ----------------------------------------------------------------------------------- */
@@ -661,6 +715,20 @@ TEST(configurations_are_refused_by_name)
          "box: configuration: channels, interval or lost_limit of the scan: value not allowed: 22");
 }
 
+TEST(every_place_of_the_glove_s_jumpers_is_found)
+{
+    static const uint16_t base[] = {0x100, 0x140, 0x180, 0x200, 0x280, 0x300, 0x340, 0x380};
+    for (unsigned i = 0; i < 8; i++) {
+        struct exh_box_config c = gloved(EXH_BOX_NOW);
+        c.s526_base[1] = 0xFFC0;
+        c.mm32xat_base = base[i];
+        bus_reset();
+        bus.s526[1].base = c.s526_base[1];
+        bus.mm.base = base[i];
+        CHECK_EQ_I64(exh_box_open(&c, &report), 0);
+    }
+}
+
 TEST(what_is_not_used_may_be_anything)
 {
     struct exh_box_config c = one();
@@ -674,15 +742,17 @@ TEST_MAIN("box", figures_of_a_tick, five_fingers_take_30_and_14_accesses,
           one_finger_takes_10_and_4_of_one_board, monitors_of_the_last_tick_take_no_wait,
           monitors_in_the_tick_are_that_tick_s, without_monitors_a_board_is_asked_for_its_name,
           every_finger_has_its_counter_monitor_and_output, every_input_pin_has_its_meaning,
-          every_output_pin_has_its_meaning, codes_are_applied_together,
-          codes_beyond_the_drive_s_range_are_clamped_and_counted,
+          a_board_without_a_finger_has_the_rest, every_output_pin_has_its_meaning,
+          codes_are_applied_together, codes_beyond_the_drive_s_range_are_clamped_and_counted,
           a_board_that_dies_is_found_within_a_tick,
           a_conversion_that_is_lost_ends_in_time_and_in_safe_outputs,
           updates_that_do_not_end_are_a_fault, an_enable_that_does_not_go_off_is_a_fault,
           illegal_transitions_are_counted_and_too_many_are_a_fault, opening_anew_ends_a_fault,
+          opening_makes_safe_what_was_used_before, what_is_not_certain_can_be_left_out,
           safe_takes_20_accesses_a_board_and_may_be_repeated,
           safe_touches_no_port_where_no_board_was_found, safe_may_come_before_any_access,
           a_scan_in_the_tick_is_that_tick_s, a_scan_of_the_tick_before_takes_no_wait,
           a_scan_that_still_runs_is_not_waited_for, a_scan_that_is_lost_leaves_the_last_frame_older,
           a_glove_that_fails_makes_the_drives_safe, all_cards_that_are_absent_are_named,
-          faults_by_example, configurations_are_refused_by_name, what_is_not_used_may_be_anything);
+          faults_by_example, configurations_are_refused_by_name,
+          every_place_of_the_glove_s_jumpers_is_found, what_is_not_used_may_be_anything);

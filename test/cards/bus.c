@@ -145,7 +145,9 @@ static uint8_t mm_in(struct fake_mm *m, unsigned at)
     case 0:
     case 1: return fifo(m, at);
     case 7:
-        return (uint8_t)(m->reg[7] | (m->overflow ? 0x10 : 0) | (m->read == m->samples ? 0x80 : 0));
+        return (uint8_t)(m->reg[7] | (m->overflow ? 0x10 : 0) |
+                         (m->samples - m->read >= 8 ? 0x40 : 0) |
+                         (m->read == m->samples ? 0x80 : 0));
     case 8:
         if (m->stuck) { return m->misc | 0x80; }
         if (m->sample_us) { m->busy = bus.time_us - m->done_us > UINT32_MAX / 2; }

@@ -112,7 +112,7 @@ TEST(a_scan_by_example)
     CHECK_EQ_I64(bus.n, 49);
     CHECK(bus_said(43, "i 300 3C, i 301 23, i 307 4, i 300 25, i 301 27, i 307 84"), "otherwise");
     bus.n = 5;
-    CHECK(bus_said(0, "o 300 0, i 308 60, i 307 4, i 300 8, i 301 D5"), "otherwise"); /* -11000 */
+    CHECK(bus_said(0, "o 300 0, i 308 60, i 307 44, i 300 8, i 301 D5"), "otherwise"); /* -11000 */
 }
 
 TEST(words_take_half)

@@ -204,6 +204,16 @@ TEST(implausible_references_are_refused_by_name)
 
 /* ---- EEPROM --------------------------------------------------------------------------- */
 
+TEST(a_word_of_the_eeprom_by_example)
+{
+    unsigned i = 0;
+    bus_reset();
+    CHECK_EQ_I64(open_it(), 0);
+    while (i < bus.n && !(bus.log[i].port == 0x2F4 && bus.log[i].value == (0x23 << 3 | 5))) { i++; }
+    bus.n = i + 4;
+    CHECK(bus_said(i - 1, "w 2CE 80, w 2F4 11D, r 2CE 80, w 2CE 80, r 2F2 4024"), "otherwise");
+}
+
 TEST(garbage_in_the_eeprom_is_refused_by_name)
 {
     for (unsigned k = 0; k < 4; k++) {
@@ -280,8 +290,10 @@ TEST(outputs_are_safe_before_anything_is_tested)
 TEST(counters_end_at_zero_counting_x4)
 {
     bus_reset();
+    memset(bus.s526[0].ecap, 1, 4); /* of whatever was before */
     CHECK_EQ_I64(open_it(), 0);
     for (unsigned k = 0; k < 4; k++) {
+        CHECK_EQ_I64(bus.s526[0].ecap[k], 0);
         CHECK_EQ_I64(bus.s526[0].mode[k], 0x0480);
         CHECK_EQ_I64(bus.s526[0].count[k], 0);
     }
@@ -371,7 +383,8 @@ TEST_MAIN("s526", doubles_by_example, doubles_that_are_no_number_or_too_large_ar
           doubles_of_every_size_round_once, a_nominal_card_changes_no_code,
           a_reference_off_10_V_on_a_nominal_card_changes_no_code, da_codes_are_the_voltage_s,
           ad_codes_are_the_voltage_s, references_are_averaged_and_their_noise_is_bounded,
-          implausible_references_are_refused_by_name, garbage_in_the_eeprom_is_refused_by_name,
+          implausible_references_are_refused_by_name, a_word_of_the_eeprom_by_example,
+          garbage_in_the_eeprom_is_refused_by_name,
           nominal_values_only_where_the_configuration_says_so,
           an_empty_port_is_read_once_and_not_written, another_card_is_not_written,
           outputs_are_safe_before_anything_is_tested, counters_end_at_zero_counting_x4,
