@@ -153,12 +153,11 @@ MUTANTS = (
     ("wire", L + "wire.c", "s->fingers >> f & 1 ||", "1 ||"),
     ("wire", L + "wire.c", "len_B != HEAD_B + h->len_B + CRC_B", "len_B < HEAD_B + h->len_B + CRC_B"),
     ("wire", L + "wire.c", "(int16_t)result, p->seq", "(int16_t)result, p->stamp_us"),
-    ("bilateral", Y + "bilateral.c", "(uint32_t)EXH_DIN_DRIVE0 << cfg->at[k]", "(uint32_t)EXH_DIN_DRIVE0 << k"),
+    ("bilateral", Y + "bilateral.c", "if (now->quad.lost) { raised |= EXH_FAULT_ENCODER; }", ""),
     ("bilateral", Y + "bilateral.c", "out->dac_raw[cfg->at[k]] =", "out->dac_raw[k] ="),
-    ("bilateral", Y + "finger.c", "law.k_Npm_q10 = p->taken.k_Npm_q10;", "law.k_Npm_q10 = 0;"),
     ("bilateral", Y + "finger.c", "if (p->phase == EXH_PRECONTACT_FROZEN &&", "if ("),
     ("bilateral", Y + "wire.c", "w->set += ack.result == 0;", "w->set++;"),
-    ("bilateral", Y + "wire.c", "w->wait_ticks == 0 || w->wait_ticks >= state_every", "w->wait_ticks == 0"),
+    ("bilateral", Y + "wire.c", "s->age_ticks = UINT32_MAX;", "s->age_ticks = 0;"),
     ("drop", X + "drop.c", "s->quad.lost ? EXH_FAULT_ENCODER : 0u", "0u"),
     ("drop", X + "drop.c", "limits |= exh_drive_current", "limits = exh_drive_current"),
     ("drop", X + "drop.c", "exh_velocity_window_mps_q27(&s->velocity, &cfg->velocity, cnt)",
@@ -172,7 +171,9 @@ CALLS = {"fix": "test/golden/basics.c", "velocity_window": VELOCITY, "table": DR
 
 def objects_but(original):
     """The test's objects without the one that is made of `original`."""
-    sources = sorted(glob.glob(os.path.join(ROOT, "test/golden/*.c"))) + ["test/support.c", "examples/drop/drop.c"]
+    sources = sorted(glob.glob(os.path.join(ROOT, "test/golden/*.c")) +
+                     glob.glob(os.path.join(ROOT, "examples/bilateral/*.c")))
+    sources += ["test/support.c", "examples/drop/drop.c", "examples/glove/cal.c"]
     names = [os.path.relpath(os.path.join(ROOT, s), ROOT) for s in sources]
     return [os.path.join(B, "posix", s[:-2] + ".o") for s in names if s != original]
 
