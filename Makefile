@@ -385,22 +385,27 @@ fuzz-corpus: $(B)/fuzz/plain
 
 HIL_TICKS ?= 1000000
 HIL_FEW   ?= 10000
+HIL_QEMU  ?= 100000
 
 unicorn := $(abspath $(B))/unicorn
-hil_obj := $(patsubst %.c,$(B)/posix/%.o,$(wildcard test/hil/*.c) ports/posix/cli/option.c)
+hil_obj := $(patsubst %.c,$(B)/posix/%.o,$(wildcard test/hil/*.c) examples/deadman.c)
 $(filter $(B)/posix/test/hil/%,$(hil_obj)): PORT_HOSTFLAGS += -isystem $(unicorn)/include
-$(B)/test/hil: $(hil_obj)
+$(B)/test/hil: $(hil_obj) $(filter-out %/main.o,$(cli_obj)) $(sim_obj) $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
-	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(unicorn)/lib/libunicorn.so.2 -Wl,-rpath,$(unicorn)/lib
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(unicorn)/lib/libunicorn.so.2 -Wl,-rpath,$(unicorn)/lib -lm
 
-## The pc104 images in closed loop under a processor emulator (HIL_TICKS=1000000 HIL_FEW=10000)
+# An image with the emulated cards in the place of port instructions.
+hil_inside := PORT=pc104 CARDS=inside cards_inside="$(wildcard ports/cards/*.c) $(emu_src) test/hil/inside/inside.c"
+
+## The pc104 images in closed loop under processor emulators (HIL_TICKS=1000000 HIL_FEW=10000 HIL_QEMU=100000)
 .PHONY: hil
 hil:
 	@B=$(B) test/hil/unicorn.sh
-	@.ci/deps "the pc104 image" i686-linux-gnu-gcc gcc-i686-linux-gnu || exit 3
+	@for t in i686-linux-gnu-gcc qemu-system-i386; do .ci/deps "the pc104 image" $$t gcc-i686-linux-gnu qemu-system-x86 || exit 3; done
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(B)/test/hil
 	@for s in minimal drop bilateral slow; do $(MAKE) --no-print-directory $(if $(V),,-s) PORT=pc104 SCENE=$$s all || exit 1; done
-	@B=$(B) TICKS=$(HIL_TICKS) FEW=$(HIL_FEW) test/hil/hil.sh
+	@for s in drop bilateral; do $(MAKE) --no-print-directory $(if $(V),,-s) $(hil_inside) SCENE=$$s all || exit 1; done
+	@B=$(B) TICKS=$(HIL_TICKS) FEW=$(HIL_FEW) QEMU=$(HIL_QEMU) test/hil/hil.sh $(ARGS)
 
 # --- the same bits everywhere -----------------------------------------------------------
 

@@ -217,7 +217,7 @@ static uint64_t hpet_word(const struct chips *c, uint64_t now_ps, uint32_t offse
 
 uint32_t hpet_read(const struct chips *c, uint64_t now_ps, uint32_t offset)
 {
-    const uint64_t v = hpet_word(c, now_ps, offset & ~7u);
+    const uint64_t v = c->hpet.period_fs ? hpet_word(c, now_ps, offset & ~7u) : UINT64_MAX;
     return (uint32_t)(offset & 4 ? v >> 32 : v);
 }
 
@@ -242,7 +242,9 @@ void hpet_write(struct chips *c, uint64_t now_ps, uint32_t offset, uint32_t valu
     struct hpet *t = &c->hpet;
     const uint32_t word = offset & ~7u;
     const unsigned i = (word - 0x100) / 0x20;
-    const uint64_t old = word == 0x0F0 ? hpet_counter(t, now_ps) : hpet_word(c, now_ps, word);
+    uint64_t old;
+    if (!t->period_fs) { return; }
+    old = word == 0x0F0 ? hpet_counter(t, now_ps) : hpet_word(c, now_ps, word);
     const uint64_t v = offset & 4 ? (old & UINT32_MAX) | (uint64_t)value << 32
                                   : (old & ~(uint64_t)UINT32_MAX) | value;
     if (word == 0x010) { hpet_configure(t, now_ps, v); }

@@ -47,17 +47,18 @@ void count_scene(struct count *c, const struct hil *h, unsigned key)
     c->key = key;
 }
 
-void count_scene_end(struct count *c, const struct hil *h)
+uint32_t count_scene_end(struct count *c, const struct hil *h)
 {
     const uint32_t n = (uint32_t)(h->insns - c->scene_at);
     unsigned i = 0;
     keep(c, &c->scene, n);
     while (i < c->classes && c->class[i].key != c->key) { i++; }
-    if (i == COUNT_CLASSES) { return; }
+    if (i == COUNT_CLASSES) { return n; }
     if (i == c->classes) { c->class[c->classes++] = (struct count_class){c->key, 0, n, n}; }
     c->class[i].n++;
     if (n < c->class[i].min) { c->class[i].min = n; }
     if (n > c->class[i].max) { c->class[i].max = n; }
+    return n;
 }
 
 void count_free(struct count *c)
@@ -94,9 +95,10 @@ static void print_row(const char *what, struct figure *f)
 
 static const char *class_name(unsigned key)
 {
-    static const char *const name[4] = {"neither glove frame nor packet", "with a glove frame",
-                                        "with packets", "with a glove frame and packets"};
-    return name[key & 3];
+    static const char *const name[8] = {
+        "off",  "off, a glove frame",  "off, packets",  "off, a glove frame, packets",
+        "runs", "runs, a glove frame", "runs, packets", "runs, a glove frame, packets"};
+    return name[key & 7];
 }
 
 uint32_t count_print(struct count *c, const struct hil *h, double period_s)

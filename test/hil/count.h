@@ -19,7 +19,7 @@ struct count_class {
     uint32_t min, max;
 };
 
-enum count_key { COUNT_GLOVE = 1, COUNT_PACKETS = 2 };
+enum count_key { COUNT_GLOVE = 1, COUNT_PACKETS = 2, COUNT_RUNS = 4, COUNT_KEYS = 8 };
 
 struct count {
     /* from the timer's interrupt to the next wait */
@@ -41,7 +41,7 @@ struct count {
 void count_wait(struct count *c, const struct hil *h); /* the image waits */
 void count_tick(struct count *c, const struct hil *h); /* and is woken    */
 void count_scene(struct count *c, const struct hil *h, unsigned key);
-void count_scene_end(struct count *c, const struct hil *h);
+uint32_t count_scene_end(struct count *c, const struct hil *h);
 void count_free(struct count *c);
 
 struct count_range {

@@ -36,7 +36,7 @@ struct hil {
     uint16_t *block; /* by address: instructions of the block that begins there; 0: not seen     */
     struct hil_cost cost;
     struct chips chips;
-    struct world *world; /* NULL: nothing is behind the cards' ports, nor any card             */
+    struct box *box; /* the cards; NULL: there are none */
 
     uint64_t now_ps;
     uint64_t wake_ps; /* the next thing that a chip does by itself, or 0: an interrupt waits     */
@@ -52,6 +52,8 @@ struct hil {
     int waited; /* and has before                                                            */
     uint32_t last_end; /* where the block before this one ended                                */
     int wants_stop; /* the harness asked for it, at the start of a block                     */
+    int returns; /* the harness did what a function should                       */
+    uint32_t returned;
     uint64_t max_insns; /* from here on it is taken to hang; 0: never                            */
     enum hil_end end;
     uint32_t status; /* of HIL_EXIT: what was written to the debug port                        */
@@ -66,28 +68,35 @@ struct hil {
         hil_watch_fn *fn;
     } watch[HIL_WATCHES];
     unsigned watches;
+    void (*set)(struct hil *h); /* the timer was set, or NULL */
     void (*tick)(struct hil *h); /* at each timer interrupt, before it goes in                  */
     void (*wait)(struct hil *h); /* at each HLT: what was to be done is done                    */
-    void *ctx;
+    void (*block_fn)(uint32_t address, unsigned n); /* before each block, or NULL */
 };
 
 /* --- machine.c: processor, memory, interrupts --- */
 
-/* Ready to boot with this command line. 0, or -1 after a line on stderr. */
-int hil_open(struct hil *h, const char *image, const char *options);
+/* Loaded. 0, or -1 after a line on stderr. */
+int hil_open(struct hil *h, const char *image);
+/* Ready to boot with this command line. */
+void hil_command(struct hil *h, const char *image, const char *options);
+#define HIL_COMMAND_B 1024u
 void hil_close(struct hil *h);
 /* Until the image exits, hangs or breaks, or hil_stop(). */
 enum hil_end hil_run(struct hil *h);
 void hil_stop(struct hil *h);
 /* Calls fn whenever control comes to that address, which must be a function or a return address. */
 void hil_watch_at(struct hil *h, uint32_t address, hil_watch_fn *fn);
+/* From a watch at a function: it is not run, the harness has done it, and gives this back. */
+void hil_return(struct hil *h, uint32_t value);
 uint32_t hil_word(const struct hil *h, uint32_t address);
 uint32_t hil_reg(const struct hil *h, int id);
 void hil_broke(struct hil *h, const char *format, ...);
 
 /* --- image.c: the ELF file --- */
 int hil_load(struct hil *h, const char *path);
-/* Address of a symbol, or 0. "name*": of the first that begins so. */
+/* Address of a symbol, or 0. "name*": of the first that begins so; its name replaces that. */
+uint32_t hil_symbol_name(const char *path, char *name, size_t cap_B);
 uint32_t hil_symbol(const char *path, const char *name);
 
 /* --- ports.c: what answers at which port --- */

@@ -79,13 +79,14 @@ static int is_called(const char *symbol, const char *name)
 
 /* In the symbol table that section s is. */
 static uint32_t find(const struct file *f, const Elf32_Shdr *s, const Elf32_Shdr *names,
-                     const char *name)
+                     const char *name, char *found, size_t cap_B)
 {
     for (uint32_t at = 0; at + sizeof(Elf32_Sym) <= s->sh_size; at += (uint32_t)sizeof(Elf32_Sym)) {
         Elf32_Sym sym;
         memcpy(&sym, f->at + s->sh_offset + at, sizeof sym);
         if (sym.st_name < names->sh_size &&
             is_called((const char *)f->at + names->sh_offset + sym.st_name, name)) {
+            snprintf(found, cap_B, "%s", (const char *)f->at + names->sh_offset + sym.st_name);
             return sym.st_value;
         }
     }
@@ -101,20 +102,29 @@ static int section(const struct file *f, const Elf32_Ehdr *e, uint32_t i, Elf32_
     return s->sh_type == SHT_STRTAB && f->at[s->sh_offset + s->sh_size - 1] != 0 ? -1 : 0;
 }
 
-uint32_t hil_symbol(const char *path, const char *name)
+uint32_t hil_symbol_name(const char *path, char *name, size_t cap_B)
 {
+    char wanted[64];
     struct file f = read_file(path);
     Elf32_Ehdr e;
     Elf32_Shdr s, names;
     uint32_t value = 0;
+    snprintf(wanted, sizeof wanted, "%s", name);
     if (f.at && header_of(&f, &e) == 0) {
         for (uint32_t i = 0; i < e.e_shnum && value == 0; i++) {
             if (section(&f, &e, i, &s) == 0 && s.sh_type == SHT_SYMTAB &&
                 section(&f, &e, s.sh_link, &names) == 0) {
-                value = find(&f, &s, &names, name);
+                value = find(&f, &s, &names, wanted, name, cap_B);
             }
         }
     }
     free(f.at);
     return value;
+}
+
+uint32_t hil_symbol(const char *path, const char *name)
+{
+    char text[64];
+    snprintf(text, sizeof text, "%s", name);
+    return hil_symbol_name(path, text, sizeof text);
 }

@@ -29,25 +29,33 @@ static uint32_t value(struct inputs *s, uint32_t last, uint32_t mask)
     }
 }
 
-void inputs_next(struct inputs *s, struct exh_scene_in *in)
+/* What runs is let run; what does not is helped to: a fault is cleared, then run. */
+static uint8_t command(struct inputs *s, int runs, uint8_t given)
+{
+    if (runs) { return one_in(s, 1024) ? (uint8_t)(draw(s) % 4) : given; }
+    return draw(s) & 1 ? EXH_CMD_CLEAR : EXH_CMD_RUN;
+}
+
+void inputs_next(struct inputs *s, int runs, struct exh_scene_in *in)
 {
     struct exh_scene_in *last = &s->last;
-    /* Wild encoders are a fault, and in a fault less happens: mostly tame ones, on their way. */
+    const int wild = one_in(s, 64); /* a fault, as a rule, and in a fault less happens */
     for (unsigned i = 0; i < EXH_FINGERS; i++) {
-        const uint32_t enc = last->drive.enc_raw[i];
-        in->drive.enc_raw[i] =
-            one_in(s, 512) ? value(s, enc, 0xFFFFFF) : (enc + draw(s) % 25 - 12) & 0xFFFFFF;
+        s->walk[i] += draw(s) % 25 - 12;
+        in->drive.enc_raw[i] = wild && one_in(s, 8)
+                                   ? value(s, last->drive.enc_raw[i], 0xFFFFFF)
+                                   : (in->drive.enc_raw[i] + s->walk[i]) & 0xFFFFFF;
         in->drive.mon_raw[i] = (int16_t)value(s, (uint16_t)last->drive.mon_raw[i], 0xFFFF);
     }
     in->drive.supply_raw = (int16_t)value(s, (uint16_t)last->drive.supply_raw, 0xFFFF);
     in->drive.din =
-        one_in(s, 512) ? draw(s) : EXH_DIN_ESTOP | EXH_DIN_DEADMAN | 31u * EXH_DIN_DRIVE0;
-    in->missed = one_in(s, 256) ? draw(s) : 0;
-    in->command = (uint8_t)(one_in(s, 4)   ? EXH_CMD_CLEAR
-                            : one_in(s, 2) ? EXH_CMD_RUN
-                                           : in->command);
+        wild && one_in(s, 8) ? draw(s) : EXH_DIN_ESTOP | EXH_DIN_DEADMAN | 31u * EXH_DIN_DRIVE0;
+    in->missed = wild && one_in(s, 8) ? draw(s) : 0;
+    in->command = command(s, runs, in->command);
     for (unsigned i = 0; in->glove_new && i < EXH_GLOVE_SENSORS; i++) {
-        in->glove.raw[i] = (int16_t)value(s, (uint16_t)last->glove.raw[i], 0xFFFF);
+        if (wild && one_in(s, 8)) {
+            in->glove.raw[i] = (int16_t)value(s, (uint16_t)last->glove.raw[i], 0xFFFF);
+        }
     }
     *last = *in;
 }

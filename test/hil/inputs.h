@@ -6,9 +6,11 @@
 
 struct inputs {
     uint64_t state; /* of the generator */
+    uint32_t walk[EXH_FINGERS]; /* what the strings move besides */
     struct exh_scene_in last;
 };
 
-void inputs_next(struct inputs *s, struct exh_scene_in *in);
+/* runs: the scene ran in its last tick. */
+void inputs_next(struct inputs *s, int runs, struct exh_scene_in *in);
 
 #endif

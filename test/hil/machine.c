@@ -6,7 +6,6 @@
 
 #define INFO_AT    0x9000u /* what a multiboot loader leaves */
 #define COMMAND_AT 0x9100u
-#define COMMAND_B  512u
 #define HPET_AT    0xFED00000u
 #define HPET_B     0x1000u
 #define FLAG_IF    0x200u
@@ -139,9 +138,10 @@ static void on_block(uc_engine *uc, uint64_t address, uint32_t size, void *user)
     if (n & WATCHED) {
         call_watch(h, at);
         n &= WATCHED - 1;
-        if (h->end != HIL_RUNS) { return; }
+        if (h->end != HIL_RUNS || h->returns) { return; }
     }
     if (n == 0) { n = learn_block(h, at); }
+    if (h->block_fn) { h->block_fn(at, n); }
     h->insns += n;
     h->now_ps += (uint64_t)n * h->cost.insn_ps;
     h->last_end = at + size;
@@ -198,9 +198,28 @@ static void on_hpet_write(uc_engine *uc, uint64_t offset, unsigned size, uint64_
     h->now_ps += h->cost.hpet_ps;
     hpet_write(&h->chips, h->now_ps, (uint32_t)offset, (uint32_t)value);
     h->wake_ps = 0; /* whatever it was */
+    if (h->set) { h->set(h); }
 }
 
 /* --- running --- */
+
+void hil_return(struct hil *h, uint32_t value)
+{
+    h->returns = 1;
+    h->returned = value;
+    uc_emu_stop(h->uc);
+}
+
+/* A function was done for the image: back to who called it. */
+static void go_back(struct hil *h)
+{
+    const uint32_t sp = hil_reg(h, UC_X86_REG_ESP);
+    h->returns = 0;
+    h->last_end = 0;
+    set_reg(h, UC_X86_REG_EAX, h->returned);
+    set_reg(h, UC_X86_REG_EIP, hil_word(h, sp));
+    set_reg(h, UC_X86_REG_ESP, sp + 4);
+}
 
 /* The image waits: on to whatever ends that. */
 static void wait_for_interrupt(struct hil *h)
@@ -227,6 +246,8 @@ enum hil_end hil_run(struct hil *h)
         const uint32_t at = hil_reg(h, UC_X86_REG_EIP);
         if (err != UC_ERR_OK) {
             hil_broke(h, "%s at 0x%lx", uc_strerror(err), (unsigned long)at);
+        } else if (h->returns) {
+            go_back(h);
         } else if (h->wants_stop) {
             h->wants_stop = 0;
             enter_interrupt(h);
@@ -269,7 +290,7 @@ static int open_processor(struct hil *h)
     uc_hook hook;
     uc_err err = uc_open(UC_ARCH_X86, UC_MODE_32, &h->uc);
     if (err == UC_ERR_OK) { err = uc_mem_map_ptr(h->uc, 0, HIL_RAM_B, UC_PROT_ALL, h->ram); }
-    if (err == UC_ERR_OK && h->chips.hpet.period_fs) {
+    if (err == UC_ERR_OK) {
         err = uc_mmio_map(h->uc, HPET_AT, HPET_B, on_hpet_read, h, on_hpet_write, h);
     }
     if (err == UC_ERR_OK) {
@@ -290,17 +311,17 @@ static int open_processor(struct hil *h)
 }
 
 /* What a multiboot loader leaves: flags 4: there is a command line. */
-static void as_loaded(struct hil *h, const char *image, const char *options)
+void hil_command(struct hil *h, const char *image, const char *options)
 {
     const uint32_t info[5] = {4, 640, HIL_RAM_B / 1024 - 1024, 0, COMMAND_AT};
     memcpy(&h->ram[INFO_AT], info, sizeof info);
-    snprintf((char *)&h->ram[COMMAND_AT], COMMAND_B, "%s %s", image, options);
+    snprintf((char *)&h->ram[COMMAND_AT], HIL_COMMAND_B, "%s %s", image, options);
     set_reg(h, UC_X86_REG_EAX, 0x2BADB002u);
     set_reg(h, UC_X86_REG_EBX, INFO_AT);
     set_reg(h, UC_X86_REG_EIP, h->entry);
 }
 
-int hil_open(struct hil *h, const char *image, const char *options)
+int hil_open(struct hil *h, const char *image)
 {
     void *ram = NULL;
     const int none = posix_memalign(&ram, 4096, HIL_RAM_B);
@@ -311,9 +332,7 @@ int hil_open(struct hil *h, const char *image, const char *options)
         return -1;
     }
     memset(h->ram, 0xA5, HIL_RAM_B); /* nobody clears memory for an image */
-    if (hil_load(h, image) < 0 || open_processor(h) < 0) { return -1; }
-    as_loaded(h, image, options);
-    return 0;
+    return hil_load(h, image) < 0 || open_processor(h) < 0 ? -1 : 0;
 }
 
 void hil_close(struct hil *h)

@@ -1,7 +1,7 @@
 /* What answers at which port. */
 #include "hil.h"
 
-#include "world.h"
+#include "box.h"
 
 enum { EXIT_PORT = 0xF4, POST_PORT = 0x80, PCI_ADDRESS = 0xCF8, PCI_DATA = 0xCFC, LOG_PORT = 0xE9 };
 
@@ -36,7 +36,7 @@ static uint32_t on_in(uc_engine *uc, uint32_t port, int size, void *user)
     uint32_t value = size == 4 ? UINT32_MAX : (1u << 8 * size) - 1; /* nobody drives the bus */
     uint8_t byte;
     (void)uc;
-    if (world_in(h->world, h, (uint16_t)port, (unsigned)size, &value)) { return value; }
+    if (h->box && box_in(h->box, h, (uint16_t)port, (unsigned)size, &value)) { return value; }
     charge(h);
     if (size == 1 && chips_in8(&h->chips, h->now_ps, (uint16_t)port, &byte)) { return byte; }
     return value;
@@ -46,7 +46,7 @@ static void on_out(uc_engine *uc, uint32_t port, int size, uint32_t value, void 
 {
     struct hil *h = user;
     int sent = -1;
-    if (world_out(h->world, h, (uint16_t)port, (unsigned)size, value)) { return; }
+    if (h->box && box_out(h->box, h, (uint16_t)port, (unsigned)size, value)) { return; }
     charge(h);
     if (port == EXIT_PORT) {
         if (h->end == HIL_RUNS) {
@@ -58,7 +58,7 @@ static void on_out(uc_engine *uc, uint32_t port, int size, uint32_t value, void 
         const uint64_t loads = chips_timer_loads(&h->chips);
         (void)chips_out8(&h->chips, h->now_ps, (uint16_t)port, (uint8_t)value, &sent);
         h->wake_ps = 0;
-        if (chips_timer_loads(&h->chips) != loads && h->world) { world_rewind(h->world); }
+        if (chips_timer_loads(&h->chips) != loads && h->set) { h->set(h); }
         if (sent >= 0) { take_character(h, sent); }
     }
 }

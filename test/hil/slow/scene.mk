@@ -1,2 +1,3 @@
 SCENE_DESC := test: every hundredth tick takes two and a half periods
 SCENE_SRC  := test/hil/slow/slow.c
+SCENE_ROM  := yes
