@@ -5,6 +5,8 @@
 
 #include "exhand/error.h"
 
+#include <stddef.h>
+
 enum { /* offsets, 8 bits each */
        MM_DATA = 0,
        MM_START = 0,
@@ -74,6 +76,19 @@ static const struct reading detected[] = {
 };
 #define DETECTED (sizeof detected / sizeof detected[0])
 
+static int compare(const struct exh_mm32xat *m, const struct reading *list, size_t n,
+                   struct exh_card_fault *f)
+{
+    for (size_t i = 0; i < n; i++) {
+        const uint8_t got = in(m, list[i].offset), want = list[i].want;
+        if (got == MM_ALL_ONES) { return all_ones(f, list[i].offset); }
+        if (got != want) {
+            return exh_card_fault(f, EXH_CARD_REGISTER, list[i].offset, got, want, want);
+        }
+    }
+    return 0;
+}
+
 /* Nothing is written to where nothing answers. */
 static int empty(const struct exh_mm32xat *m)
 {
@@ -95,13 +110,7 @@ static int detect(struct exh_mm32xat *m, struct exh_card_fault *f)
     out(m, MM_HIGH, 0xFF); /* and 31 */
     out(m, MM_RANGE, 0x0C);
     pause_us(m, m->par.set_us);
-    for (unsigned i = 0; i < DETECTED; i++) {
-        const uint8_t got = in(m, detected[i].offset), want = detected[i].want;
-        if (got != want) {
-            return exh_card_fault(f, EXH_CARD_REGISTER, detected[i].offset, got, want, want);
-        }
-    }
-    return 0;
+    return compare(m, detected, DETECTED, f);
 }
 
 /* --- scans --- */
@@ -235,12 +244,8 @@ static int self_test(struct exh_mm32xat *m, struct exh_card_fault *f)
     f->phase = EXH_CARD_SELFTEST;
     err = set_up(m, f);
     if (err < 0) { return err; }
-    for (unsigned i = 0; i < sizeof set / sizeof set[0]; i++) {
-        const uint8_t got = in(m, set[i].offset), want = set[i].want;
-        if (got != want) {
-            return exh_card_fault(f, EXH_CARD_REGISTER, set[i].offset, got, want, want);
-        }
-    }
+    err = compare(m, set, sizeof set / sizeof set[0], f);
+    if (err < 0) { return err; }
     for (unsigned run = 0; run < m->par.lost_limit; run++) {
         exh_mm32xat_start(m);
         err = exh_mm32xat_wait(m, f);
