@@ -165,6 +165,7 @@ void exh_board_halt(const char *why)
     const int done = pc104_same_text(why, "done");
     __asm__ volatile("cli" : : : "memory");
     exh_board_safe();
+    pc104_log_flush();
     report();
     pc104_say(why);
     pc104_say("\n");

@@ -39,7 +39,8 @@ static const struct {
       "timer", "assert"}},
 };
 
-struct pc104_par pc104_par;
+/* Of a program that takes no options: nothing is too much. */
+struct pc104_par pc104_par = {.overload_max = INT32_MAX};
 
 static void refuse(const char *name, const char *value)
 {

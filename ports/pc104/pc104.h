@@ -97,6 +97,7 @@ void pc104_scene_after(uint32_t tick, const struct exh_scene_in *in,
                        const struct exh_drive_out *out);
 void pc104_scene_end(void);
 int pc104_idle(void); /* something to do while waiting: 0 if nothing is left */
+void pc104_log_flush(void); /* what waits goes out, or is given up */
 int pc104_log_take(const void *rec, size_t len_B); /* as exh_board_log() */
 
 /* --- hpet.c, pit.c: counters of known frequency that interrupt on IRQ 0 --- */

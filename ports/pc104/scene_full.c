@@ -8,9 +8,10 @@
 #include "exhand/error.h"
 #include "exhand/exhand.h"
 
-#define DEBUG_PORT 0xE9u
-#define RING_B     32768u /* a power of two: seven of the largest records, 200 ms of frames */
-#define BURST_B    16u /* what the UART's FIFO takes at once                             */
+#define DEBUG_PORT  0xE9u
+#define RING_B      32768u /* a power of two: seven of the largest records, 200 ms of frames */
+#define STUCK_READS 100000u /* 0.07 s and more on ISA; 16 characters take 1.4 ms */
+#define BURST_B     16u /* what the UART's FIFO takes at once                             */
 
 static uint8_t ring[RING_B];
 static uint32_t put, got; /* bytes in all, modulo 2^32 */
@@ -95,17 +96,24 @@ void pc104_scene_after(uint32_t tick, const struct exh_scene_in *in,
     if (started) { exh_log_after(tick, in, out); }
 }
 
+void pc104_log_flush(void)
+{
+    uint32_t stuck = 0;
+    while (put != got && stuck < STUCK_READS) {
+        const uint32_t before = got;
+        (void)pc104_idle();
+        stuck = before == got ? stuck + 1 : 0;
+    }
+    put = got;
+}
+
 void pc104_scene_end(void)
 {
     uint32_t lost;
     if (!started) { return; }
-    for (uint32_t stuck = 0, before = got; put != got && stuck < 100000;
-         stuck = before == got ? stuck + 1 : 0) {
-        before = got;
-        (void)pc104_idle();
-    }
+    pc104_log_flush();
     lost = exh_log_end(last_tick + 1);
-    for (uint32_t n = 0; put != got && n < 100000; n++) { (void)pc104_idle(); }
+    pc104_log_flush();
     pc104_say("\nrecords lost ");
     pc104_say_u32(lost);
     pc104_say("\n");

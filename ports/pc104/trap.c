@@ -68,6 +68,12 @@ void pc104_trap_open(void)
 
 /* --- what went wrong; outputs are safe before the first word of it --- */
 
+static void stop_first(void)
+{
+    exh_board_safe();
+    pc104_log_flush(); /* the last records are the ones that tell why */
+}
+
 static const char *name_of(uint32_t vector)
 {
     static const char *const name[] = {"divide error",
@@ -120,14 +126,14 @@ static void say_where(const char *what, uint32_t vector, uint32_t error, uint32_
 
 void pc104_fault(struct pc104_frame frame)
 {
-    exh_board_safe(); /* first of all */
+    stop_first();
     say_where(name_of(frame.vector), frame.vector, frame.error, frame.eip);
     pc104_halt(PC104_EXIT_FAULT, "processor exception");
 }
 
 void pc104_double_fault(void)
 {
-    exh_board_safe();
+    stop_first();
     say_where(pc104_guard_hit(fault_address()) ? "stack overflow" : name_of(DOUBLE_FAULT),
               DOUBLE_FAULT, 0, pc104_guard_eip());
     pc104_halt(PC104_EXIT_FAULT, "processor exception");
@@ -135,7 +141,7 @@ void pc104_double_fault(void)
 
 void pc104_hung(uint32_t eip)
 {
-    exh_board_safe();
+    stop_first();
     say_where("tick does not end", IRQ_BASE, pc104_ticks - pc104_tick_began, eip);
     pc104_halt(PC104_EXIT_OVERLOAD, "overload: a tick hangs");
 }

@@ -42,6 +42,14 @@ says()
     tr -d '\r' <"$out/said" | grep -aqE "$1" || fail "no line '$1'"
 }
 
+# safe STATUS PATTERN OPTION...: nothing was said in the loop before the outputs were safe
+safe()
+{
+    boots "$@"
+    tr -d '\r' <"$out/said" | grep -a -A 1 '^budget measured' | tail -n 1 | grep -qx 'outputs safe' ||
+        fail "said something before the outputs were safe"
+}
+
 # Well.
 boots 0 '^rate 2000 Hz asked, timer HPET of 100000000 Hz, period 1/2000 s, 0 ppm off$' ticks=4000
 says '^exhand [0-9.]+, wire [0-9]+, record [0-9]+, board pc104 version 1, scene drop$'
@@ -77,22 +85,22 @@ boots 6 '^rate 2000 Hz: a tick costs more than its period: take at most 1333 Hz$
 boots 0 'done' budget=600 rate=1333 ticks=100
 
 # Safe. What is provoked shows that the outputs were made safe before it was told.
-boots 5 '^divide error, vector 0, error 0x00000000, eip 0x001[0-9a-f]+, tick 300$' provoke=divide provoke_at=300
-boots 5 '^invalid opcode, vector 6, ' provoke=opcode
-boots 5 '^page fault, vector 14, error 0x00000000, .* address 0x00000010, tick 100$' provoke=null
-boots 5 '^page fault, vector 14, error 0x00000003, ' provoke=write
-boots 5 '^stack overflow, vector 8, ' provoke=stack
-boots 5 '^NMI, vector 2, ' provoke=nmi
+safe 5 '^divide error, vector 0, error 0x00000000, eip 0x001[0-9a-f]+, tick 300$' provoke=divide provoke_at=300
+safe 5 '^invalid opcode, vector 6, ' provoke=opcode
+safe 5 '^page fault, vector 14, error 0x00000000, .* address 0x00000010, tick 100$' provoke=null
+safe 5 '^page fault, vector 14, error 0x00000003, ' provoke=write
+safe 5 '^stack overflow, vector 8, ' provoke=stack
+safe 5 '^NMI, vector 2, ' provoke=nmi
 boots 0 '^irq_spurious 2$' provoke=spurious ticks=300
-boots 7 '^overload: a tick hangs$' provoke=hang
-boots 7 '^overload: more ticks missed than overload_max allows$' provoke=slow
+safe 7 '^overload: a tick hangs$' provoke=hang
+safe 7 '^overload: more ticks missed than overload_max allows$' provoke=slow
 says '^tick_missed 10[12]$'
-boots 7 'overload_max allows$' provoke=slow overload_max=0
+safe 7 'overload_max allows$' provoke=slow overload_max=0
 says '^tick_missed [12]$'
 boots 0 '^tick_missed 10[0-9]$' provoke=slow overload_max=0 grace=400 ticks=300
-boots 8 '^timer: no tick for four periods, by the second clock$' provoke=timer
-boots 8 '^timer: no tick for four periods, by the second clock$' provoke=timer timer=pit rate=1000
-boots 1 '^ports/pc104/provoke.c:[0-9]+$' provoke=assert
+safe 8 '^timer: no tick for four periods, by the second clock$' provoke=timer
+safe 8 '^timer: no tick for four periods, by the second clock$' provoke=timer timer=pit rate=1000
+safe 1 '^ports/pc104/provoke.c:[0-9]+$' provoke=assert
 
 # Other machines: no HPET, nothing but what a PC/AT had, no local APIC.
 QEMU_FLAGS="$virtual -M q35" boots 0 'timer HPET of' ticks=500
