@@ -240,7 +240,7 @@ $(B)/test/emu/%_test: $(B)/test/san/test/emu/%_test.o $(B)/test/san/test/support
 
 # Drivers of the cards, over a bus that a test scripts.
 cards_src := $(wildcard ports/cards/*.c)
-$(filter $(B)/test/cards/%,$(test_bin)): $(B)/test/san/test/cards/bus.o $(cards_src:%.c=$(B)/test/san/%.o) \
+$(filter $(B)/test/cards/%,$(test_bin)): $(B)/test/san/test/cards/bus.o $(B)/test/san/test/cards/rig.o $(cards_src:%.c=$(B)/test/san/%.o) \
                                          $(B)/test/san/test/support.o $(lib_src:%.c=$(B)/test/san/%.o)
 $(B)/test/san/test/cards/%.o $(B)/test/san/ports/cards/%.o: tflags += -Iports
 $(B)/test/cards/%_test: $(B)/test/san/test/cards/%_test.o
@@ -335,7 +335,7 @@ $(plain_bin): $(B)/i686/%_test: test/%_test.c test/support.c $(lib_src) $(wildca
 	    -DEXH_CHECK_PLAIN -o $@ $(filter %.c,$^)
 
 cards_bin := $(patsubst test/%_test.c,$(B)/i686/%_test,$(filter test/cards/%,$(test_src)))
-$(cards_bin): $(B)/i686/%_test: test/%_test.c test/cards/bus.c test/support.c $(cards_src) $(lib_src) \
+$(cards_bin): $(B)/i686/%_test: test/%_test.c test/cards/bus.c test/cards/rig.c test/support.c $(cards_src) $(lib_src) \
               $(wildcard test/*.h test/cards/*.h ports/cards/*.h lib/include/exhand/*.h) $(stamp)
 	@mkdir -p $(@D)
 	$(Q)i686-linux-gnu-gcc -static $(filter-out -MMD -MP,$(tflags)) $(trap) -Iports -D_POSIX_C_SOURCE=200809L \

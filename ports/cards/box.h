@@ -66,6 +66,9 @@ enum exh_box_row {
     EXH_BOX_ROWS
 };
 
+/* The row that is refused, with its value, or EXH_BOX_ROWS; touches no port. */
+unsigned exh_box_check(const struct exh_box_config *config, int32_t *value);
+
 /* What went wrong, and where. */
 struct exh_box_error {
     int16_t code;  /* 0: nothing; else -EXH_E_ABSENT, -EXH_E_IO, -EXH_E_RANGE     */

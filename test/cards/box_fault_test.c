@@ -1,0 +1,319 @@
+/* The box against a scripted bus: faults, safe outputs from anywhere, opening and its words. */
+#include "check.h"
+#include "rig.h"
+
+#include "exhand/error.h"
+
+#include <limits.h>
+
+/* ---- faults of a tick -------------------------------------------------------------------- */
+
+/* From every access of a tick on, each card in turn: an error by the end of the next tick, its
+ * name, the other board safe. */
+TEST(a_board_that_dies_is_found_within_a_tick)
+{
+    for (unsigned k = 0; k < 2; k++) {
+        for (unsigned from = 0; from < 44; from++) {
+            int err;
+            opened(five());
+            CHECK_EQ_I64(put(1), 0);
+            bus_clear();
+            bus.dead_card = k;
+            bus.dead_from = from;
+            err = exh_box_read_drive(&in);
+            if (err == 0) { err = put(1); }
+            if (err == 0) { err = exh_box_read_drive(&in); }
+            CHECK_EQ_I64(err, -EXH_E_IO);
+            CHECK_EQ_I64(exh_box_error()->card, k);
+            CHECK_EQ_I64(exh_box_error()->fault.what, EXH_CARD_EMPTY);
+            bus.s526[k].base = 0;
+            CHECK(bus_safe(), "the other board is not safe, from %u", from);
+        }
+    }
+}
+
+TEST(a_conversion_that_is_lost_ends_in_time_and_in_safe_outputs)
+{
+    for (unsigned k = 0; k < 4; k++) {
+        opened(five());
+        CHECK_EQ_I64(put(1), 0);
+        bus.stopped = k & 1;
+        bus.s526[k / 2].mute = 4;
+        bus_clear();
+        bus.time_us = 0;
+        CHECK_EQ_I64(exh_box_read_drive(&in), -EXH_E_IO);
+        CHECK(bus.n < (k & 1 ? 8200u : 700u), "%u accesses", bus.n);
+        fails(-EXH_E_IO, k / 2, EXH_CARD_AD_TIMEOUT);
+        CHECK_EQ_I64(exh_box_error()->fault.phase, EXH_CARD_MONITOR);
+    }
+}
+
+TEST(updates_that_do_not_end_are_a_fault)
+{
+    int n = 0, err = 0;
+    opened(five());
+    bus.s526[1].mute = 2;
+    for (; n < 10 && err == 0; n++) {
+        err = put(1);
+        if (err == 0) { err = exh_box_read_drive(&in); }
+    }
+    CHECK_EQ_I64(n, 4); /* the first after opening has a flag of its own */
+    fails(err, EXH_BOX_B, EXH_CARD_DA_TIMEOUT);
+}
+
+TEST(an_enable_that_does_not_go_off_is_a_fault)
+{
+    opened(five());
+    bus.s526[0].pins_stuck = 0x40;
+    CHECK_EQ_I64(put(1), 0); /* all on: nobody can tell */
+    CHECK_EQ_I64(exh_box_read_drive(&in), 0);
+    exh_box_safe();
+    fails(exh_box_read_drive(&in), EXH_BOX_A, EXH_CARD_LINES);
+    CHECK_EQ_I64(exh_box_error()->fault.got, 0x40);
+}
+
+TEST(illegal_transitions_are_counted_and_too_many_are_a_fault)
+{
+    struct exh_box_counts n;
+    int err = 0, ticks = 0;
+    opened(five());
+    bus.s526[0].ecap[2] = 1;
+    for (int k = 0; k < 20; k++) { CHECK_EQ_I64(exh_box_read_drive(&in), 0); }
+    exh_box_counts(&n);
+    CHECK_EQ_I64(n.quad[2], 1);
+    CHECK_EQ_I64(n.quad[0] + n.quad[1] + n.quad[3] + n.quad[4], 0);
+    bus.s526[1].ecap[0] = bus.s526[1].ecap_set[0] = 1;
+    while (err == 0 && ticks < 100) {
+        err = exh_box_read_drive(&in);
+        ticks++;
+    }
+    CHECK_EQ_I64(ticks, 17);
+    fails(err, EXH_BOX_B, EXH_CARD_QUADRATURE);
+    exh_box_counts(&n);
+    CHECK_EQ_I64(n.quad[4], 17);
+}
+
+/* What is found opened anew works again, and starts with nothing counted. */
+TEST(opening_anew_ends_a_fault)
+{
+    struct exh_box_config c = five();
+    opened(c);
+    bus.s526[0].mute = 4;
+    CHECK_EQ_I64(exh_box_read_drive(&in), -EXH_E_IO);
+    CHECK_EQ_I64(exh_box_open(&c, NULL), -EXH_E_IO);
+    CHECK_EQ_I64(put(1), -EXH_E_IO);
+    bus.s526[0].mute = 0;
+    CHECK_EQ_I64(exh_box_open(&c, NULL), 0);
+    CHECK_EQ_I64(exh_box_error()->code, 0);
+    CHECK_EQ_I64(exh_box_read_drive(&in), 0);
+    CHECK_EQ_I64(put(1), 0);
+    CHECK_EQ_I64(bus.s526[1].da_out[0], 32768 + 500);
+}
+
+/* Also what the box before used and this one does not. */
+TEST(opening_makes_safe_what_was_used_before)
+{
+    struct exh_box_config c = one();
+    opened(five());
+    CHECK_EQ_I64(put(1), 0);
+    c.s526_base[0] = 0x280;
+    CHECK_EQ_I64(exh_box_open(&c, NULL), 0);
+    CHECK(bus_safe(), "board A left on");
+}
+
+TEST(what_is_not_certain_can_be_left_out)
+{
+    struct exh_box_config c = five();
+    c.s526.line_check = c.s526.da_check = c.s526.quad_check = 0;
+    bus_reset();
+    bus.s526[0].pins_stuck = 0x40;
+    bus.s526[1].ecap[0] = bus.s526[1].ecap_set[0] = 1;
+    CHECK_EQ_I64(exh_box_open(&c, NULL), 0);
+    bus.s526[0].mute = 2;
+    bus_clear();
+    for (int n = 0; n < 100; n++) {
+        CHECK_EQ_I64(exh_box_read_drive(&in), 0);
+        CHECK_EQ_I64(put(1), 0);
+    }
+    CHECK_EQ_I64(bus.n, 100 * 42);
+}
+
+/* ---- safe ----------------------------------------------------------------------------------- */
+
+TEST(safe_takes_20_accesses_a_board_and_may_be_repeated)
+{
+    opened(five());
+    CHECK_EQ_I64(put(1), 0);
+    bus_clear();
+    exh_box_safe();
+    CHECK_EQ_I64(bus.n, 2 * EXH_S526_SAFE_ACCESSES);
+    CHECK(bus.log[0].port == 0x2CA && bus.log[0].value == 0x800 && bus.log[1].port == 0x28A &&
+              bus.log[1].value == 0x800,
+          "enables not first");
+    CHECK(bus_safe(), "outputs on");
+    exh_box_safe();
+    CHECK(bus_safe(), "outputs on");
+    CHECK_EQ_I64(put(1), 0); /* it latches nothing */
+    CHECK(!bus_safe(), "outputs off");
+}
+
+TEST(safe_touches_no_port_where_no_board_was_found)
+{
+    struct exh_box_config c = five();
+    bus_reset();
+    bus.s526[0].base = bus.s526[1].base = 0;
+    CHECK_EQ_I64(exh_box_open(&c, &report), -EXH_E_ABSENT);
+    bus_clear();
+    exh_box_safe();
+    CHECK_EQ_I64(bus.n, 0);
+    CHECK_EQ_I64(exh_box_read_drive(&in), -EXH_E_IO);
+    CHECK_EQ_I64(put(1), -EXH_E_IO);
+    CHECK_EQ_I64(bus.n, 0);
+}
+
+/* Before every access of a write, a read, an opening: at the end of that call outputs are safe,
+ * and after it no access but a few finds one that is not: those of a write that was overtaken,
+ * until it has seen that. */
+TEST(safe_may_come_before_any_access)
+{
+    struct exh_box_config c = five();
+    unsigned hot_most = 0;
+    for (unsigned at = 0; at < 16; at++) {
+        opened(c);
+        CHECK_EQ_I64(put(-1), 0);
+        CHECK_EQ_I64(exh_box_read_drive(&in), 0);
+        bus_clear();
+        bus.safe_at = at;
+        CHECK_EQ_I64(put(1), 0);
+        if (bus.safe_at == at) { /* after the last */
+            exh_box_safe();
+        }
+        CHECK(bus_safe(), "outputs on after safe before access %u of a write", at);
+        if (at < 14 && bus.hot > hot_most) { hot_most = bus.hot; }
+        CHECK_EQ_I64(exh_box_read_drive(&in), 0); /* and no fault of it */
+    }
+    check_note("an output that safe overtook was on again for %u accesses at the most", hot_most);
+    CHECK(hot_most <= 4, "%u", hot_most);
+    for (unsigned at = 0; at < 30; at++) {
+        opened(c);
+        CHECK_EQ_I64(put(1), 0);
+        bus_clear();
+        bus.safe_at = at;
+        CHECK_EQ_I64(exh_box_read_drive(&in), 0);
+        CHECK(bus_safe(), "outputs on after safe before access %u of a read", at);
+    }
+}
+
+/* ---- opening and its words ------------------------------------------------------------------- */
+
+TEST(all_cards_that_are_absent_are_named)
+{
+    struct exh_box_config c = gloved(EXH_BOX_LAST);
+    c.s526_base[1] = 0x1240;
+    bus_reset();
+    bus.mm.base = 0;
+    CHECK_EQ_I64(exh_box_open(&c, &report), -EXH_E_ABSENT);
+    says(&report.error[EXH_BOX_A], "S526 A at 0x02C0: in order");
+    says(&report.error[EXH_BOX_B], "S526 B at 0x1240: detect: no answer, all ones");
+    says(&report.error[EXH_BOX_GLOVE], "MM-32X-AT at 0x0300: detect: no answer, all ones");
+    CHECK_EQ_I64(exh_box_error()->card, EXH_BOX_B);
+    CHECK_EQ_I64(report.s526[0].signature, 0x526A);
+}
+
+TEST(faults_by_example)
+{
+    struct exh_box_config c = one();
+    bus_reset();
+    bus.s526[0].signature = 0x1234;
+    CHECK_EQ_I64(exh_box_open(&c, &report), -EXH_E_ABSENT);
+    says(exh_box_error(),
+         "S526 A at 0x02C0: detect: another card's signature: 0x1234 (0x526A or 0x526B)");
+    bus_reset();
+    bus_double(&bus.s526[0].ee[16], 1, 3, 0);
+    CHECK_EQ_I64(exh_box_open(&c, &report), -EXH_E_IO);
+    says(exh_box_error(),
+         "S526 A at 0x02C0: EEPROM: D/A gain implausible, 0.001 codes per volt, number 2: "
+         "-3000 (3087000 .. 3411000)");
+    bus_reset();
+    bus.s526[0].mode_stuck = 0x80;
+    CHECK_EQ_I64(exh_box_open(&c, &report), -EXH_E_IO);
+    says(exh_box_error(),
+         "S526 A at 0x02C0: self-test: register does not read back, offset 22: 0x0400 (0x0480)");
+}
+
+static void refused(struct exh_box_config c, unsigned row)
+{
+    bus_reset();
+    bus_clear();
+    CHECK_EQ_I64(exh_box_open(&c, &report), -EXH_E_RANGE);
+    CHECK_EQ_I64(exh_box_error()->fault.what, EXH_CARD_BAD_VALUE);
+    CHECK_EQ_I64(exh_box_error()->fault.at, row);
+    CHECK_EQ_I64(exh_box_error()->card, EXH_BOX_CARDS);
+}
+
+#define REFUSED(row, change) \
+    do { \
+        struct exh_box_config c = gloved(EXH_BOX_LAST); \
+        change; \
+        refused(c, row); \
+    } while (0)
+
+TEST(configurations_are_refused_by_name)
+{
+    REFUSED(EXH_BOX_ROW_FINGERS, c.fingers = 0);
+    REFUSED(EXH_BOX_ROW_FINGERS, c.fingers = 6);
+    REFUSED(EXH_BOX_ROW_MONITOR, c.monitor = 3);
+    REFUSED(EXH_BOX_ROW_GLOVE, c.glove = 3);
+    REFUSED(EXH_BOX_ROW_SPAN, c.dac_span_raw = 32768);
+    REFUSED(EXH_BOX_ROW_BASE_A, c.s526_base[0] = 0x2C2);
+    REFUSED(EXH_BOX_ROW_BASE_A, c.s526_base[0] = 0xC0);
+    REFUSED(EXH_BOX_ROW_BASE_B, c.s526_base[1] = 0x281);
+    REFUSED(EXH_BOX_ROW_BASE_GLOVE, c.mm32xat_base = 0x310);
+    REFUSED(EXH_BOX_ROW_OVERLAP, c.s526_base[1] = 0x2C0);
+    REFUSED(EXH_BOX_ROW_OVERLAP, c.mm32xat_base = 0x280);
+    REFUSED(EXH_BOX_ROW_OVERLAP, c.s526_base[0] = 0x300);
+    REFUSED(EXH_BOX_ROW_WAIT, c.s526.ad_wait_us = 0);
+    REFUSED(EXH_BOX_ROW_WAIT, c.s526.ee_wait_us = 60001);
+    REFUSED(EXH_BOX_ROW_WAIT, c.mm32xat.scan_wait_us = 0);
+    REFUSED(EXH_BOX_ROW_SCAN, c.mm32xat.channels = 21);
+    REFUSED(EXH_BOX_ROW_SCAN, c.mm32xat.interval = 4);
+    REFUSED(EXH_BOX_ROW_SCAN, c.mm32xat.lost_limit = 0);
+    CHECK_EQ_I64(bus.n, 0);
+    CHECK_EQ_I64(put(1), -EXH_E_IO);
+    says(exh_box_error(),
+         "box: configuration: channels, interval or lost_limit of the scan: value not allowed: 22");
+}
+
+TEST(every_place_of_the_glove_s_jumpers_is_found)
+{
+    static const uint16_t base[] = {0x100, 0x140, 0x180, 0x200, 0x280, 0x300, 0x340, 0x380};
+    for (unsigned i = 0; i < 8; i++) {
+        struct exh_box_config c = gloved(EXH_BOX_NOW);
+        c.s526_base[1] = 0xFFC0;
+        c.mm32xat_base = base[i];
+        bus_reset();
+        bus.s526[1].base = c.s526_base[1];
+        bus.mm.base = base[i];
+        CHECK_EQ_I64(exh_box_open(&c, &report), 0);
+    }
+}
+
+TEST(what_is_not_used_may_be_anything)
+{
+    struct exh_box_config c = one();
+    c.s526_base[1] = 3;
+    c.mm32xat_base = 0x2C0;
+    c.mm32xat.channels = 0;
+    opened(c);
+}
+
+TEST_MAIN("box fault", a_board_that_dies_is_found_within_a_tick,
+          a_conversion_that_is_lost_ends_in_time_and_in_safe_outputs,
+          updates_that_do_not_end_are_a_fault, an_enable_that_does_not_go_off_is_a_fault,
+          illegal_transitions_are_counted_and_too_many_are_a_fault, opening_anew_ends_a_fault,
+          opening_makes_safe_what_was_used_before, what_is_not_certain_can_be_left_out,
+          safe_takes_20_accesses_a_board_and_may_be_repeated,
+          safe_touches_no_port_where_no_board_was_found, safe_may_come_before_any_access,
+          all_cards_that_are_absent_are_named, faults_by_example,
+          configurations_are_refused_by_name, every_place_of_the_glove_s_jumpers_is_found,
+          what_is_not_used_may_be_anything);
