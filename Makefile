@@ -402,7 +402,7 @@ hil_inside := PORT=pc104 CARDS=inside cards_inside="$(wildcard ports/cards/*.c) 
 hil:
 	@B=$(B) test/hil/unicorn.sh
 	@for t in i686-linux-gnu-gcc qemu-system-i386; do .ci/deps "the pc104 image" $$t gcc-i686-linux-gnu qemu-system-x86 || exit 3; done
-	@$(MAKE) --no-print-directory $(if $(V),,-s) $(B)/test/hil
+	@$(MAKE) --no-print-directory $(if $(V),,-s) $(B)/test/hil $(exhand)
 	@for s in minimal drop bilateral slow; do $(MAKE) --no-print-directory $(if $(V),,-s) PORT=pc104 SCENE=$$s all || exit 1; done
 	@for s in drop bilateral; do $(MAKE) --no-print-directory $(if $(V),,-s) $(hil_inside) SCENE=$$s all || exit 1; done
 	@B=$(B) TICKS=$(HIL_TICKS) FEW=$(HIL_FEW) QEMU=$(HIL_QEMU) test/hil/hil.sh $(ARGS)

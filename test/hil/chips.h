@@ -70,6 +70,11 @@ int chips_in8(struct chips *c, uint64_t now_ps, uint16_t port, uint8_t *value);
 /* 1, or 0: not one of its ports. *sent: a character for the line, or -1. */
 int chips_out8(struct chips *c, uint64_t now_ps, uint16_t port, uint8_t value, int *sent);
 
+/* --- hpet.c --- */
+
+int hpet_advance(struct hpet *t, uint64_t now_ps); /* 1: its interrupt was requested   */
+uint64_t hpet_next_ps(const struct hpet *t);
+int hpet_is_legacy(const struct hpet *t); /* it stands in the place of the 8254 */
 uint32_t hpet_read(const struct chips *c, uint64_t now_ps, uint32_t offset);
 void hpet_write(struct chips *c, uint64_t now_ps, uint32_t offset, uint32_t value);
 

@@ -93,12 +93,16 @@ static void print_row(const char *what, struct figure *f)
     printf("  %-34s %9" PRIu32 " %9" PRIu32 " %9" PRIu32 "\n", what, r.min, r.median, r.max);
 }
 
-static const char *class_name(unsigned key)
+/* "runs, a glove frame, 2 packets" */
+static const char *class_name(unsigned key, char *text, size_t cap_B)
 {
-    static const char *const name[8] = {
-        "off",  "off, a glove frame",  "off, packets",  "off, a glove frame, packets",
-        "runs", "runs, a glove frame", "runs, packets", "runs, a glove frame, packets"};
-    return name[key & 7];
+    const unsigned packets = key / COUNT_PACKET;
+    int n = snprintf(text, cap_B, "%s%s", key & COUNT_RUNS ? "runs" : "off",
+                     key & COUNT_GLOVE ? ", a glove frame" : "");
+    if (packets && n > 0) {
+        snprintf(text + n, cap_B - (size_t)n, ", %u packet%s", packets, packets > 1 ? "s" : "");
+    }
+    return text;
 }
 
 uint32_t count_print(struct count *c, const struct hil *h, double period_s)
@@ -119,10 +123,11 @@ uint32_t count_print(struct count *c, const struct hil *h, double period_s)
            100 * count_range(&c->busy_ns).max * 1e-9 / period_s);
     for (unsigned i = 0; i < c->classes; i++) {
         const struct count_class *k = &c->class[i];
+        char name[48];
         const uint32_t ppm = (uint32_t)((uint64_t)(k->max - k->min) * 1000000 / k->max);
         printf("  scene, %-32s %7" PRIu64 " ticks: %" PRIu32 " .. %" PRIu32
                " instructions, spread %.2f %%\n",
-               class_name(k->key), k->n, k->min, k->max, ppm * 1e-4);
+               class_name(k->key, name, sizeof name), k->n, k->min, k->max, ppm * 1e-4);
         if (ppm > widest_ppm) { widest_ppm = ppm; }
     }
     return widest_ppm;

@@ -6,7 +6,7 @@
 
 #include "scene.h"
 
-#define COUNT_CLASSES 16
+#define COUNT_CLASSES 24
 
 struct figure {
     uint32_t *at; /* one per tick, for the median */
@@ -19,7 +19,8 @@ struct count_class {
     uint32_t min, max;
 };
 
-enum count_key { COUNT_GLOVE = 1, COUNT_PACKETS = 2, COUNT_RUNS = 4, COUNT_KEYS = 8 };
+/* A glove frame; so many packets; running. */
+enum count_key { COUNT_GLOVE = 1, COUNT_RUNS = 2, COUNT_PACKET = 4, COUNT_KEYS = 64 };
 
 struct count {
     /* from the timer's interrupt to the next wait */

@@ -58,7 +58,7 @@ struct hil {
     enum hil_end end;
     uint32_t status; /* of HIL_EXIT: what was written to the debug port                        */
     char why[160]; /* of HIL_BROKEN                                                           */
-    FILE *serial; /* what comes out of COM1, or NULL                                        */
+    FILE *records; /* what comes out of port 0xE9, or NULL                           */
     void (*line)(struct hil *h, const char *text); /* called with each line of it, or NULL    */
     char text[256];
     unsigned text_n;

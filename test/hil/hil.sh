@@ -1,10 +1,12 @@
 #!/bin/sh
 # What `make hil` shows: hil.sh [WHAT...], of these (all of them):
 #   count    instructions counted by blocks are those counted one by one
+#   spoil    an encoder count more in one tick is found in that tick
 #   slow     a scene that is too slow is found late
 #   drop     the drop experiment, closed loop: the POSIX port's bits
 #   rates    the same at the paper's rates, at 20 kHz and from the 8254
 #   box      the full box, closed loop, likewise
+#   replay   the image's own records replay on the host
 #   wild     random and extreme inputs
 #   absent   no cards, and no HPET
 #   qemu     the real timer interrupt, with emulated cards inside
@@ -37,8 +39,47 @@ fast="supply=0 ad_settle=0"
 box="--loop --glove-age 1"
 
 show_count() { run "blocks counted one by one too" drop --loop --singly --ticks 2000; }
+# must_differ TICK IMAGE [OPTION...]
+must_differ()
+{
+    tick=$1 image=$b/pc104/$2.elf
+    echo "$2: one count more in tick $tick"
+    shift 2
+    "$hil" --quiet --ticks "$((tick + 100))" --spoil "$tick" "$@" "$image" >"$b/hil-spoil.txt"
+    status=$?
+    if [ $status = 1 ] && grep -q "the first is $tick:" "$b/hil-spoil.txt"; then
+        echo "  ok     found:$(sed -n 's/.*the first is/ tick/p' "$b/hil-spoil.txt")"
+    else
+        failed=1
+        echo "  FAILED status $status, see $b/hil-spoil.txt"
+    fi
+}
+show_spoil()
+{
+    must_differ 1000 drop --loop
+    # shellcheck disable=SC2086
+    must_differ 1000 bilateral $box
+}
+show_replay()
+{
+    run "with records" drop --loop --ticks 5000 --options log=debug --records "$b/hil-drop.exh"
+    # shellcheck disable=SC2086
+    run "with records" bilateral $box --rate 1000 --ticks 3000 --options log=debug --records "$b/hil-box.exh"
+    for f in drop box; do
+        if said=$("$b/posix/exhand" replay "$b/hil-$f.exh"); then
+            echo "  ok     replayed: $said"
+        else
+            failed=1
+            echo "  FAILED $b/posix/exhand replay $b/hil-$f.exh"
+        fi
+    done
+}
 show_slow() { run "every hundredth tick takes two and a half periods" slow --ticks 2050 --late 40; }
-show_drop() { run "the paper's first experiment, 2 kHz" drop --loop --ticks "$ticks"; }
+show_drop()
+{
+    run "the paper's first experiment, 2 kHz" drop --loop --ticks "$ticks"
+    run "another seed" drop --loop --seed 2 --ticks "$few"
+}
 show_rates()
 {
     for r in 90 100 200 500 1000; do run "$r Hz" drop --loop --rate "$r" --ticks "$few"; done
@@ -49,7 +90,9 @@ show_rates()
 show_box()
 {
     # shellcheck disable=SC2086 # lists of options
-    run "the full box, 2 kHz" bilateral $box --ticks "$((ticks / 10))"
+    run "the full box, 2 kHz" bilateral $box --ticks "$ticks"
+    # shellcheck disable=SC2086
+    run "another seed" bilateral $box --seed 2 --ticks "$few"
     # shellcheck disable=SC2086
     for r in 90 100 200; do run "the full box, $r Hz" bilateral $box --set glove_fc=20 --rate "$r" --ticks "$few"; done
     # shellcheck disable=SC2086
@@ -57,7 +100,8 @@ show_box()
 }
 show_wild()
 {
-    for s in minimal drop; do run "random and extreme inputs" $s --wild --ticks "$few" --spread 55000; done
+    run "random and extreme inputs" minimal --wild --ticks "$few"
+    run "random and extreme inputs" drop --wild --ticks "$few" --spread 50000
     # shellcheck disable=SC2086
     run "random and extreme inputs, five fingers" bilateral --wild $box --ticks "$few"
 }
@@ -86,13 +130,13 @@ qemu()
 show_qemu()
 {
     qemu drop-inside "${QEMU:-100000}"
-    qemu bilateral-inside "$((${QEMU:-100000} / 10))" rate=1000 fingers=31
+    qemu bilateral-inside "$((${QEMU:-100000} / 10))" rate=500 fingers=31
 }
 
-for what in ${*:-count slow drop rates box wild absent qemu}; do
+for what in ${*:-count spoil slow drop rates box replay wild absent qemu}; do
     case $what in
-    count | slow | drop | rates | box | wild | absent | qemu) show_"$what" ;;
-    *) echo "usage: hil.sh [count|slow|drop|rates|box|wild|absent|qemu]..." >&2; exit 2 ;;
+    count | spoil | slow | drop | rates | box | replay | wild | absent | qemu) show_"$what" ;;
+    *) echo "usage: hil.sh [count|spoil|slow|drop|rates|box|replay|wild|absent|qemu]..." >&2; exit 2 ;;
     esac
 done
 exit $failed

@@ -42,7 +42,7 @@ void inputs_next(struct inputs *s, int runs, struct exh_scene_in *in)
     const int wild = one_in(s, 64); /* a fault, as a rule, and in a fault less happens */
     for (unsigned i = 0; i < EXH_FINGERS; i++) {
         s->walk[i] += draw(s) % 25 - 12;
-        in->drive.enc_raw[i] = wild && one_in(s, 8)
+        in->drive.enc_raw[i] = wild && s->torn && one_in(s, 8)
                                    ? value(s, last->drive.enc_raw[i], 0xFFFFFF)
                                    : (in->drive.enc_raw[i] + s->walk[i]) & 0xFFFFFF;
         in->drive.mon_raw[i] = (int16_t)value(s, (uint16_t)last->drive.mon_raw[i], 0xFFFF);

@@ -200,6 +200,7 @@ void world_instant(struct world *w)
     }
     (void)exh_board_read_drive(&in);
     if (!ref_held(&w->ref_cfg, w->ticks)) { in.din &= ~(uint32_t)EXH_DIN_DEADMAN; }
+    if ((int64_t)w->ticks == w->spoil) { in.enc_raw[0]++; }
     box_put(w->box, &in);
     w->gloved = 0;
     w->received = w->sent = 0;

@@ -21,6 +21,7 @@ struct world {
     struct ref_cfg ref_cfg; /* board.T is the image's, once that is known        */
     struct box *box;
     struct hil *h;
+    int64_t spoil; /* in this tick an encoder reads a count more: a test of the test; < 0: never */
     uint32_t scene; /* the image's descriptor                                    */
     int begun; /* the image's loop has                                      */
     struct ref *ref;

@@ -1,0 +1,40 @@
+/* One run of an image: what it is told, and what is known of it. */
+#ifndef HIL_RUN_H
+#define HIL_RUN_H
+
+#include "count.h"
+#include "inputs.h"
+#include "world.h"
+
+struct run_options {
+    const char *image, *options; /* the file, and its command line              */
+    const char *records; /* where what comes out of port 0xE9 goes, or NULL */
+    int wild, quiet, singly, loop, absent;
+    double cpi, port_us, hpet_MHz, baud;
+    int64_t seed, where, ticks, rate_Hz, glove_age, monitor_age, spoil;
+    struct ref_setting set[REF_SETTINGS];
+    int sets;
+};
+
+struct run {
+    const struct run_options *opt;
+    struct hil h;
+    struct box box;
+    struct world world;
+    struct count count;
+    struct inputs inputs;
+    uint32_t scene, tick,
+        back; /* addresses: descriptor, its tick function, where that returns to */
+    uint32_t out; /* where its outputs go                          */
+    uint64_t passed; /* instants of the timer since the first wait,   */
+    uint64_t instants, ticks; /* those up to the last tick of the scene; these ticks */
+    uint64_t late; /* instants that found it at work               */
+    uint32_t said_run, said_missed; /* ticks, as the image says at its end       */
+};
+extern struct run run;
+
+/* 0, or -1 after a line on stderr. */
+int run_open(const struct run_options *opt);
+void run_close(void);
+
+#endif
