@@ -551,6 +551,13 @@ bench:
 	@B=$(B) test/bench/bench.sh $(ARGS)
 	@echo; B=$(B) test/bench/peers.sh table
 
+## Make the table of docs/CARDS.md anew: every misbehaviour of a card in every phase of its driver
+.PHONY: cards
+cards: all
+	@$(exhand) cards > $(B)/cards.md
+	@awk '/^<!-- end -->/ { skip = 0 } !skip { print } /^<!-- exhand cards -->/ { skip = 1; while ((getline line < "$(B)/cards.md") > 0) print line }' \
+	    docs/CARDS.md > $(B)/CARDS.md.new && cp $(B)/CARDS.md.new docs/CARDS.md && tail -n 1 $(B)/cards.md
+
 # --- keeping house ------------------------------------------------------------------
 
 PREFIX  ?= /usr/local

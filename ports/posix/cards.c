@@ -4,6 +4,8 @@
 
 #include "../cards/box.h"
 
+#include "exhand/bytes.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -13,7 +15,13 @@ static struct {
     unsigned fingers;
     uint64_t start_ns; /* when the first tick is                                */
     int said;
+    struct posix_cards_watch watch;
 } cards;
+
+const struct posix_cards_watch *posix_cards_watch(void)
+{
+    return &cards.watch;
+}
 
 struct emu_box *posix_cards_box(void)
 {
@@ -64,6 +72,31 @@ static void see_drive(struct exh_drive_out *seen)
     }
     if (cards.fingers == 1) { seen->enable &= 1; } /* its other lines mean something else */
     seen->alive = p->dout[common()] >> 5 & 1;
+}
+
+/* The farthest any enabled drive's code is from 0 A. */
+static uint16_t farthest(const struct exh_drive_out *o)
+{
+    uint16_t most_raw = 0;
+    for (unsigned i = 0; i < EXH_FINGERS; i++) {
+        const int32_t off = (int32_t)o->dac_raw[i] - 32768;
+        const uint16_t raw = (uint16_t)(off < 0 ? -off : off);
+        if (o->enable >> i & 1 && raw > most_raw) { most_raw = raw; }
+    }
+    return most_raw;
+}
+
+/* What the device sees after a tick. */
+static void watch(struct exh_drive_out *seen)
+{
+    struct posix_cards_watch *w = &cards.watch;
+    see_drive(seen);
+    w->ticks++;
+    w->digest = exh_crc32(w->digest, seen->dac_raw, sizeof seen->dac_raw);
+    w->digest = exh_crc32(w->digest, &seen->enable, 1);
+    w->now_raw = farthest(seen);
+    if (w->now_raw > w->most_raw) { w->most_raw = w->now_raw; }
+    if (w->now_raw > POSIX_CARDS_REST_RAW) { w->pressed = w->ticks; }
 }
 
 /* --- the box --- */
@@ -128,7 +161,7 @@ int cards_write_drive(const struct exh_drive_out *out, struct exh_drive_out *see
     int err;
     emu_enter(&cards.box, EMU_PHASE_WRITE);
     err = exh_box_write_drive(out);
-    see_drive(seen);
+    watch(seen);
     return say(err);
 }
 
@@ -150,4 +183,5 @@ void cards_safe(struct exh_drive_out *seen)
     emu_enter(&cards.box, EMU_PHASE_SAFE);
     exh_box_safe();
     see_drive(seen);
+    cards.watch.now_raw = farthest(seen);
 }

@@ -42,7 +42,18 @@ int cards_read_glove(int16_t code[EXH_GLOVE_SENSORS]);
 /* seen: what the device sees then. */
 void cards_safe(struct exh_drive_out *seen);
 
-/* The box itself (tests, tables). */
+/* The box itself, and what the device saw of it since the start (tests, tables). */
 struct emu_box *posix_cards_box(void);
+
+#define POSIX_CARDS_REST_RAW 200 /* codes from 0 A; what keeps a string wound is less    */
+
+struct posix_cards_watch {
+    uint32_t ticks; /* written                                               */
+    uint32_t digest; /* CRC-32 of all that came out of the cards, tick by tick */
+    uint32_t pressed; /* the last of them with more than that in a drive, from 1; 0: none */
+    uint16_t most_raw; /* the farthest any D/A of an enabled drive was from 0 A, */
+    uint16_t now_raw; /* and is                                                */
+};
+const struct posix_cards_watch *posix_cards_watch(void);
 
 #endif

@@ -252,7 +252,9 @@ int bilateral_run(const struct bilateral_run_cfg *c, struct bilateral_run *r)
     }
     posix_configure(&board);
     err = exh_loop(&exh_scene_bilateral, c->rate_Hz, &hooks);
-    if (err < 0) { cli_complain("%lu Hz: %s", (unsigned long)c->rate_Hz, exh_error_text(err)); }
+    if (err < 0 && !c->board.cards.quiet) {
+        cli_complain("%lu Hz: %s", (unsigned long)c->rate_Hz, exh_error_text(err));
+    }
     if (run.logged && r->T.num != 0) { r->lost = exh_log_end(run.last_tick + 1); }
     if (err == 0) {
         r->box = ((const struct bilateral_signals *)(const void *)exh_scene_bilateral.signal)->box;
