@@ -77,17 +77,17 @@ int exh_board_init(uint32_t rate_Hz, struct exh_period *achieved)
 
 int exh_board_wait(void)
 {
-    uint32_t missed;
+    uint32_t missed, late;
     if (run.started) { pc104_load_end(); }
     if (pc104_par.ticks && run.run == (uint32_t)pc104_par.ticks) { return STOP; }
     if (!run.started) { /* set-up and its text are not missed ticks */
         pc104_timer_start();
         run.started = 1;
     }
-    if (pc104_timer_wait(&missed) < 0) {
+    if (pc104_timer_wait(&missed, &late) < 0) {
         pc104_halt(PC104_EXIT_TIMER, "timer: no tick for four periods, by the second clock");
     }
-    pc104_load_missed(missed);
+    pc104_load_missed(missed, late);
     run.run++;
     run.missed = missed > UINT32_MAX - run.missed ? UINT32_MAX : run.missed + missed;
     pc104_load_begin();

@@ -128,7 +128,9 @@ int pc104_timer_choose(int32_t wanted); /* enum pc104_source; 0 or -EXH_E_ABSENT
 int pc104_timer_set(uint32_t rate_Hz, struct exh_period *achieved);
 uint32_t pc104_timer_highest_Hz(uint32_t cost_counts); /* whose period is no shorter   */
 void pc104_timer_start(void);
-int pc104_timer_wait(uint32_t *missed); /* sleeps until a tick is due; < 0: the timer is dead */
+/* Sleeps until a tick is due: ticks that were skipped, and those that were due already when it was
+ * called. < 0: the timer is dead. */
+int pc104_timer_wait(uint32_t *missed, uint32_t *late);
 uint32_t pc104_timer_now(void); /* counts, modulo 2^32                         */
 uint32_t pc104_timer_counts(void); /* in a period                                 */
 uint32_t pc104_timer_Hz(void);
@@ -140,7 +142,7 @@ void pc104_load_scene(const struct exh_scene *sc); /* times dry ticks of it     
 int pc104_load_fits(uint32_t rate_Hz); /* 0 or -EXH_E_RATE, said              */
 void pc104_load_begin(void); /* a tick has begun, */
 void pc104_load_end(void); /* and ended                           */
-void pc104_load_missed(uint32_t missed); /* halts when there were too many       */
+void pc104_load_missed(uint32_t missed, uint32_t late); /* halts when there were too many       */
 void pc104_load_report(void);
 extern const struct exh_signal_table pc104_load_table;
 const int32_t *pc104_load_signals(void); /* values of that table, as they are now */

@@ -178,11 +178,15 @@ void pc104_timer_start(void)
     __asm__ volatile("sti" : : : "memory");
 }
 
-/* Ticks due and not yet handed out. */
+/* Ticks that have become due since it was asked last. */
 static uint32_t due(void)
 {
     uint32_t n = 0;
-    if (!is_hpet) { return pc104_ticks - seen; }
+    if (!is_hpet) {
+        n = pc104_ticks - seen;
+        seen += n;
+        return n;
+    }
     while (pc104_hpet_now() - next < UINT32_C(0x80000000)) {
         next += counts;
         n++;
@@ -190,17 +194,18 @@ static uint32_t due(void)
     return n;
 }
 
-int pc104_timer_wait(uint32_t *missed)
+int pc104_timer_wait(uint32_t *missed, uint32_t *late)
 {
     const uint32_t interrupts = pc104_ticks;
-    uint32_t n = 0;
+    uint32_t n = due();
     int dead = 0;
 
+    *late = n;
     pc104_second_arm();
     for (;;) {
-        const int more = pc104_idle();
+        const int more = n == 0 && pc104_idle();
         __asm__ volatile("cli" : : : "memory");
-        n = due();
+        n += due();
         if (n > 0 || dead) { break; }
         /* One look more behind the second clock's: both interrupts may have been waiting. */
         dead = pc104_second_fired != 0;
@@ -215,7 +220,6 @@ int pc104_timer_wait(uint32_t *missed)
     pc104_second_disarm();
     /* Its counter may go on while its interrupt is lost. */
     dead = n == 0 || (pc104_second_fired && pc104_ticks == interrupts);
-    seen += n;
     __asm__ volatile("sti" : : : "memory");
     *missed = n - 1;
     return dead ? -1 : 0;
