@@ -93,6 +93,16 @@ TEST(illegal_transitions_are_counted_and_too_many_are_a_fault)
     CHECK_EQ_I64(n.quad[4], 17);
 }
 
+TEST(every_counter_s_illegal_transitions_are_seen)
+{
+    struct exh_box_counts n;
+    opened(five());
+    for (unsigned k = 0; k < EXH_FINGERS; k++) { bus.s526[k / 4].ecap[k % 4] = 1; }
+    for (int k = 0; k < 4; k++) { CHECK_EQ_I64(exh_box_read_drive(&in), 0); }
+    exh_box_counts(&n);
+    for (unsigned k = 0; k < EXH_FINGERS; k++) { CHECK_EQ_I64(n.quad[k], 1); }
+}
+
 /* What is found opened anew works again, and starts with nothing counted. */
 TEST(opening_anew_ends_a_fault)
 {
@@ -189,6 +199,11 @@ TEST(safe_may_come_before_any_access)
             exh_box_safe();
         }
         CHECK(bus_safe(), "outputs on after safe before access %u of a write", at);
+        if (at < 14) {
+            struct exh_box_counts n;
+            exh_box_counts(&n);
+            CHECK_EQ_I64(n.overtaken, 1);
+        }
         if (at < 14 && bus.hot > hot_most) { hot_most = bus.hot; }
         CHECK_EQ_I64(exh_box_read_drive(&in), 0); /* and no fault of it */
     }
@@ -310,7 +325,8 @@ TEST(what_is_not_used_may_be_anything)
 TEST_MAIN("box fault", a_board_that_dies_is_found_within_a_tick,
           a_conversion_that_is_lost_ends_in_time_and_in_safe_outputs,
           updates_that_do_not_end_are_a_fault, an_enable_that_does_not_go_off_is_a_fault,
-          illegal_transitions_are_counted_and_too_many_are_a_fault, opening_anew_ends_a_fault,
+          illegal_transitions_are_counted_and_too_many_are_a_fault,
+          every_counter_s_illegal_transitions_are_seen, opening_anew_ends_a_fault,
           opening_makes_safe_what_was_used_before, what_is_not_certain_can_be_left_out,
           safe_takes_20_accesses_a_board_and_may_be_repeated,
           safe_touches_no_port_where_no_board_was_found, safe_may_come_before_any_access,

@@ -182,6 +182,23 @@ TEST(references_are_averaged_and_their_noise_is_bounded)
     refused(open_it(), -EXH_E_IO, EXH_CARD_CALIBRATE, EXH_CARD_REF_NOISE);
 }
 
+TEST(half_a_code_of_offset_is_none)
+{
+    static const int16_t noise[] = {1, -1}, zero[] = {1, -1};
+    for (unsigned i = 0; i < 2; i++) {
+        bus_reset();
+        bus.s526[0].ad_noise = noise[i]; /* 0 and this in turn */
+        bus.s526[0].ad[8] = 32700;
+        CHECK_EQ_I64(open_it(), 0);
+        CHECK_EQ_I64(card.id.c0_sum, 5 * noise[i]);
+        CHECK_EQ_I64(card.id.ad.zero_raw_q14, 0);
+        bus_reset();
+        bus.s526[0].ad[9] = zero[i];
+        CHECK_EQ_I64(open_it(), 0);
+        CHECK_EQ_I64(card.id.ad.zero_raw_q14, zero[i] * 16384);
+    }
+}
+
 TEST(implausible_references_are_refused_by_name)
 {
     bus_reset();
@@ -342,6 +359,16 @@ TEST(a_flag_that_never_comes_ends_in_time)
     }
 }
 
+TEST(flags_of_whatever_was_before_are_not_taken_for_an_answer)
+{
+    for (unsigned i = 0; i < 3; i++) {
+        bus_reset();
+        bus.s526[0].isr = 0x86;
+        bus.s526[0].mute = silent[i].mute;
+        refused(open_it(), -EXH_E_IO, silent[i].phase, silent[i].what);
+    }
+}
+
 TEST(and_by_polls_where_time_stands_still)
 {
     for (unsigned i = 0; i < 3; i++) {
@@ -383,12 +410,13 @@ TEST_MAIN("s526", doubles_by_example, doubles_that_are_no_number_or_too_large_ar
           doubles_of_every_size_round_once, a_nominal_card_changes_no_code,
           a_reference_off_10_V_on_a_nominal_card_changes_no_code, da_codes_are_the_voltage_s,
           ad_codes_are_the_voltage_s, references_are_averaged_and_their_noise_is_bounded,
-          implausible_references_are_refused_by_name, a_word_of_the_eeprom_by_example,
-          garbage_in_the_eeprom_is_refused_by_name,
+          half_a_code_of_offset_is_none, implausible_references_are_refused_by_name,
+          a_word_of_the_eeprom_by_example, garbage_in_the_eeprom_is_refused_by_name,
           nominal_values_only_where_the_configuration_says_so,
           an_empty_port_is_read_once_and_not_written, another_card_is_not_written,
           outputs_are_safe_before_anything_is_tested, counters_end_at_zero_counting_x4,
           a_counter_with_a_dead_bit_is_named, an_output_pin_that_stays_active_is_a_fault,
-          a_flag_that_never_comes_ends_in_time, and_by_polls_where_time_stands_still,
-          a_wait_that_was_held_up_polls_once_more,
+          a_flag_that_never_comes_ends_in_time,
+          flags_of_whatever_was_before_are_not_taken_for_an_answer,
+          and_by_polls_where_time_stands_still, a_wait_that_was_held_up_polls_once_more,
           a_card_that_dies_while_it_is_opened_is_found_dead);
