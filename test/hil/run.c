@@ -136,7 +136,7 @@ static int open_box(const char *symbol)
     static const struct exh_drive_in healthy = {.din = EXH_DIN_ESTOP | EXH_DIN_DEADMAN |
                                                        31u * EXH_DIN_DRIVE0};
     const struct emu_config cards = emu_box_config();
-    const uint32_t fingers = hil_word(&run.h, run.scene + SCENE_FINGERS) & 0xFF;
+    const uint32_t fingers = run.scene ? hil_word(&run.h, run.scene + SCENE_FINGERS) & 0xFF : 0;
     if (!run.opt->absent) {
         box_open(&run.box, fingers == 1, &cards);
         run.h.box = &run.box;
@@ -182,12 +182,22 @@ static void open_hooks(struct hil *h)
     h->tick = on_irq;
     h->block_fn = run.opt->where >= 0 ? where_block : NULL;
     h->max_insns = UINT64_C(1) << 40;
-    hil_watch_at(h, run.tick, on_tick);
+    if (run.tick) { hil_watch_at(h, run.tick, on_tick); }
     watch(h, "exh_board_wait", on_loop);
     if (!run.opt->loop) { return; }
     watch(h, "exh_loop", on_start);
     watch(h, "exh_board_link_recv", on_recv);
     watch(h, "exh_board_link_send", on_send);
+}
+
+/* An image without a scene, a test, gets what it was given alone. */
+static void command_line(char *text, size_t cap_B)
+{
+    char ticks[32] = "", rate[32] = "";
+    if (run.scene) { snprintf(ticks, sizeof ticks, " ticks=%u", (unsigned)run.opt->ticks); }
+    if (run.opt->rate_Hz) { snprintf(rate, sizeof rate, " rate=%u", (unsigned)run.opt->rate_Hz); }
+    snprintf(text, cap_B, "%s%s%s", run.opt->options, ticks, rate);
+    if (run.opt->loop) { ref_options(&run.world.ref_cfg, text, cap_B); }
 }
 
 int run_open(const struct run_options *opt)
@@ -201,17 +211,12 @@ int run_open(const struct run_options *opt)
     if (hil_open(h, run.opt->image) < 0) { return -1; }
     run.scene = hil_symbol_name(run.opt->image, symbol, sizeof symbol);
     run.tick = run.scene ? hil_word(h, run.scene + SCENE_TICK) : 0;
-    if (run.tick == 0) {
+    if (run.scene == 0 && (run.opt->loop || run.opt->wild)) {
         fprintf(stderr, "hil: %s: no exh_scene_... in its symbol table\n", run.opt->image);
         return -1;
     }
     if (open_box(symbol) < 0) { return -1; }
-    snprintf(options, sizeof options, "ticks=%u %s", (unsigned)run.opt->ticks, run.opt->options);
-    if (run.opt->rate_Hz) {
-        snprintf(options + strlen(options), sizeof options - strlen(options), " rate=%u",
-                 (unsigned)run.opt->rate_Hz);
-    }
-    if (run.opt->loop) { ref_options(&run.world.ref_cfg, options, sizeof options); }
+    command_line(options, sizeof options);
     hil_command(h, run.opt->image, options);
     open_hooks(h);
     if (run.opt->records) { h->records = fopen(run.opt->records, "wb"); }
