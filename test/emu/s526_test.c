@@ -380,11 +380,13 @@ TEST(isr_is_cleared_by_ones)
     outw(5, A + 0x34);
     pass_us(100);
     CHECK_EQ_I64(inw(A + 0x0E), 0x86);
-    outw(0x0004, A + 0x0E);
-    CHECK_EQ_I64(inw(A + 0x0E), 0x82);
     outw(0xFF79, A + 0x0E);
-    CHECK_EQ_I64(inw(A + 0x0E), 0x82);
-    outw(0x0082, A + 0x0E);
+    CHECK_EQ_I64(inw(A + 0x0E), 0x86);
+    outw(0x0002, A + 0x0E);
+    CHECK_EQ_I64(inw(A + 0x0E), 0x84);
+    outw(0x0004, A + 0x0E);
+    CHECK_EQ_I64(inw(A + 0x0E), 0x80);
+    outw(0x0080, A + 0x0E);
     CHECK_EQ_I64(inw(A + 0x0E), 0);
 }
 
