@@ -327,7 +327,7 @@ mutants: $(B)/test/golden/golden_test
 # there and not in 64 bits traps.
 trap := -fsanitize=undefined -fsanitize-undefined-trap-on-error
 plain_bin := $(patsubst test/%_test.c,$(B)/i686/%_test,$(filter test/unit/% test/prop/% test/emu/%,$(test_src)))
-$(filter $(B)/i686/emu/%,$(plain_bin)): $(emu_src) $(wildcard test/emu/*.h ports/posix/emu/*.h)
+$(filter $(B)/i686/emu/%,$(plain_bin)): $(emu_src) $(wildcard test/emu/*.h test/emu/*.inc ports/posix/emu/*.h)
 $(plain_bin): $(B)/i686/%_test: test/%_test.c test/support.c $(lib_src) $(wildcard test/*.h lib/include/exhand/*.h lib/src/*.h) \
               $(stamp)
 	@mkdir -p $(@D)
@@ -406,6 +406,22 @@ hil:
 	@for s in minimal drop bilateral slow; do $(MAKE) --no-print-directory $(if $(V),,-s) PORT=pc104 SCENE=$$s all || exit 1; done
 	@for s in drop bilateral; do $(MAKE) --no-print-directory $(if $(V),,-s) $(hil_inside) SCENE=$$s all || exit 1; done
 	@B=$(B) TICKS=$(HIL_TICKS) FEW=$(HIL_FEW) QEMU=$(HIL_QEMU) test/hil/hil.sh $(ARGS)
+
+# --- strangers' drivers ---------------------------------------------------------------------
+
+# The host program with Linux's drivers of the cards in the place of ours, and cards that are outside.
+strangers_obj := $(B)/posix/test/strangers/cards.o $(B)/posix/test/strangers/guest/linux.o
+$(B)/posix/exhand-linux: $(cli_obj) $(filter-out %/ports/posix/cards.o,$(sim_obj)) $(strangers_obj) $(B)/posix/libexhand.a
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(cli_libs)
+
+## Debian's own drivers of the cards, in Debian's kernel, against the emulators (fetches 60 MB; nightly)
+.PHONY: strangers
+strangers:
+	@.ci/deps "strangers' drivers" "command -v clang && command -v i686-linux-gnu-gcc && command -v node && command -v npm" \
+	    clang gcc-i686-linux-gnu libc6-dev-i386-cross nodejs npm || exit 3
+	@$(MAKE) --no-print-directory $(if $(V),,-s) $(exhand)
+	@$(MAKE) --no-print-directory $(if $(V),,-s) B=$(B)/strangers/i686 $(v_i686-O3) $(B)/strangers/i686/posix/exhand-linux
+	@B=$(B) ARGS="$(ARGS)" test/strangers/strangers.sh
 
 # --- the same bits everywhere -----------------------------------------------------------
 
