@@ -19,7 +19,13 @@ void pc104_cmdline_open(void)
     const char *text;
     if (pc104_boot_magic != MB_LOADED || !(info->flags & MB_HAS_CMDLINE)) { return; }
     text = (const char *)info->cmdline;
-    for (unsigned i = 0; i < CMDLINE_MAX - 1 && text[i]; i++) { line[i] = text[i]; }
+    for (unsigned i = 0; text[i]; i++) {
+        if (i == CMDLINE_MAX - 1) { /* half a value is another value */
+            pc104_say("options longer than 1023 characters\n");
+            pc104_halt(PC104_EXIT_OPTION, "option refused: nothing was started");
+        }
+        line[i] = text[i];
+    }
 }
 
 /* Loaders may put the image's own name in front. */

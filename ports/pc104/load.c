@@ -89,9 +89,8 @@ void pc104_load_begin(void)
             (uint32_t)exh_udiv64((uint64_t)BINS << 32, pc104_timer_counts(), NULL);
     }
     pc104_tick_began = pc104_ticks;
-    if (pc104_tick() >= (uint32_t)pc104_par.grace_ticks) {
-        pc104_hang_ticks = (uint32_t)pc104_par.hang_ticks;
-    }
+    pc104_hang_ticks =
+        (uint32_t)pc104_par.hang_ticks; /* no grace: currents flow in the first, too */
     spent.began = pc104_timer_now();
 }
 

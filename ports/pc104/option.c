@@ -6,6 +6,7 @@
 #include "exhand/exhand.h"
 
 #define TICKS_MAX 2000000000
+#define WORDS_MAX 13
 
 static const struct exh_signal rows[] = {
     {0xA001, 0, EXH_WHEN_SETUP, 0, 20000, 0, "rate", "hz", "ticks a second; 0: the scene's"},
@@ -20,7 +21,7 @@ static const struct exh_signal rows[] = {
     {0xA008, 0, EXH_WHEN_SETUP, 0, 1000000, 0, "budget", "us",
      "stated cost of a tick; 0: measured"},
     {0xA009, 0, EXH_WHEN_SETUP, 0, 1000, 25, "headroom", "percent", "left free above that cost"},
-    {0xA00A, 0, EXH_WHEN_SETUP, 0, 11, 0, "provoke", "", "a failure to be seen ending safe"},
+    {0xA00A, 0, EXH_WHEN_SETUP, 0, 12, 0, "provoke", "", "a failure to be seen ending safe"},
     {0xA00B, 0, EXH_WHEN_SETUP, 0, TICKS_MAX, 100, "provoke_at", "", "in this tick"},
 };
 static const struct exh_signal_group groups[] = {{rows, sizeof rows / sizeof rows[0], 1}};
@@ -30,13 +31,13 @@ EXH_STATIC_ASSERT(pc104_par_matches_rows,
 
 /* Values that are words, in the order of their enums. */
 static const struct {
-    const char *name, *const word[12];
+    const char *name, *const word[WORDS_MAX];
 } words[] = {
     {"timer", {"auto", "hpet", "pit"}},
     {"log", {"off", "serial", "debug"}},
     {"provoke",
      {"none", "divide", "opcode", "null", "write", "stack", "nmi", "spurious", "hang", "slow",
-      "timer", "assert"}},
+      "timer", "assert", "twice"}},
 };
 
 /* Of a program that takes no options: nothing is too much. */
@@ -71,12 +72,12 @@ static int32_t word_of(const char *name, const char *value)
 {
     for (unsigned i = 0; i < sizeof words / sizeof words[0]; i++) {
         if (!pc104_same_text(words[i].name, name)) { continue; }
-        for (int32_t k = 0; k < 12 && words[i].word[k]; k++) {
+        for (int32_t k = 0; k < WORDS_MAX && words[i].word[k]; k++) {
             if (pc104_same_text(words[i].word[k], value)) { return k; }
         }
         refuse(name, value);
         pc104_say("one of");
-        for (unsigned k = 0; k < 12 && words[i].word[k]; k++) {
+        for (unsigned k = 0; k < WORDS_MAX && words[i].word[k]; k++) {
             pc104_say(" ");
             pc104_say(words[i].word[k]);
         }

@@ -47,7 +47,8 @@ enum pc104_provoke { /* for commissioning: shows on the real box that a failure 
                      PC104_PROVOKE_HANG,
                      PC104_PROVOKE_SLOW,
                      PC104_PROVOKE_TIMER,
-                     PC104_PROVOKE_ASSERT
+                     PC104_PROVOKE_ASSERT,
+                     PC104_PROVOKE_TWICE /* CARDS=none alone: an NMI into what makes safe */
 };
 enum pc104_log { PC104_LOG_OFF, PC104_LOG_SERIAL, PC104_LOG_DEBUG };
 enum pc104_source { PC104_TIMER_AUTO, PC104_TIMER_HPET, PC104_TIMER_PIT };
@@ -159,6 +160,7 @@ struct pc104_frame {
     uint32_t vector, error, eip, cs, eflags;
 };
 void pc104_fault(struct pc104_frame frame);
+void pc104_fault_again(void);
 void pc104_double_fault(void);
 void pc104_hung(uint32_t eip);
 #define PC104_VECTOR_SECOND   48u

@@ -20,7 +20,7 @@ static void processor(int32_t what)
     uint32_t at = 16;
     if (what == PC104_PROVOKE_DIVIDE) {
         __asm__ volatile("xorl %%ecx, %%ecx; divl %%ecx" : : : "eax", "ecx", "edx");
-    } else if (what == PC104_PROVOKE_OPCODE) {
+    } else if (what == PC104_PROVOKE_OPCODE || what == PC104_PROVOKE_TWICE) {
         __asm__ volatile("ud2");
     } else if (what == PC104_PROVOKE_NULL) {
         __asm__ volatile("movl (%0), %0" : "+r"(at));

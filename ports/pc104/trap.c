@@ -131,6 +131,13 @@ void pc104_fault(struct pc104_frame frame)
     pc104_halt(PC104_EXIT_FAULT, "processor exception");
 }
 
+/* What it interrupted may have been what makes the outputs safe. */
+void pc104_fault_again(void)
+{
+    exh_board_safe();
+    pc104_halt(PC104_EXIT_FAULT, "another exception while one was dealt with");
+}
+
 void pc104_double_fault(void)
 {
     stop_first();

@@ -19,14 +19,17 @@ pc104_vectors:
     .set vector, vector + 1
     .endr
 
-/* A fault while one is reported: the outputs are safe since the first, so stand still
- * rather than recurse until the processor resets itself. */
+/* A fault while one is reported: an NMI may come before that one has made the outputs safe, so
+ * the second does it, too. A third came out of that: stand still rather than recurse until the
+ * processor resets itself. */
 to_fault:
     cld
     incl fault_depth
-    cmpl $1, fault_depth
-    jne 1f
+    cmpl $2, fault_depth
+    ja 1f
+    je 2f
     call pc104_fault                /* its frame as it lies; no return */
+2:  call pc104_fault_again          /* no return, either */
 1:  cli
     hlt
     jmp 1b

@@ -79,6 +79,8 @@ boots 2 '^option stiffness=1: no such parameter' stiffness=1
 boots 2 '^option timer=quartz: one of auto hpet pit$' timer=quartz
 boots 2 '^option k=1x: allowed' k=1x
 boots 2 '^option k: not name=value$' k
+# shellcheck disable=SC2046 # words
+boots 2 '^options longer than 1023 characters$' $(printf 'k=1000 %.0s' {1..150})
 boots 2 '^option rate=20001: allowed 0..20000 hz$' rate=20001
 boots 6 '^rate 20000 Hz \(the 8254 does not come within 1000 ppm of it\): take 19906$' timer=pit rate=20000
 boots 6 '^rate 2000 Hz: a tick costs more than its period: take at most 1333 Hz$' budget=600 rate=2000
@@ -100,6 +102,8 @@ says '^tick_late [12]$'
 boots 0 '^tick_late 30[0-9]$' provoke=slow overload_max=0 grace=400 ticks=300
 safe 8 '^timer: no tick for four periods, by the second clock$' provoke=timer
 safe 8 '^timer: no tick for four periods, by the second clock$' provoke=timer timer=pit rate=1000
+safe 7 '^overload: a tick hangs$' provoke=hang provoke_at=10 grace=2000000000
+safe 5 '^another exception while one was dealt with$' provoke=twice
 safe 1 '^ports/pc104/provoke.c:[0-9]+$' provoke=assert
 
 # Other machines: no HPET, nothing but what a PC/AT had, no local APIC.
