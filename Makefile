@@ -14,7 +14,8 @@ $(error B="$(B)": the place to build in must be named, and without blanks)
 endif
 
 include ports/$(PORT)/port.mk
-include $(or $(wildcard examples/$(SCENE)/scene.mk test/hil/$(SCENE)/scene.mk),examples/$(SCENE)/scene.mk)
+scene_mk := $(or $(wildcard $(addsuffix /$(SCENE)/scene.mk,examples test/hil test/board)),examples/$(SCENE)/scene.mk)
+include $(scene_mk)
 
 ifeq ($(origin CC),default)
 CC := $(CROSS)gcc
@@ -69,20 +70,20 @@ $(lib): $(lib_obj)
 # --- what is linked -----------------------------------------------------------
 
 image     := $(out)/$(SCENE)$(PORT_SUFFIX).elf
-image_obj := $(patsubst %,$(out)/$(SCENE)/%.o,$(basename $(or $(PORT_MAIN),examples/image.c examples/deadman.c) $(PORT_SRC))) \
-             $(out)/examples/loop.o $(SCENE_SRC:%.c=$(out)/%.o)
+image_obj := $(patsubst %,$(out)/$(SCENE)/%.o,$(basename $(or $(SCENE_MAIN),$(PORT_MAIN),examples/image.c examples/deadman.c) \
+             $(PORT_SRC))) $(if $(SCENE_MAIN),,$(out)/examples/loop.o) $(SCENE_SRC:%.c=$(out)/%.o)
 
 # These know which scene they serve: one set of objects per scene.
 $(out)/$(SCENE)/%.o: %.c $(stamp)
 	@mkdir -p $(@D)
-	$(Q)$(CC) $(base) $(PORT_CFLAGS) $(PORT_HOSTFLAGS) -DEXH_SCENE=exh_scene_$(SCENE) $(CFLAGS) -c $< -o $@
+	$(Q)$(CC) $(base) $(PORT_CFLAGS) $(PORT_HOSTFLAGS) -DEXH_SCENE=exh_scene_$(SCENE) $(SCENE_CFLAGS) $(CFLAGS) -c $< -o $@
 $(out)/$(SCENE)/%.o: %.S $(stamp)
 	@mkdir -p $(@D)
 	$(Q)$(CC) -Ilib/include $(PORT_CFLAGS) -g -c $< -o $@
 
 $(image): $(image_obj) $(lib) $(PORT_LDSCRIPT)
 	$(Q)$(CC) $(PORT_LDFLAGS) $(LDFLAGS) -Wl,--gc-sections,-Map=$(@:.elf=.map) \
-	    $(PORT_LDSCRIPT:%=-T %) $(image_obj) $(lib) -o $@
+	    $(PORT_LDSCRIPT:%=-T %) $(image_obj) $(lib) $(SCENE_LIBS) -o $@
 
 # What the machine boots from, where that is not the image itself.
 boot := $(if $(PORT_ISO),$(image:.elf=.iso))
@@ -268,8 +269,8 @@ $(B)/test/world/%_test: $(B)/posix/test/world/%_test.o $(B)/posix/test/support.o
 $(B)/test/world/window_test: | $(world)
 $(B)/posix/test/world/window_test.o: PORT_HOSTFLAGS += -DWORLD_PROGRAM='"$(world)"'
 # The port contract, on the port that runs here.
-$(B)/test/board/%_test: $(B)/posix/test/board/%_test.o $(B)/posix/test/support.o $(filter-out %/loop.o,$(sim_obj)) \
-                        $(B)/posix/libexhand.a
+$(B)/test/board/%_test: $(B)/posix/test/board/%_test.o $(B)/posix/test/board/posix.o $(B)/posix/test/support.o \
+                        $(filter-out %/loop.o,$(sim_obj)) $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) -o $@ $^ -lcmocka -lm
 
@@ -403,8 +404,8 @@ hil:
 	@B=$(B) test/hil/unicorn.sh
 	@for t in i686-linux-gnu-gcc qemu-system-i386; do .ci/deps "the pc104 image" $$t gcc-i686-linux-gnu qemu-system-x86 || exit 3; done
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(B)/test/hil $(exhand)
-	@for s in minimal drop bilateral slow; do $(MAKE) --no-print-directory $(if $(V),,-s) PORT=pc104 SCENE=$$s all || exit 1; done
-	@for s in drop bilateral; do $(MAKE) --no-print-directory $(if $(V),,-s) $(hil_inside) SCENE=$$s all || exit 1; done
+	@for s in minimal drop bilateral slow contract; do $(MAKE) --no-print-directory $(if $(V),,-s) PORT=pc104 SCENE=$$s all || exit 1; done
+	@for s in drop bilateral contract; do $(MAKE) --no-print-directory $(if $(V),,-s) $(hil_inside) SCENE=$$s all || exit 1; done
 	@B=$(B) TICKS=$(HIL_TICKS) FEW=$(HIL_FEW) QEMU=$(HIL_QEMU) test/hil/hil.sh $(ARGS)
 
 # --- strangers' drivers ---------------------------------------------------------------------
@@ -456,8 +457,8 @@ u_cortex-m0 := CROSS=arm-none-eabi- CFLAGS="-mcpu=cortex-m0 -mthumb -ffreestandi
 undef-cortex-m3 undef-cortex-m0: undef-%:
 	@$(MAKE) --no-print-directory PORT=template B=$(B)/$* $(u_$*) undef
 
-check_tools := clang i686-linux-gnu-gcc arm-none-eabi-gcc qemu-system-i386 valgrind python3
-check_pkgs  := clang gcc-i686-linux-gnu libc6-dev-i386-cross gcc-arm-none-eabi qemu-system-x86 valgrind python3
+check_tools := clang i686-linux-gnu-gcc arm-none-eabi-gcc qemu-system-i386 qemu-system-arm valgrind python3
+check_pkgs  := clang gcc-i686-linux-gnu libc6-dev-i386-cross gcc-arm-none-eabi qemu-system-x86 qemu-system-arm valgrind python3
 
 ## What CI runs: test, other compilers and CPUs, the pc104 image, sizes, costs
 .PHONY: check
@@ -477,7 +478,7 @@ check:
 	@$(MAKE) --no-print-directory PORT=pc104 SCENE=minimal undef-emu
 	@$(MAKE) --no-print-directory PORT=template SCENE=minimal all
 	@$(MAKE) --no-print-directory PORT=pc104 SCENE=minimal undef
-	@$(MAKE) --no-print-directory boot
+	@$(MAKE) --no-print-directory boot contract
 	@$(MAKE) --no-print-directory world two-computers
 	@$(world) --headless --script --seconds 1 --scene examples/world/scenes/collision.world --png $(B)/world.png || [ $$? = 3 ]
 	@$(MAKE) --no-print-directory size
@@ -493,6 +494,18 @@ boot: all
 	    $(MAKE) --no-print-directory $(if $(V),,-s) PORT=pc104 SCENE=$$s CARDS=$$c all || exit; done; done
 	@$(MAKE) --no-print-directory -s PORT=pc104 SCENE=drop CARDS=none image ARGS="ticks=500 k=1000"
 	@EXHAND=$(exhand) test/pc104/boot.sh $(B)/pc104
+
+contract_images := mps2/minimal mps2/contract mps2/contract_slow mps2/contract_fast mps2/overflow \
+                   pc104/contract pc104/contract_slow pc104/overflow template/contract
+
+## The port contract (test/board) and fault handlers on images under QEMU; `test` and `hil` run it too
+.PHONY: contract
+contract:
+	@for t in arm-none-eabi-gcc qemu-system-arm i686-linux-gnu-gcc qemu-system-i386; do .ci/deps "the port contract" $$t \
+	    gcc-arm-none-eabi qemu-system-arm gcc-i686-linux-gnu qemu-system-x86 || exit 3; done
+	@for i in $(contract_images); do \
+	    $(MAKE) --no-print-directory $(if $(V),,-s) PORT=$${i%/*} SCENE=$${i#*/} CARDS=none all || exit; done
+	@test/board/contract.sh $(B)
 
 # --- figures ------------------------------------------------------------------------
 

@@ -307,6 +307,7 @@ int check_main(const char *group, const char *names, const check_fn *list, size_
         list[i]();
         if (failures == 0) {
             passed++;
+            put_line("ok     %s", name_of[i]);
         } else {
             failed++;
             put_line("FAILED %s (%u)", name_of[i], failures);

@@ -56,6 +56,7 @@ int exh_board_init(uint32_t rate_Hz, struct exh_period *achieved)
     int err;
 
     exh_board_safe();
+    if (run.scene == NULL && !run.ready) { pc104_options(NULL); } /* not from main() */
     err = pc104_board_clock();
     if (err < 0) { return err; }
     exit_code = PC104_EXIT_RATE;

@@ -37,14 +37,13 @@ void pc104_box_config(const struct exh_scene *sc, struct exh_box_config *c)
 {
     const struct pc104_box_par *p = &pc104_box_par;
     *c = exh_box_default;
-    if (sc == NULL) { return; } /* not from main(): the box as it is meant */
     c->s526_base[0] = (uint16_t)p->s526_a;
     c->s526_base[1] = (uint16_t)p->s526_b;
     c->mm32xat_base = (uint16_t)p->mm32xat;
-    c->fingers = sc->fingers;
+    c->fingers = sc ? sc->fingers : EXH_FINGERS; /* NULL: all there is */
     c->monitor = (uint8_t)p->monitor;
     c->supply = (uint8_t)p->supply;
-    c->glove = (uint8_t)(sc->read_glove ? p->scan : EXH_BOX_NEVER);
+    c->glove = (uint8_t)(sc == NULL || sc->read_glove ? p->scan : EXH_BOX_NEVER);
     c->din_invert[0] = (uint8_t)p->din_invert_a;
     c->din_invert[1] = (uint8_t)p->din_invert_b;
     c->out_invert[0] = (uint8_t)p->out_invert_a;

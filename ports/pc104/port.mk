@@ -19,4 +19,5 @@ PORT_CFLAGS   := -m32 -march=i686 -ffreestanding -fno-pic -fno-pie -fno-stack-pr
 PORT_LDFLAGS  := -m32 -nostdlib -static -no-pie -Wl,--build-id=none,-z,noexecstack,-z,max-page-size=4096
 PORT_LDSCRIPT := ldscripts/pc104.ld
 PORT_RUN      := ports/pc104/run.sh
+PORT_SAY      := pc104_say
 PORT_ISO      := ports/pc104/iso.sh

@@ -7,5 +7,6 @@ PORT_SRC  := ports/template/board.c
 # PORT_LDSCRIPT one per memory map, in ldscripts/
 # PORT_RUN      program that runs an image: exit status 0 when it said "done"
 # PORT_MAIN     its main(), instead of examples/image.c examples/deadman.c
+# PORT_SAY      says a text, void f(const char *): what the contract test prints by
 # PORT_SUFFIX   in the name of the image, where one scene makes several
 # PORT_ISO      program that makes what the machine boots from: PORT_ISO IMAGE ISO [OPTION...]

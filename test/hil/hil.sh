@@ -9,6 +9,7 @@
 #   replay   the image's own records replay on the host
 #   wild     random and extreme inputs
 #   absent   no cards, and no HPET
+#   board    the contract of the port (test/board), under both emulators
 #   qemu     the real timer interrupt, with emulated cards inside
 #
 # Environment: B (build), TICKS (of the long runs), FEW (of the others), QEMU (of qemu's).
@@ -133,10 +134,18 @@ show_qemu()
     qemu bilateral-inside "$((${QEMU:-100000} / 10))" rate=500 fingers=31
 }
 
-for what in ${*:-count spoil slow drop rates box replay wild absent qemu}; do
+show_board()
+{
+    run "the contract of board.h, cards in the loop" contract --board --ticks 1000000
+    echo "contract-inside: the same under qemu"
+    ports/pc104/run.sh "$b/pc104/contract-inside.elf" ticks=0 >"$b/hil-qemu.txt" || failed=1
+    grep -E ' passed, |FAILED|^done|^  \|' "$b/hil-qemu.txt" | sed 's/^/  /'
+}
+
+for what in ${*:-count spoil slow drop rates box replay wild absent board qemu}; do
     case $what in
-    count | spoil | slow | drop | rates | box | replay | wild | absent | qemu) show_"$what" ;;
-    *) echo "usage: hil.sh [count|spoil|slow|drop|rates|box|replay|wild|absent|qemu]..." >&2; exit 2 ;;
+    count | spoil | slow | drop | rates | box | replay | wild | absent | board | qemu) show_"$what" ;;
+    *) echo "usage: hil.sh [count|spoil|slow|drop|rates|box|replay|wild|absent|board|qemu]..." >&2; exit 2 ;;
     esac
 done
 exit $failed

@@ -10,6 +10,8 @@
 #   pc104  the image with constants for cards (CARDS=none), which is what runs under QEMU.
 #          Instructions by its own count there (time stamp counter, one per instruction); with
 #          nothing moving.
+#   mps2   the image, a loop-back for drives. Instructions in virtual time under QEMU, to 1: 64 ns each,
+#          seen by a timer of 25 MHz; nothing moving.
 #
 # Environment: MAKE (make), B (build). A missing cross compiler, emulator or valgrind
 # leaves "-" in the table and says so.
@@ -143,6 +145,13 @@ counted()
     awk '/^cycles per tick/ { sub(/\r/, ""); n = $NF } END { print n ? n : "-" }' "$b/run.txt"
 }
 
+# counted_m SCENE: most instructions of one tick on mps2, or -
+counted_m()
+{
+    ports/mps2/run.sh "$b/mps2/$1.elf" >"$b/run.txt" || note "$1 on mps2: did not run"
+    awk '/^cycles per tick/ { n = int($NF * 40 / 64 + 0.5) } END { print n ? n : "-" }' "$b/run.txt"
+}
+
 # row SCENE PORT TEXT DATA BSS STACK INSTRUCTIONS
 row()
 {
@@ -174,6 +183,21 @@ pc104_row()
     row "$1" pc104 $bytes "$(stack pc104 "$1" "${cross}objdump")" "$(counted "$1")"
 }
 
+mps2_row()
+{
+    cross=arm-none-eabi-
+    if ! command -v "${cross}gcc" >/dev/null 2>&1; then
+        note "${cross}gcc: not found: no mps2 (package gcc-arm-none-eabi)"
+        return
+    fi
+    build mps2 "$1" "CROSS=$cross" "CC=${cross}gcc"
+    library_symbols mps2 "$1" "${cross}nm" >"$b/symbols.txt"
+    compare_symbols mps2 "$1"
+    bytes=$("${cross}size" "$b/mps2/$1.elf" | awk 'NR == 2 { print $1, $2, $3 }')
+    # shellcheck disable=SC2086 # three numbers
+    row "$1" mps2 $bytes "$(stack mps2 "$1" "${cross}objdump")" "$(counted_m "$1")"
+}
+
 mkdir -p "$b"
 [ $# -gt 0 ] || set -- minimal drop glove bilateral
 : >"$b/table.txt"
@@ -181,6 +205,7 @@ for scene in "$@"; do
     [ -r "examples/$scene/scene.mk" ] || { note "$scene: no examples/$scene/scene.mk"; continue; }
     posix_row "$scene" >>"$b/table.txt"
     pc104_row "$scene" >>"$b/table.txt"
+    case $scene in minimal | drop) mps2_row "$scene" >>"$b/table.txt" ;; esac
 done
 printf '%-12s %-8s %8s %6s %6s %8s %12s %8s\n' scene port text_B data_B bss_B stack_B \
     insn/tick symbols

@@ -44,7 +44,9 @@ static void step(unsigned i)
 {
     struct string *s = &string[i];
     const unsigned card = i / EMU_AXES, axis = i % EMU_AXES;
-    const int32_t pull = (ticks / TURN_TICKS & 1) ? -PULL_Q16 : PULL_Q16;
+    const unsigned enabled = box.pins.dout[card] >> (4 + axis) & 1;
+    const int32_t draw = EXH_SCENE.setup ? PULL_Q16 : 0; /* the contract's box is idle */
+    const int32_t pull = (ticks / TURN_TICKS & 1) ? -draw : draw;
     const int32_t motor = box.pins.da_uV[card][axis] / 32768; /* 114 at 3.75 V */
     s->speed_q16 += pull - motor - s->speed_q16 / 512;
     s->at_q16 += s->speed_q16;
@@ -54,7 +56,7 @@ static void step(unsigned i)
         s->speed_q16 = 0;
     }
     box.pins.enc_cnt[card][axis] = s->at_q16 / 65536;
-    box.pins.ad_uV[card][axis] = box.pins.da_uV[card][axis] / 4;
+    box.pins.ad_uV[card][axis] = enabled ? box.pins.da_uV[card][axis] / 4 : 0;
 }
 
 /* The cards' clock goes on with their accesses, a microsecond each, and here up to the timer's. */

@@ -1,0 +1,3 @@
+# The same at another rate.
+CONTRACT_RATE_HZ := 20000
+include test/board/contract/scene.mk
