@@ -415,13 +415,17 @@ strangers_obj := $(B)/posix/test/strangers/cards.o $(B)/posix/test/strangers/gue
 $(B)/posix/exhand-linux: $(cli_obj) $(filter-out %/ports/posix/cards.o,$(sim_obj)) $(strangers_obj) $(B)/posix/libexhand.a
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(cli_libs)
 
+.PHONY: linux-program
+linux-program:
+	@$(MAKE) --no-print-directory B=$(B)/variant/i686-O3 $(v_i686-O3) $(B)/variant/i686-O3/posix/exhand-linux
+
 ## Debian's own drivers of the cards, in Debian's kernel, against the emulators (fetches 60 MB; nightly)
 .PHONY: strangers
 strangers:
 	@.ci/deps "strangers' drivers" "command -v clang && command -v i686-linux-gnu-gcc && command -v node && command -v npm" \
 	    clang gcc-i686-linux-gnu libc6-dev-i386-cross nodejs npm || exit 3
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(exhand)
-	@$(MAKE) --no-print-directory $(if $(V),,-s) B=$(B)/strangers/i686 $(v_i686-O3) $(B)/strangers/i686/posix/exhand-linux
+	@$(MAKE) --no-print-directory $(if $(V),,-s) linux-program
 	@B=$(B) ARGS="$(ARGS)" test/strangers/strangers.sh
 
 # --- the same bits everywhere -----------------------------------------------------------
@@ -472,6 +476,7 @@ check:
 	@$(MAKE) --no-print-directory fuzz
 	@$(MAKE) --no-print-directory demo > $(B)/demo.txt && tail -n 40 $(B)/demo.txt
 	@$(MAKE) --no-print-directory $(variants:%=variant-%)
+	@$(MAKE) --no-print-directory -s linux-program
 	@$(MAKE) --no-print-directory $(patsubst %,golden-%,$(filter-out i686%,$(variants)))
 	@test/sim/bits.sh $(B)/bits $(B)/demo $(variants:%=$(B)/variant/%/posix/exhand)
 	@$(MAKE) --no-print-directory undef undef-cortex-m3 undef-cortex-m0

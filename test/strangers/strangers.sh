@@ -31,7 +31,7 @@ guest()
 # The host program for the machine, and the logs of the one that runs here.
 loops()
 {
-    i686-linux-gnu-strip -o "$dir/exhand" "$dir/i686/posix/exhand-linux" || return
+    i686-linux-gnu-strip -o "$dir/exhand" "${B:-build}/variant/i686-O3/posix/exhand-linux" || return
     rm -rf "$dir/out" "$dir/plain" && mkdir "$dir/plain"
     exhand="${B:-build}/posix/exhand"
     "$exhand" drop --rate 2000 --falls 1 --jobs 1 --out "$dir/out" > /dev/null &&
