@@ -55,12 +55,24 @@ const machine = new V86({
     disable_speaker: true,
 });
 
-// The cards' time is the machine's, which is the host's.
+// The cards' time is the machine's, which is the host's; but where the host was busy with others,
+// the cards do not run ahead of the machine: no more than 10 ms pass at once.
 let then = performance.now();
 function advance() {
     const now = performance.now();
-    emu.box_advance_ns(Math.min(now - then, 1000) * 1e6);
+    emu.box_advance_ns(Math.min(now - then, 10) * 1e6);
     then = now;
+}
+
+// The interrupt line of the MM-32X-AT, on an ISA bus: an edge.
+const IRQ = 5;
+let up = 0;
+function interrupt() {
+    const level = emu.box_interrupt();
+    if (level !== up) {
+        up = level;
+        if (up) { machine.v86.cpu.device_raise_irq(IRQ); } else { machine.v86.cpu.device_lower_irq(IRQ); }
+    }
 }
 
 const trace = new Trace();
@@ -69,12 +81,14 @@ function answer(io, port) {
     const read = (width) => () => {
         advance();
         const v = emu.box_in(port, width) >>> 0;
+        interrupt();
         trace.add("r", width, port, v);
         return v;
     };
     const write = (width) => (v) => {
         advance();
         emu.box_out(port, width, v);
+        interrupt();
         trace.add("w", width, port, v);
     };
     io.register_read(port, null, read(1), read(2), () => 0xffffffff);
@@ -135,6 +149,7 @@ const started = performance.now();
 machine.add_listener("emulator-ready", () => {
     connect(machine.v86.cpu.io);
     machine.run();
+    setInterval(() => { advance(); interrupt(); }, 1);
 });
 setTimeout(() => {
     console.log(`no end after ${limit_ms / 1000} s; last line: ${line}`);

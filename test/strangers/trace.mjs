@@ -4,7 +4,8 @@ import fs from "node:fs";
 
 const NAMES = ["", "s526 attach", "dmm32at attach", "counter 1 configured, x4", "counter 1 read",
     "A/D 0, 0 again, 1, 3 read", "D/A 2 written", "lines 4..7 outputs, written, read",
-    "A/D 5 at +-10 V, 21 at +-5 V read", "D/A 3 written", "8255 port A output, written"];
+    "A/D 5 at +-10 V, 21 at +-5 V read", "D/A 3 written", "8255 port A output, written",
+    "one scan of 22 channels, by command", "two scans of 22 channels, by the card's timer"];
 
 const hex = (n, digits) => "0x" + n.toString(16).toUpperCase().padStart(digits, "0");
 

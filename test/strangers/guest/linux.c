@@ -5,6 +5,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -50,13 +51,14 @@ static int device(unsigned minor)
     return fd[minor] < 0 ? -errno : fd[minor];
 }
 
-int attach(unsigned minor, const char *board, int base)
+int attach(unsigned minor, const char *board, int base, int irq)
 {
     struct comedi_devconfig c;
     const int f = device(minor);
     memset(&c, 0, sizeof c);
     snprintf(c.board_name, sizeof c.board_name, "%s", board);
     c.options[0] = base;
+    c.options[1] = irq;
     if (f < 0) { return f; }
     return ioctl(f, COMEDI_DEVCONFIG, &c) < 0 ? -errno : 0;
 }
@@ -86,6 +88,22 @@ int insn(unsigned minor, unsigned subdev, unsigned chan, unsigned range, unsigne
     if (f < 0) { return f; }
     result = ioctl(f, COMEDI_INSN, &i);
     return result < 0 ? -errno : result;
+}
+
+int command(unsigned minor, struct comedi_cmd *c, uint16_t *sample, unsigned want)
+{
+    const int f = device(minor);
+    struct pollfd p = {f, POLLIN, 0};
+    size_t got_B = 0, want_B = want * sizeof *sample;
+    if (f < 0) { return f; }
+    if (ioctl(f, COMEDI_CMD, c) < 0) { return -errno; }
+    while (got_B < want_B && poll(&p, 1, 5000) == 1) {
+        const ssize_t n = read(f, (char *)sample + got_B, want_B - got_B);
+        if (n <= 0) { break; }
+        got_B += (size_t)n;
+    }
+    (void)ioctl(f, COMEDI_CANCEL, c->subdev);
+    return (int)(got_B / sizeof *sample);
 }
 
 uint32_t get(unsigned minor, unsigned subdev, unsigned chan, unsigned range)

@@ -12,11 +12,15 @@ enum { MM_AI, MM_AO, MM_DIO }; /* of dmm32at                                    
 int load(const char *path, const char *options);
 int unload(const char *name);
 
-int attach(unsigned minor, const char *board, int base);
+/* irq 0: none; dmm32at then has no commands. */
+int attach(unsigned minor, const char *board, int base, int irq);
 int detach(unsigned minor);
 
 int insn(unsigned minor, unsigned subdev, unsigned chan, unsigned range, unsigned kind, unsigned n,
          unsigned *data);
+
+/* Runs a command until so many samples came: their number. Waits five seconds for each reading. */
+int command(unsigned minor, struct comedi_cmd *c, uint16_t *sample, unsigned want);
 
 /* One value; a failure ends the program: what is read must be readable. */
 uint32_t get(unsigned minor, unsigned subdev, unsigned chan, unsigned range);

@@ -64,14 +64,14 @@ static void power(uint32_t fault, uint32_t card)
 static void check_attach(void)
 {
     printf("\nAttaching\n");
-    say(attach(SPARE, "dmm32at", BASE_EMPTY) == -EIO, "dmm32at at 0x%X, where no card is: EIO",
+    say(attach(SPARE, "dmm32at", BASE_EMPTY, 0) == -EIO, "dmm32at at 0x%X, where no card is: EIO",
         BASE_EMPTY);
     mark(1);
-    say(attach(A, "s526", BASE_A) == 0, "s526 at 0x%X", BASE_A);
+    say(attach(A, "s526", BASE_A, 0) == 0, "s526 at 0x%X", BASE_A);
     mark(0);
-    say(attach(B, "s526", BASE_B) == 0, "s526 at 0x%X", BASE_B);
+    say(attach(B, "s526", BASE_B, 0) == 0, "s526 at 0x%X", BASE_B);
     mark(2);
-    say(attach(MM, "dmm32at", BASE_MM) == 0, "dmm32at at 0x%X", BASE_MM);
+    say(attach(MM, "dmm32at", BASE_MM, IRQ_MM) == 0, "dmm32at at 0x%X", BASE_MM);
     mark(0);
 }
 
@@ -81,7 +81,7 @@ static void check_faults(void)
     unsigned v = 0;
     printf("\nFaults\n");
     (void)detach(SPARE);
-    say(attach(SPARE, "s526", BASE_EMPTY_526) == 0,
+    say(attach(SPARE, "s526", BASE_EMPTY_526, 0) == 0,
         "s526 at 0x%X, where no card is, attaches unseen:", BASE_EMPTY_526);
     v = get(SPARE, GPCT, 0, 0);
     say(v == 0xFFFFFF, "its counter reads 0x%X", v);
@@ -91,9 +91,10 @@ static void check_faults(void)
     (void)detach(A);
     (void)detach(MM);
     power(BUSY, MM);
-    say(attach(MM, "dmm32at", BASE_MM) == -EIO, "dmm32at refuses a card that is always busy: EIO");
+    say(attach(MM, "dmm32at", BASE_MM, 0) == -EIO,
+        "dmm32at refuses a card that is always busy: EIO");
     power(BUSY, A);
-    say(attach(A, "s526", BASE_A) == 0, "s526 attaches to a card whose operations never end:");
+    say(attach(A, "s526", BASE_A, 0) == 0, "s526 attaches to a card whose operations never end:");
     say(insn(A, S526_AI, 0, 0, INSN_READ, 1, &v) == -ETIMEDOUT, "A/D: ETIMEDOUT after 1 s");
     v = 0;
     say(insn(A, S526_AO, 0, 0, INSN_WRITE, 1, &v) == -ETIMEDOUT, "D/A: ETIMEDOUT after 1 s");
@@ -113,6 +114,7 @@ int main(void)
     check_s526_da();
     check_s526_lines();
     check_mm_ad();
+    check_mm_scans();
     check_mm_da();
     check_mm_lines();
     printf("\nThe paper's first experiment through Linux, one finger\n");

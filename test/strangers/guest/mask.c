@@ -94,9 +94,9 @@ void check_mask(int bug)
         e = load("/s526-mask.ko", "");
         say(e == 0, "the same module loaded with one byte other, mask 0x0F for 0x09: %s",
             strerror(-e));
-        e = attach(A, "s526", BASE_A);
+        e = attach(A, "s526", BASE_A, 0);
         say(e == 0, "attached again: %s", strerror(-e));
-        (void)attach(B, "s526", BASE_B);
+        (void)attach(B, "s526", BASE_B, 0);
     }
     set_volts(-500000);
     say(reads(bug ? "mask 0x0F" : "as it is") == 6, "all of channels 2..7 are right");

@@ -14,6 +14,9 @@ static void set_pins(void)
     set_pin(PIN_ENC + 1, 0);
     set_pin(PIN_AD, 1234567);
     set_pin(PIN_AD + 1, -7654321);
+    for (unsigned ch = 0; ch < 22; ch++) {
+        set_pin(PIN_GLOVE + ch, 370000 * (int32_t)ch - 4000000);
+    }
     set_pin(PIN_GLOVE + 5, 2500000);
     set_pin(PIN_GLOVE + 21, -3000000);
     set_pin(PIN_DIN, 0xA5);
@@ -46,6 +49,10 @@ static void mm_traces(void)
     mark(8);
     (void)get(MM, MM_AI, 5, 2);
     (void)get(MM, MM_AI, 21, 3);
+    mark(11);
+    (void)mm_scan(1);
+    mark(12);
+    (void)mm_scan(2);
     mark(9);
     put(MM, MM_AO, 3, 0xABC);
     mark(10);
