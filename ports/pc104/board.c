@@ -79,7 +79,10 @@ int exh_board_init(uint32_t rate_Hz, struct exh_period *achieved)
 int exh_board_wait(void)
 {
     uint32_t missed, late;
-    if (run.started) { pc104_load_end(); }
+    if (run.started) {
+        pc104_link_poll(); /* behind the outputs, where it delays none of them */
+        pc104_load_end();
+    }
     if (pc104_par.ticks && run.run == (uint32_t)pc104_par.ticks) { return STOP; }
     if (!run.started) { /* set-up and its text are not missed ticks */
         pc104_timer_start();
@@ -145,6 +148,7 @@ static void report(void)
     pc104_say_u32(run.tick_max);
     pc104_say("\n");
     pc104_load_report();
+    pc104_link_report();
     pc104_say("dac");
     for (unsigned i = 0; i < EXH_FINGERS; i++) {
         pc104_say(" ");
@@ -182,21 +186,6 @@ void exh_board_halt(const char *why)
 int exh_board_log(const void *rec, size_t len_B)
 {
     return pc104_log_take(rec, len_B);
-}
-
-/* No network card yet: nobody is there. */
-int exh_board_link_send(const void *buf, size_t len_B)
-{
-    (void)buf;
-    (void)len_B;
-    return 0;
-}
-
-int exh_board_link_recv(void *buf, size_t cap_B)
-{
-    (void)buf;
-    (void)cap_B;
-    return 0;
 }
 
 uint32_t exh_board_cycles(void)

@@ -3,6 +3,8 @@
  * cannot even push the fault: that makes a double fault, which has a task and a stack of its own. */
 #include "pc104.h"
 
+#include "exhand/error.h"
+
 #define PAGE_B        4096u
 #define PRESENT       1u
 #define WRITABLE      2u
@@ -83,6 +85,16 @@ void pc104_guard_open(void)
 {
     open_paging();
     open_tasks();
+}
+
+/* Firmware may put a card below DEVICES where there is little memory. */
+int pc104_guard_device(uint32_t address)
+{
+    const uint32_t i = address / LARGE_B;
+    if (i == 0) { return -EXH_E_RANGE; }
+    directory[i] |= UNCACHED;
+    __asm__ volatile("movl %0, %%cr3" : : "r"(directory) : "memory");
+    return 0;
 }
 
 int pc104_guard_hit(uint32_t address)

@@ -12,7 +12,7 @@ static const struct exh_signal rows[] = {
     {0xA001, 0, EXH_WHEN_SETUP, 0, 20000, 0, "rate", "hz", "ticks a second; 0: the scene's"},
     {0xA002, 0, EXH_WHEN_SETUP, 0, TICKS_MAX, 0, "ticks", "", "then stop; 0: never"},
     {0xA003, 0, EXH_WHEN_SETUP, 0, 2, 0, "timer", "", "which makes the ticks"},
-    {0xA004, 0, EXH_WHEN_SETUP, 0, 2, 0, "log", "", "where records go"},
+    {0xA004, 0, EXH_WHEN_SETUP, 0, 3, 0, "log", "", "where records go"},
     {0xA005, 0, EXH_WHEN_SETUP, 0, TICKS_MAX, 100, "overload_max", "",
      "late ticks tolerated in all"},
     {0xA006, 0, EXH_WHEN_SETUP, 0, TICKS_MAX, 64, "grace", "",
@@ -34,7 +34,7 @@ static const struct {
     const char *name, *const word[WORDS_MAX];
 } words[] = {
     {"timer", {"auto", "hpet", "pit"}},
-    {"log", {"off", "serial", "debug"}},
+    {"log", {"off", "serial", "debug", "udp"}},
     {"provoke",
      {"none", "divide", "opcode", "null", "write", "stack", "nmi", "spurious", "hang", "slow",
       "timer", "assert", "twice"}},
@@ -124,6 +124,7 @@ void pc104_options(const struct exh_scene *sc)
     while (pc104_cmdline_next(&at, &name, &value)) {
         if (value && (table_option(&pc104_option_table, (int32_t *)&pc104_par, name, value) ||
                       table_option(&pc104_box_table, (int32_t *)&pc104_box_par, name, value) ||
+                      pc104_link_option(name, value) ||
                       pc104_scene_option(sc, name, value))) {
             pc104_say("set ");
             pc104_say(name);

@@ -50,7 +50,7 @@ enum pc104_provoke { /* for commissioning: shows on the real box that a failure 
                      PC104_PROVOKE_ASSERT,
                      PC104_PROVOKE_TWICE /* CARDS=none alone: an NMI into what makes safe */
 };
-enum pc104_log { PC104_LOG_OFF, PC104_LOG_SERIAL, PC104_LOG_DEBUG };
+enum pc104_log { PC104_LOG_OFF, PC104_LOG_SERIAL, PC104_LOG_DEBUG, PC104_LOG_UDP };
 enum pc104_source { PC104_TIMER_AUTO, PC104_TIMER_HPET, PC104_TIMER_PIT };
 
 /* Rows in option.c, in this order. */
@@ -150,8 +150,19 @@ const int32_t *pc104_load_signals(void); /* values of that table, as they are no
 
 /* --- guard.c: paging with a guard below the stack; a stack of its own for double faults --- */
 void pc104_guard_open(void);
+/* The 4 MiB around it are a card's, not to be cached: 0, or -EXH_E_RANGE where our memory is. */
+int pc104_guard_device(uint32_t address);
 int pc104_guard_hit(uint32_t address);
 uint32_t pc104_guard_eip(void); /* where the double fault came from */
+
+/* --- link.c: the network card, what comes and goes over it; link_none.c: there is none --- */
+int pc104_link_option(const char *name, const char *value); /* 0: not one of its; halts on bad ones */
+void pc104_link_open(const struct exh_scene *sc); /* finds the card, if one was asked for; says so */
+void pc104_link_poll(void); /* what came since the last tick: bounded work       */
+void pc104_link_report(void);
+int pc104_link_log_up(void); /* 1: records have a way out                          */
+/* Of the log: bytes taken, 0: not now. now 0: may wait for more, 1: do not, 2: the last. */
+unsigned pc104_link_log(const uint8_t *byte, unsigned n, int now);
 
 /* --- trap.c: interrupts, and processor exceptions that say their name. Opened, as
  * the UART, before main() --- */

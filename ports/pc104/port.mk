@@ -9,9 +9,11 @@ PORT_SUFFIX   := $(if $(filter-out real,$(CARDS)),-$(CARDS))
 PORT_MAIN     := ports/pc104/main.c examples/deadman.c
 pc104_parts   := crt0.S vectors.S board.c box.c timer.c hpet.c pit.c second.c load.c guard.c trap.c uart.c say.c \
                  number.c cmdline.c option.c provoke.c mem.c
-# A scene of constants without log (SCENE_ROM in its scene.mk) links neither parameters nor records.
+pc104_link    := link.c net.c nic.c pci.c stream.c
+# A scene of constants without log (SCENE_ROM in its scene.mk) links neither parameters, records nor a network card.
 PORT_SRC       = $(pc104_parts:%=ports/pc104/%) $(cards_$(CARDS)) \
-                 $(if $(SCENE_ROM),ports/pc104/scene_rom.c,ports/pc104/scene_full.c examples/log.c)
+                 $(if $(SCENE_ROM),ports/pc104/scene_rom.c ports/pc104/link_none.c, \
+                   ports/pc104/scene_full.c examples/log.c $(pc104_link:%=ports/pc104/%))
 PORT_HOSTFLAGS := -Iports
 # No FPU, MMX or SSE register is ever touched, so none has to be set up or saved.
 PORT_CFLAGS   := -m32 -march=i686 -ffreestanding -fno-pic -fno-pie -fno-stack-protector \

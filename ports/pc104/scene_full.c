@@ -15,6 +15,7 @@
 
 static uint8_t ring[RING_B];
 static uint32_t put, got; /* bytes in all, modulo 2^32 */
+static uint32_t unsent; /* bytes given up at the end */
 static uint32_t last_tick;
 static uint8_t started, dry;
 
@@ -31,10 +32,26 @@ int pc104_log_take(const void *rec, size_t len_B)
     return (int)len_B;
 }
 
+/* What is cut at the end of the ring waits for nothing more. 1: there is more to do at once. */
+static int idle_udp(int now)
+{
+    const uint32_t at = got % RING_B;
+    uint32_t n = put - got, taken;
+    if (n == 0) { return 0; }
+    if (n > RING_B - at) {
+        n = RING_B - at;
+        now = 1;
+    }
+    taken = pc104_link_log(&ring[at], n, now);
+    got += taken;
+    return taken > 0 && got != put;
+}
+
 int pc104_idle(void)
 {
     const uint32_t at = got % RING_B;
     uint32_t n = put - got;
+    if (pc104_par.log == PC104_LOG_UDP) { return idle_udp(0); }
     n = n < BURST_B ? n : BURST_B;
     n = n < RING_B - at ? n : RING_B - at;
     got += pc104_uart_offer(&ring[at], n);
@@ -101,9 +118,10 @@ void pc104_log_flush(void)
     uint32_t stuck = 0;
     while (put != got && stuck < STUCK_READS) {
         const uint32_t before = got;
-        (void)pc104_idle();
+        (void)(pc104_par.log == PC104_LOG_UDP ? idle_udp(1) : pc104_idle());
         stuck = before == got ? stuck + 1 : 0;
     }
+    unsent += put - got;
     put = got;
 }
 
@@ -114,7 +132,14 @@ void pc104_scene_end(void)
     pc104_log_flush();
     lost = exh_log_end(last_tick + 1);
     pc104_log_flush();
+    if (pc104_par.log == PC104_LOG_UDP) {
+        for (unsigned i = 0; i < 3; i++) { (void)pc104_link_log(ring, 0, 2); } /* may be lost, too */
+    }
     pc104_say("\nrecords lost ");
     pc104_say_u32(lost);
+    if (unsent) {
+        pc104_say(", bytes given up ");
+        pc104_say_u32(unsent);
+    }
     pc104_say("\n");
 }

@@ -1,0 +1,277 @@
+/* The link of a scene and a way out for its log, as UDP over the network card. Without ip= there
+ * is none, and none is looked for. Frames are taken once a tick, behind its outputs, and no more
+ * than IN_A_TICK of them: what a flood leaves is dropped by the card. */
+#include "pc104.h"
+
+#include "net.h"
+#include "nic.h"
+#include "stream.h"
+
+#include "cards/io.h"
+#include "cards/wait.h"
+
+#include "exhand/error.h"
+
+#include <string.h>
+
+#define IN_A_TICK 16u
+#define QUEUE     16u /* datagrams that wait for the scene: a power of two */
+#define PORT      4747
+#define LOG_PORT  4748
+#define CABLE_US  4000000u /* both sides agree on a speed */
+#define PEER_US   1000000u
+#define FLUSH_US  20000u
+
+static struct {
+    uint32_t ip, peer;
+    int32_t port, log_port;
+} par = {.port = PORT, .log_port = LOG_PORT};
+
+static struct net net;
+static uint8_t mac[NET_MAC_B];
+static uint8_t open, asked_for;
+static struct {
+    uint16_t len_B;
+    uint8_t byte[EXH_SCENE_PACKET_B];
+} queue[QUEUE];
+static uint32_t put, got;
+static uint32_t overrun, unsent; /* datagrams: no room here, no room in the card */
+
+/* --- options --- */
+
+static void refuse(const char *name, const char *value, const char *allowed)
+{
+    pc104_say("option ");
+    pc104_say(name);
+    pc104_say("=");
+    pc104_say(value);
+    pc104_say(": ");
+    pc104_say(allowed);
+    pc104_say("\n");
+    pc104_halt(PC104_EXIT_OPTION, "option refused: nothing was started");
+}
+
+static void take_address(uint32_t *to, const char *name, const char *value)
+{
+    if (net_address(value, to) < 0) { refuse(name, value, "a host's address, as 10.0.0.2"); }
+}
+
+static void take_port(int32_t *to, const char *name, const char *value)
+{
+    if (pc104_number(value, 0, to) < 0 || *to < 1 || *to > 65535) {
+        refuse(name, value, "allowed 1..65535");
+    }
+}
+
+int pc104_link_option(const char *name, const char *value)
+{
+    if (pc104_same_text(name, "ip")) {
+        take_address(&par.ip, name, value);
+    } else if (pc104_same_text(name, "peer")) {
+        take_address(&par.peer, name, value);
+    } else if (pc104_same_text(name, "port")) {
+        take_port(&par.port, name, value);
+    } else if (pc104_same_text(name, "log_port")) {
+        take_port(&par.log_port, name, value);
+    } else {
+        return 0;
+    }
+    return 1;
+}
+
+/* --- start --- */
+
+static void check_options(void)
+{
+    if (par.peer == 0) { refuse("peer", "", "missing: whom to talk to"); }
+    if (par.ip == 0) { refuse("ip", "", "missing: our own address"); }
+    if (par.ip == par.peer) { refuse("peer", "", "the same as ip"); }
+}
+
+static void ask(void)
+{
+    uint8_t *const to = pc104_nic_room();
+    size_t n;
+    if (to == NULL) { return; }
+    n = net_ask(&net, to, exh_io_time_us());
+    if (n > 0) { pc104_nic_send(n); }
+}
+
+/* While nothing moves yet: a cable takes seconds, and records would be lost. */
+static void wait_for_peer(void)
+{
+    struct exh_wait cable = exh_wait_us(CABLE_US), answer = exh_wait_us(PEER_US);
+    struct pc104_nic_counts c;
+    do {
+        pc104_nic_counts(&c);
+    } while (!c.up && exh_wait_more(&cable));
+    if (!c.up) {
+        pc104_say("link: no cable yet: goes on without\n");
+        return;
+    }
+    do {
+        pc104_link_poll();
+    } while (!net.known && exh_wait_more(&answer));
+    pc104_say(net.known ? "link: the peer answers\n"
+                        : "link: the peer does not answer yet: goes on\n");
+}
+
+void pc104_link_open(const struct exh_scene *sc)
+{
+    asked_for = par.ip != 0 || par.peer != 0;
+    if (!asked_for) {
+        if (pc104_par.log == PC104_LOG_UDP) { refuse("log", "udp", "needs ip= and peer="); }
+        if (sc->link) { pc104_say("link: none, as no ip= is given\n"); }
+        return;
+    }
+    check_options();
+    if (pc104_nic_open(mac) < 0) {
+        pc104_say("link: none: the scene goes on as with a peer that is silent\n");
+        return;
+    }
+    {
+        struct net_cfg cfg = {.ip = par.ip,
+                              .peer_ip = par.peer,
+                              .port = (uint16_t)par.port,
+                              .longest_B = EXH_SCENE_PACKET_B};
+        memcpy(cfg.mac, mac, sizeof cfg.mac);
+        net_open(&net, &cfg);
+    }
+    open = 1;
+    stream_open(exh_board_cycles());
+    wait_for_peer();
+}
+
+/* --- in --- */
+
+static void keep(const uint8_t *at, size_t len_B)
+{
+    if (put - got == QUEUE) {
+        overrun++;
+        return;
+    }
+    queue[put % QUEUE].len_B = (uint16_t)len_B;
+    memcpy(queue[put % QUEUE].byte, at, len_B);
+    put++;
+}
+
+static void answer(void)
+{
+    uint8_t *const to = pc104_nic_room();
+    if (to == NULL) {
+        unsent++;
+        return;
+    }
+    pc104_nic_send(net_answer(&net, to));
+}
+
+static void take(const uint8_t *frame, size_t len_B, uint32_t now_us)
+{
+    const uint8_t *at;
+    size_t n;
+    const enum net_take what = net_take(&net, frame, len_B, now_us, &at, &n);
+    if (what == NET_DATAGRAM) { keep(at, n); }
+    if (what == NET_ANSWER) { answer(); }
+}
+
+void pc104_link_poll(void)
+{
+    uint32_t now_us;
+    if (!open) { return; }
+    now_us = exh_io_time_us();
+    for (unsigned i = 0; i < IN_A_TICK; i++) {
+        const uint8_t *frame;
+        const int n = pc104_nic_next(&frame);
+        if (n == 0) { break; }
+        if (n > 0) { take(frame, (size_t)n, now_us); }
+        pc104_nic_done();
+    }
+    pc104_nic_back();
+    ask();
+}
+
+int exh_board_link_recv(void *buf, size_t cap_B)
+{
+    while (put != got) {
+        const unsigned at = got++ % QUEUE;
+        if (queue[at].len_B <= cap_B) {
+            memcpy(buf, queue[at].byte, queue[at].len_B);
+            return queue[at].len_B;
+        }
+    }
+    return 0;
+}
+
+/* --- out --- */
+
+static int send_to(uint16_t port, const void *buf, size_t len_B)
+{
+    uint8_t *const to = open ? pc104_nic_room() : NULL;
+    const size_t n = to ? net_datagram(&net, to, port, buf, len_B) : 0;
+    if (n == 0) { return 0; }
+    pc104_nic_send(n);
+    return 1;
+}
+
+int exh_board_link_send(const void *buf, size_t len_B)
+{
+    if (len_B > 0 && send_to((uint16_t)par.port, buf, len_B)) { return (int)len_B; }
+    unsent += open;
+    return 0;
+}
+
+int pc104_link_log_up(void)
+{
+    return open && net.known;
+}
+
+unsigned pc104_link_log(const uint8_t *byte, unsigned n, int now)
+{
+    static uint8_t piece[STREAM_PIECE_B];
+    static uint32_t last_us;
+    const uint32_t now_us = exh_io_time_us();
+    if (!pc104_link_log_up() || (n < STREAM_DATA_B && !now && now_us - last_us < FLUSH_US)) {
+        return 0;
+    }
+    n = n < STREAM_DATA_B ? n : STREAM_DATA_B;
+    if (!send_to((uint16_t)par.log_port, piece, stream_piece(piece, byte, n, now > 1))) {
+        return 0;
+    }
+    stream_sent(n);
+    last_us = now_us;
+    return n;
+}
+
+/* --- report --- */
+
+static void say_count(const char *what, const char *more, uint32_t n)
+{
+    if (n == 0) { return; }
+    pc104_say(what);
+    pc104_say(more);
+    pc104_say(" ");
+    pc104_say_u32(n);
+    pc104_say("\n");
+}
+
+void pc104_link_report(void)
+{
+    struct pc104_nic_counts c;
+    if (!open) { return; }
+    pc104_nic_counts(&c);
+    pc104_say(c.gone ? "nic gone\n" : c.up ? "" : "nic without a cable\n");
+    say_count("nic ", "sent", c.sent);
+    say_count("nic ", "damaged", c.damaged);
+    say_count("nic ", "missed", c.missed);
+    say_count("nic ", "crc", c.crc);
+    say_count("link ", "frames", net.counts.frames);
+    say_count("link ", "datagrams", net.counts.datagrams);
+    say_count("link ", "arp_asked", net.counts.arp_asked);
+    say_count("link ", "arp_heard", net.counts.arp_heard);
+    for (unsigned i = 0; i < NET_DROPS; i++) {
+        say_count("link drop_", net_drop_text((enum net_drop)i), net.counts.drop[i]);
+    }
+    say_count("link ", "overrun", overrun);
+    say_count("link ", "unsent", unsent);
+    say_count("log ", "pieces", stream_pieces());
+}

@@ -1,0 +1,35 @@
+/* The log as datagrams, pieces of a stream of bytes: whoever listens sees what is missing by its
+ * place. Nothing is sent again.
+ *
+ *   0  u32 "EXHL"    4  u32 session    8  u32 number of the piece, from 0
+ *  12  u32 place of its first byte in the stream, modulo 2^32
+ *  16  u32 1: the last one            20  bytes
+ *
+ * Little-endian. Portable: the host's `exhand listen` reads them by the same file. */
+#ifndef PC104_STREAM_H
+#define PC104_STREAM_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#define STREAM_HEAD_B  20u
+#define STREAM_DATA_B  1408u
+#define STREAM_PIECE_B (STREAM_HEAD_B + STREAM_DATA_B)
+#define STREAM_MAGIC   0x4C485845u
+
+/* --- out: one stream --- */
+void stream_open(uint32_t session);
+/* The next piece with these n <= STREAM_DATA_B bytes: its length. It is the next until stream_sent(). */
+size_t stream_piece(uint8_t to[STREAM_PIECE_B], const uint8_t *byte, unsigned n, int last);
+void stream_sent(unsigned n);
+uint32_t stream_pieces(void);
+
+/* --- in --- */
+struct stream_piece {
+    uint32_t session, number, place, last;
+    const uint8_t *byte;
+    size_t n;
+};
+int stream_read(struct stream_piece *p, const uint8_t *datagram, size_t len_B); /* 0: is none */
+
+#endif
