@@ -215,7 +215,7 @@ fit: all
 # --- tests ----------------------------------------------------------------------
 
 san       := -fsanitize=address,undefined -fno-sanitize-recover=all
-test_dirs := unit prop cards emu sim board golden world
+test_dirs := unit prop cards emu pc104 sim board golden world
 test_src  := $(foreach d,$(test_dirs),$(wildcard test/$(d)/*_test.c))
 test_bin  := $(test_src:test/%_test.c=$(B)/test/%_test)
 tflags     = $(base) $(CFLAGS) -Itest -DEXH_FIX_AUDIT
@@ -236,6 +236,13 @@ $(B)/test/prop/%_test: $(B)/test/san/test/prop/%_test.o
 # The emulated cards, at their registers.
 emu_src := $(wildcard ports/posix/emu/[!b]*.c)
 $(B)/test/emu/%_test: $(B)/test/san/test/emu/%_test.o $(B)/test/san/test/support.o $(emu_src:%.c=$(B)/test/san/%.o)
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(san) -o $@ $^ -lcmocka
+
+# What of the pc104 port knows no machine.
+pc104_net := $(patsubst %.c,$(B)/test/san/%.o,test/pc104/frames.c ports/pc104/net.c ports/pc104/stream.c)
+$(B)/test/san/test/pc104/%.o $(B)/test/san/ports/pc104/%.o $(B)/test/san/test/fuzz/%.o: tflags += -Iports -Itest/pc104
+$(B)/test/pc104/%_test: $(B)/test/san/test/pc104/%_test.o $(B)/test/san/test/support.o $(pc104_net)
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(san) -o $@ $^ -lcmocka
 
@@ -366,16 +373,27 @@ $(B)/fuzz/libfuzzer: test/fuzz/wire_fuzz.c $(lib_src) $(wildcard lib/include/exh
 	@mkdir -p $(@D)
 	$(Q)clang $(filter-out -MMD -MP,$(base)) -D_POSIX_C_SOURCE=200809L $(san) -fsanitize=fuzzer -o $@ $(filter %.c,$^)
 
-## Hostile packets, under sanitizers (FUZZ_SECONDS=30 FUZZ_SEED=1 FUZZER=plain or libfuzzer)
+# Frames for the pc104 image's network card.
+$(B)/fuzz/net: $(B)/test/san/test/fuzz/net_fuzz.o $(pc104_net)
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(san) -o $@ $^
+$(B)/fuzz/net-libfuzzer: test/fuzz/net_fuzz.c test/pc104/frames.c ports/pc104/net.c $(wildcard test/pc104/*.h ports/pc104/net.h) $(stamp)
+	@mkdir -p $(@D)
+	$(Q)clang $(filter-out -MMD -MP,$(base)) -Iports -Itest/pc104 -DFUZZ_NO_MAIN $(san) -fsanitize=fuzzer -o $@ $(filter %.c,$^)
+
+## Hostile packets and frames, under sanitizers (FUZZ_SECONDS=30 FUZZ_SEED=1 FUZZER=plain or libfuzzer)
 .PHONY: fuzz
 fuzz:
-	@$(MAKE) --no-print-directory $(if $(V),,-s) $(B)/fuzz/plain $(B)/fuzz/$(FUZZER)
+	@$(MAKE) --no-print-directory $(if $(V),,-s) $(B)/fuzz/plain $(B)/fuzz/$(FUZZER) $(B)/fuzz/net$(if $(filter libfuzzer,$(FUZZER)),-libfuzzer)
 	@$(B)/fuzz/plain --check test/fuzz/corpus
 ifeq ($(FUZZER),plain)
 	@cd $(B)/fuzz && $(abspath $(B))/fuzz/plain $(FUZZ_SECONDS) $(FUZZ_SEED) $(CURDIR)/test/fuzz/corpus
+	@cd $(B)/fuzz && ./net $(FUZZ_SECONDS) $(FUZZ_SEED)
 else
 	@mkdir -p $(B)/fuzz/found && cd $(B)/fuzz && ./libfuzzer -max_total_time=$(FUZZ_SECONDS) -max_len=1024 \
 	    -print_final_stats=1 found $(CURDIR)/test/fuzz/corpus
+	@mkdir -p $(B)/fuzz/net-found && cd $(B)/fuzz && ./net-libfuzzer -max_total_time=$(FUZZ_SECONDS) -max_len=6000 \
+	    -print_final_stats=1 net-found
 endif
 
 .PHONY: fuzz-corpus

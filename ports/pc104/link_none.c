@@ -17,6 +17,10 @@ void pc104_link_poll(void)
 {
 }
 
+void pc104_link_dry(void)
+{
+}
+
 void pc104_link_report(void)
 {
 }

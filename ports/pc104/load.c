@@ -204,6 +204,7 @@ static void dry_io(uint32_t tick)
     (void)exh_board_read_drive(&in);
     if (scene && scene->read_glove) { (void)scene->read_glove(&glove); }
     (void)exh_board_write_drive(&idle);
+    pc104_link_dry();
 }
 
 static void say_us(uint32_t counts)
@@ -227,7 +228,7 @@ int pc104_load_fits(uint32_t rate_Hz)
     pc104_say(pc104_par.budget_us ? "budget stated" : "budget measured: scene ");
     if (!pc104_par.budget_us) {
         say_us(scene_counts);
-        pc104_say(", cards ");
+        pc104_say(", cards and link ");
         say_us(io_counts);
     }
     pc104_say(", with headroom ");

@@ -40,10 +40,10 @@ enum net_drop {
     NET_PROTOCOL, /* not UDP                                                  */
     NET_STRANGER, /* not from the peer                                        */
     NET_UDP, /* its length                                               */
-    NET_UDP_SUM,
     NET_PORT, /* to another port, or from another                         */
     NET_EMPTY,
     NET_TOO_LONG, /* more than longest_B                                      */
+    NET_UDP_SUM,
     NET_DROPS
 };
 

@@ -159,6 +159,7 @@ uint32_t pc104_guard_eip(void); /* where the double fault came from */
 int pc104_link_option(const char *name, const char *value); /* 0: not one of its; halts on bad ones */
 void pc104_link_open(const struct exh_scene *sc); /* finds the card, if one was asked for; says so */
 void pc104_link_poll(void); /* what came since the last tick: bounded work       */
+void pc104_link_dry(void); /* the work of the worst tick, to be timed               */
 void pc104_link_report(void);
 int pc104_link_log_up(void); /* 1: records have a way out                          */
 /* Of the log: bytes taken, 0: not now. now 0: may wait for more, 1: do not, 2: the last. */

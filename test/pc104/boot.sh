@@ -54,7 +54,7 @@ safe()
 boots 0 '^rate 2000 Hz asked, timer HPET of 100000000 Hz, period 1/2000 s, 0 ppm off$' ticks=4000
 says '^exhand [0-9.]+, wire [0-9]+, record [0-9]+, board pc104 version 1, scene drop$'
 says '^second clock local APIC$'
-says '^budget measured: scene [0-9.]+ us, cards [0-9.]+ us, with headroom [0-9.]+ us$'
+says '^budget measured: scene [0-9.]+ us, cards and link [0-9.]+ us, with headroom [0-9.]+ us$'
 says '^ticks 4000 run, [01] missed$'
 says '^tick_max [0-9]+ ns$'
 says '^tick_bin 4000( 0){16}$'
