@@ -32,13 +32,18 @@ const struct exh_signal *exh_signal_at(const struct exh_signal_table *t, uint32_
     return NULL;
 }
 
+/* By rows, not by values: a packet may ask for it in a tick. */
 int32_t exh_signal_find(const struct exh_signal_table *t, uint16_t id, uint16_t instance)
 {
-    const uint32_t n = exh_signal_count(t);
-    for (uint32_t i = 0; i < n; i++) {
-        uint16_t k;
-        const struct exh_signal *row = exh_signal_at(t, i, &k);
-        if (row->id == id && k == instance) { return (int32_t)i; }
+    uint32_t first = 0; /* value of this group */
+    for (uint16_t g = 0; g < t->groups; g++) {
+        const struct exh_signal_group *grp = &t->group[g];
+        for (uint16_t r = 0; r < grp->rows && instance < grp->instances; r++) {
+            if (grp->row[r].id == id) {
+                return (int32_t)(first + (uint32_t)grp->rows * instance + r);
+            }
+        }
+        first += (uint32_t)grp->rows * grp->instances;
     }
     return -EXH_E_UNKNOWN;
 }
