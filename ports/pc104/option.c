@@ -23,6 +23,7 @@ static const struct exh_signal rows[] = {
     {0xA009, 0, EXH_WHEN_SETUP, 0, 1000, 25, "headroom", "percent", "left free above that cost"},
     {0xA00A, 0, EXH_WHEN_SETUP, 0, 12, 0, "provoke", "", "a failure to be seen ending safe"},
     {0xA00B, 0, EXH_WHEN_SETUP, 0, TICKS_MAX, 100, "provoke_at", "", "in this tick"},
+    {0xA00C, 0, EXH_WHEN_SETUP, 0, 1, 0, "idle", "", "what the processor does between ticks"},
 };
 static const struct exh_signal_group groups[] = {{rows, sizeof rows / sizeof rows[0], 1}};
 const struct exh_signal_table pc104_option_table = {groups, 1};
@@ -35,6 +36,7 @@ static const struct {
 } words[] = {
     {"timer", {"auto", "hpet", "pit"}},
     {"log", {"off", "serial", "debug", "udp"}},
+    {"idle", {"halt", "spin"}},
     {"provoke",
      {"none", "divide", "opcode", "null", "write", "stack", "nmi", "spurious", "hang", "slow",
       "timer", "assert", "twice"}},

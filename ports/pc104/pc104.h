@@ -66,6 +66,7 @@ struct pc104_par {
     int32_t headroom_pct; /* of the cost, to be left free                      */
     int32_t provoke; /* enum pc104_provoke                                */
     int32_t provoke_tick; /* at this tick                                      */
+    int32_t spin; /* 1: the processor never sleeps                     */
 };
 extern struct pc104_par pc104_par;
 extern const struct exh_signal_table pc104_option_table;

@@ -203,7 +203,7 @@ int pc104_timer_wait(uint32_t *missed, uint32_t *late)
     *late = n;
     pc104_second_arm();
     for (;;) {
-        const int more = n == 0 && pc104_idle();
+        const int more = n == 0 && (pc104_idle() || pc104_par.spin);
         __asm__ volatile("cli" : : : "memory");
         n += due();
         if (n > 0 || dead) { break; }
