@@ -94,7 +94,8 @@ $(boot): $(image) $(PORT_ISO) FORCE
 
 # The host program: every scene that has a subcommand, over the simulated device.
 cli_src := $(wildcard ports/posix/cli/*.c ports/posix/fit/*.c) examples/log.c examples/drop/drop.c \
-           examples/calibrate/calibrate.c examples/glove/glove.c examples/glove/cal.c $(wildcard examples/bilateral/*.c)
+           examples/calibrate/calibrate.c examples/glove/glove.c examples/glove/cal.c $(wildcard examples/bilateral/*.c) \
+           ports/pc104/stream.c
 # The world's core, without its pictures, answers in the same process.
 world_opt  := main live alone bench solo link link_param view gl gl_form gl_batch gl_solid gl_layer gl_text picture_none mesh_embree mesh_none
 world_core := $(filter-out $(world_opt:%=examples/world/%.c),$(wildcard examples/world/*.c))
@@ -529,6 +530,24 @@ contract:
 	@for i in $(contract_images); do \
 	    $(MAKE) --no-print-directory $(if $(V),,-s) PORT=$${i%/*} SCENE=$${i#*/} CARDS=none all || exit; done
 	@test/board/contract.sh $(B)
+
+# The other end of the image's network cable, and the image with a log at its cards' connectors.
+$(B)/test/cable: test/pc104/cable.c test/pc104/frames.c test/pc104/frames.h ports/pc104/net.h $(stamp)
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(base) $(CFLAGS) -D_POSIX_C_SOURCE=200809L -Iports $(filter %.c,$^) $(LDFLAGS) -o $@
+nic_tape := PORT=pc104 SCENE=bilateral CARDS=tape cards_tape="$(wildcard ports/cards/*.c) $(emu_src) test/pc104/tape.c"
+
+NIC_FRAMES ?= 20000
+NIC_SPEEDS ?= natural
+
+## The pc104 image's network under QEMU: experiment, bad frames (NIC_FRAMES=1000000 NIC_SPEEDS=slow,natural,fast)
+.PHONY: nic
+nic: all
+	@for t in i686-linux-gnu-gcc qemu-system-i386; do .ci/deps "the pc104 image's network" $$t gcc-i686-linux-gnu qemu-system-x86 || exit 3; done
+	@$(MAKE) --no-print-directory $(if $(V),,-s) $(B)/test/cable $(world)
+	@for s in minimal drop bilateral; do $(MAKE) --no-print-directory $(if $(V),,-s) PORT=pc104 SCENE=$$s CARDS=none all || exit; done
+	@$(MAKE) --no-print-directory $(if $(V),,-s) $(nic_tape) all
+	@B=$(B) FRAMES=$(NIC_FRAMES) SPEEDS=$(NIC_SPEEDS) test/pc104/nic.sh $(or $(ARGS),ways bilateral flood)
 
 # --- figures ------------------------------------------------------------------------
 

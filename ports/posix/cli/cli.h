@@ -11,6 +11,7 @@ int cli_cards(int argc, char **argv);
 int cli_drop(int argc, char **argv);
 int cli_glove(int argc, char **argv);
 int cli_fit(int argc, char **argv);
+int cli_listen(int argc, char **argv);
 int cli_csv(int argc, char **argv);
 int cli_replay(int argc, char **argv);
 int cli_diagram(int argc, char **argv);
