@@ -6,6 +6,7 @@ PORT_LDFLAGS   := -mcpu=cortex-m3 -mthumb -nostdlib -static -Wl,--build-id=none
 PORT_LDSCRIPT  := ldscripts/mps2.ld
 PORT_RUN       := ports/mps2/run.sh
 PORT_SAY       := mps2_say
+PORT_CYCLES_HZ := 25000000
 # Ticks, then stop; 0: never.
 TICKS          ?= $(if $(SCENE_MAIN),0,2000)
 PORT_HOSTFLAGS  = -DMPS2_TICKS=$(TICKS)u

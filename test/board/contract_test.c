@@ -4,8 +4,9 @@
  *
  * A board is set up once a run, at contract_rate_Hz. Where -DCONTRACT_REAL_TIME says that time
  * goes on while a tick computes, missed ticks and the counter of cycles are held against each
- * other. What a board.h cannot ask a board (the stop of wait, the end in halt, outputs while
- * nobody reads them) is up to those who run this: README.md. */
+ * other, and against -DCONTRACT_CYCLES_HZ, where the port knows it. What cannot be asked of a
+ * board through board.h (that wait says stop, the outputs after halt) is up to those who run
+ * this: README.md. */
 #include "contract.h"
 
 #include "check.h"
@@ -249,6 +250,16 @@ TEST(cycles_run_while_it_waits)
     }
     CHECK(least > 0 && most - least <= most / 10,
           "four ticks took %" PRIu32 " .. %" PRIu32 " cycles", least, most);
+#ifdef CONTRACT_CYCLES_HZ /* known: what was set is what comes, within 1 % */
+    {
+        const uint64_t want = 4 * (uint64_t)period.num * CONTRACT_CYCLES_HZ;
+        const uint64_t got = (uint64_t)most * period.den,
+                       off = got > want ? got - want : want - got;
+        CHECK(off <= want / 100,
+              "four ticks took %" PRIu32 " cycles, period %" PRIu32 "/%" PRIu32 " s", most,
+              period.num, period.den);
+    }
+#endif
 }
 #else
 TEST(missed_ticks_are_counted_once)
@@ -361,8 +372,8 @@ TEST(a_disabled_drive_gives_no_current)
     exh_board_safe();
 }
 
-/* Enabled at zero, and told something else in the same frame as it is enabled: no current of a code
- * from before. */
+/* Told 0.5 A while it is not enabled, then zero in the frame that enables it: no current of the
+ * code before. */
 TEST(codes_and_enables_act_together)
 {
     int32_t code;

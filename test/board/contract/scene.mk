@@ -5,6 +5,6 @@ SCENE_SRC    :=
 SCENE_ROM    := yes
 CONTRACT_RATE_HZ ?= 1000
 SCENE_CFLAGS  = -Itest -Itest/board -DEXH_CHECK_PLAIN -DEXH_CHECK_PUTCHAR=contract_put -DCONTRACT_REAL_TIME \
-                -DCONTRACT_RATE_HZ=$(CONTRACT_RATE_HZ)u $(PORT_SAY:%=-DCONTRACT_SAY=%)
+                -DCONTRACT_RATE_HZ=$(CONTRACT_RATE_HZ)u $(PORT_SAY:%=-DCONTRACT_SAY=%) $(PORT_CYCLES_HZ:%=-DCONTRACT_CYCLES_HZ=%u)
 # The printer divides 64 bits by ten: of the compiler's own library, not of C's.
 SCENE_LIBS   := -lgcc
