@@ -195,11 +195,12 @@ uint32_t exh_drive_force(struct exh_drive *s, const struct exh_drive_cfg *cfg, i
         f->spring_N_q20 + f->damper_N_q20 + f->pullback_N_q20 + f->passivity_N_q20;
     const int32_t most = par->f_max_N_q20 < cfg->f_top_N_q20 ? par->f_max_N_q20 : cfg->f_top_N_q20;
     const int32_t held = exh_clamp(asked, 0, most);
-    const int64_t up = exh_gain_mul(cfg->tick_N_q20, par->slew_up_Nps);
-    const int64_t down = exh_gain_mul(cfg->tick_N_q20, par->slew_down_Nps);
-    const int64_t top = s->force_N_q20 + (up > 0 ? up : 1);
-    const int64_t bottom = s->force_N_q20 - (down > 0 ? down : 1);
-    const int64_t slewed = held > top ? top : held < bottom ? bottom : held;
+    const int rises = held > s->force_N_q20;
+    const int64_t rate =
+        exh_gain_mul(cfg->tick_N_q20, rises ? par->slew_up_Nps : par->slew_down_Nps);
+    const int64_t step = rate > 0 ? rate : 1;
+    const int64_t end = s->force_N_q20 + (rises ? step : -step);
+    const int64_t slewed = (held > end) == rises ? end : held; /* the nearer */
     uint32_t limits = 0;
 
     if (run != 1) { return no_force(s, asked, f); }
