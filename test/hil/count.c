@@ -41,20 +41,22 @@ void count_tick(struct count *c, const struct hil *h)
     c->at_ps = h->now_ps;
 }
 
-void count_scene(struct count *c, const struct hil *h, unsigned key)
+void count_scene(struct count *c, const struct hil *h)
 {
     c->scene_at = h->insns;
-    c->key = key;
 }
 
-uint32_t count_scene_end(struct count *c, const struct hil *h)
+uint32_t count_scene_end(struct count *c, const struct hil *h, unsigned key)
 {
     const uint32_t n = (uint32_t)(h->insns - c->scene_at);
     unsigned i = 0;
     keep(c, &c->scene, n);
-    while (i < c->classes && c->class[i].key != c->key) { i++; }
-    if (i == COUNT_CLASSES) { return n; }
-    if (i == c->classes) { c->class[c->classes++] = (struct count_class){c->key, 0, n, n}; }
+    while (i < c->classes && c->class[i].key != key) { i++; }
+    if (i == COUNT_CLASSES) {
+        c->no_memory = 1;
+        return n;
+    }
+    if (i == c->classes) { c->class[c->classes++] = (struct count_class){key, 0, n, n}; }
     c->class[i].n++;
     if (n < c->class[i].min) { c->class[i].min = n; }
     if (n > c->class[i].max) { c->class[i].max = n; }
@@ -93,21 +95,54 @@ static void print_row(const char *what, struct figure *f)
     printf("  %-34s %9" PRIu32 " %9" PRIu32 " %9" PRIu32 "\n", what, r.min, r.median, r.max);
 }
 
-/* "runs, a glove frame, 2 packets" */
+/* "runs, a glove frame, 2 track, 1 planes" */
 static const char *class_name(unsigned key, char *text, size_t cap_B)
 {
-    const unsigned packets = key / COUNT_PACKET;
-    int n = snprintf(text, cap_B, "%s%s", key & COUNT_RUNS ? "runs" : "off",
-                     key & COUNT_GLOVE ? ", a glove frame" : "");
-    if (packets && n > 0) {
-        snprintf(text + n, cap_B - (size_t)n, ", %u packet%s", packets, packets > 1 ? "s" : "");
+    static const struct {
+        unsigned of;
+        const char *name;
+    } count[] = {{COUNT_TRACKS, "track"},
+                 {COUNT_HELLO, "hello"},
+                 {COUNT_PLANES, "planes"},
+                 {COUNT_PARAM, "param"},
+                 {COUNT_REFUSED, "refused"}};
+    size_t at =
+        (size_t)snprintf(text, cap_B, "%s%s%s", key & COUNT_RUNS ? "runs" : "off",
+                         key & COUNT_FIRST ? ", first" : "", key & COUNT_GLOVE ? ", glove" : "");
+    for (unsigned i = 0; i < sizeof count / sizeof count[0]; i++) {
+        const unsigned n = key / count[i].of & COUNT_MASK;
+        if (n && at < cap_B) {
+            at += (size_t)snprintf(text + at, cap_B - at, ", %u %s", n, count[i].name);
+        }
     }
     return text;
 }
 
-uint32_t count_print(struct count *c, const struct hil *h, double period_s)
+static int by_key(const void *a, const void *b)
+{
+    const struct count_class *x = a, *y = b;
+    return (x->key > y->key) - (x->key < y->key);
+}
+
+/* Returns the widest spread. */
+static uint32_t print_classes(struct count *c)
 {
     uint32_t widest_ppm = 0;
+    qsort(c->class, c->classes, sizeof c->class[0], by_key);
+    printf("  the scene's, by class of ticks: key, ticks, min, max, (max - min) / max\n");
+    for (unsigned i = 0; i < c->classes; i++) {
+        const struct count_class *k = &c->class[i];
+        char name[96];
+        const uint32_t ppm = (uint32_t)((uint64_t)(k->max - k->min) * 1000000 / k->max);
+        printf("  %6u %-40s %8" PRIu64 " %6" PRIu32 " %6" PRIu32 " %6.2f %%\n", k->key,
+               class_name(k->key, name, sizeof name), k->n, k->min, k->max, ppm * 1e-4);
+        if (ppm > widest_ppm) { widest_ppm = ppm; }
+    }
+    return widest_ppm;
+}
+
+uint32_t count_print(struct count *c, const struct hil *h, double period_s)
+{
     const double insn_us = (double)h->cost.insn_ps * 1e-6;
     printf("  boot to the first tick: %" PRIu64 " instructions, %" PRIu64
            " port accesses, %.3f ms\n",
@@ -121,14 +156,5 @@ uint32_t count_print(struct count *c, const struct hil *h, double period_s)
     printf("  share of %.3f us: instructions %.2f %% (max), all %.2f %% (max)\n", period_s * 1e6,
            100 * count_range(&c->insns).max * insn_us / (period_s * 1e6),
            100 * count_range(&c->busy_ns).max * 1e-9 / period_s);
-    for (unsigned i = 0; i < c->classes; i++) {
-        const struct count_class *k = &c->class[i];
-        char name[48];
-        const uint32_t ppm = (uint32_t)((uint64_t)(k->max - k->min) * 1000000 / k->max);
-        printf("  scene, %-32s %7" PRIu64 " ticks: %" PRIu32 " .. %" PRIu32
-               " instructions, spread %.2f %%\n",
-               class_name(k->key, name, sizeof name), k->n, k->min, k->max, ppm * 1e-4);
-        if (ppm > widest_ppm) { widest_ppm = ppm; }
-    }
-    return widest_ppm;
+    return print_classes(c);
 }

@@ -6,7 +6,7 @@
 
 #include "scene.h"
 
-#define COUNT_CLASSES 24
+#define COUNT_CLASSES 96
 
 struct figure {
     uint32_t *at; /* one per tick, for the median */
@@ -14,13 +14,25 @@ struct figure {
 };
 
 struct count_class {
-    unsigned key; /* what made the tick another: enum count_key */
+    unsigned key; /* enum count_key */
     uint64_t n;
     uint32_t min, max;
 };
 
-/* A glove frame; so many packets; running. */
-enum count_key { COUNT_GLOVE = 1, COUNT_RUNS = 2, COUNT_PACKET = 4, COUNT_KEYS = 64 };
+/* What makes a class of ticks: bits, and counts of three. Packets are counted by kind, and those
+ * among them that were refused. */
+enum count_key {
+    COUNT_RUNS = 1 << 0,   /* drives are enabled when the tick ends              */
+    COUNT_GLOVE = 1 << 1,  /* a new glove frame                                  */
+    COUNT_FIRST = 1 << 2,  /* the first since power-on                           */
+    COUNT_TRACKS = 1 << 3, /* fingers whose q_lim moves along                    */
+    COUNT_HELLO = 1 << 6,
+    COUNT_PLANES = 1 << 9,
+    COUNT_PARAM = 1 << 12,
+    COUNT_REFUSED = 1 << 15,
+    COUNT_KEYS = 1 << 18,
+    COUNT_MASK = 7
+};
 
 struct count {
     /* from the timer's interrupt to the next wait */
@@ -36,13 +48,12 @@ struct count {
     int no_memory;
     uint64_t at_insns, at_ports, at_cards, at_ps; /* when this tick began                      */
     uint64_t scene_at;
-    unsigned key;
 };
 
 void count_wait(struct count *c, const struct hil *h); /* the image waits */
 void count_tick(struct count *c, const struct hil *h); /* and is woken    */
-void count_scene(struct count *c, const struct hil *h, unsigned key);
-uint32_t count_scene_end(struct count *c, const struct hil *h);
+void count_scene(struct count *c, const struct hil *h);
+uint32_t count_scene_end(struct count *c, const struct hil *h, unsigned key); /* what it took */
 void count_free(struct count *c);
 
 struct count_range {

@@ -7,8 +7,7 @@
 #include <string.h>
 
 /* Offsets in struct exh_scene (examples/scene.h) of a 32-bit image. */
-enum { SCENE_FINGERS = 8, SCENE_LINK = 32, SCENE_TICK = 44 };
-enum { LINK_IN = 8 };
+enum { SCENE_FINGERS = 8, SCENE_TICK = 44 };
 
 struct run run;
 
@@ -19,19 +18,15 @@ static void on_back(struct hil *h, uint32_t address)
     struct exh_drive_out out;
     (void)address;
     if (!run.count.ticking) { return; }
-    if (run.out <= HIL_RAM_B - sizeof out) {
-        memcpy(&out, &h->ram[run.out], sizeof out);
-        run.count.key |= out.enable ? COUNT_RUNS : 0;
+    if (run.out > HIL_RAM_B - sizeof out) {
+        hil_broke(h, "the scene's output is at 0x%lx", (unsigned long)run.out);
+        return;
     }
-    const uint32_t n = count_scene_end(&run.count, h);
-    if (run.opt->where >= 0 && run.count.key == (unsigned)run.opt->where) { where_end(n); }
-}
-
-static unsigned class_of(const struct hil *h, const struct exh_scene_in *in)
-{
-    const uint32_t link = hil_word(h, run.scene + SCENE_LINK);
-    const uint32_t mail = link ? hil_word(h, link + LINK_IN) : 0;
-    return (in->glove_new ? COUNT_GLOVE : 0) | (mail ? hil_word(h, mail) & 0xFF : 0) * COUNT_PACKET;
+    memcpy(&out, &h->ram[run.out], sizeof out);
+    run.runs = out.enable != 0;
+    run.key = class_out(&run.class_of, h, &out, run.key);
+    const uint32_t n = count_scene_end(&run.count, h, run.key);
+    if (run.opt->where >= 0 && run.key == (unsigned)run.opt->where) { where_end(n); }
 }
 
 /* The scene's tick is called: tick(in, out). */
@@ -52,14 +47,15 @@ static void on_tick(struct hil *h, uint32_t address)
     memcpy(&in, &h->ram[in_at], sizeof in);
     if (run.opt->wild) {
         run.inputs.torn = run.ticks > (uint64_t)run.opt->ticks / 4 * 3;
-        inputs_next(&run.inputs, run.count.key & COUNT_RUNS, &in);
+        inputs_next(&run.inputs, run.runs, &in);
         memcpy(&h->ram[in_at], &in, sizeof in);
     }
     if (run.back == 0) {
         run.back = hil_word(h, sp);
         hil_watch_at(h, run.back, on_back);
     }
-    count_scene(&run.count, h, class_of(h, &in));
+    run.key = class_in(&run.class_of, h, &in) | (run.ticks == 1 ? COUNT_FIRST : 0);
+    count_scene(&run.count, h);
     if (run.opt->where >= 0) { where_begin(); }
 }
 
@@ -230,6 +226,8 @@ int run_open(const struct run_options *opt)
         return -1;
     }
     if (open_box(symbol) < 0) { return -1; }
+    run.class_of.scene = run.scene;
+    run.class_of.twin = run.world.ref_cfg.scene;
     command_line(options, sizeof options);
     hil_command(h, run.opt->image, options);
     open_hooks(h);

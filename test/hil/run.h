@@ -2,7 +2,7 @@
 #ifndef HIL_RUN_H
 #define HIL_RUN_H
 
-#include "count.h"
+#include "class.h"
 #include "inputs.h"
 #include "world.h"
 
@@ -26,6 +26,9 @@ struct run {
     uint32_t scene, tick,
         back; /* addresses: descriptor, its tick function, where that returns to */
     uint32_t out; /* where its outputs go                          */
+    struct class_of class_of;
+    unsigned key; /* of the tick under way: enum count_key           */
+    int runs; /* the drives were enabled when the last tick ended */
     uint64_t passed; /* instants of the timer since the first wait,   */
     uint64_t instants, ticks; /* those up to the last tick of the scene; these ticks */
     uint64_t late; /* instants that found it at work               */

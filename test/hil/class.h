@@ -1,0 +1,18 @@
+/* Which class of ticks a tick was of, for what the scene costs (count.h). */
+#ifndef HIL_CLASS_H
+#define HIL_CLASS_H
+
+#include "count.h"
+
+struct class_of {
+    const struct exh_scene *twin; /* the same scene, of this program: names of signals; or NULL */
+    uint32_t scene; /* the image's, an address                       */
+    uint32_t accepted; /* packets, up to the tick before                 */
+};
+
+/* Sum of enum count_key: before the tick, of what goes in; and behind it, of what came out. */
+unsigned class_in(struct class_of *c, const struct hil *h, const struct exh_scene_in *in);
+unsigned class_out(struct class_of *c, const struct hil *h, const struct exh_drive_out *out,
+                   unsigned key);
+
+#endif
