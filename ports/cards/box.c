@@ -96,13 +96,13 @@ static int board_fails(unsigned i, int err, struct exh_card_fault *f)
 
 static void wire(const struct exh_box_config *c)
 {
-    const struct wiring *w = c->fingers == 1 ? &one_finger : &all_fingers;
+    const struct wiring *w = c->fingers == 1 && !c->full ? &one_finger : &all_fingers;
     box.cfg = *c;
     box.wiring = w;
-    box.boards = c->fingers == 1 ? 1 : 2;
+    box.boards = w == &one_finger ? 1 : 2;
     for (unsigned i = 0; i < 2; i++) {
         box.axes[i] = 0;
-        box.lines_off[i] = c->out_invert[i] & 0xF0u;
+        box.lines_off[i] = c->out_invert[i];
     }
     for (unsigned i = 0; i < c->fingers; i++) { box.axes[w->axis[i].card]++; }
 }
@@ -148,6 +148,16 @@ static void forget(struct exh_box_report *report)
     }
 }
 
+/* Wired for five fingers, though the configuration says for one? Then e-stop and dead-man would
+ * be read where two drives say that they are ready, and alive would enable a third. */
+static int other_wiring(const struct exh_box_config *c)
+{
+    const uint16_t a = c->s526_base[0], b = c->s526_base[1];
+    uint16_t got;
+    if (box.wiring != &one_finger || a == b || (b & 0x3Fu) != 0 || b < 0x100) { return 0; }
+    return exh_s526_is_there(b, &got);
+}
+
 int exh_box_open(const struct exh_box_config *config, struct exh_box_report *report)
 {
     struct exh_card_fault f = {EXH_CARD_CONFIG, 0, 0, 0, 0, 0};
@@ -155,11 +165,15 @@ int exh_box_open(const struct exh_box_config *config, struct exh_box_report *rep
     unsigned row;
     forget(report);
     row = exh_box_check(config, &value);
+    if (row == EXH_BOX_ROWS) {
+        wire(config);
+        value = config->full;
+        if (other_wiring(config)) { row = EXH_BOX_ROW_FULL; }
+    }
     if (row != EXH_BOX_ROWS) {
         (void)exh_card_fault(&f, EXH_CARD_BAD_VALUE, row, value, 0, 0);
         return fail(EXH_BOX_CARDS, 0, -EXH_E_RANGE, &f);
     }
-    wire(config);
     for (unsigned i = 0; i < box.boards; i++) {
         const int err = exh_s526_open(&box.s526[i], config->s526_base[i], ad_mask(i),
                                       box.lines_off[i], &config->s526, &f);

@@ -2,10 +2,10 @@
  * cards, over the port accesses of io.h.
  *
  * Two Sensoray 526 (A: fingers 0..3, B: finger 4) and one Diamond MM-32X-AT (glove). What a
- * configuration does not use is never touched: one finger needs board A alone. Codes are those
- * of exhand/drive.h and exhand/glove.h, nominal: what the calibration of a card changes is
- * applied here. docs/CARDS.md has every access with the fact it rests on, the wiring, and how
- * many accesses a tick takes.
+ * configuration does not use is not touched: one finger needs board A alone, and B is read once,
+ * to see that it is not there. Codes are those of exhand/drive.h and exhand/glove.h, nominal: what
+ * the calibration of a card changes is applied here. docs/CARDS.md has every access with the fact
+ * it rests on, the wiring, and how many accesses a tick takes.
  *
  * One box in a program; its functions are called from one thread, exh_box_safe() from anywhere.
  */
@@ -36,12 +36,15 @@ enum exh_box_when {
 struct exh_box_config {
     uint16_t s526_base[2];    /* multiples of 0x40, 0x100 .. 0xFFC0               */
     uint16_t mm32xat_base;    /* a place its jumpers have                         */
-    uint8_t fingers;          /* 1: board A alone; 2..5: A and B                  */
+    uint8_t fingers;          /* in use                                           */
+    uint8_t full;             /* 1: wired for five fingers, A and B, also where one is in use.
+                               * 0: one finger is board A alone, wired otherwise; refused where
+                               * B answers, since A's lines then mean something else */
     uint8_t monitor;          /* current monitors, enum exh_box_when              */
     uint8_t supply;           /* 1: the supply is converted with them             */
     uint8_t glove;            /* enum exh_box_when; EXH_BOX_NEVER: its card is not touched */
-    uint8_t din_invert[2];  /* of A, B: input pins 0..3 whose healthy level is 0 */
-    uint8_t out_invert[2]; /* output pins 4..7 whose active level is 0         */
+    uint8_t din_invert[2];    /* of A, B: input pins 0..3 whose healthy level is 0 */
+    uint8_t out_invert[2];    /* output pins 4..7 whose active level is 0, bits 0xF0 */
     uint16_t dac_span_raw;    /* codes either side of 0 A that ever go out        */
     struct exh_s526_par s526;
     struct exh_mm32xat_par mm32xat;
@@ -63,6 +66,8 @@ enum exh_box_row {
     EXH_BOX_ROW_SPAN,
     EXH_BOX_ROW_WAIT, /* a limit of 0, or above 60000 us                          */
     EXH_BOX_ROW_SCAN, /* channels, interval, lost_limit                           */
+    EXH_BOX_ROW_PINS, /* another bit than those in din_invert, out_invert         */
+    EXH_BOX_ROW_FULL, /* not 0 or 1; or 0 with one finger, and board B answers    */
     EXH_BOX_ROWS
 };
 

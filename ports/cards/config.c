@@ -34,7 +34,7 @@ static int glove_base_ok(uint16_t base)
 
 static unsigned bases(const struct exh_box_config *c, int32_t *value)
 {
-    const int second = c->fingers > 1, glove = c->glove != EXH_BOX_NEVER;
+    const int second = c->fingers > 1 || c->full, glove = c->glove != EXH_BOX_NEVER;
     *value = c->s526_base[0];
     if (!base_ok(c->s526_base[0])) { return EXH_BOX_ROW_BASE_A; }
     if (second) {
@@ -52,6 +52,18 @@ static unsigned bases(const struct exh_box_config *c, int32_t *value)
     return EXH_BOX_ROWS;
 }
 
+/* A bit that turns nothing over was meant for a pin: outputs would be active when they are off. */
+static int pins_ok(const struct exh_box_config *c, int32_t *value)
+{
+    for (unsigned i = 0; i < 2; i++) {
+        *value = c->din_invert[i];
+        if (c->din_invert[i] & 0xF0u) { return 0; }
+        *value = c->out_invert[i];
+        if (c->out_invert[i] & 0x0Fu) { return 0; }
+    }
+    return 1;
+}
+
 static int wait_ok(uint32_t us, int32_t *value)
 {
     *value = (int32_t)us;
@@ -63,6 +75,9 @@ unsigned exh_box_check(const struct exh_box_config *c, int32_t *value)
     const struct exh_mm32xat_par *m = &c->mm32xat;
     *value = c->fingers;
     if (c->fingers < 1 || c->fingers > EXH_FINGERS) { return EXH_BOX_ROW_FINGERS; }
+    *value = c->full;
+    if (c->full > 1) { return EXH_BOX_ROW_FULL; }
+    if (!pins_ok(c, value)) { return EXH_BOX_ROW_PINS; }
     *value = c->monitor;
     if (c->monitor >= EXH_BOX_WHENS) { return EXH_BOX_ROW_MONITOR; }
     *value = c->glove;
@@ -79,7 +94,7 @@ unsigned exh_box_check(const struct exh_box_config *c, int32_t *value)
             return EXH_BOX_ROW_WAIT;
         }
         *value = m->channels;
-        if (m->channels < EXH_GLOVE_SENSORS || m->channels > EXH_MM32XAT_CHANNELS ||
+        if (m->channels < EXH_GLOVE_SENSORS || m->channels >= EXH_MM32XAT_CHANNELS ||
             m->interval > 3 || m->lost_limit == 0) {
             return EXH_BOX_ROW_SCAN;
         }

@@ -11,7 +11,7 @@
 
 /* What is not certain about the card, and how much it may take. */
 struct exh_mm32xat_par {
-    uint8_t channels;      /* 0 .. channels-1 are scanned, 1 .. 32                */
+    uint8_t channels;      /* 0 .. channels-1 are scanned, 1 .. 31                */
     uint8_t interval;      /* SCINT: 0 20 us, 1 15, 2 10, 3 5 (-AT) or 4 (X) a sample */
     uint8_t words;         /* 1: a sample is one 16-bit read                      */
     uint8_t lost_limit;    /* so many scans lost in a row are a fault, 1 .. 255   */

@@ -70,6 +70,9 @@ struct exh_s526 {
     struct exh_s526_id id;
 };
 
+/* Is there such a card? One read; *got: what it gave. */
+int exh_s526_is_there(uint16_t base, uint16_t *got);
+
 /* Finds, tests and calibrates the card at base; outputs off, counters 0 and counting x4.
  * ad_mask: channels of a scan; lines_off: levels of pins 4..7 when off. 0, -EXH_E_ABSENT
  * (no card, another card) or -EXH_E_IO with *f. */

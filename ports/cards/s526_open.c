@@ -29,12 +29,19 @@
 
 /* --- detect --- */
 
+int exh_s526_is_there(uint16_t base, uint16_t *got)
+{
+    *got = exh_io_in16((uint16_t)(base + S526_EEC));
+    return *got == 0x526A || *got == 0x526B;
+}
+
 static int detect(struct exh_s526 *s, struct exh_card_fault *f)
 {
-    const uint16_t got = s526_in(s, S526_EEC);
+    uint16_t got;
+    const int is = exh_s526_is_there(s->base, &got);
     f->phase = EXH_CARD_DETECT;
     s->id.signature = got;
-    if (got == 0x526A || got == 0x526B) { return 0; }
+    if (is) { return 0; }
     if (got == S526_ALL_ONES) {
         (void)exh_card_fault(f, EXH_CARD_EMPTY, S526_EEC, got, 0, 0);
     } else {
@@ -276,6 +283,8 @@ static int calibrate(struct exh_s526 *s, struct exh_card_fault *f)
     if (ppm < -AD_GAIN_PPM || ppm > AD_GAIN_PPM) {
         return exh_card_fault(f, EXH_CARD_AD_GAIN, 0, (int32_t)ppm, -AD_GAIN_PPM, AD_GAIN_PPM);
     }
+    /* At the end of the range 10 V may be any more than that: the gain is this or less. */
+    if (c10.hi == INT16_MAX && gain_q30 > GAIN_1) { gain_q30 = GAIN_1; }
     if (gain_q30 >= GAIN_1 - SAME_GAIN_Q30 && gain_q30 <= GAIN_1 + SAME_GAIN_Q30) {
         gain_q30 = GAIN_1;
     }

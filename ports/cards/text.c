@@ -21,6 +21,8 @@ static const char *const row_text[EXH_BOX_ROWS] = {
     [EXH_BOX_ROW_SPAN] = "span of the D/A",
     [EXH_BOX_ROW_WAIT] = "limit of a wait",
     [EXH_BOX_ROW_SCAN] = "channels, interval or lost_limit of the scan",
+    [EXH_BOX_ROW_PINS] = "pins to be turned over",
+    [EXH_BOX_ROW_FULL] = "full, which is 1 where board B answers",
 };
 
 struct text {

@@ -26,6 +26,8 @@ static const struct exh_signal rows[] = {
     {0xA20D, 0, EXH_WHEN_SETUP, 0, 3, 2, "interval", "",
      "of a glove scan: 0 20 us, 1 15, 2 10, 3 4 or 5"},
     {0xA20E, 0, EXH_WHEN_SETUP, 0, 1, 0, "scan_words", "", "1: glove samples by 16-bit reads"},
+    {0xA20F, 0, EXH_WHEN_SETUP, 0, 1, 0, "full", "",
+     "1: wired for five fingers, whatever the scene uses"},
 };
 static const struct exh_signal_group groups[] = {{rows, sizeof rows / sizeof rows[0], 1}};
 const struct exh_signal_table pc104_box_table = {groups, 1};
@@ -41,6 +43,7 @@ void pc104_box_config(const struct exh_scene *sc, struct exh_box_config *c)
     c->s526_base[1] = (uint16_t)p->s526_b;
     c->mm32xat_base = (uint16_t)p->mm32xat;
     c->fingers = sc ? sc->fingers : EXH_FINGERS; /* NULL: all there is */
+    c->full = (uint8_t)p->full;
     c->monitor = (uint8_t)p->monitor;
     c->supply = (uint8_t)p->supply;
     c->glove = (uint8_t)(sc == NULL || sc->read_glove ? p->scan : EXH_BOX_NEVER);

@@ -77,6 +77,7 @@ struct pc104_box_par {
     int32_t din_invert_a, din_invert_b, out_invert_a, out_invert_b;
     int32_t ad_settle, ee_nominal;
     int32_t interval, scan_words;
+    int32_t full;
 };
 extern struct pc104_box_par pc104_box_par;
 extern const struct exh_signal_table pc104_box_table;

@@ -128,6 +128,7 @@ int cards_start(const struct posix_cards *c, unsigned fingers, int glove)
     cards.cfg = *c;
     cards.fingers = fingers;
     e.fault = c->fault;
+    e.s526[1].present = fingers > 1;
     emu_box_open(&cards.box, &e);
     emu_bus_connect(&cards.box);
     b.s526_base[0] = e.s526[0].base;

@@ -237,7 +237,7 @@ TEST(all_cards_that_are_absent_are_named)
 
 TEST(faults_by_example)
 {
-    struct exh_box_config c = one();
+    struct exh_box_config c = five();
     bus_reset();
     bus.s526[0].signature = 0x1234;
     CHECK_EQ_I64(exh_box_open(&c, &report), -EXH_E_ABSENT);
@@ -290,6 +290,14 @@ TEST(configurations_are_refused_by_name)
     REFUSED(EXH_BOX_ROW_WAIT, c.s526.ad_wait_us = 0);
     REFUSED(EXH_BOX_ROW_WAIT, c.s526.ee_wait_us = 60001);
     REFUSED(EXH_BOX_ROW_WAIT, c.mm32xat.scan_wait_us = 0);
+    REFUSED(EXH_BOX_ROW_FULL, c.full = 2);
+    for (unsigned bit = 0; bit < 4; bit++) {
+        REFUSED(EXH_BOX_ROW_PINS, c.out_invert[0] = (uint8_t)(1u << bit));
+        REFUSED(EXH_BOX_ROW_PINS, c.out_invert[1] = (uint8_t)(1u << bit));
+        REFUSED(EXH_BOX_ROW_PINS, c.din_invert[0] = (uint8_t)(0x10u << bit));
+        REFUSED(EXH_BOX_ROW_PINS, c.din_invert[1] = (uint8_t)(0x10u << bit));
+    }
+    REFUSED(EXH_BOX_ROW_SCAN, c.mm32xat.channels = 32);
     REFUSED(EXH_BOX_ROW_SCAN, c.mm32xat.channels = 21);
     REFUSED(EXH_BOX_ROW_SCAN, c.mm32xat.interval = 4);
     REFUSED(EXH_BOX_ROW_SCAN, c.mm32xat.lost_limit = 0);
@@ -297,6 +305,37 @@ TEST(configurations_are_refused_by_name)
     CHECK_EQ_I64(put(1), -EXH_E_IO);
     says(exh_box_error(),
          "box: configuration: channels, interval or lost_limit of the scan: value not allowed: 22");
+}
+
+/* The lines of a box wired for five fingers mean something else: one finger is refused there,
+ * before anything is written, and runs with the wiring of five when that is said. */
+TEST(one_finger_on_a_full_box_has_to_be_said)
+{
+    struct exh_box_config c = one();
+    struct exh_drive_out out = {{32868, 32868, 32868, 32868, 32868}, 0x1F, 1};
+    bus_reset();
+    CHECK_EQ_I64(exh_box_open(&c, &report), -EXH_E_RANGE);
+    says(exh_box_error(), "box: configuration: full, which is 1 where board B answers: value not "
+                          "allowed: 0");
+    bus_clear();
+    CHECK_EQ_I64(exh_box_open(&c, &report), -EXH_E_RANGE);
+    CHECK(bus_said(0, "r 2B4 526B"), "more than one look");
+    c.full = 1;
+    opened(c);
+    CHECK_EQ_I64(exh_box_write_drive(&out), 0);
+    CHECK_EQ_I64(bus.s526[0].dio, 0x810); /* finger 0 and no other */
+    CHECK_EQ_I64(bus.s526[1].dio, 0x820); /* alive */
+    CHECK_EQ_I64(bus.s526[0].da_out[0], 32868);
+    CHECK_EQ_I64(bus.s526[0].da_out[1], 32768);
+    CHECK_EQ_I64(bus.s526[1].da_out[0], 32768);
+    bus.s526[0].pins = 0x0F;
+    bus.s526[1].pins = 0x0C; /* drive 4 is not asked; the e-stop is pressed */
+    CHECK_EQ_I64(exh_box_read_drive(&in), 0);
+    CHECK_EQ_I64(in.din, EXH_DIN_DRIVE0 | EXH_DIN_DEADMAN);
+    bus_reset();
+    bus.s526[1].base = 0;
+    CHECK_EQ_I64(exh_box_open(&c, &report), -EXH_E_ABSENT);
+    CHECK_EQ_I64(exh_box_error()->card, EXH_BOX_B);
 }
 
 TEST(every_place_of_the_glove_s_jumpers_is_found)
@@ -332,4 +371,4 @@ TEST_MAIN("box fault", a_board_that_dies_is_found_within_a_tick,
           safe_touches_no_port_where_no_board_was_found, safe_may_come_before_any_access,
           all_cards_that_are_absent_are_named, faults_by_example,
           configurations_are_refused_by_name, every_place_of_the_glove_s_jumpers_is_found,
-          what_is_not_used_may_be_anything);
+          what_is_not_used_may_be_anything, one_finger_on_a_full_box_has_to_be_said);

@@ -73,7 +73,7 @@ int bus_said(unsigned i, const char *want);
 /* A double at a word of an EEPROM: sign * mantissa * 2^exponent, exactly. */
 void bus_double(uint16_t *word, int negative, uint64_t mantissa, int exponent);
 
-/* D/A at 0 A and output pins at their off level, of each board that is there. */
+/* D/A at 0 A and output pins at their off level, of each board that is there and not dead. */
 int bus_safe(void);
 
 #endif

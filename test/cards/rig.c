@@ -24,6 +24,7 @@ struct exh_box_config one(void)
 void opened(struct exh_box_config c)
 {
     bus_reset();
+    if (c.fingers == 1 && !c.full) { bus.s526[1].base = 0; } /* such a box has A alone */
     alive = 0;
     CHECK_EQ_I64(exh_box_open(&c, &report), 0);
     bus_clear();
@@ -44,10 +45,10 @@ void fails(int err, unsigned card_no, unsigned what)
     CHECK_EQ_I64(err, -EXH_E_IO);
     CHECK(e->code == -EXH_E_IO && e->card == card_no && e->fault.what == what, "%d: %s: %s",
           e->code, exh_box_card_text(e->card), exh_card_what_text(e->fault.what));
-    CHECK(bus_safe() || bus.dead_card == card_no, "outputs left on");
+    CHECK(bus_safe(), "outputs left on");
     CHECK_EQ_I64(put(1), -EXH_E_IO);
     CHECK_EQ_I64(exh_box_read_drive(&in), -EXH_E_IO);
-    CHECK(bus_safe() || bus.dead_card == card_no, "outputs on again");
+    CHECK(bus_safe(), "outputs on again");
 }
 
 struct exh_box_config gloved(unsigned when)

@@ -121,6 +121,25 @@ TEST(a_reference_off_10_V_on_a_nominal_card_changes_no_code)
     }
 }
 
+/* Nor where the reference, or the zero, lies so high that 10 V is beyond the range: how far is not
+ * known, and a gain made of it would tell every voltage too high. */
+TEST(a_reference_beyond_the_range_raises_no_gain)
+{
+    bus_reset();
+    bus_double(&bus.s526[0].ee[0x20], 0, 10199 * (UINT64_C(1) << 40) / 1000, -40);
+    CHECK_EQ_I64(open_it(), 0);
+    for (int32_t raw = -32768; raw <= 32767; raw++) {
+        CHECK_EQ_I64(exh_s526_ad_code(&card.id.ad, (int16_t)raw), raw);
+    }
+    bus_reset();
+    bus.s526[0].ad[9] = 300;
+    CHECK_EQ_I64(open_it(), 0);
+    for (int32_t raw = -32768; raw <= 32767; raw++) {
+        const int32_t want = raw - 300 < -32768 ? -32768 : raw - 300;
+        CHECK_EQ_I64(exh_s526_ad_code(&card.id.ad, (int16_t)raw), want);
+    }
+}
+
 /* ---- calibration --------------------------------------------------------------------- */
 
 /* round half up of num / den, den > 0 */
@@ -408,7 +427,8 @@ TEST(a_card_that_dies_while_it_is_opened_is_found_dead)
 
 TEST_MAIN("s526", doubles_by_example, doubles_that_are_no_number_or_too_large_are_refused,
           doubles_of_every_size_round_once, a_nominal_card_changes_no_code,
-          a_reference_off_10_V_on_a_nominal_card_changes_no_code, da_codes_are_the_voltage_s,
+          a_reference_off_10_V_on_a_nominal_card_changes_no_code,
+          a_reference_beyond_the_range_raises_no_gain, da_codes_are_the_voltage_s,
           ad_codes_are_the_voltage_s, references_are_averaged_and_their_noise_is_bounded,
           half_a_code_of_offset_is_none, implausible_references_are_refused_by_name,
           a_word_of_the_eeprom_by_example, garbage_in_the_eeprom_is_refused_by_name,

@@ -145,8 +145,9 @@ static void on_line(struct hil *h, const char *text)
 /* The cards, and what is around them: a device, or constants that let a scene run. */
 static int open_box(const char *symbol)
 {
-    const struct emu_config cards = emu_box_config();
+    struct emu_config cards = emu_box_config();
     const uint32_t fingers = run.scene ? hil_word(&run.h, run.scene + SCENE_FINGERS) & 0xFF : 0;
+    cards.s526[1].present = fingers != 1; /* a box of one finger has A alone */
     if (!run.opt->absent) {
         box_open(&run.box, fingers == 1, &cards);
         run.h.box = &run.box;

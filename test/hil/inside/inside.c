@@ -33,7 +33,8 @@ static void lines(void)
 
 static void power_on(void)
 {
-    const struct emu_config c = emu_box_config();
+    struct emu_config c = emu_box_config();
+    c.s526[1].present = EXH_SCENE.fingers > 1; /* a box of one finger has A alone */
     emu_box_open(&box, &c);
     on = 1;
     lines();
