@@ -288,6 +288,21 @@ static uint16_t clamped(uint16_t raw)
     return (uint16_t)(raw < zero ? zero - span : zero + span);
 }
 
+/* What the scene takes for 0 A has to be that here, before a drive is enabled on top of it: its
+ * limits of current count from there. */
+static int at_rest(const struct exh_drive_out *out)
+{
+    const int32_t zero = EXH_S526_DA_ZERO, rest = box.cfg.dac_rest_raw;
+    struct exh_card_fault f = {EXH_CARD_CONFIG, 0, 0, 0, 0, 0};
+    for (unsigned i = 0; i < box.cfg.fingers; i++) {
+        const int32_t raw = out->dac_raw[i];
+        if (out->enable >> i & 1u || (raw >= zero - rest && raw <= zero + rest)) { continue; }
+        (void)exh_card_fault(&f, EXH_CARD_REST, i, raw, zero - rest, zero + rest);
+        return fail(EXH_BOX_CARDS, 0, -EXH_E_IO, &f);
+    }
+    return 0;
+}
+
 static void put_lines(const struct exh_drive_out *out)
 {
     const struct wiring *w = box.wiring;
@@ -311,6 +326,7 @@ int exh_box_write_drive(const struct exh_drive_out *out)
         return -EXH_E_IO;
     }
     if (!box.open) { return -EXH_E_ABSENT; }
+    if (at_rest(out) < 0) { return -EXH_E_IO; }
     for (unsigned i = 0; i < box.cfg.fingers; i++) {
         const struct place p = box.wiring->axis[i];
         exh_s526_da_put(&box.s526[p.card], p.at, clamped(out->dac_raw[i]));

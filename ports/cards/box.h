@@ -46,6 +46,8 @@ struct exh_box_config {
     uint8_t din_invert[2];    /* of A, B: input pins 0..3 whose healthy level is 0 */
     uint8_t out_invert[2];    /* output pins 4..7 whose active level is 0, bits 0xF0 */
     uint16_t dac_span_raw;    /* codes either side of 0 A that ever go out        */
+    uint16_t dac_rest_raw;    /* codes either side that a drive that is off may be given, for the
+                               * offset of its input; more is a fault: it is 0 A to nobody else */
     struct exh_s526_par s526;
     struct exh_mm32xat_par mm32xat;
 };
@@ -63,7 +65,7 @@ enum exh_box_row {
     EXH_BOX_ROW_FINGERS,
     EXH_BOX_ROW_MONITOR,
     EXH_BOX_ROW_GLOVE,
-    EXH_BOX_ROW_SPAN,
+    EXH_BOX_ROW_SPAN, /* dac_span_raw, dac_rest_raw                               */
     EXH_BOX_ROW_WAIT, /* a limit of 0, or above 60000 us                          */
     EXH_BOX_ROW_SCAN, /* channels, interval, lost_limit                           */
     EXH_BOX_ROW_PINS, /* another bit than those in din_invert, out_invert         */

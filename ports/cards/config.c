@@ -9,6 +9,7 @@ const struct exh_box_config exh_box_default = {
     .supply = 1,
     .glove = EXH_BOX_NEVER,
     .dac_span_raw = 12184,
+    .dac_rest_raw = 1000,
     .s526 = EXH_S526_PAR_DEFAULT,
     .mm32xat = EXH_MM32XAT_PAR_DEFAULT,
 };
@@ -84,6 +85,8 @@ unsigned exh_box_check(const struct exh_box_config *c, int32_t *value)
     if (c->glove >= EXH_BOX_WHENS) { return EXH_BOX_ROW_GLOVE; }
     *value = c->dac_span_raw;
     if (c->dac_span_raw > INT16_MAX) { return EXH_BOX_ROW_SPAN; }
+    *value = c->dac_rest_raw;
+    if (c->dac_rest_raw > c->dac_span_raw) { return EXH_BOX_ROW_SPAN; }
     if (!wait_ok(c->s526.ad_wait_us, value) || !wait_ok(c->s526.da_wait_us, value) ||
         !wait_ok(c->s526.ee_wait_us, value)) {
         return EXH_BOX_ROW_WAIT;

@@ -30,6 +30,7 @@ static const char *const what_text[EXH_CARD_WHATS] = {
     [EXH_CARD_QUADRATURE] = "illegal transitions of the encoder lines",
     [EXH_CARD_WAIT_TIMEOUT] = "input does not settle",
     [EXH_CARD_SCAN_TIMEOUT] = "scan does not end",
+    [EXH_CARD_REST] = "D/A code of a drive that is off is no 0 A",
     [EXH_CARD_SCAN_LOST] = "scans with too few or too many samples",
 };
 

@@ -38,6 +38,7 @@ enum exh_card_what {
     EXH_CARD_WAIT_TIMEOUT, /* the input does not settle                         */
     EXH_CARD_SCAN_TIMEOUT, /* a scan does not end                               */
     EXH_CARD_SCAN_LOST,    /* too many scans in a row with too few samples or too many */
+    EXH_CARD_REST,         /* a drive that is off is given a current; at: finger  */
     EXH_CARD_WHATS
 };
 

@@ -290,6 +290,7 @@ TEST(configurations_are_refused_by_name)
     REFUSED(EXH_BOX_ROW_WAIT, c.s526.ad_wait_us = 0);
     REFUSED(EXH_BOX_ROW_WAIT, c.s526.ee_wait_us = 60001);
     REFUSED(EXH_BOX_ROW_WAIT, c.mm32xat.scan_wait_us = 0);
+    REFUSED(EXH_BOX_ROW_SPAN, c.dac_rest_raw = 12185);
     REFUSED(EXH_BOX_ROW_FULL, c.full = 2);
     for (unsigned bit = 0; bit < 4; bit++) {
         REFUSED(EXH_BOX_ROW_PINS, c.out_invert[0] = (uint8_t)(1u << bit));
@@ -338,6 +339,25 @@ TEST(one_finger_on_a_full_box_has_to_be_said)
     CHECK_EQ_I64(exh_box_error()->card, EXH_BOX_B);
 }
 
+/* A scene whose 0 A is another code: nothing of it goes out, whatever its own limits say. */
+TEST(a_current_for_a_drive_that_is_off_is_a_fault)
+{
+    for (unsigned i = 0; i < EXH_FINGERS; i++) {
+        struct exh_drive_out out = {{33768, 33768, 31768, 31768, 32768}, 0, 0};
+        opened(five());
+        CHECK_EQ_I64(exh_box_write_drive(&out), 0);
+        out.dac_raw[i] = i & 1 ? 33769 : 31767;
+        out.enable = (uint8_t)(1u << i);
+        CHECK_EQ_I64(exh_box_write_drive(&out), 0);
+        out.enable = (uint8_t)(0x1F ^ out.enable);
+        fails(exh_box_write_drive(&out), EXH_BOX_CARDS, EXH_CARD_REST);
+        CHECK_EQ_I64(exh_box_error()->fault.at, i);
+    }
+    says(exh_box_error(),
+         "box: configuration: D/A code of a drive that is off is no 0 A, number 4: "
+         "31767 (31768 .. 33768)");
+}
+
 TEST(every_place_of_the_glove_s_jumpers_is_found)
 {
     static const uint16_t base[] = {0x100, 0x140, 0x180, 0x200, 0x280, 0x300, 0x340, 0x380};
@@ -371,4 +391,5 @@ TEST_MAIN("box fault", a_board_that_dies_is_found_within_a_tick,
           safe_touches_no_port_where_no_board_was_found, safe_may_come_before_any_access,
           all_cards_that_are_absent_are_named, faults_by_example,
           configurations_are_refused_by_name, every_place_of_the_glove_s_jumpers_is_found,
-          what_is_not_used_may_be_anything, one_finger_on_a_full_box_has_to_be_said);
+          what_is_not_used_may_be_anything, one_finger_on_a_full_box_has_to_be_said,
+          a_current_for_a_drive_that_is_off_is_a_fault);

@@ -266,7 +266,7 @@ TEST(codes_are_applied_together)
 
 TEST(codes_beyond_the_drive_s_range_are_clamped_and_counted)
 {
-    struct exh_drive_out out = {{0, 65535, 32768 - 12184, 32768 + 12185, 32768}, 0, 0};
+    struct exh_drive_out out = {{0, 65535, 32768 - 12184, 32768 + 12185, 32768}, 0x1F, 0};
     struct exh_box_counts n;
     opened(five());
     CHECK_EQ_I64(exh_box_write_drive(&out), 0);
