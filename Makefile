@@ -93,9 +93,9 @@ $(boot): $(image) $(PORT_ISO) FORCE
 	$(Q)$(PORT_ISO) $(image) $@ $(ARGS)
 
 # The host program: every scene that has a subcommand, over the simulated device.
-cli_src := $(wildcard ports/posix/cli/*.c ports/posix/fit/*.c) examples/log.c examples/drop/drop.c \
-           examples/calibrate/calibrate.c examples/glove/glove.c examples/glove/cal.c $(wildcard examples/bilateral/*.c) \
-           ports/pc104/stream.c
+cli_src := $(wildcard ports/posix/cli/*.c ports/posix/fit/*.c) examples/log.c examples/deadman.c examples/drop/drop.c \
+           examples/calibrate/calibrate.c examples/glove/glove.c examples/glove/cal.c \
+           $(wildcard examples/bilateral/*.c examples/bringup/*.c) ports/pc104/stream.c
 # The world's core, without its pictures, answers in the same process.
 world_opt  := main live alone bench solo link link_param view gl gl_form gl_batch gl_solid gl_layer gl_text picture_none mesh_embree mesh_none
 world_core := $(filter-out $(world_opt:%=examples/world/%.c),$(wildcard examples/world/*.c))

@@ -80,6 +80,7 @@ int exh_loop(const struct exh_scene *sc, uint32_t rate_Hz, const struct exh_loop
         sc->tick(&in, &out);
         err = exh_board_write_drive(&out);
         if (sc->link) { write_link(sc->link); }
+        if (sc->tell) { sc->tell(); }
         if (h->after) { h->after(tick, &in, &out); }
         in.command = EXH_CMD_NONE;
         tick++;

@@ -67,6 +67,9 @@ struct exh_scene {
     int (*setup)(struct exh_scene_board board);
     /* One tick. */
     void (*tick)(const struct exh_scene_in *in, struct exh_drive_out *out);
+    /* Words for people through exh_board_log, behind the outputs, where it delays none of them; or
+     * NULL. */
+    void (*tell)(void);
     /* The whole state through a cursor; NULL: not replayable. */
     void (*state)(struct exh_bytes *c);
 };

@@ -266,18 +266,22 @@ int exh_board_read_drive(struct exh_drive_in *in)
         }
     }
     in->din = EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_DRIVE0 * sim.drives;
+    if (sim.cfg.wires_in) { sim.cfg.wires_in(in); }
     return sim.cfg.cards.how ? cards_read_drive(in) : 0;
 }
 
 /* The device gets these codes, when its delay is over. */
-static int put_out(const struct exh_drive_out *out)
+static int put_out(const struct exh_drive_out *from)
 {
+    struct exh_drive_out wired = *from;
+    const struct exh_drive_out *out = &wired;
     const struct sim_device *d = &sim.cfg.device;
     const unsigned axes = sim.exo.fingers ? sim.exo.fingers : 1;
     const double T_s = (double)sim.T.num / (double)sim.T.den;
     struct output *o = &sim.queue[(sim.head + sim.queued) % OUTPUTS_MAX];
 
     if (sim.queued == OUTPUTS_MAX) { return -EXH_E_IO; }
+    if (sim.cfg.wires_out) { sim.cfg.wires_out(&wired); }
     o->at_s = sim.now_s + d->delay_tick * T_s + d->delay_s;
     for (unsigned i = 0; i < EXH_FINGERS && axes >> i; i++) {
         o->ref_A[i] = sim_drive_A(d, out->dac_raw[i], out->enable >> i & 1);

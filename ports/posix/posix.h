@@ -43,6 +43,10 @@ struct posix_config {
     struct sim_operator_par hand;
     const int16_t (*frame)[SIM_GLOVE_SENSORS]; /* recorded frames instead, the caller's, */
     long frames;             /* one a read, the last for ever; NULL: none        */
+    /* Between box and device, for who rehearses faults; NULL: nothing. What the device gets, and
+     * what it shows the box, cards included. */
+    void (*wires_out)(struct exh_drive_out *out);
+    void (*wires_in)(struct exh_drive_in *in);
 };
 
 /* Defaults: the committed device, seed 1, one fall. */
