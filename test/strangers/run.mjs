@@ -14,7 +14,7 @@ import { withOtherMask } from "./mask.mjs";
 const dir = path.resolve(process.argv[2]);
 const golden = process.argv[3];
 const update = process.argv.includes("--update");
-const limit_ms = 1000 * (Number(process.env.LIMIT_S) || 600);
+const limit_ms = 1000 * (Number(process.env.LIMIT_S) || 1800);
 const file = (...name) => fs.readFileSync(path.join(dir, ...name));
 
 const CARDS = [[0x280, 0x80, 2], [0x300, 0x10, 1]]; // from, ports, bytes of an access
