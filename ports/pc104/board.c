@@ -79,6 +79,7 @@ int exh_board_init(uint32_t rate_Hz, struct exh_period *achieved)
 int exh_board_wait(void)
 {
     uint32_t missed, late;
+    int dead;
     if (run.started) {
         pc104_link_poll(); /* behind the outputs, where it delays none of them */
         pc104_load_end();
@@ -88,8 +89,11 @@ int exh_board_wait(void)
         pc104_timer_start();
         run.started = 1;
     }
-    if (pc104_timer_wait(&missed, &late) < 0) {
-        pc104_halt(PC104_EXIT_TIMER, "timer: no tick for four periods, by the second clock");
+    dead = pc104_timer_wait(&missed, &late);
+    if (dead) {
+        pc104_halt(PC104_EXIT_TIMER, dead == -1
+                                         ? "timer: no tick for four periods, by the second clock"
+                                         : "timer: it counts, but its interrupts do not come");
     }
     pc104_load_missed(missed, late);
     run.run++;

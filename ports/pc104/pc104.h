@@ -48,6 +48,7 @@ enum pc104_provoke { /* for commissioning: shows on the real box that a failure 
                      PC104_PROVOKE_SLOW,
                      PC104_PROVOKE_TIMER,
                      PC104_PROVOKE_ASSERT,
+                     PC104_PROVOKE_MASK,
                      PC104_PROVOKE_TWICE /* CARDS=none alone: an NMI into what makes safe */
 };
 enum pc104_log { PC104_LOG_OFF, PC104_LOG_SERIAL, PC104_LOG_DEBUG, PC104_LOG_UDP };
@@ -132,7 +133,7 @@ int pc104_timer_set(uint32_t rate_Hz, struct exh_period *achieved);
 uint32_t pc104_timer_highest_Hz(uint32_t cost_counts); /* whose period is no shorter   */
 void pc104_timer_start(void);
 /* Sleeps until a tick is due: ticks that were skipped, and those that were due already when it was
- * called. < 0: the timer is dead. */
+ * called. < 0: the timer is dead, by the second clock (-1) or the want of its interrupts (-2). */
 int pc104_timer_wait(uint32_t *missed, uint32_t *late);
 uint32_t pc104_timer_now(void); /* counts, modulo 2^32                         */
 uint32_t pc104_timer_counts(void); /* in a period                                 */

@@ -3,6 +3,7 @@
 #include "pc104.h"
 
 #include "exhand/error.h"
+#include "io.h"
 
 static void spend(uint32_t periods_q1)
 {
@@ -38,6 +39,7 @@ static void processor(int32_t what)
 void pc104_provoke(int32_t what)
 {
     if (what == PC104_PROVOKE_TIMER) { pc104_timer_kill(); }
+    if (what == PC104_PROVOKE_MASK) { pc104_out8(0x21, 0xFF); } /* the 8259's, for good */
     if (what == PC104_PROVOKE_ASSERT) { EXH_ASSERT(what == PC104_PROVOKE_NONE); }
     if (what == PC104_PROVOKE_SLOW) {
         pc104_par.provoke_tick = pc104_par.provoke_tick + 1; /* this tick and all that follow */
