@@ -27,9 +27,8 @@ enum exh_box_card { EXH_BOX_A, EXH_BOX_B, EXH_BOX_GLOVE, EXH_BOX_CARDS };
 enum exh_box_when {
     EXH_BOX_NEVER, /* not at all: monitors and supply are 0, the glove is absent */
     EXH_BOX_NOW,   /* in the tick that reads it, which waits for the converter    */
-    EXH_BOX_LAST,  /* begun when the one before was read: no wait while a tick is longer than a
-                    * conversion. The first read waits, and hands over what the second does too:
-                    * the n-th read (n = 0, 1, …) has the input of the tick of read max(n-1, 0) */
+    EXH_BOX_LAST,  /* begun when the one before was read, the first when the box was opened: no
+                    * wait while a tick is longer than a conversion */
     EXH_BOX_WHENS
 };
 

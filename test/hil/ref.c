@@ -65,23 +65,22 @@ static void start(const struct exh_scene *sc, struct exh_scene_board board)
     run.signals = sc->signals ? exh_signal_count(sc->signals) : 0;
 }
 
-/* The cards convert while a tick computes, and hand over what the tick before began. */
-static void delay_monitor(uint32_t tick, struct exh_drive_in *in)
+/* The cards convert while a tick computes, and hand over what the tick before began; the first
+ * what the opening began, when nothing was at the monitors yet. */
+static void delay_monitor(struct exh_drive_in *in)
 {
     static struct exh_drive_in last;
     const struct exh_drive_in now = *in;
-    if (tick > 0) {
-        memcpy(in->mon_raw, last.mon_raw, sizeof in->mon_raw);
-        in->supply_raw = last.supply_raw;
-    }
+    memcpy(in->mon_raw, last.mon_raw, sizeof in->mon_raw);
+    in->supply_raw = last.supply_raw;
     last = now;
 }
 
 static void before(uint32_t tick, struct exh_scene_in *in)
 {
     if (!ref_held(run.cfg, tick)) { in->drive.din &= ~(uint32_t)EXH_DIN_DEADMAN; }
-    if (run.cfg->monitor_age) { delay_monitor(tick, &in->drive); }
-    if (in->glove_new && tick > 0) {
+    if (run.cfg->monitor_age) { delay_monitor(&in->drive); }
+    if (in->glove_new) {
         in->glove.age_ticks = (uint16_t)(in->glove.age_ticks + run.cfg->glove_age);
     }
     exh_deadman_before(tick, in);

@@ -20,7 +20,7 @@ struct ref_cfg {
     int settings;
     int (*prepare)(void); /* stages what is no setting: 0 or -EXH_E_...; NULL: nothing is */
     double held_s; /* from then on the dead-man switch is held */
-    uint16_t glove_age; /* of frames as the cards hand them over, ticks; the first is new */
+    uint16_t glove_age; /* of frames as the cards hand them over, ticks */
     int monitor_age; /* of monitors and supply, likewise, 0 or 1 */
 };
 
