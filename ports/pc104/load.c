@@ -10,6 +10,7 @@
 #define BINS       16u /* sixteenths of the period, then what took longer           */
 #define DRY_TICKS  64u
 #define DRY_ROUNDS 8u
+#define DRY_IO_TICKS 16u
 #define NS_PER_S   UINT64_C(1000000000)
 
 /* All in counts of the timer until somebody asks. */
@@ -149,15 +150,17 @@ void pc104_load_report(void)
 
 /* The longest of a round of ticks; the least of the rounds, so that what disturbs one of them
  * (an emulator's host, firmware) is left to the overload policy, and what costs every one is in. */
-static uint32_t least_of_rounds(void (*once)(uint32_t tick))
+static uint32_t least_of_rounds(void (*once)(uint32_t tick), uint32_t ticks, uint32_t apart)
 {
-    uint32_t least = UINT32_MAX;
+    uint32_t least = UINT32_MAX, last = pc104_timer_now();
     for (uint32_t round = 0; round < DRY_ROUNDS; round++) {
         uint32_t most = 0;
-        for (uint32_t i = 0; i < DRY_TICKS; i++) {
-            const uint32_t began = pc104_timer_now();
-            once(round * DRY_TICKS + i);
-            const uint32_t n = pc104_timer_now() - began;
+        for (uint32_t i = 0; i < ticks; i++) {
+            uint32_t began, n;
+            do { began = pc104_timer_now(); } while (began - last < apart);
+            last = began;
+            once(round * ticks + i);
+            n = pc104_timer_now() - began;
             most = n > most ? n : most;
         }
         least = most < least ? most : least;
@@ -191,7 +194,7 @@ void pc104_load_scene(const struct exh_scene *sc)
     const struct exh_scene_board board = {{1, rate_Hz}, exh_board_info.enc_bits};
     scene = sc;
     if (pc104_par.budget_us || rate_Hz < 1 || rate_Hz > 20000 || sc->setup(board) < 0) { return; }
-    scene_counts = least_of_rounds(dry_tick); /* exh_loop() sets it up anew */
+    scene_counts = least_of_rounds(dry_tick, DRY_TICKS, 0); /* exh_loop() sets it up anew */
 }
 
 /* What an idle tick asks of the cards: outputs stay zero, drives disabled. */
@@ -213,6 +216,14 @@ static void say_us(uint32_t counts)
     pc104_say(" us");
 }
 
+/* Ticks of the cards are a period apart, as those of the loop, 0.5 ms at most: what they convert
+ * meanwhile is then as far as it will be. */
+static uint32_t apart(void)
+{
+    const uint32_t period = pc104_timer_counts(), most = pc104_timer_Hz() / 2000;
+    return period < most ? period : most;
+}
+
 int pc104_load_fits(uint32_t rate_Hz)
 {
     uint64_t cost;
@@ -220,7 +231,7 @@ int pc104_load_fits(uint32_t rate_Hz)
     if (pc104_par.budget_us) {
         cost = exh_udiv64((uint64_t)pc104_par.budget_us * pc104_timer_Hz(), 1000000, NULL);
     } else {
-        io_counts = least_of_rounds(dry_io);
+        io_counts = least_of_rounds(dry_io, DRY_IO_TICKS, apart());
         cost = (uint64_t)scene_counts + io_counts;
     }
     cost = exh_udiv64(cost * (100u + (uint32_t)pc104_par.headroom_pct), 100, NULL);
