@@ -33,8 +33,7 @@ run()
     "$hil" --quiet "$@" "$image" || { failed=1; echo "  FAILED: $hil $* $image"; }
 }
 
-# Monitors converted while the tick before computed would be a tick old; the A/D of one channel
-# without settling fits 50 us.
+# The A/D of one channel without settling fits 50 us; monitors of the tick before fit with all that there is.
 fast="supply=0 ad_settle=0"
 # The glove's scan runs while the tick before computes.
 box="--loop --glove-age 1"
@@ -88,6 +87,7 @@ show_rates()
 {
     for r in 90 100 200 500 1000; do run "$r Hz" drop --loop --rate "$r" --ticks "$few"; done
     run "20 kHz" drop --loop --rate 20000 --ticks 10000 --options "$fast"
+    run "20 kHz, monitors of the tick before" drop --loop --monitor-age 1 --rate 20000 --ticks 10000 --options "monitor=2"
     run "an HPET of 100 MHz" drop --loop --hpet 100 --ticks "$few"
     run "ticks from the 8254" drop --loop --ticks "$few" --options "timer=pit"
 }
