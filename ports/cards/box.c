@@ -57,7 +57,8 @@ static struct {
     struct exh_box_counts counts;
     int16_t frame[EXH_MM32XAT_CHANNELS]; /* the last of the glove                 */
     uint32_t frame_read, scan_read; /* counts.reads when it and the running scan began */
-    uint8_t framed;
+    uint8_t framed, fresh; /* fresh: taken in parts, and not yet handed over          */
+    int16_t ad_code[2][EXH_S526_AD]; /* as last converted                          */
     volatile uint32_t safe_calls;
 } box;
 
@@ -137,7 +138,7 @@ static void forget(struct exh_box_report *report)
     static const struct exh_box_counts no_counts;
     static const struct exh_box_error no_error;
     exh_box_safe();
-    box.open = box.started = box.framed = 0;
+    box.open = box.started = box.framed = box.fresh = 0;
     box.counts = no_counts;
     box.error = no_error;
     box.frame_read = box.scan_read = 0;
@@ -172,12 +173,18 @@ static void glove_start(void)
     box.scan_read = box.counts.reads;
 }
 
-/* What the first tick hands over is begun here: it has as little to wait for as the others. */
+static int in_parts(void)
+{
+    return box.cfg.glove == EXH_BOX_LAST && box.cfg.mm32xat.slice > 0;
+}
+
+/* What the first tick hands over is begun here: it has as little to wait for as the others. A scan that
+ * is taken in parts is begun when it is first asked for. */
 static void start(void)
 {
     box.open = 1;
     if (box.cfg.monitor == EXH_BOX_LAST) { ad_start(); }
-    if (box.cfg.glove == EXH_BOX_LAST) { glove_start(); }
+    if (box.cfg.glove == EXH_BOX_LAST && !in_parts()) { glove_start(); }
 }
 
 int exh_box_open(const struct exh_box_config *config, struct exh_box_report *report)
@@ -216,7 +223,7 @@ static void counts_in(struct exh_drive_in *in)
 {
     for (unsigned i = 0; i < box.cfg.fingers; i++) {
         const struct place p = box.wiring->axis[i];
-        in->enc_raw[i] = exh_s526_count(&box.s526[p.card], p.at);
+        in->enc_raw[i] = exh_s526_follow(&box.s526[p.card], p.at);
     }
 }
 
@@ -241,27 +248,49 @@ static int lines_in(unsigned i, uint8_t *pins, struct exh_card_fault *f)
 {
     int err = exh_s526_lines(&box.s526[i], pins, f);
     *pins ^= box.cfg.din_invert[i];
-    if (err == 0 && box.cfg.s526.quad_check && box.axes[i]) {
-        err = exh_s526_quad(&box.s526[i], box.axes[i], f);
-    }
+    if (err == 0 && box.axes[i]) { err = exh_s526_check(&box.s526[i], box.axes[i], f); }
     return err;
 }
 
 /* Results of the scan; a board without one is asked whether it is still there. What it answered
  * before, it answered if it is. */
-static int monitors_in(unsigned i, int16_t code[2][EXH_S526_AD], struct exh_card_fault *f)
+static int monitors_in(unsigned i, struct exh_card_fault *f)
 {
-    return box.s526[i].ad_mask ? exh_s526_ad_read(&box.s526[i], code[i], f)
+    return box.s526[i].ad_mask ? exh_s526_ad_read(&box.s526[i], box.ad_code[i], f)
                                : exh_s526_alive(&box.s526[i], f);
 }
 
-static void monitors_out(struct exh_drive_in *in, int16_t code[2][EXH_S526_AD])
+static void monitors_out(struct exh_drive_in *in)
 {
     const struct place s = box.wiring->supply;
+    if (box.cfg.monitor == EXH_BOX_NEVER) { return; }
     for (unsigned i = 0; i < box.cfg.fingers; i++) {
-        in->mon_raw[i] = code[box.wiring->axis[i].card][box.wiring->axis[i].at];
+        in->mon_raw[i] = box.ad_code[box.wiring->axis[i].card][box.wiring->axis[i].at];
     }
-    in->supply_raw = code[s.card][s.at];
+    if (box.cfg.supply) { in->supply_raw = box.ad_code[s.card][s.at]; }
+}
+
+/* --- glove --- */
+
+static void glove_framed(void)
+{
+    box.frame_read = box.scan_read;
+    box.framed = 1;
+    box.counts.glove_frames++;
+}
+
+/* Of a scan that ended a part a tick, so that no tick has all of it. */
+static int glove_some(void)
+{
+    struct exh_card_fault f = {EXH_CARD_SCAN, 0, 0, 0, 0, 0};
+    int got;
+    if (!in_parts()) { return 0; }
+    got = exh_mm32xat_some(&box.mm32xat, box.frame, &f);
+    if (got > 0) {
+        box.fresh = 1;
+        glove_framed();
+    }
+    return got < 0 ? fail(EXH_BOX_GLOVE, box.mm32xat.base, got, &f) : 0;
 }
 
 /* The conversion runs while the counters are read. */
@@ -269,7 +298,6 @@ int exh_box_read_drive(struct exh_drive_in *in)
 {
     static const struct exh_drive_in nothing;
     struct exh_card_fault f = {0, 0, 0, 0, 0, 0};
-    int16_t code[2][EXH_S526_AD] = {{0}};
     uint8_t pins[2] = {0, 0};
     *in = nothing;
     if (box.error.code) { return -EXH_E_IO; }
@@ -281,15 +309,15 @@ int exh_box_read_drive(struct exh_drive_in *in)
         if (err < 0) { return board_fails(i, err, &f); }
     }
     for (unsigned i = 0; i < box.boards; i++) {
-        const int err = monitors_in(i, code, &f);
+        const int err = monitors_in(i, &f);
         if (err < 0) { return board_fails(i, err, &f); }
     }
     box.started = 0;
     if (box.cfg.monitor == EXH_BOX_LAST) { ad_start(); }
     in->din = din(pins);
-    monitors_out(in, code);
+    monitors_out(in);
     box.counts.reads++;
-    return 0;
+    return glove_some();
 }
 
 /* --- outputs --- */
@@ -358,13 +386,19 @@ int exh_box_write_drive(const struct exh_drive_out *out)
     return 0;
 }
 
-/* --- glove --- */
+/* --- glove, asked for --- */
 
 /* Takes the scan that runs, if it has ended or is worth waiting for. */
 static int glove_take(struct exh_card_fault *f)
 {
     struct exh_mm32xat *m = &box.mm32xat;
     int got;
+    if (in_parts()) { /* not even for the first */
+        if (!box.fresh && m->running) { box.counts.glove_waits++; }
+        box.fresh = 0;
+        if (!m->running) { glove_start(); }
+        return 0;
+    }
     if (box.cfg.glove == EXH_BOX_LAST && m->running) {
         got = exh_mm32xat_done(m, f);
         if (got == 0) { box.counts.glove_waits++; }
@@ -376,11 +410,7 @@ static int glove_take(struct exh_card_fault *f)
     }
     got = exh_mm32xat_read(m, box.frame, f);
     if (got < 0) { return got; }
-    if (got > 0) {
-        box.frame_read = box.scan_read;
-        box.framed = 1;
-        box.counts.glove_frames++;
-    }
+    if (got > 0) { glove_framed(); }
     if (box.cfg.glove == EXH_BOX_LAST) { glove_start(); }
     return 0;
 }

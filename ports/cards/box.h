@@ -28,7 +28,8 @@ enum exh_box_when {
     EXH_BOX_NEVER, /* not at all: monitors and supply are 0, the glove is absent */
     EXH_BOX_NOW,   /* in the tick that reads it, which waits for the converter    */
     EXH_BOX_LAST,  /* begun when the one before was read, the first when the box was opened: no
-                    * wait while a tick is longer than a conversion */
+                    * wait while a tick is longer than a conversion. A glove's scan that is taken in parts
+                    * (mm32xat.slice) is begun when it is asked for: the first time there is none */
     EXH_BOX_WHENS
 };
 
@@ -66,7 +67,7 @@ enum exh_box_row {
     EXH_BOX_ROW_GLOVE,
     EXH_BOX_ROW_SPAN, /* dac_span_raw, dac_rest_raw                               */
     EXH_BOX_ROW_WAIT, /* a limit of 0, or above 60000 us                          */
-    EXH_BOX_ROW_SCAN, /* channels, interval, lost_limit                           */
+    EXH_BOX_ROW_SCAN, /* channels, interval, slice, lost_limit                    */
     EXH_BOX_ROW_PINS, /* another bit than those in din_invert, out_invert         */
     EXH_BOX_ROW_FULL, /* not 0 or 1; or 0 with one finger, and board B answers    */
     EXH_BOX_ROWS

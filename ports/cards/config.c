@@ -98,7 +98,7 @@ unsigned exh_box_check(const struct exh_box_config *c, int32_t *value)
         }
         *value = m->channels;
         if (m->channels < EXH_GLOVE_SENSORS || m->channels >= EXH_MM32XAT_CHANNELS ||
-            m->interval > 3 || m->lost_limit == 0) {
+            m->interval > 3 || m->lost_limit == 0 || m->slice > EXH_MM32XAT_CHANNELS) {
             return EXH_BOX_ROW_SCAN;
         }
     }

@@ -27,6 +27,7 @@ static const char *const what_text[EXH_CARD_WHATS] = {
     [EXH_CARD_REF_10V] = "10 V reference implausible, sum of ten codes",
     [EXH_CARD_REF_NOISE] = "reference too noisy, codes",
     [EXH_CARD_AD_GAIN] = "A/D gain implausible, ppm",
+    [EXH_CARD_FOLLOW] = "counter jumped by more than 16 bits in a tick",
     [EXH_CARD_QUADRATURE] = "illegal transitions of the encoder lines",
     [EXH_CARD_WAIT_TIMEOUT] = "input does not settle",
     [EXH_CARD_SCAN_TIMEOUT] = "scan does not end",

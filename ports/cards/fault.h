@@ -34,6 +34,7 @@ enum exh_card_what {
     EXH_CARD_REF_10V,      /* likewise                                          */
     EXH_CARD_REF_NOISE,    /* ten conversions of a reference too far apart      */
     EXH_CARD_AD_GAIN,      /* implausible with all three together; ppm          */
+    EXH_CARD_FOLLOW,       /* its high word is not what its low words came to; at: counter */
     EXH_CARD_QUADRATURE,   /* too many illegal transitions; at: counter         */
     EXH_CARD_WAIT_TIMEOUT, /* the input does not settle                         */
     EXH_CARD_SCAN_TIMEOUT, /* a scan does not end                               */

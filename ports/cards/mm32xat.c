@@ -139,6 +139,7 @@ void exh_mm32xat_start(struct exh_mm32xat *m)
 {
     out(m, MM_START, 0);
     m->running = 1;
+    m->taken = 0;
     m->asked = 0;
 }
 
@@ -201,26 +202,25 @@ static int unlike(struct exh_mm32xat *m, unsigned want_empty, struct exh_card_fa
     return 1;
 }
 
-/* Exactly as many as channels: before the first there is one and nothing overflowed, before the
- * last there is one, after it there is none. */
-static int pop(struct exh_mm32xat *m, int16_t *code, struct exh_card_fault *f)
+/* So many more. Exactly as many as channels: before the first there is one and nothing
+ * overflowed, before the last there is one, after it there is none. */
+static int pop(struct exh_mm32xat *m, unsigned n, struct exh_card_fault *f)
 {
     const unsigned last = m->par.channels - 1u;
-    int bad = unlike(m, 0, f);
-    for (unsigned k = 0; k < last && bad == 0; k++) { code[k] = sample(m); }
-    if (bad == 0 && last > 0) { bad = unlike(m, 0, f); }
-    if (bad != 0) { return bad; }
-    code[last] = sample(m);
-    return unlike(m, MM_EMPTY, f);
+    int bad = m->taken == 0 ? unlike(m, 0, f) : 0;
+    for (; n > 0 && m->taken <= last && bad == 0; n--) {
+        if (m->taken == last && last > 0) { bad = unlike(m, 0, f); }
+        if (bad == 0) { m->part[m->taken++] = sample(m); }
+    }
+    return bad == 0 && m->taken > last ? unlike(m, MM_EMPTY, f) : bad;
 }
 
-int exh_mm32xat_read(struct exh_mm32xat *m, int16_t *code, struct exh_card_fault *f)
+/* After as many samples as channels, or none that is worth having. */
+static int end_scan(struct exh_mm32xat *m, int bad, int16_t *code, struct exh_card_fault *f)
 {
-    int16_t got[EXH_MM32XAT_CHANNELS];
-    int bad = pop(m, got, f);
-    m->running = 0;
+    m->running = m->taken = 0;
     if (bad == 0) {
-        for (unsigned k = 0; k < m->par.channels; k++) { code[k] = got[k]; }
+        for (unsigned k = 0; k < m->par.channels; k++) { code[k] = m->part[k]; }
         m->lost = 0;
         return 1;
     }
@@ -230,6 +230,23 @@ int exh_mm32xat_read(struct exh_mm32xat *m, int16_t *code, struct exh_card_fault
     return m->lost < m->par.lost_limit
                ? 0
                : exh_card_fault(f, EXH_CARD_SCAN_LOST, 0, m->lost, 0, m->par.lost_limit - 1);
+}
+
+int exh_mm32xat_read(struct exh_mm32xat *m, int16_t *code, struct exh_card_fault *f)
+{
+    return end_scan(m, pop(m, m->par.channels, f), code, f);
+}
+
+int exh_mm32xat_some(struct exh_mm32xat *m, int16_t *code, struct exh_card_fault *f)
+{
+    int got;
+    if (!m->running) { return 0; }
+    if (m->taken == 0) {
+        got = exh_mm32xat_done(m, f);
+        if (got <= 0) { return got; }
+    }
+    got = pop(m, m->par.slice, f);
+    return got == 0 && m->taken < m->par.channels ? 0 : end_scan(m, got, code, f);
 }
 
 /* --- self-test --- */
@@ -262,7 +279,7 @@ int exh_mm32xat_open(struct exh_mm32xat *m, uint16_t base, const struct exh_mm32
     int err;
     m->base = base;
     m->par = *par;
-    m->live = m->running = m->lost = 0;
+    m->live = m->running = m->taken = m->lost = 0;
     m->shorts = m->longs = m->overflows = 0;
     err = detect(m, f);
     if (err < 0) { return -EXH_E_ABSENT; }

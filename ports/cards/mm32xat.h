@@ -14,6 +14,7 @@ struct exh_mm32xat_par {
     uint8_t channels;      /* 0 .. channels-1 are scanned, 1 .. 31                */
     uint8_t interval;      /* SCINT: 0 20 us, 1 15, 2 10, 3 5 (-AT) or 4 (X) a sample */
     uint8_t words;         /* 1: a sample is one 16-bit read                      */
+    uint8_t slice;         /* samples taken a call of exh_mm32xat_some(), 1 .. 32 */
     uint8_t lost_limit;    /* so many scans lost in a row are a fault, 1 .. 255   */
     uint16_t reset_us;     /* after a reset of the card                           */
     uint16_t set_us;       /* after its registers were set                        */
@@ -22,7 +23,7 @@ struct exh_mm32xat_par {
 };
 #define EXH_MM32XAT_PAR_DEFAULT \
     { \
-        .channels = 22, .interval = 2, .words = 0, .lost_limit = 3, .reset_us = 1000, \
+        .channels = 22, .interval = 2, .words = 0, .slice = 0, .lost_limit = 3, .reset_us = 1000, \
         .set_us = 100, .settle_us = 100, .scan_wait_us = 2000 \
     }
 
@@ -30,11 +31,13 @@ struct exh_mm32xat {
     uint16_t base;
     uint8_t live;    /* found                                                     */
     uint8_t running; /* a scan was started and its samples not yet read           */
+    uint8_t taken;   /* of its samples                                            */
     uint8_t lost;    /* scans lost in a row                                       */
     uint16_t asked;  /* while it ran                                              */
     uint32_t since_us; /* when it was first found running                         */
     uint32_t shorts, longs, overflows; /* scans lost, by cause                     */
     struct exh_mm32xat_par par;
+    int16_t part[EXH_MM32XAT_CHANNELS]; /* those samples                          */
 };
 
 /* Finds and tests the card at base. 0, -EXH_E_ABSENT (no card, another card) or -EXH_E_IO
@@ -53,5 +56,10 @@ int exh_mm32xat_wait(struct exh_mm32xat *m, struct exh_card_fault *f);
 /* Its samples: 1; 0: lost, the FIFO was reset and the frame is as it was; -EXH_E_IO with *f:
  * too many lost in a row (3 + 2 a channel, or 1 where words are read). */
 int exh_mm32xat_read(struct exh_mm32xat *m, int16_t *code, struct exh_card_fault *f);
+
+/* Both in parts: nothing while no scan runs, one look while it runs, then at most par.slice samples a
+ * call. 1: these were the last, code has them all; 0: not yet, or lost; -EXH_E_IO with *f (at most
+ * 2 + 2 a sample of the slice, or 1 where words are read). */
+int exh_mm32xat_some(struct exh_mm32xat *m, int16_t *code, struct exh_card_fault *f);
 
 #endif

@@ -32,11 +32,31 @@ uint32_t exh_s526_count(const struct exh_s526 *s, unsigned axis)
     return high << 16 | low;
 }
 
-int exh_s526_quad(struct exh_s526 *s, unsigned axes, struct exh_card_fault *f)
+/* A step that fits 16 bits, from what was last read. */
+uint32_t exh_s526_follow(struct exh_s526 *s, unsigned axis)
 {
-    const unsigned axis = s->quad_next < axes ? s->quad_next : 0;
+    uint32_t step;
+    if (!s->par.turns || !((unsigned)s->counted >> axis & 1u)) {
+        s->count[axis] = exh_s526_count(s, axis);
+        s->counted |= (uint8_t)(1u << axis);
+        return s->count[axis];
+    }
+    step = (s526_in(s, s526_counter(axis, S526_LOW)) - s->count[axis]) & 0xFFFFu;
+    s->count[axis] = (s->count[axis] + (step ^ 0x8000u) - 0x8000u) & 0xFFFFFFu;
+    return s->count[axis];
+}
+
+static int high_word(struct exh_s526 *s, unsigned axis, struct exh_card_fault *f)
+{
+    const int32_t got = s526_in(s, s526_counter(axis, S526_HIGH)) & 0xFF;
+    const int32_t want = (int32_t)(s->count[axis] >> 16);
+    f->phase = EXH_CARD_INPUT;
+    return got == want ? 0 : exh_card_fault(f, EXH_CARD_FOLLOW, axis, got, want, want);
+}
+
+static int quad(struct exh_s526 *s, unsigned axis, struct exh_card_fault *f)
+{
     const unsigned at = s526_counter(axis, S526_CONTROL);
-    s->quad_next = (uint8_t)(axis + 1);
     if (!(s526_in(s, at) & S526_ECAP)) { return 0; }
     s526_out(s, at, S526_ECAP);
     s->quad[axis]++;
@@ -45,6 +65,17 @@ int exh_s526_quad(struct exh_s526 *s, unsigned axes, struct exh_card_fault *f)
                ? 0
                : exh_card_fault(f, EXH_CARD_QUADRATURE, axis, (int32_t)s->quad[axis], 0,
                                 s->par.quad_limit);
+}
+
+int exh_s526_check(struct exh_s526 *s, unsigned axes, struct exh_card_fault *f)
+{
+    const unsigned steps = s->par.turns ? 2 : 1;
+    const unsigned turn = s->quad_next < steps * axes ? s->quad_next : 0;
+    s->quad_next = (uint8_t)(turn + 1);
+    if (s->par.turns && (turn < axes || !s->par.quad_check)) {
+        return high_word(s, turn < axes ? turn : turn - axes, f);
+    }
+    return s->par.quad_check ? quad(s, turn - (steps - 1) * axes, f) : 0;
 }
 
 int exh_s526_alive(const struct exh_s526 *s, struct exh_card_fault *f)
@@ -76,12 +107,29 @@ static unsigned lowest(unsigned mask)
     return k;
 }
 
-/* The word that starts also selects the result that is read first. */
-void exh_s526_ad_start(const struct exh_s526 *s)
+/* Of the mask the channel behind the one that was last, or the first. */
+static unsigned next_channel(const struct exh_s526 *s)
 {
+    unsigned upto = s->ad_now, behind;
+    upto |= upto >> 1;
+    upto |= upto >> 2;
+    upto |= upto >> 4; /* all channels up to the last */
+    behind = s->ad_mask & ~upto;
+    return 1u << lowest(behind ? behind : s->ad_mask);
+}
+
+/* The word that starts also selects the result that is read first. */
+void exh_s526_ad_start(struct exh_s526 *s)
+{
+    if (!s->par.turns || s->ad_first) {
+        s->ad_now = s->ad_mask;
+    } else {
+        s->ad_now = next_channel(s);
+    }
+    s->ad_first = 0;
     s526_out(s, S526_ADC,
-             (s->par.settle ? S526_AD_SETTLE : 0u) | s->ad_mask * (unsigned)S526_AD_CONVERT0 |
-                 lowest(s->ad_mask) << 1 | S526_AD_START);
+             (s->par.settle ? S526_AD_SETTLE : 0u) | s->ad_now * (unsigned)S526_AD_CONVERT0 |
+                 lowest(s->ad_now) << 1 | S526_AD_START);
 }
 
 /* An update since the last look must have ended by now; the flags say so in the same read. */
@@ -95,7 +143,7 @@ static int da_done(struct exh_s526 *s, uint16_t isr, struct exh_card_fault *f)
 
 int exh_s526_ad_read(struct exh_s526 *s, int16_t *code, struct exh_card_fault *f)
 {
-    const unsigned first = lowest(s->ad_mask);
+    const unsigned first = lowest(s->ad_now);
     uint16_t isr;
     int err;
     f->phase = EXH_CARD_MONITOR;
@@ -104,7 +152,7 @@ int exh_s526_ad_read(struct exh_s526 *s, int16_t *code, struct exh_card_fault *f
     /* Only what was seen: an update that ends between read and write keeps its flag. */
     s526_out(s, S526_ISR, isr & (S526_AD_DONE | S526_DA_DONE));
     for (unsigned k = first; k < EXH_S526_AD; k++) {
-        if (!(s->ad_mask >> k & 1u)) { continue; }
+        if (!(s->ad_now >> k & 1u)) { continue; }
         if (k > first) { s526_out(s, S526_ADC, k << 1); }
         code[k] = exh_s526_ad_code(&s->id.ad, s526_result(s));
     }
@@ -127,6 +175,11 @@ void exh_s526_da_start(struct exh_s526 *s)
 
 void exh_s526_lines_put(struct exh_s526 *s, unsigned lines)
 {
+    if (s->par.turns && s->lines == (lines & S526_DIO_LINES) &&
+        ++s->lines_kept < EXH_S526_LINES_EVERY) {
+        return;
+    }
+    s->lines_kept = 0;
     s->lines = (uint8_t)(lines & S526_DIO_LINES);
     s526_out(s, S526_DIO, S526_DIO_OUT4 | s->lines);
 }

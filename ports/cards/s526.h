@@ -23,6 +23,7 @@ struct exh_s526_par {
     uint8_t da_check;    /* 1: updates must be reported done                      */
     uint8_t line_check;  /* 1: pins of outputs must read as written               */
     uint8_t quad_check;  /* 1: one counter's quadrature error is looked at a tick */
+    uint8_t turns;       /* 1: what can wait takes turns (see below)               */
     uint16_t quad_limit; /* so many may a counter have; more are a fault          */
     uint16_t ad_wait_us; /* longest wait for a scan, 1 .. 60000                   */
     uint16_t da_wait_us; /* for an update                                         */
@@ -31,10 +32,18 @@ struct exh_s526_par {
 };
 #define EXH_S526_PAR_DEFAULT \
     { \
-        .settle = 1, .nominal = 0, .da_check = 1, .line_check = 1, .quad_check = 1, \
+        .settle = 1, .nominal = 0, .da_check = 1, .line_check = 1, .quad_check = 1, .turns = 0, \
         .quad_limit = 16, .ad_wait_us = 500, .da_wait_us = 200, .ee_wait_us = 10000, \
         .noise_raw = 64 \
     }
+
+/* With turns, a tick does with fewer accesses:
+ *  - a scan converts one channel of the mask, the next one at each start (the first scan all);
+ *  - of counters the low words alone are read, which latch; the rest follows from the last count,
+ *    for steps up to +-32767. A tick looks at one high word or one quadrature error, in turn:
+ *    each of both once in 2 * axes ticks. A high word that is another one is a fault;
+ *  - lines are written when they change, and each EXH_S526_LINES_EVERY writes. */
+#define EXH_S526_LINES_EVERY 16
 
 /* Nominal codes to this card's, and back. */
 struct exh_s526_da { /* code = 32768 + zero + gain (nominal - 32768) */
@@ -64,6 +73,11 @@ struct exh_s526 {
     uint8_t lines_off; /* what they are when all is off                          */
     uint8_t da_sent;   /* updates since one was last reported done               */
     uint8_t quad_next; /* counter to be looked at next                           */
+    uint8_t ad_first;  /* no scan was begun                                      */
+    uint8_t lines_kept; /* writes of lines left out in a row                     */
+    uint8_t counted;   /* bit: axis whose count is known                         */
+    uint32_t ad_now;   /* channels of the scan that runs                         */
+    uint32_t count[EXH_S526_AXES]; /* 24 bits, as last read                      */
     uint16_t da_zero_raw[EXH_S526_AXES]; /* its codes of 0 V                     */
     uint32_t quad[EXH_S526_AXES];        /* illegal transitions captured         */
     struct exh_s526_par par;
@@ -82,24 +96,26 @@ int exh_s526_open(struct exh_s526 *s, uint16_t base, unsigned ad_mask, unsigned 
 /* --- of a tick; the number of accesses in brackets --- */
 
 uint32_t exh_s526_count(const struct exh_s526 *s, unsigned axis); /* 24 bits (2) */
+uint32_t exh_s526_follow(struct exh_s526 *s, unsigned axis); /* the same (2; with turns 1) */
 
 /* One counter's quadrature error, the next one's at each call, axes 0 .. axes-1 (1, and 1 if
- * there was one). */
-int exh_s526_quad(struct exh_s526 *s, unsigned axes, struct exh_card_fault *f);
+ * there was one). With turns, in between one counter's high word, which must be that of its last
+ * count. */
+int exh_s526_check(struct exh_s526 *s, unsigned axes, struct exh_card_fault *f);
 
 int exh_s526_alive(const struct exh_s526 *s, struct exh_card_fault *f); /* (1) */
 
 /* Pins 0..7 as they are (1). */
 int exh_s526_lines(const struct exh_s526 *s, uint8_t *pins, struct exh_card_fault *f);
 
-void exh_s526_ad_start(const struct exh_s526 *s); /* a scan (1) */
-/* Its end, and nominal codes of the channels of the mask to code[channel] (2 + polls beyond the
- * first, then 2 a channel less 1). */
+void exh_s526_ad_start(struct exh_s526 *s); /* a scan (1) */
+/* Its end, and nominal codes of its channels to code[channel], others as they were (2 + polls
+ * beyond the first, then 2 a channel less 1). */
 int exh_s526_ad_read(struct exh_s526 *s, int16_t *code, struct exh_card_fault *f);
 
 void exh_s526_da_put(const struct exh_s526 *s, unsigned channel, uint16_t nominal); /* (2) */
 void exh_s526_da_start(struct exh_s526 *s);                      /* all that were put (1) */
-void exh_s526_lines_put(struct exh_s526 *s, unsigned lines);     /* pins 4..7 (1) */
+void exh_s526_lines_put(struct exh_s526 *s, unsigned lines);     /* pins 4..7 (1; with turns 0) */
 
 /* Lines off, D/A at 0 V, of those of n cards that are live, from anywhere, between any two
  * accesses of the others. */

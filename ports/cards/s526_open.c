@@ -307,7 +307,8 @@ int exh_s526_open(struct exh_s526 *s, uint16_t base, unsigned ad_mask, unsigned 
     s->lines_off = (uint8_t)(lines_off & S526_DIO_LINES);
     s->par = *par;
     s->id.nominal = 0;
-    s->da_sent = s->quad_next = 0;
+    s->da_sent = s->quad_next = s->counted = s->lines_kept = 0;
+    s->ad_first = 1;
     for (unsigned k = 0; k < EXH_S526_AXES; k++) {
         s->da_zero_raw[k] = EXH_S526_DA_ZERO;
         s->quad[k] = 0;

@@ -59,7 +59,8 @@ static void put_i32(struct text *t, int32_t v)
 static int has_place(unsigned what)
 {
     return what == EXH_CARD_COUNTER || what == EXH_CARD_EE_TIMEOUT || what == EXH_CARD_DA_GAIN ||
-           what == EXH_CARD_DA_OFFSET || what == EXH_CARD_QUADRATURE || what == EXH_CARD_REST;
+           what == EXH_CARD_DA_OFFSET || what == EXH_CARD_QUADRATURE || what == EXH_CARD_REST ||
+           what == EXH_CARD_FOLLOW;
 }
 
 /* Values of registers are told in hexadecimal. */

@@ -28,6 +28,10 @@ static const struct exh_signal rows[] = {
     {0xA20E, 0, EXH_WHEN_SETUP, 0, 1, 0, "scan_words", "", "1: glove samples by 16-bit reads"},
     {0xA20F, 0, EXH_WHEN_SETUP, 0, 1, 0, "full", "",
      "1: wired for five fingers, whatever the scene uses"},
+    {0xA210, 0, EXH_WHEN_SETUP, 0, 32, 0, "scan_slice", "",
+     "glove samples read a tick, with scan=2; 0: all in one"},
+    {0xA211, 0, EXH_WHEN_SETUP, 0, 1, 0, "turns", "",
+     "1: monitors and checks of the motor cards take turns"},
 };
 static const struct exh_signal_group groups[] = {{rows, sizeof rows / sizeof rows[0], 1}};
 const struct exh_signal_table pc104_box_table = {groups, 1};
@@ -55,6 +59,8 @@ void pc104_box_config(const struct exh_scene *sc, struct exh_box_config *c)
     c->s526.nominal = (uint8_t)p->ee_nominal;
     c->mm32xat.interval = (uint8_t)p->interval;
     c->mm32xat.words = (uint8_t)p->scan_words;
+    c->mm32xat.slice = (uint8_t)p->scan_slice;
+    c->s526.turns = (uint8_t)p->turns;
 }
 
 static void say_signature(const struct exh_box_report *r, unsigned card)

@@ -79,6 +79,7 @@ struct pc104_box_par {
     int32_t ad_settle, ee_nominal;
     int32_t interval, scan_words;
     int32_t full;
+    int32_t scan_slice, turns;
 };
 extern struct pc104_box_par pc104_box_par;
 extern const struct exh_signal_table pc104_box_table;

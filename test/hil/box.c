@@ -49,7 +49,7 @@ int box_in(struct box *b, struct hil *h, uint16_t port, unsigned size, uint32_t 
     uint64_t before_ns;
     if (!is_card(b, port) || size > 2) { return 0; }
     catch_up(b, h);
-    if (glove < 2 && b->glove) { b->glove(b->ctx); }
+    if (glove < 2 && b->glove && !b->glove_starts) { b->glove(b->ctx); }
     before_ns = b->emu.time_ns;
     *value = emu_in(&b->emu, port, size);
     charge(b, h, before_ns);
@@ -61,6 +61,7 @@ int box_out(struct box *b, struct hil *h, uint16_t port, unsigned size, uint32_t
     uint64_t before_ns;
     if (!is_card(b, port) || size > 2) { return 0; }
     catch_up(b, h);
+    if (port == b->emu.mm.cfg.base && b->glove && b->glove_starts) { b->glove(b->ctx); }
     before_ns = b->emu.time_ns;
     emu_out(&b->emu, port, size, value);
     charge(b, h, before_ns);

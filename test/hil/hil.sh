@@ -39,6 +39,9 @@ fast="supply=0 ad_settle=0"
 box="--loop --glove-age 1"
 # The most a class of ticks may vary in the scene's instructions, ppm of its dearest tick.
 even="--spread 50000"
+# With as few accesses as a tick can do with (docs/CARDS.md); the glove at 500 Hz, in parts.
+sparing="monitor=2 turns=1"
+parts="--loop --turns --glove-last --set every=20"
 
 show_count() { run "blocks counted one by one too" drop --loop --singly --ticks 2000; }
 # must_differ TICK IMAGE [OPTION...]
@@ -88,6 +91,7 @@ show_rates()
     for r in 90 100 200 500 1000; do run "$r Hz" drop --loop --rate "$r" --ticks "$few"; done
     run "20 kHz" drop --loop --rate 20000 --ticks 10000 --options "$fast"
     run "20 kHz, monitors of the tick before" drop --loop --monitor-age 1 --rate 20000 --ticks 10000 --options "monitor=2"
+    run "20 kHz, monitors and supply in turn" drop --loop --turns --rate 20000 --ticks 10000 --options "$sparing"
     run "an HPET of 100 MHz" drop --loop --hpet 100 --ticks "$few"
     run "ticks from the 8254" drop --loop --ticks "$few" --options "timer=pit"
 }
@@ -101,6 +105,8 @@ show_box()
     for r in 90 100 200; do run "the full box, $r Hz" bilateral $box --set glove_fc=20 --rate "$r" --ticks "$few"; done
     # shellcheck disable=SC2086
     for r in 500 1000; do run "the full box, $r Hz" bilateral $box --rate "$r" --ticks "$few"; done
+    # shellcheck disable=SC2086
+    run "the full box, 10 kHz" bilateral $parts --rate 10000 --ticks "$few" --options "$sparing scan_slice=4"
 }
 show_wild()
 {

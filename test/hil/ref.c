@@ -76,13 +76,51 @@ static void delay_monitor(struct exh_drive_in *in)
     last = now;
 }
 
+/* Of each board the tick before began one channel, in turn: of A those of monitors 0..3, or of monitor 0
+ * and the supply of a box for one finger, of B those of monitor 4 and the supply. The first tick has
+ * what stood there when the box was opened: nothing. */
+static void take_turns(uint32_t tick, struct exh_drive_in *in)
+{
+    static struct exh_drive_in held, last;
+    const struct exh_drive_in now = *in;
+    const int one = run.cfg->scene->fingers == 1, turn = (int)(tick - 1) & 3;
+    if (tick > 0) {
+        if (!one) { held.mon_raw[turn] = last.mon_raw[turn]; }
+        if (turn % 2 == 0) { held.mon_raw[one ? 0 : 4] = last.mon_raw[one ? 0 : 4]; }
+        if (turn % 2 == 1) { held.supply_raw = last.supply_raw; }
+    }
+    memcpy(in->mon_raw, held.mon_raw, sizeof in->mon_raw);
+    in->supply_raw = held.supply_raw;
+    last = now;
+}
+
+/* A scan is begun when the one before is handed over. */
+static void delay_glove(uint32_t tick, struct exh_scene_in *in)
+{
+    static struct exh_glove_in last;
+    static uint32_t last_tick;
+    const struct exh_glove_in now = in->glove;
+    if (tick > 0) {
+        in->glove = last;
+        in->glove.age_ticks = (uint16_t)(tick - last_tick);
+    } else {
+        memset(&in->glove, 0, sizeof in->glove);
+        in->glove.age_ticks = UINT16_MAX;
+        in->glove_new = 0;
+    }
+    last = now;
+    last_tick = tick;
+}
+
 static void before(uint32_t tick, struct exh_scene_in *in)
 {
     if (!ref_held(run.cfg, tick)) { in->drive.din &= ~(uint32_t)EXH_DIN_DEADMAN; }
+    if (run.cfg->turns) { take_turns(tick, &in->drive); }
     if (run.cfg->monitor_age) { delay_monitor(&in->drive); }
     if (in->glove_new) {
         in->glove.age_ticks = (uint16_t)(in->glove.age_ticks + run.cfg->glove_age);
     }
+    if (run.cfg->glove_last && in->glove_new) { delay_glove(tick, in); }
     exh_deadman_before(tick, in);
 }
 

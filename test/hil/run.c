@@ -164,6 +164,9 @@ static int open_box(const char *symbol)
     }
     run.world.ref_cfg.monitor_age = (int)run.opt->monitor_age;
     run.world.spoil = run.opt->spoil;
+    run.world.ref_cfg.turns = run.opt->turns;
+    run.world.ref_cfg.glove_last = run.opt->glove_last;
+    run.box.glove_starts = run.opt->glove_last;
     run.world.ref_cfg.glove_age = (uint16_t)run.opt->glove_age;
     world_open(&run.world, &run.h, &run.box, run.scene);
     return 0;
