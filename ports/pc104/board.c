@@ -84,7 +84,11 @@ int exh_board_wait(void)
         pc104_link_poll(); /* behind the outputs, where it delays none of them */
         pc104_load_end();
     }
-    if (pc104_par.ticks && run.run == (uint32_t)pc104_par.ticks) { return STOP; }
+    if (pc104_par.ticks && run.run == (uint32_t)pc104_par.ticks) {
+        exh_board_safe();
+        pc104_load_stop();
+        return STOP;
+    }
     if (!run.started) { /* set-up and its text are not missed ticks */
         pc104_timer_start();
         run.started = 1;

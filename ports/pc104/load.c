@@ -22,6 +22,7 @@ static struct {
 } spent;
 
 static uint32_t missed_in_all, late_in_all;
+static uint32_t second_ticks; /* periods in a second, 2 at least                  */
 static uint32_t scene_counts, io_counts; /* of dry ticks                              */
 
 /* The signals of this table are shown to people; no record holds them. */
@@ -82,16 +83,31 @@ const int32_t *pc104_load_signals(void)
 
 /* --- during the run --- */
 
+/* At a low rate so many periods are a long time for a current that nobody looks after. */
+static uint32_t hang_ticks(void)
+{
+    const uint32_t asked = (uint32_t)pc104_par.hang_ticks;
+    if ((uint64_t)asked * pc104_timer_counts() <= pc104_timer_Hz()) { return asked; }
+    return second_ticks;
+}
+
+/* Outputs are safe: what is said and handed over now may take as long as it wants. */
+void pc104_load_stop(void)
+{
+    pc104_hang_ticks = 0;
+}
+
 void pc104_load_begin(void)
 {
     if (spent.bin_per_count_q32 == 0) {
         spent.least = UINT32_MAX;
         spent.bin_per_count_q32 =
             (uint32_t)exh_udiv64((uint64_t)BINS << 32, pc104_timer_counts(), NULL);
+        second_ticks = (uint32_t)exh_udiv64(pc104_timer_Hz(), pc104_timer_counts(), NULL);
+        second_ticks = second_ticks < 2 ? 2 : second_ticks;
     }
     pc104_tick_began = pc104_ticks;
-    pc104_hang_ticks =
-        (uint32_t)pc104_par.hang_ticks; /* no grace: currents flow in the first, too */
+    pc104_hang_ticks = hang_ticks(); /* no grace: currents flow in the first, too */
     spent.began = pc104_timer_now();
 }
 
@@ -99,7 +115,6 @@ void pc104_load_end(void)
 {
     const uint32_t n = pc104_timer_now() - spent.began;
     const uint64_t bin = (uint64_t)n * spent.bin_per_count_q32 >> 32;
-    pc104_hang_ticks = 0;
     spent.last = n;
     spent.least = n < spent.least ? n : spent.least;
     spent.most = n > spent.most ? n : spent.most;

@@ -57,6 +57,7 @@ int main(void)
         pc104_scene_ready(sc);
         pc104_load_scene(sc);
         err = exh_loop(sc, (uint32_t)pc104_par.rate_Hz, &hooks);
+        pc104_load_stop();
     }
     pc104_scene_end();
     exh_board_halt(err < 0 ? exh_error_text(err) : "done");

@@ -49,6 +49,7 @@ enum pc104_provoke { /* for commissioning: shows on the real box that a failure 
                      PC104_PROVOKE_TIMER,
                      PC104_PROVOKE_ASSERT,
                      PC104_PROVOKE_MASK,
+                     PC104_PROVOKE_IDLE,
                      PC104_PROVOKE_TWICE /* CARDS=none alone: an NMI into what makes safe */
 };
 enum pc104_log { PC104_LOG_OFF, PC104_LOG_SERIAL, PC104_LOG_DEBUG, PC104_LOG_UDP };
@@ -89,6 +90,7 @@ void pc104_refuse_range(const struct exh_signal *row, const char *value); /* hal
 
 /* --- provoke.c --- */
 void pc104_provoke(int32_t what);
+void pc104_provoke_idle(void); /* what is done between ticks hangs, if asked for */
 
 /* --- scene_full.c, or scene_rom.c for a scene of constants without log --- */
 int pc104_scene_option(const struct exh_scene *sc, const char *name,
@@ -143,6 +145,7 @@ uint32_t pc104_timer_us(uint32_t counts);
 void pc104_timer_kill(void); /* stops it behind everybody's back: a test */
 
 /* --- load.c: what a tick costs, and too much of it --- */
+void pc104_load_stop(void); /* no tick runs any more */
 void pc104_load_scene(const struct exh_scene *sc); /* times dry ticks of it               */
 int pc104_load_fits(uint32_t rate_Hz); /* 0 or -EXH_E_RATE, said              */
 void pc104_load_begin(void); /* a tick has begun, */

@@ -5,6 +5,13 @@
 #include "exhand/error.h"
 #include "io.h"
 
+static volatile uint8_t hang_idle;
+
+void pc104_provoke_idle(void)
+{
+    while (hang_idle) {}
+}
+
 static void spend(uint32_t periods_q1)
 {
     const uint32_t began = pc104_timer_now();
@@ -46,5 +53,6 @@ void pc104_provoke(int32_t what)
         spend(3);
     }
     while (what == PC104_PROVOKE_HANG) {}
+    if (what == PC104_PROVOKE_IDLE) { hang_idle = 1; }
     processor(what);
 }

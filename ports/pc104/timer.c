@@ -213,6 +213,7 @@ int pc104_timer_wait(uint32_t *missed, uint32_t *late)
 
     *late = n;
     pc104_second_arm();
+    pc104_provoke_idle();
     for (;;) {
         const int more = n == 0 && (pc104_idle() || pc104_par.spin);
         __asm__ volatile("cli" : : : "memory");

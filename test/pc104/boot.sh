@@ -104,6 +104,8 @@ safe 8 '^timer: no tick for four periods, by the second clock$' provoke=timer
 safe 8 '^timer: no tick for four periods, by the second clock$' provoke=timer timer=pit rate=1000
 safe 7 '^overload: a tick hangs$' provoke=hang provoke_at=10 grace=2000000000
 safe 5 '^another exception while one was dealt with$' provoke=twice
+safe 7 '^overload: a tick hangs$' provoke=idle
+safe 7 '^tick does not end, vector 32, error 0x00000065,' provoke=hang hang=10000 rate=100
 safe 8 '^timer: no tick for four periods, by the second clock$' provoke=mask
 safe 8 '^timer: it counts, but its interrupts do not come$' provoke=mask idle=spin
 safe 1 '^ports/pc104/provoke.c:[0-9]+$' provoke=assert
