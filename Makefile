@@ -508,7 +508,7 @@ check:
 	@$(MAKE) --no-print-directory size
 	@$(MAKE) --no-print-directory bench
 
-boot_scenes := minimal drop glove bilateral calibrate
+boot_scenes := minimal drop glove bilateral calibrate bringup
 
 ## Boot images of PORT=pc104 under QEMU, from an ISO too: what must end well, safe or refused
 .PHONY: boot

@@ -141,17 +141,32 @@ struct bringup_view {
 
 enum bringup_far { BRINGUP_FAR_TRAVEL, BRINGUP_FAR_MOVE, BRINGUP_FAR_OWN };
 
-/* One phase of a stage. step: one tick of it, its result; the current or force asked for goes to
- * *f_N_q20. */
+enum bringup_step {
+    BRINGUP_REST,
+    BRINGUP_TURN,
+    BRINGUP_INPUTS,
+    BRINGUP_LEVEL,
+    BRINGUP_POLARITY,
+    BRINGUP_RUN,
+    BRINGUP_STOP,
+    BRINGUP_HOME,
+    BRINGUP_TABLE
+};
+
+/* One phase of a stage. */
 struct bringup_phase {
     uint8_t stage, ask; /* enum bringup_ask                                    */
-    uint8_t hands; /* 1: hands are at it, the box need not run, no current  */
+    uint8_t step; /* enum bringup_step                                   */
+    uint8_t hands; /* 1: hands are at it, the box need not run, no current */
     uint8_t far; /* enum bringup_far: how far it may move                */
     const char *name, *text;
-    uint8_t (*step)(struct bringup *s, const struct bringup_cfg *cfg, struct bringup_view v,
-                    int32_t *f_N_q20);
 };
 const struct bringup_phase *bringup_phase(unsigned stage, unsigned phase); /* NULL: no more */
+
+/* One tick of it, its result; the force asked for, or the current that stands for it, goes to
+ * *f_N_q20. */
+uint8_t bringup_step(struct bringup *s, const struct bringup_cfg *cfg,
+                     const struct bringup_phase *p, struct bringup_view v, int32_t *f_N_q20);
 
 /* 0 or -EXH_E_RANGE. Divides. */
 int bringup_setup(struct bringup_cfg *cfg, const struct bringup_par *par,

@@ -9,12 +9,10 @@ static int measures(const struct bringup *s, const struct bringup_cfg *cfg)
 
 /* --- hands --- */
 
-static uint8_t turn(struct bringup *s, const struct bringup_cfg *cfg, struct bringup_view v,
-                    int32_t *f_N_q20)
+static uint8_t turn(struct bringup *s, const struct bringup_cfg *cfg, struct bringup_view v)
 {
     const int64_t out = exh_wrap_diff(v.cnt, s->start_cnt);
     const int64_t far = exh_wrap_diff(s->far_cnt, s->start_cnt);
-    *f_N_q20 = 0;
     if (out > far) { s->far_cnt = v.cnt; }
     if (far < cfg->turn_cnt && -out > cfg->turn_cnt / 2) { return EXH_PROBE_WRONG_WAY; }
     if (far >= cfg->turn_cnt && out < cfg->turn_cnt / 4) { return EXH_PROBE_DONE; }
@@ -23,10 +21,8 @@ static uint8_t turn(struct bringup *s, const struct bringup_cfg *cfg, struct bri
 }
 
 /* Each of them open and closed, for as long as contacts bounce. */
-static uint8_t inputs(struct bringup *s, const struct bringup_cfg *cfg, struct bringup_view v,
-                      int32_t *f_N_q20)
+static uint8_t inputs(struct bringup *s, const struct bringup_cfg *cfg, struct bringup_view v)
 {
-    *f_N_q20 = 0;
     s->steady = v.din == s->was ? s->steady + 1 : 0;
     s->was = v.din;
     if (s->steady >= cfg->doubt_ticks) {
@@ -46,11 +42,9 @@ static int32_t force_of(const struct bringup_cfg *cfg, int32_t cur_A_q26)
     return f_N_q20 < top_N_q20 ? f_N_q20 : top_N_q20;
 }
 
-static uint8_t rest(struct bringup *s, const struct bringup_cfg *cfg, struct bringup_view v,
-                    int32_t *f_N_q20)
+static uint8_t rest(struct bringup *s, const struct bringup_cfg *cfg, struct bringup_view v)
 {
     const int64_t off_A_q26 = (int64_t)cfg->par->own.zero_A_q26 * cfg->hold_ticks;
-    *f_N_q20 = 0;
     exh_mean_add(&s->mon, v.mon_A_q26);
     exh_mean_add(&s->coded, s->coded_A_q26);
     if (cfg->par->own.stage == 1 && !cfg->par->own.loop) { return EXH_PROBE_DONE; }
@@ -99,11 +93,9 @@ static uint8_t speed(struct bringup *s, const struct bringup_cfg *cfg, struct br
 }
 
 /* At rest: less than `move` in a dwell that begins after stop_time. */
-static uint8_t stop(struct bringup *s, const struct bringup_cfg *cfg, struct bringup_view v,
-                    int32_t *f_N_q20)
+static uint8_t stop(struct bringup *s, const struct bringup_cfg *cfg, struct bringup_view v)
 {
     const int64_t moved = exh_wrap_diff(v.cnt, s->at_cnt);
-    *f_N_q20 = 0;
     if (s->tick <= cfg->stop_ticks) { s->at_cnt = v.cnt; }
     if (s->tick < cfg->stop_ticks + cfg->dwell_ticks) { return EXH_PROBE_BUSY; }
     return moved < cfg->polarity.move_cnt && -moved < cfg->polarity.move_cnt ? EXH_PROBE_DONE
@@ -120,13 +112,9 @@ static uint8_t home(struct bringup *s, const struct bringup_cfg *cfg, struct bri
 }
 
 /* What the balance read against what was commanded. */
-static uint8_t table(struct bringup *s, const struct bringup_cfg *cfg, struct bringup_view v,
-                     int32_t *f_N_q20)
+static uint8_t table(const struct bringup_cfg *cfg)
 {
     const struct bringup_own_par *own = &cfg->par->own;
-    (void)s;
-    (void)v;
-    *f_N_q20 = 0;
     for (unsigned k = 0; k < BRINGUP_LEVELS; k++) {
         const int64_t off = (int64_t)own->read_N_q20[k] - cfg->level_N_q20[k];
         if (100 * (off < 0 ? -off : off) > (int64_t)own->read_percent * cfg->level_N_q20[k]) {
@@ -136,40 +124,58 @@ static uint8_t table(struct bringup *s, const struct bringup_cfg *cfg, struct br
     return EXH_PROBE_DONE;
 }
 
+uint8_t bringup_step(struct bringup *s, const struct bringup_cfg *cfg,
+                     const struct bringup_phase *p, struct bringup_view v, int32_t *f_N_q20)
+{
+    *f_N_q20 = 0;
+    switch (p->step) {
+    case BRINGUP_REST: return rest(s, cfg, v);
+    case BRINGUP_TURN: return turn(s, cfg, v);
+    case BRINGUP_INPUTS: return inputs(s, cfg, v);
+    case BRINGUP_LEVEL: return levels(s, cfg, v, f_N_q20);
+    case BRINGUP_POLARITY: return polarity(s, cfg, v, f_N_q20);
+    case BRINGUP_RUN: return speed(s, cfg, v, f_N_q20);
+    case BRINGUP_STOP: return stop(s, cfg, v);
+    case BRINGUP_HOME: return home(s, cfg, v, f_N_q20);
+    case BRINGUP_TABLE: return table(cfg);
+    default: return BRINGUP_OFF;
+    }
+}
+
 #define HANDS 1
 static const struct bringup_phase phases[] = {
-    {1, BRINGUP_ASK_NOTHING, HANDS, BRINGUP_FAR_OWN, "rest",
-     "no drive connected; D/A to the monitor's input and a meter", rest},
-    {1, BRINGUP_ASK_TURN, HANDS, BRINGUP_FAR_OWN, "encoder",
-     "pull the string out by hand, let it back in", turn},
-    {1, BRINGUP_ASK_INPUTS, HANDS, BRINGUP_FAR_OWN, "inputs",
-     "open and close emergency stop, dead-man, drive ready", inputs},
-    {1, BRINGUP_ASK_HOLD, 0, BRINGUP_FAR_TRAVEL, "output",
-     "hold the dead-man and read the meter; emergency stop if it is wrong", levels},
-    {2, BRINGUP_ASK_HOLD, 0, BRINGUP_FAR_MOVE, "rest",
-     "a dummy load on the drive; hold the dead-man", rest},
-    {2, BRINGUP_ASK_NOTHING, 0, BRINGUP_FAR_MOVE, "load", "", levels},
-    {2, BRINGUP_ASK_NOTHING, 0, BRINGUP_FAR_MOVE, "off", "", rest},
-    {3, BRINGUP_ASK_TURN, HANDS, BRINGUP_FAR_OWN, "encoder",
-     "the motor on the drive; pull its string out by hand, let it back in", turn},
-    {3, BRINGUP_ASK_HOLD, 0, BRINGUP_FAR_MOVE, "rest",
-     "string drawn out and free; hold the dead-man", rest},
-    {3, BRINGUP_ASK_NOTHING, 0, BRINGUP_FAR_TRAVEL, "polarity", "", polarity},
-    {3, BRINGUP_ASK_NOTHING, 0, BRINGUP_FAR_TRAVEL, "speed", "", speed},
-    {3, BRINGUP_ASK_NOTHING, 0, BRINGUP_FAR_TRAVEL, "stop", "", stop},
-    {4, BRINGUP_ASK_TURN, HANDS, BRINGUP_FAR_OWN, "encoder",
-     "pull the string out by hand, let it back in", turn},
-    {4, BRINGUP_ASK_HOLD, 0, BRINGUP_FAR_MOVE, "rest",
-     "string drawn out and free; hold the dead-man", rest},
-    {4, BRINGUP_ASK_NOTHING, 0, BRINGUP_FAR_OWN, "home", "", home},
-    {4, BRINGUP_ASK_HOOK, 0, BRINGUP_FAR_TRAVEL, "force",
-     "let go; the balance on the string, just taut; hold the dead-man and read it", levels},
-    {4, BRINGUP_ASK_NOTHING, HANDS, BRINGUP_FAR_OWN, "table", "", table},
-    {5, BRINGUP_ASK_TURN, HANDS, BRINGUP_FAR_OWN, "encoder", "a finger in it: bend it, stretch it",
-     turn},
-    {5, BRINGUP_ASK_HOLD, 0, BRINGUP_FAR_TRAVEL, "rest", "finger bent and still; hold the dead-man",
-     rest},
-    {5, BRINGUP_ASK_NOTHING, 0, BRINGUP_FAR_TRAVEL, "force", "", levels},
+    {1, BRINGUP_ASK_NOTHING, BRINGUP_REST, HANDS, BRINGUP_FAR_OWN, "rest",
+     "no drive connected; D/A to the monitor's input and a meter"},
+    {1, BRINGUP_ASK_TURN, BRINGUP_TURN, HANDS, BRINGUP_FAR_OWN, "encoder",
+     "pull the string out by hand, let it back in"},
+    {1, BRINGUP_ASK_INPUTS, BRINGUP_INPUTS, HANDS, BRINGUP_FAR_OWN, "inputs",
+     "open and close emergency stop, dead-man, drive ready"},
+    {1, BRINGUP_ASK_HOLD, BRINGUP_LEVEL, 0, BRINGUP_FAR_TRAVEL, "output",
+     "hold the dead-man and read the meter; emergency stop if it is wrong"},
+    {2, BRINGUP_ASK_HOLD, BRINGUP_REST, 0, BRINGUP_FAR_MOVE, "rest",
+     "a dummy load on the drive; hold the dead-man"},
+    {2, BRINGUP_ASK_NOTHING, BRINGUP_LEVEL, 0, BRINGUP_FAR_MOVE, "load", ""},
+    {2, BRINGUP_ASK_NOTHING, BRINGUP_REST, 0, BRINGUP_FAR_MOVE, "off", ""},
+    {3, BRINGUP_ASK_TURN, BRINGUP_TURN, HANDS, BRINGUP_FAR_OWN, "encoder",
+     "the motor on the drive; pull its string out by hand, let it back in"},
+    {3, BRINGUP_ASK_HOLD, BRINGUP_REST, 0, BRINGUP_FAR_MOVE, "rest",
+     "string drawn out and free; hold the dead-man"},
+    {3, BRINGUP_ASK_NOTHING, BRINGUP_POLARITY, 0, BRINGUP_FAR_TRAVEL, "polarity", ""},
+    {3, BRINGUP_ASK_NOTHING, BRINGUP_RUN, 0, BRINGUP_FAR_TRAVEL, "speed", ""},
+    {3, BRINGUP_ASK_NOTHING, BRINGUP_STOP, 0, BRINGUP_FAR_TRAVEL, "stop", ""},
+    {4, BRINGUP_ASK_TURN, BRINGUP_TURN, HANDS, BRINGUP_FAR_OWN, "encoder",
+     "pull the string out by hand, let it back in"},
+    {4, BRINGUP_ASK_HOLD, BRINGUP_REST, 0, BRINGUP_FAR_MOVE, "rest",
+     "string drawn out and free; hold the dead-man"},
+    {4, BRINGUP_ASK_NOTHING, BRINGUP_HOME, 0, BRINGUP_FAR_OWN, "home", ""},
+    {4, BRINGUP_ASK_HOOK, BRINGUP_LEVEL, 0, BRINGUP_FAR_TRAVEL, "force",
+     "let go; the balance on the string, just taut; hold the dead-man and read it"},
+    {4, BRINGUP_ASK_NOTHING, BRINGUP_TABLE, HANDS, BRINGUP_FAR_OWN, "table", ""},
+    {5, BRINGUP_ASK_TURN, BRINGUP_TURN, HANDS, BRINGUP_FAR_OWN, "encoder",
+     "a finger in it: bend it, stretch it"},
+    {5, BRINGUP_ASK_HOLD, BRINGUP_REST, 0, BRINGUP_FAR_TRAVEL, "rest",
+     "finger bent and still; hold the dead-man"},
+    {5, BRINGUP_ASK_NOTHING, BRINGUP_LEVEL, 0, BRINGUP_FAR_TRAVEL, "force", ""},
 };
 
 const struct bringup_phase *bringup_phase(unsigned stage, unsigned phase)

@@ -131,6 +131,10 @@ static void put_values(struct text *t, const struct bringup *s, const struct bri
     if (s->mon.n > 0 || !told(s, cfg)->hands) {
         put_mA(t, ", monitor ", s->mon.n ? exh_mean_value(&s->mon) : s->tell_mon_A_q26);
     }
+    if (told(s, cfg)->step == BRINGUP_INPUTS || told(s, cfg)->step == BRINGUP_TABLE) {
+        put(t, "\n");
+        return;
+    }
     put(t, ", moved ");
     put_int(t, milli(INT64_C(10) * exh_quad_pos_m_q30(&cfg->par->quad, moved_cnt), EXH_Q_POS), 1);
     put(t, " mm");

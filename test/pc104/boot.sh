@@ -134,6 +134,14 @@ for scene in minimal glove bilateral; do
     image=$1/$scene-none.elf
     boots 0 '^ticks 1000 run, [01] missed$' ticks=1000
 done
+# First power-up, with nobody there: words as the host's, and no stage without the one before.
+image=$1/bringup-none.elf
+boots 0 '^encoder: pull the string out by hand' ticks=4000 stage=1
+says '^rest: ok, monitor 0 mA, moved 0.0 mm$'
+says ', enable 0x00000000$'
+boots 0 '^STOP in rest: the stage before was not shown' ticks=100 stage=2
+boots 2 '^option stage=6: allowed 1..5$' stage=6
+boots 2 '^option f_finger=2.5: allowed 0.5..2 n$' f_finger=2.5
 image=$1/drop-none.iso
 boots 0 '^ticks 500 run, [01] missed$'
 says '^set k 1000$'

@@ -199,7 +199,7 @@ mps2_row()
 }
 
 mkdir -p "$b"
-[ $# -gt 0 ] || set -- minimal drop glove bilateral
+[ $# -gt 0 ] || set -- minimal drop glove bilateral bringup
 : >"$b/table.txt"
 for scene in "$@"; do
     [ -r "examples/$scene/scene.mk" ] || { note "$scene: no examples/$scene/scene.mk"; continue; }
