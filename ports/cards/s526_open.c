@@ -121,7 +121,8 @@ static int ee_word(const struct exh_s526 *s, unsigned address, uint16_t *word,
     s526_out(s, S526_ISR, S526_EE_DONE);
     s526_out(s, S526_EEC, address << 3 | 5u); /* read */
     err = s526_wait(s, S526_EE_DONE, s->par.ee_wait_us, EXH_CARD_EE_TIMEOUT, address, &isr, f);
-    s526_out(s, S526_ISR, S526_EE_DONE);
+    /* A/D too: a scan of whoever ran before may have ended behind the self-test. */
+    s526_out(s, S526_ISR, S526_EE_DONE | S526_AD_DONE);
     *word = s526_in(s, S526_EED);
     return err;
 }

@@ -247,7 +247,7 @@ TEST(a_word_of_the_eeprom_by_example)
     CHECK_EQ_I64(open_it(), 0);
     while (i < bus.n && !(bus.log[i].port == 0x2F4 && bus.log[i].value == (0x23 << 3 | 5))) { i++; }
     bus.n = i + 4;
-    CHECK(bus_said(i - 1, "w 2CE 80, w 2F4 11D, r 2CE 80, w 2CE 80, r 2F2 4024"), "otherwise");
+    CHECK(bus_said(i - 1, "w 2CE 80, w 2F4 11D, r 2CE 80, w 2CE 84, r 2F2 4024"), "otherwise");
 }
 
 TEST(garbage_in_the_eeprom_is_refused_by_name)
@@ -388,6 +388,21 @@ TEST(flags_of_whatever_was_before_are_not_taken_for_an_answer)
     }
 }
 
+/* A scan still ran when it was opened anew: its end is not that of the first reference. */
+TEST(a_scan_that_ends_while_it_is_opened_is_not_taken_for_a_reference)
+{
+    unsigned i = 0;
+    bus_reset();
+    bus.s526[0].settle_us = 15;
+    bus.s526[0].channel_us = 10;
+    bus.s526[0].done_us = 150;
+    bus.s526[0].wait = UINT16_MAX;
+    CHECK_EQ_I64(open_it(), 0);
+    while (i < bus.n && !(bus.log[i].port == 0x2C6 && bus.log[i].value == 0xE001)) { i++; }
+    CHECK(bus.log[i + 1].port == 0x2CE && !(bus.log[i + 1].value & 4), "%X",
+          (unsigned)bus.log[i + 1].value);
+}
+
 TEST(and_by_polls_where_time_stands_still)
 {
     for (unsigned i = 0; i < 3; i++) {
@@ -438,5 +453,6 @@ TEST_MAIN("s526", doubles_by_example, doubles_that_are_no_number_or_too_large_ar
           a_counter_with_a_dead_bit_is_named, an_output_pin_that_stays_active_is_a_fault,
           a_flag_that_never_comes_ends_in_time,
           flags_of_whatever_was_before_are_not_taken_for_an_answer,
+          a_scan_that_ends_while_it_is_opened_is_not_taken_for_a_reference,
           and_by_polls_where_time_stands_still, a_wait_that_was_held_up_polls_once_more,
           a_card_that_dies_while_it_is_opened_is_found_dead);
