@@ -153,9 +153,11 @@ int pc104_timer_set(uint32_t rate_Hz, struct exh_period *achieved)
         offer_nearest(rate_Hz);
         return -EXH_E_RATE;
     }
+    (void)exh_io_time_us(); /* up to here in the counts of before */
     counts = nearest(rate_Hz);
     *achieved = period();
     if (!is_hpet) { pc104_pit_load(counts); }
+    us_last = pc104_timer_now();
     say_period(rate_Hz);
     pc104_say(pc104_second_open() ? "second clock local APIC\n"
                                   : "second clock none: a timer that dies is not noticed\n");
@@ -249,14 +251,19 @@ uint32_t pc104_timer_Hz(void)
     return timer.Hz;
 }
 
+/* The 8254 may have begun a period whose interrupt is yet to come: time stands until then. */
 uint32_t pc104_timer_now(void)
 {
+    static uint32_t last_ticks, last_count = UINT32_MAX;
     uint32_t ticks, count;
     if (is_hpet) { return pc104_hpet_now(); }
     do { /* an interrupt between the two would make them belong to different periods */
         ticks = pc104_ticks;
         count = pc104_pit_count();
     } while (ticks != pc104_ticks);
+    if (ticks == last_ticks && count > last_count) { count = last_count; }
+    last_ticks = ticks;
+    last_count = count;
     return ticks * counts + (counts - count);
 }
 
