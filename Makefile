@@ -516,7 +516,7 @@ boot: all
 	@.ci/deps "booting" qemu-system-i386 qemu-system-x86 || exit 3
 	@for c in real none; do for s in $(boot_scenes); do \
 	    $(MAKE) --no-print-directory $(if $(V),,-s) PORT=pc104 SCENE=$$s CARDS=$$c all || exit; done; done
-	@$(MAKE) --no-print-directory -s PORT=pc104 SCENE=drop CARDS=none image ARGS="ticks=500 k=1000"
+	@$(MAKE) --no-print-directory -s PORT=pc104 SCENE=drop CARDS=none image ARGS="ticks=500 k=1000 idle=spin"
 	@EXHAND=$(exhand) test/pc104/boot.sh $(B)/pc104
 
 contract_images := mps2/minimal mps2/contract mps2/contract_slow mps2/contract_fast mps2/overflow \

@@ -124,13 +124,14 @@ show_absent()
     run "no HPET: the 8254" drop --loop --hpet 0 --ticks 2000
 }
 
-# qemu IMAGE TICKS [OPTION...]: the timer interrupt of qemu, in virtual time, 8 ns an instruction
+# qemu IMAGE TICKS [OPTION...]: the timer interrupt of qemu, in virtual time, 8 ns an instruction. The
+# processor does not sleep: from HLT qemu goes to the next timer at once, and now and then to the one behind it.
 qemu()
 {
     image=$b/pc104/$1.elf n=$2
     shift 2
     echo "$image: $n ticks under qemu $*"
-    TIMEOUT_s=1800 ports/pc104/run.sh "$image" "ticks=$n" "$@" >"$b/hil-qemu.txt"
+    TIMEOUT_s=1800 ports/pc104/run.sh "$image" "ticks=$n" idle=spin "$@" >"$b/hil-qemu.txt"
     status=$?
     grep -E '^(rate|ticks|tick_max|dac)' "$b/hil-qemu.txt" | sed 's/^/  /'
     if [ $status = 0 ] && grep -q "^ticks $n run, 0 missed" "$b/hil-qemu.txt"; then
