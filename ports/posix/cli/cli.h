@@ -6,6 +6,7 @@
 int cli_advise(int argc, char **argv);
 int cli_bilateral(int argc, char **argv);
 int cli_bringup(int argc, char **argv);
+int cli_budget(int argc, char **argv);
 int cli_calibrate(int argc, char **argv);
 int cli_calibrate_glove(int argc, char **argv); /* `exhand calibrate --glove` */
 int cli_cards(int argc, char **argv);

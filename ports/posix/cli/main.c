@@ -15,6 +15,7 @@ static const struct {
     {"advise", "how far before contact to freeze q_lim, how far to look", cli_advise},
     {"bilateral", "hand, glove, link and world: contacts as in the paper's second experiment", cli_bilateral},
     {"bringup", "first power-up, step by step, rehearsed on the simulated device", cli_bringup},
+    {"budget", "the highest rate of the loop that the box can hold, bound by bound", cli_budget},
     {"calibrate", "known masses, F0 and home: tables of force and current; or --glove, poses", cli_calibrate},
     {"cards", "every misbehaviour of a card in every phase of its driver, and how it ends", cli_cards},
     {"drop", "the paper's falling-mass experiment on the simulated device", cli_drop},

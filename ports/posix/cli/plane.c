@@ -501,6 +501,22 @@ static int finish(FILE *f, const struct sweep_opt *o, const char *name)
     return 1;
 }
 
+/* What a rate buys, for the picture of it (plot/rate.gp). */
+static int write_stiffness(const struct sweep_opt *o, const struct found *x)
+{
+    FILE *f = create(o, "stiffness.csv");
+    if (f == NULL) { return 1; }
+    fprintf(f, "rate_hz,k_n_per_m,at_b_ns_per_m,open,linear_k_n_per_m,stiffest_n_per_m,paper_k_n_per_m\n");
+    for (int i = 0; i < o->rates; i++) {
+        const struct table2_row *row = table2_at(x[i].rate_Hz);
+        fprintf(f, "%.9g,%.9g,%.9g,%d,%.9g,%.9g,", x[i].rate_Hz, x[i].sim.k_Npm, x[i].sim.k_at_b, x[i].sim.k_open,
+                x[i].linear.k_Npm, x[i].stiffness_Npm);
+        if (row) { fprintf(f, "%.9g", row->k_Npm); }
+        fputc('\n', f);
+    }
+    return finish(f, o, "stiffness.csv");
+}
+
 int plane_report(const struct cells *cells, const struct sweep_opt *o)
 {
     struct found *x = calloc((size_t)o->rates, sizeof *x);
@@ -514,6 +530,7 @@ int plane_report(const struct cells *cells, const struct sweep_opt *o)
             write_rho(rho_f, o, &x[i]);
         }
         write_picture(gp, x, o->rates);
+        err |= write_stiffness(o, x);
         print(x, o->rates, o->base.board.falls);
     }
     if (border_f) { err |= finish(border_f, o, "border.csv"); }
