@@ -62,9 +62,7 @@ static void next_phase(struct bringup *s, const struct bringup_cfg *cfg)
     s->phase++;
     s->busy = s->let_go = 0;
     s->tick = 0;
-    if (bringup_phase((unsigned)cfg->par->own.stage, s->phase) == NULL) {
-        s->result = EXH_PROBE_DONE;
-    }
+    if (bringup_phase(cfg->list, s->phase) == NULL) { s->result = EXH_PROBE_DONE; }
 }
 
 /* A phase that needs the switch waits for it: held from the phase before, or taken now. */
@@ -88,7 +86,7 @@ static void wait(struct bringup *s, const struct bringup_cfg *cfg, const struct 
 /* Does current flow now, or might it? */
 static int needs_run(const struct bringup *s, const struct bringup_cfg *cfg)
 {
-    const struct bringup_phase *p = bringup_phase((unsigned)cfg->par->own.stage, s->phase);
+    const struct bringup_phase *p = bringup_phase(cfg->list, s->phase);
     if (p == NULL || p->hands) { return 0; }
     return s->busy || p->ask == BRINGUP_ASK_NOTHING;
 }
@@ -98,7 +96,7 @@ static int32_t go_on(struct bringup *s, const struct bringup_cfg *cfg,
                      const struct exh_scene_in *in, struct bringup_view v)
 {
     const struct bringup_own_par *own = &cfg->par->own;
-    const struct bringup_phase *p = bringup_phase((unsigned)own->stage, s->phase);
+    const struct bringup_phase *p = bringup_phase(cfg->list, s->phase);
     const int run = s->safety.state == EXH_STATE_RUN;
     int32_t f_N_q20 = 0;
     uint8_t r = EXH_PROBE_BUSY;

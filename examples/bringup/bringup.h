@@ -3,7 +3,7 @@
  *   stage 1  no motors, no drives: rest, encoder turned by hand, inputs, D/A into a meter
  *   stage 2  a dummy load on the drive: rest, small currents, off again
  *   stage 3  one motor, nothing on its string: rest, polarity, speed, stop
- *   stage 4  its string: home, then on a spring balance: rest, forces, table
+ *   stage 4  its string: home, then on a spring balance: forces, table; or a known mass: kf
  *   stage 5  one finger, small forces
  *
  * A run is one stage, of phases. A stage that is done prints a number; the next one does not
@@ -32,6 +32,7 @@
 #endif
 
 #define BRINGUP_STAGES 5
+#define BRINGUP_WEIGHS 6 /* the list of phases of stage 4 with a mass                */
 #define BRINGUP_LEVELS 3 /* a third, two thirds and all of a stage's limit          */
 
 /* Why it ended: enum exh_probe_result (DONE: the stage is done), or */
@@ -72,6 +73,7 @@ struct bringup_own_par {
     int32_t v_max_mps_q27, v_trip_mps_q27;
     int32_t turn_m_q30, move_m_q30, travel_m_q30, home_min_m_q30, home_max_m_q30;
     int32_t hold_ms, doubt_ms, dwell_ms, stop_ms, time_ms, wait_ms;
+    int32_t mass_kg_q20; /* stage 4: weighs this instead of the balance; 0: does not */
     int32_t read_N_q20[BRINGUP_LEVELS]; /* of the balance; 0: not yet           */
 };
 
@@ -97,11 +99,14 @@ struct bringup_cfg {
     struct exh_knot to_cur[2];
     struct exh_probe_cfg polarity; /* its travel and move are everybody's        */
     struct exh_home_cfg home;
+    struct exh_weigh_cfg weigh;
+    int32_t mass_N_q20; /* the mass's weight                          */
     int32_t kf_NpA_q20; /* 1 below stage 4: current stands for force */
     int32_t level_N_q20[BRINGUP_LEVELS];
     struct exh_gain looped_A_q26; /* per code of a monitor input that sees the D/A */
     int32_t turn_cnt;
     uint32_t hold_ticks, doubt_ticks, dwell_ticks, stop_ticks, time_ticks, wait_ticks;
+    uint8_t list; /* of phases: the stage, or BRINGUP_WEIGHS   */
     uint32_t number, before; /* what this stage prints, what it needs            */
 };
 
@@ -115,6 +120,7 @@ struct bringup {
     struct exh_safety safety;
     struct exh_probe probe;
     struct exh_home homing;
+    struct exh_weigh weigh;
     struct exh_mean mon, coded; /* of what is measured in a phase       */
     int64_t off_A_q26, sum_A_q26; /* monitor - commanded, and commanded, in this window */
     int32_t coded_A_q26; /* in the last tick                    */
@@ -150,6 +156,7 @@ enum bringup_step {
     BRINGUP_RUN,
     BRINGUP_STOP,
     BRINGUP_HOME,
+    BRINGUP_WEIGH,
     BRINGUP_TABLE
 };
 
@@ -161,7 +168,7 @@ struct bringup_phase {
     uint8_t far; /* enum bringup_far: how far it may move                */
     const char *name, *text;
 };
-const struct bringup_phase *bringup_phase(unsigned stage, unsigned phase); /* NULL: no more */
+const struct bringup_phase *bringup_phase(unsigned list, unsigned phase); /* NULL: no more */
 
 /* One tick of it, its result; the force asked for, or the current that stands for it, goes to
  * *f_N_q20. */

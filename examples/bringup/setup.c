@@ -3,6 +3,9 @@
 
 #include "exhand/board.h"
 
+#define GRAVITY_MPS2_Q20 EXH_Q(981, 100, EXH_Q_FORCE)
+#define MASS_MIN_KG_Q20  EXH_Q(5, 100, EXH_Q_FORCE)
+
 #define COUNT(r) (sizeof(r) / sizeof((r)[0]))
 
 #define ROW(id, frac, min, max, dflt, name, unit, help) \
@@ -61,6 +64,8 @@ static const struct exh_signal own_rows[] = {
     ROW_MS(0x871D, "stop_time", 20, 1000, 200, "stage 3: at rest so long after letting go"),
     ROW_MS(0x871E, "step_time", 100, 60000, 20000, "no motion takes longer"),
     ROW_MS(0x871F, "wait_time", 1000, 600000, 120000, "no wait for the person takes longer"),
+    ROW(0x8723, EXH_Q_FORCE, 0, EXH_Q(1, 1, EXH_Q_FORCE), 0, "mass", "kg",
+        "stage 4: weighs this mass, 0.05 at least, instead of the balance; 0: does not"),
     ROW_N(0x8720, "read1", 0, 20000, 0, "what the balance read at the first force; 0: not yet"),
     ROW_N(0x8721, "read2", 0, 20000, 0, "at the second"),
     ROW_N(0x8722, "read3", 0, 20000, 0, "at the third"),
@@ -185,6 +190,22 @@ static int setup_motions(struct bringup_cfg *cfg, struct exh_period T)
     return err == 0 ? exh_home_setup(&cfg->home, &home, scale) : err;
 }
 
+/* A mass that half of homing's current might lift, or the stage's limit hardly could, is refused. */
+static int setup_weigh(struct bringup_cfg *cfg, struct exh_period T)
+{
+    const struct bringup_own_par *own = &cfg->par->own;
+    const struct exh_probe_scale scale = {cfg->par->quad.step_m_q42, T};
+    const struct exh_probe_par probe = {own->step_A_q26, cfg->to_cur[1].y, own->dwell_ms,
+                                        own->time_ms,    own->move_m_q30,  own->travel_m_q30};
+    const struct exh_weigh_par weigh = {probe, own->home_A_q26 / 2, own->hold_ms};
+    cfg->mass_N_q20 = exh_sat32(exh_mul_shr(own->mass_kg_q20, GRAVITY_MPS2_Q20, EXH_Q_FORCE));
+    if (cfg->list != BRINGUP_WEIGHS) { return 0; }
+    if (own->mass_kg_q20 < MASS_MIN_KG_Q20 || cfg->mass_N_q20 >= own->f_max_N_q20) {
+        return -EXH_E_RANGE;
+    }
+    return exh_weigh_setup(&cfg->weigh, &weigh, scale);
+}
+
 int bringup_setup(struct bringup_cfg *cfg, const struct bringup_par *par,
                   struct exh_scene_board board)
 {
@@ -198,6 +219,8 @@ int bringup_setup(struct bringup_cfg *cfg, const struct bringup_par *par,
     if (cfg->drive_par.slew_up_Nps > par->own.ramp_ps) {
         cfg->drive_par.slew_up_Nps = par->own.ramp_ps;
     }
+    cfg->list =
+        (uint8_t)(par->own.stage == 4 && par->own.mass_kg_q20 ? BRINGUP_WEIGHS : par->own.stage);
     cfg->number = number_of(par->own.stage, par);
     cfg->before = par->own.stage > 1 ? number_of(par->own.stage - 1, par) : 0;
     err = setup_levels(cfg);
@@ -208,7 +231,8 @@ int bringup_setup(struct bringup_cfg *cfg, const struct bringup_par *par,
     if (err == 0) { err = exh_quad_setup(&cfg->quad, &par->quad, board.T, board.enc_bits); }
     if (err == 0) { err = exh_velocity_window_setup(&cfg->vel, scale, &window); }
     if (err == 0) { err = exh_drive_setup(&cfg->drive, &cfg->drive_par, board.T, to_cur, none); }
-    return err == 0 ? setup_motions(cfg, board.T) : err;
+    if (err == 0) { err = setup_motions(cfg, board.T); }
+    return err == 0 ? setup_weigh(cfg, board.T) : err;
 }
 
 /* --- the one instance of this image --- */

@@ -111,6 +111,15 @@ static uint8_t home(struct bringup *s, const struct bringup_cfg *cfg, struct bri
     return s->homing.result;
 }
 
+static uint8_t weigh(struct bringup *s, const struct bringup_cfg *cfg, struct bringup_view v,
+                     int32_t *f_N_q20)
+{
+    if (s->tick == 0) { exh_weigh_start(&s->weigh, &cfg->weigh, v.cnt); }
+    (void)exh_weigh_step(&s->weigh, &cfg->weigh, v.cnt, s->coded_A_q26, v.mon_A_q26);
+    *f_N_q20 = force_of(cfg, s->weigh.cur_A_q26);
+    return s->weigh.result;
+}
+
 /* What the balance read against what was commanded. */
 static uint8_t table(const struct bringup_cfg *cfg)
 {
@@ -137,6 +146,7 @@ uint8_t bringup_step(struct bringup *s, const struct bringup_cfg *cfg,
     case BRINGUP_RUN: return speed(s, cfg, v, f_N_q20);
     case BRINGUP_STOP: return stop(s, cfg, v);
     case BRINGUP_HOME: return home(s, cfg, v, f_N_q20);
+    case BRINGUP_WEIGH: return weigh(s, cfg, v, f_N_q20);
     case BRINGUP_TABLE: return table(cfg);
     default: return BRINGUP_OFF;
     }
@@ -171,6 +181,13 @@ static const struct bringup_phase phases[] = {
     {4, BRINGUP_ASK_HOOK, BRINGUP_LEVEL, 0, BRINGUP_FAR_TRAVEL, "force",
      "let go; the balance on the string, just taut; hold the dead-man and read it"},
     {4, BRINGUP_ASK_NOTHING, BRINGUP_TABLE, HANDS, BRINGUP_FAR_OWN, "table", ""},
+    {6, BRINGUP_ASK_TURN, BRINGUP_TURN, HANDS, BRINGUP_FAR_OWN, "encoder",
+     "pull the string out by hand, let it back in"},
+    {6, BRINGUP_ASK_HOLD, BRINGUP_REST, 0, BRINGUP_FAR_MOVE, "rest",
+     "string drawn out and free; hold the dead-man"},
+    {6, BRINGUP_ASK_NOTHING, BRINGUP_HOME, 0, BRINGUP_FAR_OWN, "home", ""},
+    {6, BRINGUP_ASK_HOOK, BRINGUP_WEIGH, 0, BRINGUP_FAR_TRAVEL, "mass",
+     "let go; the mass on the string, standing, just taut; hold the dead-man"},
     {5, BRINGUP_ASK_TURN, BRINGUP_TURN, HANDS, BRINGUP_FAR_OWN, "encoder",
      "a finger in it: bend it, stretch it"},
     {5, BRINGUP_ASK_HOLD, BRINGUP_REST, 0, BRINGUP_FAR_TRAVEL, "rest",
@@ -178,10 +195,10 @@ static const struct bringup_phase phases[] = {
     {5, BRINGUP_ASK_NOTHING, BRINGUP_LEVEL, 0, BRINGUP_FAR_TRAVEL, "force", ""},
 };
 
-const struct bringup_phase *bringup_phase(unsigned stage, unsigned phase)
+const struct bringup_phase *bringup_phase(unsigned list, unsigned phase)
 {
     for (unsigned i = 0; i < sizeof phases / sizeof phases[0]; i++) {
-        if (phases[i].stage == stage && phase-- == 0) { return &phases[i]; }
+        if (phases[i].stage == list && phase-- == 0) { return &phases[i]; }
     }
     return NULL;
 }

@@ -43,7 +43,7 @@ static void put_mA(struct text *t, const char *before, int32_t A_q26)
 
 static const struct bringup_phase *told(const struct bringup *s, const struct bringup_cfg *cfg)
 {
-    return bringup_phase((unsigned)cfg->par->own.stage, s->told_phase);
+    return bringup_phase(cfg->list, s->told_phase);
 }
 
 /* --- */
@@ -51,7 +51,7 @@ static const struct bringup_phase *told(const struct bringup *s, const struct br
 /* What is asked for the phase that comes. */
 static void put_ask(struct text *t, const struct bringup *s, const struct bringup_cfg *cfg)
 {
-    const struct bringup_phase *p = bringup_phase((unsigned)cfg->par->own.stage, s->phase);
+    const struct bringup_phase *p = bringup_phase(cfg->list, s->phase);
     if (p == NULL || p->text[0] == '\0') { return; }
     put(t, p->name);
     put(t, ": ");
@@ -167,11 +167,28 @@ static void put_kf(struct text *t, const struct bringup_cfg *cfg)
     put(t, " N/A\n");
 }
 
+/* What balances the mass, with friction weighed out, and kf by it. */
+static void put_mass(struct text *t, const struct bringup *s, const struct bringup_cfg *cfg)
+{
+    const struct exh_calib_point p = exh_weigh_point(&s->weigh, cfg->mass_N_q20);
+    struct exh_calib_fit fit;
+    put_int(t, milli(p.force_N_q20, EXH_Q_FORCE), 3);
+    put_mA(t, " N: ", p.cur_A_q26);
+    put_mA(t, ", monitor ", p.mon_A_q26);
+    put_mA(t, ", friction ", p.friction_A_q26);
+    if (exh_calib_fit(&fit, &p, 1, EXH_CALIB_CURRENT) == 0) {
+        put(t, "; kf ");
+        put_int(t, milli(fit.kf_NpA_q20, EXH_Q_FORCE), 3);
+        put(t, " N/A");
+    }
+    put(t, "\n");
+}
+
 static void put_phase(struct text *t, const struct bringup *s, const struct bringup_cfg *cfg)
 {
     const struct bringup_phase *p = told(s, cfg);
     const int failed = s->result > EXH_PROBE_DONE;
-    if (cfg->par->own.stage == 4 && p->hands && p->ask == BRINGUP_ASK_NOTHING) { put_kf(t, cfg); }
+    if (p->step == BRINGUP_TABLE) { put_kf(t, cfg); }
     put(t, failed ? "STOP in " : "");
     put(t, p->name);
     put(t, ": ");
@@ -179,6 +196,7 @@ static void put_phase(struct text *t, const struct bringup *s, const struct brin
     if (s->result == BRINGUP_OFF) { put_causes(t, s); }
     if (s->result == BRINGUP_INPUT) { put_missing(t, s); }
     put_values(t, s, cfg);
+    if (!failed && p->step == BRINGUP_WEIGH) { put_mass(t, s, cfg); }
     if (failed) { put(t, "outputs at 0 A, drive disabled\n"); }
 }
 
@@ -187,8 +205,10 @@ static void put_end(struct text *t, const struct bringup_cfg *cfg)
     const struct bringup_own_par *own = &cfg->par->own;
     put(t, "stage ");
     put_int(t, own->stage, 0);
-    put(t, " shown: outputs at 0 A, drive disabled");
-    if (own->stage < BRINGUP_STAGES) {
+    put(t, "");
+    put(t, cfg->list == BRINGUP_WEIGHS ? " weighed" : " shown");
+    put(t, ": outputs at 0 A, drive disabled");
+    if (cfg->list < BRINGUP_STAGES) {
         put(t, "; next stage=");
         put_int(t, own->stage + 1, 0);
         put(t, " finger=");

@@ -7,10 +7,10 @@
 #define DOC_B  65536
 
 static struct said s;
-static char doc[DOC_B], made[DOC_B];
+static char doc[DOC_B], made[DOC_B], carded[SAID_B];
 
 /* Words of a command line, "two words" kept together, in place. How many. */
-static int split(char *line, const char *word[16])
+static int split(char *line, const char *word[17])
 {
     int n = 0;
     while (*line != '\0' && n < 15) {
@@ -25,15 +25,20 @@ static int split(char *line, const char *word[16])
     return n;
 }
 
-static void run(const char *line, size_t len)
+/* more: an option besides, or NULL. */
+static void run(const char *line, size_t len, const char *more)
 {
     static const char program[] = "$ exhand ";
     char words[200], *dir = said_dir();
-    const char *word[16];
+    const char *word[17];
+    int n;
     CHECK(len < sizeof words, "a long line");
     memcpy(words, line, len);
     words[len] = '\0';
-    CHECK(split(words + strlen(program), word) > 0, "no words");
+    n = split(words + strlen(program), word);
+    CHECK(n > 0, "no words");
+    word[n] = more;
+    word[n + 1] = NULL;
     said(&s, dir, cli_bringup, word);
     CHECK(s.err[0] == '\0' && s.status >= 0 && s.status <= 1, "status %d: %s", s.status, s.err);
     said_clean(dir);
@@ -51,7 +56,10 @@ TEST(expected_prints_are_what_is_printed_now)
     while ((from = strstr(at, BEGINS)) != NULL) {
         char *const line = from + strlen("```\n"), *const body = strchr(line, '\n') + 1;
         char *const end = strstr(body - 1, "\n```") + 1;
-        run(line, (size_t)(body - 1 - line));
+        run(line, (size_t)(body - 1 - line), "--cards");
+        strcpy(carded, s.out);
+        run(line, (size_t)(body - 1 - line), NULL);
+        CHECK(strcmp(carded, s.out) == 0, "through the cards: %s", carded);
         n += (size_t)snprintf(made + n, sizeof made - n, "%.*s%s", (int)(body - at), at, s.out);
         if (getenv("EXH_UPDATE") == NULL) {
             CHECK((size_t)(end - body) == strlen(s.out) && memcmp(body, s.out, strlen(s.out)) == 0,
@@ -61,7 +69,7 @@ TEST(expected_prints_are_what_is_printed_now)
         at = end;
         blocks++;
     }
-    CHECK(blocks == 7, "%d blocks", blocks);
+    CHECK(blocks == 8, "%d blocks", blocks);
     if (getenv("EXH_UPDATE") == NULL) { return; }
     snprintf(made + n, sizeof made - n, "%s", at);
     f = fopen(DOC, "w");

@@ -277,6 +277,36 @@ TEST(the_balance_must_read_what_was_commanded)
     CHECK(r.result == BRINGUP_READING, "kf 5: %s", bringup_result_text(r.result));
 }
 
+/* Friction weighed out: kf (1 - b^2) / (1 + a b), as calibrate_test has it. No number comes of it. */
+TEST(a_known_mass_gives_kf)
+{
+    static const char *const mass[] = {" mass=0.1", " mass=0.3 f_string=5 i_step=0.02"};
+    for (size_t i = 0; i < LEN(mass); i++) {
+        for (int cards = 0; cards < 2; cards++) {
+            struct bringup_run_cfg c = config(2);
+            const struct bringup *s = bringup_state();
+            double N, A;
+            c.board.cards.how = cards ? POSIX_CARDS_INSTANT : POSIX_CARDS_NONE;
+            CHECK_EQ_I64(run_stage(c, 4, 0, shown_before(4, 0), mass[i]), 0);
+            CHECK(r.result == EXH_PROBE_DONE && r.number == 0 && r.unsafe == 0, "%s: %s", mass[i],
+                  bringup_result_text(r.result));
+            N = (double)bringup_config()->mass_N_q20 / (1 << EXH_Q_FORCE);
+            A = (double)exh_weigh_point(&s->weigh, 0).cur_A_q26 / (1 << EXH_Q_CUR);
+            CHECK(N / A > 3.259 * 0.98 && N / A < 3.259 * 1.02, "%s: %.4f N/A", mass[i], N / A);
+        }
+    }
+    {
+        struct bringup_run_cfg c = config(2);
+        c.wrong = BRINGUP_SLIPPED; /* nothing hangs on it: it runs in */
+        CHECK_EQ_I64(run_stage(c, 4, 0, shown_before(4, 0), mass[0]), 0);
+        CHECK(r.result == EXH_PROBE_TRAVEL && r.unsafe == 0 && r.most_A < 0.4492, "%s",
+              bringup_result_text(r.result));
+        CHECK(run_stage(config(2), 4, 0, shown_before(4, 0), " mass=0.04") < 0, "a mass too light");
+        CHECK(run_stage(config(2), 4, 0, shown_before(4, 0), " mass=0.16") < 0,
+              "one beyond f_string");
+    }
+}
+
 /* The number is of stage, finger, scales and limits. */
 TEST(a_stage_needs_the_one_before)
 {
@@ -319,4 +349,5 @@ TEST_MAIN("sim/bringup", every_stage_comes_through, at_any_rate, wrong_polarity,
           monitor_dead_or_half, da_never_moves, what_is_open_ends_it_at_once,
           nothing_begins_with_an_open_loop, a_string_let_loose_ends_it,
           a_mute_card_is_seen_by_the_monitor, speed_is_limited,
-          the_balance_must_read_what_was_commanded, a_stage_needs_the_one_before, what_is_refused);
+          the_balance_must_read_what_was_commanded, a_known_mass_gives_kf,
+          a_stage_needs_the_one_before, what_is_refused);

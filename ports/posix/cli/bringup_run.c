@@ -81,7 +81,7 @@ static void hook(void)
 {
     if (run.hooked) { return; }
     run.hooked = 1;
-    posix_bench(BENCH_MASS, 1);
+    posix_bench(BENCH_MASS, own()->mass_kg_q20 ? si(own()->mass_kg_q20, EXH_Q_FORCE) : 1);
 }
 
 /* The hand goes all the way back, also when the scene has seen enough. */
@@ -100,7 +100,7 @@ static void turn(struct exh_drive_in *in, int asked)
 static void hands(struct exh_drive_in *in)
 {
     const struct bringup *s = bringup_state();
-    const struct bringup_phase *p = bringup_phase((unsigned)own()->stage, s->phase);
+    const struct bringup_phase *p = bringup_phase(bringup_config()->list, s->phase);
     const unsigned ask = p ? p->ask : BRINGUP_ASK_NOTHING;
     double t_s;
     if (run.phase != (int)s->phase || run.began != s->busy) {
@@ -220,6 +220,11 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
     memcpy(&sig, exh_scene_bringup.signal, sizeof sig);
     cur_A = si(sig.i_des_A_q26, EXH_Q_CUR);
     read_balance();
+    for (unsigned i = 0; i < EXH_FINGERS; i++) { /* the others' drives */
+        run.out->unsafe += (int32_t)i != own()->finger &&
+                           (out->dac_raw[i] != bringup_config()->par->drive.dac_zero_raw ||
+                            (out->enable >> i & 1));
+    }
     if (s->result == EXH_PROBE_BUSY) {
         if (out->enable && cur_A > run.out->most_A) { run.out->most_A = cur_A; }
         return;
@@ -230,8 +235,11 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
         run.end_s = now_s();
         run.out->took_s = run.end_s - (run.wrong_s > run.since_s ? run.wrong_s : run.since_s);
         run.ended_m = run.from_m;
-        if (s->result == EXH_PROBE_DONE) { run.out->number = bringup_config()->number; }
+        if (s->result == EXH_PROBE_DONE && bringup_config()->list <= BRINGUP_STAGES) {
+            run.out->number = bringup_config()->number;
+        }
     }
+    run.out->unsafe += sig.state == EXH_STATE_RUN && now_s() > run.end_s + 0.1;
     for (unsigned i = 0; i < EXH_FINGERS; i++) {
         run.out->unsafe +=
             out->enable != 0 || out->dac_raw[i] != bringup_config()->par->drive.dac_zero_raw;
@@ -258,6 +266,13 @@ static int set_parameters(const char *boot)
     return 0;
 }
 
+static int weighs(void)
+{
+    uint32_t at = 0;
+    return cli_signal_find(exh_scene_bringup.params->table, "mass", &at) != NULL &&
+           exh_scene_bringup.params->staged[at] > 0;
+}
+
 static void place(struct posix_config *board)
 {
     const enum bringup_wrong w = run.cfg->wrong;
@@ -272,7 +287,7 @@ static void place(struct posix_config *board)
                    : w == BRINGUP_SLIPPED          ? BENCH_NO_MASS
                                                    : 0u;
     if (stage <= 2 || w == BRINGUP_STUCK) { board->wrong |= BENCH_STUCK; } /* a load */
-    if (stage == 4 && w != BRINGUP_SLIPPED) {
+    if (stage == 4 && w != BRINGUP_SLIPPED && !weighs()) {
         board->wrong |= BENCH_FIXED_MASS;
     } /* a stiff balance */
     if (stage == 5) { /* a finger that stays where it is, bent */
