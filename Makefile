@@ -503,6 +503,8 @@ check:
 	@$(MAKE) --no-print-directory PORT=template SCENE=minimal all
 	@$(MAKE) --no-print-directory PORT=pc104 SCENE=minimal undef
 	@$(MAKE) --no-print-directory boot contract
+	@$(MAKE) --no-print-directory hil HIL_TICKS=2000 HIL_FEW=500 HIL_QEMU=2000 > $(B)/hil.txt || { cat $(B)/hil.txt; exit 1; }
+	@grep -cE '^  ok' $(B)/hil.txt | sed 's/^/hil, short: ok: /'
 	@$(MAKE) --no-print-directory world two-computers
 	@$(world) --headless --script --seconds 1 --scene examples/world/scenes/collision.world --png $(B)/world.png || [ $$? = 3 ]
 	@$(MAKE) --no-print-directory size
