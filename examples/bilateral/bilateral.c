@@ -60,7 +60,7 @@ static void see(struct bilateral *s, const struct bilateral_cfg *cfg, const stru
     }
 }
 
-/* Position and velocity of all fingers in use; the causes of faults they are. */
+/* Position and velocity of all fingers in use, force by the monitor; the causes of faults they are. */
 static uint32_t sense(struct bilateral *s, const struct bilateral_cfg *cfg,
                       const struct exh_drive_in *in, struct bilateral_paper *p)
 {
@@ -72,7 +72,13 @@ static uint32_t sense(struct bilateral *s, const struct bilateral_cfg *cfg,
         const int32_t cnt = exh_quad_extend(&now->quad, &c->quad, in->enc_raw[f]);
         p[f].q_m_q30 = exh_quad_pos_m_q30(&cfg->par->quad[f], cnt);
         p[f].qd_mps_q27 = exh_velocity_window_mps_q27(&now->velocity, &c->velocity, cnt);
+        s->drive_now[f] = cfg->par->drive[f]; /* it is no state: a tick from bytes has it, too */
+        p[f].f_mon_N_q20 = exh_drive_monitor_N_q20(&cfg->drive[k], in->mon_raw[f]);
         if (now->quad.lost) { raised |= EXH_FAULT_ENCODER; }
+        if (exh_track_step(&now->track, &c->track,
+                           exh_drive_monitor_A_q26(&cfg->drive[k], in->mon_raw[f]))) {
+            raised |= EXH_FAULT_TRACKING;
+        }
     }
     return raised;
 }
@@ -150,8 +156,8 @@ void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,
                     struct exh_params *params, struct exh_drive_out *out,
                     struct bilateral_signals *sig)
 {
-    const uint32_t lost = sense(s, cfg, &in->drive, sig->paper);
-    const struct exh_safety_in box = {din_by_place(cfg, in->drive.din), lost, in->missed,
+    const uint32_t raised = sense(s, cfg, &in->drive, sig->paper);
+    const struct exh_safety_in box = {din_by_place(cfg, in->drive.din), raised, in->missed,
                                       in->command, cfg->n};
     const int run = exh_safety_step(&s->safety, &cfg->par->safety, box) == EXH_STATE_RUN;
     struct exh_current_ledger i[BILATERAL_FINGERS];
@@ -173,7 +179,7 @@ void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,
     for (unsigned k = 0; k < cfg->n; k++) {
         const unsigned f = cfg->at[k];
         sig->paper[f].i_des_A_q26 = i[k].coded_A_q26;
-        sig->paper[f].f_mon_N_q20 = exh_drive_monitor_N_q20(&cfg->drive[k], in->drive.mon_raw[f]);
+        exh_track_coded(&s->finger[f].track, i[k].coded_A_q26);
         sig->more[f].limits = (int32_t)limits[k];
         tell_finger(&sig->more[f], &s->finger[f]);
     }

@@ -27,6 +27,7 @@ struct bilateral_par {
     struct exh_velocity_par velocity[BILATERAL_FINGERS];
     struct exh_contact_par contact[BILATERAL_FINGERS]; /* k and b are the material's */
     struct exh_drive_par drive[BILATERAL_FINGERS];
+    struct exh_track_par track[BILATERAL_FINGERS];
     int32_t kf_NpA_q20[BILATERAL_FINGERS];
     struct exh_hand_par hand[BILATERAL_FINGERS];
     struct exh_precontact_par precontact[BILATERAL_FINGERS];
@@ -89,6 +90,7 @@ struct bilateral_finger_cfg {
     struct exh_velocity_window_cfg velocity;
     struct exh_hand_finger hand;
     struct exh_precontact_cfg precontact;
+    struct exh_track_cfg track;
     struct exh_knot force_to_cur[2], cur_to_force[2];
     uint32_t sensors; /* bit i: sensor i moves it                              */
 };
@@ -98,6 +100,7 @@ struct bilateral_finger {
     struct exh_velocity_window velocity;
     struct exh_contact contact;
     struct exh_drive drive;
+    struct exh_track track;
     struct exh_precontact precontact;
     int32_t out_m_q30;   /* how far the string has run out                      */
     uint32_t rest_ticks; /* since then                                          */

@@ -45,6 +45,7 @@ int bilateral_finger_setup(struct bilateral_cfg *cfg, struct bilateral *s, unsig
     if (err == 0) {
         err = exh_drive_setup(&cfg->drive[place], &s->drive_now[f], board.T, to_cur, to_force);
     }
+    if (err == 0) { err = exh_track_setup(&c->track, &par->track[f], board.T); }
     if (err == 0) { err = exh_hand_setup(&c->hand, &exh_hit2_bones[f], &par->hand[f]); }
     if (err == 0) { err = exh_hand_follow(&c->hand, &exh_hit2_map, f); }
     if (err == 0) {
@@ -133,6 +134,7 @@ void bilateral_finger_bytes(struct exh_bytes *c, struct bilateral_finger *s)
     exh_velocity_window_bytes(c, &s->velocity);
     exh_contact_bytes(c, &s->contact);
     exh_drive_bytes(c, &s->drive);
+    exh_track_bytes(c, &s->track);
     exh_precontact_bytes(c, &s->precontact);
     exh_bytes_i32(c, &s->out_m_q30);
     exh_bytes_u32(c, &s->rest_ticks);

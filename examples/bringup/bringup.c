@@ -187,8 +187,10 @@ void bringup_tick(struct bringup *s, const struct bringup_cfg *cfg, const struct
     const struct bringup_view v = {cnt, exh_velocity_window_mps_q27(&s->vel, &cfg->vel, cnt),
                                    monitor_A_q26(cfg, in->drive.mon_raw[finger]),
                                    (in->drive.din & 3u) | (ready ? 4u : 0u)};
+    /* Its phases compare monitor and code themselves, and more closely: doubt, mon_tol. */
+    const uint32_t raised = (s->quad.lost ? EXH_FAULT_ENCODER : 0u) | EXH_UNTRACKED;
     const struct exh_safety_in box = {
-        inputs_of(&par->own, in->drive.din), s->quad.lost ? EXH_FAULT_ENCODER : 0u, in->missed,
+        inputs_of(&par->own, in->drive.din), raised, in->missed,
         s->result == EXH_PROBE_BUSY ? in->command : (uint8_t)EXH_CMD_OFF, 1};
     struct exh_force_ledger f = {0, 0, 0, 0, 0, 0, 0};
     struct exh_current_ledger i;

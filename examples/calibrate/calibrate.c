@@ -57,17 +57,17 @@ static const struct exh_signal signal_rows[] = {
 
 static const struct exh_signal_group param_groups[] = {
     {exh_quad_rows, EXH_QUAD_ROWS, 1},     {exh_drive_rows, EXH_DRIVE_ROWS, 1},
-    {exh_safety_rows, EXH_SAFETY_ROWS, 1}, {own_rows, COUNT(own_rows), 1},
-    {mass_rows, 1, CALIBRATE_MASSES},
+    {exh_track_rows, EXH_TRACK_ROWS, 1},   {exh_safety_rows, EXH_SAFETY_ROWS, 1},
+    {own_rows, COUNT(own_rows), 1},        {mass_rows, 1, CALIBRATE_MASSES},
 };
-static const struct exh_signal_table param_table = {param_groups, 5};
+static const struct exh_signal_table param_table = {param_groups, 6};
 static const struct exh_signal_group signal_groups[] = {{signal_rows, COUNT(signal_rows), 1}};
 static const struct exh_signal_table signal_table = {signal_groups, 1};
 
 EXH_STATIC_ASSERT(calibrate_par_matches_rows,
                   sizeof(struct calibrate_par) / sizeof(int32_t) ==
-                      EXH_QUAD_ROWS + EXH_DRIVE_ROWS + EXH_SAFETY_ROWS + COUNT(own_rows) +
-                          CALIBRATE_MASSES);
+                      EXH_QUAD_ROWS + EXH_DRIVE_ROWS + EXH_TRACK_ROWS + EXH_SAFETY_ROWS +
+                          COUNT(own_rows) + CALIBRATE_MASSES);
 EXH_STATIC_ASSERT(calibrate_signals_match_rows,
                   sizeof(struct calibrate_signals) / sizeof(int32_t) == COUNT(signal_rows));
 
@@ -157,6 +157,7 @@ int calibrate_setup(struct calibrate_cfg *cfg, const struct calibrate_par *par,
     err = exh_table_set(cfg->one_to_one, 2);
     if (err == 0) { err = exh_quad_setup(&cfg->quad, &par->quad, board.T, board.enc_bits); }
     if (err == 0) { err = exh_drive_setup(&cfg->drive, &par->drive, board.T, to_cur, none); }
+    if (err == 0) { err = exh_track_setup(&cfg->track, &par->track, board.T); }
     if (err == 0) { err = setup_motions(cfg, &par->own, scale); }
     return err == 0 ? setup_masses(cfg, par, scale) : err;
 }
@@ -323,8 +324,10 @@ void calibrate_tick(struct calibrate *s, const struct calibrate_cfg *cfg,
     const int16_t mon_raw = in->drive.mon_raw[0];
     const struct view v = {exh_quad_extend(&s->quad, &cfg->quad, in->drive.enc_raw[0]),
                            exh_drive_monitor_A_q26(&cfg->drive, mon_raw), mon_raw};
-    const struct exh_safety_in box = {in->drive.din, s->quad.lost ? EXH_FAULT_ENCODER : 0u,
-                                      in->missed, in->command, 1};
+    const int astray = exh_track_step(&s->track, &cfg->track, v.mon_A_q26);
+    const uint32_t raised =
+        (s->quad.lost ? EXH_FAULT_ENCODER : 0u) | (astray ? EXH_FAULT_TRACKING : 0u);
+    const struct exh_safety_in box = {in->drive.din, raised, in->missed, in->command, 1};
     const int run = exh_safety_step(&s->safety, &par->safety, box) == EXH_STATE_RUN;
     const int32_t cur_A_q26 = go_on(s, cfg, v, run);
     struct exh_force_ledger f = {0, 0, 0, 0, 0, 0, 0};
@@ -335,6 +338,7 @@ void calibrate_tick(struct calibrate *s, const struct calibrate_cfg *cfg,
     limits = exh_drive_force(&s->drive, &cfg->drive, run, &f);
     limits |= exh_drive_current(&s->drive, &cfg->drive, &f, &i);
     exh_gate(&s->safety, &cfg->drive, 1, &i, &limits, out);
+    exh_track_coded(&s->track, i.coded_A_q26);
     s->coded_A_q26 = i.coded_A_q26;
     if (s->busy && (limits & ~(uint32_t)EXH_LIMIT_SLEW)) { /* from the next tick: no current */
         s->result = CALIBRATE_LIMITED;
@@ -389,6 +393,8 @@ static struct calibrate state;
 static void defaults(void)
 {
     exh_params_init(&params, &param_table, (int32_t *)&active, (int32_t *)&staged);
+    /* The monitor's zero is not known yet: what it is off by is no current. */
+    active.track.tol_A_q26 = staged.track.tol_A_q26 = EXH_Q(1, 2, EXH_Q_CUR);
 }
 
 static int setup(struct exh_scene_board board)

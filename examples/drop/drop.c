@@ -29,9 +29,10 @@ static const struct exh_signal more_rows[] = {
 static const struct exh_signal_group param_groups[] = {
     {exh_quad_rows, EXH_QUAD_ROWS, 1},       {exh_velocity_rows, EXH_VELOCITY_ROWS, 1},
     {exh_contact_rows, EXH_CONTACT_ROWS, 1}, {exh_drive_rows, EXH_DRIVE_ROWS, 1},
-    {exh_safety_rows, EXH_SAFETY_ROWS, 1},   ROWS(own_rows),
+    {exh_track_rows, EXH_TRACK_ROWS, 1},     {exh_safety_rows, EXH_SAFETY_ROWS, 1},
+    ROWS(own_rows),
 };
-static const struct exh_signal_table param_table = {param_groups, 6};
+static const struct exh_signal_table param_table = {param_groups, 7};
 
 /* The first group is the paper's, in its order: what a CSV holds. */
 static const struct exh_signal_group signal_groups[] = {ROWS(paper_rows), ROWS(more_rows)};
@@ -40,7 +41,7 @@ static const struct exh_signal_table signal_table = {signal_groups, 2};
 #define PARAMS (sizeof(struct drop_par) / sizeof(int32_t))
 EXH_STATIC_ASSERT(drop_par_matches_rows,
                   PARAMS == EXH_QUAD_ROWS + EXH_VELOCITY_ROWS + EXH_CONTACT_ROWS +
-                                EXH_DRIVE_ROWS + EXH_SAFETY_ROWS + 2);
+                                EXH_DRIVE_ROWS + EXH_TRACK_ROWS + EXH_SAFETY_ROWS + 2);
 
 int drop_setup(struct drop_cfg *cfg, const struct drop_par *par, struct exh_scene_board board)
 {
@@ -62,6 +63,7 @@ int drop_setup(struct drop_cfg *cfg, const struct drop_par *par, struct exh_scen
     if (err == 0) { err = exh_quad_setup(&cfg->quad, &par->quad, board.T, board.enc_bits); }
     if (err == 0) { err = exh_velocity_window_setup(&cfg->velocity, scale, &par->velocity); }
     if (err == 0) { err = exh_drive_setup(&cfg->drive, &par->drive, board.T, to_cur, to_force); }
+    if (err == 0) { err = exh_track_setup(&cfg->track, &par->track, board.T); }
     return err;
 }
 
@@ -73,8 +75,11 @@ void drop_tick(struct drop *s, const struct drop_cfg *cfg, const struct exh_scen
     const struct exh_contact_in q = {
         exh_quad_pos_m_q30(&par->quad, cnt),
         exh_velocity_window_mps_q27(&s->velocity, &cfg->velocity, cnt), par->own.q_lim_m_q30};
-    const struct exh_safety_in box = {in->drive.din, s->quad.lost ? EXH_FAULT_ENCODER : 0u,
-                                      in->missed, in->command, 1};
+    const int32_t mon_A_q26 = exh_drive_monitor_A_q26(&cfg->drive, in->drive.mon_raw[0]);
+    const int astray = exh_track_step(&s->track, &cfg->track, mon_A_q26);
+    const uint32_t raised =
+        (s->quad.lost ? EXH_FAULT_ENCODER : 0u) | (astray ? EXH_FAULT_TRACKING : 0u);
+    const struct exh_safety_in box = {in->drive.din, raised, in->missed, in->command, 1};
     const int run = exh_safety_step(&s->safety, &par->safety, box) == EXH_STATE_RUN;
     struct exh_force_ledger f;
     struct exh_current_ledger i;
@@ -84,6 +89,7 @@ void drop_tick(struct drop *s, const struct drop_cfg *cfg, const struct exh_scen
     limits = exh_drive_force(&s->drive, &cfg->drive, run, &f);
     limits |= exh_drive_current(&s->drive, &cfg->drive, &f, &i);
     exh_gate(&s->safety, &cfg->drive, 1, &i, &limits, out);
+    exh_track_coded(&s->track, i.coded_A_q26);
 
     sig->q_m_q30 = q.pos_m_q30;
     sig->qd_mps_q27 = q.vel_mps_q27;
@@ -127,6 +133,7 @@ static void state_bytes(struct exh_bytes *c)
     exh_velocity_window_bytes(c, &state.velocity);
     exh_contact_bytes(c, &state.contact);
     exh_drive_bytes(c, &state.drive);
+    exh_track_bytes(c, &state.track);
     exh_safety_bytes(c, &state.safety);
 }
 

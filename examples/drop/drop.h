@@ -19,6 +19,7 @@ struct drop_par {
     struct exh_velocity_par velocity;
     struct exh_contact_par contact;
     struct exh_drive_par drive;
+    struct exh_track_par track;
     struct exh_safety_par safety;
     struct drop_own_par own;
 };
@@ -42,6 +43,7 @@ struct drop_cfg {
     struct exh_quad_cfg quad;
     struct exh_velocity_window_cfg velocity;
     struct exh_drive_cfg drive;
+    struct exh_track_cfg track;
     struct exh_knot force_to_cur[2], cur_to_force[2];
 };
 
@@ -50,6 +52,7 @@ struct drop {
     struct exh_velocity_window velocity;
     struct exh_contact contact;
     struct exh_drive drive;
+    struct exh_track track;
     struct exh_safety safety;
 };
 

@@ -170,6 +170,7 @@ static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
     if (in->glove_new) { glove_frame(&state, &cfg, &in->glove); }
     state.sig.age_ticks = in->glove.age_ticks;
     signals = state.sig;
+    /* It never opens, so EXH_UNTRACKED. */
     exh_gate(&shut, &idle_cfg, 1, &none, &limits, out);
 }
 

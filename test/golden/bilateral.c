@@ -32,6 +32,7 @@ static struct rig {
     struct exh_scene_in in;
     struct exh_scene_mail mail_in, mail_out;
     uint32_t raw[FINGERS], wrong;
+    unsigned astray[FINGERS]; /* monitors */
     /* the world's end */
     struct exh_wire_tx tx;
     struct object object[FINGERS];
@@ -96,6 +97,7 @@ static void any_finger(unsigned f, struct golden_rng *r, uint32_t rate_Hz)
     p->contact[f].f0_band_m_q30 = any_size(r, 10737418);
     p->contact[f].hyst_m_q30 = any_size(r, 10737418);
     golden_drive_par(&p->drive[f], r, rate_Hz);
+    golden_track_par(&p->track[f], r, rate_Hz);
     p->kf_NpA_q20[f] = (int32_t)golden_draw(r, 104858, 104857600);
     p->hand[f].arm1_m_q30 = (int32_t)golden_draw(r, 4294968, 53687091);
     p->hand[f].arm2_m_q30 = (int32_t)golden_draw(r, 0, 53687091);
@@ -352,7 +354,8 @@ static void any_in(struct golden_rng *r, struct golden_wave moves[FINGERS], uint
             rig.raw[f] += (uint32_t)golden_draw(r, -2 * (int64_t)jump, 2 * (int64_t)jump);
         }
         in->drive.enc_raw[f] = rig.raw[f];
-        in->drive.mon_raw[f] = (int16_t)golden_draw(r, -32768, 32767);
+        in->drive.mon_raw[f] =
+            golden_monitor(&rig.astray[f], &rig.par.drive[f], r, rig.sig.paper[f].i_des_A_q26);
     }
     if (golden_draw(r, 0, 47) == 0) {
         in->drive.din ^= 1u << golden_draw(r, 0, 12);

@@ -40,6 +40,9 @@ const uint32_t digest_table[GOLDEN_RATES] = {
 const uint32_t digest_drive[GOLDEN_RATES] = {
 #include "digest/drive.inc"
 };
+const uint32_t digest_track[GOLDEN_RATES] = {
+#include "digest/track.inc"
+};
 const uint32_t digest_safety[GOLDEN_RATES] = {
 #include "digest/safety.inc"
 };

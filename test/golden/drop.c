@@ -30,6 +30,7 @@ static void any_par(struct drop_par *p, struct golden_rng *r, uint32_t rate_Hz)
     p->contact.f0_band_m_q30 = any_size(r, 10737418);
     p->contact.hyst_m_q30 = any_size(r, 10737418);
     golden_drive_par(&p->drive, r, rate_Hz);
+    golden_track_par(&p->track, r, rate_Hz);
     p->safety.missed_max = (int32_t)golden_draw(r, 0, 1);
     p->own.q_lim_m_q30 = (int32_t)golden_draw(r, -(1 << 26), 1 << 26);
     p->own.kf_NpA_q20 = (int32_t)golden_draw(r, 104858, 104857600);
@@ -56,7 +57,6 @@ static void any_in(struct exh_scene_in *in, struct golden_rng *r, uint32_t k)
     }
     in->missed = golden_draw(r, 0, 127) == 0 ? 1 : 0;
     in->command = k % 8 == 2 ? EXH_CMD_RUN : k % 8 == 5 ? EXH_CMD_CLEAR : EXH_CMD_NONE;
-    in->drive.mon_raw[0] = (int16_t)golden_draw(r, -32768, 32767);
 }
 
 static void put_out(struct golden *g, const struct drop_signals *sig,
@@ -83,6 +83,7 @@ static void put_state(struct golden *g, struct drop *s)
     GOLDEN_STATE(g, exh_velocity_window_bytes, &s->velocity);
     GOLDEN_STATE(g, exh_contact_bytes, &s->contact);
     GOLDEN_STATE(g, exh_drive_bytes, &s->drive);
+    GOLDEN_STATE(g, exh_track_bytes, &s->track);
     GOLDEN_STATE(g, exh_safety_bytes, &s->safety);
 }
 
@@ -92,11 +93,12 @@ void golden_drop(struct golden *g, uint32_t rate_Hz)
     static struct scene d;
     struct golden_rng r = golden_rng("drop", rate_Hz, 0);
     struct exh_scene_in in = {.missed = 0};
+    struct drop_signals sig = {.i_des_A_q26 = 0};
     uint32_t raw = 0;
+    unsigned astray = 0;
     while (g->tick < GOLDEN_TICKS) {
         const uint32_t k = g->tick;
         const int32_t jump = d.cfg.quad.jump_cnt;
-        struct drop_signals sig;
         struct exh_drive_out out;
         if (k == 0 || k == GOLDEN_AGAIN) {
             scene_setup(&d, &r, rate_Hz, k);
@@ -105,6 +107,7 @@ void golden_drop(struct golden *g, uint32_t rate_Hz)
                         d.cfg.quad.jump_cnt < 1024 ? 1 : d.cfg.quad.jump_cnt >> 10);
             raw = (uint32_t)(golden_u64(&r) & UINT32_MAX);
             in.drive.din = HEALTHY;
+            sig.i_des_A_q26 = 0;
         }
         raw += (uint32_t)(k >= 8 && k < 56 ? moves.at[k] >> 3 : moves.at[k]);
         if (k >= 180 && k < GOLDEN_AGAIN) {
@@ -112,6 +115,7 @@ void golden_drop(struct golden *g, uint32_t rate_Hz)
         }
         in.drive.enc_raw[0] = raw;
         any_in(&in, &r, k);
+        in.drive.mon_raw[0] = golden_monitor(&astray, &d.par.drive, &r, sig.i_des_A_q26);
         golden_put(g, raw);
         golden_put(g, in.drive.mon_raw[0]);
         golden_put(g, in.drive.din);

@@ -85,6 +85,13 @@ struct exh_period golden_period(uint32_t rate_Hz, uint32_t k);
 /* Any parameters of a drive that set-up takes, with a short peak. */
 void golden_drive_par(struct exh_drive_par *p, struct golden_rng *r, uint32_t rate_Hz);
 
+/* Any parameters of exh_track_setup(), with a short time. */
+void golden_track_par(struct exh_track_par *p, struct golden_rng *r, uint32_t rate_Hz);
+
+/* A scene's monitor: mostly the code of what was coded, now and then for a while any. */
+int16_t golden_monitor(unsigned *astray, const struct exh_drive_par *p, struct golden_rng *r,
+                       int32_t coded_A_q26);
+
 /* The sensors of some calibration of a glove. */
 void golden_glove_sensors(struct exh_glove_cal *cal, struct golden_rng *r);
 

@@ -101,6 +101,7 @@ MODULE(velocity_track);
 MODULE(contact);
 MODULE(table);
 MODULE(drive);
+MODULE(track);
 MODULE(safety);
 MODULE(calibrate);
 MODULE(probe);
@@ -119,5 +120,5 @@ MODULE(bilateral);
 
 TEST_MAIN("golden", first_tick_that_differs_is_told, fix, bytes, record, signal, quad, quad_ab,
           velocity_window, velocity_pole, velocity_foaw, velocity_track, contact, table, drive,
-          safety, calibrate, probe, home, weigh, filter, quantizer, glove, glove_cal, angle, hand,
+          track, safety, calibrate, probe, home, weigh, filter, quantizer, glove, glove_cal, angle, hand,
           precontact, wire, drop, bilateral);

@@ -22,6 +22,7 @@ GOLDEN_MODULE(velocity_track);
 GOLDEN_MODULE(contact);
 GOLDEN_MODULE(table);
 GOLDEN_MODULE(drive);
+GOLDEN_MODULE(track);
 GOLDEN_MODULE(safety);
 GOLDEN_MODULE(calibrate);
 GOLDEN_MODULE(probe);

@@ -24,6 +24,7 @@ FLAGS = "-std=c99 -O1 -w -Ilib/include -Ilib/src -Iexamples -Itest -D_POSIX_C_SO
 
 L, H, X, Y = "lib/src/", "lib/include/exhand/", "examples/drop/", "examples/bilateral/"
 VELOCITY, QUAD, DRIVE, SAFETY = L + "velocity.c", L + "quad.c", L + "drive.c", L + "safety.c"
+TRACK = L + "track.c"
 
 # module, source, text, what stands there instead. A changed header is compiled into the module's own
 # run, which is where its inline functions are.
@@ -80,6 +81,11 @@ MUTANTS = (
     ("drive", DRIVE, "heat < 0 ? 0 :", ""),
     ("drive", DRIVE, "const int32_t hot = i2t_limit(s, cfg);", "const int32_t hot = cfg->par->i_peak_A_q26;"),
     ("drive", DRIVE, "f->clamp_N_q20 = held - asked;", "f->clamp_N_q20 = asked - held;"),
+    ("track", TRACK, "1 + LATE_TICKS;", "LATE_TICKS;"),
+    ("track", TRACK, "mon_A_q26 >= lowest", "mon_A_q26 > lowest"),
+    ("track", TRACK, "mon_A_q26 <= highest", "mon_A_q26 < highest"),
+    ("track", TRACK, "s->off_ticks >= cfg->ticks;", "s->off_ticks + 1 >= cfg->ticks;"),
+    ("track", TRACK, "anew || coded_A_q26 < s->lo_A_q26", "coded_A_q26 < s->lo_A_q26"),
     ("safety", SAFETY, "k <= MISSED_MAX", "k < MISSED_MAX"),
     ("safety", SAFETY, "s->faults |= now;", "s->faults = now;"),
     ("safety", SAFETY, "in.command == EXH_CMD_CLEAR && now == 0", "in.command == EXH_CMD_CLEAR"),
@@ -158,6 +164,8 @@ MUTANTS = (
     ("bilateral", Y + "finger.c", "if (p->phase == EXH_PRECONTACT_FROZEN &&", "if ("),
     ("bilateral", Y + "wire.c", "w->set += ack.result == 0;", "w->set++;"),
     ("bilateral", Y + "wire.c", "s->age_ticks = UINT32_MAX;", "s->age_ticks = 0;"),
+    ("bilateral", Y + "bilateral.c", "raised |= EXH_FAULT_TRACKING;", ""),
+    ("drop", X + "drop.c", "astray ? EXH_FAULT_TRACKING : 0u", "0u"),
     ("drop", X + "drop.c", "s->quad.lost ? EXH_FAULT_ENCODER : 0u", "0u"),
     ("drop", X + "drop.c", "limits |= exh_drive_current", "limits = exh_drive_current"),
     ("drop", X + "drop.c", "exh_velocity_window_mps_q27(&s->velocity, &cfg->velocity, cnt)",

@@ -42,7 +42,7 @@ static void any_in(struct exh_safety_in *in, struct golden_rng *r, uint32_t k)
     }
     in->raised = 0;
     in->missed = 0;
-    if (golden_draw(r, 0, 31) == 0) { in->raised = 1u << golden_draw(r, 0, 4); }
+    if (golden_draw(r, 0, 31) == 0) { in->raised = 1u << golden_draw(r, 0, 5); }
     if (golden_draw(r, 0, 63) == 0) { in->missed = (uint32_t)golden_draw(r, 0, 2); }
     if (k == 188 || k == 190) { in->missed = (uint32_t)golden_draw(r, 0, UINT32_MAX); }
     in->command = command[golden_draw(r, 0, 7)];

@@ -45,6 +45,7 @@ void inputs_next(struct inputs *s, int runs, struct exh_scene_in *in)
         in->drive.enc_raw[i] = wild && s->torn && one_in(s, 8)
                                    ? value(s, last->drive.enc_raw[i], 0xFFFFFF)
                                    : (in->drive.enc_raw[i] + s->walk[i]) & 0xFFFFFF;
+        if (!wild) { continue; }
         in->drive.mon_raw[i] = (int16_t)value(s, (uint16_t)last->drive.mon_raw[i], 0xFFFF);
     }
     in->drive.supply_raw = (int16_t)value(s, (uint16_t)last->drive.supply_raw, 0xFFFF);

@@ -69,8 +69,10 @@ static void planes(void)
 /* Packets of a kind in what goes out. */
 static int tick(int glove_new, int type)
 {
-    struct exh_drive_out drive;
+    static struct exh_drive_out drive;
+    const int codes = tick_n ? drive.dac_raw[F] - par.drive[F].dac_zero_raw : 0;
     int n = 0;
+    from_board.drive.mon_raw[F] = (int16_t)(codes * 105 / 100); /* the current follows */
     from_board.glove_new = (uint8_t)glove_new;
     bilateral_tick(&box, &cfg, &from_board, &in, exh_scene_bilateral.params, &drive, &sig);
     bilateral_write(&box, &cfg, &sig, &out);

@@ -69,7 +69,7 @@ int main(int argc, char **argv)
 {
     const unsigned long ticks = argc == 2 ? strtoul(argv[1], NULL, 10) : 0;
     struct exh_scene_in in = {.command = EXH_CMD_RUN};
-    struct exh_drive_out out;
+    struct exh_drive_out out = {.enable = 0};
 
     if (ticks == 0) {
         fprintf(stderr, "usage: ticks N (N > 0)\n");
@@ -83,7 +83,9 @@ int main(int argc, char **argv)
     for (unsigned long k = 0; k < ticks; k++) {
         const uint32_t at = (uint32_t)(k % (2 * SWEEP_CNT));
         for (unsigned i = 0; i < EXH_FINGERS; i++) {
+            const int codes = k ? out.dac_raw[i] - 32768 : 0;
             in.drive.enc_raw[i] = at < SWEEP_CNT ? at : 2 * SWEEP_CNT - at;
+            in.drive.mon_raw[i] = (int16_t)(codes + codes / 16); /* 1.06 for the drive's 1.05 */
         }
         in.glove_new = 1;
         for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {

@@ -93,11 +93,20 @@ uint32_t any(uint32_t n)
     return (uint32_t)(any_u64() % n);
 }
 
+/* The monitor of the current coded last, as far as it has a code. */
+static int16_t met(void)
+{
+    const struct exh_drive_par *p = &rig.active.drive;
+    const int64_t up = (int64_t)rig.sig.i_des_A_q26 * (1 << (EXH_Q_MON - EXH_Q_CUR)) / p->mon_A_q40;
+    return (int16_t)exh_clamp(p->mon_zero_raw + up, INT16_MIN, INT16_MAX);
+}
+
 struct exh_scene_in idle_in(uint64_t n, uint32_t enc_raw)
 {
     struct exh_scene_in in;
     memset(&in, 0, sizeof in);
     in.drive.enc_raw[0] = enc_raw;
+    in.drive.mon_raw[0] = met();
     in.drive.din = HEALTHY;
     in.command = n == 0 ? EXH_CMD_RUN : EXH_CMD_NONE;
     return in;
@@ -113,7 +122,9 @@ struct exh_scene_in wild_in(uint64_t n)
     struct exh_scene_in in =
         idle_in(n, enc_extreme[n % 2 ? n / 2 % LEN(enc_extreme) : any(LEN(enc_extreme))]);
     if (n % 5 == 0) { in.drive.enc_raw[0] = (uint32_t)any_u64(); }
-    in.drive.mon_raw[0] = n % 3 ? mon_extreme[n % 4] : (int16_t)((int)any(65536) - 32768);
+    if (n % 4 == 3) { /* not on end: a current that does not follow is a fault */
+        in.drive.mon_raw[0] = n % 3 ? mon_extreme[n / 4 % 4] : (int16_t)((int)any(65536) - 32768);
+    }
     in.drive.supply_raw = mon_extreme[n % 4];
     return in;
 }

@@ -2,7 +2,7 @@
 #include "stress.h"
 
 #define LIMITS_ALL 0x7F
-#define FAULTS_ALL 0x1F
+#define FAULTS_ALL 0x3F
 
 struct hidden { /* what the scene does not show */
     struct exh_force_ledger f;
@@ -21,7 +21,11 @@ static void shadow_tick(struct drop *s, const struct exh_scene_in *in, struct hi
     const int32_t pos = exh_quad_pos_m_q30(&par->quad, cnt);
     const int32_t vel = exh_velocity_window_mps_q27(&s->velocity, &rig.cfg.velocity, cnt);
     const struct exh_contact_in q = {pos, vel, par->own.q_lim_m_q30};
-    const uint32_t raised = s->quad.lost ? EXH_FAULT_ENCODER : 0u;
+    const int32_t mon = exh_drive_monitor_A_q26(&rig.cfg.drive, in->drive.mon_raw[0]);
+    const uint32_t lost = s->quad.lost ? EXH_FAULT_ENCODER : 0u;
+    const uint32_t astray =
+        exh_track_step(&s->track, &rig.cfg.track, mon) ? EXH_FAULT_TRACKING : 0u;
+    const uint32_t raised = lost | astray;
     const struct exh_safety_in box = {in->drive.din, raised, in->missed, in->command, 1};
     const int run = exh_safety_step(&s->safety, &par->safety, box) == EXH_STATE_RUN;
     h->run = run;
@@ -30,6 +34,7 @@ static void shadow_tick(struct drop *s, const struct exh_scene_in *in, struct hi
     h->limits = exh_drive_force(&s->drive, &rig.cfg.drive, run, &h->f);
     h->limits |= exh_drive_current(&s->drive, &rig.cfg.drive, &h->f, &h->i);
     exh_gate(&s->safety, &rig.cfg.drive, 1, &h->i, &h->limits, &h->out);
+    exh_track_coded(&s->track, h->i.coded_A_q26);
 }
 
 static void check_force(const struct hidden *h)

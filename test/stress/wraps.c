@@ -53,8 +53,10 @@ static char *write_wrapping_log(uint32_t first, uint32_t ticks, size_t *len_B)
     must(p.log != NULL && sc->setup(board) == 0, "set-up", "refused");
     exh_log_start(sc, board);
     for (uint32_t n = 0; n < ticks; n++) {
-        struct exh_scene_in in = idle_in(n, n * 7 % 3000);
+        struct exh_scene_in in;
         struct exh_drive_out out;
+        memcpy(&rig.sig, sc->signal, sizeof rig.sig); /* for the monitor */
+        in = idle_in(n, n * 7 % 3000);
         exh_log_before(first + n, &in);
         sc->tick(&in, &out);
         exh_log_after(first + n, &in, &out);

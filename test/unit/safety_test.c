@@ -13,7 +13,8 @@
 
 static const struct exh_safety_par par = {1};
 static const uint32_t fault_bits[] = {EXH_FAULT_ESTOP,   EXH_FAULT_DRIVE, EXH_FAULT_OVERRUN,
-                                      EXH_FAULT_ENCODER, EXH_FAULT_DEADMAN, EXH_FAULT_LATER};
+                                      EXH_FAULT_ENCODER, EXH_FAULT_DEADMAN, EXH_FAULT_TRACKING,
+                                      EXH_FAULT_LATER};
 
 static struct exh_safety_in healthy(uint8_t command)
 {
@@ -29,7 +30,9 @@ static struct exh_safety_in with_cause(uint32_t fault, uint8_t command)
     if (fault == EXH_FAULT_DRIVE) { in.din &= ~((uint32_t)EXH_DIN_DRIVE0 << 3); }
     if (fault == EXH_FAULT_OVERRUN) { in.missed = 3; }
     if (fault == EXH_FAULT_DEADMAN) { in.din &= ~(uint32_t)EXH_DIN_DEADMAN; }
-    if (fault == EXH_FAULT_ENCODER || fault == EXH_FAULT_LATER) { in.raised = fault; }
+    if (fault == EXH_FAULT_ENCODER || fault == EXH_FAULT_TRACKING || fault == EXH_FAULT_LATER) {
+        in.raised = fault;
+    }
     return in;
 }
 

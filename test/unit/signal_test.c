@@ -325,9 +325,9 @@ TEST(locked_image_without_setup_changes)
 static const struct exh_signal_group lib_groups[] = {
     {exh_quad_rows, EXH_QUAD_ROWS, 1},         {exh_velocity_rows, EXH_VELOCITY_ROWS, 1},
     {exh_contact_rows, EXH_CONTACT_ROWS, 1},   {exh_drive_rows, EXH_DRIVE_ROWS, 1},
-    {exh_safety_rows, EXH_SAFETY_ROWS, 1},
+    {exh_safety_rows, EXH_SAFETY_ROWS, 1},     {exh_track_rows, EXH_TRACK_ROWS, 1},
 };
-static const struct exh_signal_table lib_table = {lib_groups, 5};
+static const struct exh_signal_table lib_table = {lib_groups, 6};
 
 static int is_name(const char *s)
 {
@@ -373,6 +373,7 @@ TEST(library_rows_match_their_structs)
     CHECK_EQ_I64(sizeof(struct exh_contact_par), 4 * EXH_CONTACT_ROWS);
     CHECK_EQ_I64(sizeof(struct exh_drive_par), 4 * EXH_DRIVE_ROWS);
     CHECK_EQ_I64(sizeof(struct exh_safety_par), 4 * EXH_SAFETY_ROWS);
+    CHECK_EQ_I64(sizeof(struct exh_track_par), 4 * EXH_TRACK_ROWS);
     CHECK_EQ_I64(exh_contact_rows[0].max, EXH_Q(1000000, 1, EXH_Q_K));
     CHECK_EQ_I64(exh_contact_rows[1].max, EXH_Q(1000, 1, EXH_Q_B));
     CHECK_EQ_I64(exh_contact_rows[2].max, EXH_Q(20, 1, EXH_Q_FORCE));

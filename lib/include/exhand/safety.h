@@ -31,8 +31,14 @@ enum exh_fault {
     EXH_FAULT_DRIVE = 1u << 1,   /* a drive in use is not ready                 */
     EXH_FAULT_OVERRUN = 1u << 2, /* too many ticks missed in too short a time   */
     EXH_FAULT_ENCODER = 1u << 3, /* movement no hand can make                   */
-    EXH_FAULT_DEADMAN = 1u << 4  /* dead-man switch released                    */
+    EXH_FAULT_DEADMAN = 1u << 4, /* dead-man switch released                    */
+    EXH_FAULT_TRACKING = 1u << 5 /* the current monitored does not follow what is coded */
 };
+
+/* For `raised`, in the place of exh_track_step(): the port has no current monitors, or the scene
+ * compares them itself. A D/A that stands still is then not seen. It is a name in the scene's source and no parameter, which
+ * could be set by mistake, over a link, or for a port that does have them. */
+#define EXH_UNTRACKED 0u
 
 #define EXH_LATE_TICKS 64
 

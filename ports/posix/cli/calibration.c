@@ -159,7 +159,7 @@ static void names(char *to, size_t size, uint32_t bits, const char *const *name,
 void calibration_why(char to[CALIBRATION_WHY_B], const struct calibration *r)
 {
     static const char *const fault[] = {"emergency stop", "drive not ready", "ticks missed", "encoder",
-                                        "dead-man released"};
+                                        "dead-man released", "current tracking"};
     static const char *const limit[] = {"pull", "force: f_max, or i_max", "slew", "peak: i_peak",
                                         "I2t: i_cont, i_peak, peak_time", "D/A span", "gate"};
     char list[120] = "";

@@ -56,6 +56,7 @@ static const char *fault_text(uint32_t bit)
     case EXH_FAULT_DRIVE: return "drive not ready";
     case EXH_FAULT_ENCODER: return "encoder";
     case EXH_FAULT_DEADMAN: return "dead-man";
+    case EXH_FAULT_TRACKING: return "current tracking";
     default: return "overrun";
     }
 }

@@ -20,6 +20,7 @@ static struct {
     size_t samples_cap, starts_cap;
     int fall; /* under observation in the present tick, 0 = none */
     int no_memory;
+    double mon_gain;
     int logged; /* records cost a third of a run that nobody keeps */
     uint32_t last_tick;
 } run;
@@ -78,7 +79,7 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
         .qd_mps = si(s.qd_mps_q27, EXH_Q_VEL),
         .f_des_N = si(s.f_des_N_q20, EXH_Q_FORCE),
         .i_des_A = si(s.i_des_A_q26, EXH_Q_CUR),
-        .f_mon_N = si(s.f_mon_N_q20, EXH_Q_FORCE),
+        .f_mon_N = si(s.f_mon_N_q20, EXH_Q_FORCE) * run.mon_gain,
         .c = s.c,
     };
 }
@@ -124,6 +125,7 @@ int run_drop(const struct run_cfg *c, struct run *r)
     memset(&run, 0, sizeof run);
     run.r = r;
     run.logged = c->board.log != NULL;
+    run.mon_gain = c->mon_gain != 0 ? c->mon_gain : 1;
     err = set_parameters(c);
     if (err == 0) {
         posix_configure(&c->board);

@@ -17,6 +17,7 @@ struct run_cfg {
     double k_Npm, b_Nspm;
     const struct run_setting *setting; /* further parameters                   */
     int settings;
+    double mon_gain; /* on the monitor's force, behind the box; 0: 1           */
     struct posix_config board; /* device, seed, falls, log, pace               */
 };
 

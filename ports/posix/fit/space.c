@@ -104,9 +104,7 @@ void space_apply(const struct plant_point *p, struct run_cfg *c, struct run_sett
         case SPACE_DEVICE: sim_device_set(d, r->name, v, &ignored); break;
         case SPACE_SCENE: setting[c->settings++] = (struct run_setting){r->name, v}; break;
         case SPACE_KF: setting[c->settings++] = (struct run_setting){"kf", d->kf_npa * v}; break;
-        case SPACE_MONITOR:
-            setting[c->settings++] = (struct run_setting){"mon_scale", d->mon_apc * v};
-            break;
+        case SPACE_MONITOR: c->mon_gain = v; break;
         }
     }
 }

@@ -13,7 +13,8 @@ from .hit2 import BENT, MAP, bones, sensors_of
 from .num import (AGAIN, M32, M64, MAX32, RANGE, STATE, TICKS, UNKNOWN, Rng, clamp, div, period, sat32, shr,
                   wave, wrap)
 from .quad import Quad, narrowest, position
-from .safety import ENCODER, RUN, Safety
+from .safety import ENCODER, RUN, TRACKING, Safety
+from .track import Monitor, Track, any_par as any_track
 from .velocity import Window, scale
 from .wire import ACK, HELLO, PARAM, PLANES, TELL, Receiver, Sender
 
@@ -37,7 +38,8 @@ class FingerPar:
     def __init__(self, rng, rate):
         self.step, self.speed, self.p = scale(rng), rng.draw(13421773, MAX32), rng.draw(0, 4)
         self.f0 = rng.draw(0, 20971520), any_size(rng, 10737418), any_size(rng, 10737418)
-        self.drive, self.kf = any_drive(rng, rate), rng.draw(104858, 104857600)
+        self.drive, self.track = any_drive(rng, rate), any_track(rng, rate)
+        self.kf = rng.draw(104858, 104857600)
         self.arms = rng.draw(4294968, 53687091), rng.draw(0, 53687091), rng.draw(0, 53687091)
         self.pad, self.materials = rng.draw(0, 26843545), MATERIALS
         self.from_slope, self.printed_sign = rng.draw(0, 1), rng.draw(0, 1)
@@ -114,6 +116,7 @@ class Finger:
         peak = par.drive[3]
         top = sat32(shr(par.kf * peak, 26))
         self.drive = Drive(par.drive, T, Table([(0, 0), (top, peak)]), Table([(-peak, -top), (peak, top)]))
+        self.track, self.last, self.monitor = Track(par.track, T), 0, Monitor()
         self.joint, self.tip, self.slope, self.clamped = [0] * 3, [0] * 3, [0] * 3, 0
         self.out = self.rest = 0
 
@@ -150,7 +153,8 @@ class Finger:
 
     def state(self):
         quad = self.quad.state() if self.quad else bytes(10)
-        return (quad + self.velocity.state() + self.contact.state() + self.drive.state() + self.pre.state() +
+        return (quad + self.velocity.state() + self.contact.state() + self.drive.state() +
+                self.track.state() + self.pre.state() +
                 self.where(self.out, self.rest, *self.joint, *self.tip, *self.slope, self.clamped))
 
 
@@ -236,14 +240,15 @@ class Bilateral:
     def tick(self, enc, mon, din, missed, command, raw, glove_age, mail):
         """Signals by finger, the box's, and what goes to the D/A."""
         par, at = self.par, self.at
-        moved = {}
+        moved, seen, raised = {}, {}, 0
         for f in at:
             s = self.finger[f]
+            seen[f] = s.drive.monitor(mon[f])
             cnt = s.quad.tick(enc[f])
             moved[f] = position(cnt, s.par.step), s.velocity.tick(cnt)
-        lost = any(self.finger[f].quad.lost for f in at)
+            raised |= (ENCODER if s.quad.lost else 0) | (TRACKING if s.track.step(seen[f][0]) else 0)
         placed = din & 3 | sum(1 << 8 + k for k, f in enumerate(at) if din >> 8 + f & 1)
-        run = self.safety.step(par.missed_max, placed, ENCODER if lost else 0, missed, command, self.n) == RUN
+        run = self.safety.step(par.missed_max, placed, raised, missed, command, self.n) == RUN
         age = glove_age if glove_age < 65535 else M32
         self.seen = age if self.worn else M32
         for f in at:
@@ -259,7 +264,9 @@ class Bilateral:
             s, (bits, d, lim, c, limits, force, _) = self.finger[f], felt[f]
             gate, _, _, coded, dac[f] = gated[k]
             enabled |= (enable >> k & 1) << f
-            paper[f] = [*moved[f], force, coded, c, s.drive.monitor(mon[f])[1], d, lim]
+            paper[f] = [*moved[f], force, coded, c, seen[f][1], d, lim]
+            s.track.coded(coded)
+            s.last = coded
             p = s.pre
             more[f] = [bits, limits | gate, *s.joint, s.clamped, *s.tip,
                        *map(wrap, (p.frozen, p.born, p.refused, p.ignored, p.stale, p.let_go))]
@@ -450,7 +457,7 @@ def bilateral(rate):
             if 184 <= k < AGAIN:
                 raw[f] += rng.draw(-2 * jump[f], 2 * jump[f])
             raw[f] &= M32
-            mon.append(rng.draw(-32768, 32767))
+            mon.append(s.finger[f].monitor.draw(rng, par.finger[f].drive, s.finger[f].last))
         if rng.draw(0, 47) == 0:
             din ^= 1 << rng.draw(0, 12)
         elif rng.draw(0, 3) == 0:

@@ -4,15 +4,17 @@ from .contact import Contact
 from .drive import Drive, Table, any_par
 from .num import AGAIN, M32, TICKS, Rng, period, sat32, shr, wave
 from .quad import narrowest, position
-from .safety import ENCODER, RUN, Safety
+from .safety import ENCODER, RUN, TRACKING, Safety
+from .track import Monitor, Track, any_par as any_track
 from .velocity import Window, scale
 
 
 class Drop:
-    def __init__(self, step, speed, p, law, drive, most, lim, kf, T):
+    def __init__(self, step, speed, p, law, drive, track, most, lim, kf, T):
         self.step, self.law, self.drive_par, self.most, self.lim = step, law, drive, most, lim
         self.quad, self.bits = narrowest(step, speed, T)
         self.velocity, self.contact, self.safety = Window(step, T, p), Contact(), Safety()
+        self.track, self.last = Track(track, T), 0
         peak = drive[3]
         top = sat32(shr(kf * peak, 26))
         self.drive = Drive(drive, T, Table([(0, 0), (top, peak)]), Table([(-peak, -top), (peak, top)]))
@@ -20,30 +22,34 @@ class Drop:
     def tick(self, raw, mon, din, missed, command):
         cnt = self.quad.tick(raw)
         q, v = position(cnt, self.step), self.velocity.tick(cnt)
-        state = self.safety.step(self.most, din, ENCODER if self.quad.lost else 0, missed, command, 1)
+        i_mon, f_mon = self.drive.monitor(mon)
+        raised = (ENCODER if self.quad.lost else 0) | (TRACKING if self.track.step(i_mon) else 0)
+        state = self.safety.step(self.most, din, raised, missed, command, 1)
         c, spring, damper, pull = self.contact.tick(self.law, q, v, self.lim)
         limits, _, _, force = self.drive.take(1 if state == RUN else 0, spring + damper + pull)
         more, i0, peak, i2t = self.drive.current()
         ((gate, _, _, coded, code),), enable = self.safety.gate([self.drive_par], [i0 + peak + i2t])
-        return (q, v, force, coded, c, self.drive.monitor(mon)[1], limits | more | gate, state,
+        self.track.coded(coded)
+        self.last = coded
+        return (q, v, force, coded, c, f_mon, limits | more | gate, state,
                 self.safety.faults, self.safety.present, code, enable, self.safety.alive)
 
     def state(self):
         return (self.quad.state() + self.velocity.state() + self.contact.state() + self.drive.state() +
-                self.safety.state())
+                self.track.state() + self.safety.state())
 
 
 def drop(rate):
-    rng = Rng("drop", rate, 0)
+    rng, monitor = Rng("drop", rate, 0), Monitor()
     for k in range(TICKS):
         if k in (0, AGAIN):
             step, speed, p = scale(rng), rng.draw(13421773, (1 << 31) - 1), rng.draw(0, 4)
             law = (rng.draw(0, 1024000000) >> rng.draw(0, 12), rng.draw(0, 1048576000) >> rng.draw(0, 12),
                    rng.draw(0, 20971520), rng.draw(0, 10737418) >> rng.draw(0, 12),
                    rng.draw(0, 10737418) >> rng.draw(0, 12))
-            drive = any_par(rng, rate)
+            drive, track = any_par(rng, rate), any_track(rng, rate)
             most, lim, kf = rng.draw(0, 1), rng.draw(-(1 << 26), 1 << 26), rng.draw(104858, 104857600)
-            s = Drop(step, speed, p, law, drive, most, lim, kf, period(rate, k))
+            s = Drop(step, speed, p, law, drive, track, most, lim, kf, period(rate, k))
             jump = s.quad.jump
             moves = wave("drop", rate, 1 + (k > 0), -jump, jump, max(1, jump >> 10))
             raw, din = rng.u64() & M32, 0x1F03
@@ -59,7 +65,7 @@ def drop(rate):
             din = 0x1F03
         missed = 1 if rng.draw(0, 127) == 0 else 0
         command = 1 if k % 8 == 2 else 3 if k % 8 == 5 else 0
-        mon = rng.draw(-32768, 32767)
+        mon = monitor.draw(rng, drive, s.last)
         yield (raw & M32, mon, din, missed, command, *s.tick(raw & M32, mon, din, missed, command)), s.state()
 
 

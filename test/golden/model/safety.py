@@ -6,7 +6,7 @@ from .drive import DAC, GATE, any_par
 from .num import AGAIN, M32, TICKS, Rng, clamp, gain, shr, times, wave
 
 OFF, RUN, FAULT = 0, 1, 2
-ESTOP, DRIVE, OVERRUN, ENCODER, DEADMAN = 1, 2, 4, 8, 16
+ESTOP, DRIVE, OVERRUN, ENCODER, DEADMAN, TRACKING = 1, 2, 4, 8, 16, 32
 LATE = 64
 FINGERS = 5
 
@@ -80,7 +80,7 @@ def safety(rate):
             din ^= 1 << rng.draw(0, 12)
         elif rng.draw(0, 7) == 0:
             din = 0x1F03
-        raised = 1 << rng.draw(0, 4) if rng.draw(0, 31) == 0 else 0
+        raised = 1 << rng.draw(0, 5) if rng.draw(0, 31) == 0 else 0
         missed = rng.draw(0, 2) if rng.draw(0, 63) == 0 else 0
         if k in (188, 190):
             missed = rng.draw(0, M32)

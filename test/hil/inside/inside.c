@@ -57,7 +57,9 @@ static void step(unsigned i)
         s->speed_q16 = 0;
     }
     box.pins.enc_cnt[card][axis] = s->at_q16 / 65536;
-    box.pins.ad_uV[card][axis] = enabled ? box.pins.da_uV[card][axis] / 4 : 0;
+    /* The monitor: 1.76 A/V by 0.591 V/A. */
+    box.pins.ad_uV[card][axis] =
+        enabled ? box.pins.da_uV[card][axis] + box.pins.da_uV[card][axis] / 25 : 0;
 }
 
 /* The cards' clock goes on with their accesses, a microsecond each, and here up to the timer's. */

@@ -1,0 +1,62 @@
+#include "exhand/drive.h"
+
+#include "exhand/error.h"
+
+#include <stddef.h>
+
+#define TOL_MIN_A_Q26 EXH_Q(1, 10, EXH_Q_CUR)
+#define TOL_MAX_A_Q26 EXH_Q(1, 1, EXH_Q_CUR)
+#define TIME_MAX_MS   100
+/* An output may take three ticks, and the monitor be converted in the tick before. */
+#define LATE_TICKS 4
+
+/* Default tolerance: the paper's monitor noise is 47.2 mA peak to peak, D/A and monitor steps
+ * 0.5 mA each, 3 % of difference in scale 0.2 A at the peak. Default time: an output 10 ms late,
+ * 0.25 ms to the drive's next 4 kHz sample, 2.5 ms of current loop and monitor (0.11 and 0.57 ms) until
+ * 0.2 A are left of 13.2 A; rounded up to 20 ms for slower ones. */
+const struct exh_signal exh_track_rows[EXH_TRACK_ROWS] = {
+    {0x0D01, EXH_Q_CUR, EXH_WHEN_SETUP, TOL_MIN_A_Q26, TOL_MAX_A_Q26, EXH_Q(1, 4, EXH_Q_CUR),
+     "track_tol", "a", "current monitored differs from what is coded by no more"},
+    {0x0D02, 0, EXH_WHEN_SETUP, 1, TIME_MAX_MS, 20, "track_time", "ms",
+     "for no longer than this and 4 ticks"},
+};
+
+int exh_track_setup(struct exh_track_cfg *cfg, const struct exh_track_par *par, struct exh_period T)
+{
+    if (par->tol_A_q26 < TOL_MIN_A_Q26 || par->tol_A_q26 > TOL_MAX_A_Q26 || par->time_ms < 1 ||
+        par->time_ms > TIME_MAX_MS) {
+        return -EXH_E_RANGE;
+    }
+    if (!exh_period_ok(T)) { return -EXH_E_RATE; }
+    cfg->tol_A_q26 = par->tol_A_q26;
+    cfg->ticks = (uint32_t)exh_udiv64((uint64_t)(uint32_t)par->time_ms * T.den,
+                                      UINT64_C(1000) * T.num, NULL) +
+                 1 + LATE_TICKS;
+    return 0;
+}
+
+int exh_track_step(struct exh_track *s, const struct exh_track_cfg *cfg, int32_t mon_A_q26)
+{
+    const int64_t lowest = (int64_t)s->lo_A_q26 - cfg->tol_A_q26;
+    const int64_t highest = (int64_t)s->hi_A_q26 + cfg->tol_A_q26;
+    if (mon_A_q26 >= lowest && mon_A_q26 <= highest) {
+        s->off_ticks = 0;
+    } else if (s->off_ticks < cfg->ticks) {
+        s->off_ticks++;
+    }
+    return s->off_ticks >= cfg->ticks;
+}
+
+void exh_track_coded(struct exh_track *s, int32_t coded_A_q26)
+{
+    const int anew = s->off_ticks == 0;
+    if (anew || coded_A_q26 < s->lo_A_q26) { s->lo_A_q26 = coded_A_q26; }
+    if (anew || coded_A_q26 > s->hi_A_q26) { s->hi_A_q26 = coded_A_q26; }
+}
+
+void exh_track_bytes(struct exh_bytes *c, struct exh_track *s)
+{
+    exh_bytes_i32(c, &s->lo_A_q26);
+    exh_bytes_i32(c, &s->hi_A_q26);
+    exh_bytes_u32(c, &s->off_ticks);
+}
