@@ -207,6 +207,22 @@ TEST(what_is_open_ends_it_at_once)
     }
 }
 
+/* The code is 0 A in that tick even where forces may fall no faster than 1 N a tick. */
+TEST(no_slope_delays_the_end)
+{
+    static const char slow[] = " slew_down=1000 f_string=10 ramp=1000";
+    for (enum bringup_wrong w = BRINGUP_MONITOR_DEAD; w <= BRINGUP_LET_GO; w++) {
+        struct bringup_run_cfg c = config(1);
+        CHECK_EQ_I64(run_stage(c, 4, 0, 0, slow), 0);
+        c.wrong = w;
+        c.wrong_phase = 3;
+        CHECK_EQ_I64(run_stage(c, 4, 0, bringup_config()->before, slow), 0);
+        CHECK(r.result > EXH_PROBE_DONE && r.phase == 3 && r.most_A > 0.9 && r.unsafe == 0,
+              "%s: %s, %.3f A, %lu", bringup_wrong_row[w].name, bringup_result_text(r.result),
+              r.most_A, r.unsafe);
+    }
+}
+
 /* Before anything runs: what the person learns when the switch is taken. */
 TEST(nothing_begins_with_an_open_loop)
 {
@@ -347,7 +363,7 @@ TEST(what_is_refused)
 
 TEST_MAIN("sim/bringup", every_stage_comes_through, at_any_rate, wrong_polarity, encoder_unplugged,
           monitor_dead_or_half, da_never_moves, what_is_open_ends_it_at_once,
-          nothing_begins_with_an_open_loop, a_string_let_loose_ends_it,
+          nothing_begins_with_an_open_loop, no_slope_delays_the_end, a_string_let_loose_ends_it,
           a_mute_card_is_seen_by_the_monitor, speed_is_limited,
           the_balance_must_read_what_was_commanded, a_known_mass_gives_kf,
           a_stage_needs_the_one_before, what_is_refused);
