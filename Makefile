@@ -350,6 +350,12 @@ $(cards_bin): $(B)/i686/%_test: test/%_test.c test/cards/bus.c test/cards/rig.c 
 	$(Q)i686-linux-gnu-gcc -static $(filter-out -MMD -MP,$(tflags)) $(trap) -Iports -D_POSIX_C_SOURCE=200809L \
 	    -DEXH_CHECK_PLAIN -o $@ $(filter %.c,$^)
 
+net_bin := $(B)/i686/pc104/net_test
+$(net_bin): test/pc104/net_test.c test/pc104/frames.c ports/pc104/net.c test/support.c $(wildcard test/*.h test/pc104/*.h ports/pc104/net.h) $(stamp)
+	@mkdir -p $(@D)
+	$(Q)i686-linux-gnu-gcc -static $(filter-out -MMD -MP,$(tflags)) $(trap) -Iports -Itest/pc104 -D_POSIX_C_SOURCE=200809L \
+	    -DEXH_CHECK_PLAIN -o $@ $(filter %.c,$^)
+
 $(B)/i686/golden/golden_test: $(golden_src) test/support.c $(lib_src) $(wildcard test/*.h test/golden/*.h \
                               test/golden/digest/*.inc lib/include/exhand/*.h) $(stamp)
 	@mkdir -p $(@D)
@@ -357,7 +363,7 @@ $(B)/i686/golden/golden_test: $(golden_src) test/support.c $(lib_src) $(wildcard
 	    -DEXH_CHECK_PLAIN -o $@ $(filter %.c,$^)
 
 .PHONY: test-i686
-test-i686: $(plain_bin) $(cards_bin) $(B)/i686/golden/golden_test
+test-i686: $(plain_bin) $(cards_bin) $(net_bin) $(B)/i686/golden/golden_test
 	@EXH_CASES=100000 test/run.sh $^
 
 # --- anything into the packet parser ------------------------------------------------------
@@ -502,7 +508,7 @@ check:
 	@$(MAKE) --no-print-directory PORT=pc104 SCENE=minimal undef-emu
 	@$(MAKE) --no-print-directory PORT=template SCENE=minimal all
 	@$(MAKE) --no-print-directory PORT=pc104 SCENE=minimal undef
-	@$(MAKE) --no-print-directory boot contract
+	@$(MAKE) --no-print-directory boot contract nic
 	@$(MAKE) --no-print-directory hil HIL_TICKS=2000 HIL_FEW=500 HIL_QEMU=2000 > $(B)/hil.txt || { cat $(B)/hil.txt; exit 1; }
 	@grep -cE '^  ok' $(B)/hil.txt | sed 's/^/hil, short: ok: /'
 	@$(MAKE) --no-print-directory world two-computers
@@ -541,6 +547,7 @@ nic_tape := PORT=pc104 SCENE=bilateral CARDS=tape cards_tape="$(wildcard ports/c
 
 NIC_FRAMES ?= 20000
 NIC_SPEEDS ?= natural
+NIC_APPROACHES ?= 1
 
 ## The pc104 image's network under QEMU: experiment, bad frames (NIC_FRAMES=1000000 NIC_SPEEDS=slow,natural,fast)
 .PHONY: nic
@@ -549,7 +556,7 @@ nic: all
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(B)/test/cable $(world)
 	@for s in minimal drop bilateral; do $(MAKE) --no-print-directory $(if $(V),,-s) PORT=pc104 SCENE=$$s CARDS=none all || exit; done
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(nic_tape) all
-	@B=$(B) FRAMES=$(NIC_FRAMES) SPEEDS=$(NIC_SPEEDS) test/pc104/nic.sh $(or $(ARGS),ways bilateral flood)
+	@B=$(B) FRAMES=$(NIC_FRAMES) SPEEDS=$(NIC_SPEEDS) APPROACHES=$(NIC_APPROACHES) test/pc104/nic.sh $(or $(ARGS),ways bilateral flood)
 
 # --- figures ------------------------------------------------------------------------
 

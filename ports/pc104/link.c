@@ -220,9 +220,9 @@ int exh_board_link_send(const void *buf, size_t len_B)
     return 0;
 }
 
-int pc104_link_log_up(void)
+int pc104_link_up(void)
 {
-    return open && net.known;
+    return open;
 }
 
 unsigned pc104_link_log(const uint8_t *byte, unsigned n, int now)
@@ -230,7 +230,7 @@ unsigned pc104_link_log(const uint8_t *byte, unsigned n, int now)
     static uint8_t piece[STREAM_PIECE_B];
     static uint32_t last_us;
     const uint32_t now_us = exh_io_time_us();
-    if (!pc104_link_log_up() || (n < STREAM_DATA_B && !now && now_us - last_us < FLUSH_US)) {
+    if (!open || !net.known || (n < STREAM_DATA_B && !now && now_us - last_us < FLUSH_US)) {
         return 0;
     }
     n = n < STREAM_DATA_B ? n : STREAM_DATA_B;

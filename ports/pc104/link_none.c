@@ -13,6 +13,11 @@ void pc104_link_open(const struct exh_scene *sc)
     (void)sc;
 }
 
+int pc104_link_up(void)
+{
+    return 0;
+}
+
 void pc104_link_poll(void)
 {
 }

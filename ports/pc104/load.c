@@ -7,6 +7,8 @@
 #include "exhand/exhand.h"
 #include "exhand/fix.h"
 
+#include <string.h>
+
 #define BINS       16u /* sixteenths of the period, then what took longer           */
 #define DRY_TICKS  64u
 #define DRY_ROUNDS 8u
@@ -185,6 +187,23 @@ static uint32_t least_of_rounds(void (*once)(uint32_t tick), uint32_t ticks, uin
 
 static const struct exh_scene *scene;
 
+/* As many packets as a tick may bring, as long as its own are: what the scene last sent. Where it has
+ * a peer to get them from. */
+static void dry_mail(const struct exh_scene_link *l)
+{
+    const struct exh_scene_mail *out = l->out;
+    unsigned longest = 0;
+    for (unsigned i = 1; i < out->packets; i++) {
+        if (out->len_B[i] > out->len_B[longest]) { longest = i; }
+    }
+    if (out->packets == 0 || !pc104_link_up()) { return; }
+    for (unsigned i = 0; i < EXH_SCENE_PACKETS; i++) {
+        l->in->len_B[i] = out->len_B[longest];
+        memcpy(l->in->byte[i], out->byte[longest], out->len_B[longest]);
+    }
+    l->in->packets = EXH_SCENE_PACKETS;
+}
+
 /* Into a wall and out again, with a new glove frame in every tick; no card sees the outputs. What
  * a tick costs depends on the scene's configuration and not on values (docs/DESIGN.md 5). */
 static void dry_tick(uint32_t tick)
@@ -200,6 +219,10 @@ static void dry_tick(uint32_t tick)
     }
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) { in.glove.raw[i] = (int16_t)(tick * 16u); }
     scene->tick(&in, &out);
+    if (scene->link) {
+        scene->link->write();
+        dry_mail(scene->link);
+    }
     pc104_scene_dry(scene, tick, &in, &out);
 }
 
@@ -210,6 +233,7 @@ void pc104_load_scene(const struct exh_scene *sc)
     scene = sc;
     if (pc104_par.budget_us || rate_Hz < 1 || rate_Hz > 20000 || sc->setup(board) < 0) { return; }
     scene_counts = least_of_rounds(dry_tick, DRY_TICKS, 0); /* exh_loop() sets it up anew */
+    if (scene->link) { scene->link->in->packets = scene->link->out->packets = 0; }
 }
 
 /* What an idle tick asks of the cards: outputs stay zero, drives disabled. */

@@ -168,7 +168,7 @@ void pc104_link_open(const struct exh_scene *sc); /* finds the card, if one was 
 void pc104_link_poll(void); /* what came since the last tick: bounded work       */
 void pc104_link_dry(void); /* the work of the worst tick, to be timed               */
 void pc104_link_report(void);
-int pc104_link_log_up(void); /* 1: records have a way out                          */
+int pc104_link_up(void); /* 1: there is a card                                  */
 /* Of the log: bytes taken, 0: not now. now 0: may wait for more, 1: do not, 2: the last. */
 unsigned pc104_link_log(const uint8_t *byte, unsigned n, int now);
 

@@ -98,6 +98,27 @@ size_t frames_arp(const struct frames *f, uint8_t *at, unsigned op)
     return 60; /* as a cable brings it: filled up */
 }
 
+/* Whole to the last of its sums, the wire's too (docs/WIRE.md), and from nobody it knows. */
+static size_t stranger(struct frames *f, uint8_t *at)
+{
+    uint8_t packet[256];
+    const size_t n = sizeof packet - (below(f, 2) ? 0 : 20 + below(f, 200));
+    uint32_t crc = 0xFFFFFFFF;
+    for (size_t i = 0; i < n; i++) { packet[i] = (uint8_t)frames_u64(f); }
+    packet[0] = 0x58;
+    packet[1] = 0x57;
+    packet[2] = 1;
+    packet[3] = (uint8_t)(1 + below(f, 5));
+    packet[4] = (uint8_t)(n - 22);
+    packet[5] = 0;
+    for (size_t i = 0; i < n - 4; i++) {
+        crc ^= packet[i];
+        for (int bit = 0; bit < 8; bit++) { crc = crc >> 1 ^ (crc & 1 ? 0xEDB88320 : 0); }
+    }
+    for (int i = 0; i < 4; i++) { packet[n - 4 + (size_t)i] = (uint8_t)(~crc >> 8 * i); }
+    return frames_datagram(f, at, packet, n);
+}
+
 static size_t good(struct frames *f, uint8_t *at)
 {
     uint8_t payload[NET_PAYLOAD_B];
@@ -143,7 +164,9 @@ size_t frames_bad(struct frames *f, uint8_t *at)
     case 3: /* a datagram to all, an answer to nobody */
         for (size_t i = 0; i < 6; i++) { at[i] = 255; }
         break;
-    case 4: /* whole, and no packet of the wire's */ break;
+    case 4: /* whole, and no packet of the wire's; or one, of a stranger's */
+        if (below(f, 2)) { n = stranger(f, at); }
+        break;
     case 5: /* somebody who has our address, and is heard if it is ARP */
         put(at + 28, f->to.ip, 4);
         break;
