@@ -115,17 +115,20 @@ void exh_log_frame_bytes(struct exh_bytes *c, const struct exh_scene *sc, struct
     for (uint32_t i = 0; i < n; i++) { exh_bytes_i32(c, &signal[i]); }
 }
 
+static int stages(struct exh_params *p, uint32_t i, int32_t value)
+{
+    uint16_t instance;
+    const struct exh_signal *row = exh_signal_at(p->table, i, &instance);
+    return exh_params_stage(p, row->id, instance, value) >= 0;
+}
+
 void exh_log_keyframe_bytes(struct exh_bytes *c, const struct exh_scene *sc)
 {
     const uint32_t n = sc->params ? exh_signal_count(sc->params->table) : 0;
     for (uint32_t i = 0; i < n; i++) {
-        uint16_t instance;
-        const struct exh_signal *row = exh_signal_at(sc->params->table, i, &instance);
         int32_t v = sc->params->active[i];
         exh_bytes_i32(c, &v);
-        if (c->mode == EXH_BYTES_READ && exh_params_stage(sc->params, row->id, instance, v) < 0) {
-            exh_bytes_fail(c);
-        }
+        if (c->mode == EXH_BYTES_READ && !stages(sc->params, i, v)) { exh_bytes_fail(c); }
     }
     if (c->mode == EXH_BYTES_READ && n > 0) {
         for (uint32_t i = 0; !exh_bytes_ok(c) && i < n; i++) {
