@@ -97,7 +97,8 @@ uint32_t any(uint32_t n)
 static int16_t met(void)
 {
     const struct exh_drive_par *p = &rig.active.drive;
-    const int64_t up = (int64_t)rig.sig.i_des_A_q26 * (1 << (EXH_Q_MON - EXH_Q_CUR)) / p->mon_A_q40;
+    const int32_t step = p->mon_A_q40 > 0 ? p->mon_A_q40 : 1; /* before the first set-up: nothing */
+    const int64_t up = (int64_t)rig.sig.i_des_A_q26 * (1 << (EXH_Q_MON - EXH_Q_CUR)) / step;
     return (int16_t)exh_clamp(p->mon_zero_raw + up, INT16_MIN, INT16_MAX);
 }
 
