@@ -102,7 +102,7 @@ world_core := $(filter-out $(world_opt:%=examples/world/%.c),$(wildcard examples
 
 # Rays into meshes where the package is, this compiler sees it, and what is linked can load it when it runs.
 have        = $(firstword $(wildcard $(addsuffix /$(1),/usr/include /usr/local/include)))
-sees        = $(if $(call have,$(1)),$(shell $(CC) $(CFLAGS) -include $(1) -fsyntax-only -xc /dev/null 2>/dev/null && echo yes))
+sees        = $(if $(call have,$(1)),$(shell $(CC) $(filter -m% --target%,$(CFLAGS)) -include $(1) -fsyntax-only -xc /dev/null 2>/dev/null && echo yes))
 world_rays := $(if $(filter -static,$(LDFLAGS)),,$(if $(call sees,embree3/rtcore.h),3,$(if $(call sees,embree4/rtcore.h),4)))
 world_mesh := $(B)/posix/examples/world/$(if $(world_rays),mesh_embree,mesh_none).o
 
