@@ -65,15 +65,15 @@ static void next_phase(struct bringup *s, const struct bringup_cfg *cfg)
     if (bringup_phase(cfg->list, s->phase) == NULL) { s->result = EXH_PROBE_DONE; }
 }
 
-/* A phase that needs the switch waits for it: held from the phase before, or taken now. */
+/* A phase that asks for the switch waits until it is let go and taken: one that was held before the
+ * question is no answer to it. */
 static void wait(struct bringup *s, const struct bringup_cfg *cfg, const struct bringup_phase *p,
                  const struct exh_scene_in *in, int32_t cnt)
 {
     const uint32_t cause = s->safety.present;
     const int run = s->safety.state == EXH_STATE_RUN;
-    if (!run) { s->let_go = 1; }
-    if (p->hands || p->ask == BRINGUP_ASK_NOTHING ||
-        (run && (p->ask == BRINGUP_ASK_HOLD || s->let_go))) {
+    if (cause & EXH_FAULT_DEADMAN) { s->let_go = 1; }
+    if (p->hands || p->ask == BRINGUP_ASK_NOTHING || (run && s->let_go)) {
         begin_phase(s, cnt);
     } else if ((p->ask == BRINGUP_ASK_HOOK && cause & ~(uint32_t)EXH_FAULT_DEADMAN) ||
                (in->command == EXH_CMD_RUN && !run)) {
@@ -206,8 +206,12 @@ void bringup_tick(struct bringup *s, const struct bringup_cfg *cfg, const struct
     limits |= exh_drive_current(&s->drive, &cfg->drive, &f, &i);
     exh_gate(&s->safety, &cfg->drive, 1, &i, &limits, out);
     s->coded_A_q26 = i.coded_A_q26;
+    if (live && (limits & ~(uint32_t)EXH_LIMIT_SLEW)) {
+        s->result = BRINGUP_LIMITED; /* known behind the gate only: its code goes no further */
+        s->coded_A_q26 = 0;
+        out->dac_raw[0] = (uint16_t)par->drive.dac_zero_raw;
+    }
     s->code_raw = out->dac_raw[0];
-    if (live && (limits & ~(uint32_t)EXH_LIMIT_SLEW)) { s->result = BRINGUP_LIMITED; }
     place(out, finger, live && par->own.stage > 1 && s->result == EXH_PROBE_BUSY);
     if (s->result > EXH_PROBE_DONE && !s->said) { s->tell |= BRINGUP_TELL_PHASE; }
     s->said = s->result != EXH_PROBE_BUSY;

@@ -7,8 +7,9 @@
  *   stage 5  one finger, small forces
  *
  * A run is one stage, of phases. A stage that is done prints a number; the next one does not
- * begin without it (parameter `shown`). The number belongs to finger, scales and limits: whoever
- * changes them begins again. The person's word is the dead-man switch.
+ * begin without it (parameter `shown`). The number belongs to finger, scales and the limits of the
+ * stages so far (crc_limits in setup.c): whoever changes them begins again. The person's word is
+ * the dead-man switch, let go and taken behind the question.
  *
  * Any doubt ends it: no current and the drive disabled in the same tick, for good. Current goes
  * through drive, safety and gate, whose table ends at the stage's limit. Doubt is

@@ -120,6 +120,24 @@ static uint32_t crc_word(uint32_t crc, int32_t v)
     return exh_crc32(crc, byte, sizeof byte);
 }
 
+/* The scene's own limits, each from the first stage on that was run under it. */
+static uint32_t crc_limits(uint32_t crc, int32_t stage, const struct bringup_own_par *own)
+{
+    const struct {
+        int32_t stage, limit;
+    } of[] = {
+        {1, own->loop},          {1, own->da_max_A_q26},  {1, own->zero_A_q26},
+        {1, own->mon_A_q26},     {1, own->mon_percent},   {2, own->load_max_A_q26},
+        {2, own->move_m_q30},    {3, own->run_max_A_q26}, {3, own->pol_max_A_q26},
+        {3, own->v_max_mps_q27}, {3, own->travel_m_q30},  {4, own->kf_NpA_q20},
+        {4, own->f_max_N_q20},   {4, own->home_A_q26},    {4, own->read_percent},
+    };
+    for (size_t i = 0; i < COUNT(of); i++) {
+        if (stage >= of[i].stage) { crc = crc_word(crc, of[i].limit); }
+    }
+    return crc;
+}
+
 /* What a stage that is done prints: 1 .. 999999, of all that it showed to be right. */
 static uint32_t number_of(int32_t stage, const struct bringup_par *par)
 {
@@ -129,7 +147,7 @@ static uint32_t number_of(int32_t stage, const struct bringup_par *par)
     uint32_t crc = crc_word(crc_word(0, stage), par->own.finger);
     for (size_t i = 0; i < EXH_QUAD_ROWS; i++) { crc = crc_word(crc, quad[i]); }
     for (size_t i = 0; i < EXH_DRIVE_ROWS; i++) { crc = crc_word(crc, drive[i]); }
-    if (stage >= 4) { crc = crc_word(crc, par->own.kf_NpA_q20); }
+    crc = crc_limits(crc, stage, &par->own);
     (void)exh_udiv64(crc, 999999, &rest);
     return (uint32_t)rest + 1;
 }

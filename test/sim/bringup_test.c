@@ -240,6 +240,42 @@ TEST(nothing_begins_with_an_open_loop)
     }
 }
 
+/* What a limit cuts down, though no doubt was before the gate, is not put out either. */
+TEST(a_limit_that_acts_ends_it_at_once)
+{
+    static const char *const low[] = {" f_max=0.7", " i_cont=0.1 i_peak=0.25"};
+    for (int stage = 4; stage <= BRINGUP_STAGES; stage++) {
+        for (size_t i = 0; i < LEN(low); i++) {
+            const char *more = stage == 4 ? "" : " f_finger=2";
+            char boot[80];
+            snprintf(boot, sizeof boot, "%s%s", low[i], more);
+            CHECK_EQ_I64(run_stage(config(1), stage, 0, 0, boot), 0);
+            CHECK_EQ_I64(run_stage(config(1), stage, 0, bringup_config()->before, boot), 0);
+            CHECK(r.result == BRINGUP_LIMITED && r.most_A > 0.1 && r.unsafe == 0,
+                  "stage %d,%s: %s, %.3f A, %lu", stage, boot, bringup_result_text(r.result),
+                  r.most_A, r.unsafe);
+        }
+    }
+}
+
+/* A switch that was taken in the phase before says nothing about what this one asks. */
+TEST(held_before_the_question_is_no_answer)
+{
+    static const struct limit row[] = {
+        {BRINGUP_HELD, 1, 2, BRINGUP_NOBODY, 120.1, 0},
+        {BRINGUP_HELD, 2, -1, BRINGUP_NOBODY, 120.1, 0},
+        {BRINGUP_HELD, 3, 0, BRINGUP_NOBODY, 120.1, 0},
+        {BRINGUP_HELD, 4, 0, BRINGUP_NOBODY, 120.1, 0},
+        {BRINGUP_HELD, 5, 0, BRINGUP_NOBODY, 120.1, 0.004},
+    };
+    for (size_t i = 0; i < LEN(row); i++) {
+        for (int cards = 0; cards < 2; cards++) {
+            ends(&row[i], cards);
+            CHECK(r.most_A <= 0, "stage %d: %.4f A", row[i].stage, r.most_A);
+        }
+    }
+}
+
 TEST(a_string_let_loose_ends_it)
 {
     static const struct limit row[] = {{BRINGUP_SLIPPED, 4, 3, EXH_PROBE_TRAVEL, 2, 0.035}};
@@ -328,6 +364,12 @@ TEST(a_stage_needs_the_one_before)
 {
     static const char *const other[] = {" mon_scale=0.000258", " dac_scale=1700",
                                         " step=0.00003316", " i_cont=3"};
+    static const char *const own[BRINGUP_STAGES][5] = {
+        {NULL},
+        {" loop=0", " da_max=0.5", " zero_tol=0.03", " mon_tol=0.03", " mon_percent=12"},
+        {" load_max=0.29", " move=0.0004"},
+        {" run_max=0.19", " pol_max=0.14", " v_max=0.26", " travel=0.031"},
+        {" kf=3.3", " f_string=1.4", " home_cur=0.11", " read_percent=26"}};
     for (int stage = 2; stage <= BRINGUP_STAGES; stage++) {
         const uint32_t shown = shown_before(stage, 0);
         CHECK_EQ_I64(run_stage(config(1), stage, 0, shown + 1, ""), 0);
@@ -342,8 +384,16 @@ TEST(a_stage_needs_the_one_before)
             CHECK(r.result == BRINGUP_NOT_SHOWN, "%s: %s", other[i], bringup_result_text(r.result));
         }
     }
-    CHECK_EQ_I64(run_stage(config(1), 5, 0, shown_before(5, 0), " kf=3"), 0);
-    CHECK(r.result == BRINGUP_NOT_SHOWN, "kf: %s", bringup_result_text(r.result));
+    for (int from = 1; from < BRINGUP_STAGES; from++) {
+        for (size_t i = 0; i < LEN(own[from]) && own[from][i] != NULL; i++) {
+            for (int stage = 2; stage <= BRINGUP_STAGES; stage++) {
+                CHECK_EQ_I64(run_stage(config(1), stage, 0, shown_before(stage, 0), own[from][i]),
+                             0);
+                CHECK((r.result == BRINGUP_NOT_SHOWN) == (stage > from), "stage %d,%s: %s", stage,
+                      own[from][i], bringup_result_text(r.result));
+            }
+        }
+    }
 }
 
 TEST(what_is_refused)
@@ -363,7 +413,8 @@ TEST(what_is_refused)
 
 TEST_MAIN("sim/bringup", every_stage_comes_through, at_any_rate, wrong_polarity, encoder_unplugged,
           monitor_dead_or_half, da_never_moves, what_is_open_ends_it_at_once,
-          nothing_begins_with_an_open_loop, no_slope_delays_the_end, a_string_let_loose_ends_it,
-          a_mute_card_is_seen_by_the_monitor, speed_is_limited,
+          nothing_begins_with_an_open_loop, no_slope_delays_the_end,
+          a_limit_that_acts_ends_it_at_once, held_before_the_question_is_no_answer,
+          a_string_let_loose_ends_it, a_mute_card_is_seen_by_the_monitor, speed_is_limited,
           the_balance_must_read_what_was_commanded, a_known_mass_gives_kf,
           a_stage_needs_the_one_before, what_is_refused);

@@ -27,6 +27,7 @@ const struct bringup_wrong_row bringup_wrong_row[BRINGUP_WRONGS] = {
     {"let_go", "the dead-man switch is let go"},
     {"slipped", "the balance is off the string"},
     {"away", "nobody does anything"},
+    {"held", "the dead-man switch is held before it is asked for"},
 };
 
 static struct {
@@ -157,6 +158,7 @@ static void wrong_in(struct exh_drive_in *in)
     if (run.cfg->wrong == BRINGUP_MONITOR_HALF) { in->mon_raw[0] /= 2; }
     if (run.cfg->wrong == BRINGUP_NOT_READY) { in->din &= ~ready; }
     if (run.cfg->wrong == BRINGUP_ESTOP) { in->din &= ~(uint32_t)EXH_DIN_ESTOP; }
+    if (run.cfg->wrong == BRINGUP_HELD) { in->din |= EXH_DIN_DEADMAN; }
     if (run.cfg->wrong == BRINGUP_LET_GO) { in->din &= ~(uint32_t)EXH_DIN_DEADMAN; }
 }
 
@@ -324,8 +326,10 @@ static int begins(enum bringup_wrong w, int stage)
 {
     static const int busy[BRINGUP_STAGES] = {3, 1, 2, 3,
                                              2}; /* output, load, polarity, force, force */
+    static const int hands[BRINGUP_STAGES] = {2, -1, 0, 0, 0}; /* the phase before the question */
     const int from_start = w <= BRINGUP_UNPLUGGED || w == BRINGUP_STUCK || w == BRINGUP_AWAY ||
                            (w == BRINGUP_NOT_READY && stage == 1);
+    if (w == BRINGUP_HELD) { return hands[stage - 1]; }
     return from_start ? -1 : busy[stage - 1];
 }
 
@@ -346,6 +350,7 @@ int bringup_wrong_is_of(enum bringup_wrong w, int stage)
     case BRINGUP_ESTOP:
     case BRINGUP_LET_GO:
     case BRINGUP_AWAY:
+    case BRINGUP_HELD:
     case BRINGUP_WRONGS:
     default: return 1;
     }

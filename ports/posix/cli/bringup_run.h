@@ -22,6 +22,7 @@ enum bringup_wrong {
     BRINGUP_LET_GO, /* the dead-man switch                                */
     BRINGUP_SLIPPED, /* the balance is off the string                      */
     BRINGUP_AWAY, /* nobody does anything                               */
+    BRINGUP_HELD, /* the switch, before the question                   */
     BRINGUP_WRONGS
 };
 struct bringup_wrong_row {
