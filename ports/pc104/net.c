@@ -121,9 +121,10 @@ static enum net_take take_asked(struct net *n, const uint8_t *f)
     return NET_ANSWER;
 }
 
-/* Only the answer to a question of ours: others' are how links are led astray. */
+/* Only the answer to a question of ours, and in time: others' are how links are led astray. */
 static enum net_take take_answer(struct net *n, const uint8_t *f, uint32_t now_us)
 {
+    if (now_us - n->asked_us > SLOW_US) { n->waiting = 0; }
     if (!n->waiting || get32(f + A_IP) != n->cfg.peer_ip || get32(f + A_TO_IP) != n->cfg.ip ||
         !is(f + TO, n->cfg.mac, NET_MAC_B) || !is(f + A_TO_MAC, n->cfg.mac, NET_MAC_B)) {
         return drop(n, NET_ARP_UNASKED);
@@ -188,6 +189,7 @@ static enum net_take take_ip(struct net *n, const uint8_t *f, size_t len_B, uint
     if (why == NET_DROPS) { why = why_not_udp(n, f); }
     if (why != NET_DROPS) { return drop(n, why); }
     n->heard_us = now_us;
+    if (n->known && is(f + FROM, n->peer_mac, NET_MAC_B)) { n->waiting = 0; } /* still there */
     n->counts.datagrams++;
     *at = f + NET_HEAD_B;
     *payload_B = (size_t)get16(f + U_LENGTH) - UDP_B;

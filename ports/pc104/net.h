@@ -59,7 +59,7 @@ struct net {
     struct net_cfg cfg;
     uint8_t peer_mac[NET_MAC_B];
     uint8_t known; /* where the peer is                                        */
-    uint8_t waiting; /* an answer to our ARP is due                              */
+    uint8_t waiting; /* an answer to our ARP is due: for 1 s, or till it is heard   */
     uint8_t begun;
     uint16_t asks, id;
     uint32_t asked_us, heard_us; /* when                                       */

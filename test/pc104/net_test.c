@@ -41,14 +41,19 @@ static void meet(void)
     CHECK(net.known && net.counts.arp_heard == 1, "heard %" PRIu32, net.counts.arp_heard);
 }
 
-static void dropped(size_t n, enum net_drop why)
+static void dropped_at(size_t n, uint32_t now_us, enum net_drop why)
 {
     const uint32_t before = net.counts.drop[why], frames = net.counts.frames;
-    const enum net_take got = take(n);
+    const enum net_take got = take_at(n, now_us);
     CHECK(got == NET_NOTHING && net.counts.drop[why] == before + 1 &&
               net.counts.frames == frames + 1,
           "%s: %d", net_drop_text(why), got);
     CHECK(at == NULL && payload_B == 0, "%s: hands over", net_drop_text(why));
+}
+
+static void dropped(size_t n, enum net_drop why)
+{
+    dropped_at(n, 0, why);
 }
 
 /* ---- worked examples: written down by hand, sums by hand ----------------------------- */
@@ -122,12 +127,31 @@ TEST(only_an_answer_that_was_asked_for_is_believed)
     CHECK_EQ_I64(net.peer_mac[5], 9);
     CHECK_EQ_I64((int64_t)net_ask(&net, sent, 1000 * MS), NET_ARP_B);
     thief.to.peer_ip += 5; /* somebody else answers */
-    dropped(frames_arp(&thief, frame, 2), NET_ARP_UNASKED);
+    dropped_at(frames_arp(&thief, frame, 2), 1001 * MS, NET_ARP_UNASKED);
     thief.to.peer_ip -= 5;
     (void)frames_arp(&thief, frame, 2);
     frame[0] = frame[1] = frame[2] = frame[3] = frame[4] = frame[5] = 255; /* to all */
-    dropped(60, NET_ARP_UNASKED);
+    dropped_at(60, 1001 * MS, NET_ARP_UNASKED);
     CHECK_EQ_I64(net.peer_mac[5], 9);
+}
+
+/* Not for ever: it ends with a datagram of the peer's own card, and after a second. */
+TEST(a_question_does_not_stay_open)
+{
+    struct frames thief = peer;
+    thief.mac[5] = 66;
+    meet();
+    CHECK_EQ_I64((int64_t)net_ask(&net, sent, 1000 * MS), NET_ARP_B);
+    CHECK_EQ_I64(take_at(frames_datagram(&peer, frame, "x", 1), 1001 * MS), NET_DATAGRAM);
+    CHECK_EQ_I64((int64_t)net_ask(&net, sent, 1500 * MS), 0);
+    dropped_at(frames_arp(&thief, frame, 2), 1501 * MS, NET_ARP_UNASKED);
+    CHECK_EQ_I64(net.peer_mac[5], 9);
+    CHECK_EQ_I64((int64_t)net_ask(&net, sent, 2100 * MS), NET_ARP_B);
+    CHECK_EQ_I64(take_at(frames_datagram(&thief, frame, "x", 1), 2101 * MS), NET_DATAGRAM);
+    dropped_at(frames_arp(&thief, frame, 2), 3100 * MS + 1, NET_ARP_UNASKED); /* too late */
+    CHECK_EQ_I64((int64_t)net_ask(&net, sent, 3200 * MS), NET_ARP_B);
+    CHECK_EQ_I64(take_at(frames_arp(&peer, frame, 2), 4200 * MS), NET_NOTHING);
+    CHECK_EQ_I64(net.counts.arp_heard, 2);
 }
 
 TEST(it_asks_quickly_then_slowly_and_again_when_nothing_is_heard)
@@ -340,7 +364,7 @@ TEST(addresses)
 }
 
 TEST_MAIN("net", a_datagram_by_example, a_datagram_is_made_as_in_the_example, arp_by_example,
-          only_an_answer_that_was_asked_for_is_believed,
+          only_an_answer_that_was_asked_for_is_believed, a_question_does_not_stay_open,
           it_asks_quickly_then_slowly_and_again_when_nothing_is_heard,
           a_new_card_of_the_peer_is_found_by_asking, arp_that_cannot_be_is_dropped,
           every_cause_of_a_drop, no_room_for_udp,
