@@ -92,6 +92,7 @@ static volatile struct in in_ring[IN] __attribute__((aligned(128)));
 static volatile struct out out_ring[OUT] __attribute__((aligned(128)));
 static uint8_t in_buffer[IN][BUFFER_B] __attribute__((aligned(16)));
 static uint8_t out_buffer[OUT][FRAME_OUT_B] __attribute__((aligned(16)));
+static struct pc104_pci place;
 static uint32_t base; /* 0: no card */
 static unsigned in_at, in_back, out_at; /* in_back: the first that is not the card's again */
 static uint8_t torn; /* the rest of a frame in pieces is to come */
@@ -135,8 +136,18 @@ static void say_place(struct pc104_pci at)
     pc104_say_u32(at.fn);
 }
 
+/* It may be found with its rings where the firmware left them: it writes to memory only between
+ * its reset and the first failure. */
+static void command(uint32_t set)
+{
+    const uint32_t is = pc104_pci_get(place, PC104_PCI_COMMAND) & 0xFFFFu;
+    pc104_pci_put(place, PC104_PCI_COMMAND, (is & ~COMMAND_MASTER) | COMMAND_NO_IRQ | set);
+}
+
+/* Of a card that was found. */
 static int fails(const char *why)
 {
+    command(0);
     pc104_say("nic: ");
     pc104_say(why);
     pc104_say("\n");
@@ -167,14 +178,15 @@ static int find(struct pc104_pci *at)
     return -EXH_E_ABSENT;
 }
 
-/* Awake, its memory answering, allowed to reach ours, without interrupts. Its link to the chip set
- * is kept from sleeping: the 82574L is known to hang where it may. */
+/* Awake, its memory answering, not yet allowed to reach ours, without interrupts. Its link to the
+ * chip set is kept from sleeping: the 82574L is known to hang where it may. */
 static int wake(struct pc104_pci at)
 {
     const unsigned power = pc104_pci_capability(at, CAP_POWER);
     const unsigned express = pc104_pci_capability(at, CAP_EXPRESS);
     const uint32_t bar = pc104_pci_get(at, PC104_PCI_BAR0);
     const int wide = (bar & 6u) == 4u;
+    place = at;
     if ((bar & 1u) || (wide && pc104_pci_get(at, PC104_PCI_BAR1) != 0) || (bar & ~0x1FFFFu) == 0) {
         return fails("firmware gave it no memory below 4 GiB");
     }
@@ -185,9 +197,7 @@ static int wake(struct pc104_pci at)
     if (express) {
         pc104_pci_put(at, express + 0x10, pc104_pci_get(at, express + 0x10) & 0xFFFFu & ~3u);
     }
-    pc104_pci_put(at, PC104_PCI_COMMAND,
-                  (pc104_pci_get(at, PC104_PCI_COMMAND) & 0xFFFFu) | COMMAND_MEMORY |
-                      COMMAND_MASTER | COMMAND_NO_IRQ);
+    command(COMMAND_MEMORY);
     base = bar & ~0x1FFFFu;
     if (pc104_guard_device(base) < 0) { return fails("its memory lies where the image is"); }
     return get(STATUS) == UINT32_MAX ? fails("does not answer") : 0;
@@ -293,6 +303,7 @@ int pc104_nic_open(uint8_t mac[6])
     if (err == 0) { err = reset(); }
     if (err == 0) { err = read_mac(mac); }
     if (err < 0) { return err; }
+    command(COMMAND_MEMORY | COMMAND_MASTER);
     put(CTRL, (get(CTRL) & ~(CTRL_FORCE | CTRL_NO_MASTER)) | CTRL_LINK_UP);
     open_in();
     open_out();
@@ -343,9 +354,11 @@ void pc104_nic_send(size_t len_B)
     d->sum_at = d->sum_from = 0;
     d->special = 0;
     d->command = OUT_SEND;
+    __asm__ volatile("" : : : "memory");
+    out_at = (out_at + 1) % OUT; /* first: a fault in between leaves room for the last records */
+    __asm__ volatile("" : : : "memory");
     d->status = 0;
     __asm__ volatile("" : : : "memory");
-    out_at = (out_at + 1) % OUT;
     put(TDT, out_at);
     counts.sent++;
 }
