@@ -36,6 +36,7 @@ static struct {
 } queue[QUEUE];
 static uint32_t put, got;
 static uint32_t overrun, unsent; /* datagrams: no room here, no room in the card */
+static uint32_t unanswered; /* questions behind the first of their tick */
 
 /* --- options --- */
 
@@ -86,6 +87,7 @@ static void check_options(void)
     if (par.peer == 0) { refuse("peer", "", "missing: whom to talk to"); }
     if (par.ip == 0) { refuse("ip", "", "missing: our own address"); }
     if (par.ip == par.peer) { refuse("peer", "", "the same as ip"); }
+    if (par.port == par.log_port) { refuse("log_port", "", "the same as port"); }
 }
 
 static void ask(void)
@@ -144,11 +146,12 @@ void pc104_link_open(const struct exh_scene *sc)
 
 /* --- in --- */
 
+/* What is newest says most of the peer: the oldest goes. */
 static void keep(const uint8_t *at, size_t len_B)
 {
     if (put - got == QUEUE) {
         overrun++;
-        return;
+        got++;
     }
     queue[put % QUEUE].len_B = (uint16_t)len_B;
     memcpy(queue[put % QUEUE].byte, at, len_B);
@@ -165,27 +168,30 @@ static void answer(void)
     pc104_nic_send(net_answer(&net, to));
 }
 
-static void take(const uint8_t *frame, size_t len_B, uint32_t now_us)
+/* One question is answered a tick: a flood of them leaves the transmit ring to the scene. */
+static void take(const uint8_t *frame, size_t len_B, uint32_t now_us, unsigned *answers)
 {
     const uint8_t *at;
     size_t n;
     const enum net_take what = net_take(&net, frame, len_B, now_us, &at, &n);
     if (what == NET_DATAGRAM) { keep(at, n); }
-    if (what == NET_ANSWER) { answer(); }
+    if (what == NET_ANSWER && (*answers)++ == 0) { answer(); }
 }
 
 void pc104_link_poll(void)
 {
     uint32_t now_us;
+    unsigned answers = 0;
     if (!open) { return; }
     now_us = exh_io_time_us();
     for (unsigned i = 0; i < IN_A_TICK; i++) {
         const uint8_t *frame;
         const int n = pc104_nic_next(&frame);
         if (n == 0) { break; }
-        if (n > 0) { take(frame, (size_t)n, now_us); }
+        if (n > 0) { take(frame, (size_t)n, now_us, &answers); }
         pc104_nic_done();
     }
+    if (answers > 1) { unanswered += answers - 1; }
     pc104_nic_back();
     ask();
 }
@@ -262,12 +268,13 @@ void pc104_link_dry(void)
     }
     twin.cfg.ip = cfg.peer_ip;
     twin.cfg.peer_ip = cfg.ip;
+    got = put; /* room */
     for (unsigned i = 0; i < IN_A_TICK; i++) {
         const uint8_t *at;
         size_t payload_B;
         if (net_take(&twin, frame, n, 0, &at, &payload_B) == NET_DATAGRAM) { keep(at, payload_B); }
-        got = put;
     }
+    got = put; /* none of it reaches the scene */
 }
 
 /* --- report --- */
@@ -299,6 +306,7 @@ void pc104_link_report(void)
     for (unsigned i = 0; i < NET_DROPS; i++) {
         say_count("link drop_", net_drop_text((enum net_drop)i), net.counts.drop[i]);
     }
+    say_count("link ", "arp_unanswered", unanswered);
     say_count("link ", "overrun", overrun);
     say_count("link ", "unsent", unsent);
     say_count("log ", "pieces", stream_pieces());

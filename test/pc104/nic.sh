@@ -100,6 +100,8 @@ ways()
     boot 2 "" "$image" "${ip[@]}" port=0
     check "port refused" says '^option port=0: allowed 1\.\.65535$'
     boot 2 "" "$image" ip=10.0.2.15 peer=10.0.2.15
+    boot 2 "" "$image" "${ip[@]}" log_port=4747
+    check "one port for both refused" says '^option log_port=: the same as port$'
     boot 2 "" "$image" log=udp
     check "a log needs a way out" says '^option log=udp: needs ip= and peer=$'
     boot 2 "" "$b/pc104/minimal-none.elf" ip=10.0.2.15
