@@ -53,7 +53,8 @@ int main(void)
     pc104_board_for(sc);
     err = pc104_board_clock();
     if (err == 0) {
-        pc104_link_open(sc);
+        pc104_board_still();
+        pc104_link_open(sc); /* may wait for seconds */
         pc104_scene_ready(sc);
         pc104_load_scene(sc);
         err = exh_loop(sc, (uint32_t)pc104_par.rate_Hz, &hooks);

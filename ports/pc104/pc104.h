@@ -200,6 +200,7 @@ enum pc104_exit { /* what emulators are told at the end: status 2 * value + 1   
 void pc104_halt(uint8_t code, const char *why);
 uint32_t pc104_tick(void); /* run so far */
 void pc104_board_for(const struct exh_scene *sc); /* before exh_loop() */
+void pc104_board_still(void); /* outputs to zero before exh_board_init(); says nothing */
 int pc104_board_clock(void); /* finds the timer; by exh_board_init() if not before */
 
 /* --- crt0.S, vectors.S --- */
