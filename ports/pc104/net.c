@@ -124,8 +124,8 @@ static enum net_take take_asked(struct net *n, const uint8_t *f)
 /* Only the answer to a question of ours, and in time: others' are how links are led astray. */
 static enum net_take take_answer(struct net *n, const uint8_t *f, uint32_t now_us)
 {
-    if (now_us - n->asked_us > SLOW_US) { n->waiting = 0; }
-    if (!n->waiting || get32(f + A_IP) != n->cfg.peer_ip || get32(f + A_TO_IP) != n->cfg.ip ||
+    const int due = n->waiting && now_us - n->asked_us <= SLOW_US;
+    if (!due || get32(f + A_IP) != n->cfg.peer_ip || get32(f + A_TO_IP) != n->cfg.ip ||
         !is(f + TO, n->cfg.mac, NET_MAC_B) || !is(f + A_TO_MAC, n->cfg.mac, NET_MAC_B)) {
         return drop(n, NET_ARP_UNASKED);
     }
@@ -240,6 +240,7 @@ size_t net_answer(const struct net *n, uint8_t *to)
 size_t net_ask(struct net *n, uint8_t *to, uint32_t now_us)
 {
     const uint32_t every_us = !n->known && n->asks < QUICK ? QUICK_US : SLOW_US;
+    if (now_us - n->asked_us > SLOW_US) { n->waiting = 0; } /* before the clock comes round */
     if (n->begun && now_us - n->asked_us < every_us) { return 0; }
     if (n->known && now_us - n->heard_us < SLOW_US) { return 0; }
     n->begun = n->waiting = 1;
