@@ -245,14 +245,15 @@ static int done(void)
 
 int exh_board_wait(void)
 {
-    const double at_s = tick_time_s(sim.tick);
+    const uint32_t missed = sim.cfg.late ? sim.cfg.late(sim.tick) : 0;
+    const double at_s = tick_time_s(sim.tick += missed);
     advance_to(at_s);
     if (sim.cfg.pace) { follow_wall_clock(at_s); }
     line_advance(at_s);
     if (sim.cfg.cards.how) { cards_at(at_s); }
     sim.tick++;
     if (sim.cfg.max_ticks && sim.tick > sim.cfg.max_ticks) { return -1; }
-    return stop || interrupted || done() ? -1 : 0;
+    return stop || interrupted || done() ? -1 : (int)missed;
 }
 
 int exh_board_read_drive(struct exh_drive_in *in)

@@ -47,6 +47,8 @@ struct posix_config {
      * what it shows the box, cards included. */
     void (*wires_out)(struct exh_drive_out *out);
     void (*wires_in)(struct exh_drive_in *in);
+    /* How many ticks go by before the loop waits for this one (from 0) again; NULL: none. */
+    uint32_t (*late)(uint64_t tick);
 };
 
 /* Defaults: the committed device, seed 1, one fall. */

@@ -32,11 +32,13 @@ static void start(const struct exh_scene *sc, struct exh_scene_board board)
 {
     run.r->T = board.T;
     if (run.logged) { exh_log_start(sc, board); }
+    if (run.cfg->more) { run.cfg->more->start(sc, board); }
 }
 
 static void before(uint32_t tick, struct exh_scene_in *in)
 {
     if (tick == 0) { in->command = EXH_CMD_RUN; }
+    if (run.cfg->more) { run.cfg->more->before(tick, in); }
     if (run.logged) { exh_log_before(tick, in); }
 }
 
@@ -107,6 +109,7 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
     for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
         if (run.cfg->board.exo.fingers >> f & 1) { busy |= one_finger(f); }
     }
+    if (run.cfg->more) { run.cfg->more->after(tick, in, out); }
     if (!busy && run.done_s < 0) { run.done_s = posix_time_s(); }
     if (!busy && posix_time_s() > run.done_s + AFTER_S) { posix_stop(); }
 }

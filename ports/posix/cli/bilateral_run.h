@@ -26,6 +26,7 @@ struct bilateral_run_cfg {
     int32_t session;           /* of the controller; 0: of the seed, over UDP of the clock */
     int fit_scale;             /* s of each finger: as it fits, not as the scene has it */
     int keep;                  /* keep samples                                  */
+    const struct exh_loop_hooks *more; /* behind the run's own; NULL: none      */
 };
 
 /* One finger in one tick, as the scene says it, and as it is. */

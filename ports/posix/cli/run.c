@@ -15,6 +15,7 @@
 
 static struct {
     struct run *r;
+    const struct exh_loop_hooks *more;
     struct fall_sample *sample;
     size_t *start;
     size_t samples_cap, starts_cap;
@@ -39,6 +40,7 @@ static void start(const struct exh_scene *sc, struct exh_scene_board board)
 {
     run.r->T = board.T;
     if (run.logged) { exh_log_start(sc, board); }
+    if (run.more) { run.more->start(sc, board); }
 }
 
 static void before(uint32_t tick, struct exh_scene_in *in)
@@ -51,6 +53,7 @@ static void before(uint32_t tick, struct exh_scene_in *in)
         if (!run.no_memory) { run.start[run.r->log.falls++] = run.r->log.samples; }
     }
     run.fall = fall;
+    if (run.more) { run.more->before(tick, in); }
     if (run.logged) { exh_log_before(tick, in); }
 }
 
@@ -67,6 +70,7 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
     run.last_tick = tick;
     run.r->ticks++;
     run.r->faults |= (uint32_t)s.faults;
+    if (run.more) { run.more->after(tick, in, out); }
     if (run.fall == 0) { return; }
     run.sample = grow(run.sample, &run.samples_cap, run.r->log.samples, sizeof *run.sample);
     if (run.no_memory) {
@@ -124,6 +128,7 @@ int run_drop(const struct run_cfg *c, struct run *r)
     memset(r, 0, sizeof *r);
     memset(&run, 0, sizeof run);
     run.r = r;
+    run.more = c->more;
     run.logged = c->board.log != NULL;
     run.mon_gain = c->mon_gain != 0 ? c->mon_gain : 1;
     err = set_parameters(c);

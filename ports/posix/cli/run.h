@@ -5,6 +5,8 @@
 #include "analysis.h"
 #include "posix.h"
 
+#include "loop.h"
+
 #include "exhand/signal.h"
 
 struct run_setting { /* a parameter of the scene, by name, in SI */
@@ -17,6 +19,7 @@ struct run_cfg {
     double k_Npm, b_Nspm;
     const struct run_setting *setting; /* further parameters                   */
     int settings;
+    const struct exh_loop_hooks *more; /* behind the run's own; NULL: none      */
     double mon_gain; /* on the monitor's force, behind the box; 0: 1           */
     struct posix_config board; /* device, seed, falls, log, pace               */
 };
