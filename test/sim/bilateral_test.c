@@ -1,81 +1,12 @@
 /* The full box in closed loop with a hand, a link and a world: what is felt hangs on the plane that
  * was known before the contact, and on nothing the link does after. */
-#include "check.h"
+#include "felt.h"
 
-#include "cli/bilateral_run.h"
-#include "udp.h"
-
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
-#include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
 #define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
-static struct bilateral_run_cfg plain(unsigned fingers, double mps, int approaches)
-{
-    static const struct run_setting f_max = {"mat_f_max", 40};
-    struct bilateral_run_cfg c;
-    memset(&c, 0, sizeof c);
-    c.rate_Hz = 2000;
-    c.board = posix_config_default();
-    c.board.exo = sim_exo_default();
-    c.board.exo.fingers = fingers;
-    c.setting = &f_max;
-    c.settings = 1;
-    c.k_Npm = 20000;
-    c.b_Nspm = 60;
-    c.at_m = 0.03;
-    c.fps = 400;
-    c.until_s = 1e30;
-    c.fit_scale = c.keep = 1;
-    for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
-        c.board.exo.path[f].speed_mps = mps;
-        c.board.exo.path[f].approaches = approaches;
-    }
-    return c;
-}
-
-static struct bilateral_run run(const struct bilateral_run_cfg *c)
-{
-    struct bilateral_run r;
-    CHECK_EQ_I64(bilateral_run(c, &r), 0);
-    CHECK_EQ_I64(r.faults, 0);
-    for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
-        CHECK(r.finger[f].unfrozen == 0, "finger %u: %ld ticks of contact before its freeze", f,
-              r.finger[f].unfrozen);
-    }
-    return r;
-}
-
-/* The first freeze of a finger, as a sample. */
-static size_t freeze_of(const struct bilateral_track *t)
-{
-    for (size_t i = 0; i < t->n; i++) {
-        if (t->at[i].bits & EXH_PRECONTACT_FREEZE) { return i; }
-    }
-    CHECK(0, "no freeze");
-    return 0;
-}
-
-static size_t contact_of(const struct bilateral_track *t)
-{
-    for (size_t i = 0; i < t->n; i++) {
-        if (t->at[i].raw.c) { return i; }
-    }
-    CHECK(0, "no contact");
-    return 0;
-}
-
-static int same_felt(const struct bilateral_paper *a, const struct bilateral_paper *b)
-{
-    return a->q_m_q30 == b->q_m_q30 && a->qd_mps_q27 == b->qd_mps_q27 &&
-           a->f_des_N_q20 == b->f_des_N_q20 && a->i_des_A_q26 == b->i_des_A_q26 && a->c == b->c &&
-           a->f_mon_N_q20 == b->f_mon_N_q20;
-}
 
 /* Every bit of what finger f felt, moved and was commanded from its freeze to the end, and how it
  * moved before. q_lim and d: while the plane of this approach is held. */
@@ -273,156 +204,6 @@ TEST(hostile_packets_change_nothing)
     bilateral_run_free(&perfect);
 }
 
-/* ---- Two processes ------------------------------------------------------------------------ */
-
-/* A world in a process of its own, one frame in 2.5 ms, for so long or until it is killed. */
-static int confuse_at; /* in this frame of it; 0: never */
-
-/* What a network may still have held: a HELLO of a world long gone; and a number far ahead. */
-static void confuse(struct udp *udp, const struct peer *peer)
-{
-    struct exh_wire_tx gone = {3, 77}, far = {peer->tx.session, peer->tx.seq + 60000};
-    struct exh_wire_packet p = {.type = EXH_WIRE_PLANES};
-    uint8_t buf[EXH_WIRE_MAX_B];
-    int32_t n = exh_wire_write(&far, &p, 0, buf, sizeof buf);
-    (void)udp_send(udp, buf, (size_t)n);
-    p.type = EXH_WIRE_HELLO;
-    p.u.hello = (struct exh_wire_hello){EXH_WIRE_WORLD, EXH_VERSION_NUMBER, 0};
-    n = exh_wire_write(&gone, &p, 0, buf, sizeof buf);
-    (void)udp_send(udp, buf, (size_t)n);
-}
-
-static pid_t world_process(const char *local, uint32_t session, const struct peer_world *world)
-{
-    static struct sim_link link;
-    static struct peer peer;
-    static struct exh_wire_rx rx;
-    const struct peer_cfg cfg = {.world = world, .until_s = 1e30};
-    const pid_t pid = fork();
-    struct udp udp;
-    CHECK(pid >= 0, "no process");
-    if (pid != 0) { return pid; }
-    (void)alarm(30); /* it may be left behind by a test that fails */
-    if (udp_open(&udp, local, NULL) < 0) { _exit(9); }
-    for (int w = 0; w < SIM_LINK_WAYS; w++) {
-        const struct sim_link_par p = sim_link_default();
-        sim_link_start(&link.way[w], &p, NULL, 1);
-    }
-    peer_start(&peer, &cfg, session);
-    for (int i = 0; i < 8000; i++) {
-        const struct timespec frame = {0, 2500000};
-        const double t_s = i * 0.0025;
-        uint8_t buf[SIM_LINK_PACKET_B];
-        int n;
-        while ((n = udp_recv(&udp, buf, sizeof buf)) > 0) {
-            struct exh_wire_packet p;
-            if (exh_wire_take(&rx, &p, buf, (size_t)n) > 0) { udp_learn(&udp); }
-            (void)sim_link_send(&link.way[SIM_LINK_OUT], t_s, buf, (size_t)n);
-        }
-        peer_frame(&peer, &link, t_s);
-        while ((n = sim_link_recv(&link.way[SIM_LINK_IN], t_s, buf, sizeof buf)) > 0) {
-            (void)udp_send(&udp, buf, (size_t)n);
-        }
-        if (i == confuse_at && i > 0) { confuse(&udp, &peer); }
-        (void)nanosleep(&frame, NULL);
-    }
-    _exit(0);
-}
-
-static void kill_world(pid_t pid)
-{
-    CHECK(kill(pid, SIGKILL) == 0 && waitpid(pid, NULL, 0) == pid, "the world had ended");
-}
-
-static void wait_ms(long ms)
-{
-    const struct timespec t = {ms / 1000, ms % 1000 * 1000000};
-    (void)nanosleep(&t, NULL);
-}
-
-/* First one, then another in its place after so long, as long as this test runs. */
-static pid_t two_worlds(const char *local, const struct peer_world *world, int first_ms, int pause_ms)
-{
-    const pid_t pid = fork();
-    pid_t child;
-    if (pid != 0) { return pid; }
-    (void)setpgid(0, 0);
-    (void)alarm(30);
-    child = world_process(local, 11, world);
-    wait_ms(first_ms);
-    kill_world(child);
-    wait_ms(pause_ms);
-    (void)world_process(local, 12, world);
-    for (;;) { (void)pause(); }
-}
-
-TEST(two_processes_survive_each_others_restart)
-{
-    struct bilateral_run_cfg c = plain(1u << EXH_INDEX, 0.87, 1);
-    const struct bilateral_finger_is w = {EXH_INDEX, c.board.exo.finger[EXH_INDEX].arm_m, c.board.hand.pose};
-    struct peer_world world = {.ray_m = 0};
-    char local[32];
-    pid_t pid;
-    snprintf(local, sizeof local, "127.0.0.1:%u", 20000u + (unsigned)getpid() % 20000u);
-    world.wall.fingers = 1u << EXH_INDEX;
-    bilateral_wall(&world.wall.plane[EXH_INDEX], &w, c.at_m);
-    perfect = run(&c); /* in virtual time */
-    c.board.exo.path[EXH_INDEX].hold_s = 0.3;
-    pid = two_worlds(local, &world, 700, 100);
-    setpgid(pid, pid);
-    c.board.line.on = c.board.pace = 1;
-    c.board.line.udp_local = "127.0.0.1:0";
-    c.board.line.udp_peer = local;
-    for (uint64_t k = 1; k <= 2; k++) { /* the second is a controller started anew, of the same seed */
-        struct bilateral_run r;
-        const struct bilateral_track *s = &perfect.finger[EXH_INDEX], *t = &r.finger[EXH_INDEX];
-        size_t i = 0, freeze;
-        r = run(&c);
-        CHECK(t->freezes >= 1 && t->contacts >= 1, "run %d: %ld freezes, %ld contacts", (int)k, t->freezes,
-              t->contacts);
-        CHECK(r.box.age < 1000, "run %d: nothing has come for %d ticks", (int)k, r.box.age);
-        freeze = freeze_of(t);
-        for (i = 0; i < freeze + 200 && same_felt(&s->at[i].raw, &t->at[i].raw); i++) {}
-        CHECK(i == freeze + 200, "run %d: tick %zu is not what it is in virtual time", (int)k, i);
-        bilateral_run_free(&r);
-    }
-    (void)kill(-pid, SIGKILL);
-    (void)waitpid(pid, NULL, 0);
-    bilateral_run_free(&perfect);
-}
-
-/* 0.75 s after the world has begun comes what makes a receiver deaf that only counts on: it is
- * deaf for a second and a HELLO's time, and what is felt later is as ever. */
-TEST(two_processes_are_not_deaf_for_good)
-{
-    struct bilateral_run_cfg c = plain(1u << EXH_INDEX, 0.1, 2);
-    const struct bilateral_finger_is w = {EXH_INDEX, c.board.exo.finger[EXH_INDEX].arm_m, c.board.hand.pose};
-    struct peer_world world = {.ray_m = 0};
-    struct bilateral_run r;
-    char local[32];
-    pid_t pid;
-    snprintf(local, sizeof local, "127.0.0.1:%u", 20000u + (unsigned)(getpid() + 1) % 20000u);
-    world.wall.fingers = 1u << EXH_INDEX;
-    bilateral_wall(&world.wall.plane[EXH_INDEX], &w, c.at_m);
-    confuse_at = 300;
-    pid = world_process(local, 11, &world);
-    confuse_at = 0;
-    c.board.line.on = c.board.pace = 1;
-    c.board.line.udp_local = "127.0.0.1:0";
-    c.board.line.udp_peer = local;
-    r = run(&c);
-    CHECK(r.ticks > 5 * c.rate_Hz, "%d ticks: over too soon to tell", (int)r.ticks);
-    CHECK_EQ_I64(r.box.silences, 1);
-    CHECK(r.box.age < 100, "nothing has come for %d ticks", r.box.age);
-    { /* of what came: how much comes in a second is the machine's */
-        const int32_t late = r.box.old + r.box.duplicate + r.box.reordered;
-        CHECK(late > 0 && 6 * late > r.box.accepted, "%d old, %d accepted: was it confused?", late, r.box.accepted);
-    }
-    CHECK_EQ_I64(r.finger[EXH_INDEX].freezes, 2);
-    kill_world(pid);
-    bilateral_run_free(&r);
-}
-
 /* ---- No plane in time ----------------------------------------------------------------------- */
 
 /* What is allowed where no contact can be: to pull the slack string in. */
@@ -607,7 +388,6 @@ TEST_MAIN("bilateral", the_force_is_the_same_to_the_bit_over_every_link,
           another_plane_makes_another_force, s_of_the_slope_finds_the_wall_with_every_finger, what_moves_while_it_is_touched_is_not_felt,
           a_world_that_dies_in_contact_leaves_loop_and_force_as_they_were,
           a_world_may_start_anew_in_contact, hostile_packets_change_nothing,
-          two_processes_survive_each_others_restart, two_processes_are_not_deaf_for_good,
           without_a_plane_in_time_nothing_is_felt,
           a_slack_string_is_wound_in,
           five_fingers_are_in_contact_at_once_and_each_as_if_alone,
