@@ -2,7 +2,7 @@
 
 #include "exhand/error.h"
 
-#define HEAD_B 14u
+#define HEAD_B ((uint32_t)EXH_RECORD_HEAD_B)
 #define LEN_AT 4u
 
 void exh_record_begin(struct exh_bytes *c, uint8_t type, uint32_t seq, uint32_t tick)

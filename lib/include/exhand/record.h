@@ -22,6 +22,7 @@ extern "C" {
 
 #define EXH_RECORD_VERSION 1
 #define EXH_RECORD_SYNC 0x5845u
+#define EXH_RECORD_HEAD_B 14   /* bytes before a payload                         */
 #define EXH_RECORD_OVERHEAD 18 /* bytes around a payload                         */
 
 enum exh_record_type {
@@ -38,7 +39,10 @@ enum exh_event_type {
     EXH_EVENT_PARAM = 1,   /* id u16, instance u16, value: staged and applied    */
     EXH_EVENT_COMMAND = 2, /* value: enum exh_command                           */
     EXH_EVENT_MISSED = 3,  /* value: ticks missed before this tick               */
-    EXH_EVENT_MARK = 4     /* value: the operator's own mark                     */
+    EXH_EVENT_MARK = 4,    /* value: the operator's own mark                     */
+    EXH_EVENT_FROZE = 5    /* the black box, at its end. value: enum exh_fault, what it froze for,
+                            * 0: the box was halted; instance: ticks since then; id: causes that
+                            * came later; both at most 65535                    */
 };
 
 struct exh_event {
@@ -81,6 +85,75 @@ int32_t exh_record_read(const void *buf, uint32_t len_B, struct exh_record *r);
 
 void exh_record_header_bytes(struct exh_bytes *c, struct exh_record_header *h);
 void exh_event_bytes(struct exh_bytes *c, struct exh_event *e);
+
+/* --- a record a few bytes at a time, as bytes go out of a box that has a loop to keep --- */
+
+struct exh_record_out {
+    const uint8_t *mem; /* the payload's, where it may wrap                    */
+    uint32_t cap_B, at; /* the memory's; where the next byte lies              */
+    uint32_t done_B;    /* bytes out, of the head, payload and CRC together     */
+    uint32_t crc;
+    uint16_t len_B;     /* the payload's                                       */
+    uint8_t head[EXH_RECORD_HEAD_B];
+};
+
+/* The payload lies in mem from `at` on, and from its start behind its end: at < cap_B,
+ * len_B <= cap_B. It has to stay as it is until it is out. */
+struct exh_record_place {
+    const uint8_t *mem;
+    uint32_t cap_B, at;
+    uint16_t len_B;
+};
+void exh_record_out_begin(struct exh_record_out *o, uint8_t type, uint32_t seq, uint32_t tick,
+                          struct exh_record_place payload);
+
+/* The next bytes, at most cap_B of them: how many; 0: all were taken. */
+uint32_t exh_record_out(struct exh_record_out *o, uint8_t *to, uint32_t cap_B);
+
+/* --- the newest records in memory of the caller's (ring.c) ---
+ *
+ * For a black box. What it holds begins with a keyframe and goes on without a gap to what was put
+ * last; whole records only. It is kept in parts that each begin with a keyframe, and the oldest
+ * part goes when room is needed: no loop over records, at most two parts a call while the rule
+ * below is kept. Caller's rule: put a keyframe whenever exh_ring_due() says so, behind the records
+ * of a tick. Then it holds, of what was put since the first keyframe, at least the last
+ * cap_B - cap_B / EXH_RING_PARTS - (the records of a tick and two keyframes), as stored: 7 bytes
+ * and the payload each. Who breaks it loses what does not fit: that is counted. */
+
+#define EXH_RING_PARTS 8
+#define EXH_RING_HEAD_B 7 /* length u16, type u8, tick u32 before each payload     */
+#define EXH_RING_MIN_B 64u
+#define EXH_RING_MAX_B 0x40000000u
+
+struct exh_ring {
+    uint8_t *mem;
+    uint32_t cap_B;
+    uint32_t start[EXH_RING_PARTS + 2]; /* where parts begin, a queue:          */
+    volatile uint32_t live;             /* the oldest, times 256, and how many  */
+    volatile uint32_t head;             /* where the next byte goes             */
+    uint32_t lost; /* records that found no room or no keyframe before them, saturating */
+};
+
+/* Empty. -EXH_E_RANGE: cap_B is not EXH_RING_MIN_B .. EXH_RING_MAX_B. */
+int exh_ring_setup(struct exh_ring *r, void *mem, size_t cap_B);
+
+/* 1: a keyframe, please: there is none, or the newest part is long enough. */
+int exh_ring_due(const struct exh_ring *r);
+
+/* A record's payload, copied. 1, or 0: lost, as there is no keyframe before it, or it is longer
+ * than 65535 bytes or than the memory. Interrupted at any instruction, the ring holds what it held,
+ * maybe without its oldest parts: a box that is halted in the middle of it can still be read. */
+int exh_ring_put(struct exh_ring *r, uint8_t type, uint32_t tick, const void *payload,
+                 uint32_t len_B);
+
+/* Reading, oldest first; nothing may be put meanwhile. */
+struct exh_ring_place {
+    uint32_t at, left_B;
+};
+struct exh_ring_place exh_ring_first(const struct exh_ring *r);
+/* 1: the next record, to be put out with this sequence number; 0: there is none. */
+int exh_ring_next(const struct exh_ring *r, struct exh_ring_place *p, uint32_t seq,
+                  struct exh_record_out *o);
 
 #ifdef __cplusplus
 }
