@@ -12,7 +12,7 @@ struct place {
 };
 struct wiring {
     struct place axis[EXH_FINGERS], ready[EXH_FINGERS], enable[EXH_FINGERS];
-    struct place estop, deadman, alive, supply;
+    struct place estop, deadman, watchdog, alive, supply;
 };
 
 #define A(n) \
@@ -29,6 +29,7 @@ static const struct wiring one_finger = {
     .enable = {A(4)},
     .estop = A(1),
     .deadman = A(2),
+    .watchdog = A(3),
     .alive = A(5),
     .supply = A(4),
 };
@@ -38,6 +39,7 @@ static const struct wiring all_fingers = {
     .enable = {A(4), A(5), A(6), A(7), B(4)},
     .estop = B(1),
     .deadman = B(2),
+    .watchdog = B(3),
     .alive = B(5),
     .supply = B(4),
 };
@@ -235,8 +237,10 @@ static uint32_t level(const uint8_t *pins, struct place p)
 static uint32_t din(const uint8_t *pins)
 {
     const struct wiring *w = box.wiring;
-    uint32_t bits =
-        level(pins, w->estop) * EXH_DIN_ESTOP | level(pins, w->deadman) * EXH_DIN_DEADMAN;
+    uint32_t bits = EXH_DIN_CARDS | /* whoever failed hands over no frame */
+                    level(pins, w->estop) * EXH_DIN_ESTOP |
+                    level(pins, w->deadman) * EXH_DIN_DEADMAN;
+    if (!box.cfg.watchdog || level(pins, w->watchdog)) { bits |= EXH_DIN_WATCHDOG; }
     for (unsigned i = 0; i < box.cfg.fingers; i++) {
         bits |= level(pins, w->ready[i]) * (uint32_t)EXH_DIN_DRIVE0 << i;
     }

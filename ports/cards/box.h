@@ -42,6 +42,8 @@ struct exh_box_config {
                                * B answers, since A's lines then mean something else */
     uint8_t monitor;          /* current monitors, enum exh_box_when              */
     uint8_t supply;           /* 1: the supply is converted with them             */
+    uint8_t watchdog;         /* 1: the watchdog's contact is wired to an input; 0: what it says is
+                               * not known here, and passed as healthy            */
     uint8_t glove;            /* enum exh_box_when; EXH_BOX_NEVER: its card is not touched */
     uint8_t din_invert[2];    /* of A, B: input pins 0..3 whose healthy level is 0 */
     uint8_t out_invert[2];    /* output pins 4..7 whose active level is 0, bits 0xF0 */
@@ -68,7 +70,7 @@ enum exh_box_row {
     EXH_BOX_ROW_SPAN, /* dac_span_raw, dac_rest_raw                               */
     EXH_BOX_ROW_WAIT, /* a limit of 0, or above 60000 us                          */
     EXH_BOX_ROW_SCAN, /* channels, interval, slice, lost_limit                    */
-    EXH_BOX_ROW_PINS, /* another bit than those in din_invert, out_invert         */
+    EXH_BOX_ROW_PINS, /* another bit than those in din_invert, out_invert; watchdog not 0 or 1 */
     EXH_BOX_ROW_FULL, /* not 0 or 1; or 0 with one finger, and board B answers    */
     EXH_BOX_ROWS
 };

@@ -7,6 +7,7 @@ const struct exh_box_config exh_box_default = {
     .fingers = EXH_FINGERS,
     .monitor = EXH_BOX_NOW,
     .supply = 1,
+    .watchdog = 1,
     .glove = EXH_BOX_NEVER,
     .dac_span_raw = 12184,
     .dac_rest_raw = 1000,
@@ -56,6 +57,8 @@ static unsigned bases(const struct exh_box_config *c, int32_t *value)
 /* A bit that turns nothing over was meant for a pin: outputs would be active when they are off. */
 static int pins_ok(const struct exh_box_config *c, int32_t *value)
 {
+    *value = c->watchdog;
+    if (c->watchdog > 1) { return 0; }
     for (unsigned i = 0; i < 2; i++) {
         *value = c->din_invert[i];
         if (c->din_invert[i] & 0xF0u) { return 0; }

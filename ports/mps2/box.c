@@ -1,4 +1,4 @@
-/* A box of nothing: every current that is asked for flows, no string moves, the glove is at rest. A
+/* A box of nothing, without a watchdog that could fire: every current that is asked for flows, no string moves, the glove is at rest. A
  * hand takes hold of the dead-man switch after a while. Raw codes, as the Sensoray cards have them. */
 #include "box.h"
 
@@ -22,7 +22,7 @@ int mps2_box_open(void)
 
 int mps2_box_read_drive(struct exh_drive_in *in)
 {
-    *in = (struct exh_drive_in){.din = EXH_DIN_ESTOP};
+    *in = (struct exh_drive_in){.din = EXH_DIN_ESTOP | EXH_DIN_WATCHDOG | EXH_DIN_CARDS};
     if (frames < DEADMAN_FRAME) {
         frames++;
     } else {

@@ -66,6 +66,7 @@ int exh_board_init(uint32_t rate_Hz, struct exh_period *achieved)
 
     exh_board_safe();
     if (run.scene == NULL && !run.ready) { pc104_options(NULL); } /* not from main() */
+    pc104_restart_look();
     err = pc104_board_clock();
     if (err < 0) { return err; }
     exit_code = PC104_EXIT_RATE;
@@ -99,6 +100,7 @@ int exh_board_wait(void)
         return STOP;
     }
     if (!run.started) { /* set-up and its text are not missed ticks */
+        pc104_restart_begin();
         pc104_timer_start();
         run.started = 1;
     }
@@ -127,7 +129,9 @@ static int read_done(int err)
 
 int exh_board_read_drive(struct exh_drive_in *in)
 {
-    return read_done(exh_box_read_drive(in));
+    const int err = exh_box_read_drive(in);
+    if (pc104_restart_fired()) { in->din &= ~(uint32_t)EXH_DIN_WATCHDOG; }
+    return read_done(err);
 }
 
 int exh_board_read_glove(struct exh_glove_in *in)
@@ -187,6 +191,7 @@ void exh_board_halt(const char *why)
     const int done = pc104_same_text(why, "done");
     __asm__ volatile("cli" : : : "memory");
     exh_board_safe();
+    if (done) { pc104_restart_end(); }
     pc104_log_flush();
     report();
     pc104_say(why);

@@ -32,6 +32,8 @@ static const struct exh_signal rows[] = {
      "glove samples read a tick, with scan=2; 0: all in one"},
     {0xA211, 0, EXH_WHEN_SETUP, 0, 1, 0, "turns", "",
      "1: monitors and checks of the motor cards take turns"},
+    {0xA212, 0, EXH_WHEN_SETUP, 0, 1, 1, "watchdog", "",
+     "1: the watchdog's contact is wired to pin 3"},
 };
 static const struct exh_signal_group groups[] = {{rows, sizeof rows / sizeof rows[0], 1}};
 const struct exh_signal_table pc104_box_table = {groups, 1};
@@ -50,6 +52,7 @@ void pc104_box_config(const struct exh_scene *sc, struct exh_box_config *c)
     c->full = (uint8_t)p->full;
     c->monitor = (uint8_t)p->monitor;
     c->supply = (uint8_t)p->supply;
+    c->watchdog = (uint8_t)p->watchdog;
     c->glove = (uint8_t)(sc == NULL || sc->read_glove ? p->scan : EXH_BOX_NEVER);
     c->din_invert[0] = (uint8_t)p->din_invert_a;
     c->din_invert[1] = (uint8_t)p->din_invert_b;

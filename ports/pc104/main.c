@@ -60,6 +60,7 @@ int main(void)
         err = exh_loop(sc, (uint32_t)pc104_par.rate_Hz, &hooks);
         pc104_load_stop();
     }
+    pc104_restart_end(); /* also where a card failed: that was told, and is no crash */
     pc104_scene_end();
     exh_board_halt(err < 0 ? exh_error_text(err) : "done");
     return 0;

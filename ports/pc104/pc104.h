@@ -50,7 +50,8 @@ enum pc104_provoke { /* for commissioning: shows on the real box that a failure 
                      PC104_PROVOKE_ASSERT,
                      PC104_PROVOKE_MASK,
                      PC104_PROVOKE_IDLE,
-                     PC104_PROVOKE_TWICE /* CARDS=none alone: an NMI into what makes safe */
+                     PC104_PROVOKE_TWICE, /* CARDS=none alone: an NMI into what makes safe */
+                     PC104_PROVOKE_RESET /* as a watchdog does, if the run before did end */
 };
 enum pc104_log { PC104_LOG_OFF, PC104_LOG_SERIAL, PC104_LOG_DEBUG, PC104_LOG_UDP };
 enum pc104_source { PC104_TIMER_AUTO, PC104_TIMER_HPET, PC104_TIMER_PIT };
@@ -81,12 +82,19 @@ struct pc104_box_par {
     int32_t interval, scan_words;
     int32_t full;
     int32_t scan_slice, turns;
+    int32_t watchdog;
 };
 extern struct pc104_box_par pc104_box_par;
 extern const struct exh_signal_table pc104_box_table;
 void pc104_options(const struct exh_scene *sc);
 int32_t pc104_value_of(const struct exh_signal *row, const char *value); /* halts if it is none */
 void pc104_refuse_range(const struct exh_signal *row, const char *value); /* halts */
+
+/* --- restart.c: did the run before this boot end? --- */
+void pc104_restart_look(void); /* once, first thing; says if not              */
+void pc104_restart_begin(void); /* ticks run from here on                      */
+void pc104_restart_end(void); /* they ended in order                         */
+int pc104_restart_fired(void); /* 1: the run before did not                   */
 
 /* --- provoke.c --- */
 void pc104_provoke(int32_t what);

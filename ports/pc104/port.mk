@@ -8,7 +8,7 @@ $(if $(cards_$(CARDS)),,$(error CARDS=$(CARDS): one of real, none))
 PORT_SUFFIX   := $(if $(filter-out real,$(CARDS)),-$(CARDS))
 PORT_MAIN     := ports/pc104/main.c examples/deadman.c
 pc104_parts   := crt0.S vectors.S board.c box.c timer.c hpet.c pit.c second.c load.c guard.c trap.c uart.c say.c \
-                 number.c cmdline.c option.c provoke.c mem.c
+                 number.c cmdline.c option.c provoke.c restart.c mem.c
 pc104_link    := link.c net.c nic.c pci.c stream.c
 # A scene of constants without log (SCENE_ROM in its scene.mk) links neither parameters, records nor a network card.
 PORT_SRC       = $(pc104_parts:%=ports/pc104/%) $(cards_$(CARDS)) \

@@ -54,5 +54,9 @@ void pc104_provoke(int32_t what)
     }
     while (what == PC104_PROVOKE_HANG) {}
     if (what == PC104_PROVOKE_IDLE) { hang_idle = 1; }
+    if (what == PC104_PROVOKE_RESET && !pc104_restart_fired()) {
+        pc104_out8(0x64, 0xFE); /* the keyboard controller's line to the processor's reset */
+        for (;;) {}
+    }
     processor(what);
 }

@@ -6,7 +6,7 @@
 # an option, 3 no QEMU, 4 cards absent or broken, 5 processor exception, 6 rate refused,
 # 7 overload, 8 timer absent or dead.
 # Environment: QEMU_CPU (n270), QEMU_FLAGS (virtual time, 8 ns an instruction), TIMEOUT_s (60), RECORDS (a file for what
-# log=debug puts out).
+# log=debug puts out), REBOOT ("-action reboot=reset": a reset boots again instead of ending QEMU).
 # QEMU_FLAGS="-icount shift=0,sleep=off" counts instructions; QEMU_FLAGS= takes the host's time, whose
 # other work then shows as missed ticks.
 set -u
@@ -35,7 +35,7 @@ esac
 
 # shellcheck disable=SC2086 # lists of words
 timeout "${TIMEOUT_s:-60}" "$qemu" -cpu "${QEMU_CPU:-n270}" $from "$image" ${1:+-append "$*"} \
-    -nodefaults -display none -serial stdio -monitor none -no-reboot \
+    -nodefaults -display none -serial stdio -monitor none ${REBOOT:--no-reboot} \
     -device isa-debug-exit,iobase=0xf4,iosize=4 $flags </dev/null
 status=$?
 # board.c writes its pc104_exit, v, to the debug port: 2 v + 1

@@ -266,7 +266,8 @@ int exh_board_read_drive(struct exh_drive_in *in)
             sim_finger_read(&sim.exo.finger[i], jitter_cnt, &in->enc_raw[i], &in->mon_raw[i]);
         }
     }
-    in->din = EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_DRIVE0 * sim.drives;
+    in->din = EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG | EXH_DIN_CARDS |
+              EXH_DIN_DRIVE0 * sim.drives;
     if (sim.cfg.wires_in) { sim.cfg.wires_in(in); }
     return sim.cfg.cards.how ? cards_read_drive(in) : 0;
 }

@@ -40,7 +40,7 @@ static unsigned axis_of(unsigned finger)
     return finger % EMU_AXES;
 }
 
-/* Where e-stop, dead-man and supply are. */
+/* Where e-stop, dead-man, the watchdog's contact and supply are. */
 static unsigned common(void)
 {
     return cards.fingers > 1 ? EMU_S526_B : EMU_S526_A;
@@ -58,6 +58,7 @@ static void show_drive(const struct exh_drive_in *in)
     }
     p->din[common()] |= (uint8_t)(in->din & EXH_DIN_ESTOP ? 2 : 0);
     p->din[common()] |= (uint8_t)(in->din & EXH_DIN_DEADMAN ? 4 : 0);
+    p->din[common()] |= (uint8_t)(in->din & EXH_DIN_WATCHDOG ? 8 : 0);
     p->ad_uV[common()][4] = emu_ad_uV(in->supply_raw);
 }
 

@@ -36,7 +36,9 @@ int exh_board_wait(void)
 
 /* Fill in: latch all axes with as few accesses as the cards allow, then read. Raw
  * codes only, no scaling. A digital input that does not exist must not read
- * healthy: leave its bit 0 unless the wiring makes it safe. */
+ * healthy: leave its bit 0 unless the wiring makes it safe. EXH_DIN_WATCHDOG is 0 from
+ * a bite of the watchdog until power-off, over resets; EXH_DIN_CARDS while what is read
+ * cannot be trusted, though it could be read. What could not returns -EXH_E_IO. */
 int exh_board_read_drive(struct exh_drive_in *in)
 {
     *in = (struct exh_drive_in){.din = 0};

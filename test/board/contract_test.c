@@ -156,7 +156,7 @@ TEST(waiting_in_time_misses_nothing)
 TEST(inputs_of_an_idle_box_are_healthy)
 {
     const uint32_t drives = ((1u << exh_board_info.fingers) - 1u) * EXH_DIN_DRIVE0;
-    const uint32_t want = EXH_DIN_ESTOP | drives, may = want | EXH_DIN_DEADMAN;
+    const uint32_t want = EXH_DIN_ESTOP | EXH_DIN_WATCHDOG | EXH_DIN_CARDS | drives, may = want | EXH_DIN_DEADMAN;
     begin();
     for (int n = 0; n < 16; n++) {
         const struct exh_drive_in in = tick(0, 0);

@@ -41,8 +41,10 @@ board#s/seen = now;/seen++;/#missed ticks are counted once
 board#s/(n - 1 > INT_MAX.*)\(int\)\(n - 1\)/\10/#missed ticks are counted
 board#s/(n - 1 > INT_MAX.*)\(int\)\(n - 1\)/\1(int)n/#a tick on time is 0 missed
 board#s/ticks\+\+;/static uint32_t half; ticks += ++half % 2;/#ticks come at the period, by the cycles
-box#s/EXH_DIN_ESTOP\}/EXH_DIN_ESTOP | 0x80u}/#no input that is not there
-box#s/\{\.din = EXH_DIN_ESTOP\}/{.din = 0}/#inputs of an idle box are healthy
+box#s/EXH_DIN_CARDS\}/EXH_DIN_CARDS | 0x80u}/#no input that is not there
+box#s/\{\.din = EXH_DIN_ESTOP \| /{.din = /#inputs of an idle box are healthy
+box#s/EXH_DIN_WATCHDOG \| //#a box whose watchdog has not fired says so
+box#s/ \| EXH_DIN_CARDS\}/}/#cards that are healthy say so
 box#s/(in->mon_raw\[i\] =)/in->enc_raw[i] = frames * 50; \1/#counts of an idle box stand still
 box#s/enabled >> i \& 1 \?/1 ?/#a drive that is not enabled has no current
 box#s/enabled >> i \& 1 \?/enabled \& 1 ?/#each finger has its own enable

@@ -294,6 +294,7 @@ TEST(configurations_are_refused_by_name)
     REFUSED(EXH_BOX_ROW_WAIT, c.s526.ee_wait_us = 60001);
     REFUSED(EXH_BOX_ROW_WAIT, c.mm32xat.scan_wait_us = 0);
     REFUSED(EXH_BOX_ROW_SPAN, c.dac_rest_raw = 12185);
+    REFUSED(EXH_BOX_ROW_PINS, c.watchdog = 2);
     REFUSED(EXH_BOX_ROW_FULL, c.full = 2);
     for (unsigned bit = 0; bit < 4; bit++) {
         REFUSED(EXH_BOX_ROW_PINS, c.out_invert[0] = (uint8_t)(1u << bit));
@@ -335,7 +336,7 @@ TEST(one_finger_on_a_full_box_has_to_be_said)
     bus.s526[0].pins = 0x0F;
     bus.s526[1].pins = 0x0C; /* drive 4 is not asked; the e-stop is pressed */
     CHECK_EQ_I64(exh_box_read_drive(&in), 0);
-    CHECK_EQ_I64(in.din, EXH_DIN_DRIVE0 | EXH_DIN_DEADMAN);
+    CHECK_EQ_I64(in.din, EXH_DIN_DRIVE0 | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG | EXH_DIN_CARDS);
     bus_reset();
     bus.s526[1].base = 0;
     CHECK_EQ_I64(exh_box_open(&c, &report), -EXH_E_ABSENT);

@@ -171,12 +171,13 @@ TEST(a_board_without_a_finger_has_the_rest)
         c.fingers = fingers;
         opened(c);
         bus.s526[1].ad[4] = 4321;
-        bus.s526[1].pins = 6;
+        bus.s526[1].pins = 0xE;
         CHECK_EQ_I64(exh_box_read_drive(&in), 0);
         CHECK_EQ_I64(bus.n, 9 + 4 * fingers); /* B: start, pins, flags and their end, result */
         CHECK_EQ_I64(in.supply_raw, 4321);
         CHECK_EQ_I64(in.din,
-                     EXH_DIN_ESTOP | EXH_DIN_DEADMAN | ((1u << fingers) - 1) * EXH_DIN_DRIVE0);
+                     EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG | EXH_DIN_CARDS |
+                         ((1u << fingers) - 1) * EXH_DIN_DRIVE0);
         bus_clear();
         CHECK_EQ_I64(put(1), 0);
         CHECK_EQ_I64(bus.n, 2 * fingers + 3); /* no update of B */
@@ -188,6 +189,9 @@ TEST(a_board_without_a_finger_has_the_rest)
         fails(exh_box_read_drive(&in), EXH_BOX_B, EXH_CARD_EMPTY);
     }
 }
+
+/* Of every frame that is handed over. */
+#define CARDS ((uint32_t)EXH_DIN_CARDS)
 
 static uint32_t din_of(unsigned pins_a, unsigned pins_b)
 {
@@ -202,21 +206,25 @@ TEST(every_input_pin_has_its_meaning)
     struct exh_box_config c = five();
     opened(c);
     for (unsigned k = 0; k < 4; k++) {
-        CHECK_EQ_I64(din_of(1u << k, 0), (uint32_t)EXH_DIN_DRIVE0 << k);
+        CHECK_EQ_I64(din_of(1u << k, 0), CARDS | (uint32_t)EXH_DIN_DRIVE0 << k);
     }
-    CHECK_EQ_I64(din_of(0, 1), EXH_DIN_DRIVE0 << 4);
-    CHECK_EQ_I64(din_of(0, 2), EXH_DIN_ESTOP);
-    CHECK_EQ_I64(din_of(0, 4), EXH_DIN_DEADMAN);
-    CHECK_EQ_I64(din_of(0, 8), 0);
+    CHECK_EQ_I64(din_of(0, 1), CARDS | (EXH_DIN_DRIVE0 << 4));
+    CHECK_EQ_I64(din_of(0, 2), CARDS | EXH_DIN_ESTOP);
+    CHECK_EQ_I64(din_of(0, 4), CARDS | EXH_DIN_DEADMAN);
+    CHECK_EQ_I64(din_of(0, 8), CARDS | EXH_DIN_WATCHDOG);
     c.din_invert[0] = 0x0F;
     c.din_invert[1] = 0x01;
     opened(c);
-    CHECK_EQ_I64(din_of(0, 0x6), EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_DRIVE0 * 0x1F);
+    CHECK_EQ_I64(din_of(0, 0x6), CARDS | EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_DRIVE0 * 0x1F);
+    c.watchdog = 0; /* no such contact: the pin means nothing */
+    opened(c);
+    CHECK_EQ_I64(din_of(0, 0x1), CARDS | EXH_DIN_WATCHDOG | EXH_DIN_DRIVE0 * 0xF);
+    CHECK_EQ_I64(din_of(0, 0x9), CARDS | EXH_DIN_WATCHDOG | EXH_DIN_DRIVE0 * 0xF);
     opened(one());
-    CHECK_EQ_I64(din_of(1, 0), EXH_DIN_DRIVE0);
-    CHECK_EQ_I64(din_of(2, 0), EXH_DIN_ESTOP);
-    CHECK_EQ_I64(din_of(4, 0), EXH_DIN_DEADMAN);
-    CHECK_EQ_I64(din_of(8, 0), 0);
+    CHECK_EQ_I64(din_of(1, 0), CARDS | EXH_DIN_DRIVE0);
+    CHECK_EQ_I64(din_of(2, 0), CARDS | EXH_DIN_ESTOP);
+    CHECK_EQ_I64(din_of(4, 0), CARDS | EXH_DIN_DEADMAN);
+    CHECK_EQ_I64(din_of(8, 0), CARDS | EXH_DIN_WATCHDOG);
 }
 
 static void lines_are(unsigned enable, unsigned alive_now, unsigned a, unsigned b)

@@ -3,8 +3,8 @@
 #include <string.h>
 
 /* Wiring, as docs/CARDS.md has it; a table of its own, so that the driver's is judged by it. */
-enum { READY_A = 0, ONE_ESTOP = 1, ONE_DEADMAN = 2, ONE_ENABLE = 4, ONE_ALIVE = 5, ONE_SUPPLY = 4 };
-enum { B_READY4 = 0, B_ESTOP = 1, B_DEADMAN = 2, B_ENABLE4 = 4, B_ALIVE = 5, B_SUPPLY = 4 };
+enum { READY_A = 0, ONE_ESTOP = 1, ONE_DEADMAN = 2, ONE_WATCHDOG = 3, ONE_ENABLE = 4, ONE_ALIVE = 5, ONE_SUPPLY = 4 };
+enum { B_READY4 = 0, B_ESTOP = 1, B_DEADMAN = 2, B_WATCHDOG = 3, B_ENABLE4 = 4, B_ALIVE = 5, B_SUPPLY = 4 };
 #define ON_A 4u /* fingers */
 
 void box_open(struct box *b, int one_finger, const struct emu_config *c)
@@ -98,11 +98,13 @@ void box_put(struct box *b, const struct exh_drive_in *in)
     }
     if (b->one_finger) {
         p->din[0] |= (uint8_t)(pin(in->din, EXH_DIN_ESTOP, ONE_ESTOP) |
-                               pin(in->din, EXH_DIN_DEADMAN, ONE_DEADMAN));
+                               pin(in->din, EXH_DIN_DEADMAN, ONE_DEADMAN) |
+                               pin(in->din, EXH_DIN_WATCHDOG, ONE_WATCHDOG));
         p->ad_uV[0][ONE_SUPPLY] = emu_ad_uV(in->supply_raw);
     } else {
         p->din[1] |= (uint8_t)(pin(in->din, EXH_DIN_ESTOP, B_ESTOP) |
-                               pin(in->din, EXH_DIN_DEADMAN, B_DEADMAN));
+                               pin(in->din, EXH_DIN_DEADMAN, B_DEADMAN) |
+                               pin(in->din, EXH_DIN_WATCHDOG, B_WATCHDOG));
         p->ad_uV[1][B_SUPPLY] = emu_ad_uV(in->supply_raw);
     }
 }

@@ -105,6 +105,7 @@ static void on_set(struct hil *h)
 }
 
 static const struct exh_drive_in healthy = {.din = EXH_DIN_ESTOP | EXH_DIN_DEADMAN |
+                                                   EXH_DIN_WATCHDOG | EXH_DIN_CARDS |
                                                    31u * EXH_DIN_DRIVE0};
 
 /* Monitors show what the outputs ask for: 1.76 A/V over 3249 codes/V, 0.591 V/A over 305 uV. */

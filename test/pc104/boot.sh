@@ -111,6 +111,12 @@ safe 8 '^timer: no tick for four periods, by the second clock$' provoke=mask
 safe 8 '^timer: it counts, but its interrupts do not come$' provoke=mask idle=spin
 safe 1 '^ports/pc104/provoke.c:[0-9]+$' provoke=assert
 
+# A reset in the middle of a run: the next boot says so and runs nothing.
+REBOOT="-action reboot=reset" boots 0 '^restart: the run before did not end: ' provoke=reset ticks=500 idle=spin
+says '^ticks 500 run, 0 missed$'
+says ', enable 0x00000000$'
+[ "$(tr -d '\r' <"$out/said" | grep -ac '^exhand ')" = 2 ] || fail "two boots"
+
 # Other machines: no HPET, nothing but what a PC/AT had, no local APIC.
 QEMU_FLAGS="$virtual -M q35" boots 0 'timer HPET of' ticks=500
 QEMU_FLAGS="$virtual -no-hpet" boots 0 'timer 8254 of' ticks=500

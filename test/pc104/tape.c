@@ -87,7 +87,8 @@ static void show_drive(const struct exh_drive_in *in)
         p->ad_uV[card][axis] = emu_ad_uV(in->mon_raw[i]);
         p->din[card] |= (uint8_t)((in->din / EXH_DIN_DRIVE0 >> i & 1) << axis);
     }
-    p->din[1] |= (uint8_t)((in->din & EXH_DIN_ESTOP ? 2 : 0) | (held ? 4 : 0));
+    p->din[1] |= (uint8_t)((in->din & EXH_DIN_ESTOP ? 2 : 0) | (held ? 4 : 0) |
+                           (in->din & EXH_DIN_WATCHDOG ? 8 : 0));
     p->ad_uV[1][4] = emu_ad_uV(in->supply_raw);
 }
 
@@ -109,7 +110,7 @@ static void power_on(void)
     const struct emu_config c = emu_box_config();
     emu_box_open(&box, &c);
     box.pins.din[0] = 15;
-    box.pins.din[1] = 3;
+    box.pins.din[1] = 3 | 8;
     on = 1;
     find_tape();
     take_params();

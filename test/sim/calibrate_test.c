@@ -323,7 +323,8 @@ static void under_way(struct rig *r)
     r->par.own.go = 0;
     CHECK_EQ_I64(calibrate_setup(&r->cfg, &r->par, (struct exh_scene_board){{1, 2000}, 24}), 0);
     calibrate_start(&r->s, &r->cfg);
-    r->in.drive.din = EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_DRIVE0;
+    r->in.drive.din =
+        EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG | EXH_DIN_CARDS | EXH_DIN_DRIVE0;
     r->in.command = EXH_CMD_RUN;
     for (int n = 0; n < 20000 && r->sig.i_des_A_q26 < EXH_Q(1, 10, EXH_Q_CUR); n++) {
         r->par.own.go = r->s.step + 1;

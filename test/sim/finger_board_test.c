@@ -57,7 +57,8 @@ TEST(drives_of_the_fingers_in_use_are_ready)
         c.drives = 0;
         start(&c, 1000);
         CHECK_EQ_I64(exh_board_wait(), 0);
-        CHECK(read_codes().din == (EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_DRIVE0 * mask), "%#x",
+        CHECK(read_codes().din == (EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG | EXH_DIN_CARDS |
+                                 EXH_DIN_DRIVE0 * mask), "%#x",
               mask);
         for (unsigned i = 0; i < FINGERS; i++) {
             CHECK((posix_finger(i) != NULL) == (mask >> i & 1), "mask %#x, finger %u", mask, i);

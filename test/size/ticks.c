@@ -76,7 +76,7 @@ int main(int argc, char **argv)
         return 2;
     }
     if (set_up() < 0) { return 1; }
-    in.drive.din = EXH_DIN_ESTOP | EXH_DIN_DEADMAN;
+    in.drive.din = EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG | EXH_DIN_CARDS;
     for (unsigned i = 0; i < EXH_FINGERS; i++) {
         in.drive.din |= (uint32_t)EXH_DIN_DRIVE0 << i;
     }

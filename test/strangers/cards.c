@@ -62,7 +62,8 @@ static void show_drive(const struct exh_drive_in *in)
         set_pin(PIN_AD + 8 * card + axis, emu_ad_uV(in->mon_raw[i]));
         din[card] |= (int32_t)((in->din / EXH_DIN_DRIVE0 >> i & 1) << axis);
     }
-    din[common()] |= (in->din & EXH_DIN_ESTOP ? 2 : 0) | (in->din & EXH_DIN_DEADMAN ? 4 : 0);
+    din[common()] |= (in->din & EXH_DIN_ESTOP ? 2 : 0) | (in->din & EXH_DIN_DEADMAN ? 4 : 0) |
+                     (in->din & EXH_DIN_WATCHDOG ? 8 : 0);
     set_pin(PIN_AD + 8 * common() + supply(), emu_ad_uV(in->supply_raw));
     set_pin(PIN_DIN + A, din[A]);
     set_pin(PIN_DIN + B, din[B]);
@@ -147,7 +148,8 @@ int cards_read_drive(struct exh_drive_in *in)
     }
     in->supply_raw = ad(common(), supply());
     in->din |= (pins[common()] & 2 ? (uint32_t)EXH_DIN_ESTOP : 0) |
-               (pins[common()] & 4 ? (uint32_t)EXH_DIN_DEADMAN : 0);
+               (pins[common()] & 4 ? (uint32_t)EXH_DIN_DEADMAN : 0) |
+               (pins[common()] & 8 ? (uint32_t)EXH_DIN_WATCHDOG : 0) | EXH_DIN_CARDS;
     return 0;
 }
 

@@ -8,7 +8,7 @@
 #include <stdarg.h>
 #include <stdlib.h>
 
-#define HEALTHY (EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_DRIVE0)
+#define HEALTHY (EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG | EXH_DIN_CARDS | EXH_DIN_DRIVE0)
 
 struct rig rig;
 static struct sim_random rng = {1};

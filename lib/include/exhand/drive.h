@@ -26,6 +26,8 @@ extern "C" {
 enum exh_din { /* digital inputs; every contact is normally closed: 1 = healthy */
     EXH_DIN_ESTOP = 1u << 0,   /* emergency-stop loop closed                   */
     EXH_DIN_DEADMAN = 1u << 1, /* dead-man switch held                         */
+    EXH_DIN_WATCHDOG = 1u << 2, /* the watchdog has not fired since power-on     */
+    EXH_DIN_CARDS = 1u << 3,   /* the cards are healthy                        */
     EXH_DIN_DRIVE0 = 1u << 8   /* drive of finger i ready: EXH_DIN_DRIVE0 << i */
 };
 
