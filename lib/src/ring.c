@@ -2,7 +2,9 @@
 
 #include "exhand/error.h"
 
-#include <string.h>
+#include <stddef.h>
+
+void *memcpy(void *to, const void *from, size_t n); /* no C library, no header of one */
 
 #define SLOTS (EXH_RING_PARTS + 2u)
 
