@@ -19,24 +19,44 @@ static int set_up(const struct exh_scene *sc, uint32_t rate_Hz, struct exh_scene
     return err;
 }
 
-/* Everything that crosses inward from the board at this tick. *wait: ticks to the next glove
- * frame, counted, since a division has no place in a tick. The board may have none newer than
- * the last: that one is older by this tick and those missed. */
-static int read_board(const struct exh_scene *sc, struct exh_scene_in *in, uint32_t *wait)
+/* The glove's frame of the tick before, older by this one and those missed. */
+static void same_glove(struct exh_scene_in *in)
 {
-    const uint32_t same = in->glove.age_ticks + 1u + in->missed;
-    int err = exh_board_read_drive(&in->drive);
-    if (err < 0 || sc->read_glove == NULL) { return err; }
+    const uint32_t age = in->glove.age_ticks + 1u + in->missed;
+    in->glove.age_ticks = (uint16_t)(age < UINT16_MAX ? age : UINT16_MAX);
     in->glove_new = 0;
+}
+
+/* *wait: ticks to the next frame, counted, since a division has no place in a tick. The board may
+ * have none newer than the last. */
+static int read_glove(const struct exh_scene *sc, struct exh_scene_in *in, uint32_t *wait)
+{
+    struct exh_glove_in got;
+    int err;
+    same_glove(in);
     if (*wait > 0) {
         --*wait;
-        in->glove.age_ticks = (uint16_t)(same < UINT16_MAX ? same : UINT16_MAX);
         return 0;
     }
     if (sc->glove_every && *sc->glove_every > 1) { *wait = (uint32_t)*sc->glove_every - 1; }
-    err = sc->read_glove(&in->glove);
-    in->glove_new = in->glove.age_ticks < same && in->glove.age_ticks < UINT16_MAX;
-    return err;
+    err = sc->read_glove(&got);
+    if (err < 0) { return err; }
+    in->glove_new = got.age_ticks < in->glove.age_ticks && got.age_ticks < UINT16_MAX;
+    in->glove = got;
+    return 0;
+}
+
+/* Everything that crosses inward from the board at this tick. */
+static int read_board(const struct exh_scene *sc, struct exh_scene_in *in, uint32_t *wait)
+{
+    struct exh_drive_in got;
+    const int err = exh_board_read_drive(&got);
+    if (err < 0) {
+        if (sc->read_glove) { same_glove(in); }
+        return err;
+    }
+    in->drive = got;
+    return sc->read_glove ? read_glove(sc, in, wait) : 0;
 }
 
 static void read_link(const struct exh_scene_link *link)
@@ -58,13 +78,41 @@ static void write_link(const struct exh_scene_link *link)
     }
 }
 
+/* put: 1, the outputs go out; 0, they stay as they are. */
+static int one_tick(const struct exh_scene *sc, const struct exh_loop_hooks *h, uint32_t tick,
+                    struct exh_scene_in *in, int put)
+{
+    struct exh_drive_out out;
+    int err;
+    if (sc->link) { read_link(sc->link); }
+    if (h->before) { h->before(tick, in); }
+    if (sc->params) { exh_params_apply(sc->params); }
+    sc->tick(in, &out);
+    err = put ? exh_board_write_drive(&out) : 0;
+    if (sc->link) { write_link(sc->link); }
+    if (sc->tell) { sc->tell(); }
+    if (h->after) { h->after(tick, in, &out); }
+    in->command = EXH_CMD_NONE;
+    return err;
+}
+
+/* A card that failed ends the run, by one last tick: what was read last, and EXH_DIN_CARDS open, so
+ * that the scene's fault, its log and whoever listens have the cause. The outputs are safe before,
+ * and nothing of this tick reaches them. */
+static void last_tick(const struct exh_scene *sc, const struct exh_loop_hooks *h, uint32_t tick,
+                      struct exh_scene_in *in)
+{
+    exh_board_safe();
+    in->drive.din &= ~(uint32_t)EXH_DIN_CARDS;
+    (void)one_tick(sc, h, tick, in, 0);
+}
+
 int exh_loop(const struct exh_scene *sc, uint32_t rate_Hz, const struct exh_loop_hooks *hooks)
 {
     static const struct exh_loop_hooks none;
     const struct exh_loop_hooks *h = hooks ? hooks : &none;
     struct exh_scene_in in = {.command = EXH_CMD_NONE, .glove.age_ticks = UINT16_MAX};
     struct exh_scene_board board;
-    struct exh_drive_out out;
     uint32_t tick = 0, glove_wait = 0;
     int missed;
 
@@ -73,17 +121,12 @@ int exh_loop(const struct exh_scene *sc, uint32_t rate_Hz, const struct exh_loop
     while (err == 0 && (missed = exh_board_wait()) >= 0) {
         in.missed = (uint32_t)missed;
         err = read_board(sc, &in, &glove_wait);
-        if (err < 0) { break; }
-        if (sc->link) { read_link(sc->link); }
-        if (h->before) { h->before(tick, &in); }
-        if (sc->params) { exh_params_apply(sc->params); }
-        sc->tick(&in, &out);
-        err = exh_board_write_drive(&out);
-        if (sc->link) { write_link(sc->link); }
-        if (sc->tell) { sc->tell(); }
-        if (h->after) { h->after(tick, &in, &out); }
-        in.command = EXH_CMD_NONE;
-        tick++;
+        if (err == 0) {
+            err = one_tick(sc, h, tick++, &in, 1);
+            in.missed = 0;
+            if (err < 0 && sc->read_glove) { same_glove(&in); }
+        }
+        if (err < 0) { last_tick(sc, h, tick, &in); }
     }
     exh_board_safe();
     return err;

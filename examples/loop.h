@@ -15,7 +15,8 @@ struct exh_loop_hooks {
 
 /* Runs the scene until the board says stop, then makes it safe. 0, or the -EXH_E… of
  * board or scene: -EXH_E_VERSION for a board of another version, -EXH_E_ABSENT for
- * one with fewer fingers than the scene's, or without the glove that the scene reads.
+ * one with fewer fingers than the scene's, or without the glove that the scene reads. After a card
+ * that failed the scene has one more tick, with EXH_DIN_CARDS open, whose outputs go nowhere.
  * rate_Hz 0: the scene's. */
 int exh_loop(const struct exh_scene *sc, uint32_t rate_Hz, const struct exh_loop_hooks *hooks);
 

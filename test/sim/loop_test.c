@@ -16,18 +16,24 @@
  * once more over a wait, inputs and a description that say what a test wants. */
 static int late_wait(void);
 static int odd_read(struct exh_drive_in *in);
+static int odd_write(const struct exh_drive_out *out);
+static void odd_safe(void);
 static struct exh_board_info odd_info;
 void late_assert_failed(const char *file, int line);
 #define exh_loop          late_loop
 #define exh_board_wait    late_wait
 #define exh_board_info    odd_info
 #define exh_board_read_drive odd_read
+#define exh_board_write_drive odd_write
+#define exh_board_safe    odd_safe
 #define exh_assert_failed late_assert_failed
 #include "loop.c"
 #undef exh_loop
 #undef exh_board_wait
 #undef exh_board_info
 #undef exh_board_read_drive
+#undef exh_board_write_drive
+#undef exh_board_safe
 #undef exh_assert_failed
 
 #define LEN(a)   (sizeof(a) / sizeof((a)[0]))
@@ -41,7 +47,8 @@ void late_assert_failed(const char *file, int line);
 /* What happens at a tick, before it. */
 struct act {
     uint32_t tick;
-    enum { STAGE, COMMAND, MISS, OPEN, JUMP } what; /* OPEN: these inputs; JUMP: counts */
+    /* OPEN: these inputs; JUMP: counts; NO_READ, NO_WRITE: the board fails */
+    enum { STAGE, COMMAND, MISS, OPEN, JUMP, NO_READ, NO_WRITE } what;
     uint16_t id; /* STAGE: of the parameter                                     */
     int32_t value;
     int want; /* STAGE: what it must return                                     */
@@ -58,6 +65,8 @@ static struct {
     const struct act *act;
     unsigned acts;
     uint32_t ticks;
+    uint32_t writes; /* that went well                                          */
+    uint32_t safe_at; /* ticks when the outputs were first made safe            */
     struct seen at[TICKS_MAX];
 } script;
 
@@ -72,10 +81,35 @@ static int late_wait(void)
     return missed;
 }
 
-/* OPEN lasts one tick, JUMP for good. */
+static int happens(int what)
+{
+    for (unsigned i = 0; i < script.acts; i++) {
+        if ((int)script.act[i].what == what && script.act[i].tick == script.ticks) { return 1; }
+    }
+    return 0;
+}
+
+static int odd_write(const struct exh_drive_out *out)
+{
+    const int err = happens(NO_WRITE) ? -EXH_E_IO : exh_board_write_drive(out);
+    script.writes += err == 0;
+    return err;
+}
+
+static void odd_safe(void)
+{
+    if (script.safe_at == UINT32_MAX) { script.safe_at = script.ticks; }
+    exh_board_safe();
+}
+
+/* OPEN lasts one tick, JUMP for good. A board that fails leaves rubbish. */
 static int odd_read(struct exh_drive_in *in)
 {
     const int err = exh_board_read_drive(in);
+    if (happens(NO_READ)) {
+        memset(in, 0xA5, sizeof *in);
+        return -EXH_E_IO;
+    }
     for (unsigned i = 0; i < script.acts; i++) {
         const struct act *a = &script.act[i];
         if (a->what == OPEN && a->tick == script.ticks) { in->din &= ~(uint32_t)a->value; }
@@ -110,24 +144,32 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
     script.ticks++;
 }
 
-/* Runs the drop scene at 1 kHz for so many ticks over the script; the log to path. */
-static void run_script(const struct act *act, unsigned acts, uint32_t ticks, const char *path)
+/* Runs the drop scene at 1 kHz for so many ticks over the script; the log to path. It must end
+ * with `want`. */
+static void run_until(const struct act *act, unsigned acts, uint32_t ticks, const char *path,
+                      int want)
 {
     static const struct exh_loop_hooks hooks = {exh_log_start, before, after};
     struct posix_config c = posix_config_default();
     memset(&script, 0, sizeof script);
     script.act = act;
     script.acts = acts;
+    script.safe_at = UINT32_MAX;
     c.max_ticks = ticks;
     odd_info = exh_board_info;
     c.log = fopen(path, "wb");
     CHECK(c.log != NULL, "%s", path);
     posix_configure(&c);
     exh_scene_drop.defaults();
-    CHECK_EQ_I64(late_loop(&exh_scene_drop, 1000, &hooks), 0);
+    CHECK_EQ_I64(late_loop(&exh_scene_drop, 1000, &hooks), want);
     CHECK_EQ_I64(exh_log_end(script.ticks), 0);
     CHECK_EQ_I64(fclose(c.log), 0);
     CHECK_EQ_I64(script.ticks, ticks);
+}
+
+static void run_script(const struct act *act, unsigned acts, uint32_t ticks, const char *path)
+{
+    run_until(act, acts, ticks, path, 0);
 }
 
 /* The events of a log must be these, in this order. */
@@ -313,6 +355,57 @@ TEST(causes_reach_the_gate)
     }
 }
 
+/* The inputs of the last two frames of a log. */
+static void last_frames(const char *path, struct exh_drive_in in[2])
+{
+    struct logfile l;
+    struct exh_record r;
+    memset(in, 0, 2 * sizeof in[0]);
+    CHECK_EQ_I64(logfile_open(&l, path), 0);
+    while (logfile_next(&l, &r)) {
+        struct exh_bytes c = exh_bytes_reader(r.payload, r.len_B);
+        struct exh_scene_in got;
+        struct exh_drive_out out;
+        int32_t signal[sizeof(struct drop_signals) / sizeof(int32_t)];
+        if (r.type != EXH_RECORD_FRAME) { continue; }
+        memset(&got, 0, sizeof got);
+        exh_log_frame_bytes(&c, &exh_scene_drop, &got, &out, signal);
+        CHECK(exh_bytes_ok(&c), "a frame that is none at tick %lu", (unsigned long)r.tick);
+        in[0] = in[1];
+        in[1] = got.drive;
+    }
+    logfile_close(&l);
+}
+
+/* A board that fails ends the run, by a tick more: the scene and its log have the cause, the
+ * outputs are safe before, and nothing of that tick goes out. */
+TEST(a_card_that_fails_is_seen_by_one_last_tick)
+{
+    static const struct act row[] = {{30, NO_READ, 0, 0, 0}, {30, NO_WRITE, 0, 0, 0}};
+    for (size_t i = 0; i < LEN(row); i++) {
+        const struct act act[] = {
+            {0, COMMAND, 0, EXH_CMD_RUN, 0},
+            {10, STAGE, ID_Q_LIM, -EXH_Q(20, 1000, EXH_Q_POS), 0}, /* so that there is force */
+            {29, MISS, 0, 1, 0},
+            row[i],
+        };
+        const uint32_t last = row[i].what == NO_READ ? 30 : 31;
+        const char *path = log_path();
+        struct exh_drive_in in[2];
+        run_until(act, LEN(act), last + 1, path, -EXH_E_IO);
+        last_frames(path, in);
+        CHECK_EQ_I64(script.writes, 30);
+        CHECK_EQ_I64(script.safe_at, last);
+        CHECK(in[0].din & EXH_DIN_CARDS, "inputs %#lx before", (unsigned long)in[0].din);
+        in[0].din &= ~(uint32_t)EXH_DIN_CARDS;
+        CHECK(memcmp(&in[0], &in[1], sizeof in[0]) == 0, "the last tick's inputs are others");
+        CHECK(script.at[last - 1].out.dac_raw[0] > DAC_ZERO, "no current before");
+        CHECK_EQ_I64(script.at[last - 1].sig.state, EXH_STATE_RUN);
+        CHECK_EQ_I64(replay(path, NULL), 0);
+        remove(path);
+    }
+}
+
 /* Nobody commands RUN: the box stays off and says why not. */
 TEST(the_loop_commands_nothing_by_itself)
 {
@@ -349,5 +442,5 @@ TEST(a_board_that_does_not_fit_is_refused)
 }
 
 TEST_MAIN("loop", a_parameter_acts_at_the_tick_it_is_logged, setup_values_are_refused_while_locked,
-          missed_ticks_reach_safety, causes_reach_the_gate, the_loop_commands_nothing_by_itself,
+          missed_ticks_reach_safety, causes_reach_the_gate, a_card_that_fails_is_seen_by_one_last_tick, the_loop_commands_nothing_by_itself,
           a_board_that_does_not_fit_is_refused);
