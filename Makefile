@@ -93,7 +93,7 @@ $(boot): $(image) $(PORT_ISO) FORCE
 	$(Q)$(PORT_ISO) $(image) $@ $(ARGS)
 
 # The host program: every scene that has a subcommand, over the simulated device.
-cli_src := $(wildcard ports/posix/cli/*.c ports/posix/fit/*.c) examples/log.c examples/deadman.c examples/drop/drop.c \
+cli_src := $(wildcard ports/posix/cli/*.c ports/posix/fit/*.c) examples/log.c examples/blackbox.c examples/deadman.c examples/drop/drop.c \
            examples/calibrate/calibrate.c examples/glove/glove.c examples/glove/cal.c \
            $(wildcard examples/bilateral/*.c examples/bringup/*.c) ports/pc104/stream.c
 # The world's core, without its pictures, answers in the same process.

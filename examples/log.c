@@ -9,6 +9,11 @@ static uint8_t buf[EXH_LOG_RECORD_B];
 static uint32_t seq;
 static uint32_t lost;      /* in all                                           */
 static uint32_t lost_here; /* since the last record that was taken              */
+static const struct exh_log_tap *tap;
+static int silent; /* all is the tap's                                         */
+static uint8_t type_now; /* of the record in buf                               */
+static uint32_t tick_now;
+static struct exh_record_header header;
 
 /* One record out, whole or not at all; lost ones are counted. */
 static int put(struct exh_bytes *c)
@@ -29,9 +34,17 @@ static int put_count(uint8_t type, uint32_t tick, uint32_t count)
     return 1;
 }
 
+void exh_log_tap(const struct exh_log_tap *who, int alone)
+{
+    tap = who;
+    silent = alone;
+}
+
 static struct exh_bytes begin(uint8_t type, uint32_t tick)
 {
     struct exh_bytes c;
+    type_now = type;
+    tick_now = tick;
     if (lost_here > 0) { (void)put_count(EXH_RECORD_DROPPED, tick, lost_here); }
     c = exh_bytes_writer(buf, sizeof buf);
     exh_record_begin(&c, type, seq, tick);
@@ -40,6 +53,9 @@ static struct exh_bytes begin(uint8_t type, uint32_t tick)
 
 static void end(struct exh_bytes *c)
 {
+    EXH_ASSERT(exh_bytes_ok(c));
+    if (tap) { tap->take(type_now, tick_now, buf + EXH_RECORD_HEAD_B, c->at - EXH_RECORD_HEAD_B); }
+    if (silent) { return; }
     seq++; /* a lost record leaves a gap in the sequence */
     if (!put(c)) {
         lost++;
@@ -74,26 +90,36 @@ static void copy_name(char to[16], const char *from)
     for (unsigned i = 0; i < 15 && from[i] != '\0'; i++) { to[i] = from[i]; }
 }
 
+void exh_log_header_bytes(struct exh_bytes *c)
+{
+    struct exh_record_header h = header;
+    exh_record_header_bytes(c, &h);
+    if (scene->params) {
+        const uint32_t room = c->at < c->cap ? c->cap - c->at : 0;
+        const int32_t n = exh_params_save(scene->params, c->p + c->at, room);
+        EXH_ASSERT(n > 0);
+        c->at += (uint32_t)n;
+    }
+}
+
 void exh_log_start(const struct exh_scene *sc, struct exh_scene_board board)
 {
-    struct exh_record_header h = {
-        .lib_version = EXH_VERSION_NUMBER, .T = board.T, .enc_bits = board.enc_bits};
+    static const struct exh_record_header none;
     struct exh_bytes c;
 
     scene = sc;
     seq = lost = lost_here = 0;
-    h.signal_crc = sc->signals ? exh_signal_crc(sc->signals) : 0;
-    h.signals = (uint16_t)signals(sc);
-    h.fingers = sc->fingers;
-    copy_name(h.scene, sc->name);
-    copy_name(h.board, exh_board_info.name);
+    header = none;
+    header.lib_version = EXH_VERSION_NUMBER;
+    header.T = board.T;
+    header.enc_bits = board.enc_bits;
+    header.signal_crc = sc->signals ? exh_signal_crc(sc->signals) : 0;
+    header.signals = (uint16_t)signals(sc);
+    header.fingers = sc->fingers;
+    copy_name(header.scene, sc->name);
+    copy_name(header.board, exh_board_info.name);
     c = begin(EXH_RECORD_HEADER, 0);
-    exh_record_header_bytes(&c, &h);
-    if (sc->params) {
-        const int32_t n = exh_params_save(sc->params, buf + c.at, sizeof buf - c.at);
-        EXH_ASSERT(n > 0);
-        c.at += (uint32_t)n;
-    }
+    exh_log_header_bytes(&c);
     end(&c);
     keyframe(0);
 }
@@ -188,7 +214,9 @@ void exh_log_after(uint32_t tick, const struct exh_scene_in *in, const struct ex
     exh_log_frame_bytes(&c, scene, &i, &o, scene->signal);
     end(&c);
     /* Here and not in exh_log_before(), where it would delay the output. */
-    if ((tick + 1) % EXH_LOG_KEYFRAME_TICKS == 0) { keyframe(tick + 1); }
+    if ((!silent && (tick + 1) % EXH_LOG_KEYFRAME_TICKS == 0) || (tap && tap->due())) {
+        keyframe(tick + 1);
+    }
 }
 
 uint32_t exh_log_end(uint32_t tick)
