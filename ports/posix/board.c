@@ -256,6 +256,22 @@ int exh_board_wait(void)
     return stop || interrupted || done() ? -1 : (int)missed;
 }
 
+static double magnitude(double v)
+{
+    return v < 0 ? -v : v;
+}
+
+/* What the motors take in all. */
+static double load_A(void)
+{
+    double sum_A = 0;
+    if (!sim.exo.fingers) { return magnitude(sim.mass.ref_A); }
+    for (unsigned i = 0; i < EXH_FINGERS; i++) {
+        if (sim.exo.fingers >> i & 1) { sum_A += magnitude(sim.exo.finger[i].ref_A); }
+    }
+    return sum_A;
+}
+
 int exh_board_read_drive(struct exh_drive_in *in)
 {
     const double jitter_cnt = sim.cfg.enc_jitter_cnt;
@@ -268,6 +284,7 @@ int exh_board_read_drive(struct exh_drive_in *in)
     }
     in->din = EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG | EXH_DIN_CARDS |
               EXH_DIN_DRIVE0 * sim.drives;
+    in->supply_raw = sim_supply_raw(&sim.cfg.device, load_A());
     if (sim.cfg.wires_in) { sim.cfg.wires_in(in); }
     return sim.cfg.cards.how ? cards_read_drive(in) : 0;
 }

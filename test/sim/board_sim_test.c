@@ -350,10 +350,18 @@ TEST(periods_outside_the_range_are_refused)
     static const struct {
         struct exh_period T;
         int ok;
-    } row[] = {{{1, 1}, 1},          {{1, 20000}, 1},           {{597, 1193182}, 1},
-               {{10, 200000}, 1},    {{214749, 4294967295u}, 1}, {{10, 200001}, 0},
-               {{10, 200009}, 0},    {{1, 20001}, 0},            {{214748, 4294967295u}, 0},
-               {{1, 4294967295u}, 0}, {{2, 1}, 0},               {{4294967295u, 4294967294u}, 0}};
+    } row[] = {{{1, 1}, 1},
+               {{1, 20000}, 1},
+               {{597, 1193182}, 1},
+               {{10, 200000}, 1},
+               {{214749, 4294967295u}, 1},
+               {{10, 200001}, 0},
+               {{10, 200009}, 0},
+               {{1, 20001}, 0},
+               {{214748, 4294967295u}, 0},
+               {{1, 4294967295u}, 0},
+               {{2, 1}, 0},
+               {{4294967295u, 4294967294u}, 0}};
     for (size_t i = 0; i < LEN(row); i++) {
         struct posix_config c = posix_config_default();
         struct exh_period T;
@@ -415,10 +423,31 @@ TEST(an_interruption_outlasts_a_new_run)
     CHECK(waitpid(pid, &status, 0) == pid && status == 0, "status %#x", (unsigned)status);
 }
 
+/* 24 V through 1:4, and 0.1 V less for each ampere; a dead supply is 0. */
+TEST(the_supply_falls_with_the_current)
+{
+    struct posix_config c = posix_config_default();
+    int16_t idle, loaded;
+    (void)start(&c, 1000);
+    CHECK_EQ_I64(exh_board_wait(), 0);
+    idle = read_codes().supply_raw;
+    CHECK_EQ_I64(idle, 19661);
+    for (int n = 0; n < 5; n++) { /* 2 A */
+        write_code(3692, 1);
+        CHECK_EQ_I64(exh_board_wait(), 0);
+    }
+    loaded = read_codes().supply_raw;
+    CHECK(idle - loaded >= 163 && idle - loaded <= 165, "%d codes less", idle - loaded);
+    c.device.rail_v = 0;
+    (void)start(&c, 1000);
+    CHECK_EQ_I64(exh_board_wait(), 0);
+    CHECK_EQ_I64(read_codes().supply_raw, 0);
+}
+
 TEST_MAIN("board_sim", a_step_acts_at_the_first_sample_after_its_delay,
           the_edge_between_two_servo_samples_is_sharp, a_disabled_drive_gives_no_current,
           the_drive_limits_at_its_own_peak, monitor_noise_is_bounded_on_both_sides,
           monitor_code_is_the_nearest, encoder_code_is_the_floor, decoding_multiplies_the_counts,
           every_tick_lands_on_its_instant, the_run_ends_where_it_was_told,
-          periods_outside_the_range_are_refused, every_fall_is_watched_to_its_end,
-          an_interruption_outlasts_a_new_run);
+          periods_outside_the_range_are_refused, the_supply_falls_with_the_current,
+          every_fall_is_watched_to_its_end, an_interruption_outlasts_a_new_run);

@@ -24,6 +24,8 @@ TEST(formats_are_the_documented_ones)
         {"glove code", EXH_Q_RAW, 16},
         {"glove zero", EXH_Q_ZERO, 15},
         {"glove gain", EXH_Q_TPRAW, 38},
+        {"supply", EXH_Q_SUPPLY, 20},
+        {"supply scale", EXH_Q_VPRAW, 30},
     };
     for (size_t i = 0; i < LEN(row); i++) {
         CHECK(row[i].got == row[i].want, "%s: q%d, documented q%d", row[i].what, row[i].got,

@@ -17,6 +17,8 @@
  *   glove code        codes   q16     +-32768     1.5e-5
  *   glove zero        codes   q15     +-32768     3.1e-5
  *   glove gain        turn/code q38   +-1/128     3.6e-12
+ *   supply            V       q20     +-2048      0.95 uV
+ *   supply scale      V/code  q30     +-2         0.93 nV
  */
 #ifndef EXHAND_UNITS_H
 #define EXHAND_UNITS_H
@@ -36,6 +38,8 @@
 #define EXH_Q_RAW 16   /* codes    */
 #define EXH_Q_ZERO 15  /* codes    */
 #define EXH_Q_TPRAW 38 /* turn/code */
+#define EXH_Q_SUPPLY 20 /* V       */
+#define EXH_Q_VPRAW 30 /* V/code   */
 
 /* num/den in format q, for initialisers: an integer constant expression,
  * truncated towards zero. |num| * 2^q < 2^63 and the result fits int32_t.

@@ -29,6 +29,14 @@ static inline int16_t sim_monitor_raw(const struct sim_device *d, double mon_A, 
     return (int16_t)(raw > 32767 ? 32767 : raw < -32768 ? -32768 : raw);
 }
 
+/* The monitor of the supply while the motors take so much in all. */
+static inline int16_t sim_supply_raw(const struct sim_device *d, double sum_A)
+{
+    const double rail_V = d->rail_v - d->rail_ohm * sum_A;
+    const int64_t raw = sim_floor((rail_V > 0 ? rail_V : 0) / d->rail_vpc + 0.5);
+    return (int16_t)(raw > 32767 ? 32767 : raw);
+}
+
 /* What the drive makes of a D/A code: 0 if it is not enabled. */
 static inline double sim_drive_A(const struct sim_device *d, uint16_t dac_raw, int enabled)
 {

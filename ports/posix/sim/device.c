@@ -43,6 +43,10 @@ const struct sim_device_row sim_device_row[] = {
     {"decode", "", 1, 1, 4, "paper", "counts per line; 1 gives the paper's 9 stable bits"},
     {"enc_start", "", 0, 0, 16777215, "ours", "counter value at the start (24-bit counter)"},
 
+    {"rail", "v", 24, 0, 100, "paper", "the drives' supply without load"},
+    {"rail_ohm", "ohm", 0.1, 0, 10, "ours", "it falls by this times the sum of the currents"},
+    {"rail_scale", "v", 4 * 10 / 32768.0, 1e-6, 1, "ours", "volt per code of its monitor, through 1:4"},
+
     {"observe", "s", 5, 0.6, 100, "ours", "each fall is observed this long from first contact"},
     {"substep", "s", 25e-6, 1e-7, 1e-3, "ours", "longest integration step between two events"},
 };

@@ -14,6 +14,8 @@ struct sim_device {
     double dac_perA, dac_zero, mon_apc, mon_lag_s, mon_noise_a;
     /* encoder */
     double step_m, decode, enc_start;
+    /* the drives' supply */
+    double rail_v, rail_ohm, rail_vpc;
     /* the run */
     double observe_s, substep_s;
 };
