@@ -43,6 +43,9 @@ const uint32_t digest_drive[GOLDEN_RATES] = {
 const uint32_t digest_track[GOLDEN_RATES] = {
 #include "digest/track.inc"
 };
+const uint32_t digest_passivity[GOLDEN_RATES] = {
+#include "digest/passivity.inc"
+};
 const uint32_t digest_safety[GOLDEN_RATES] = {
 #include "digest/safety.inc"
 };

@@ -102,6 +102,7 @@ MODULE(contact);
 MODULE(table);
 MODULE(drive);
 MODULE(track);
+MODULE(passivity);
 MODULE(safety);
 MODULE(calibrate);
 MODULE(probe);
@@ -120,5 +121,5 @@ MODULE(bilateral);
 
 TEST_MAIN("golden", first_tick_that_differs_is_told, fix, bytes, record, signal, quad, quad_ab,
           velocity_window, velocity_pole, velocity_foaw, velocity_track, contact, table, drive,
-          track, safety, calibrate, probe, home, weigh, filter, quantizer, glove, glove_cal, angle, hand,
+          track, passivity, safety, calibrate, probe, home, weigh, filter, quantizer, glove, glove_cal, angle, hand,
           precontact, wire, drop, bilateral);

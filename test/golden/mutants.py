@@ -24,7 +24,7 @@ FLAGS = "-std=c99 -O1 -w -Ilib/include -Ilib/src -Iexamples -Itest -D_POSIX_C_SO
 
 L, H, X, Y = "lib/src/", "lib/include/exhand/", "examples/drop/", "examples/bilateral/"
 VELOCITY, QUAD, DRIVE, SAFETY = L + "velocity.c", L + "quad.c", L + "drive.c", L + "safety.c"
-TRACK = L + "track.c"
+TRACK, PASSIVITY = L + "track.c", L + "passivity.c"
 
 # module, source, text, what stands there instead. A changed header is compiled into the module's own
 # run, which is where its inline functions are.
@@ -81,6 +81,14 @@ MUTANTS = (
     ("drive", DRIVE, "heat < 0 ? 0 :", ""),
     ("drive", DRIVE, "const int32_t hot = i2t_limit(s, cfg);", "const int32_t hot = cfg->par->i_peak_A_q26;"),
     ("drive", DRIVE, "f->clamp_N_q20 = held - asked;", "f->clamp_N_q20 = asked - held;"),
+    ("passivity", PASSIVITY, "cfg->share, x) + 1;", "cfg->share, x);"),
+    ("passivity", PASSIVITY, "moved_cnt < 0 ? most : least", "held"),
+    ("passivity", PASSIVITY, "!(touching && s->touching) && (e > 0 || late == 0)", "!touching && !s->touching"),
+    ("passivity", PASSIVITY, "(e > 0 || late == 0)", "1"),
+    ("passivity", PASSIVITY, "speed_mps_q27) + 1;", "speed_mps_q27) + 2;"),
+    ("passivity", PASSIVITY, "f->force_N_q20 > f->pullback_N_q20;", "1;"),
+    ("passivity", PASSIVITY, "coded_A_q26) - f->pullback_N_q20;", "coded_A_q26);"),
+    ("passivity", PASSIVITY, "par->on == LATE ? before", "par->on >= 1 ? before"),
     ("track", TRACK, "1 + LATE_TICKS;", "LATE_TICKS;"),
     ("track", TRACK, "mon_A_q26 >= lowest", "mon_A_q26 > lowest"),
     ("track", TRACK, "mon_A_q26 <= highest", "mon_A_q26 < highest"),

@@ -57,7 +57,8 @@ enum exh_limit {
     EXH_LIMIT_PEAK = 1u << 3, /* above i_peak                                  */
     EXH_LIMIT_I2T = 1u << 4,
     EXH_LIMIT_DAC = 1u << 5, /* code at the end of its span                    */
-    EXH_LIMIT_GATE = 1u << 6 /* not in RUN: force and current held at zero     */
+    EXH_LIMIT_GATE = 1u << 6, /* not in RUN: force and current held at zero    */
+    EXH_LIMIT_PASSIVITY = 1u << 10
 };
 
 /* --- conversion tables: strictly rising, linear between knots --- */

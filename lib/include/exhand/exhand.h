@@ -7,6 +7,7 @@
  *   glove                        its codes to 22 joint angles; a user's calibration from poses
  *   hand                         the glove's angles to the robot hand's joints and fingertips
  *   quad -> velocity -> contact -> drive -> safety (the gate)      one tick
+ *   passivity                    no contact gives back more energy than it was given
  *   filter, quantizer            glove voltages to codes that stand still
  *   precontact                   the virtual contact q_lim, frozen before it is felt
  *   wire                         packets between controller and world
@@ -36,6 +37,7 @@
 #include "exhand/fix.h"
 #include "exhand/glove.h"
 #include "exhand/hand.h"
+#include "exhand/passivity.h"
 #include "exhand/precontact.h"
 #include "exhand/probe.h"
 #include "exhand/quad.h"
