@@ -16,6 +16,7 @@ const char *exh_error_text(int code)
         "device not found",
         "calibration too old, or made before a change",
         "cut-off at or above half the rate",
+        "stiffness and damping outside the rule of gains",
     };
     if (code <= -EXH_E_COUNT || code >= EXH_E_COUNT) { return "unknown error"; }
     return text[code < 0 ? -code : code];

@@ -25,7 +25,8 @@ enum exh_error {
     EXH_E_ABSENT = 10,  /* a device is not there                               */
     EXH_E_STALE = 11,   /* a calibration too old, or made before a change      */
     EXH_E_CUTOFF = 12,  /* a cut-off at or above half the rate                 */
-    EXH_E_COUNT = 13    /* how many there are; not an error                    */
+    EXH_E_GAINS = 13,   /* stiffness and damping outside the rule of gains     */
+    EXH_E_COUNT = 14    /* how many there are; not an error                    */
 };
 
 /* One line of plain English for a returned code (sign ignored). Never NULL. */

@@ -9,6 +9,7 @@
  *   quad -> velocity -> contact -> drive -> safety (the gate)      one tick
  *   passivity                    no contact gives back more energy than it was given
  *   filter, quantizer            glove voltages to codes that stand still
+ *   gains                        which stiffness and damping are taken at this rate
  *   precontact                   the virtual contact q_lim, frozen before it is felt
  *   wire                         packets between controller and world
  *   calibrate, probe             tables of the box, and the motions that measure them
@@ -35,6 +36,7 @@
 #include "exhand/error.h"
 #include "exhand/filter.h"
 #include "exhand/fix.h"
+#include "exhand/gains.h"
 #include "exhand/glove.h"
 #include "exhand/hand.h"
 #include "exhand/passivity.h"

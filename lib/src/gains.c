@@ -1,0 +1,126 @@
+#include "exhand/gains.h"
+
+#include "exhand/contact.h"
+#include "exhand/error.h"
+
+#include <stddef.h>
+
+#define K_MAX EXH_Q(1000000, 1, EXH_Q_K)
+#define B_MAX EXH_Q(1000, 1, EXH_Q_B)
+#define K_ID  0x0401 /* rows of exhand/contact.h */
+#define B_ID  0x0402
+
+#define KNOT_B(i) \
+    { \
+        0x1210 + (i), EXH_Q_B, EXH_WHEN_SETUP, 0, B_MAX, 0, "rule_b" #i, "ns_per_m", \
+            "damping of a knot" \
+    }
+#define KNOT_K(i) \
+    { \
+        0x1220 + (i), EXH_Q_K, EXH_WHEN_SETUP, 0, K_MAX, 0, "rule_k" #i, "n_per_m", \
+            "largest stiffness at it" \
+    }
+
+const struct exh_signal exh_gains_rows[EXH_GAINS_ROWS] = {
+    {0x1201, 8, EXH_WHEN_SETUP, 1 << 8, 20000 << 8, 2000 << 8, "rule_rate", "hz",
+     "the loop rate that the rule of gains is for"},
+    {0x1202, 0, EXH_WHEN_SETUP, 2, EXH_GAINS_KNOTS, 2, "rule_n", "", "knots of the rule of gains"},
+    {0x1203, EXH_Q_K, EXH_WHEN_SETUP, 0, K_MAX, 0, "rule_k_min", "n_per_m",
+     "smallest stiffness inside"},
+    KNOT_B(0),
+    KNOT_B(1),
+    KNOT_B(2),
+    KNOT_B(3),
+    KNOT_B(4),
+    KNOT_B(5),
+    KNOT_B(6),
+    KNOT_B(7),
+    KNOT_K(0),
+    KNOT_K(1),
+    KNOT_K(2),
+    KNOT_K(3),
+    KNOT_K(4),
+    KNOT_K(5),
+    KNOT_K(6),
+    KNOT_K(7),
+};
+
+static int inside(int32_t v, int32_t lo, int32_t hi)
+{
+    return v >= lo && v <= hi;
+}
+
+/* |rate of T - rate| <= 1 % of rate: |256 den - num rate| * 100 <= num rate. Below 2^57. */
+static int same_rate(int32_t rate_Hz_q8, struct exh_period T)
+{
+    const int64_t want = (int64_t)T.num * rate_Hz_q8;
+    const int64_t off = (int64_t)T.den * 256 - want;
+    return (off < 0 ? -off : off) * 100 <= want;
+}
+
+int exh_gains_setup(const struct exh_gains_par *rule, struct exh_period T)
+{
+    if (!inside(rule->rate_Hz_q8, 1 << 8, 20000 << 8) || !inside(rule->knots, 2, EXH_GAINS_KNOTS) ||
+        !inside(rule->k_min_Npm_q10, 0, K_MAX)) {
+        return -EXH_E_RANGE;
+    }
+    for (int32_t i = 0; i < rule->knots; i++) {
+        if (!inside(rule->b_Nspm_q20[i], 0, B_MAX) || !inside(rule->k_Npm_q10[i], 0, K_MAX)) {
+            return -EXH_E_RANGE;
+        }
+        if (i > 0 && rule->b_Nspm_q20[i] <= rule->b_Nspm_q20[i - 1]) { return -EXH_E_MONOTONE; }
+    }
+    return exh_period_ok(T) && same_rate(rule->rate_Hz_q8, T) ? 0 : -EXH_E_RATE;
+}
+
+int exh_gains_ok(const struct exh_gains_par *rule, int32_t k_Npm_q10, int32_t b_Nspm_q20)
+{
+    int ok = 0;
+    for (int32_t i = 1; i < rule->knots; i++) {
+        const int64_t b0 = rule->b_Nspm_q20[i - 1], b1 = rule->b_Nspm_q20[i];
+        const int64_t k0 = rule->k_Npm_q10[i - 1], k1 = rule->k_Npm_q10[i];
+        ok |= b_Nspm_q20 >= b0 && b_Nspm_q20 <= b1 &&
+              (k_Npm_q10 - k0) * (b1 - b0) <= (k1 - k0) * (b_Nspm_q20 - b0);
+    }
+    return (ok && k_Npm_q10 >= rule->k_min_Npm_q10) || (k_Npm_q10 == 0 && b_Nspm_q20 == 0);
+}
+
+/* Both of an instance, or it has no wall. */
+static int pair_ok(const struct exh_params *p, const struct exh_gains_par *rule, uint16_t instance)
+{
+    const int32_t k = exh_signal_find(p->table, K_ID, instance);
+    const int32_t b = exh_signal_find(p->table, B_ID, instance);
+    return k < 0 || b < 0 || exh_gains_ok(rule, p->staged[k], p->staged[b]);
+}
+
+int exh_gains_stage(struct exh_params *p, const struct exh_gains_par *rule, uint16_t id,
+                    uint16_t instance, int32_t raw)
+{
+    const int32_t i = exh_signal_find(p->table, id, instance);
+    const int32_t was = i >= 0 ? p->staged[i] : 0;
+    const uint8_t pending = p->pending;
+    const int err = exh_params_stage(p, id, instance, raw);
+    if (err < 0 || (id != K_ID && id != B_ID) || pair_ok(p, rule, instance)) { return err; }
+    p->staged[i] = was;
+    p->pending = pending;
+    return -EXH_E_GAINS;
+}
+
+int exh_gains_staged(const struct exh_params *p, const struct exh_gains_par *rule,
+                     uint16_t *instance)
+{
+    for (uint16_t n = 0; exh_signal_find(p->table, K_ID, n) >= 0; n++) {
+        if (!pair_ok(p, rule, n)) {
+            if (instance != NULL) { *instance = n; }
+            return -EXH_E_GAINS;
+        }
+    }
+    return 0;
+}
+
+void exh_gains_drop(struct exh_params *p)
+{
+    const uint32_t n = exh_signal_count(p->table);
+    for (uint32_t i = 0; i < n; i++) { p->staged[i] = p->active[i]; }
+    p->pending = 0;
+}

@@ -1,0 +1,189 @@
+/* gains.h: the rule's pieces and ends, what set-up refuses, and that staging refuses by name. */
+#include "exhand/gains.h"
+
+#include "exhand/contact.h"
+#include "exhand/error.h"
+
+#include "check.h"
+
+#define LEN(a) (sizeof(a) / sizeof((a)[0]))
+#define K(v)   EXH_Q(v, 1, EXH_Q_K)
+#define B(v)   EXH_Q(v, 1, EXH_Q_B)
+
+/* 0: 10000, 20: 30000, 40: 20000, 50: 0; from 500 up; at 2000 Hz. */
+static const struct exh_gains_par rule = {
+    2000 << 8, 4, K(500), {0, B(20), B(40), B(50)}, {K(10000), K(30000), K(20000), 0}};
+static const struct exh_period T = {1, 2000};
+
+TEST(pieces_and_ends)
+{
+    static const struct {
+        int32_t k, b;
+        int ok;
+    } row[] = {
+        {K(10000), 0, 1},
+        {K(10000) + 1, 0, 0},
+        {K(500), 0, 1},
+        {K(500) - 1, 0, 0},
+        {0, 0, 1},
+        {0, 1, 0},
+        {1, 0, 0},
+        {K(20000), B(10), 1},
+        {K(20000) + 1, B(10), 0},
+        {K(30000), B(20), 1},
+        {K(30000) + 1, B(20), 0},
+        {K(25000), B(30), 1},
+        {K(25000) + 1, B(30), 0},
+        {K(20000), B(40), 1},
+        {K(20000), B(40) + 1, 0},
+        {K(10000), B(45), 1},
+        {K(500), B(50), 0},
+        {K(500), B(49), 1},
+        {K(500), B(50) + 1, 0},
+        {K(500), -1, 0},
+        {INT32_MAX, B(20), 0},
+        {INT32_MIN, B(20), 0},
+        {INT32_MIN, INT32_MIN, 0},
+        {INT32_MAX, INT32_MAX, 0},
+        {K(500), INT32_MAX, 0},
+        {K(500), INT32_MIN, 0},
+        /* On the first piece k rises by 0.977 LSB an LSB of b. */
+        {K(10000) + 1, 1, 0},
+        {K(10000), 1, 1},
+        {K(10000) + 1, 2, 1},
+        {K(10000) + 2, 2, 0},
+    };
+    for (size_t i = 0; i < LEN(row); i++) {
+        CHECK(exh_gains_ok(&rule, row[i].k, row[i].b) == row[i].ok, "row %d", (int)i);
+    }
+}
+
+TEST(setup_refuses)
+{
+    struct exh_gains_par bad[12];
+    static const int want[] = {-EXH_E_RANGE,
+                               -EXH_E_RANGE,
+                               -EXH_E_RANGE,
+                               -EXH_E_RANGE,
+                               -EXH_E_RANGE,
+                               -EXH_E_RANGE,
+                               -EXH_E_RANGE,
+                               -EXH_E_RANGE,
+                               -EXH_E_MONOTONE,
+                               -EXH_E_MONOTONE,
+                               0,
+                               0};
+    for (size_t i = 0; i < LEN(bad); i++) { bad[i] = rule; }
+    bad[0].knots = 1;
+    bad[1].knots = 9;
+    bad[2].rate_Hz_q8 = 255;
+    bad[3].k_min_Npm_q10 = -1;
+    bad[4].b_Nspm_q20[0] = -1;
+    bad[5].b_Nspm_q20[3] = B(1000) + 1;
+    bad[6].k_Npm_q10[2] = -1;
+    bad[7].k_Npm_q10[0] = K(1000000) + 1;
+    bad[8].b_Nspm_q20[2] = B(20);
+    bad[9].b_Nspm_q20[1] = 0;
+    bad[10].k_Npm_q10[4] = -1; /* behind the last knot */
+    bad[11].b_Nspm_q20[7] = -1;
+    for (size_t i = 0; i < LEN(bad); i++) {
+        CHECK(exh_gains_setup(&bad[i], T) == want[i], "row %d", (int)i);
+    }
+}
+
+TEST(setup_asks_for_its_rate)
+{
+    static const struct {
+        struct exh_period T;
+        int err;
+    } row[] = {
+        {{1, 2000}, 0},
+        {{100, 202000}, 0},
+        {{100, 198000}, 0},
+        {{597, 1193182}, 0},
+        {{100, 202001}, -EXH_E_RATE},
+        {{100, 197999}, -EXH_E_RATE},
+        {{1, 1000}, -EXH_E_RATE},
+        {{0, 2000}, -EXH_E_RATE},
+        {{1, 0}, -EXH_E_RATE},
+        {{UINT32_MAX, 1}, -EXH_E_RATE},
+        {{1, UINT32_MAX}, -EXH_E_RATE},
+    };
+    for (size_t i = 0; i < LEN(row); i++) {
+        CHECK(exh_gains_setup(&rule, row[i].T) == row[i].err, "row %d", (int)i);
+    }
+}
+
+/* --- staging --- */
+
+static const struct exh_signal_group group[] = {{exh_gains_rows, EXH_GAINS_ROWS, 1},
+                                                {exh_contact_rows, EXH_CONTACT_ROWS, 2}};
+static const struct exh_signal_table table = {group, 2};
+
+struct values {
+    struct exh_gains_par rule;
+    struct exh_contact_par contact[2];
+};
+static struct values active, staged;
+static struct exh_params params;
+
+static void start(void)
+{
+    exh_params_init(&params, &table, (int32_t *)&active, (int32_t *)&staged);
+    active.rule = staged.rule = rule;
+}
+
+TEST(staging_refuses_what_is_outside)
+{
+    start();
+    CHECK_EQ_I64(exh_gains_stage(&params, &rule, 0x0401, 1, K(20000)), -EXH_E_GAINS);
+    CHECK(staged.contact[1].k_Npm_q10 == K(1500) && !params.pending, "something was staged");
+    CHECK_EQ_I64(exh_gains_stage(&params, &rule, 0x0402, 1, B(20)), 0);
+    CHECK_EQ_I64(exh_gains_stage(&params, &rule, 0x0401, 1, K(20000)), 0);
+    CHECK_EQ_I64(exh_gains_stage(&params, &rule, 0x0402, 1, 0), -EXH_E_GAINS);
+    CHECK(staged.contact[1].b_Nspm_q20 == B(20) && params.pending, "b went back");
+    CHECK_EQ_I64(exh_gains_stage(&params, &rule, 0x0401, 0, K(10000)), 0);
+    CHECK_EQ_I64(exh_gains_stage(&params, &rule, 0x0401, 0, K(10001)), -EXH_E_GAINS);
+    /* Everything else as ever. */
+    CHECK_EQ_I64(exh_gains_stage(&params, &rule, 0x0401, 0, -1), -EXH_E_RANGE);
+    CHECK_EQ_I64(exh_gains_stage(&params, &rule, 0x0401, 2, K(500)), -EXH_E_UNKNOWN);
+    CHECK_EQ_I64(exh_gains_stage(&params, &rule, 0x0403, 1, B(1)), 0);
+    CHECK_EQ_I64(exh_gains_stage(&params, &rule, 0x9999, 0, 0), -EXH_E_UNKNOWN);
+    CHECK_EQ_I64(exh_params_apply(&params), 1);
+    CHECK_EQ_I64(active.contact[1].k_Npm_q10, K(20000));
+}
+
+TEST(a_whole_image_is_asked_and_dropped)
+{
+    uint16_t instance = 7;
+    start();
+    CHECK_EQ_I64(exh_gains_staged(&params, &rule, &instance), 0);
+    CHECK_EQ_I64(exh_params_stage(&params, 0x0401, 1, K(20000)), 0);
+    CHECK_EQ_I64(exh_gains_staged(&params, &rule, &instance), -EXH_E_GAINS);
+    CHECK_EQ_I64(exh_gains_staged(&params, &rule, NULL), -EXH_E_GAINS);
+    CHECK_EQ_I64(instance, 1);
+    exh_gains_drop(&params);
+    CHECK_EQ_I64(exh_params_apply(&params), 0);
+    CHECK_EQ_I64(staged.contact[1].k_Npm_q10, K(1500));
+    CHECK_EQ_I64(exh_gains_staged(&params, &rule, &instance), 0);
+}
+
+TEST(rows_are_of_the_struct)
+{
+    struct exh_signal_group g = {exh_gains_rows, EXH_GAINS_ROWS, 1};
+    const struct exh_signal_table t = {&g, 1};
+    struct exh_gains_par par;
+    CHECK_EQ_I64(sizeof par, EXH_GAINS_ROWS * sizeof(int32_t));
+    CHECK_EQ_I64(exh_signal_find(&t, 0x1210, 0), 3);
+    CHECK_EQ_I64(exh_signal_find(&t, 0x1220, 0), 3 + EXH_GAINS_KNOTS);
+    for (int i = 0; i < EXH_GAINS_ROWS; i++) {
+        CHECK(exh_gains_rows[i].dflt >= exh_gains_rows[i].min, "row %d", i);
+        for (int j = 0; j < i; j++) {
+            CHECK(exh_gains_rows[i].id != exh_gains_rows[j].id, "%d %d", i, j);
+        }
+    }
+}
+
+TEST_MAIN("gains", pieces_and_ends, setup_refuses, setup_asks_for_its_rate,
+          staging_refuses_what_is_outside, a_whole_image_is_asked_and_dropped,
+          rows_are_of_the_struct);
