@@ -285,6 +285,7 @@ int exh_board_read_drive(struct exh_drive_in *in)
     in->din = EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG | EXH_DIN_CARDS |
               EXH_DIN_DRIVE0 * sim.drives;
     in->supply_raw = sim_supply_raw(&sim.cfg.device, load_A());
+    if (sim.cfg.let_go_s > 0 && sim.now_s >= sim.cfg.let_go_s) { in->din &= ~(uint32_t)EXH_DIN_DEADMAN; }
     if (sim.cfg.wires_in) { sim.cfg.wires_in(in); }
     return sim.cfg.cards.how ? cards_read_drive(in) : 0;
 }

@@ -36,6 +36,7 @@ struct posix_config {
                               * of fingers in use                             */
     struct posix_cards cards; /* how: all codes go through drivers and emulated cards */
     struct posix_line line;  /* on: the link leads somewhere                     */
+    double let_go_s;         /* the dead-man switch opens then; 0: never          */
     double enc_jitter_cnt;   /* peak to peak, uniform: 1 makes a resting encoder change
                               * between two counts                             */
     int glove;               /* 1: there is a glove, and a hand in it           */

@@ -54,6 +54,7 @@ static int probe(const struct bilateral_options *o)
     int err;
     if (o->udp) { return 0; }
     c.board.max_ticks = 1;
+    c.blackbox = NULL;
     err = bilateral_run(&c, &r);
     bilateral_run_free(&r);
     return err < 0 ? 2 : 0;
@@ -92,6 +93,10 @@ static int go(struct bilateral_options *o, double rate_Hz)
     }
     if (o->sweep + (o->check > 0) + o->hands + o->crisp > 1) {
         cli_complain("--sweep, --check, --hands, --crisp: one at a time");
+        return 2;
+    }
+    if (o->run.blackbox && (o->speeds != 1 || o->sweep || o->check || o->hands || o->crisp)) {
+        cli_complain("--blackbox: one speed, once: --out names a dump for each speed");
         return 2;
     }
     if (o->out) { err = bilateral_out_open(o->out); }
@@ -141,6 +146,8 @@ int cli_bilateral(int argc, char **argv)
         {"cards", CLI_FLAG, &o.cards, 0, 0, NULL, "through the drivers and emulated cards: the same bits"},
         {"seed", CLI_INT, &o.seed, 0, 1e9, "N", "of all chance in the simulation (1)"},
         {"out", CLI_TEXT, &o.out, 0, 0, "DIR", "write logs, CSVs and what pictures need there"},
+        {"blackbox", CLI_TEXT, &o.run.blackbox, 0, 0, "FILE", "the last seconds before a fault, a log (with --out beside the others)"},
+        {"let-go", CLI_REAL, &o.run.board.let_go_s, 0, 1e9, "S", "the dead-man switch opens then: a fault (never)"},
         {"set", CLI_CALL, u[3].to, 0, 0, "NAME=VALUE", "a parameter of the scene, of all fingers"},
         {"device", CLI_CALL, u[4].to, 0, 0, "NAME=VALUE", "a value of the simulated hand, glove or motors"},
         {"sweep", CLI_FLAG, &o.sweep, 0, 0, NULL, "stiffness and missed contacts over delay, jitter and loss"},

@@ -1,6 +1,7 @@
 /* exhand bilateral: three speeds, run, judged, printed, written. */
 #include "bilateral.h"
 
+#include "names.h"
 #include "option.h"
 #include "table2.h"
 
@@ -67,6 +68,7 @@ static void print_beside_perfect(const struct bilateral_run_cfg *given, const st
     struct bilateral_run_cfg c = *given;
     struct bilateral_run perfect;
     c.board.log = NULL;
+    c.blackbox = NULL;
     c.keep = 0;
     c.board.line = posix_line_default();
     c.from_s = c.again_s = 0;
@@ -91,9 +93,14 @@ static int one_speed(const struct bilateral_options *o, int i, struct bilateral_
 {
     struct bilateral_run_cfg c = bilateral_at_speed(o, o->speed[i].mps);
     struct bilateral_run r;
-    char path[1024];
+    char path[1024], fault[1024], what[NAMES_B];
     int err;
     c.keep = 1;
+    if (o->out && c.blackbox == NULL) {
+        bilateral_out_name(fault, sizeof fault, o->out, o->speed[i].name, -1, "_fault.exh");
+        (void)remove(fault); /* an earlier run's */
+        c.blackbox = fault;
+    }
     if (o->out) {
         bilateral_out_name(path, sizeof path, o->out, o->speed[i].name, -1, ".exh");
         c.board.log = fopen(path, "wb");
@@ -125,7 +132,8 @@ static int one_speed(const struct bilateral_options *o, int i, struct bilateral_
         ++*n;
     }
     if (err == 0 && r.faults) {
-        cli_complain("%s: the box stopped with faults %#x", o->speed[i].name, (unsigned)r.faults);
+        names_faults(what, sizeof what, r.faults);
+        cli_complain("%s: the box stopped with faults %#x: %s", o->speed[i].name, (unsigned)r.faults, what);
         err = 1;
     }
     if (err == 0) {

@@ -1,5 +1,6 @@
 #include "bilateral_run.h"
 
+#include "dumpfile.h"
 #include "option.h"
 #include "param.h"
 
@@ -31,7 +32,7 @@ static struct {
 static void start(const struct exh_scene *sc, struct exh_scene_board board)
 {
     run.r->T = board.T;
-    if (run.logged) { exh_log_start(sc, board); }
+    dumpfile_start(sc, board);
     if (run.cfg->more) { run.cfg->more->start(sc, board); }
 }
 
@@ -39,7 +40,7 @@ static void before(uint32_t tick, struct exh_scene_in *in)
 {
     if (tick == 0) { in->command = EXH_CMD_RUN; }
     if (run.cfg->more) { run.cfg->more->before(tick, in); }
-    if (run.logged) { exh_log_before(tick, in); }
+    dumpfile_before(tick, in);
 }
 
 static void keep(struct bilateral_track *t, const struct bilateral_sample *s)
@@ -103,7 +104,7 @@ static int one_finger(unsigned f)
 static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
 {
     int busy = 0;
-    if (run.logged) { exh_log_after(tick, in, out); }
+    dumpfile_after(tick, in, out);
     run.last_tick = tick;
     run.r->ticks++;
     for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
@@ -254,7 +255,9 @@ int bilateral_run(const struct bilateral_run_cfg *c, struct bilateral_run *r)
         if (c->board.line.udp_local && !c->scene) { r->finger[f].touch_m = -1; }
     }
     posix_configure(&board);
+    if (dumpfile_open(c->blackbox, run.logged, 0)) { return -EXH_E_SHORT; }
     err = exh_loop(&exh_scene_bilateral, c->rate_Hz, &hooks);
+    r->dumps = dumpfile_close(err < 0);
     if (err < 0 && !c->board.cards.quiet) {
         cli_complain("%lu Hz: %s", (unsigned long)c->rate_Hz, exh_error_text(err));
     }

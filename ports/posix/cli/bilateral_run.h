@@ -26,6 +26,7 @@ struct bilateral_run_cfg {
     int32_t session;           /* of the controller; 0: of the seed, over UDP of the clock */
     int fit_scale;             /* s of each finger: as it fits, not as the scene has it */
     int keep;                  /* keep samples                                  */
+    const char *blackbox;      /* dumps go there (dumpfile.h); NULL: no black box */
     const struct exh_loop_hooks *more; /* behind the run's own; NULL: none      */
 };
 
@@ -63,6 +64,7 @@ struct bilateral_run {
     struct bilateral_box box; /* at the end                                     */
     uint64_t ticks;
     uint32_t lost, faults;
+    int dumps; /* of the black box; -1: one could not be written                  */
     struct sim_link_counts way[SIM_LINK_WAYS];
     uint64_t frames, answers;
     int params, acked, refused; /* over the link                                */

@@ -6,6 +6,7 @@
 #include "csv.h"
 #include "friction.h"
 #include "jobs.h"
+#include "names.h"
 #include "option.h"
 #include "outdir.h"
 #include "param.h"
@@ -28,7 +29,8 @@ struct drop_options {
     double k_Npm, b_Nspm, scale; /* < 0: the paper's at that rate                 */
     int64_t falls, seed, jobs, spread, friction;
     int pace, cards, sweep, check, readings;
-    const char *out, *grid, *shard;
+    const char *out, *grid, *shard, *blackbox;
+    double let_go_s;
     struct run_setting setting[SETTINGS_MAX];
     int settings;
     struct sim_device device;
@@ -155,6 +157,7 @@ static struct run_cfg job_cfg(const struct drop_options *o, int rate_i, double s
     c.board.falls = o->falls < 0 ? 10 : (int)o->falls;
     c.board.T = o->T;
     c.board.pace = o->pace;
+    c.board.let_go_s = o->let_go_s;
     c.board.cards.how = o->cards ? POSIX_CARDS_INSTANT : POSIX_CARDS_NONE;
     return c;
 }
@@ -163,9 +166,15 @@ static struct table2_result shown_run(const struct drop_options *o, int i)
 {
     struct run_cfg c = job_cfg(o, i, 1, (uint64_t)o->seed);
     struct table2_result r;
-    char log[TABLE2_PATH_B], csv[TABLE2_PATH_B], plot[TABLE2_PATH_B];
+    char log[TABLE2_PATH_B], csv[TABLE2_PATH_B], plot[TABLE2_PATH_B], fault[TABLE2_PATH_B];
 
+    c.blackbox = o->blackbox;
     if (o->out == NULL) { return table2_measure(&c, NULL, o->readings); }
+    if (c.blackbox == NULL) {
+        outdir_path(fault, o->out, o->rate_Hz[i], "_fault.exh");
+        c.blackbox = fault;
+        (void)remove(fault); /* an earlier run's */
+    }
     outdir_path(log, o->out, o->rate_Hz[i], ".exh");
     outdir_path(csv, o->out, o->rate_Hz[i], ".csv");
     outdir_path(plot, o->out, o->rate_Hz[i], "");
@@ -214,7 +223,9 @@ static int check(const struct drop_options *o, const struct table2_result *r, in
         err |= r[i].error != 0;
         if (!r[i].done) { continue; }
         if (r[i].faults) {
-            cli_complain("%.6g Hz: the box stopped with faults %#x", r[i].rate_Hz, r[i].faults);
+            char what[NAMES_B];
+            names_faults(what, sizeof what, r[i].faults);
+            cli_complain("%.6g Hz: the box stopped with faults %#x: %s", r[i].rate_Hz, r[i].faults, what);
             err = 1;
         }
         if (i < o->rates && r[i].incomplete) {
@@ -313,6 +324,10 @@ static int refuse(struct drop_options *o)
         o->rate_Hz[0] = (double)o->T.den / o->T.num;
         o->rates = 1;
     }
+    if (o->blackbox && (o->rates != 1 || in_plane(o))) {
+        cli_complain("--blackbox: one rate, and no plane of gains: --out names a dump for each rate");
+        return 2;
+    }
     if ((o->grid && !o->sweep && !o->check) || (o->shard && !o->sweep)) {
         cli_complain("--grid and --shard: only with --sweep, --grid with --border-check too");
         return 2;
@@ -372,6 +387,8 @@ int cli_drop(int argc, char **argv)
         {"spread", CLI_INT, &o.spread, 0, 1000, "N", "further runs, at 1 and 1.5 times both gains (0)"},
         {"seed", CLI_INT, &o.seed, 0, 1e9, "N", "of all chance in the simulation (1)"},
         {"out", CLI_TEXT, &o.out, 0, 0, "DIR", "write logs, CSVs of the falls and tables there"},
+        {"blackbox", CLI_TEXT, &o.blackbox, 0, 0, "FILE", "the last seconds before a fault, a log (with --out beside the others)"},
+        {"let-go", CLI_REAL, &o.let_go_s, 0, 1e9, "S", "the dead-man switch opens then: a fault (never)"},
         {"jobs", CLI_INT, &o.jobs, 1, 1024, "N", "processes at a time (one a core)"},
         {"cards", CLI_FLAG, &o.cards, 0, 0, NULL, "through the drivers and emulated cards: the same bits"},
         {"pace", CLI_FLAG, &o.pace, 0, 0, NULL, "follow the wall clock, for people who watch"},

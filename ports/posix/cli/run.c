@@ -1,5 +1,6 @@
 #include "run.h"
 
+#include "dumpfile.h"
 #include "option.h"
 #include "param.h"
 
@@ -39,7 +40,7 @@ static void *grow(void *p, size_t *cap, size_t n, size_t size)
 static void start(const struct exh_scene *sc, struct exh_scene_board board)
 {
     run.r->T = board.T;
-    if (run.logged) { exh_log_start(sc, board); }
+    dumpfile_start(sc, board);
     if (run.more) { run.more->start(sc, board); }
 }
 
@@ -54,7 +55,7 @@ static void before(uint32_t tick, struct exh_scene_in *in)
     }
     run.fall = fall;
     if (run.more) { run.more->before(tick, in); }
-    if (run.logged) { exh_log_before(tick, in); }
+    dumpfile_before(tick, in);
 }
 
 static double si(int32_t raw, int frac)
@@ -66,7 +67,7 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
 {
     struct drop_signals s;
     memcpy(&s, exh_scene_drop.signal, sizeof s);
-    if (run.logged) { exh_log_after(tick, in, out); }
+    dumpfile_after(tick, in, out);
     run.last_tick = tick;
     run.r->ticks++;
     run.r->faults |= (uint32_t)s.faults;
@@ -134,7 +135,9 @@ int run_drop(const struct run_cfg *c, struct run *r)
     err = set_parameters(c);
     if (err == 0) {
         posix_configure(&c->board);
+        if (dumpfile_open(c->blackbox, run.logged, c->blackbox_B)) { return -EXH_E_SHORT; }
         err = exh_loop(&exh_scene_drop, c->rate_Hz, &hooks);
+        r->dumps = dumpfile_close(err < 0);
         if (err == -EXH_E_RATE) {
             cli_complain("rate: %lu Hz (allowed 1..%lu): choose one in that range",
                          (unsigned long)c->rate_Hz, (unsigned long)exh_board_info.rate_max_Hz);

@@ -22,6 +22,8 @@ struct run_cfg {
     const struct exh_loop_hooks *more; /* behind the run's own; NULL: none      */
     double mon_gain; /* on the monitor's force, behind the box; 0: 1           */
     struct posix_config board; /* device, seed, falls, log, pace               */
+    const char *blackbox; /* dumps go there (dumpfile.h); NULL: no black box      */
+    size_t blackbox_B;    /* its memory; 0: as it is there                       */
 };
 
 struct run {
@@ -30,6 +32,7 @@ struct run {
     uint64_t ticks;
     uint32_t lost;       /* log records lost                                   */
     uint32_t faults;     /* enum exh_fault                                     */
+    int dumps;           /* of the black box; -1: one could not be written      */
 };
 
 /* Whether the scene takes these parameters at this period: 0, or -EXH_E… after a
