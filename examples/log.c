@@ -10,7 +10,8 @@ static uint32_t seq;
 static uint32_t lost;      /* in all                                           */
 static uint32_t lost_here; /* since the last record that was taken              */
 static const struct exh_log_tap *tap;
-static int silent; /* all is the tap's                                         */
+static int silent; /* this record, or all of them (alone), is the tap's alone     */
+static int alone;
 static uint8_t type_now; /* of the record in buf                               */
 static uint32_t tick_now;
 static struct exh_record_header header;
@@ -34,10 +35,10 @@ static int put_count(uint8_t type, uint32_t tick, uint32_t count)
     return 1;
 }
 
-void exh_log_tap(const struct exh_log_tap *who, int alone)
+void exh_log_tap(const struct exh_log_tap *who, int is_alone)
 {
     tap = who;
-    silent = alone;
+    silent = alone = is_alone;
 }
 
 static struct exh_bytes begin(uint8_t type, uint32_t tick)
@@ -45,7 +46,7 @@ static struct exh_bytes begin(uint8_t type, uint32_t tick)
     struct exh_bytes c;
     type_now = type;
     tick_now = tick;
-    if (lost_here > 0) { (void)put_count(EXH_RECORD_DROPPED, tick, lost_here); }
+    if (lost_here > 0 && !silent) { (void)put_count(EXH_RECORD_DROPPED, tick, lost_here); }
     c = exh_bytes_writer(buf, sizeof buf);
     exh_record_begin(&c, type, seq, tick);
     return c;
@@ -214,9 +215,9 @@ void exh_log_after(uint32_t tick, const struct exh_scene_in *in, const struct ex
     exh_log_frame_bytes(&c, scene, &i, &o, scene->signal);
     end(&c);
     /* Here and not in exh_log_before(), where it would delay the output. */
-    if ((!silent && (tick + 1) % EXH_LOG_KEYFRAME_TICKS == 0) || (tap && tap->due())) {
-        keyframe(tick + 1);
-    }
+    silent = alone || (tick + 1) % EXH_LOG_KEYFRAME_TICKS != 0;
+    if (!silent || (tap && tap->due())) { keyframe(tick + 1); }
+    silent = alone;
 }
 
 uint32_t exh_log_end(uint32_t tick)

@@ -54,6 +54,7 @@ static int read_header(struct logfile *l)
         return complain(l, "not a log: it does not start with a header: give a file made by "
                            "`exhand drop --out DIR` or `exhand glove --record FILE`");
     }
+    l->damaged = 0; /* words of a box before it, on the same line, are no damage */
     c = exh_bytes_reader(r.payload, r.len_B);
     exh_record_header_bytes(&c, &l->header);
     if (!exh_bytes_ok(&c)) { return complain(l, "its header is too short"); }
@@ -115,7 +116,7 @@ static void follow_tick(struct logfile *l, const struct exh_record *r)
 
 int logfile_next(struct logfile *l, struct exh_record *r)
 {
-    while (l->at < l->len) {
+    while (l->at < l->len && !l->ended) { /* what comes behind the end is not the log's, either */
         const int32_t n = exh_record_read(l->bytes + l->at, l->len - l->at, r);
         if (n < 0) {
             l->damaged++;

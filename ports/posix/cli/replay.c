@@ -3,8 +3,10 @@
 #include "cli.h"
 
 #include "logfile.h"
+#include "names.h"
 #include "option.h"
 #include "param.h"
+#include "timeline.h"
 
 #include "log.h"
 
@@ -20,7 +22,14 @@ struct replay {
     struct exh_scene_in in;    /* what crosses inward at the coming tick        */
     struct exh_drive_out out;
     int running;               /* a start (tick 0 or a keyframe) was reached    */
-    uint64_t from;             /* asked for                                     */
+    uint64_t from;             /* asked for; 0: from the beginning               */
+    int32_t faults_at;         /* index of the signal; < 0: the scene has none    */
+    uint32_t faults;           /* of the last frame                             */
+    uint32_t fault;            /* the first to come, */
+    uint64_t fault_tick;       /* and when                                      */
+    int foretold;              /* by the black box: this much before its end      */
+    uint32_t foretold_cause;
+    uint64_t foretold_tick;
     uint64_t start;            /* the last keyframe not after it                */
     uint64_t first_tick, expect_tick;
     uint32_t ticks, keyframes;
@@ -84,6 +93,18 @@ static int compare(const struct replay *p, const struct exh_drive_out *rec)
     return 0;
 }
 
+static void note_fault(struct replay *p)
+{
+    const uint32_t now = p->faults_at < 0 ? 0 : (uint32_t)p->ours[p->faults_at];
+    const uint32_t fresh = p->ticks > 0 ? now & ~p->faults : 0;
+    if (p->foretold && p->log.tick == p->foretold_tick && fresh == p->foretold_cause) { p->foretold = 0; }
+    if (fresh && !p->fault) {
+        p->fault = fresh;
+        p->fault_tick = p->log.tick;
+    }
+    p->faults = now;
+}
+
 static int on_frame(struct replay *p, const struct exh_record *r)
 {
     const struct exh_scene *sc = p->log.scene;
@@ -112,6 +133,7 @@ static int on_frame(struct replay *p, const struct exh_record *r)
     }
     memcpy(p->ours, sc->signal, exh_signal_count(sc->signals) * sizeof(int32_t));
     p->digest = exh_crc32(p->digest, r->payload, r->len_B);
+    note_fault(p);
     if (p->ticks++ == 0) { p->first_tick = p->log.tick; }
     p->expect_tick = p->log.tick + 1;
     memset(&p->in, 0, sizeof p->in);
@@ -175,28 +197,45 @@ static int on_event(struct replay *p, const struct exh_record *r)
     return 0;
 }
 
-/* The last keyframe at or before the tick asked for; 0 when there is none. */
+/* What a black box says of itself stands at its end. */
+static void foretell(struct replay *p, const struct exh_record *r)
+{
+    struct exh_bytes c = exh_bytes_reader(r->payload, r->len_B);
+    struct exh_event e;
+    exh_event_bytes(&c, &e);
+    if (exh_bytes_ok(&c) && e.type == EXH_EVENT_FROZE && e.value != 0 && e.instance < UINT16_MAX) {
+        p->foretold = 1;
+        p->foretold_cause = (uint32_t)e.value;
+        p->foretold_tick = p->log.tick - 1 - e.instance;
+    }
+}
+
+/* Where to start: the last keyframe at or before the tick asked for; asked for none, the beginning,
+ * or where no frame stands before the first keyframe (a dump), that. 0 when there is none. */
 static int find_start(struct replay *p)
 {
     const uint32_t begin = p->log.at;
     struct exh_record r;
-    int found = 0;
+    int found = 0, frames = 0;
     while (logfile_next(&p->log, &r)) {
-        if (r.type == EXH_RECORD_KEYFRAME && p->log.tick <= p->from) {
+        if (r.type == EXH_RECORD_EVENT) { foretell(p, &r); }
+        frames |= r.type == EXH_RECORD_FRAME;
+        if (r.type != EXH_RECORD_KEYFRAME) { continue; }
+        if (p->from == 0 ? !found && !frames && p->log.tick > 0 : p->log.tick <= p->from) {
             p->start = p->log.tick;
             found = 1;
         }
     }
     logfile_rewind(&p->log, begin);
-    return found;
+    p->running = p->from == 0 && !found;
+    return found || p->running;
 }
 
 static int replay(struct replay *p)
 {
     struct exh_record r;
     int err = start_scene(p);
-    p->running = p->from == 0;
-    if (err == 0 && !p->running && !find_start(p)) {
+    if (err == 0 && !find_start(p)) {
         cli_complain("%s: no keyframe at or before tick %" PRIu64 ": choose a later --from",
                      p->log.path, p->from);
         return 2;
@@ -217,15 +256,41 @@ static int replay(struct replay *p)
     return err;
 }
 
+/* What the black box froze for must have come again, in that tick. */
+static int judge_fault(const struct replay *p)
+{
+    char what[NAMES_B];
+    if (p->foretold && p->from == 0) {
+        names_faults(what, sizeof what, p->foretold_cause);
+        printf("tick %" PRIu64 ": the fault that the black box froze for, %s, did not come\n", p->foretold_tick,
+               what);
+        return 1;
+    }
+    if (p->fault) {
+        names_faults(what, sizeof what, p->fault);
+        printf("%s: fault %s at tick %" PRIu64 ", as recorded\n", p->log.path, what, p->fault_tick);
+    }
+    return 0;
+}
+
+static int32_t find_faults(const struct exh_signal_table *t)
+{
+    uint32_t i;
+    return cli_signal_find(t, "faults", &i) ? (int32_t)i : -1;
+}
+
 int cli_replay(int argc, char **argv)
 {
     int64_t from = 0;
+    int timeline = 0;
     const struct cli_option option[] = {
-        {"from", CLI_INT, &from, 0, 1e15, "TICK", "start at the last keyframe not after it"},
+        {"from", CLI_INT, &from, 0, 1e15, "TICK", "start at the last keyframe not after it (0: the beginning)"},
+        {"timeline", CLI_FLAG, &timeline, 0, 0, NULL, "first tell what happened in it, in words"},
     };
-    const struct cli_command c = {"replay", "LOG [--from TICK]",
-                                  "Runs the recorded inputs again and compares every output bit.",
-                                  option, 1, 1};
+    const struct cli_command c = {"replay", "LOG [--from TICK] [--timeline]",
+                                  "Runs the recorded inputs again and compares every output bit. A dump of a black box\n"
+                                  "starts at its first keyframe, and must give its fault again in the same tick.",
+                                  option, (int)(sizeof option / sizeof option[0]), 1};
     struct replay p;
     const char *path = NULL;
     int err = cli_parse(&c, argc, argv, &path);
@@ -234,12 +299,19 @@ int cli_replay(int argc, char **argv)
     memset(&p, 0, sizeof p);
     p.from = (uint64_t)from;
     err = logfile_open(&p.log, path);
+    if (err == 0 && timeline) {
+        const uint32_t begin = p.log.at;
+        err = timeline_print(&p.log, stdout);
+        logfile_rewind(&p.log, begin);
+    }
     if (err == 0) {
+        p.faults_at = find_faults(p.log.scene->signals);
         const uint32_t n = exh_signal_count(p.log.scene->signals);
         p.recorded = calloc(n, sizeof *p.recorded);
         p.ours = calloc(n, sizeof *p.ours);
         p.bytes = malloc(EXH_LOG_RECORD_B);
         err = p.recorded && p.ours && p.bytes ? replay(&p) : 1;
+        if (err == 0) { err = judge_fault(&p); }
         if (err == 0) { err = logfile_complain(&p.log); }
         if (err == 0) {
             printf("%s: %lu ticks from tick %" PRIu64 " and %lu keyframes identical, digest %08lx\n",
