@@ -3,7 +3,7 @@
 #include "exhand/error.h"
 #include "exhand/fix.h"
 
-#define PARTS_MIN 8u /* keyframes that have to fit */
+#define KEYFRAMES_MIN 8u
 
 enum stage { HEADER, RECORDS, FROZE, END, DONE };
 
@@ -100,13 +100,20 @@ void exh_blackbox_clear(void)
     is = (struct exh_blackbox_is){.state = EXH_BLACKBOX_RECORDS};
 }
 
-/* Room for the header, and for so many keyframes behind it. */
+/* Room for the header, for so many keyframes, and for twice the ticks that it runs on, so that a
+ * fault and what led to it are in it. */
 static int fits(const struct exh_scene *sc)
 {
-    struct exh_bytes key = exh_bytes_measure();
+    struct exh_bytes key = exh_bytes_measure(), frame = exh_bytes_measure();
+    struct exh_scene_in in = {.missed = 0};
+    struct exh_drive_out out = {.enable = 0};
+    uint64_t need;
     if (memory_B < 2 * EXH_LOG_RECORD_B || sc->state == NULL) { return 0; }
     exh_log_keyframe_bytes(&key, sc);
-    return memory_B - EXH_LOG_RECORD_B >= PARTS_MIN * (key.at + EXH_RING_HEAD_B);
+    exh_log_frame_bytes(&frame, sc, &in, &out, sc->signal);
+    need = KEYFRAMES_MIN * (key.at + EXH_RING_HEAD_B) +
+           UINT64_C(2) * after_ticks * (frame.at + EXH_RING_HEAD_B);
+    return memory_B - EXH_LOG_RECORD_B >= need + need / (EXH_RING_PARTS - 1);
 }
 
 void exh_blackbox_start(const struct exh_scene *sc, struct exh_scene_board board)

@@ -32,7 +32,7 @@ uint32_t exh_blackbox_read(uint8_t *to, uint32_t cap_B);
 void exh_blackbox_clear(void);
 
 enum exh_blackbox_state {
-    EXH_BLACKBOX_OFF, /* no memory, too little for eight keyframes, or a scene that has none */
+    EXH_BLACKBOX_OFF, /* no memory, too little to hold a fault, or a scene without keyframes */
     EXH_BLACKBOX_RECORDS,
     EXH_BLACKBOX_RUNS_ON,
     EXH_BLACKBOX_FROZEN

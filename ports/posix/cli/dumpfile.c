@@ -40,6 +40,9 @@ void dumpfile_start(const struct exh_scene *sc, struct exh_scene_board board)
 {
     if (box.on) {
         exh_blackbox_start(sc, board);
+        if (exh_blackbox_is().state == EXH_BLACKBOX_OFF) {
+            cli_complain("black box: none: its memory is too small at this rate, or the scene has no state");
+        }
     } else {
         exh_log_tap(NULL, 0);
         if (box.logged) { exh_log_start(sc, board); }

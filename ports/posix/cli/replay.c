@@ -96,9 +96,9 @@ static int compare(const struct replay *p, const struct exh_drive_out *rec)
 static void note_fault(struct replay *p)
 {
     const uint32_t now = p->faults_at < 0 ? 0 : (uint32_t)p->ours[p->faults_at];
-    const uint32_t fresh = p->ticks > 0 ? now & ~p->faults : 0;
+    const uint32_t fresh = now & ~p->faults;
     if (p->foretold && p->log.tick == p->foretold_tick && fresh == p->foretold_cause) { p->foretold = 0; }
-    if (fresh && !p->fault) {
+    if (p->ticks > 0 && fresh && !p->fault) {
         p->fault = fresh;
         p->fault_tick = p->log.tick;
     }

@@ -1,0 +1,307 @@
+/* The black box: what it holds after a fault replays to that fault, wherever the dump begins. */
+#include "logs.h"
+#include "said.h"
+
+#include "cli/logfile.h"
+#include "cli/run.h"
+#include "posix.h"
+
+#include "blackbox.h"
+#include "drop/drop.h"
+
+#include "exhand/record.h"
+
+struct held { /* of a dump, by reading it                                       */
+    uint64_t first, last; /* ticks of its first keyframe and its last frame     */
+    uint32_t frames, keyframes, damaged, gaps;
+    int32_t c; /* contact in the first frame                                    */
+    struct exh_event froze;
+    int ended;
+};
+
+static struct held read_dump(const char *path)
+{
+    struct held h;
+    struct logfile l;
+    struct exh_record r;
+    uint8_t type = 0;
+    memset(&h, 0, sizeof h);
+    CHECK_EQ_I64(logfile_open(&l, path), 0);
+    while (logfile_next(&l, &r)) {
+        if (type == 0) {
+            CHECK_EQ_I64(r.type, EXH_RECORD_KEYFRAME);
+            h.first = l.tick;
+        }
+        type = r.type;
+        h.keyframes += r.type == EXH_RECORD_KEYFRAME;
+        if (r.type == EXH_RECORD_EVENT) {
+            struct exh_bytes c = exh_bytes_reader(r.payload, r.len_B);
+            struct exh_event e;
+            exh_event_bytes(&c, &e);
+            if (e.type == EXH_EVENT_FROZE) { h.froze = e; }
+        }
+        if (r.type == EXH_RECORD_FRAME) {
+            struct exh_bytes c = exh_bytes_reader(r.payload, r.len_B);
+            struct drop_signals sig;
+            struct exh_scene_in in;
+            struct exh_drive_out out;
+            exh_log_frame_bytes(&c, l.scene, &in, &out, (int32_t *)&sig);
+            if (h.frames++ == 0) { h.c = sig.c; }
+            CHECK(h.frames == 1 || l.tick == h.last + 1, "a frame is missing");
+            h.last = l.tick;
+        }
+    }
+    h.damaged = l.damaged;
+    h.gaps = l.gaps;
+    h.ended = l.ended;
+    logfile_close(&l);
+    return h;
+}
+
+/* The bench holds the mass for a second and lets it fall; it swings on the wall from 1.3 s on. */
+static struct run_cfg three_falls(uint32_t rate_Hz, const char *dump, size_t memory_B,
+                                  double let_go_s)
+{
+    struct run_cfg c;
+    memset(&c, 0, sizeof c);
+    c.rate_Hz = rate_Hz;
+    c.k_Npm = 2000;
+    c.b_Nspm = 2;
+    c.board = posix_config_default();
+    c.board.falls = 1;
+    c.board.let_go_s = let_go_s;
+    c.blackbox = dump;
+    c.blackbox_B = memory_B;
+    return c;
+}
+
+static struct held run_and_read(const struct run_cfg *c)
+{
+    struct run r;
+    CHECK_EQ_I64(run_drop(c, &r), 0);
+    CHECK(r.dumps >= 1, "%d dumps", r.dumps);
+    run_free(&r);
+    return read_dump(c->blackbox);
+}
+
+TEST(a_dump_ends_behind_the_fault_and_replays_to_it)
+{
+    static const uint32_t rate_Hz[] = {90, 500, 2000, 20000};
+    const char *path = log_path();
+    for (size_t i = 0; i < sizeof rate_Hz / sizeof rate_Hz[0]; i++) {
+        const struct run_cfg c = three_falls(rate_Hz[i], path, 0, 1.7);
+        const uint32_t after = rate_Hz[i] / 20 + 1 > 8 ? rate_Hz[i] / 20 + 1 : 8;
+        const struct held h = run_and_read(&c);
+        const uint64_t fault = h.last - h.froze.instance;
+        CHECK(h.ended && h.damaged == 0 && h.gaps == 0, "%lu Hz: %lu damaged, %lu gaps",
+              (unsigned long)rate_Hz[i], (unsigned long)h.damaged, (unsigned long)h.gaps);
+        CHECK_EQ_I64(h.froze.value, EXH_FAULT_DEADMAN);
+        CHECK_EQ_I64(h.froze.instance, after);
+        CHECK(fault >= 17 * rate_Hz[i] / 10 && fault <= 17 * rate_Hz[i] / 10 + 1,
+              "fault at tick %lu of %lu Hz", (unsigned long)fault, (unsigned long)rate_Hz[i]);
+        CHECK_EQ_I64(replay(path, NULL), 0);
+    }
+    remove(path);
+}
+
+/* Memory so small that the oldest is long gone: it begins with the mass on the wall. */
+TEST(a_dump_that_begins_in_a_contact_replays_from_its_first_keyframe)
+{
+    const char *path = log_path();
+    unsigned in_contact = 0, at_once = 0;
+    for (size_t memory_B = 24000; memory_B < 52000; memory_B += 977) {
+        const struct run_cfg c = three_falls(2000, path, memory_B, 2.2);
+        const struct held h = run_and_read(&c);
+        CHECK(h.first > 0 && h.frames == h.last - h.first + 1, "%lu frames from tick %lu to %lu",
+              (unsigned long)h.frames, (unsigned long)h.first, (unsigned long)h.last);
+        CHECK(h.ended && h.damaged == 0 && h.gaps == 0, "%zu B: %lu damaged, %lu gaps", memory_B,
+              (unsigned long)h.damaged, (unsigned long)h.gaps);
+        CHECK_EQ_I64(h.froze.value, EXH_FAULT_DEADMAN);
+        CHECK_EQ_I64(replay(path, NULL), 0);
+        CHECK(h.first + 100 < h.last - h.froze.instance, "it begins at tick %lu",
+              (unsigned long)h.first);
+        in_contact += h.c != 0;
+        at_once += h.keyframes > 1;
+    }
+    CHECK(in_contact > 20 && at_once > 20, "%u began in a contact, %u have a second keyframe",
+          in_contact, at_once);
+    remove(path);
+}
+
+/* A log beside it: its bytes are those without a black box. */
+TEST(the_log_is_the_same_with_a_black_box_beside_it)
+{
+    char log[2][64];
+    const char *dump;
+    struct run r;
+    uint32_t crc[2];
+    long size[2];
+    for (int i = 0; i < 2; i++) {
+        struct run_cfg c = three_falls(500, NULL, 20000, 1.7);
+        strcpy(log[i], log_path());
+        c.board.log = fopen(log[i], "wb");
+        CHECK(c.board.log != NULL, "%s", log[i]);
+        dump = log_path();
+        if (i) { c.blackbox = dump; }
+        CHECK_EQ_I64(run_drop(&c, &r), 0);
+        CHECK_EQ_I64(fclose(c.board.log), 0);
+        CHECK_EQ_I64(r.dumps, i);
+        run_free(&r);
+        if (i) { CHECK_EQ_I64(replay(dump, NULL), 0); }
+        remove(dump);
+    }
+    for (int i = 0; i < 2; i++) {
+        static uint8_t bytes[1 << 20];
+        FILE *f = fopen(log[i], "rb");
+        size[i] = (long)fread(bytes, 1, sizeof bytes, f);
+        crc[i] = exh_crc32(0, bytes, (size_t)size[i]);
+        fclose(f);
+        remove(log[i]);
+    }
+    CHECK(size[0] == size[1] && size[0] > 10000 && crc[0] == crc[1], "%ld bytes and %ld", size[0],
+          size[1]);
+}
+
+static size_t slurp(const char *path, uint8_t *to, size_t cap)
+{
+    FILE *f = fopen(path, "rb");
+    size_t n;
+    CHECK(f != NULL, "%s", path);
+    n = fread(to, 1, cap, f);
+    fclose(f);
+    return n;
+}
+
+static void spill(const char *path, const uint8_t *byte, size_t n)
+{
+    FILE *f = fopen(path, "wb");
+    CHECK(f != NULL && fwrite(byte, 1, n, f) == n, "%s", path);
+    CHECK_EQ_I64(fclose(f), 0);
+}
+
+static uint8_t dump[200000], damaged[200000];
+
+static size_t one_dump(const char *path)
+{
+    const struct run_cfg c = three_falls(500, path, 20000, 1.7);
+    (void)run_and_read(&c);
+    return slurp(path, dump, sizeof dump);
+}
+
+/* Any byte but the last words': told, exit status 1 or 2, never 0; the timeline is told all the same. */
+TEST(a_damaged_dump_is_told)
+{
+    const char *path = log_path(), *dir = said_dir();
+    const size_t n = one_dump(path);
+    static struct said s;
+    for (size_t at = 3; at < n; at += 1 + n / 40) {
+        memcpy(damaged, dump, n);
+        damaged[at] ^= 0x10;
+        spill(path, damaged, n);
+        said(&s, dir, cli_replay, WORDS("replay", "--timeline", path));
+        CHECK(s.status == 1 || s.status == 2, "byte %zu: status %d: %s%s", at, s.status, s.out,
+              s.err);
+        CHECK(s.status == 2 || strstr(s.out, "FAULT deadman") || at > n / 2, "byte %zu: %s", at,
+              s.out);
+    }
+    for (size_t cut = 1; cut < n; cut += 1 + n / 40) {
+        spill(path, dump, n - cut);
+        said(&s, dir, cli_replay, WORDS("replay", path));
+        CHECK(s.status == 1 || s.status == 2, "%zu bytes cut off: status %d", cut, s.status);
+    }
+    remove(path);
+    said_clean(dir);
+}
+
+/* Records with a sound CRC whose payloads are anything: refused or told, nothing worse. */
+TEST(forged_records_are_harmless)
+{
+    const char *path = log_path(), *dir = said_dir();
+    const size_t n = one_dump(path);
+    static struct said s;
+    uint64_t z = 1;
+    for (int turn = 0; turn < 60; turn++) {
+        size_t at = 0;
+        memcpy(damaged, dump, n);
+        while (at < n) {
+            struct exh_record r;
+            const int32_t len = exh_record_read(damaged + at, (uint32_t)(n - at), &r);
+            CHECK(len > 0, "record at %zu", at);
+            z = z * 6364136223846793005u + 1442695040888963407u;
+            if (r.len_B && (z >> 33) % 12 == 0) {
+                uint8_t *p = damaged + at;
+                uint32_t crc;
+                for (unsigned i = 0; i < 3; i++) {
+                    p[14 + (z >> (8 * i + 7)) % r.len_B] ^= (uint8_t)(z >> 20 | 1);
+                }
+                if (z >> 60 == 0) { p[2] = (uint8_t)(1 + (z >> 40) % 9); } /* another type */
+                crc = exh_crc32(0, p, (size_t)len - 4);
+                for (unsigned i = 0; i < 4; i++) {
+                    p[len - 4 + (int32_t)i] = (uint8_t)(crc >> 8 * i);
+                }
+            }
+            at += (size_t)len;
+        }
+        spill(path, damaged, n);
+        said(&s, dir, cli_replay, WORDS("replay", "--timeline", path));
+        CHECK(s.status == 1 || s.status == 2, "turn %d: status %d: %s", turn, s.status, s.err);
+    }
+    remove(path);
+    said_clean(dir);
+}
+
+/* As a serial line gives it: words, the dump, words. */
+TEST(words_before_and_behind_a_dump_are_no_damage)
+{
+    static const char banner[] = "exhand 0.1.0, scene drop\r\nEXEXE\r\n",
+                      last[] = "\r\nticks 1000\r\ndone EX\r\n";
+    const char *path = log_path();
+    const size_t n = one_dump(path);
+    FILE *f = fopen(path, "wb");
+    CHECK(f != NULL, "%s", path);
+    (void)fwrite(banner, 1, sizeof banner - 1, f);
+    (void)fwrite(dump, 1, n, f);
+    (void)fwrite(last, 1, sizeof last - 1, f);
+    CHECK_EQ_I64(fclose(f), 0);
+    CHECK_EQ_I64(replay(path, NULL), 0);
+    spill(path, dump, n / 2);
+    CHECK_EQ_I64(replay(path, NULL), 1);
+    remove(path);
+}
+
+/* The fault that it froze for has to come again, in that tick: a dump that says another is told. */
+TEST(another_fault_than_told_is_told)
+{
+    const char *path = log_path(), *dir = said_dir();
+    const size_t n = one_dump(path);
+    static struct said s;
+    struct exh_bytes c;
+    uint8_t *event = dump + n - (EXH_RECORD_OVERHEAD + 4) - (EXH_RECORD_OVERHEAD + 10);
+    struct exh_record r;
+    struct exh_event e;
+    CHECK_EQ_I64(exh_record_read(event, EXH_RECORD_OVERHEAD + 10, &r), EXH_RECORD_OVERHEAD + 10);
+    c = exh_bytes_reader(r.payload, r.len_B);
+    exh_event_bytes(&c, &e);
+    CHECK_EQ_I64(e.type, EXH_EVENT_FROZE);
+    for (int what = 0; what < 3; what++) {
+        struct exh_event other = e;
+        other.value = what == 0 ? e.value : what == 1 ? EXH_FAULT_ESTOP : e.value;
+        other.instance = (uint16_t)(e.instance + (what == 2));
+        c = exh_bytes_writer(event, EXH_RECORD_OVERHEAD + 10);
+        exh_record_begin(&c, EXH_RECORD_EVENT, r.seq, r.tick);
+        exh_event_bytes(&c, &other);
+        CHECK_EQ_I64(exh_record_end(&c), EXH_RECORD_OVERHEAD + 10);
+        spill(path, dump, n);
+        said(&s, dir, cli_replay, WORDS("replay", path));
+        CHECK(s.status == (what != 0), "%d: status %d: %s", what, s.status, s.out);
+        CHECK(!what == !strstr(s.out, "did not come"), "%d: %s", what, s.out);
+    }
+    remove(path);
+    said_clean(dir);
+}
+
+TEST_MAIN("blackbox", a_dump_ends_behind_the_fault_and_replays_to_it,
+          a_dump_that_begins_in_a_contact_replays_from_its_first_keyframe,
+          the_log_is_the_same_with_a_black_box_beside_it, a_damaged_dump_is_told,
+          forged_records_are_harmless, words_before_and_behind_a_dump_are_no_damage,
+          another_fault_than_told_is_told);
