@@ -12,6 +12,7 @@
  *   net_fuzz FILE...            these inputs
  * LLVMFuzzerTestOneInput() is libFuzzer's; with it, -DFUZZ_NO_MAIN. */
 #include "frames.h"
+#include "must.h"
 
 #include <signal.h>
 #include <stdio.h>
@@ -29,14 +30,6 @@
 #define TO_ALL    128u
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-#define MUST(cond) \
-    do { \
-        if (!(cond)) { \
-            fprintf(stderr, "%s:%d: %s\n", __FILE__, __LINE__, #cond); \
-            abort(); \
-        } \
-    } while (0)
 
 static const struct net_cfg cfg = {{2, 1, 1, 1, 1, 1}, 0x0A000002u, 0x0A000001u, 4747, 256};
 

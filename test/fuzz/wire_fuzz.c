@@ -11,6 +11,8 @@
  * before the freeze.
  *
  * LLVMFuzzerTestOneInput() is libFuzzer's; driver.c calls it without libFuzzer. */
+#include "must.h"
+
 #include "exhand/error.h"
 #include "exhand/fix.h"
 #include "exhand/precontact.h"
@@ -31,14 +33,6 @@
 #define LIMIT_US    1000000u
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-#define MUST(cond) \
-    do { \
-        if (!(cond)) { \
-            fprintf(stderr, "%s:%d: %s\n", __FILE__, __LINE__, #cond); \
-            abort(); \
-        } \
-    } while (0)
 
 void exh_assert_failed(const char *file, int line)
 {
