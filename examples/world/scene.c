@@ -5,6 +5,8 @@
 
 #include "sim/lag.h"
 
+#include "exhand/precontact.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -119,13 +121,19 @@ static int take_camera(struct reading *r)
                : words_complain(&r->w, "camera: eye and look are the same point: part them");
 }
 
+/* The most that a controller takes. */
+static double row_max(int i)
+{
+    return (double)exh_material_rows[i].max / (double)(INT64_C(1) << exh_material_rows[i].frac);
+}
+
 static int take_material(struct reading *r)
 {
     struct scene *s = r->s;
     struct scene_material m = {.k = 20000, .b = 60, .f_max = 10, .colour = {0.7, 0.7, 0.7}};
-    struct pair p[] = {{"k", 1, &m.k, 0, 1e6, 0, 0},
-                       {"b", 1, &m.b, 0, 1e4, 0, 0},
-                       {"fmax", 1, &m.f_max, 0, 100, 0, 0},
+    struct pair p[] = {{"k", 1, &m.k, 0, row_max(0), 0, 0},
+                       {"b", 1, &m.b, 0, row_max(1), 0, 0},
+                       {"fmax", 1, &m.f_max, 0, row_max(2), 0, 0},
                        {"colour", 3, m.colour, 0, 1, 0, 0}};
     if (scene_named(r, m.name) || words_pairs(&r->w, 2, p, 4)) { return 1; }
     if (scene_material_of(s, m.name) >= 0) {

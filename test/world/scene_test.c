@@ -16,6 +16,8 @@ static const struct {
     {"\n\n# x\nmaterial", "t:4: material: its name is missing: add one word"},
     {M "material m", "t:2: material m: defined twice: use another name"},
     {"material m k -1", "t:1: material m: k -1 (allowed 0..1e+06): give a number in that range"},
+    {"material m k 1 b 1001", "t:1: material m: b 1001 (allowed 0..1000): give a number in that range"},
+    {"material m fmax 101", "t:1: material m: fmax 101 (allowed 0..100): give a number in that range"},
     {"material m k nan", "t:1: material m: k nan (allowed 0..1e+06): give a number in that range"},
     {"material m k 1e", "t:1: material m: k: 1 number must follow, not \"1e\": add what is missing"},
     {"material m colour 1 0", "t:1: material m: colour: 3 numbers must follow, not \"\": add what is missing"},

@@ -41,11 +41,10 @@ check() # WHAT COMMAND...
     fi
 }
 
-# k N/m: the block before the index finger. The other's damping is beyond what a controller takes.
+# k N/m: the block before the index finger.
 scene()
 {
     sed -e "s/^material wood .*/material wood k $1 b 60 fmax 40/" \
-        -e "s/^material foam .*/material foam k 1500 b 2000 fmax 6/" \
         "$(dirname "$0")/../../examples/world/scenes/collision.world" >"$dir/scene.world"
 }
 
@@ -98,8 +97,7 @@ meet() # WHERE WORLD-PREFIX CONTROLLER-PREFIX
     felt "$where" 1 30000 $here
     felt "$where" 2 30000 $here
     end_world
-    check "$where: what is refused is named" grep -q "material foam: mat_b 2000 .*not sent" "$dir/world.err"
-    check "$where: nothing else is said: $(cat "$dir/world.err")" [ "$(wc -l <"$dir/world.err")" = 1 ]
+    check "$where: nothing is said: $(cat "$dir/world.err")" [ ! -s "$dir/world.err" ]
     scene 25000
     start_world $there
     felt "$where, another world" 3 25000 $here
