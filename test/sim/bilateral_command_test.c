@@ -235,6 +235,42 @@ TEST(every_scene_of_simple_bodies_runs)
     said_clean(dir);
 }
 
+/* Four fingers glide over it for a second and more of an approach; the thumb lies beside it. */
+TEST(a_shape_is_felt_by_the_fingers_that_glide_over_it)
+{
+    static const char *const finger[] = {"index", "middle", "ring", "little"};
+    const char *dir = said_dir();
+    static struct said s;
+    said(&s, dir, cli_bilateral,
+         WORDS("bilateral", "--scene", "examples/world/scenes/explore.world", "--fingers", "all", "--speed", "0.3",
+               "--approaches", "1"));
+    CHECK(s.status == 0, "%d: %s", s.status, s.err);
+    for (size_t i = 0; i < LEN(finger); i++) {
+        double v[3];
+        session_of(s.out, finger[i], v);
+        CHECK(v[0] >= 1 && v[1] > 1 && v[2] > 2 && v[2] <= 8.005, "%s: %g contacts of %g s, %g N", finger[i], v[0],
+              v[1], v[2]);
+    }
+    said_clean(dir);
+}
+
+/* A flat side comes into a finger's view when its pad is inside already: there is no way before the touch
+ * to find s by. */
+TEST(what_comes_into_view_around_a_finger_ends_no_run)
+{
+    const char *dir = said_dir(), *path = said_path(dir, "near.world");
+    static struct said s;
+    FILE *f = fopen(path, "w");
+    CHECK(f != NULL, "%s", path);
+    fputs("ray length 0.08\nhand at -0.03 -0.145 0.072 palm 0 0 -1 point 0 1 0\nmaterial m\n"
+          "capsule ridge at -0.045 0.01 0.004 rpy 90 0 15 radius 0.014 length 0.09 material m\n", f);
+    CHECK_EQ_I64(fclose(f), 0);
+    said(&s, dir, cli_bilateral,
+         WORDS("bilateral", "--scene", path, "--fingers", "all", "--speed", "0.3", "--approaches", "1"));
+    CHECK(s.status == 0, "%d: %s", s.status, s.err);
+    said_clean(dir);
+}
+
 TEST(a_recorded_hand_moves_the_fingers)
 {
     const char *dir = said_dir(), *path = said_path(dir, "rows.csv");
@@ -294,4 +330,5 @@ TEST_MAIN("bilateral_command", a_log_replays_bit_for_bit_without_a_world,
           the_papers_nine_signals_are_logged_tick_by_tick, over_hands_there_is_a_row_each,
           a_world_that_dies_or_never_comes_is_told_beside_a_perfect_link,
           a_rehabilitation_session_keeps_each_fingers_force_cap, every_scene_of_simple_bodies_runs,
+          a_shape_is_felt_by_the_fingers_that_glide_over_it, what_comes_into_view_around_a_finger_ends_no_run,
           a_recorded_hand_moves_the_fingers, bad_usage_is_refused_by_name);

@@ -123,8 +123,20 @@ static struct bilateral_finger_is finger_is(const struct bilateral_run_cfg *c, u
     return w;
 }
 
-/* String per way of the fingertip from where q_lim is frozen to the touch, as somebody would find
- * by closing the hand once, slowly. */
+/* String per way of the fingertip from where q_lim is frozen, or from rest if that is nearer, to the touch,
+ * as somebody would find by closing the hand once, slowly. 1 where there is no such way: nothing is there, it
+ * is touched at rest, or the finger goes along it. */
+static double scale_to(const struct bilateral_finger_is *w, double touch_m, double d_lim_m)
+{
+    const struct exh_signal *row = &exh_precontact_rows[2];
+    const double from_m = touch_m < 0 ? -1 : bilateral_string_m(&run.world, w, 0, d_lim_m);
+    const int at_rest = from_m <= 0;
+    const double way_m = at_rest ? -bilateral_gap_m(&run.world, w, 0, 0) : -d_lim_m;
+    const double scale = (touch_m - (at_rest ? 0 : from_m)) / way_m;
+    if (touch_m <= 0 || way_m <= 0) { return 1; }
+    return scale >= cli_signal_value(row, row->min) && scale <= cli_signal_value(row, row->max) ? scale : 1;
+}
+
 static int fit_scale(const struct bilateral_run_cfg *c, struct bilateral_run *r)
 {
     struct exh_params *p = exh_scene_bilateral.params;
@@ -133,9 +145,7 @@ static int fit_scale(const struct bilateral_run_cfg *c, struct bilateral_run *r)
         const struct bilateral_finger_is w = finger_is(c, f);
         struct bilateral_track *t = &r->finger[f];
         const int32_t index = exh_signal_find(p->table, exh_precontact_rows[0].id, (uint16_t)f);
-        const double d_lim_m = cli_signal_value(&exh_precontact_rows[0], p->staged[index]);
-        const double from_m = t->touch_m < 0 ? -1 : bilateral_string_m(&run.world, &w, 0, d_lim_m);
-        t->scale = from_m < 0 ? 1 : (t->touch_m - from_m) / -d_lim_m;
+        t->scale = scale_to(&w, t->touch_m, cli_signal_value(&exh_precontact_rows[0], p->staged[index]));
         if (err == 0) {
             err = exh_params_stage(p, exh_precontact_rows[2].id, (uint16_t)f,
                                    (int32_t)(t->scale * (1 << exh_precontact_rows[2].frac)));
