@@ -10,6 +10,7 @@
 #include "exhand/bytes.h"
 #include "exhand/drive.h"
 #include "exhand/glove.h"
+#include "exhand/safety.h"
 #include "exhand/signal.h"
 
 #include <stdint.h>
@@ -53,6 +54,7 @@ struct exh_scene {
     uint32_t rate_Hz; /* when nobody asks for another                         */
     uint8_t fingers;
     struct exh_params *params;              /* NULL: constants in ROM         */
+    const struct exh_safety *safety; /* the state of the box, for whoever commands it; or NULL */
     const struct exh_signal_table *signals; /* outputs per tick, or NULL      */
     int32_t *signal;                        /* their values, or NULL          */
     /* exh_board_read_glove, or NULL: only a scene that names it links it. */

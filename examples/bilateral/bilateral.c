@@ -264,6 +264,7 @@ const struct exh_scene exh_scene_bilateral = {
     .rate_Hz = 2000,
     .fingers = BILATERAL_FINGERS,
     .params = &params,
+    .safety = &state.safety,
     .signals = &bilateral_outputs,
     .signal = (int32_t *)&signals,
     .read_glove = exh_board_read_glove,

@@ -301,6 +301,7 @@ const struct exh_scene exh_scene_bringup = {
     .rate_Hz = 1000,
     .fingers = BRINGUP_FINGERS,
     .params = &params,
+    .safety = &state.safety,
     .signals = &signal_table,
     .signal = (int32_t *)&signal,
     .defaults = defaults,

@@ -65,4 +65,5 @@ static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
 }
 
 const struct exh_scene exh_scene_minimal = {
-    .name = "minimal", .rate_Hz = 1000, .fingers = 1, .setup = setup, .tick = tick};
+    .name = "minimal", .rate_Hz = 1000, .fingers = 1, .safety = &s.safety,
+    .setup = setup, .tick = tick};
