@@ -68,7 +68,7 @@ static void next_phase(struct bringup *s, const struct bringup_cfg *cfg)
 /* A phase that asks for the switch waits until it is let go and taken: one that was held before the
  * question is no answer to it. */
 static void wait(struct bringup *s, const struct bringup_cfg *cfg, const struct bringup_phase *p,
-                 const struct exh_scene_in *in, int32_t cnt)
+                 uint8_t command, int32_t cnt)
 {
     const uint32_t cause = s->safety.present;
     const int run = s->safety.state == EXH_STATE_RUN;
@@ -76,11 +76,20 @@ static void wait(struct bringup *s, const struct bringup_cfg *cfg, const struct 
     if (p->hands || p->ask == BRINGUP_ASK_NOTHING || (run && s->let_go)) {
         begin_phase(s, cnt);
     } else if ((p->ask == BRINGUP_ASK_HOOK && cause & ~(uint32_t)EXH_FAULT_DEADMAN) ||
-               (in->command == EXH_CMD_RUN && !run)) {
+               (command == EXH_CMD_RUN && s->safety.state == EXH_STATE_OFF)) {
         s->result = BRINGUP_OFF; /* more than the switch is open */
     } else if (++s->tick >= cfg->wait_ticks) {
         s->result = cause & ~(uint32_t)EXH_FAULT_DEADMAN ? BRINGUP_OFF : BRINGUP_NOBODY;
     }
+}
+
+/* What the box is told: the person's word, where it answers a question; off, where no current is to
+ * flow: so letting go of the switch, which every question begins with, is no fault. */
+static uint8_t command_of(const struct bringup *s, const struct bringup_cfg *cfg, uint8_t given)
+{
+    const struct bringup_phase *p = bringup_phase(cfg->list, s->phase);
+    if (s->result != EXH_PROBE_BUSY || p == NULL || p->hands) { return EXH_CMD_OFF; }
+    return !s->busy && p->ask != BRINGUP_ASK_NOTHING && !s->let_go ? (uint8_t)EXH_CMD_OFF : given;
 }
 
 /* Does current flow now, or might it? */
@@ -92,8 +101,8 @@ static int needs_run(const struct bringup *s, const struct bringup_cfg *cfg)
 }
 
 /* One tick of whatever goes on: the force for it, N q20. */
-static int32_t go_on(struct bringup *s, const struct bringup_cfg *cfg,
-                     const struct exh_scene_in *in, struct bringup_view v)
+static int32_t go_on(struct bringup *s, const struct bringup_cfg *cfg, uint8_t command,
+                     struct bringup_view v)
 {
     const struct bringup_own_par *own = &cfg->par->own;
     const struct bringup_phase *p = bringup_phase(cfg->list, s->phase);
@@ -107,7 +116,7 @@ static int32_t go_on(struct bringup *s, const struct bringup_cfg *cfg,
         return 0;
     }
     if (!s->busy) {
-        wait(s, cfg, p, in, v.cnt);
+        wait(s, cfg, p, command, v.cnt);
         return 0;
     }
     if (s->quad.lost || (needs_run(s, cfg) && !run)) { r = BRINGUP_OFF; }
@@ -189,9 +198,9 @@ void bringup_tick(struct bringup *s, const struct bringup_cfg *cfg, const struct
                                    (in->drive.din & 3u) | (ready ? 4u : 0u)};
     /* Its phases compare monitor and code themselves, and more closely: doubt, mon_tol. */
     const uint32_t raised = (s->quad.lost ? EXH_FAULT_ENCODER : 0u) | EXH_UNTRACKED;
+    const uint8_t command = command_of(s, cfg, in->command);
     const struct exh_safety_in box = {
-        inputs_of(&par->own, in->drive.din), raised, in->missed,
-        s->result == EXH_PROBE_BUSY ? in->command : (uint8_t)EXH_CMD_OFF, 1};
+        inputs_of(&par->own, in->drive.din), raised, in->missed, command, 1};
     struct exh_force_ledger f = {0, 0, 0, 0, 0, 0, 0};
     struct exh_current_ledger i;
     uint32_t limits;
@@ -200,7 +209,7 @@ void bringup_tick(struct bringup *s, const struct bringup_cfg *cfg, const struct
     s->tell = s->safety.tick == 0 ? BRINGUP_TELL_START : 0;
     s->tell_raw = s->code_raw;
     (void)exh_safety_step(&s->safety, &par->safety, box);
-    f.pullback_N_q20 = go_on(s, cfg, in, v);
+    f.pullback_N_q20 = go_on(s, cfg, command, v);
     live = s->result == EXH_PROBE_BUSY && s->safety.state == EXH_STATE_RUN && needs_run(s, cfg);
     limits = exh_drive_force(&s->drive, &cfg->drive, live, &f);
     limits |= exh_drive_current(&s->drive, &cfg->drive, &f, &i);

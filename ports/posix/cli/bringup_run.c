@@ -105,7 +105,6 @@ static void hands(struct exh_drive_in *in)
     const unsigned ask = p ? p->ask : BRINGUP_ASK_NOTHING;
     double t_s;
     if (run.phase != (int)s->phase || run.began != s->busy) {
-        if (run.phase != (int)s->phase && ask == BRINGUP_ASK_HOOK) { run.held = 0; }
         run.phase = (int)s->phase;
         run.began = s->busy;
         run.since_s = now_s();
@@ -119,9 +118,10 @@ static void hands(struct exh_drive_in *in)
         if (between(t_s, 0.5, 1)) { in->din &= ~(uint32_t)EXH_DIN_ESTOP; }
         if (between(t_s, 1.5, 2)) { in->din |= EXH_DIN_DEADMAN; }
         if (between(t_s, 2.5, 3)) { in->din &= ~((uint32_t)EXH_DIN_DRIVE0 << own()->finger); }
-    } else if (ask == BRINGUP_ASK_HOOK && !run.held) {
-        if (t_s > 0.5) { hook(); }
-        run.held = run.hooked && posix_bench_ready() && t_s > 2.5;
+    } else if (ask == BRINGUP_ASK_HOOK) {
+        if (!run.hooked && t_s > 0.3) { run.held = 0; } /* having read the question */
+        if (!run.held && t_s > 0.5) { hook(); }
+        if (t_s > 2.5) { run.held |= run.hooked && posix_bench_ready(); }
     } else if (ask == BRINGUP_ASK_HOLD && t_s > 0.3) {
         run.held = 1;
     }
