@@ -37,6 +37,7 @@ int bilateral_setup(struct bilateral_cfg *cfg, struct bilateral *s, const struct
         err = bilateral_finger_setup(cfg, s, k, board);
     }
     bilateral_wire_setup(&cfg->wire, &s->wire, (uint32_t)par->own.session, board.T);
+    if (err == 0) { err = exh_safety_setup(&cfg->safety, &par->safety, board.T); }
     return err;
 }
 
@@ -86,7 +87,7 @@ static uint32_t sense(struct bilateral *s, const struct bilateral_cfg *cfg,
 /* The drives' inputs by place. */
 static uint32_t din_by_place(const struct bilateral_cfg *cfg, uint32_t din)
 {
-    uint32_t placed = din & (EXH_DIN_ESTOP | EXH_DIN_DEADMAN);
+    uint32_t placed = din & (EXH_DIN_DRIVE0 - 1u);
     for (unsigned k = 0; k < cfg->n; k++) {
         if (din & (uint32_t)EXH_DIN_DRIVE0 << cfg->at[k]) { placed |= (uint32_t)EXH_DIN_DRIVE0 << k; }
     }
@@ -151,6 +152,8 @@ static void tell_box(struct bilateral_box *b, const struct bilateral *s,
     b->odd = exh_from_u32(s->wire.odd);
 }
 
+#define VOUCHED (EXH_UNTESTED | EXH_UNCALIBRATED | EXH_UNPOLARISED | EXH_ARM_ENCODER)
+
 void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,
                     const struct exh_scene_in *in, const struct exh_scene_mail *mail,
                     struct exh_params *params, struct exh_drive_out *out,
@@ -158,8 +161,8 @@ void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,
 {
     const uint32_t raised = sense(s, cfg, &in->drive, sig->paper);
     const struct exh_safety_in box = {din_by_place(cfg, in->drive.din), raised, in->missed,
-                                      in->command, cfg->n};
-    const int run = exh_safety_step(&s->safety, &cfg->par->safety, box) == EXH_STATE_RUN;
+                                      in->command, cfg->n, VOUCHED};
+    const struct exh_permit permit = exh_safety_step(&s->safety, &cfg->safety, box);
     struct exh_current_ledger i[BILATERAL_FINGERS];
     uint32_t limits[BILATERAL_FINGERS];
     struct exh_drive_out placed;
@@ -172,7 +175,7 @@ void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,
     see(s, cfg, in);
     for (unsigned k = 0; k < cfg->n; k++) {
         const unsigned f = cfg->at[k];
-        limits[k] = bilateral_finger_feel(s, cfg, k, run, &i[k], &sig->paper[f], &sig->more[f].bits);
+        limits[k] = bilateral_finger_feel(s, cfg, k, &permit, &i[k], &sig->paper[f], &sig->more[f].bits);
     }
     exh_gate(&s->safety, cfg->drive, cfg->n, i, limits, &placed);
     out_by_finger(cfg, &placed, out);

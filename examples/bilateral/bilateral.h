@@ -142,6 +142,7 @@ struct bilateral_cfg {
     struct bilateral_finger_cfg finger[BILATERAL_FINGERS];
     /* By place: fingers in use come first, then the others. */
     struct exh_drive_cfg drive[BILATERAL_FINGERS];
+    struct exh_safety_cfg safety;
     uint8_t at[BILATERAL_FINGERS]; /* which finger is at this place             */
     uint8_t n;                     /* in use                                    */
     uint32_t rest_ticks;           /* f0_rest                                   */
@@ -198,7 +199,8 @@ void bilateral_finger_see(struct bilateral_finger *s, const struct bilateral_cfg
                           const int32_t *angle_turn_q32);
 /* Position to force and current. Returns limit bits. */
 uint32_t bilateral_finger_feel(struct bilateral *s, const struct bilateral_cfg *cfg,
-                               unsigned place, int run, struct exh_current_ledger *i,
+                               unsigned place, const struct exh_permit *permit,
+                               struct exh_current_ledger *i,
                                struct bilateral_paper *p, int32_t *bits);
 
 /* Stages a calibration in the scene's parameters, between defaults() and set-up: 0, or

@@ -103,7 +103,8 @@ static void wind_in(struct bilateral_finger *s, uint32_t rest_ticks)
 }
 
 uint32_t bilateral_finger_feel(struct bilateral *s, const struct bilateral_cfg *cfg,
-                               unsigned place, int run, struct exh_current_ledger *i,
+                               unsigned place, const struct exh_permit *permit,
+                               struct exh_current_ledger *i,
                                struct bilateral_paper *p, int32_t *bits)
 {
     const unsigned f = cfg->at[place];
@@ -121,7 +122,7 @@ uint32_t bilateral_finger_feel(struct bilateral *s, const struct bilateral_cfg *
     law = touch(s, cfg, f);
     p->c = exh_contact_law(&now->contact, &law, q, &force);
     wind_in(now, cfg->rest_ticks);
-    limits = exh_drive_force(&now->drive, &cfg->drive[place], run, &force);
+    limits = exh_drive_force(&now->drive, &cfg->drive[place], permit, &force);
     limits |= exh_drive_current(&now->drive, &cfg->drive[place], &force, i);
     p->f_des_N_q20 = force.force_N_q20;
     p->q_lim_m_q30 = q.lim_m_q30;

@@ -51,7 +51,7 @@ static const struct exh_signal more_rows[] = {
 };
 
 static const struct exh_signal box_rows[] = {
-    OUT(0x8720, 0, 0, 2, "state", "", "0 off, 1 run, 2 fault"),
+    OUT(0x8720, 0, 0, 5, "state", "", "0 off, 1 arm, 2 run, 3 limit, 4 release, 5 fault"),
     POS(0x8721, 0, "faults", "", "fault causes latched, bits"),
     POS(0x8722, 0, "present", "", "fault causes now, bits"),
     POS(0x8723, 0, "glove_faults", "", "sensors not believed, bits"),

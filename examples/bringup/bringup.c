@@ -71,7 +71,7 @@ static void wait(struct bringup *s, const struct bringup_cfg *cfg, const struct 
                  uint8_t command, int32_t cnt)
 {
     const uint32_t cause = s->safety.present;
-    const int run = s->safety.state == EXH_STATE_RUN;
+    const int run = exh_safety_runs(&s->safety);
     if (cause & EXH_FAULT_DEADMAN) { s->let_go = 1; }
     if (p->hands || p->ask == BRINGUP_ASK_NOTHING || (run && s->let_go)) {
         begin_phase(s, cnt);
@@ -106,7 +106,7 @@ static int32_t go_on(struct bringup *s, const struct bringup_cfg *cfg, uint8_t c
 {
     const struct bringup_own_par *own = &cfg->par->own;
     const struct bringup_phase *p = bringup_phase(cfg->list, s->phase);
-    const int run = s->safety.state == EXH_STATE_RUN;
+    const int run = exh_safety_runs(&s->safety);
     int32_t f_N_q20 = 0;
     uint8_t r = EXH_PROBE_BUSY;
     if (s->result != EXH_PROBE_BUSY) { return 0; }
@@ -186,6 +186,9 @@ static void signals(const struct bringup *s, const struct bringup_par *par, stru
     sig->present = (int32_t)s->safety.present;
 }
 
+/* It is what makes polarity known. */
+#define VOUCHED (EXH_UNTESTED | EXH_UNCALIBRATED | EXH_UNPOLARISED | EXH_ARM_ENCODER)
+
 void bringup_tick(struct bringup *s, const struct bringup_cfg *cfg, const struct exh_scene_in *in,
                   struct exh_drive_out *out, struct bringup_signals *sig)
 {
@@ -200,18 +203,20 @@ void bringup_tick(struct bringup *s, const struct bringup_cfg *cfg, const struct
     const uint32_t raised = (s->quad.lost ? EXH_FAULT_ENCODER : 0u) | EXH_UNTRACKED;
     const uint8_t command = command_of(s, cfg, in->command);
     const struct exh_safety_in box = {
-        inputs_of(&par->own, in->drive.din), raised, in->missed, command, 1};
-    struct exh_force_ledger f = {0, 0, 0, 0, 0, 0, 0};
+        inputs_of(&par->own, in->drive.din), raised, in->missed, command, 1, VOUCHED};
+    struct exh_force_ledger f = {0};
+    struct exh_permit permit;
     struct exh_current_ledger i;
     uint32_t limits;
     int live;
 
     s->tell = s->safety.tick == 0 ? BRINGUP_TELL_START : 0;
     s->tell_raw = s->code_raw;
-    (void)exh_safety_step(&s->safety, &par->safety, box);
+    permit = exh_safety_step(&s->safety, &cfg->safety, box);
     f.pullback_N_q20 = go_on(s, cfg, command, v);
-    live = s->result == EXH_PROBE_BUSY && s->safety.state == EXH_STATE_RUN && needs_run(s, cfg);
-    limits = exh_drive_force(&s->drive, &cfg->drive, live, &f);
+    live = s->result == EXH_PROBE_BUSY && exh_safety_runs(&s->safety) && needs_run(s, cfg);
+    if (!live && permit.mode == EXH_PERMIT_OPEN) { permit.mode = EXH_PERMIT_CLOSED; }
+    limits = exh_drive_force(&s->drive, &cfg->drive, &permit, &f);
     limits |= exh_drive_current(&s->drive, &cfg->drive, &f, &i);
     exh_gate(&s->safety, &cfg->drive, 1, &i, &limits, out);
     s->coded_A_q26 = i.coded_A_q26;

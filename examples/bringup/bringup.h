@@ -97,6 +97,7 @@ struct bringup_cfg {
     struct exh_quad_cfg quad;
     struct exh_velocity_window_cfg vel;
     struct exh_drive_cfg drive;
+    struct exh_safety_cfg safety;
     struct exh_knot to_cur[2];
     struct exh_probe_cfg polarity; /* its travel and move are everybody's        */
     struct exh_home_cfg home;

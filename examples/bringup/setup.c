@@ -80,7 +80,8 @@ static const struct exh_signal signal_rows[] = {
     {0x8805, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "phase", "", "of the stage, from 0"},
     {0x8806, 0, EXH_WHEN_OUTPUT, 0, BRINGUP_RESULTS, 0, "result", "", "why it ended, 1 done"},
     {0x8807, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "limits", "", "limits acting, bits"},
-    {0x8808, 0, EXH_WHEN_OUTPUT, 0, 2, 0, "state", "", "0 off, 1 run, 2 fault"},
+    {0x8808, 0, EXH_WHEN_OUTPUT, 0, 5, 0, "state", "",
+     "0 off, 1 arm, 2 run, 3 limit, 4 release, 5 fault"},
     {0x8809, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "faults", "", "fault causes latched, bits"},
     {0x880A, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "present", "", "fault causes now, bits"},
 };
@@ -249,6 +250,7 @@ int bringup_setup(struct bringup_cfg *cfg, const struct bringup_par *par,
     if (err == 0) { err = exh_quad_setup(&cfg->quad, &par->quad, board.T, board.enc_bits); }
     if (err == 0) { err = exh_velocity_window_setup(&cfg->vel, scale, &window); }
     if (err == 0) { err = exh_drive_setup(&cfg->drive, &cfg->drive_par, board.T, to_cur, none); }
+    if (err == 0) { err = exh_safety_setup(&cfg->safety, &par->safety, board.T); }
     if (err == 0) { err = setup_motions(cfg, board.T); }
     return err == 0 ? setup_weigh(cfg, board.T) : err;
 }

@@ -48,7 +48,8 @@ static const struct exh_signal signal_rows[] = {
     {0x8305, 0, EXH_WHEN_OUTPUT, 0, 1, 0, "waits", "", "for the person"},
     {0x8306, 0, EXH_WHEN_OUTPUT, 0, CALIBRATE_RESULTS, 0, "result", "", "why it ended, 1 done"},
     {0x8307, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "limits", "", "limits acting, bits"},
-    {0x8308, 0, EXH_WHEN_OUTPUT, 0, 2, 0, "state", "", "0 off, 1 run, 2 fault"},
+    {0x8308, 0, EXH_WHEN_OUTPUT, 0, 5, 0, "state", "",
+     "0 off, 1 arm, 2 run, 3 limit, 4 release, 5 fault"},
     {0x8309, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "faults", "", "fault causes latched, bits"},
     {0x830A, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "present", "", "fault causes now, bits"},
 };
@@ -158,6 +159,7 @@ int calibrate_setup(struct calibrate_cfg *cfg, const struct calibrate_par *par,
     if (err == 0) { err = exh_quad_setup(&cfg->quad, &par->quad, board.T, board.enc_bits); }
     if (err == 0) { err = exh_drive_setup(&cfg->drive, &par->drive, board.T, to_cur, none); }
     if (err == 0) { err = exh_track_setup(&cfg->track, &par->track, board.T); }
+    if (err == 0) { err = exh_safety_setup(&cfg->safety, &par->safety, board.T); }
     if (err == 0) { err = setup_motions(cfg, &par->own, scale); }
     return err == 0 ? setup_masses(cfg, par, scale) : err;
 }
@@ -316,6 +318,9 @@ void calibrate_start(struct calibrate *s, const struct calibrate_cfg *cfg)
     begin_wait(s, cfg);
 }
 
+/* It is what makes calibration and polarity known. */
+#define VOUCHED (EXH_UNTESTED | EXH_UNCALIBRATED | EXH_UNPOLARISED | EXH_ARM_ENCODER)
+
 void calibrate_tick(struct calibrate *s, const struct calibrate_cfg *cfg,
                     const struct exh_scene_in *in, struct exh_drive_out *out,
                     struct calibrate_signals *sig)
@@ -327,15 +332,16 @@ void calibrate_tick(struct calibrate *s, const struct calibrate_cfg *cfg,
     const int astray = exh_track_step(&s->track, &cfg->track, v.mon_A_q26);
     const uint32_t raised =
         (s->quad.lost ? EXH_FAULT_ENCODER : 0u) | (astray ? EXH_FAULT_TRACKING : 0u);
-    const struct exh_safety_in box = {in->drive.din, raised, in->missed, in->command, 1};
-    const int run = exh_safety_step(&s->safety, &par->safety, box) == EXH_STATE_RUN;
-    const int32_t cur_A_q26 = go_on(s, cfg, v, run);
-    struct exh_force_ledger f = {0, 0, 0, 0, 0, 0, 0};
+    const struct exh_safety_in box = {in->drive.din, raised, in->missed, in->command, 1,
+                                      VOUCHED};
+    const struct exh_permit permit = exh_safety_step(&s->safety, &cfg->safety, box);
+    const int32_t cur_A_q26 = go_on(s, cfg, v, exh_safety_runs(&s->safety));
+    struct exh_force_ledger f = {0};
     struct exh_current_ledger i;
     uint32_t limits;
 
     f.pullback_N_q20 = cur_A_q26 >> (EXH_Q_CUR - EXH_Q_FORCE); /* 1 N for 1 A */
-    limits = exh_drive_force(&s->drive, &cfg->drive, run, &f);
+    limits = exh_drive_force(&s->drive, &cfg->drive, &permit, &f);
     limits |= exh_drive_current(&s->drive, &cfg->drive, &f, &i);
     exh_gate(&s->safety, &cfg->drive, 1, &i, &limits, out);
     exh_track_coded(&s->track, i.coded_A_q26);

@@ -86,6 +86,7 @@ struct calibrate_cfg {
     struct exh_quad_cfg quad;
     struct exh_drive_cfg drive;
     struct exh_track_cfg track;
+    struct exh_safety_cfg safety;
     struct exh_knot one_to_one[2];
     struct exh_probe_cfg polarity, f0;
     struct exh_home_cfg home;

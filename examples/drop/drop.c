@@ -19,9 +19,11 @@ static const struct exh_signal paper_rows[] = {
 
 static const struct exh_signal more_rows[] = {
     {0x8107, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "limits", "", "limits acting, bits"},
-    {0x8108, 0, EXH_WHEN_OUTPUT, 0, 2, 0, "state", "", "0 off, 1 run, 2 fault"},
+    {0x8108, 0, EXH_WHEN_OUTPUT, 0, 5, 0, "state", "",
+     "0 off, 1 arm, 2 run, 3 limit, 4 release, 5 fault"},
     {0x8109, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "faults", "", "fault causes latched, bits"},
     {0x810A, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "present", "", "fault causes now, bits"},
+    {0x810B, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "arm_step", "", "arming is at, or was refused by"},
 };
 
 #define ROWS(r) {(r), sizeof(r) / sizeof((r)[0]), 1}
@@ -29,10 +31,10 @@ static const struct exh_signal more_rows[] = {
 static const struct exh_signal_group param_groups[] = {
     {exh_quad_rows, EXH_QUAD_ROWS, 1},       {exh_velocity_rows, EXH_VELOCITY_ROWS, 1},
     {exh_contact_rows, EXH_CONTACT_ROWS, 1}, {exh_drive_rows, EXH_DRIVE_ROWS, 1},
-    {exh_track_rows, EXH_TRACK_ROWS, 1},     {exh_safety_rows, EXH_SAFETY_ROWS, 1},
-    ROWS(own_rows),
+    {exh_track_rows, EXH_TRACK_ROWS, 1},     {exh_watch_rows, EXH_WATCH_ROWS, 1},
+    {exh_safety_rows, EXH_SAFETY_ROWS, 1},   ROWS(own_rows),
 };
-static const struct exh_signal_table param_table = {param_groups, 7};
+static const struct exh_signal_table param_table = {param_groups, 8};
 
 /* The first group is the paper's, in its order: what a CSV holds. */
 static const struct exh_signal_group signal_groups[] = {ROWS(paper_rows), ROWS(more_rows)};
@@ -41,7 +43,8 @@ static const struct exh_signal_table signal_table = {signal_groups, 2};
 #define PARAMS (sizeof(struct drop_par) / sizeof(int32_t))
 EXH_STATIC_ASSERT(drop_par_matches_rows,
                   PARAMS == EXH_QUAD_ROWS + EXH_VELOCITY_ROWS + EXH_CONTACT_ROWS +
-                                EXH_DRIVE_ROWS + EXH_TRACK_ROWS + EXH_SAFETY_ROWS + 2);
+                                EXH_DRIVE_ROWS + EXH_TRACK_ROWS + EXH_WATCH_ROWS +
+                                EXH_SAFETY_ROWS + 2);
 
 int drop_setup(struct drop_cfg *cfg, const struct drop_par *par, struct exh_scene_board board)
 {
@@ -64,7 +67,16 @@ int drop_setup(struct drop_cfg *cfg, const struct drop_par *par, struct exh_scen
     if (err == 0) { err = exh_velocity_window_setup(&cfg->velocity, scale, &par->velocity); }
     if (err == 0) { err = exh_drive_setup(&cfg->drive, &par->drive, board.T, to_cur, to_force); }
     if (err == 0) { err = exh_track_setup(&cfg->track, &par->track, board.T); }
+    if (err == 0) { err = exh_watch_setup(&cfg->watch, &par->watch, board.T); }
+    if (err == 0) { err = exh_safety_setup(&cfg->safety, &par->safety, board.T); }
     return err;
+}
+
+/* Steps of arming that hold. A mass has no calibration, and which way it falls is seen. */
+static uint8_t steps_held(const struct drop *s)
+{
+    return (uint8_t)(EXH_UNTESTED | EXH_UNCALIBRATED | EXH_UNPOLARISED |
+                     (s->quad.lost ? 0u : EXH_ARM_ENCODER));
 }
 
 void drop_tick(struct drop *s, const struct drop_cfg *cfg, const struct exh_scene_in *in,
@@ -72,24 +84,27 @@ void drop_tick(struct drop *s, const struct drop_cfg *cfg, const struct exh_scen
 {
     const struct drop_par *par = cfg->par;
     const int32_t cnt = exh_quad_extend(&s->quad, &cfg->quad, in->drive.enc_raw[0]);
-    const struct exh_contact_in q = {
+    struct exh_contact_in q = {
         exh_quad_pos_m_q30(&par->quad, cnt),
         exh_velocity_window_mps_q27(&s->velocity, &cfg->velocity, cnt), par->own.q_lim_m_q30};
     const int32_t mon_A_q26 = exh_drive_monitor_A_q26(&cfg->drive, in->drive.mon_raw[0]);
     const int astray = exh_track_step(&s->track, &cfg->track, mon_A_q26);
-    const uint32_t raised =
-        (s->quad.lost ? EXH_FAULT_ENCODER : 0u) | (astray ? EXH_FAULT_TRACKING : 0u);
-    const struct exh_safety_in box = {in->drive.din, raised, in->missed, in->command, 1};
-    const int run = exh_safety_step(&s->safety, &par->safety, box) == EXH_STATE_RUN;
+    uint32_t limits = 0;
+    const uint32_t raised = (s->quad.lost ? EXH_FAULT_ENCODER : 0u) |
+                            (astray ? EXH_FAULT_TRACKING : 0u) |
+                            exh_watch_step(&s->watch, &cfg->watch, &q.vel_mps_q27, &limits);
+    const struct exh_safety_in box = {in->drive.din, raised, in->missed, in->command, 1,
+                                      steps_held(s)};
+    const struct exh_permit permit = exh_safety_step(&s->safety, &cfg->safety, box);
     struct exh_force_ledger f;
     struct exh_current_ledger i;
-    uint32_t limits;
 
     sig->c = exh_contact_law(&s->contact, &par->contact, q, &f);
-    limits = exh_drive_force(&s->drive, &cfg->drive, run, &f);
+    limits |= exh_drive_force(&s->drive, &cfg->drive, &permit, &f);
     limits |= exh_drive_current(&s->drive, &cfg->drive, &f, &i);
     exh_gate(&s->safety, &cfg->drive, 1, &i, &limits, out);
     exh_track_coded(&s->track, i.coded_A_q26);
+    exh_watch_coded(&s->watch, &cfg->watch, cnt, i.coded_A_q26);
 
     sig->q_m_q30 = q.pos_m_q30;
     sig->qd_mps_q27 = q.vel_mps_q27;
@@ -100,6 +115,7 @@ void drop_tick(struct drop *s, const struct drop_cfg *cfg, const struct exh_scen
     sig->state = s->safety.state;
     sig->faults = (int32_t)s->safety.faults;
     sig->present = (int32_t)s->safety.present;
+    sig->arm_step = exh_safety_arm(&s->safety);
 }
 
 /* --- the one instance of this image --- */
@@ -134,6 +150,7 @@ static void state_bytes(struct exh_bytes *c)
     exh_contact_bytes(c, &state.contact);
     exh_drive_bytes(c, &state.drive);
     exh_track_bytes(c, &state.track);
+    exh_watch_bytes(c, &state.watch);
     exh_safety_bytes(c, &state.safety);
 }
 

@@ -20,6 +20,7 @@ struct drop_par {
     struct exh_contact_par contact;
     struct exh_drive_par drive;
     struct exh_track_par track;
+    struct exh_watch_par watch;
     struct exh_safety_par safety;
     struct drop_own_par own;
 };
@@ -36,6 +37,7 @@ struct drop_signals {
     int32_t state;  /* enum exh_state                                          */
     int32_t faults;  /* enum exh_fault, latched                                 */
     int32_t present; /* enum exh_fault: why RUN or CLEAR is refused             */
+    int32_t arm_step; /* enum exh_arm: on which arming is, or was refused       */
 };
 
 struct drop_cfg {
@@ -44,6 +46,8 @@ struct drop_cfg {
     struct exh_velocity_window_cfg velocity;
     struct exh_drive_cfg drive;
     struct exh_track_cfg track;
+    struct exh_watch_cfg watch;
+    struct exh_safety_cfg safety;
     struct exh_knot force_to_cur[2], cur_to_force[2];
 };
 
@@ -53,6 +57,7 @@ struct drop {
     struct exh_contact contact;
     struct exh_drive drive;
     struct exh_track track;
+    struct exh_watch watch;
     struct exh_safety safety;
 };
 

@@ -13,13 +13,16 @@ static const struct exh_drive_par drive_par = {
     .peak_ms = 2700, .dac_zero_raw = 32768, .dac_span_raw = 12184,
     .dac_rawpA_q16 = EXH_Q(324900, 176, EXH_Q_DAC), .mon_A_q40 = EXH_Q(5164, 10000000, EXH_Q_MON)};
 static const struct exh_track_par track_par = {EXH_Q(1, 4, EXH_Q_CUR), 20};
-static const struct exh_safety_par safety_par = {1};
+static const struct exh_safety_par safety_par = {1, EXH_Q(1, 1, EXH_Q_FORCE), 50, 500, 15};
+/* Its parameters are constants; an encoder that is lost is a cause by itself. */
+#define vouched (EXH_UNTESTED | EXH_UNCALIBRATED | EXH_UNPOLARISED | EXH_ARM_ENCODER)
 static const int32_t wall_m_q30 = EXH_Q(2, 100, EXH_Q_POS);
 
 static struct exh_quad_cfg quad_cfg;
 static struct exh_velocity_window_cfg vel_cfg;
 static struct exh_drive_cfg drive_cfg;
 static struct exh_track_cfg track_cfg;
+static struct exh_safety_cfg safety_cfg;
 static struct exh_knot knot[2] = {{0, 0, {0, 0}}, {EXH_Q(22, 1, EXH_Q_FORCE), EXH_Q(66, 10, EXH_Q_CUR), {0, 0}}};
 static struct state {
     struct exh_quad quad;
@@ -40,6 +43,7 @@ static int setup(struct exh_scene_board board)
     if (err == 0) { err = exh_velocity_window_setup(&vel_cfg, scale, &vel_par); }
     if (err == 0) { err = exh_drive_setup(&drive_cfg, &drive_par, board.T, force_to_cur, no_table); }
     if (err == 0) { err = exh_track_setup(&track_cfg, &track_par, board.T); }
+    if (err == 0) { err = exh_safety_setup(&safety_cfg, &safety_par, board.T); }
     return err;
 }
 
@@ -53,12 +57,12 @@ static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
     const int32_t mon_A_q26 = exh_drive_monitor_A_q26(&drive_cfg, in->drive.mon_raw[0]);
     const int astray = exh_track_step(&s.track, &track_cfg, mon_A_q26);
     const uint32_t raised = (s.quad.lost ? EXH_FAULT_ENCODER : 0u) | (astray ? EXH_FAULT_TRACKING : 0u);
-    const struct exh_safety_in box = {in->drive.din, raised, in->missed, in->command, 1};
-    const int run = exh_safety_step(&s.safety, &safety_par, box) == EXH_STATE_RUN;
+    const struct exh_safety_in box = {in->drive.din, raised, in->missed, in->command, 1, vouched};
+    const struct exh_permit permit = exh_safety_step(&s.safety, &safety_cfg, box);
     uint32_t limits;
 
     exh_contact_law(&s.contact, &contact_par, q, &f);
-    limits = exh_drive_force(&s.drive, &drive_cfg, run, &f);
+    limits = exh_drive_force(&s.drive, &drive_cfg, &permit, &f);
     limits |= exh_drive_current(&s.drive, &drive_cfg, &f, &i);
     exh_gate(&s.safety, &drive_cfg, 1, &i, &limits, out);
     exh_track_coded(&s.track, i.coded_A_q26);

@@ -53,6 +53,7 @@ int exh_contact_law(struct exh_contact *s, const struct exh_contact_par *par,
     out->passivity_N_q20 = 0;
     out->clamp_N_q20 = 0;
     out->slew_N_q20 = 0;
+    out->release_N_q20 = 0;
     out->force_N_q20 = 0;
     return s->touching;
 }

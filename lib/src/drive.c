@@ -177,23 +177,42 @@ int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par,
 
 /* --- the tick --- */
 
-/* Not in RUN: nothing is left for the slew limit to remember. */
-static uint32_t no_force(struct exh_drive *s, int64_t asked_N_q20, struct exh_force_ledger *f)
+/* Closed: nothing is left for the slew limit to remember. */
+static uint32_t no_force(struct exh_drive *s, int64_t asked_N_q20, int32_t small_N_q20,
+                         struct exh_force_ledger *f)
 {
     s->force_N_q20 = 0;
+    s->fall_N_q20 = 0;
     f->clamp_N_q20 = -asked_N_q20;
-    f->slew_N_q20 = 0;
-    f->force_N_q20 = 0;
-    return asked_N_q20 > 0 ? EXH_LIMIT_GATE : asked_N_q20 < 0 ? EXH_LIMIT_PULL : 0u;
+    if (asked_N_q20 < 0) { return EXH_LIMIT_PULL; }
+    return (asked_N_q20 > 0 ? EXH_LIMIT_GATE : 0u) |
+           (asked_N_q20 > small_N_q20 ? EXH_LIMIT_FORCE : 0u);
 }
 
-uint32_t exh_drive_force(struct exh_drive *s, const struct exh_drive_cfg *cfg, int run,
-                         struct exh_force_ledger *f)
+/* Nothing that is asked for counts any more, only what is held: a law that lost its inputs must
+ * not speak. The step rounded up, so that the last one is none too small. */
+static uint32_t release(struct exh_drive *s, int64_t asked_N_q20, const struct exh_permit *permit,
+                        struct exh_force_ledger *f)
+{
+    int64_t rest;
+    if (s->fall_N_q20 == 0) {
+        s->fall_N_q20 = (int32_t)exh_gain_floor(permit->fall, s->force_N_q20) + 1;
+    }
+    rest = s->force_N_q20 - (int64_t)permit->ticks * s->fall_N_q20;
+    s->force_N_q20 = rest > 0 ? (int32_t)rest : 0;
+    f->force_N_q20 = s->force_N_q20;
+    f->release_N_q20 = s->force_N_q20 - asked_N_q20;
+    return EXH_LIMIT_RELEASE;
+}
+
+uint32_t exh_drive_force(struct exh_drive *s, const struct exh_drive_cfg *cfg,
+                         const struct exh_permit *permit, struct exh_force_ledger *f)
 {
     const struct exh_drive_par *par = cfg->par;
     const int64_t asked =
         f->spring_N_q20 + f->damper_N_q20 + f->pullback_N_q20 + f->passivity_N_q20;
-    const int32_t most = par->f_max_N_q20 < cfg->f_top_N_q20 ? par->f_max_N_q20 : cfg->f_top_N_q20;
+    const int32_t top = par->f_max_N_q20 < cfg->f_top_N_q20 ? par->f_max_N_q20 : cfg->f_top_N_q20;
+    const int32_t most = (int32_t)((int64_t)top * permit->share_q30 >> 30);
     const int32_t held = exh_clamp(asked, 0, most);
     const int rises = held > s->force_N_q20;
     const int64_t rate =
@@ -203,14 +222,19 @@ uint32_t exh_drive_force(struct exh_drive *s, const struct exh_drive_cfg *cfg, i
     const int64_t slewed = (held > end) == rises ? end : held; /* the nearer */
     uint32_t limits = 0;
 
-    if (run != 1) { return no_force(s, asked, f); }
+    f->clamp_N_q20 = f->slew_N_q20 = f->release_N_q20 = 0;
+    f->force_N_q20 = 0;
+    if (permit->mode == EXH_PERMIT_RELEASE) { return release(s, asked, permit, f); }
+    if (permit->mode != EXH_PERMIT_OPEN) { return no_force(s, asked, permit->small_N_q20, f); }
     if (asked < 0) { limits |= EXH_LIMIT_PULL; }
-    if (asked > held && asked > 0) { limits |= EXH_LIMIT_FORCE; }
+    if (asked > top) { limits |= EXH_LIMIT_FORCE; }
+    if (most < top && asked > most) { limits |= EXH_LIMIT_RAMP; }
     if (slewed != held) { limits |= EXH_LIMIT_SLEW; }
     f->clamp_N_q20 = held - asked;
     f->slew_N_q20 = slewed - held;
     f->force_N_q20 = (int32_t)slewed; /* between held and the last force: both int32 */
     s->force_N_q20 = f->force_N_q20;
+    s->fall_N_q20 = 0;
     return limits;
 }
 
@@ -261,8 +285,10 @@ int32_t exh_drive_monitor_N_q20(const struct exh_drive_cfg *cfg, int16_t mon_raw
 void exh_drive_bytes(struct exh_bytes *c, struct exh_drive *s)
 {
     exh_bytes_i32(c, &s->force_N_q20);
+    exh_bytes_i32(c, &s->fall_N_q20);
     exh_bytes_i64(c, &s->i2t_q32);
     /* From damaged bytes: no force out of range, and no heat that a sum with it overflows. */
     s->force_N_q20 = exh_clamp(s->force_N_q20, 0, F_MAX_N_Q20);
+    s->fall_N_q20 = exh_clamp(s->fall_N_q20, 0, F_MAX_N_Q20 + 1);
     if (s->i2t_q32 < 0 || s->i2t_q32 > INT64_MAX / 2) { s->i2t_q32 = INT64_MAX / 2; }
 }

@@ -3,105 +3,267 @@
 #include "exhand/error.h"
 #include "exhand/fix.h"
 
-#define MISSED_MAX 1
+#include <stddef.h>
+
+#define MISSED_MAX     1
+#define SMALL_MIN_NQ20 EXH_Q(1, 10, EXH_Q_FORCE)
+#define SMALL_MAX_NQ20 EXH_Q(10, 1, EXH_Q_FORCE)
+#define ARM_MAX_MS     1000
+#define RAMP_MAX_MS    5000
+#define RELEASE_MIN_MS 5
+#define RELEASE_MAX_MS 18 /* and the tick that sees it, at 500 Hz: 20            */
+#define FULL_Q30       (INT32_C(1) << 30)
 
 const struct exh_signal exh_safety_rows[EXH_SAFETY_ROWS] = {
     {0x0601, 0, EXH_WHEN_SETUP, 0, MISSED_MAX, 1, "missed_max", "", "missed ticks tolerated, in 64"},
+    {0x0602, EXH_Q_FORCE, EXH_WHEN_SETUP, SMALL_MIN_NQ20, SMALL_MAX_NQ20, EXH_Q(1, 1, EXH_Q_FORCE),
+     "arm_force", "n", "arming needs a law that asks for no more"},
+    {0x0603, 0, EXH_WHEN_SETUP, 1, ARM_MAX_MS, 50, "arm_time", "ms", "for so long, and 2 ticks"},
+    {0x0604, 0, EXH_WHEN_SETUP, 1, RAMP_MAX_MS, 500, "ramp_time", "ms",
+     "then the force limit rises to f_max in"},
+    {0x0605, 0, EXH_WHEN_SETUP, RELEASE_MIN_MS, RELEASE_MAX_MS, 15, "release_time", "ms",
+     "a force let go falls to zero in, 3 ticks at least"},
 };
+
+/* --- set-up --- */
+
+static int inside(int32_t v, int32_t lo, int32_t hi)
+{
+    return v >= lo && v <= hi;
+}
+
+/* Whole ticks in a time. */
+static uint32_t ticks_in(int32_t ms, struct exh_period T)
+{
+    return (uint32_t)exh_udiv64((uint64_t)(uint32_t)ms * T.den, UINT64_C(1000) * T.num, NULL);
+}
+
+int exh_safety_setup(struct exh_safety_cfg *cfg, const struct exh_safety_par *par,
+                     struct exh_period T)
+{
+    uint32_t ramp_ticks;
+    if (!inside(par->missed_max, 0, MISSED_MAX) ||
+        !inside(par->arm_force_N_q20, SMALL_MIN_NQ20, SMALL_MAX_NQ20) ||
+        !inside(par->arm_ms, 1, ARM_MAX_MS) || !inside(par->ramp_ms, 1, RAMP_MAX_MS) ||
+        !inside(par->release_ms, RELEASE_MIN_MS, RELEASE_MAX_MS)) {
+        return -EXH_E_RANGE;
+    }
+    if (!exh_period_ok(T)) { return -EXH_E_RATE; }
+    cfg->late_max = (uint32_t)par->missed_max * EXH_LATE_TICKS;
+    cfg->small_N_q20 = par->arm_force_N_q20;
+    cfg->arm_ticks = ticks_in(par->arm_ms, T) + 1;
+    if (cfg->arm_ticks < 2) { cfg->arm_ticks = 2; }
+    ramp_ticks = ticks_in(par->ramp_ms, T) + 1;
+    cfg->ramp_q30 = (int32_t)exh_udiv64(FULL_Q30 + ramp_ticks - 1, ramp_ticks, NULL);
+    cfg->release_ticks = ticks_in(par->release_ms, T);
+    if (cfg->release_ticks < 3) { cfg->release_ticks = 3; }
+    return exh_gain_set(&cfg->fall, 1, cfg->release_ticks);
+}
+
+/* --- what is the case --- */
 
 static uint32_t add_sat(uint32_t a, uint32_t b)
 {
     return a > UINT32_MAX - b ? UINT32_MAX : a + b;
 }
 
-/* Causes present in this tick. */
-static uint32_t causes(uint32_t late, const struct exh_safety_par *par, struct exh_safety_in in)
+/* A tick too long by half a period misses every other one: it must add up. */
+static void count_missed(struct exh_safety *s, uint32_t missed)
 {
-    const uint32_t drives = ((1u << in.fingers) - 1u) * EXH_DIN_DRIVE0;
-    const int in_range = par->missed_max >= 0 && par->missed_max <= MISSED_MAX;
-    uint32_t c = in.raised;
-    if (!(in.din & EXH_DIN_ESTOP)) { c |= EXH_FAULT_ESTOP; }
-    if (!(in.din & EXH_DIN_DEADMAN)) { c |= EXH_FAULT_DEADMAN; }
-    if ((in.din & drives) != drives) { c |= EXH_FAULT_DRIVE; }
-    if (late > (in_range ? (uint32_t)par->missed_max * EXH_LATE_TICKS : 0)) { c |= EXH_FAULT_OVERRUN; }
+    s->missed = add_sat(s->missed, missed);
+    if (s->late > 0) { s->late--; }
+    for (uint32_t k = 0; k < missed && k <= MISSED_MAX; k++) {
+        s->late = add_sat(s->late, EXH_LATE_TICKS);
+    }
+}
+
+static void count_limits(struct exh_safety *s)
+{
+    for (unsigned k = 0; k < EXH_LIMITS; k++) {
+        s->held[k] = add_sat(s->held[k], s->limits >> k & 1u);
+    }
+}
+
+/* Faults are latched in FAULT and on the way there, and nowhere else. */
+static int sane(const struct exh_safety *s)
+{
+    return s->state == EXH_STATE_FAULT  ? s->faults != 0
+           : s->state < EXH_STATE_FAULT ? s->faults == 0 || s->state == EXH_STATE_RELEASE
+                                        : 0;
+}
+
+/* Causes present in this tick. */
+static uint32_t causes(struct exh_safety *s, const struct exh_safety_cfg *cfg,
+                       const struct exh_safety_in *in)
+{
+    const uint32_t drives = ((1u << in->fingers) - 1u) * EXH_DIN_DRIVE0;
+    uint32_t c = in->raised;
+    if (!(in->din & EXH_DIN_ESTOP)) { c |= EXH_FAULT_ESTOP; }
+    if (!(in->din & EXH_DIN_DEADMAN)) { c |= EXH_FAULT_DEADMAN; }
+    if (!(in->din & EXH_DIN_WATCHDOG)) { c |= EXH_FAULT_WATCHDOG; }
+    if (!(in->din & EXH_DIN_CARDS)) { c |= EXH_FAULT_CARD; }
+    if ((in->din & drives) != drives) { c |= EXH_FAULT_DRIVE; }
+    if (s->late > cfg->late_max) { c |= EXH_FAULT_OVERRUN; }
+    if (!sane(s)) {
+        c |= EXH_FAULT_LOGIC;
+        s->state = EXH_STATE_FAULT;
+    }
     return c;
 }
 
-uint8_t exh_safety_step(struct exh_safety *s, const struct exh_safety_par *par,
-                        struct exh_safety_in in)
+/* Steps of arming that do not hold, of those that need no open gate. */
+static uint32_t lacking(const struct exh_safety *s, uint32_t ready, uint32_t now)
 {
-    uint32_t now;
+    return (~ready & EXH_ARM_ALL) | (now ? EXH_ARM_DEADMAN : 0u) |
+           (s->limits & EXH_LIMIT_FORCE ? EXH_ARM_SMALL_FORCE : 0u);
+}
 
-    EXH_ASSERT(in.fingers >= 1);
-    EXH_ASSERT(in.fingers <= EXH_FINGERS);
-    s->missed = add_sat(s->missed, in.missed);
-    s->fingers = in.fingers;
-    /* A tick too long by half a period misses every other one: it must add up. */
-    if (s->late > 0) { s->late--; }
-    for (uint32_t k = 0; k < in.missed && k <= MISSED_MAX; k++) {
-        s->late = add_sat(s->late, EXH_LATE_TICKS);
-    }
-    now = causes(s->late, par, in);
-    s->present = now;
-    if (s->state == EXH_STATE_RUN && now != 0) {
-        s->state = EXH_STATE_FAULT;
+static void latch(struct exh_safety *s, uint32_t now)
+{
+    if (s->faults == 0 && now != 0) {
         s->first = now;
         s->first_tick = s->tick;
     }
-    if (s->state > EXH_STATE_FAULT) { s->state = EXH_STATE_FAULT; }
-    if (s->state == EXH_STATE_FAULT) {
-        s->faults |= now;
-        if (in.command == EXH_CMD_CLEAR && now == 0) {
-            s->state = EXH_STATE_OFF;
-            s->faults = 0;
+    if (now & ~s->faults) { s->opened = 0; }
+    s->faults |= now;
+}
+
+/* --- what follows from it --- */
+
+#define O EXH_STATE_OFF
+#define A EXH_STATE_ARM
+#define R EXH_STATE_RUN
+#define L EXH_STATE_LIMIT
+#define E EXH_STATE_RELEASE
+#define F EXH_STATE_FAULT
+const uint8_t exh_safety_next[EXH_STATES][EXH_TRIGGERS] = {
+    /*            refused cut latched released cause off armed limited run clear none */
+    /* off     */ {O, O, F, F, O, O, F, F, A, F, O},
+    /* arm     */ {O, F, F, F, E, E, R, F, A, F, A},
+    /* run     */ {F, F, F, F, E, E, F, L, R, F, R},
+    /* limit   */ {F, F, F, F, E, E, F, L, R, F, R},
+    /* release */ {F, F, F, O, E, E, F, F, E, F, E},
+    /* fault   */ {F, F, F, F, F, F, F, F, F, O, F},
+};
+#undef O
+#undef A
+#undef R
+#undef L
+#undef E
+#undef F
+
+#define ON(trigger, when) ((when) ? 1u << EXH_ON_##trigger : 0u)
+
+/* Which triggers apply. Those that one state alone has are asked for in no other. */
+static uint32_t triggers(const struct exh_safety *s, const struct exh_safety_cfg *cfg,
+                         const struct exh_safety_in *in, uint32_t lacks)
+{
+    const int ramp = s->state == EXH_STATE_ARM && s->share_q30 > 0;
+    const int early = s->state == EXH_STATE_ARM && s->share_q30 <= 0;
+    const int off = in->command == EXH_CMD_OFF, run = in->command == EXH_CMD_RUN;
+    const int asked = s->state == EXH_STATE_OFF && run;
+    const int ended = s->state == EXH_STATE_RELEASE && s->steps >= cfg->release_ticks;
+    const int runs = exh_safety_runs(s);
+    return ON(REFUSED, ((asked || early) && lacks) || (early && off)) |
+           ON(CUT, s->present & EXH_FAULT_CUT) | ON(LATCHED, ended && s->faults) |
+           ON(RELEASED, ended && !s->faults) | ON(CAUSE, s->present) |
+           ON(OFF, off || (ramp && lacks & EXH_ARM_ALL)) |
+           ON(ARMED, ramp && s->share_q30 >= FULL_Q30) |
+           ON(LIMITED, runs && s->limits & ~(uint32_t)EXH_LIMIT_PULL) | ON(RUN, run) |
+           ON(CLEAR, in->command == EXH_CMD_CLEAR && s->state == EXH_STATE_FAULT && !s->present &&
+                         s->opened) |
+           ON(NONE, 1);
+}
+
+/* The first of them. */
+static uint8_t first_of(uint32_t due)
+{
+    uint8_t t = EXH_ON_NONE;
+    for (uint8_t k = EXH_ON_NONE; k > 0; k--) {
+        if (due >> (k - 1) & 1u) { t = (uint8_t)(k - 1); }
+    }
+    return t;
+}
+
+/* What a state counts: from its first tick on. */
+static void count_steps(struct exh_safety *s, const struct exh_safety_cfg *cfg, int anew,
+                        uint32_t missed)
+{
+    if (anew) { s->steps = 0; }
+    if (anew || s->state != EXH_STATE_ARM) { s->share_q30 = 0; }
+    if (s->state == EXH_STATE_RELEASE) { s->steps = add_sat(s->steps, add_sat(missed, 1)); }
+    if (s->state == EXH_STATE_ARM && !anew) {
+        s->steps = add_sat(s->steps, 1);
+        if (s->steps >= cfg->arm_ticks) {
+            s->share_q30 = exh_clamp((int64_t)s->share_q30 + cfg->ramp_q30, 0, FULL_Q30);
         }
-    } else if (in.command == EXH_CMD_OFF) {
-        s->state = EXH_STATE_OFF;
-    } else if (in.command == EXH_CMD_RUN && now == 0) {
-        s->state = EXH_STATE_RUN;
     }
+}
+
+static struct exh_permit permit_of(const struct exh_safety *s, const struct exh_safety_cfg *cfg,
+                                   uint32_t missed)
+{
+    struct exh_permit p;
+    p.mode = !exh_safety_open(s)               ? EXH_PERMIT_CLOSED
+             : s->state == EXH_STATE_RELEASE ? EXH_PERMIT_RELEASE
+                                             : EXH_PERMIT_OPEN;
+    p.share_q30 = s->state == EXH_STATE_ARM ? s->share_q30 : FULL_Q30;
+    p.small_N_q20 = cfg->small_N_q20;
+    p.ticks = add_sat(missed, 1);
+    p.fall = cfg->fall;
+    return p;
+}
+
+struct exh_permit exh_safety_step(struct exh_safety *s, const struct exh_safety_cfg *cfg,
+                                  struct exh_safety_in in)
+{
+    uint32_t lacks;
+    uint8_t before;
+
+    EXH_ASSERT(in.fingers >= 1);
+    EXH_ASSERT(in.fingers <= EXH_FINGERS);
+    s->fingers = in.fingers;
+    count_missed(s, in.missed);
+    count_limits(s);
+    s->present = causes(s, cfg, &in);
+    lacks = lacking(s, in.ready, s->present);
+    if (exh_safety_open(s) || s->state == EXH_STATE_FAULT) { latch(s, s->present); }
+    if (!(in.din & EXH_DIN_DEADMAN)) { s->opened = 1; }
+    s->trigger = first_of(triggers(s, cfg, &in, lacks));
+    if (s->trigger == EXH_ON_REFUSED && lacks) {
+        s->refused = (uint8_t)(lacks & (~lacks + 1u)); /* the lowest: the first step */
+        s->refusals = add_sat(s->refusals, 1);
+    }
+    before = s->state;
+    s->state = exh_safety_next[before][s->trigger];
+    if (s->trigger == EXH_ON_CLEAR) { s->faults = 0; }
+    if (s->trigger == EXH_ON_ARMED) { s->refused = 0; }
+    count_steps(s, cfg, s->state != before, in.missed);
     s->tick++;
-    return s->state;
+    return permit_of(s, cfg, in.missed);
 }
 
-/* The code for one current: within the span of zero, and of 16 bits. */
-static uint16_t code_of(const struct exh_drive_par *par, int32_t cur_A_q26, uint32_t *limits)
+uint8_t exh_safety_arm(const struct exh_safety *s)
 {
-    const int64_t asked = exh_mul_shr(cur_A_q26, par->dac_rawpA_q16, EXH_Q_CUR + EXH_Q_DAC);
-    const int32_t spanned = exh_clamp(asked, -par->dac_span_raw, par->dac_span_raw);
-    const int32_t code = exh_clamp((int64_t)par->dac_zero_raw + spanned, 0, UINT16_MAX);
-    if (code != par->dac_zero_raw + asked) { *limits |= EXH_LIMIT_DAC; }
-    return (uint16_t)code;
+    if (s->state != EXH_STATE_ARM) { return s->refused; }
+    return s->share_q30 > 0 ? EXH_ARM_RAMP : EXH_ARM_SMALL_FORCE;
 }
 
-void exh_gate(struct exh_safety *s, const struct exh_drive_cfg *cfg, unsigned n,
-              struct exh_current_ledger *i, uint32_t *limits, struct exh_drive_out *out)
+/* --- state --- */
+
+/* A RUN made of a damaged OFF would open the gate, so what was written is sealed. */
+static int sealed(struct exh_bytes *c, uint32_t from)
 {
-    const int open = s->state == EXH_STATE_RUN;
-
-    EXH_ASSERT(n >= 1);
-    EXH_ASSERT(n <= s->fingers);
-    out->enable = (uint8_t)(open ? (1u << n) - 1u : 0u);
-    out->alive = ++s->alive;
-    for (unsigned k = 0; k < EXH_FINGERS; k++) {
-        out->dac_raw[k] = (uint16_t)cfg[k < n ? k : 0].par->dac_zero_raw;
-    }
-    for (unsigned k = 0; k < n; k++) {
-        const struct exh_drive_par *par = cfg[k].par;
-        const int64_t asked = i[k].table_A_q26 + i[k].peak_A_q26 + i[k].i2t_A_q26;
-        const int32_t passed = open ? exh_sat32(asked) : 0;
-
-        if (passed != asked) { limits[k] |= EXH_LIMIT_GATE; }
-        out->dac_raw[k] = code_of(par, passed, &limits[k]);
-        i[k].coded_A_q26 = exh_sat32(
-            exh_gain_mul(cfg[k].dac_A_q26, (int32_t)out->dac_raw[k] - par->dac_zero_raw));
-        i[k].gate_A_q26 = passed - asked;
-        i[k].dac_A_q26 = (int64_t)i[k].coded_A_q26 - passed;
-    }
+    const int buffer = c->mode != EXH_BYTES_MEASURE && exh_bytes_ok(c);
+    const uint32_t is = buffer ? exh_crc32(0, c->p + from, c->at - from) : 0;
+    uint32_t crc = is;
+    exh_bytes_u32(c, &crc);
+    return crc == is && exh_bytes_ok(c);
 }
 
 void exh_safety_bytes(struct exh_bytes *c, struct exh_safety *s)
 {
+    const uint32_t from = c->at;
     exh_bytes_u32(c, &s->present);
     exh_bytes_u32(c, &s->faults);
     exh_bytes_u32(c, &s->first);
@@ -109,8 +271,20 @@ void exh_safety_bytes(struct exh_bytes *c, struct exh_safety *s)
     exh_bytes_u32(c, &s->tick);
     exh_bytes_u32(c, &s->missed);
     exh_bytes_u32(c, &s->late);
+    exh_bytes_u32(c, &s->limits);
+    for (unsigned k = 0; k < EXH_LIMITS; k++) { exh_bytes_u32(c, &s->held[k]); }
+    exh_bytes_u32(c, &s->refusals);
+    exh_bytes_u32(c, &s->steps);
+    exh_bytes_i32(c, &s->share_q30);
     exh_bytes_u8(c, &s->state);
     exh_bytes_u8(c, &s->alive);
-    /* Nothing that was damaged may leave a fault behind by itself. */
-    if (s->state > EXH_STATE_FAULT || s->faults != 0) { s->state = EXH_STATE_FAULT; }
+    exh_bytes_u8(c, &s->refused);
+    exh_bytes_u8(c, &s->opened);
+    exh_bytes_u8(c, &s->trigger);
+    if (!sealed(c, from) && c->mode == EXH_BYTES_READ) {
+        s->state = EXH_STATE_FAULT;
+        s->faults |= EXH_FAULT_LOGIC;
+        s->opened = 0;
+    }
+    s->share_q30 = exh_clamp(s->share_q30, 0, FULL_Q30);
 }

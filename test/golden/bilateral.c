@@ -6,7 +6,7 @@
 #include "exhand/board.h"
 #include "exhand/fix.h"
 
-#define HEALTHY 0x1F03u
+#define HEALTHY 0x1F0Fu
 #define FINGERS BILATERAL_FINGERS
 #define VERSION 0x00010203u /* of the library, and of the parameters: not these, which may change */
 #define TABLE   0x89ABCDEFu
@@ -150,7 +150,7 @@ static void any_par(struct golden_rng *r, uint32_t rate_Hz, uint32_t k)
         p->material[i].b_Nspm_q20 = any_size(r, 1048576000);
         p->material[i].f_max_N_q20 = any_size(r, 104857600);
     }
-    p->safety.missed_max = (int32_t)golden_draw(r, 0, 1);
+    golden_safety_par(&p->safety, r, rate_Hz);
     T.num *= (uint32_t)p->glove_own.every;
     p->glove = golden_glove_par(r, T);
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) { any_sensor(&p->sensor[i], i, r); }
@@ -362,6 +362,7 @@ static void any_in(struct golden_rng *r, struct golden_wave moves[FINGERS], uint
     } else if (golden_draw(r, 0, 3) == 0) {
         in->drive.din = HEALTHY;
     }
+    if (rig.s.safety.state == EXH_STATE_FAULT && golden_draw(r, 0, 3) == 0) { in->drive.din ^= 2; }
     in->missed = golden_draw(r, 0, 127) == 0 ? 1 : 0;
     in->command = k % 8 == 2 ? EXH_CMD_RUN : k % 8 == 5 ? EXH_CMD_CLEAR : EXH_CMD_NONE;
 }

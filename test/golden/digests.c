@@ -46,6 +46,9 @@ const uint32_t digest_track[GOLDEN_RATES] = {
 const uint32_t digest_passivity[GOLDEN_RATES] = {
 #include "digest/passivity.inc"
 };
+const uint32_t digest_watch[GOLDEN_RATES] = {
+#include "digest/watch.inc"
+};
 const uint32_t digest_safety[GOLDEN_RATES] = {
 #include "digest/safety.inc"
 };

@@ -138,39 +138,60 @@ static void axis_setup(struct axis *a, struct golden_rng *r, uint32_t rate_Hz, u
                  0);
 }
 
+static struct exh_permit any_permit(struct golden_rng *r, uint32_t k, struct exh_gain fall)
+{
+    static const uint8_t mode[] = {0, 2, 2, 2, 3};
+    struct exh_permit p = {k < 4 || (k >= 70 && k < 76) ? 0 : k == 130 ? 3 : 1, 1 << 30, 0, 1, fall};
+    int64_t any;
+    if (k >= 100 && k < 110) { p.mode = EXH_PERMIT_RELEASE; }
+    if (k >= 160 && (any = golden_draw(r, 0, 31)) < 5) { p.mode = mode[any]; }
+    if (golden_draw(r, 0, 3) == 0) { p.share_q30 = (int32_t)golden_draw(r, 0, 1 << 30); }
+    p.small_N_q20 = (int32_t)golden_draw(r, 0, 10485760);
+    if (golden_draw(r, 0, 7) == 0) { p.ticks = (uint32_t)golden_draw(r, 1, 3); }
+    return p;
+}
+
 void golden_drive(struct golden *g, uint32_t rate_Hz)
 {
     static struct golden_wave spring;
     static struct golden_wave damper;
     static struct axis a;
     struct golden_rng r = golden_rng("drive", rate_Hz, 0);
+    struct exh_gain fall = {0, 1};
     golden_wave(&spring, "drive", rate_Hz, 1, -(1 << 26), 1 << 27, 1 << golden_draw(&r, 10, 22));
     golden_wave(&damper, "drive", rate_Hz, 2, -(1 << 25), 1 << 25, 1 << golden_draw(&r, 10, 22));
     while (g->tick < GOLDEN_TICKS) {
         const uint32_t k = g->tick;
-        int run = k < 4 || (k >= 70 && k < 76) ? 0 : k == 130 ? 2 : 1;
+        struct exh_permit permit;
         struct exh_force_ledger f = {.passivity_N_q20 = 0};
         struct exh_current_ledger i;
         uint32_t limits;
         int16_t raw;
-        if (k == 0 || k == GOLDEN_AGAIN) { axis_setup(&a, &r, rate_Hz, k); }
+        if (k == 0 || k == GOLDEN_AGAIN) {
+            axis_setup(&a, &r, rate_Hz, k);
+            CHECK_EQ_I64(exh_gain_set(&fall, 1, (uint64_t)golden_draw(&r, 3, 360)), 0);
+        }
         f.spring_N_q20 = spring.at[k];
         f.damper_N_q20 = damper.at[k];
         f.pullback_N_q20 = k & 8 ? golden_draw(&r, 0, 20971520) : 0;
         if (k >= 180 && k < GOLDEN_AGAIN) {
             f.spring_N_q20 *= INT64_C(1) << golden_draw(&r, 0, 16);
         }
-        if (k >= 160) { run = golden_draw(&r, 0, 15) > 0; }
+        permit = any_permit(&r, k, fall);
         golden_put(g, f.spring_N_q20);
         golden_put(g, f.damper_N_q20);
         golden_put(g, f.pullback_N_q20);
-        golden_put(g, run);
+        golden_put(g, permit.mode);
+        golden_put(g, permit.share_q30);
+        golden_put(g, permit.small_N_q20);
+        golden_put(g, permit.ticks);
         raw = (int16_t)golden_draw(&r, -32768, 32767);
         golden_put(g, raw);
-        limits = exh_drive_force(&a.s, &a.cfg, run, &f);
+        limits = exh_drive_force(&a.s, &a.cfg, &permit, &f);
         limits |= exh_drive_current(&a.s, &a.cfg, &f, &i);
         golden_put(g, f.clamp_N_q20);
         golden_put(g, f.slew_N_q20);
+        golden_put(g, f.release_N_q20);
         golden_put(g, f.force_N_q20);
         golden_put(g, i.table_A_q26);
         golden_put(g, i.peak_A_q26);

@@ -5,7 +5,7 @@
 
 #include "exhand/fix.h"
 
-#define HEALTHY 0x1F03u
+#define HEALTHY 0x1F0Fu
 
 struct scene {
     struct drop_par par;
@@ -31,7 +31,8 @@ static void any_par(struct drop_par *p, struct golden_rng *r, uint32_t rate_Hz)
     p->contact.hyst_m_q30 = any_size(r, 10737418);
     golden_drive_par(&p->drive, r, rate_Hz);
     golden_track_par(&p->track, r, rate_Hz);
-    p->safety.missed_max = (int32_t)golden_draw(r, 0, 1);
+    golden_watch_par(&p->watch, r, rate_Hz);
+    golden_safety_par(&p->safety, r, rate_Hz);
     p->own.q_lim_m_q30 = (int32_t)golden_draw(r, -(1 << 26), 1 << 26);
     p->own.kf_NpA_q20 = (int32_t)golden_draw(r, 104858, 104857600);
 }
@@ -48,15 +49,17 @@ static void scene_setup(struct scene *d, struct golden_rng *r, uint32_t rate_Hz,
     CHECK_EQ_I64(err, 0);
 }
 
-static void any_in(struct exh_scene_in *in, struct golden_rng *r, uint32_t k)
+static void any_in(struct exh_scene_in *in, struct golden_rng *r, uint32_t k, uint8_t state)
 {
     if (golden_draw(r, 0, 47) == 0) {
         in->drive.din ^= 1u << golden_draw(r, 0, 8);
     } else if (golden_draw(r, 0, 3) == 0) {
         in->drive.din = HEALTHY;
     }
+    if (state == EXH_STATE_FAULT && golden_draw(r, 0, 3) == 0) { in->drive.din ^= 2; }
     in->missed = golden_draw(r, 0, 127) == 0 ? 1 : 0;
     in->command = k % 8 == 2 ? EXH_CMD_RUN : k % 8 == 5 ? EXH_CMD_CLEAR : EXH_CMD_NONE;
+    if (golden_draw(r, 0, 63) == 0) { in->command = EXH_CMD_OFF; }
 }
 
 static void put_out(struct golden *g, const struct drop_signals *sig,
@@ -72,6 +75,7 @@ static void put_out(struct golden *g, const struct drop_signals *sig,
     golden_put(g, sig->state);
     golden_put(g, sig->faults);
     golden_put(g, sig->present);
+    golden_put(g, sig->arm_step);
     golden_put(g, out->dac_raw[0]);
     golden_put(g, out->enable);
     golden_put(g, out->alive);
@@ -84,6 +88,7 @@ static void put_state(struct golden *g, struct drop *s)
     GOLDEN_STATE(g, exh_contact_bytes, &s->contact);
     GOLDEN_STATE(g, exh_drive_bytes, &s->drive);
     GOLDEN_STATE(g, exh_track_bytes, &s->track);
+    GOLDEN_STATE(g, exh_watch_bytes, &s->watch);
     GOLDEN_STATE(g, exh_safety_bytes, &s->safety);
 }
 
@@ -114,7 +119,7 @@ void golden_drop(struct golden *g, uint32_t rate_Hz)
             raw += (uint32_t)golden_draw(&r, -2 * (int64_t)jump, 2 * (int64_t)jump);
         }
         in.drive.enc_raw[0] = raw;
-        any_in(&in, &r, k);
+        any_in(&in, &r, k, d.s.safety.state);
         in.drive.mon_raw[0] = golden_monitor(&astray, &d.par.drive, &r, sig.i_des_A_q26);
         golden_put(g, raw);
         golden_put(g, in.drive.mon_raw[0]);

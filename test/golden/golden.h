@@ -10,8 +10,10 @@
 #include "exhand/bytes.h"
 #include "exhand/drive.h"
 #include "exhand/glove.h"
+#include "exhand/safety.h"
 #include "exhand/signal.h"
 #include "exhand/units.h"
+#include "exhand/watch.h"
 
 #include "check.h"
 
@@ -87,6 +89,8 @@ void golden_drive_par(struct exh_drive_par *p, struct golden_rng *r, uint32_t ra
 
 /* Any parameters of exh_track_setup(), with a short time. */
 void golden_track_par(struct exh_track_par *p, struct golden_rng *r, uint32_t rate_Hz);
+void golden_safety_par(struct exh_safety_par *p, struct golden_rng *r, uint32_t rate_Hz);
+void golden_watch_par(struct exh_watch_par *p, struct golden_rng *r, uint32_t rate_Hz);
 
 /* A scene's monitor: mostly the code of what was coded, now and then for a while any. */
 int16_t golden_monitor(unsigned *astray, const struct exh_drive_par *p, struct golden_rng *r,

@@ -103,6 +103,7 @@ MODULE(table);
 MODULE(drive);
 MODULE(track);
 MODULE(passivity);
+MODULE(watch);
 MODULE(safety);
 MODULE(calibrate);
 MODULE(probe);
@@ -121,5 +122,5 @@ MODULE(bilateral);
 
 TEST_MAIN("golden", first_tick_that_differs_is_told, fix, bytes, record, signal, quad, quad_ab,
           velocity_window, velocity_pole, velocity_foaw, velocity_track, contact, table, drive,
-          track, passivity, safety, calibrate, probe, home, weigh, filter, quantizer, glove, glove_cal, angle, hand,
+          track, watch, passivity, safety, calibrate, probe, home, weigh, filter, quantizer, glove, glove_cal, angle, hand,
           precontact, wire, drop, bilateral);

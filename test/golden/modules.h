@@ -24,6 +24,7 @@ GOLDEN_MODULE(table);
 GOLDEN_MODULE(drive);
 GOLDEN_MODULE(track);
 GOLDEN_MODULE(passivity);
+GOLDEN_MODULE(watch);
 GOLDEN_MODULE(safety);
 GOLDEN_MODULE(calibrate);
 GOLDEN_MODULE(probe);

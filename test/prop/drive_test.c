@@ -40,6 +40,9 @@ static int on_table(const struct exh_knot *k, unsigned n, int32_t x, int32_t got
     return wide_within(err, wide_of(x == k[i].x ? 0 : dy < 1 << 30 ? dx : dx + dx / 2));
 }
 
+static const struct exh_permit open_permit = {EXH_PERMIT_OPEN, 1 << 30, 0, 1, {0, 1}};
+static const struct exh_permit closed = {EXH_PERMIT_CLOSED, 1 << 30, INT32_MAX, 1, {0, 1}};
+
 TEST(table_is_near_its_lines_and_monotone)
 {
     while (check_case(2)) {
@@ -158,7 +161,7 @@ TEST(force_ledger_sums_and_limits_hold)
 {
     while (check_case(1)) {
         struct axis a;
-        struct exh_drive s = {0, 0};
+        struct exh_drive s = {0, 0, 0};
         struct exh_force_ledger f;
         int64_t asked;
         uint32_t bits;
@@ -175,7 +178,7 @@ TEST(force_ledger_sums_and_limits_hold)
         most = a.par.f_max_N_q20 < a.knot[3].x ? a.par.f_max_N_q20 : a.knot[3].x;
         last = s.force_N_q20 = check_i32_in(0, most);
         run = check_u64() % 8 != 0;
-        bits = exh_drive_force(&s, &a.cfg, run, &f);
+        bits = exh_drive_force(&s, &a.cfg, run ? &open_permit : &closed, &f);
         CHECK(f.force_N_q20 == asked + f.clamp_N_q20 + f.slew_N_q20, "ledger: %" PRId32,
               f.force_N_q20);
         CHECK(s.force_N_q20 == f.force_N_q20, "state");
@@ -202,14 +205,14 @@ TEST(force_above_a_lowered_limit_comes_down)
 {
     while (check_case(4)) {
         struct axis a;
-        struct exh_drive s = {0, 0};
-        struct exh_force_ledger f = {0, 0, 0, 0, 0, 0, 0};
+        struct exh_drive s = {0, 0, 0};
+        struct exh_force_ledger f = {0};
         int32_t last, most;
         if (!any_axis(&a)) { continue; }
         most = a.par.f_max_N_q20 < a.knot[3].x ? a.par.f_max_N_q20 : a.knot[3].x;
         last = s.force_N_q20 = check_i32_in(most, INT32_MAX);
         f.spring_N_q20 = check_i64() >> 2;
-        (void)exh_drive_force(&s, &a.cfg, 1, &f);
+        (void)exh_drive_force(&s, &a.cfg, &open_permit, &f);
         CHECK(f.force_N_q20 <= most || f.force_N_q20 < last, "stays at %" PRId32,
               last);
         CHECK(within_slew(&a, (int64_t)f.force_N_q20 - last, a.par.slew_down_Nps), "snaps");
@@ -224,7 +227,7 @@ TEST(current_ledger_sums_and_limits_hold)
     while (check_case(1)) {
         struct axis a;
         struct exh_drive s;
-        struct exh_force_ledger f = {0, 0, 0, 0, 0, 0, 0};
+        struct exh_force_ledger f = {0};
         struct exh_current_ledger i = {7, 7, 7, 7, 7, 7}, hotter;
         int64_t sum, heat, peaked;
         uint32_t bits;
@@ -264,7 +267,7 @@ TEST(heat_is_what_was_spent)
     while (check_case(1)) {
         struct axis a;
         struct exh_drive s;
-        struct exh_force_ledger f = {0, 0, 0, 0, 0, 0, 0};
+        struct exh_force_ledger f = {0};
         struct exh_current_ledger i;
         int64_t spent, gained;
         struct wide cont2;

@@ -103,9 +103,11 @@ TEST(gate_holds_with_any_input)
             asked[k] = b.i[k].table_A_q26 + b.i[k].peak_A_q26 + b.i[k].i2t_A_q26;
         }
         s.fingers = (uint8_t)(n + check_u64() % (EXH_FINGERS + 1 - n));
-        s.state = (uint8_t)(check_u64() % 4);
+        s.state = (uint8_t)(check_u64() % 7);
+        s.share_q30 = check_u64() % 2 ? 0 : 1;
         s.alive = (uint8_t)(check_u64() & 0xFF);
-        open = s.state == EXH_STATE_RUN;
+        open = (s.state > EXH_STATE_ARM && s.state < EXH_STATE_FAULT) ||
+               (s.state == EXH_STATE_ARM && s.share_q30 == 1);
         b.out.alive = before = s.alive;
         exh_gate(&s, b.cfg, n, b.i, b.limits, &b.out);
         CHECK(b.out.alive != before && s.alive == b.out.alive, "alive stands at %d", before);
@@ -118,47 +120,95 @@ TEST(gate_holds_with_any_input)
     }
 }
 
-/* Invariants that hold whatever comes: RUN only by command and without a cause; a
- * fault is left by CLEAR alone, into OFF; the first cause does not change. */
+/* What came last, as the state machine should remember it. */
+struct memory {
+    uint64_t late;
+    uint32_t ticks, opened, in_release;
+};
+
+static struct exh_safety_in any_in(uint32_t k)
+{
+    struct exh_safety_in in = {UINT32_MAX, 0, 0, EXH_CMD_NONE, 5, EXH_ARM_ALL};
+    if (check_u64() % 64 == 0) { in.din = (uint32_t)(check_u64() & UINT32_MAX); }
+    if (k / 256 % 4 == 0 && check_u64() % 8 == 0) { in.din &= ~(uint32_t)EXH_DIN_DEADMAN; }
+    if (check_u64() % 128 == 0) { in.raised = 1u << check_u64() % EXH_FAULTS; }
+    if (check_u64() % 100 == 0) { in.missed = (uint32_t)check_i32_in(0, 3); }
+    if (check_u64() % 16 == 0) { in.command = (uint8_t)(check_u64() % 5); }
+    if (check_u64() % 128 == 0) { in.ready = (uint8_t)(check_u64() & 15); }
+    in.fingers = (uint8_t)(1 + check_u64() % 5);
+    return in;
+}
+
+static uint32_t causes_of(const struct exh_safety_in *in, struct memory *m)
+{
+    uint32_t now = in->raised;
+    m->late = (m->late > 0 ? m->late - 1 : 0) + EXH_LATE_TICKS * (in->missed < 2 ? in->missed : 2);
+    now |= m->late > EXH_LATE_TICKS ? EXH_FAULT_OVERRUN : 0u;
+    now |= in->din & EXH_DIN_ESTOP ? 0u : EXH_FAULT_ESTOP;
+    now |= in->din & EXH_DIN_DEADMAN ? 0u : EXH_FAULT_DEADMAN;
+    now |= in->din & EXH_DIN_WATCHDOG ? 0u : EXH_FAULT_WATCHDOG;
+    now |= in->din & EXH_DIN_CARDS ? 0u : EXH_FAULT_CARD;
+    for (unsigned k = 0; k < in->fingers; k++) {
+        now |= in->din >> (8 + k) & 1 ? 0u : EXH_FAULT_DRIVE;
+    }
+    return now;
+}
+
+/* Whatever comes: the gate opens by RUN, small force and a ramp alone; a cause ends an open gate in
+ * its tick; FAULT is left by CLEAR alone, with no cause and the dead-man opened since the last new
+ * one; the first cause does not change; a release ends after its ticks. */
+static void check_step(const struct exh_safety *old, const struct exh_safety *s,
+                       const struct exh_safety_in *in, uint32_t now, struct memory *m)
+{
+    const int was_open = exh_safety_open(old), open = exh_safety_open(s);
+    CHECK(s->present == now, "present %" PRIx32 " not %" PRIx32, s->present, now);
+    CHECK(s->state < EXH_STATES, "state %d", s->state);
+    CHECK(!open || was_open || (old->state == EXH_STATE_ARM && !now && in->ready == EXH_ARM_ALL),
+          "opened from %d", old->state);
+    CHECK(!open || !(now & EXH_FAULT_CUT), "open with %" PRIx32, now);
+    CHECK(!open || !now || s->state == EXH_STATE_RELEASE, "cause in state %d", s->state);
+    CHECK(!was_open || !now || s->faults != 0, "cause not latched");
+    CHECK(s->faults == 0 || s->state >= EXH_STATE_RELEASE, "latched in state %d", s->state);
+    CHECK(s->state != EXH_STATE_FAULT || s->faults != 0, "fault without a cause");
+    CHECK((s->faults & old->faults) == old->faults || in->command == EXH_CMD_CLEAR, "forgotten");
+    if (old->state == EXH_STATE_FAULT && s->state != EXH_STATE_FAULT) {
+        CHECK(s->state == EXH_STATE_OFF && in->command == EXH_CMD_CLEAR && !now && m->opened,
+              "left FAULT");
+    }
+    if (old->faults) {
+        CHECK(s->first == old->first && s->first_tick == old->first_tick, "first cause changed");
+    }
+    if (old->state == EXH_STATE_OFF) {
+        CHECK(s->state == EXH_STATE_OFF || (s->state == EXH_STATE_ARM && in->command == EXH_CMD_RUN),
+              "from OFF to %d", s->state);
+    }
+    if (s->faults & ~old->faults) { m->opened = 0; }
+    if (!(in->din & EXH_DIN_DEADMAN)) { m->opened = 1; }
+    m->in_release = s->state == EXH_STATE_RELEASE ? m->in_release + 1 + in->missed : 0;
+    CHECK(m->in_release < 30 + 4 + 4, "%" PRIu32 " ticks of release", m->in_release);
+    CHECK(s->tick == ++m->ticks, "tick %" PRIu32, s->tick);
+}
+
 TEST(state_machine_under_any_input)
 {
+    static const struct exh_safety_par par = {1, 1 << 20, 5, 10, 15};
+    struct exh_safety_cfg cfg;
     struct exh_safety s = {0};
-    const struct exh_safety_par par = {1};
-    uint32_t ticks = 0;
-    uint64_t late = 0;
+    struct memory m = {0, 0, 0, 0};
+    uint32_t seen = 0;
+    CHECK_EQ_I64(exh_safety_setup(&cfg, &par, (struct exh_period){1, 2000}), 0);
     while (check_case(1)) {
         const struct exh_safety old = s;
-        struct exh_safety_in in;
-        int cause;
-        uint8_t now;
-        in.din = check_u64() % 4 ? UINT32_MAX : (uint32_t)(check_u64() & UINT32_MAX);
-        in.raised = check_u64() % 8 ? 0 : 1u << check_u64() % 6;
-        in.missed = (uint32_t)(check_u64() % 80 ? 0 : check_i32_in(0, 3));
-        in.command = (uint8_t)(check_u64() % 5);
-        in.fingers = (uint8_t)(1 + check_u64() % 5);
-        late = (late > 0 ? late - 1 : 0) + EXH_LATE_TICKS * (in.missed < 2 ? in.missed : 2);
-        cause = in.raised != 0 || late > EXH_LATE_TICKS || !(in.din & EXH_DIN_ESTOP) ||
-                !(in.din & EXH_DIN_DEADMAN);
-        for (unsigned k = 0; k < in.fingers; k++) { cause |= !(in.din >> (8 + k) & 1); }
-        now = exh_safety_step(&s, &par, in);
-        ticks++;
-        CHECK(now == s.state && now <= EXH_STATE_FAULT, "state %d", now);
-        CHECK(now != EXH_STATE_RUN || !cause, "RUN with a cause");
-        CHECK(now != EXH_STATE_RUN || old.state == EXH_STATE_RUN ||
-                  (old.state == EXH_STATE_OFF && in.command == EXH_CMD_RUN),
-              "RUN from %d by command %d", old.state, in.command);
-        CHECK(now != EXH_STATE_FAULT || s.faults != 0, "fault without a cause");
-        CHECK(old.state != EXH_STATE_RUN || !cause || now == EXH_STATE_FAULT, "cause ignored");
-        if (old.state == EXH_STATE_FAULT && now != EXH_STATE_FAULT) {
-            CHECK(now == EXH_STATE_OFF && in.command == EXH_CMD_CLEAR && !cause, "left FAULT");
-        }
-        if (old.state == EXH_STATE_FAULT && now == EXH_STATE_FAULT) {
-            CHECK(s.first == old.first && s.first_tick == old.first_tick, "first cause changed");
-            CHECK((s.faults & old.faults) == old.faults, "a latched cause went away");
-        }
-        CHECK((s.present != 0) == cause, "present %" PRIx32, s.present);
-        CHECK(s.tick == ticks, "tick %" PRIu32, s.tick);
+        const struct exh_safety_in in = any_in(m.ticks);
+        const uint32_t now = causes_of(&in, &m);
+        const struct exh_permit p = exh_safety_step(&s, &cfg, in);
+        check_step(&old, &s, &in, now, &m);
+        CHECK((p.mode != EXH_PERMIT_CLOSED) == exh_safety_open(&s), "mode %d", p.mode);
+        CHECK(p.share_q30 >= 0 && p.share_q30 <= 1 << 30, "share %" PRId32, p.share_q30);
+        s.limits = check_u64() % 64 ? 0 : 1u << check_u64() % EXH_LIMITS;
+        seen |= 1u << s.state;
     }
+    CHECK(seen == (1u << EXH_STATES) - 1, "states %" PRIx32, seen);
 }
 
 TEST_MAIN("prop/safety", gate_holds_with_any_input, state_machine_under_any_input);

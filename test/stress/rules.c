@@ -26,12 +26,13 @@ static void shadow_tick(struct drop *s, const struct exh_scene_in *in, struct hi
     const uint32_t astray =
         exh_track_step(&s->track, &rig.cfg.track, mon) ? EXH_FAULT_TRACKING : 0u;
     const uint32_t raised = lost | astray;
-    const struct exh_safety_in box = {in->drive.din, raised, in->missed, in->command, 1};
-    const int run = exh_safety_step(&s->safety, &par->safety, box) == EXH_STATE_RUN;
+    const struct exh_safety_in box = {in->drive.din, raised, in->missed, in->command, 1, 15};
+    const struct exh_permit permit = exh_safety_step(&s->safety, &rig.cfg.safety, box);
+    const int run = permit.mode != EXH_PERMIT_CLOSED;
     h->run = run;
     h->force_before = run ? s->drive.force_N_q20 : 0;
     h->touching = exh_contact_law(&s->contact, &par->contact, q, &h->f);
-    h->limits = exh_drive_force(&s->drive, &rig.cfg.drive, run, &h->f);
+    h->limits = exh_drive_force(&s->drive, &rig.cfg.drive, &permit, &h->f);
     h->limits |= exh_drive_current(&s->drive, &rig.cfg.drive, &h->f, &h->i);
     exh_gate(&s->safety, &rig.cfg.drive, 1, &h->i, &h->limits, &h->out);
     exh_track_coded(&s->track, h->i.coded_A_q26);

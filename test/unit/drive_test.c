@@ -160,7 +160,7 @@ static int axis_setup(struct axis *a, struct exh_period T)
     if (exh_table_set(a->knot, 2) < 0 || exh_table_invert(a->inv, a->knot, 2) < 0) { return 1; }
     there = (struct exh_table){a->knot, 2};
     back = (struct exh_table){a->inv, 2};
-    a->s = (struct exh_drive){0, 0};
+    a->s = (struct exh_drive){0, 0, 0};
     return exh_drive_setup(&a->cfg, &a->par, T, there, a->par.mon_zero_raw == 77 ? none : back);
 }
 
@@ -241,12 +241,15 @@ TEST(setup_takes_every_documented_period)
     }
 }
 
+static const struct exh_permit open_permit = {EXH_PERMIT_OPEN, 1 << 30, 0, 1, {0, 1}};
+static const struct exh_permit closed = {EXH_PERMIT_CLOSED, 1 << 30, INT32_MAX, 1, {0, 1}};
+
 static uint32_t force(struct axis *a, int64_t spring, struct exh_force_ledger *f)
 {
-    const struct exh_force_ledger zero = {0, 0, 0, 0, 0, 0, 0};
+    const struct exh_force_ledger zero = {0};
     *f = zero;
     f->spring_N_q20 = spring;
-    return exh_drive_force(&a->s, &a->cfg, 1, f);
+    return exh_drive_force(&a->s, &a->cfg, &open_permit, f);
 }
 
 /* f_max 40 N; slew 200 kN/s at 2 kHz: 100 N a tick, so not in the way. */
@@ -283,13 +286,13 @@ TEST(no_force_beyond_the_table)
     struct exh_knot k[2] = {{0, 0, {0, 1}},
                             {EXH_Q(22, 1, EXH_Q_FORCE), EXH_Q(66, 10, EXH_Q_CUR), {0, 1}}};
     const struct exh_table t = {k, 2}, none = {NULL, 0};
-    struct exh_force_ledger f = {30 * (int64_t)NEWTON, 0, 0, 0, 0, 0, 0};
+    struct exh_force_ledger f = {30 * (int64_t)NEWTON, 0, 0, 0, 0, 0, 0, 0};
     struct axis a;
     axis_par(&a.par);
-    a.s = (struct exh_drive){0, 0};
+    a.s = (struct exh_drive){0, 0, 0};
     CHECK_EQ_I64(exh_table_set(k, 2), 0);
     CHECK_EQ_I64(exh_drive_setup(&a.cfg, &a.par, (struct exh_period){1, 2000}, t, none), 0);
-    CHECK_EQ_I64(exh_drive_force(&a.s, &a.cfg, 1, &f), EXH_LIMIT_FORCE);
+    CHECK_EQ_I64(exh_drive_force(&a.s, &a.cfg, &open_permit, &f), EXH_LIMIT_FORCE);
     CHECK_EQ_I64(f.force_N_q20, 22 * NEWTON);
     CHECK_EQ_I64(f.clamp_N_q20, -8 * NEWTON);
     CHECK_EQ_I64(exh_drive_monitor_N_q20(&a.cfg, 1000), 0); /* no monitor, no force of it */
@@ -324,9 +327,9 @@ TEST(not_running_is_no_force)
     for (int n = 0; n < 5; n++) { (void)force(&a, 5 * NEWTON, &f); }
     CHECK_EQ_I64(f.force_N_q20, 5 * NEWTON);
     for (int sign = -1; sign <= 1; sign++) {
-        f = (struct exh_force_ledger){sign * (INT64_C(1) << 40), 0, 0, 0, 7, 7, 7};
-        CHECK_EQ_I64(exh_drive_force(&a.s, &a.cfg, 0, &f),
-                     sign > 0 ? EXH_LIMIT_GATE : sign < 0 ? EXH_LIMIT_PULL : 0);
+        f = (struct exh_force_ledger){sign * (INT64_C(1) << 40), 0, 0, 0, 7, 7, 7, 7};
+        CHECK_EQ_I64(exh_drive_force(&a.s, &a.cfg, &closed, &f),
+                     sign > 0 ? EXH_LIMIT_GATE | EXH_LIMIT_FORCE : sign < 0 ? EXH_LIMIT_PULL : 0);
         CHECK(f.force_N_q20 == 0 && f.slew_N_q20 == 0 && f.clamp_N_q20 == -f.spring_N_q20,
               "ledger");
         CHECK_EQ_I64(a.s.force_N_q20, 0);
@@ -369,7 +372,7 @@ TEST(slowest_slew_still_moves)
 
 static uint32_t current(struct axis *a, int32_t force_N_q20, struct exh_current_ledger *i)
 {
-    struct exh_force_ledger f = {0, 0, 0, 0, 0, 0, 0};
+    struct exh_force_ledger f = {0};
     f.force_N_q20 = force_N_q20;
     return exh_drive_current(&a->s, &a->cfg, &f, i);
 }
@@ -517,18 +520,18 @@ TEST(frames_round_trip)
 
 TEST(state_round_trip)
 {
-    struct exh_drive s = {7, INT64_C(0x0123456789ABCDEF)}, back = {0, 0};
+    struct exh_drive s = {7, 9, INT64_C(0x0123456789ABCDEF)}, back = {0, 0, 0};
     uint8_t buf[16];
     struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
     exh_drive_bytes(&c, &s);
-    CHECK_EQ_I64(c.at, 12);
+    CHECK_EQ_I64(c.at, 16);
     c = exh_bytes_reader(buf, c.at);
     exh_drive_bytes(&c, &back);
-    CHECK(back.force_N_q20 == s.force_N_q20 && back.i2t_q32 == s.i2t_q32, "state differs");
+    CHECK(back.force_N_q20 == s.force_N_q20 && back.fall_N_q20 == 9 && back.i2t_q32 == s.i2t_q32, "state differs");
     memset(buf, 0xFF, sizeof buf); /* damaged: no push, and as hot as can be */
     c = exh_bytes_reader(buf, sizeof buf);
     exh_drive_bytes(&c, &back);
-    CHECK(back.force_N_q20 == 0 && back.i2t_q32 == INT64_MAX / 2, "damaged state");
+    CHECK(back.force_N_q20 == 0 && back.fall_N_q20 == 0 && back.i2t_q32 == INT64_MAX / 2, "damaged state");
 }
 
 TEST_MAIN("unit/drive", table_is_exact_at_knots_and_clamps_outside, table_between_knots,

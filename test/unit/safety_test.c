@@ -1,110 +1,277 @@
-/* safety.h: every state with every command and every cause; the gate lets nothing
- * through that it should not. */
+/* safety.h: every cell of the state machine, every fault in every state, arming, release, clearing. */
 #include "exhand/safety.h"
+
+#include "exhand/error.h"
 
 #include "check.h"
 
+#include <string.h>
+
 #define LEN(a) (sizeof(a) / sizeof((a)[0]))
 #define ALL_DRIVES (31u * EXH_DIN_DRIVE0)
-#define HEALTHY (EXH_DIN_ESTOP | EXH_DIN_DEADMAN | ALL_DRIVES)
+#define HEALTHY \
+    (EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG | EXH_DIN_CARDS | ALL_DRIVES)
+#define FULL (1 << 30)
 
-/* A bit that another module raises, whatever it will be called. */
-#define EXH_FAULT_LATER (1u << 30)
+/* 1 kHz: 4 ticks of small force, 8 of ramp, 15 of release. */
+static const struct exh_safety_par par = {1, 1 << 20, 3, 7, 15};
 
-static const struct exh_safety_par par = {1};
-static const uint32_t fault_bits[] = {EXH_FAULT_ESTOP,   EXH_FAULT_DRIVE, EXH_FAULT_OVERRUN,
-                                      EXH_FAULT_ENCODER, EXH_FAULT_DEADMAN, EXH_FAULT_TRACKING,
-                                      EXH_FAULT_LATER};
+static struct exh_safety_cfg cfg_of(struct exh_safety_par p, uint32_t rate_Hz)
+{
+    struct exh_safety_cfg c = {0};
+    CHECK_EQ_I64(exh_safety_setup(&c, &p, (struct exh_period){1, rate_Hz}), 0);
+    return c;
+}
 
 static struct exh_safety_in healthy(uint8_t command)
 {
-    const struct exh_safety_in in = {HEALTHY, 0, 0, command, 5};
+    struct exh_safety_in in = {HEALTHY, 0, 0, 0, 5, EXH_ARM_ALL};
+    in.command = command;
     return in;
 }
 
-/* Makes exactly one cause present, by the way it comes in life. */
+/* A cause where it comes from: a contact, missed ticks, or another module. */
 static struct exh_safety_in with_cause(uint32_t fault, uint8_t command)
 {
     struct exh_safety_in in = healthy(command);
-    if (fault == EXH_FAULT_ESTOP) { in.din &= ~(uint32_t)EXH_DIN_ESTOP; }
-    if (fault == EXH_FAULT_DRIVE) { in.din &= ~((uint32_t)EXH_DIN_DRIVE0 << 3); }
-    if (fault == EXH_FAULT_OVERRUN) { in.missed = 3; }
-    if (fault == EXH_FAULT_DEADMAN) { in.din &= ~(uint32_t)EXH_DIN_DEADMAN; }
-    if (fault == EXH_FAULT_ENCODER || fault == EXH_FAULT_TRACKING || fault == EXH_FAULT_LATER) {
-        in.raised = fault;
+    switch (fault) {
+    case EXH_FAULT_ESTOP: in.din &= ~(uint32_t)EXH_DIN_ESTOP; break;
+    case EXH_FAULT_DRIVE: in.din &= ~((uint32_t)EXH_DIN_DRIVE0 << 3); break;
+    case EXH_FAULT_DEADMAN: in.din &= ~(uint32_t)EXH_DIN_DEADMAN; break;
+    case EXH_FAULT_WATCHDOG: in.din &= ~(uint32_t)EXH_DIN_WATCHDOG; break;
+    case EXH_FAULT_CARD: in.din &= ~(uint32_t)EXH_DIN_CARDS; break;
+    case EXH_FAULT_OVERRUN: in.missed = 2; break;
+    default: in.raised = fault; break;
     }
     return in;
 }
 
-TEST(every_state_with_every_command)
+/* --- the table, against a second one, written from what each state means --- */
+
+#define NO EXH_STATE_FAULT /* cannot be: no such trigger in that state                 */
+static const struct cell {
+    uint8_t trigger;
+    uint8_t to[EXH_STATES]; /* from off, arm, run, limit, release, fault          */
+} cell[] = {
+    {EXH_ON_REFUSED, {0, 0, NO, NO, NO, NO}},
+    {EXH_ON_CUT, {0, 5, 5, 5, 5, 5}},
+    {EXH_ON_CAUSE, {0, 4, 4, 4, 4, 5}},
+    {EXH_ON_OFF, {0, 4, 4, 4, 4, 5}},
+    {EXH_ON_RELEASED, {NO, NO, NO, NO, 0, NO}},
+    {EXH_ON_LATCHED, {NO, NO, NO, NO, 5, NO}},
+    {EXH_ON_RUN, {1, 1, 2, 2, 4, 5}},
+    {EXH_ON_ARMED, {NO, 2, NO, NO, NO, NO}},
+    {EXH_ON_LIMITED, {NO, NO, 3, 3, NO, NO}},
+    {EXH_ON_CLEAR, {NO, NO, NO, NO, NO, 0}},
+    {EXH_ON_NONE, {0, 1, 2, 2, 4, 5}},
+};
+
+TEST(every_cell_is_what_it_should_be)
 {
-    static const struct {
-        uint8_t from, command, healthy_to, cause_to;
-    } row[] = {
-        {EXH_STATE_OFF, EXH_CMD_NONE, EXH_STATE_OFF, EXH_STATE_OFF},
-        {EXH_STATE_OFF, EXH_CMD_RUN, EXH_STATE_RUN, EXH_STATE_OFF},
-        {EXH_STATE_OFF, EXH_CMD_OFF, EXH_STATE_OFF, EXH_STATE_OFF},
-        {EXH_STATE_OFF, EXH_CMD_CLEAR, EXH_STATE_OFF, EXH_STATE_OFF},
-        {EXH_STATE_OFF, 99, EXH_STATE_OFF, EXH_STATE_OFF},
-        {EXH_STATE_RUN, EXH_CMD_NONE, EXH_STATE_RUN, EXH_STATE_FAULT},
-        {EXH_STATE_RUN, EXH_CMD_RUN, EXH_STATE_RUN, EXH_STATE_FAULT},
-        {EXH_STATE_RUN, EXH_CMD_CLEAR, EXH_STATE_RUN, EXH_STATE_FAULT},
-        {EXH_STATE_RUN, EXH_CMD_OFF, EXH_STATE_OFF, EXH_STATE_FAULT},
-        {EXH_STATE_RUN, 99, EXH_STATE_RUN, EXH_STATE_FAULT},
-        {EXH_STATE_FAULT, EXH_CMD_NONE, EXH_STATE_FAULT, EXH_STATE_FAULT},
-        {EXH_STATE_FAULT, EXH_CMD_RUN, EXH_STATE_FAULT, EXH_STATE_FAULT},
-        {EXH_STATE_FAULT, EXH_CMD_OFF, EXH_STATE_FAULT, EXH_STATE_FAULT},
-        {EXH_STATE_FAULT, EXH_CMD_CLEAR, EXH_STATE_OFF, EXH_STATE_FAULT},
-        {EXH_STATE_FAULT, 99, EXH_STATE_FAULT, EXH_STATE_FAULT},
-    };
-    for (size_t i = 0; i < LEN(row); i++) {
-        struct exh_safety s = {0};
-        s.state = row[i].from;
-        CHECK_EQ_I64(exh_safety_step(&s, &par, healthy(row[i].command)), row[i].healthy_to);
-        CHECK(s.state == row[i].healthy_to, "row %zu: state", i);
-        for (size_t f = 0; f < LEN(fault_bits); f++) {
-            struct exh_safety t = {0};
-            t.state = row[i].from;
-            CHECK(exh_safety_step(&t, &par, with_cause(fault_bits[f], row[i].command)) ==
-                      row[i].cause_to,
-                  "row %zu with cause %zu", i, f);
-            CHECK(t.present == fault_bits[f], "row %zu: a refusal must tell its cause", i);
+    CHECK_EQ_I64(LEN(cell), EXH_TRIGGERS);
+    for (size_t c = 0; c < LEN(cell); c++) {
+        for (unsigned s = 0; s < EXH_STATES; s++) {
+            CHECK(exh_safety_next[s][cell[c].trigger] == cell[c].to[s], "%s, %s: %d, want %d",
+                  exh_state_name(s), exh_trigger_name(cell[c].trigger),
+                  exh_safety_next[s][cell[c].trigger], cell[c].to[s]);
         }
     }
 }
 
-TEST(power_on_is_off)
+/* A box in a state, as it gets there; its ARM with the gate open, or `early` with it closed. */
+static struct exh_safety box_in(const struct exh_safety_cfg *cfg, uint8_t state, int early)
 {
     struct exh_safety s = {0};
-    CHECK_EQ_I64(s.state, EXH_STATE_OFF);
-    CHECK_EQ_I64(exh_safety_step(&s, &par, healthy(EXH_CMD_NONE)), EXH_STATE_OFF);
+    (void)exh_safety_step(&s, cfg, healthy(EXH_CMD_NONE));
+    if (state == EXH_STATE_OFF) { return s; }
+    (void)exh_safety_step(&s, cfg, healthy(EXH_CMD_RUN));
+    if (state == EXH_STATE_ARM && early) { return s; }
+    for (uint32_t k = 0; k < 6; k++) { (void)exh_safety_step(&s, cfg, healthy(EXH_CMD_NONE)); }
+    if (state == EXH_STATE_ARM) { return s; }
+    for (uint32_t k = 0; k < 20; k++) { (void)exh_safety_step(&s, cfg, healthy(EXH_CMD_NONE)); }
+    if (state == EXH_STATE_LIMIT) {
+        s.limits = EXH_LIMIT_SLEW;
+        (void)exh_safety_step(&s, cfg, healthy(EXH_CMD_NONE));
+    }
+    if (state == EXH_STATE_RELEASE) { (void)exh_safety_step(&s, cfg, healthy(EXH_CMD_OFF)); }
+    if (state == EXH_STATE_FAULT) {
+        (void)exh_safety_step(&s, cfg, with_cause(EXH_FAULT_ESTOP, EXH_CMD_NONE));
+    }
+    s.limits = 0;
+    return s;
 }
 
-TEST(each_fault_latches_with_cause_and_tick)
+TEST(every_state_is_reached)
 {
-    for (size_t f = 0; f < LEN(fault_bits); f++) {
+    const struct exh_safety_cfg cfg = cfg_of(par, 1000);
+    for (uint8_t state = 0; state < EXH_STATES; state++) {
+        const struct exh_safety s = box_in(&cfg, state, 0), early = box_in(&cfg, state, 1);
+        CHECK_EQ_I64(s.state, state);
+        CHECK_EQ_I64(early.state, state);
+        CHECK_EQ_I64(exh_safety_open(&s), state >= EXH_STATE_ARM && state <= EXH_STATE_RELEASE);
+        CHECK_EQ_I64(exh_safety_open(&early), state >= EXH_STATE_RUN && state <= EXH_STATE_RELEASE);
+    }
+}
+
+/* Every fault in every state: where to, what is latched, whether the gate is open. */
+TEST(every_fault_in_every_state)
+{
+    static const uint8_t command[] = {EXH_CMD_NONE, EXH_CMD_RUN, EXH_CMD_OFF, EXH_CMD_CLEAR, 99};
+    const struct exh_safety_cfg cfg = cfg_of(par, 1000);
+    for (unsigned k = 0; k < EXH_FAULTS * EXH_STATES * 2 * LEN(command); k++) {
+        const uint32_t fault = 1u << k % EXH_FAULTS;
+        const uint8_t state = (uint8_t)(k / EXH_FAULTS % EXH_STATES);
+        const int early = k / EXH_FAULTS / EXH_STATES % 2;
+        struct exh_safety s = box_in(&cfg, state, early);
+        const int open = exh_safety_open(&s), cut = (fault & EXH_FAULT_CUT) != 0;
+        const uint8_t want = state == EXH_STATE_FAULT ? EXH_STATE_FAULT
+                             : !open                  ? EXH_STATE_OFF
+                             : cut                    ? EXH_STATE_FAULT
+                                                      : EXH_STATE_RELEASE;
+        const uint32_t before = s.faults, tick = s.tick;
+        const struct exh_permit p = exh_safety_step(
+            &s, &cfg, with_cause(fault, command[k / EXH_FAULTS / EXH_STATES / 2]));
+        const int latches = open || state == EXH_STATE_FAULT;
+        CHECK(s.state == want, "%s in %s: %s", exh_fault_name(k % EXH_FAULTS),
+              exh_state_name(state), exh_state_name(s.state));
+        CHECK_EQ_I64(s.present, fault);
+        CHECK_EQ_I64(s.faults, latches ? before | fault : 0);
+        if (open) { CHECK(s.first == fault && s.first_tick == tick, "first"); }
+        CHECK_EQ_I64(p.mode, want == EXH_STATE_RELEASE ? EXH_PERMIT_RELEASE : EXH_PERMIT_CLOSED);
+        CHECK_EQ_I64(exh_safety_open(&s), want == EXH_STATE_RELEASE);
+    }
+}
+
+TEST(several_causes_cut_if_one_of_them_does)
+{
+    const struct exh_safety_cfg cfg = cfg_of(par, 1000);
+    struct exh_safety s = box_in(&cfg, EXH_STATE_RUN, 0);
+    struct exh_safety_in in = with_cause(EXH_FAULT_SPEED | EXH_FAULT_TRACKING, EXH_CMD_OFF);
+    (void)exh_safety_step(&s, &cfg, in);
+    CHECK_EQ_I64(s.state, EXH_STATE_FAULT);
+    CHECK_EQ_I64(s.first, EXH_FAULT_SPEED | EXH_FAULT_TRACKING);
+    s = box_in(&cfg, EXH_STATE_RELEASE, 0); /* of a command; then a cause joins */
+    (void)exh_safety_step(&s, &cfg, with_cause(EXH_FAULT_GLOVE, EXH_CMD_NONE));
+    CHECK(s.state == EXH_STATE_RELEASE && s.faults == EXH_FAULT_GLOVE, "joined");
+    for (int k = 0; k < 20; k++) { (void)exh_safety_step(&s, &cfg, healthy(EXH_CMD_RUN)); }
+    CHECK_EQ_I64(s.state, EXH_STATE_FAULT);
+}
+
+TEST(power_on_is_off)
+{
+    static const struct exh_safety s;
+    CHECK_EQ_I64(s.state, EXH_STATE_OFF);
+    CHECK_EQ_I64(exh_safety_open(&s), 0);
+}
+
+/* --- arming --- */
+
+TEST(each_step_is_named_where_it_does_not_hold)
+{
+    const struct exh_safety_cfg cfg = cfg_of(par, 1000);
+    for (unsigned k = 0; k < 6; k++) {
+        for (int early = 0; early < 2; early++) {
+            struct exh_safety s = box_in(&cfg, early ? EXH_STATE_ARM : EXH_STATE_OFF, 1);
+            struct exh_safety_in in = healthy(EXH_CMD_RUN);
+            if (k < 4) { in.ready = (uint8_t)(EXH_ARM_ALL & ~(1u << k)); }
+            if (k == 4) { in.din = HEALTHY & ~(uint32_t)EXH_DIN_DEADMAN; }
+            if (k == 5) { s.limits = EXH_LIMIT_FORCE | EXH_LIMIT_GATE; }
+            (void)exh_safety_step(&s, &cfg, in);
+            CHECK(s.state == EXH_STATE_OFF && s.faults == 0, "%s: %s", exh_arm_name(k),
+                  exh_state_name(s.state));
+            CHECK_EQ_I64(exh_safety_arm(&s), 1u << k);
+            CHECK_EQ_I64(s.refusals, 1);
+            CHECK_EQ_I64(s.trigger, EXH_ON_REFUSED);
+        }
+    }
+}
+
+TEST(the_first_of_several_steps_is_named)
+{
+    const struct exh_safety_cfg cfg = cfg_of(par, 1000);
+    struct exh_safety s = box_in(&cfg, EXH_STATE_OFF, 0);
+    struct exh_safety_in in = with_cause(EXH_FAULT_ESTOP, EXH_CMD_RUN);
+    in.ready = EXH_ARM_SELFTEST | EXH_ARM_ENCODER;
+    (void)exh_safety_step(&s, &cfg, in);
+    CHECK_EQ_I64(s.refused, EXH_ARM_CALIBRATION);
+}
+
+/* What is vouched for may be lost while the limit rises: what force there is goes gently. */
+TEST(a_step_lost_in_the_ramp_releases)
+{
+    const struct exh_safety_cfg cfg = cfg_of(par, 1000);
+    struct exh_safety s = box_in(&cfg, EXH_STATE_ARM, 0);
+    struct exh_safety_in in = healthy(EXH_CMD_NONE);
+    CHECK_EQ_I64(exh_safety_arm(&s), EXH_ARM_RAMP);
+    s.limits = EXH_LIMIT_FORCE; /* nothing to arming any more */
+    (void)exh_safety_step(&s, &cfg, in);
+    CHECK_EQ_I64(s.state, EXH_STATE_ARM);
+    in.ready = EXH_ARM_ALL ^ EXH_ARM_POLARITY;
+    (void)exh_safety_step(&s, &cfg, in);
+    CHECK(s.state == EXH_STATE_RELEASE && s.faults == 0, "%s", exh_state_name(s.state));
+}
+
+TEST(off_while_arming)
+{
+    const struct exh_safety_cfg cfg = cfg_of(par, 1000);
+    struct exh_safety s = box_in(&cfg, EXH_STATE_ARM, 1);
+    (void)exh_safety_step(&s, &cfg, healthy(EXH_CMD_OFF));
+    CHECK(s.state == EXH_STATE_OFF && s.refusals == 0, "closed: %s", exh_state_name(s.state));
+    s = box_in(&cfg, EXH_STATE_ARM, 0);
+    (void)exh_safety_step(&s, &cfg, healthy(EXH_CMD_OFF));
+    CHECK_EQ_I64(s.state, EXH_STATE_RELEASE);
+}
+
+/* The ramp from both sides, at every rate: not below its line, not above by more than a step. */
+TEST(arming_takes_its_time_at_every_rate)
+{
+    static const struct exh_safety_par normal = {1, 1 << 20, 50, 500, 15};
+    for (uint32_t rate_Hz = 1; rate_Hz <= 2000; rate_Hz++) {
+        const struct exh_safety_cfg cfg = cfg_of(normal, rate_Hz);
+        const uint32_t small = rate_Hz * 50 / 1000 + 1 > 2 ? rate_Hz * 50 / 1000 + 1 : 2;
+        const int64_t ramp = rate_Hz * 500 / 1000 + 1;
         struct exh_safety s = {0};
-        for (int k = 0; k < 10; k++) { (void)exh_safety_step(&s, &par, healthy(EXH_CMD_RUN)); }
-        (void)exh_safety_step(&s, &par, with_cause(fault_bits[f], EXH_CMD_NONE));
-        CHECK_EQ_I64(s.faults, fault_bits[f]);
-        CHECK_EQ_I64(s.first, fault_bits[f]);
-        CHECK_EQ_I64(s.first_tick, 10);
-        /* a second cause joins, the first stays the first; going away clears nothing */
-        (void)exh_safety_step(&s, &par, with_cause(fault_bits[(f + 1) % 6], EXH_CMD_NONE));
-        (void)exh_safety_step(&s, &par, healthy(EXH_CMD_RUN));
-        CHECK_EQ_I64(s.faults, fault_bits[f] | fault_bits[(f + 1) % 6]);
-        CHECK_EQ_I64(s.first, fault_bits[f]);
-        CHECK_EQ_I64(s.first_tick, 10);
-        CHECK_EQ_I64(s.tick, 13);
-        for (int k = 0; k < 200; k++) { (void)exh_safety_step(&s, &par, healthy(EXH_CMD_NONE)); }
-        CHECK_EQ_I64(s.state, EXH_STATE_FAULT);
-        CHECK_EQ_I64(exh_safety_step(&s, &par, healthy(EXH_CMD_CLEAR)), EXH_STATE_OFF);
-        CHECK_EQ_I64(s.faults, 0);
-        /* the next fault is a new one, with its own first cause and tick */
-        (void)exh_safety_step(&s, &par, healthy(EXH_CMD_RUN));
-        (void)exh_safety_step(&s, &par, with_cause(fault_bits[(f + 2) % 6], EXH_CMD_NONE));
-        CHECK_EQ_I64(s.first, fault_bits[(f + 2) % 6]);
-        CHECK_EQ_I64(s.first_tick, 215);
+        int64_t last = 0;
+        struct exh_permit p = exh_safety_step(&s, &cfg, healthy(EXH_CMD_RUN));
+        for (uint32_t k = 1; k < small; k++) {
+            CHECK(p.mode == EXH_PERMIT_CLOSED && p.small_N_q20 == 1 << 20, "early, tick %" PRIu32, k);
+            p = exh_safety_step(&s, &cfg, healthy(EXH_CMD_NONE));
+        }
+        for (int64_t k = 1; k <= ramp; k++) {
+            p = exh_safety_step(&s, &cfg, healthy(EXH_CMD_NONE));
+            CHECK(p.mode == EXH_PERMIT_OPEN && s.state == EXH_STATE_ARM, "rate %" PRIu32, rate_Hz);
+            CHECK(p.share_q30 * ramp >= k * FULL, "below the line, %" PRIu32 " Hz", rate_Hz);
+            CHECK((p.share_q30 - k) * ramp <= k * FULL, "above the line, %" PRIu32 " Hz", rate_Hz);
+            CHECK(p.share_q30 > last, "stands");
+            last = p.share_q30;
+        }
+        CHECK_EQ_I64(last, FULL);
+        p = exh_safety_step(&s, &cfg, healthy(EXH_CMD_NONE));
+        CHECK(s.state == EXH_STATE_RUN && p.share_q30 == FULL, "rate %" PRIu32, rate_Hz);
+    }
+}
+
+/* --- running --- */
+
+TEST(limits_are_told_and_counted)
+{
+    const struct exh_safety_cfg cfg = cfg_of(par, 1000);
+    for (unsigned k = 0; k < EXH_LIMITS; k++) {
+        struct exh_safety s = box_in(&cfg, EXH_STATE_RUN, 0);
+        memset(s.held, 0, sizeof s.held);
+        for (int n = 0; n < 3; n++) {
+            s.limits = 1u << k;
+            (void)exh_safety_step(&s, &cfg, healthy(n == 1 ? EXH_CMD_RUN : EXH_CMD_CLEAR));
+            CHECK_EQ_I64(s.state, 1u << k == EXH_LIMIT_PULL ? EXH_STATE_RUN : EXH_STATE_LIMIT);
+        }
+        for (unsigned j = 0; j < EXH_LIMITS; j++) { CHECK_EQ_I64(s.held[j], j == k ? 3 : 0); }
+        s.limits = 0;
+        (void)exh_safety_step(&s, &cfg, healthy(EXH_CMD_NONE));
+        CHECK_EQ_I64(s.state, EXH_STATE_RUN);
+        s.held[k] = UINT32_MAX;
+        s.limits = 1u << k;
+        (void)exh_safety_step(&s, &cfg, healthy(EXH_CMD_NONE));
+        CHECK_EQ_I64(s.held[k], UINT32_MAX);
     }
 }
 
@@ -114,213 +281,256 @@ TEST(missed_ticks_are_tolerated_up_to_the_limit)
         int32_t max;
         uint32_t missed;
         uint8_t want;
-    } row[] = {{0, 0, EXH_STATE_RUN},       {0, 1, EXH_STATE_FAULT},
-               {1, 1, EXH_STATE_RUN},       {1, 2, EXH_STATE_FAULT},
-               {1, UINT32_MAX, EXH_STATE_FAULT},
-               /* in ROM a value may be anything: out of range is none */
-               {2, 1, EXH_STATE_FAULT},     {-1, 1, EXH_STATE_FAULT},
-               {-1, 0, EXH_STATE_RUN},      {INT32_MIN, 1, EXH_STATE_FAULT}};
+    } row[] = {{0, 0, EXH_STATE_RUN},
+               {0, 1, EXH_STATE_RELEASE},
+               {1, 1, EXH_STATE_RUN},
+               {1, 2, EXH_STATE_RELEASE},
+               {1, UINT32_MAX, EXH_STATE_RELEASE}};
     for (size_t i = 0; i < LEN(row); i++) {
-        const struct exh_safety_par p = {row[i].max};
+        struct exh_safety_par p = par;
+        struct exh_safety_cfg cfg;
+        struct exh_safety s;
         struct exh_safety_in in = healthy(EXH_CMD_NONE);
-        struct exh_safety s = {0};
-        s.state = EXH_STATE_RUN;
+        p.missed_max = row[i].max;
+        cfg = cfg_of(p, 1000);
+        s = box_in(&cfg, EXH_STATE_RUN, 0);
         in.missed = row[i].missed;
-        CHECK(exh_safety_step(&s, &p, in) == row[i].want, "row %zu", i);
+        (void)exh_safety_step(&s, &cfg, in);
+        CHECK(s.state == row[i].want, "row %zu", i);
         CHECK_EQ_I64(s.missed, row[i].missed);
-        in.missed = 3;
-        (void)exh_safety_step(&s, &p, in);
-        CHECK_EQ_I64(s.missed, row[i].missed > UINT32_MAX - 3 ? UINT32_MAX : row[i].missed + 3);
+        in.missed = 7;
+        (void)exh_safety_step(&s, &cfg, in);
+        CHECK_EQ_I64(s.missed, row[i].missed > UINT32_MAX - 7 ? UINT32_MAX : row[i].missed + 7);
     }
 }
 
-/* A timer that has already ticked says "in time", so a tick that takes too long misses
- * only some: one in 64 is tolerated, more is an overrun, whatever the pattern. */
+/* Two missed in 64 ticks, or three, are too many; a tick that takes one and a half
+ * periods misses every other one. */
 TEST(late_too_often_is_an_overrun)
 {
     static const struct {
         uint32_t every; /* one missed in so many ticks                          */
         int fault;
     } row[] = {{1, 1}, {2, 1}, {3, 1}, {5, 1}, {20, 1}, {63, 1}, {65, 0}, {1000, 0}};
+    const struct exh_safety_cfg cfg = cfg_of(par, 1000);
     for (size_t i = 0; i < LEN(row); i++) {
-        struct exh_safety s = {0};
-        uint8_t state = s.state = EXH_STATE_RUN;
+        struct exh_safety s = box_in(&cfg, EXH_STATE_RUN, 0);
         for (uint32_t n = 0; n < 10000; n++) {
             struct exh_safety_in in = healthy(EXH_CMD_NONE);
             in.missed = n % row[i].every == 0;
-            state = exh_safety_step(&s, &par, in);
+            (void)exh_safety_step(&s, &cfg, in);
         }
-        CHECK((state == EXH_STATE_FAULT) == row[i].fault, "one in %" PRIu32, row[i].every);
+        CHECK((s.state == EXH_STATE_FAULT) == row[i].fault, "one in %" PRIu32, row[i].every);
         CHECK((s.first == EXH_FAULT_OVERRUN) == row[i].fault, "one in %" PRIu32, row[i].every);
-    }
-}
-
-/* Nothing damaged may pass for OFF or RUN: RUN could then be commanded past a fault. */
-TEST(a_state_that_is_none_is_a_fault)
-{
-    for (unsigned v = 3; v < 256; v++) {
-        struct exh_safety s = {0};
-        s.state = (uint8_t)v;
-        CHECK_EQ_I64(exh_safety_step(&s, &par, healthy(EXH_CMD_RUN)), EXH_STATE_FAULT);
-    }
-    for (int k = 0; k < 2; k++) {
-        struct exh_safety s = {0};
-        uint8_t buf[64] = {0};
-        struct exh_bytes c = exh_bytes_reader(buf, sizeof buf);
-        buf[k ? 4 : 28] = 0xFF; /* faults; state */
-        exh_safety_bytes(&c, &s);
-        CHECK_EQ_I64(s.state, EXH_STATE_FAULT);
-        CHECK_EQ_I64(exh_safety_step(&s, &par, healthy(EXH_CMD_RUN)), EXH_STATE_FAULT);
     }
 }
 
 TEST(only_drives_in_use_count)
 {
+    const struct exh_safety_cfg cfg = cfg_of(par, 1000);
     for (uint8_t n = 1; n <= 5; n++) {
         for (unsigned d = 0; d < 5; d++) {
-            struct exh_safety s = {0};
+            struct exh_safety s = box_in(&cfg, EXH_STATE_RUN, 0);
             struct exh_safety_in in = healthy(EXH_CMD_NONE);
-            s.state = EXH_STATE_RUN;
             in.fingers = n;
             in.din &= ~((uint32_t)EXH_DIN_DRIVE0 << d);
-            CHECK(exh_safety_step(&s, &par, in) == (d < n ? EXH_STATE_FAULT : EXH_STATE_RUN),
-                  "%u fingers, drive %u", n, d);
+            (void)exh_safety_step(&s, &cfg, in);
+            CHECK(s.state == (d < n ? EXH_STATE_FAULT : EXH_STATE_RUN), "%u fingers, drive %u", n,
+                  d);
         }
     }
 }
 
-/* --- the gate --- */
+/* --- the release --- */
 
-struct box {
-    struct exh_drive_par par[EXH_FINGERS];
-    struct exh_knot knot[2];
-    struct exh_drive_cfg cfg[EXH_FINGERS];
-    struct exh_current_ledger i[EXH_FINGERS];
-    uint32_t limits[EXH_FINGERS];
-    struct exh_drive_out out;
-    struct exh_safety s;
-};
-
-static void box_setup(struct box *b)
+/* Ticks of RELEASE for a cause that stays and for a command that is given on and on: neither holds
+ * the gate open. Missed ticks count. */
+TEST(release_ends_at_every_rate)
 {
-    static const struct box zero;
-    const struct exh_table none = {NULL, 0};
-    *b = zero;
-    b->s.fingers = EXH_FINGERS; /* all drives seen ready */
-    b->knot[1].x = b->knot[1].y = 1 << 20;
-    CHECK_EQ_I64(exh_table_set(b->knot, 2), 0);
-    for (unsigned k = 0; k < EXH_FINGERS; k++) {
-        const struct exh_table t = {b->knot, 2};
-        int32_t *field = &b->par[k].f_max_N_q20;
-        for (size_t r = 0; r < EXH_DRIVE_ROWS; r++) { field[r] = exh_drive_rows[r].dflt; }
-        CHECK_EQ_I64(exh_drive_setup(&b->cfg[k], &b->par[k], (struct exh_period){1, 2000}, t, none),
-                     0);
-        b->i[k].table_A_q26 = EXH_Q(3, 1, EXH_Q_CUR) * ((int)k % 3 - 1);
+    static const int32_t ms[] = {5, 15, 18};
+    for (uint32_t k = 0; k < 2000 * LEN(ms) * 3; k++) {
+        const uint32_t rate_Hz = 1 + k % 2000, missed = k / 2000 / LEN(ms) == 2;
+        const struct exh_safety_par p = {1, 1 << 20, 3, 7, ms[k / 2000 % LEN(ms)]};
+        const struct exh_safety_cfg cfg = cfg_of(p, rate_Hz);
+        const uint32_t floor = (uint32_t)p.release_ms * rate_Hz / 1000, want = floor < 3 ? 3 : floor;
+        const int fault = k / 2000 / LEN(ms) > 0;
+        struct exh_safety s = {0};
+        uint32_t n = 0;
+        s.state = EXH_STATE_RUN;
+        do {
+            struct exh_safety_in in =
+                fault ? with_cause(EXH_FAULT_DEADMAN, EXH_CMD_RUN) : healthy(EXH_CMD_OFF);
+            in.missed = missed;
+            (void)exh_safety_step(&s, &cfg, in);
+        } while (s.state == EXH_STATE_RELEASE && n++ < 10000);
+        CHECK(n == (missed ? (want + 1) / 2 : want), "%" PRIu32 " Hz: %" PRIu32 " ticks", rate_Hz,
+              n);
+        CHECK_EQ_I64(s.state, fault ? EXH_STATE_FAULT : EXH_STATE_OFF);
     }
 }
 
-TEST(gate_in_every_state)
+/* --- clearing --- */
+
+/* All sequences of six ticks, each healthy with a command to clear, healthy, let go, or with the
+ * cause: FAULT is left by the first tick that clears, held, with no cause, after a tick let go since
+ * a cause was new. */
+TEST(clearing_in_every_order)
 {
-    for (uint8_t state = 0; state < 5; state++) {
-        const int open = state == EXH_STATE_RUN;
-        struct box b;
-        box_setup(&b);
-        b.s.state = state; /* 3 and 4: a state no one has heard of is not RUN */
-        exh_gate(&b.s, b.cfg, 5, b.i, b.limits, &b.out);
-        CHECK_EQ_I64(b.out.enable, open ? 0x1F : 0);
-        for (unsigned k = 0; k < 5; k++) {
-            const int64_t codes = 5538 * ((int64_t)k % 3 - 1); /* 3 A, 1846.02 codes/A */
-            CHECK_EQ_I64(b.out.dac_raw[k], open ? 32768 + codes : 32768);
-            CHECK_EQ_I64(b.i[k].gate_A_q26, open ? 0 : -b.i[k].table_A_q26);
-            CHECK((b.limits[k] & EXH_LIMIT_GATE) != 0 || open || b.i[k].table_A_q26 == 0,
-                  "the gate acts unreported, finger %u", k);
-            CHECK_EQ_I64(b.i[k].coded_A_q26, b.i[k].table_A_q26 + b.i[k].peak_A_q26 +
-                                                 b.i[k].i2t_A_q26 + b.i[k].gate_A_q26 +
-                                                 b.i[k].dac_A_q26);
-            if (!open) { CHECK_EQ_I64(b.i[k].coded_A_q26, 0); }
+    const struct exh_safety_cfg cfg = cfg_of(par, 1000);
+    unsigned cleared = 0;
+    for (unsigned code = 0; code < 4096; code++) {
+        struct exh_safety s = box_in(&cfg, EXH_STATE_FAULT, 0); /* e-stop */
+        uint32_t seen = EXH_FAULT_ESTOP;
+        int opened = 0, left = 0;
+        for (unsigned k = 0; k < 6 && !left; k++) {
+            const unsigned what = code >> 2 * k & 3u;
+            const uint32_t fault = what == 2 ? EXH_FAULT_DEADMAN : what == 3 ? EXH_FAULT_LINK : 0;
+            struct exh_safety_in in = with_cause(fault, what == 1 ? EXH_CMD_RUN : EXH_CMD_CLEAR);
+            if (fault & ~seen) { opened = 0; }
+            seen |= fault;
+            if (what == 2) { opened = 1; }
+            (void)exh_safety_step(&s, &cfg, in);
+            left = what == 0 && opened;
+            CHECK((s.state == EXH_STATE_OFF) == left, "sequence %u, tick %u", code, k);
+        }
+        if (left) { CHECK_EQ_I64(s.faults, 0); }
+        cleared += (unsigned)left;
+    }
+    CHECK(cleared > 500 && cleared < 3500, "%u of 4096 cleared", cleared);
+}
+
+TEST(a_fault_never_clears_by_itself)
+{
+    const struct exh_safety_cfg cfg = cfg_of(par, 1000);
+    struct exh_safety s = box_in(&cfg, EXH_STATE_FAULT, 0);
+    const uint32_t first_tick = s.first_tick;
+    for (int k = 0; k < 1000; k++) {
+        (void)exh_safety_step(
+            &s, &cfg, with_cause(k % 7 ? 0 : EXH_FAULT_DEADMAN, k % 3 ? EXH_CMD_RUN : EXH_CMD_OFF));
+        CHECK_EQ_I64(s.state, EXH_STATE_FAULT);
+    }
+    CHECK(s.first == EXH_FAULT_ESTOP && s.first_tick == first_tick, "first");
+    (void)exh_safety_step(&s, &cfg, healthy(EXH_CMD_CLEAR));
+    CHECK(s.state == EXH_STATE_OFF && s.first == EXH_FAULT_ESTOP, "cleared");
+}
+
+/* --- damaged --- */
+
+TEST(a_state_that_cannot_be_is_a_fault)
+{
+    const struct exh_safety_cfg cfg = cfg_of(par, 1000);
+    for (unsigned v = 0; v < 256; v++) {
+        for (uint32_t faults = 0; faults < 2; faults++) {
+            const int sane = v == EXH_STATE_FAULT    ? faults != 0
+                             : v == EXH_STATE_RELEASE ? 1
+                                                      : v < EXH_STATES && faults == 0;
+            struct exh_safety s = {0};
+            s.state = (uint8_t)v;
+            s.faults = faults;
+            s.opened = 1;
+            (void)exh_safety_step(&s, &cfg, healthy(EXH_CMD_CLEAR));
+            CHECK((s.state == EXH_STATE_FAULT && (s.faults & EXH_FAULT_LOGIC)) == !sane,
+                  "%u with %" PRIu32, v, faults);
         }
     }
 }
 
-TEST(span_is_never_exceeded)
+static uint32_t bytes_of(struct exh_safety *s, uint8_t *buf, size_t cap)
 {
-    static const int64_t amp[] = {0, 6, 7, 31, -6, -7, -32};
-    for (size_t a = 0; a < LEN(amp); a++) {
-        struct box b;
-        box_setup(&b);
-        b.s.state = EXH_STATE_RUN;
-        b.par[0].dac_zero_raw = 32000;
-        b.par[0].dac_span_raw = 12184; /* 6.6 A */
-        b.i[0].table_A_q26 = amp[a] * (1 << 26);
-        exh_gate(&b.s, b.cfg, 1, b.i, b.limits, &b.out);
-        CHECK(b.out.dac_raw[0] >= 32000 - 12184 && b.out.dac_raw[0] <= 32000 + 12184,
-              "%" PRId64 " A: code %d", amp[a], b.out.dac_raw[0]);
-        CHECK(((b.limits[0] & EXH_LIMIT_DAC) != 0) == (amp[a] > 6 || amp[a] < -6), "%" PRId64 " A",
-              amp[a]);
-    }
+    struct exh_bytes c = exh_bytes_writer(buf, cap);
+    exh_safety_bytes(&c, s);
+    CHECK(exh_bytes_ok(&c), "writer");
+    return c.at;
 }
 
-/* Zero near an end of the D/A: the converter itself clips, and that is a limit. */
-TEST(converter_end_is_reported)
+/* Every value of every byte, of every state whose gate is closed: it stays so. */
+TEST(no_byte_of_a_state_opens_the_gate)
 {
-    struct box b;
-    box_setup(&b);
-    b.s.state = EXH_STATE_RUN;
-    b.par[0].dac_zero_raw = 65000;
-    b.i[0].table_A_q26 = EXH_Q(6, 1, EXH_Q_CUR);
-    exh_gate(&b.s, b.cfg, 1, b.i, b.limits, &b.out);
-    CHECK_EQ_I64(b.out.dac_raw[0], 65535);
-    CHECK((b.limits[0] & EXH_LIMIT_DAC) != 0, "5.7 A taken away without a limit bit");
-}
-
-TEST(fingers_not_in_use_get_zero)
-{
-    for (unsigned n = 1; n <= EXH_FINGERS; n++) {
-        struct box b;
-        box_setup(&b);
-        b.s.state = EXH_STATE_RUN;
-        for (unsigned k = 0; k < EXH_FINGERS; k++) {
-            b.out.dac_raw[k] = 60000;
-            b.i[k].table_A_q26 = EXH_Q(3, 1, EXH_Q_CUR);
+    const struct exh_safety_cfg cfg = cfg_of(par, 1000);
+    static const uint8_t closed[] = {EXH_STATE_OFF, EXH_STATE_ARM, EXH_STATE_FAULT};
+    for (size_t i = 0; i < LEN(closed); i++) {
+        struct exh_safety s = box_in(&cfg, closed[i], 1), back;
+        uint8_t buf[128];
+        const uint32_t len = bytes_of(&s, buf, sizeof buf);
+        for (uint32_t at = 0; at < len; at++) {
+            const uint8_t right = buf[at];
+            for (unsigned v = 0; v < 256; v++) {
+                struct exh_bytes c = exh_bytes_reader(buf, len);
+                buf[at] = (uint8_t)v;
+                memset(&back, 0xA5, sizeof back);
+                exh_safety_bytes(&c, &back);
+                CHECK(v == right || back.state == EXH_STATE_FAULT, "byte %" PRIu32 ": %u", at, v);
+                CHECK(!exh_safety_open(&back), "open");
+                (void)exh_safety_step(&back, &cfg, healthy(EXH_CMD_CLEAR));
+                CHECK(v == right || back.state == EXH_STATE_FAULT, "stepped");
+            }
+            buf[at] = right;
         }
-        exh_gate(&b.s, b.cfg, n, b.i, b.limits, &b.out);
-        CHECK_EQ_I64(b.out.enable, (1u << n) - 1u);
-        for (unsigned k = 0; k < EXH_FINGERS; k++) {
-            CHECK((b.out.dac_raw[k] == 32768) == (k >= n), "n %u finger %u: %d", n, k,
-                  b.out.dac_raw[k]);
+        for (uint32_t cut = 0; cut < len; cut++) {
+            struct exh_bytes c = exh_bytes_reader(buf, cut);
+            exh_safety_bytes(&c, &back);
+            CHECK(back.state == EXH_STATE_FAULT && !exh_bytes_ok(&c), "cut at %" PRIu32, cut);
         }
-    }
-}
-
-TEST(alive_changes_at_every_tick_in_every_state)
-{
-    struct box b;
-    box_setup(&b);
-    for (int k = 0; k < 600; k++) {
-        const uint8_t before = b.out.alive;
-        b.s.state = (uint8_t)(k % 3);
-        exh_gate(&b.s, b.cfg, 5, b.i, b.limits, &b.out);
-        CHECK(b.out.alive != before, "tick %d", k);
     }
 }
 
 TEST(state_round_trip)
 {
-    struct exh_safety s = {6, 1, 2, 0xFFFFFFFF, 4, 5, 7, 2, 255, 0}, back = {0};
-    uint8_t buf[32];
-    struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
-    exh_safety_bytes(&c, &s);
-    CHECK_EQ_I64(c.at, 30);
-    c = exh_bytes_reader(buf, c.at);
-    exh_safety_bytes(&c, &back);
-    CHECK(exh_bytes_ok(&c), "reader");
-    CHECK(back.present == 6 && back.late == 7, "causes now");
-    CHECK(back.faults == 1 && back.first == 2 && back.first_tick == 0xFFFFFFFF, "causes");
-    CHECK(back.tick == 4 && back.missed == 5 && back.state == 2 && back.alive == 255, "rest");
+    const struct exh_safety_cfg cfg = cfg_of(par, 1000);
+    for (uint8_t state = 0; state < EXH_STATES; state++) {
+        struct exh_safety s = box_in(&cfg, state, 0), back;
+        uint8_t buf[128], again[128];
+        uint32_t len;
+        struct exh_bytes c;
+        for (unsigned k = 0; k < EXH_LIMITS; k++) { s.held[k] = 0x01020304u * (k + 1); }
+        len = bytes_of(&s, buf, sizeof buf);
+        CHECK_EQ_I64(len, 4 * 22 + 5 + 4);
+        memset(&back, 0xA5, sizeof back);
+        c = exh_bytes_reader(buf, len);
+        exh_safety_bytes(&c, &back);
+        CHECK(exh_bytes_ok(&c) && bytes_of(&back, again, sizeof again) == len, "read");
+        CHECK(memcmp(buf, again, len) == 0 && back.state == state, "state %u", state);
+        c = exh_bytes_measure();
+        exh_safety_bytes(&c, &back);
+        CHECK_EQ_I64(c.at, len);
+    }
 }
 
-TEST_MAIN("unit/safety", every_state_with_every_command, power_on_is_off,
-          each_fault_latches_with_cause_and_tick, missed_ticks_are_tolerated_up_to_the_limit,
-          late_too_often_is_an_overrun, a_state_that_is_none_is_a_fault, only_drives_in_use_count, gate_in_every_state, span_is_never_exceeded,
-          converter_end_is_reported, fingers_not_in_use_get_zero,
-          alive_changes_at_every_tick_in_every_state, state_round_trip);
+TEST(setup_refuses_what_is_out_of_range)
+{
+    const struct exh_period T = {1, 1000}, none = {0, 1};
+    for (size_t r = 0; r < EXH_SAFETY_ROWS; r++) {
+        const struct exh_signal *row = &exh_safety_rows[r];
+        const int32_t v[] = {row->min, row->max, row->min - 1, row->max + 1};
+        for (size_t k = 0; k < LEN(v); k++) {
+            struct exh_safety_par p = par;
+            struct exh_safety_cfg cfg;
+            (&p.missed_max)[r] = v[k];
+            CHECK_EQ_I64(exh_safety_setup(&cfg, &p, T), k < 2 ? 0 : -EXH_E_RANGE);
+            CHECK_EQ_I64(exh_safety_setup(&cfg, &p, none), k < 2 ? -EXH_E_RATE : -EXH_E_RANGE);
+        }
+    }
+}
+
+TEST(names_are_all_there)
+{
+    static const char *(*const of[])(unsigned) = {exh_state_name, exh_trigger_name, exh_fault_name,
+                                                  exh_limit_name, exh_arm_name};
+    static const unsigned n[] = {EXH_STATES, EXH_TRIGGERS, EXH_FAULTS, EXH_LIMITS, EXH_ARMS};
+    for (size_t k = 0; k < LEN(of); k++) {
+        for (unsigned i = 0; i < n[k]; i++) { CHECK(of[k](i)[0] != '\0', "%zu %u", k, i); }
+        CHECK(of[k](n[k])[0] == '\0' && of[k](UINT32_MAX)[0] == '\0', "%zu: beyond", k);
+    }
+    CHECK(strcmp(exh_fault_name(14), "logic") == 0, "logic");
+    CHECK(strcmp(exh_limit_name(10), "passivity") == 0, "passivity");
+}
+
+TEST_MAIN("unit/safety", every_cell_is_what_it_should_be, every_state_is_reached,
+          every_fault_in_every_state, several_causes_cut_if_one_of_them_does, power_on_is_off,
+          each_step_is_named_where_it_does_not_hold, the_first_of_several_steps_is_named,
+          a_step_lost_in_the_ramp_releases, off_while_arming, arming_takes_its_time_at_every_rate,
+          limits_are_told_and_counted, missed_ticks_are_tolerated_up_to_the_limit,
+          late_too_often_is_an_overrun, only_drives_in_use_count, release_ends_at_every_rate,
+          clearing_in_every_order, a_fault_never_clears_by_itself,
+          a_state_that_cannot_be_is_a_fault, no_byte_of_a_state_opens_the_gate, state_round_trip,
+          setup_refuses_what_is_out_of_range, names_are_all_there);

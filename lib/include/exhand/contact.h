@@ -45,8 +45,8 @@ struct exh_contact_in {
 };
 
 /* The force ledger: why there is each newton. The law fills the first three,
- * drive.h the rest; force = spring + damper + pullback + passivity + clamp + slew,
- * exactly, always. N, q20; the terms of the law are int64_t so that none of them
+ * drive.h the rest; force = spring + damper + pullback + passivity + clamp + slew
+ * + release, exactly, always. N, q20; the terms of the law are int64_t so that none of them
  * ever saturates. */
 struct exh_force_ledger {
     int64_t spring_N_q20;
@@ -55,6 +55,7 @@ struct exh_force_ledger {
     int64_t passivity_N_q20; /* 0 where that module is not linked             */
     int64_t clamp_N_q20;     /* pull only, and the force limit                */
     int64_t slew_N_q20;
+    int64_t release_N_q20;   /* from what was asked to what the release law gives */
     int32_t force_N_q20;     /* the force commanded                           */
 };
 

@@ -1,6 +1,6 @@
 /* Drive: from a force ledger to a motor current, and from raw codes back to SI.
  *
- * Order, fixed: run or not, force limit, slew, force-to-current table, peak
+ * Order, fixed: permit, force limit, slew, force-to-current table, peak
  * current, I2t.
  * The code for the D/A is made by exh_gate() alone (safety.h).
  */
@@ -26,8 +26,8 @@ extern "C" {
 enum exh_din { /* digital inputs; every contact is normally closed: 1 = healthy */
     EXH_DIN_ESTOP = 1u << 0,   /* emergency-stop loop closed                   */
     EXH_DIN_DEADMAN = 1u << 1, /* dead-man switch held                         */
-    EXH_DIN_WATCHDOG = 1u << 2, /* the watchdog has not fired since power-on     */
-    EXH_DIN_CARDS = 1u << 3,   /* the cards are healthy                        */
+    EXH_DIN_WATCHDOG = 1u << 2, /* no watchdog has fired since power-on        */
+    EXH_DIN_CARDS = 1u << 3,   /* the cards answer and do what they are told   */
     EXH_DIN_DRIVE0 = 1u << 8   /* drive of finger i ready: EXH_DIN_DRIVE0 << i */
 };
 
@@ -52,13 +52,29 @@ void exh_drive_out_bytes(struct exh_bytes *c, struct exh_drive_out *out, unsigne
 
 enum exh_limit {
     EXH_LIMIT_PULL = 1u << 0,  /* law asked to push: a string only pulls       */
-    EXH_LIMIT_FORCE = 1u << 1, /* above f_max, or the end of the table         */
+    EXH_LIMIT_FORCE = 1u << 1, /* above f_max, or the end of the table; closed: above small_N_q20 */
     EXH_LIMIT_SLEW = 1u << 2,
     EXH_LIMIT_PEAK = 1u << 3, /* above i_peak                                  */
     EXH_LIMIT_I2T = 1u << 4,
     EXH_LIMIT_DAC = 1u << 5, /* code at the end of its span                    */
-    EXH_LIMIT_GATE = 1u << 6, /* not in RUN: force and current held at zero    */
+    EXH_LIMIT_GATE = 1u << 6, /* closed: force and current held at zero        */
+    EXH_LIMIT_RAMP = 1u << 7, /* above the share of f_max that arming allows yet */
+    EXH_LIMIT_RELEASE = 1u << 8,  /* the release law has the force             */
+    EXH_LIMIT_SPEED = 1u << 9,    /* velocity into the law (watch.h)           */
     EXH_LIMIT_PASSIVITY = 1u << 10
+};
+#define EXH_LIMITS 11
+
+/* --- permit: what the state of the box (safety.h) lets the force do in this tick --- */
+
+enum exh_permit_mode { EXH_PERMIT_CLOSED, EXH_PERMIT_OPEN, EXH_PERMIT_RELEASE };
+
+struct exh_permit {
+    uint8_t mode;         /* enum exh_permit_mode                              */
+    int32_t share_q30;    /* open: of the force limit, 0 .. 2^30               */
+    int32_t small_N_q20;  /* closed: a force asked for above it is told, FORCE */
+    uint32_t ticks;       /* 1, and one for each missed before it              */
+    struct exh_gain fall; /* release: of the force held at its start, a tick   */
 };
 
 /* --- conversion tables: strictly rising, linear between knots --- */
@@ -118,6 +134,7 @@ struct exh_drive_cfg {
 
 struct exh_drive {
     int32_t force_N_q20; /* last commanded                                     */
+    int32_t fall_N_q20;  /* release: taken away a tick; else 0                 */
     int64_t i2t_q32;     /* heat above continuous, A^2 ticks, 0 .. budget + 1 tick at peak */
 };
 
@@ -140,13 +157,15 @@ int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par,
                     struct exh_period T, struct exh_table force_to_cur,
                     struct exh_table cur_to_force);
 
-/* Completes the force ledger: 0 <= force <= f_max and the table's end, |change| <=
+/* Completes the force ledger, by the permit's mode, any other being CLOSED.
+ * OPEN: 0 <= force <= the share of f_max and of the table's end, |change| <=
  * slew * T (at least 1 LSB). Where the two disagree, because f_max was just lowered,
- * slew wins: force comes down to the new limit at its rate. run is 1 in RUN, 0 or any
- * other value elsewhere: the force is zero and rises from there when it runs again.
- * Returns limit bits. */
-uint32_t exh_drive_force(struct exh_drive *s, const struct exh_drive_cfg *cfg, int run,
-                         struct exh_force_ledger *f);
+ * slew wins: force comes down to the new limit at its rate.
+ * RELEASE: whatever the ledger asks for, the force held in the last tick goes in equal steps,
+ * fall of it and at most 1 LSB more, one for each of `ticks`: with fall = 1/n it is zero after n.
+ * CLOSED: the force is zero and rises from there when it opens again. Returns limit bits. */
+uint32_t exh_drive_force(struct exh_drive *s, const struct exh_drive_cfg *cfg,
+                         const struct exh_permit *permit, struct exh_force_ledger *f);
 
 /* Fills table, peak and i2t for the force commanded; zeroes the rest. The I2t
  * limit leaves the peak untouched while less than 3/4 of the budget is used,

@@ -8,6 +8,7 @@
  *   hand                         the glove's angles to the robot hand's joints and fingertips
  *   quad -> velocity -> contact -> drive -> safety (the gate)      one tick
  *   passivity                    no contact gives back more energy than it was given
+ *   watch                        speed limit of a finger, and an encoder that stands
  *   filter, quantizer            glove voltages to codes that stand still
  *   gains                        which stiffness and damping are taken at this rate
  *   precontact                   the virtual contact q_lim, frozen before it is felt
@@ -49,6 +50,7 @@
 #include "exhand/signal.h"
 #include "exhand/units.h"
 #include "exhand/velocity.h"
+#include "exhand/watch.h"
 #include "exhand/wire.h"
 
 #endif

@@ -121,6 +121,12 @@ static inline int64_t exh_gain_mul(struct exh_gain g, int32_t x)
     return ((int64_t)x * g.mant + ((INT64_C(1) << g.shift) >> 1)) >> g.shift;
 }
 
+/* x times the gain, rounded down. */
+static inline int64_t exh_gain_floor(struct exh_gain g, int32_t x)
+{
+    return (int64_t)x * g.mant >> g.shift;
+}
+
 /* 1/x without a division, x within 1/8 .. 8, both q24: within 2^-25 + 2^-28/x of exact.
  * Three Newton steps, y += y (1 - m y), from the line that is nearest to 1/m in 1/2 .. 1. They go
  * on with z = y - 1, below 1: products of 32 bits are a third of the work of longer ones. */

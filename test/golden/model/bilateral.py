@@ -13,13 +13,12 @@ from .hit2 import BENT, MAP, bones, sensors_of
 from .num import (AGAIN, M32, M64, MAX32, RANGE, STATE, TICKS, UNKNOWN, Rng, clamp, div, period, sat32, shr,
                   wave, wrap)
 from .quad import Quad, narrowest, position
-from .safety import ENCODER, RUN, TRACKING, Safety
+from .safety import ENCODER, FAULT, HEALTHY, TRACKING, Safety, any_safety
 from .track import Monitor, Track, any_par as any_track
 from .velocity import Window, scale
 from .wire import ACK, HELLO, PARAM, PLANES, TELL, Receiver, Sender
 
 FINGERS, MATERIALS, ROOM, LATE = 5, 8, 8, 4
-HEALTHY = 0x1F03
 VERSION, TABLE = 0x00010203, 0x89ABCDEF  # of the library, and of the parameters: not these, which may change
 
 
@@ -66,7 +65,7 @@ class Par:
         self.f0_rest, self.every = any_ms(rng, 1, 12, rate), rng.draw(1, 4)
         self.finger = [FingerPar(rng, rate) for _ in range(FINGERS)]
         self.material = [[any_size(rng, m) for m in (1024000000, 1048576000, 104857600)] for _ in range(MATERIALS)]
-        self.missed_max = rng.draw(0, 1)
+        self.safety = any_safety(rng, rate)
         self.glove = any_glove(rng, (T[0] * self.every, T[1]))
         self.sensor = [any_sensor(rng, i) for i in range(SENSORS)]
 
@@ -138,7 +137,7 @@ class Finger:
         if self.par.from_slope:
             self.slope = slope
 
-    def feel(self, age, run, materials, rest_ticks, q, v):
+    def feel(self, age, permit, materials, rest_ticks, q, v):
         """(bits, d, q_lim, c, limits, force, current)"""
         bits = self.pre.step(self.tip, self.slope, age, q, self.contact.touching, materials)
         d, lim = self.pre.d, self.pre.lim
@@ -147,7 +146,7 @@ class Finger:
         self.drive.f_max = min(own, most) if self.pre.phase == pre.FROZEN else own
         c, spring, damper, pull = self.contact.tick((k, b, *self.par.f0), q, v, lim)
         self.wind_in(rest_ticks)
-        limits, _, _, force = self.drive.take(1 if run else 0, spring + damper + pull)
+        limits, _, _, _, force = self.drive.take(permit, spring + damper + pull)
         more, i0, peak, i2t = self.drive.current()
         return bits, d, lim, c, limits | more, force, i0 + peak + i2t
 
@@ -184,7 +183,7 @@ class Bilateral:
         self.n = len(self.at)
         bits = max(narrowest(par.finger[f].step, par.finger[f].speed, T)[1] for f in self.at)
         self.finger = [Finger(f, par.finger[f], T, bits if f in self.at else 0) for f in range(FINGERS)]
-        self.safety = Safety()
+        self.safety = Safety(par.safety, T)
         self.glove = Glove(par.glove, par.sensor, (1 << SENSORS) - 1, (T[0] * par.every, T[1]))
         for i in range(SENSORS):
             self.glove.channel[i] = Channel(0)
@@ -247,8 +246,8 @@ class Bilateral:
             cnt = s.quad.tick(enc[f])
             moved[f] = position(cnt, s.par.step), s.velocity.tick(cnt)
             raised |= (ENCODER if s.quad.lost else 0) | (TRACKING if s.track.step(seen[f][0]) else 0)
-        placed = din & 3 | sum(1 << 8 + k for k, f in enumerate(at) if din >> 8 + f & 1)
-        run = self.safety.step(par.missed_max, placed, raised, missed, command, self.n) == RUN
+        placed = din & 255 | sum(1 << 8 + k for k, f in enumerate(at) if din >> 8 + f & 1)
+        permit = self.safety.step(placed, raised, missed, command, self.n, 15)
         age = glove_age if glove_age < 65535 else M32
         self.seen = age if self.worn else M32
         for f in at:
@@ -256,19 +255,20 @@ class Bilateral:
         self.take(mail, missed)
         if raw:
             self.see(raw, age)
-        felt = {f: self.finger[f].feel(self.age(f), run, par.material, self.rest_ticks, *moved[f]) for f in at}
-        gated, enable = self.safety.gate([par.finger[f].drive for f in at], [felt[f][6] for f in at])
+        felt = {f: self.finger[f].feel(self.age(f), permit, par.material, self.rest_ticks, *moved[f]) for f in at}
+        gated, enable = self.safety.gate([par.finger[f].drive for f in at], [felt[f][6] for f in at],
+                                         [felt[f][4] for f in at])
         paper, more = [[0] * 8 for _ in range(FINGERS)], [[0] * 15 for _ in range(FINGERS)]
         dac, enabled = [par.finger[at[0]].drive[6]] * FINGERS, 0
         for k, f in enumerate(at):
-            s, (bits, d, lim, c, limits, force, _) = self.finger[f], felt[f]
-            gate, _, _, coded, dac[f] = gated[k]
+            s, (bits, d, lim, c, _, force, _) = self.finger[f], felt[f]
+            limits, _, _, coded, dac[f] = gated[k]
             enabled |= (enable >> k & 1) << f
             paper[f] = [*moved[f], force, coded, c, seen[f][1], d, lim]
             s.track.coded(coded)
             s.last = coded
             p = s.pre
-            more[f] = [bits, limits | gate, *s.joint, s.clamped, *s.tip,
+            more[f] = [bits, limits, *s.joint, s.clamped, *s.tip,
                        *map(wrap, (p.frozen, p.born, p.refused, p.ignored, p.stale, p.let_go))]
         w, sf = self.wire, self.safety
         box = [sf.state_, sf.faults, sf.present, self.faulty, glove_age, min(w.age, MAX32), min(w.trip, MAX32),
@@ -462,6 +462,8 @@ def bilateral(rate):
             din ^= 1 << rng.draw(0, 12)
         elif rng.draw(0, 3) == 0:
             din = HEALTHY
+        if s.safety.state_ == FAULT and rng.draw(0, 3) == 0:
+            din ^= 2
         missed = 1 if rng.draw(0, 127) == 0 else 0
         command = 1 if k % 8 == 2 else 3 if k % 8 == 5 else 0
         for f in s.finger:

@@ -4,7 +4,8 @@ from struct import Struct
 
 from .num import AGAIN, TICKS, MAX32, MIN32, Rng, clamp, gain, period, sat32, shr, times, wave
 
-PULL, FORCE, SLEW, PEAK, I2T, DAC, GATE = 1, 2, 4, 8, 16, 32, 64
+PULL, FORCE, SLEW, PEAK, I2T, DAC, GATE, RAMP, RELEASE = (1 << b for b in range(9))
+FULL = 1 << 30
 
 
 class Table:
@@ -54,7 +55,7 @@ TABLE = "x y | y_at_x x_at_y mant shift"
 
 
 class Drive:
-    pack = Struct("<iq").pack
+    pack = Struct("<iiq").pack
 
     def __init__(self, par, T, to_cur, to_force):
         (self.f_max, self.up, self.down, self.peak, self.cont, ms, self.zero, self.span,
@@ -68,21 +69,32 @@ class Drive:
         self.sh = max(0, self.budget.bit_length() - 31)
         self.fold = gain(self.peak - self.cont, self.budget >> self.sh >> 2)
         self.amp = gain(1 << 42, self.dac)
-        self.force = self.heat = 0
+        self.force = self.fall = self.heat = 0
 
-    def take(self, run, asked):
-        """(limits, clamp, slew, force)"""
-        if run != 1:
+    def take(self, permit, asked):
+        """(limits, clamp, slew, release, force); permit: mode, share, small, ticks, fall"""
+        mode, share, small, ticks, fall = permit
+        if mode == 2:
+            if self.fall == 0:
+                self.fall = (self.force * fall[0] >> fall[1]) + 1
+            self.force = max(0, self.force - ticks * self.fall)
+            return RELEASE, 0, 0, self.force - asked, self.force
+        self.fall = 0
+        if mode != 1:
             self.force = 0
-            return PULL if asked < 0 else GATE if asked else 0, -asked, 0, 0
+            limits = PULL if asked < 0 else GATE if asked else 0
+            return limits | (FORCE if asked > small else 0), -asked, 0, 0, 0
         top = min(self.f_max, self.to_cur.knots[-1][0])
-        held = clamp(asked, 0, top)
+        most = top * share // FULL
+        held = clamp(asked, 0, most)
         limits = PULL if asked < 0 else FORCE if asked > top else 0
+        if most < top and asked > most:
+            limits |= RAMP
         force = clamp(held, self.force - self.down, self.force + self.up)
         if force != held:
             limits |= SLEW
         self.force = force
-        return limits, held - asked, force - held, force
+        return limits, held - asked, force - held, 0, force
 
     def current(self):
         """(limits, table, peak, i2t)"""
@@ -99,7 +111,7 @@ class Drive:
         return i, self.to_force.at(i)
 
     def state(self):
-        return self.pack(self.force, self.heat)
+        return self.pack(self.force, self.fall, self.heat)
 
 
 def rising(rng, x, y, n, dx, dy):
@@ -134,21 +146,29 @@ def drive(rate):
             x, y, n = rng.draw(-(1 << 29), 0), rng.draw(-(1 << 27), 0), rng.draw(2, 6)
             to_force = rising(rng, x, y, n, 1 << 28, 1 << 25)
             d = Drive(par, period(rate, k), to_cur, to_force)
+            fall = gain(1, rng.draw(3, 360))
         s, p = spring[k], rng.draw(0, 20971520) if k & 8 else 0
         if 180 <= k < AGAIN:
             s <<= rng.draw(0, 16)
-        run = 0 if k < 4 or 70 <= k < 76 else 2 if k == 130 else 1
+        mode = 0 if k < 4 or 70 <= k < 76 else 3 if k == 130 else 1
+        if 100 <= k < 110:
+            mode = 2
         if k >= 160:
-            run = min(1, rng.draw(0, 15))
-        limits, clamp_, slew, force = d.take(run, s + damper[k] + p)
+            mode = {0: 0, 1: 2, 2: 2, 3: 2, 4: 3}.get(rng.draw(0, 31), mode)
+        share = rng.draw(0, FULL) if rng.draw(0, 3) == 0 else FULL
+        small = rng.draw(0, 10485760)
+        ticks = rng.draw(1, 3) if rng.draw(0, 7) == 0 else 1
+        limits, clamp_, slew, release, force = d.take((mode, share, small, ticks, fall),
+                                                      s + damper[k] + p)
         more, i_table, i_peak, i_i2t = d.current()
         raw = rng.draw(-32768, 32767)
         i_mon, f_mon = d.monitor(raw)
-        yield (s, damper[k], p, run, raw, clamp_, slew, force, i_table, i_peak, i_i2t, limits | more,
+        yield (s, damper[k], p, mode, share, small, ticks, raw, clamp_, slew, release, force, i_table, i_peak, i_i2t, limits | more,
                i_mon, f_mon), d.state()
 
 
-DRIVE = ("spring_N_q20 damper_N_q20 pullback_N_q20 run mon_raw | clamp_N_q20 slew_N_q20 force_N_q20 "
+DRIVE = ("spring_N_q20 damper_N_q20 pullback_N_q20 mode share_q30 small_N_q20 ticks mon_raw | clamp_N_q20 slew_N_q20 "
+         "release_N_q20 force_N_q20 "
               "table_A_q26 peak_A_q26 i2t_A_q26 limits mon_A_q26 mon_N_q20")
 
 MODULES = {"table": (TABLE, table), "drive": (DRIVE, drive)}

@@ -4,17 +4,18 @@ from .contact import Contact
 from .drive import Drive, Table, any_par
 from .num import AGAIN, M32, TICKS, Rng, period, sat32, shr, wave
 from .quad import narrowest, position
-from .safety import ENCODER, RUN, TRACKING, Safety
+from .safety import ENCODER, FAULT, HEALTHY, TRACKING, Safety, any_safety
 from .track import Monitor, Track, any_par as any_track
 from .velocity import Window, scale
+from .watch import Watch, any_par as any_watch
 
 
 class Drop:
-    def __init__(self, step, speed, p, law, drive, track, most, lim, kf, T):
-        self.step, self.law, self.drive_par, self.most, self.lim = step, law, drive, most, lim
+    def __init__(self, step, speed, p, law, drive, track, watch, safety, lim, kf, T):
+        self.step, self.law, self.drive_par, self.lim = step, law, drive, lim
         self.quad, self.bits = narrowest(step, speed, T)
-        self.velocity, self.contact, self.safety = Window(step, T, p), Contact(), Safety()
-        self.track, self.last = Track(track, T), 0
+        self.velocity, self.contact, self.safety = Window(step, T, p), Contact(), Safety(safety, T)
+        self.track, self.watch, self.last = Track(track, T), Watch(watch, T), 0
         peak = drive[3]
         top = sat32(shr(kf * peak, 26))
         self.drive = Drive(drive, T, Table([(0, 0), (top, peak)]), Table([(-peak, -top), (peak, top)]))
@@ -24,19 +25,23 @@ class Drop:
         q, v = position(cnt, self.step), self.velocity.tick(cnt)
         i_mon, f_mon = self.drive.monitor(mon)
         raised = (ENCODER if self.quad.lost else 0) | (TRACKING if self.track.step(i_mon) else 0)
-        state = self.safety.step(self.most, din, raised, missed, command, 1)
+        fast, v, limits = self.watch.step(v)
+        permit = self.safety.step(din, raised | fast, missed, command, 1,
+                                  7 if self.quad.lost else 15)
         c, spring, damper, pull = self.contact.tick(self.law, q, v, self.lim)
-        limits, _, _, force = self.drive.take(1 if state == RUN else 0, spring + damper + pull)
+        told, _, _, _, force = self.drive.take(permit, spring + damper + pull)
         more, i0, peak, i2t = self.drive.current()
-        ((gate, _, _, coded, code),), enable = self.safety.gate([self.drive_par], [i0 + peak + i2t])
+        ((limits, _, _, coded, code),), enable = self.safety.gate(
+            [self.drive_par], [i0 + peak + i2t], [limits | told | more])
         self.track.coded(coded)
+        self.watch.coded(cnt, coded)
         self.last = coded
-        return (q, v, force, coded, c, f_mon, limits | more | gate, state,
-                self.safety.faults, self.safety.present, code, enable, self.safety.alive)
+        return (q, v, force, coded, c, f_mon, limits, self.safety.state_,
+                self.safety.faults, self.safety.present, self.safety.arm_step(), code, enable, self.safety.alive)
 
     def state(self):
         return (self.quad.state() + self.velocity.state() + self.contact.state() + self.drive.state() +
-                self.track.state() + self.safety.state())
+                self.track.state() + self.watch.state() + self.safety.state())
 
 
 def drop(rate):
@@ -48,11 +53,12 @@ def drop(rate):
                    rng.draw(0, 20971520), rng.draw(0, 10737418) >> rng.draw(0, 12),
                    rng.draw(0, 10737418) >> rng.draw(0, 12))
             drive, track = any_par(rng, rate), any_track(rng, rate)
-            most, lim, kf = rng.draw(0, 1), rng.draw(-(1 << 26), 1 << 26), rng.draw(104858, 104857600)
-            s = Drop(step, speed, p, law, drive, track, most, lim, kf, period(rate, k))
+            watch, safety = any_watch(rng, rate), any_safety(rng, rate)
+            lim, kf = rng.draw(-(1 << 26), 1 << 26), rng.draw(104858, 104857600)
+            s = Drop(step, speed, p, law, drive, track, watch, safety, lim, kf, period(rate, k))
             jump = s.quad.jump
             moves = wave("drop", rate, 1 + (k > 0), -jump, jump, max(1, jump >> 10))
-            raw, din = rng.u64() & M32, 0x1F03
+            raw, din = rng.u64() & M32, HEALTHY
         if k < 8 or k >= 56:  # to both rails no longer than a hand would
             raw += moves[k]
         else:
@@ -62,14 +68,18 @@ def drop(rate):
         if rng.draw(0, 47) == 0:
             din ^= 1 << rng.draw(0, 8)
         elif rng.draw(0, 3) == 0:
-            din = 0x1F03
+            din = HEALTHY
+        if s.safety.state_ == FAULT and rng.draw(0, 3) == 0:
+            din ^= 2
         missed = 1 if rng.draw(0, 127) == 0 else 0
         command = 1 if k % 8 == 2 else 3 if k % 8 == 5 else 0
+        if rng.draw(0, 63) == 0:
+            command = 2
         mon = monitor.draw(rng, drive, s.last)
         yield (raw & M32, mon, din, missed, command, *s.tick(raw & M32, mon, din, missed, command)), s.state()
 
 
 COLUMNS = ("raw mon_raw din missed command | q_m_q30 qd_mps_q27 f_des_N_q20 i_des_A_q26 c f_mon_N_q20 "
-           "limits state faults present dac_raw enable alive")
+           "limits state faults present arm_step dac_raw enable alive")
 
 MODULES = {"drop": (COLUMNS, drop)}

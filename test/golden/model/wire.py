@@ -19,7 +19,7 @@ def sealed(head):
 
 def may_be(kind, body):
     """1 if the payload's values can be."""
-    if kind == HELLO and body[0] > 1 or kind == TELL and body[5] > 2 or any(body[i] > 31 for i in MASKS.get(kind, ())):
+    if kind == HELLO and body[0] > 1 or kind == TELL and body[5] > 5 or any(body[i] > 31 for i in MASKS.get(kind, ())):
         return 0
     if kind == PLANES:
         told = [body[9 + 40 * f] for f in range(5)]

@@ -1,0 +1,134 @@
+/* safety.h: the gate. */
+#include "exhand/safety.h"
+
+#include "check.h"
+
+#define LEN(a) (sizeof(a) / sizeof((a)[0]))
+
+struct box {
+    struct exh_drive_par par[EXH_FINGERS];
+    struct exh_knot knot[2];
+    struct exh_drive_cfg cfg[EXH_FINGERS];
+    struct exh_current_ledger i[EXH_FINGERS];
+    uint32_t limits[EXH_FINGERS];
+    struct exh_drive_out out;
+    struct exh_safety s;
+};
+
+static void box_setup(struct box *b)
+{
+    static const struct box zero;
+    const struct exh_table none = {NULL, 0};
+    *b = zero;
+    b->s.fingers = EXH_FINGERS; /* all drives seen ready */
+    b->knot[1].x = b->knot[1].y = 1 << 20;
+    CHECK_EQ_I64(exh_table_set(b->knot, 2), 0);
+    for (unsigned k = 0; k < EXH_FINGERS; k++) {
+        const struct exh_table t = {b->knot, 2};
+        int32_t *field = &b->par[k].f_max_N_q20;
+        for (size_t r = 0; r < EXH_DRIVE_ROWS; r++) { field[r] = exh_drive_rows[r].dflt; }
+        CHECK_EQ_I64(exh_drive_setup(&b->cfg[k], &b->par[k], (struct exh_period){1, 2000}, t, none),
+                     0);
+        b->i[k].table_A_q26 = EXH_Q(3, 1, EXH_Q_CUR) * ((int)k % 3 - 1);
+    }
+}
+
+/* Any state with the share of arming at 0 and above; 6 and more: one that no one has heard of. */
+TEST(gate_in_every_state)
+{
+    for (unsigned c = 0; c < 20; c++) {
+        const int share = c >= 10;
+        const uint8_t state = (uint8_t)(c % 10);
+        const int open = (state == EXH_STATE_ARM && share) || state == EXH_STATE_RUN ||
+                         state == EXH_STATE_LIMIT || state == EXH_STATE_RELEASE;
+        uint32_t all = 0;
+        struct box b;
+        box_setup(&b);
+        b.s.state = state;
+        b.s.share_q30 = share;
+        b.s.limits = 0xFFFF; /* of the tick before */
+        b.limits[2] = EXH_LIMIT_SPEED;
+        CHECK_EQ_I64(exh_safety_open(&b.s), open);
+        exh_gate(&b.s, b.cfg, 5, b.i, b.limits, &b.out);
+        CHECK_EQ_I64(b.out.enable, open ? 0x1F : 0);
+        for (unsigned k = 0; k < 5; k++) {
+            const int64_t codes = 5538 * ((int64_t)k % 3 - 1); /* 3 A, 1846.02 codes/A */
+            CHECK_EQ_I64(b.out.dac_raw[k], open ? 32768 + codes : 32768);
+            CHECK_EQ_I64(b.i[k].gate_A_q26, open ? 0 : -b.i[k].table_A_q26);
+            CHECK((b.limits[k] & EXH_LIMIT_GATE) != 0 || open || b.i[k].table_A_q26 == 0,
+                  "the gate acts unreported, finger %u", k);
+            CHECK_EQ_I64(b.i[k].coded_A_q26, b.i[k].table_A_q26 + b.i[k].peak_A_q26 +
+                                                 b.i[k].i2t_A_q26 + b.i[k].gate_A_q26 +
+                                                 b.i[k].dac_A_q26);
+            if (!open) { CHECK_EQ_I64(b.i[k].coded_A_q26, 0); }
+            all |= b.limits[k];
+        }
+        CHECK_EQ_I64(b.s.limits, all);
+        CHECK(all & EXH_LIMIT_SPEED, "told by the scene");
+    }
+}
+
+TEST(span_is_never_exceeded)
+{
+    static const int64_t amp[] = {0, 6, 7, 31, -6, -7, -32};
+    for (size_t a = 0; a < LEN(amp); a++) {
+        struct box b;
+        box_setup(&b);
+        b.s.state = EXH_STATE_RUN;
+        b.par[0].dac_zero_raw = 32000;
+        b.par[0].dac_span_raw = 12184; /* 6.6 A */
+        b.i[0].table_A_q26 = amp[a] * (1 << 26);
+        exh_gate(&b.s, b.cfg, 1, b.i, b.limits, &b.out);
+        CHECK(b.out.dac_raw[0] >= 32000 - 12184 && b.out.dac_raw[0] <= 32000 + 12184,
+              "%" PRId64 " A: code %d", amp[a], b.out.dac_raw[0]);
+        CHECK(((b.limits[0] & EXH_LIMIT_DAC) != 0) == (amp[a] > 6 || amp[a] < -6), "%" PRId64 " A",
+              amp[a]);
+    }
+}
+
+/* Zero near an end of the D/A: the converter itself clips, and that is a limit. */
+TEST(converter_end_is_reported)
+{
+    struct box b;
+    box_setup(&b);
+    b.s.state = EXH_STATE_RUN;
+    b.par[0].dac_zero_raw = 65000;
+    b.i[0].table_A_q26 = EXH_Q(6, 1, EXH_Q_CUR);
+    exh_gate(&b.s, b.cfg, 1, b.i, b.limits, &b.out);
+    CHECK_EQ_I64(b.out.dac_raw[0], 65535);
+    CHECK((b.limits[0] & EXH_LIMIT_DAC) != 0, "5.7 A taken away without a limit bit");
+}
+
+TEST(fingers_not_in_use_get_zero)
+{
+    for (unsigned n = 1; n <= EXH_FINGERS; n++) {
+        struct box b;
+        box_setup(&b);
+        b.s.state = EXH_STATE_RUN;
+        for (unsigned k = 0; k < EXH_FINGERS; k++) {
+            b.out.dac_raw[k] = 60000;
+            b.i[k].table_A_q26 = EXH_Q(3, 1, EXH_Q_CUR);
+        }
+        exh_gate(&b.s, b.cfg, n, b.i, b.limits, &b.out);
+        CHECK_EQ_I64(b.out.enable, (1u << n) - 1u);
+        for (unsigned k = 0; k < EXH_FINGERS; k++) {
+            CHECK((b.out.dac_raw[k] == 32768) == (k >= n), "n %u finger %u: %d", n, k,
+                  b.out.dac_raw[k]);
+        }
+    }
+}
+
+TEST(alive_changes_at_every_tick_in_every_state)
+{
+    struct box b;
+    box_setup(&b);
+    for (int k = 0; k < 600; k++) {
+        const uint8_t before = b.out.alive;
+        b.s.state = (uint8_t)(k % 7);
+        exh_gate(&b.s, b.cfg, 5, b.i, b.limits, &b.out);
+        CHECK(b.out.alive != before, "tick %d", k);
+    }
+}
+
+TEST_MAIN("unit/gate", gate_in_every_state, span_is_never_exceeded, converter_end_is_reported,
+          fingers_not_in_use_get_zero, alive_changes_at_every_tick_in_every_state);
