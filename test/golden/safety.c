@@ -114,7 +114,6 @@ void golden_safety(struct golden *g, uint32_t rate_Hz)
         for (unsigned f = 0; f < EXH_FINGERS; f++) {
             i[f].table_A_q26 = f < b.in.fingers ? cur[f].at[g->tick] : 0;
             if (f < b.in.fingers && golden_draw(&r, 0, 15) == 0) { limits[f] = 1u << golden_draw(&r, 0, 10); }
-            golden_put(g, limits[f]);
         }
         golden_put(g, b.in.din);
         golden_put(g, b.in.raised);

@@ -182,16 +182,14 @@ def safety(rate):
         told = [1 << rng.draw(0, 10) if rng.draw(0, 15) == 0 else 0 for _ in range(n)]
         permit = s.step(din, raised, missed, command, n, ready)
         out, enable = s.gate(pars, [w[k] for w in waves[:n]], told)
-        row = told + [0] * (FINGERS - n) + [din, raised, missed, command, ready, *permit[:4], *permit[4],
-                                            enable, s.alive]
+        row = [din, raised, missed, command, ready, *permit[:4], *permit[4], enable, s.alive]
         for i in range(FINGERS):
             row += out[i] if i < n else (0, 0, 0, 0, pars[0][6])
         yield row, s.state()
 
 
-COLUMNS = (" ".join("told%d" % i for i in range(FINGERS)) + " din raised missed command ready | mode "
-           "share_q30 small_N_q20 ticks fall fall_shift enable alive " + " ".join(
-               "%s%d" % (name, i) for i in range(FINGERS)
-               for name in ("limits", "gate_A_q26_", "dac_A_q26_", "coded_A_q26_", "code")))
+COLUMNS = ("din raised missed command ready | mode share_q30 small_N_q20 ticks fall fall_shift enable alive " +
+           " ".join("%s%d" % (name, i) for i in range(FINGERS)
+                    for name in ("limits", "gate_A_q26_", "dac_A_q26_", "coded_A_q26_", "code")))
 
 MODULES = {"safety": (COLUMNS, safety)}
