@@ -20,6 +20,15 @@ static uint32_t seen; /* faults of the last tick */
 static uint32_t left; /* ticks to the freeze */
 static uint32_t last_tick; /* recorded */
 
+/* The parameters in the header's payload: brought up to date value by value while it runs on, since
+ * all of them at once cost as much as a dozen ticks. Layout as exh_params_save() makes it. */
+static struct {
+    uint32_t header_B; /* of the payload, with the image at its end */
+    uint32_t n, at; /* values, done */
+    uint32_t slice; /* of them a tick */
+    uint32_t crc;
+} image;
+
 static struct {
     enum stage stage;
     struct exh_ring_place place;
@@ -116,6 +125,15 @@ static int fits(const struct exh_scene *sc)
     return memory_B - EXH_LOG_RECORD_B >= need + need / (EXH_RING_PARTS - 1);
 }
 
+static void first_image(void)
+{
+    struct exh_bytes c = exh_bytes_writer(memory, header_B);
+    exh_log_header_bytes(&c);
+    image.header_B = c.at;
+    image.n = scene->params ? exh_signal_count(scene->params->table) : 0;
+    image.slice = (uint32_t)exh_udiv64(image.n, after_ticks, NULL) + 1;
+}
+
 void exh_blackbox_start(const struct exh_scene *sc, struct exh_scene_board board)
 {
     static const struct exh_log_tap tap = {take, due};
@@ -132,19 +150,50 @@ void exh_blackbox_start(const struct exh_scene *sc, struct exh_scene_board board
     }
     exh_log_tap(is.state == EXH_BLACKBOX_OFF ? NULL : &tap, alone);
     if (!alone || is.state != EXH_BLACKBOX_OFF) { exh_log_start(sc, board); }
+    if (is.state != EXH_BLACKBOX_OFF) { first_image(); }
 }
 
 /* --- ticks --- */
 
+#define IMAGE_HEAD_B 12u
+
+static uint8_t *value_at(uint32_t i)
+{
+    return memory + image.header_B - 4 - 4 * (image.n - i);
+}
+
+static void begin_image(void)
+{
+    image.at = 0;
+    image.crc = image.n ? exh_crc32(0, value_at(0) - IMAGE_HEAD_B, IMAGE_HEAD_B) : 0;
+}
+
+static void go_on_image(uint32_t values)
+{
+    for (; values > 0 && image.at < image.n; values--) {
+        struct exh_bytes c = exh_bytes_writer(value_at(image.at), 4);
+        int32_t v = scene->params->active[image.at];
+        exh_bytes_i32(&c, &v);
+        image.crc = exh_crc32(image.crc, value_at(image.at), 4);
+        image.at++;
+    }
+}
+
+static void end_image(void)
+{
+    struct exh_bytes c = exh_bytes_writer(value_at(image.n), 4);
+    go_on_image(image.n);
+    if (image.n > 0) { exh_bytes_u32(&c, &image.crc); }
+}
+
 static void begin_dump(void)
 {
-    struct exh_bytes c = exh_bytes_writer(memory, header_B);
-    exh_log_header_bytes(&c);
+    end_image();
     dump.place = exh_ring_first(&ring);
     dump.seq = 0;
     dump.stage = HEADER;
     exh_record_out_begin(&dump.out, EXH_RECORD_HEADER, dump.seq++, 0,
-                         (struct exh_record_place){memory, header_B, 0, (uint16_t)c.at});
+                         (struct exh_record_place){memory, header_B, 0, (uint16_t)image.header_B});
 }
 
 static void freeze(void)
@@ -170,11 +219,15 @@ static void watch(uint32_t tick)
         is.cause = fresh;
         is.tick = tick;
         left = after_ticks;
+        begin_image();
     } else if (is.state != EXH_BLACKBOX_RECORDS) {
         const uint32_t n = ones(fresh);
         is.later = n < UINT16_MAX - is.later ? is.later + n : UINT16_MAX;
     }
-    if (is.state == EXH_BLACKBOX_RUNS_ON && left-- == 0) { freeze(); }
+    if (is.state == EXH_BLACKBOX_RUNS_ON) {
+        go_on_image(image.slice);
+        if (left-- == 0) { freeze(); }
+    }
 }
 
 void exh_blackbox_before(uint32_t tick, struct exh_scene_in *in)
@@ -194,6 +247,7 @@ void exh_blackbox_stop(int halted)
 {
     if (is.state == EXH_BLACKBOX_RECORDS && halted && !empty()) {
         is.tick = last_tick;
+        begin_image();
         freeze();
     }
     if (is.state == EXH_BLACKBOX_RUNS_ON) { freeze(); }

@@ -197,6 +197,7 @@ void exh_board_halt(const char *why)
     pc104_say(why);
     pc104_say("\n");
     exh_board_safe(); /* once more, long after any update that was under way */
+    pc104_dump_flush(!done);
     pc104_out8(EXIT_PORT, done ? PC104_EXIT_DONE : exit_code ? exit_code : PC104_EXIT_FAILED);
     for (;;) { /* only a reset helps */
         __asm__ volatile("cli; hlt");

@@ -123,6 +123,7 @@ void pc104_link_open(const struct exh_scene *sc)
     asked_for = par.ip != 0 || par.peer != 0;
     if (!asked_for) {
         if (pc104_par.log == PC104_LOG_UDP) { refuse("log", "udp", "needs ip= and peer="); }
+        if (pc104_par.dump == PC104_LOG_UDP) { refuse("dump", "udp", "needs ip= and peer="); }
         if (sc->link) { pc104_say("link: none, as no ip= is given\n"); }
         return;
     }
@@ -246,6 +247,11 @@ unsigned pc104_link_log(const uint8_t *byte, unsigned n, int now)
     stream_sent(n);
     last_us = now_us;
     return n;
+}
+
+void pc104_link_log_new(void)
+{
+    stream_open(exh_board_cycles());
 }
 
 /* --- what it costs --- */

@@ -24,6 +24,8 @@ static const struct exh_signal rows[] = {
     {0xA00A, 0, EXH_WHEN_SETUP, 0, 15, 0, "provoke", "", "a failure to be seen ending safe"},
     {0xA00B, 0, EXH_WHEN_SETUP, 0, TICKS_MAX, 100, "provoke_at", "", "in this tick"},
     {0xA00C, 0, EXH_WHEN_SETUP, 0, 1, 0, "idle", "", "what the processor does between ticks"},
+    {0xA00D, 0, EXH_WHEN_SETUP, 0, 3, 0, "dump", "", "where the black box goes after a fault"},
+    {0xA00E, 0, EXH_WHEN_SETUP, 0, 1 << 20, 0, "dump_kib", "", "of its memory in use; 0: all"},
 };
 static const struct exh_signal_group groups[] = {{rows, sizeof rows / sizeof rows[0], 1}};
 const struct exh_signal_table pc104_option_table = {groups, 1};
@@ -36,6 +38,7 @@ static const struct {
 } words[] = {
     {"timer", {"auto", "hpet", "pit"}},
     {"log", {"off", "serial", "debug", "udp"}},
+    {"dump", {"off", "serial", "debug", "udp"}},
     {"idle", {"halt", "spin"}},
     {"provoke",
      {"none", "divide", "opcode", "null", "write", "stack", "nmi", "spurious", "hang", "slow",

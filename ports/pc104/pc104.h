@@ -70,6 +70,8 @@ struct pc104_par {
     int32_t provoke; /* enum pc104_provoke                                */
     int32_t provoke_tick; /* at this tick                                      */
     int32_t spin; /* 1: the processor never sleeps                     */
+    int32_t dump; /* enum pc104_log: where the black box goes after a fault */
+    int32_t dump_KiB; /* of its memory that is used; 0: all                */
 };
 extern struct pc104_par pc104_par;
 extern const struct exh_signal_table pc104_option_table;
@@ -114,6 +116,23 @@ void pc104_scene_end(void);
 int pc104_idle(void); /* something to do while waiting: 0 if nothing is left */
 void pc104_log_flush(void); /* what waits goes out, or is given up */
 int pc104_log_take(const void *rec, size_t len_B); /* as exh_board_log() */
+/* Bytes that wait for a line, of log or dump; size_B is a power of two. */
+struct pc104_fifo {
+    uint8_t *byte;
+    uint32_t size_B, put, got; /* bytes in all, modulo 2^32 */
+};
+int pc104_fifo_put(struct pc104_fifo *f, const uint8_t *byte, uint32_t len_B); /* all or 0 */
+int pc104_fifo_out(struct pc104_fifo *f, int32_t where, int now); /* 1: more to do at once  */
+int pc104_fifo_wait(struct pc104_fifo *f, int32_t where); /* 1: all is out; 0: stuck */
+
+/* --- dump.c: the black box and its way out; dump_none.c: the scene has none --- */
+int pc104_dump_open(void); /* 1: it was asked for; halts where it cannot be */
+void pc104_dump_start(const struct exh_scene *sc, struct exh_scene_board board);
+void pc104_dump_dry(void); /* the next record of a dry tick has a keyframe behind it */
+void pc104_dump_before(uint32_t tick, struct exh_scene_in *in);
+void pc104_dump_after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out);
+int pc104_dump_idle(void); /* as pc104_idle() */
+void pc104_dump_flush(int halted); /* all of it, behind the last words             */
 
 /* --- hpet.c, pit.c: counters of known frequency that interrupt on IRQ 0 --- */
 struct pc104_timer {
@@ -179,6 +198,7 @@ void pc104_link_report(void);
 int pc104_link_up(void); /* 1: there is a card                                  */
 /* Of the log: bytes taken, 0: not now. now 0: may wait for more, 1: do not, 2: the last. */
 unsigned pc104_link_log(const uint8_t *byte, unsigned n, int now);
+void pc104_link_log_new(void); /* what comes now is another stream                  */
 
 /* --- trap.c: interrupts, and processor exceptions that say their name. Opened, as
  * the UART, before main() --- */

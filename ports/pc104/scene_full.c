@@ -14,48 +14,73 @@
 #define BURST_B     16u /* what the UART's FIFO takes at once                             */
 
 static uint8_t ring[RING_B];
-static uint32_t put, got; /* bytes in all, modulo 2^32 */
+static struct pc104_fifo fifo = {ring, RING_B, 0, 0};
 static uint32_t unsent; /* bytes given up at the end */
 static uint32_t last_tick;
-static uint8_t started, dry;
+static uint8_t started, dry, boxed;
 
-int pc104_log_take(const void *rec, size_t len_B)
+/* --- bytes that wait for a line --- */
+
+int pc104_fifo_put(struct pc104_fifo *f, const uint8_t *byte, uint32_t len_B)
 {
-    const uint8_t *byte = rec;
-    if (dry) { put = got; }
-    if (pc104_par.log == PC104_LOG_DEBUG && !dry) {
-        for (size_t i = 0; i < len_B; i++) { pc104_out8(DEBUG_PORT, byte[i]); }
-        return (int)len_B;
-    }
-    if (len_B > RING_B - (put - got)) { return 0; }
-    for (size_t i = 0; i < len_B; i++) { ring[put++ % RING_B] = byte[i]; }
+    if (len_B > f->size_B - (f->put - f->got)) { return 0; }
+    for (uint32_t i = 0; i < len_B; i++) { f->byte[f->put++ & (f->size_B - 1)] = byte[i]; }
     return (int)len_B;
 }
 
 /* What is cut at the end of the ring waits for nothing more. 1: there is more to do at once. */
-static int idle_udp(int now)
+static int out_udp(struct pc104_fifo *f, int now)
 {
-    const uint32_t at = got % RING_B;
-    uint32_t n = put - got, taken;
+    const uint32_t at = f->got & (f->size_B - 1);
+    uint32_t n = f->put - f->got, taken;
     if (n == 0) { return 0; }
-    if (n > RING_B - at) {
-        n = RING_B - at;
+    if (n > f->size_B - at) {
+        n = f->size_B - at;
         now = 1;
     }
-    taken = pc104_link_log(&ring[at], n, now);
-    got += taken;
-    return taken > 0 && got != put;
+    taken = pc104_link_log(&f->byte[at], n, now);
+    f->got += taken;
+    return taken > 0 && f->got != f->put;
+}
+
+int pc104_fifo_out(struct pc104_fifo *f, int32_t where, int now)
+{
+    const uint32_t at = f->got & (f->size_B - 1);
+    uint32_t n = f->put - f->got;
+    if (where == PC104_LOG_UDP) { return out_udp(f, now); }
+    n = n < BURST_B ? n : BURST_B;
+    n = n < f->size_B - at ? n : f->size_B - at;
+    f->got += pc104_uart_offer(&f->byte[at], n);
+    return f->got != f->put;
+}
+
+int pc104_fifo_wait(struct pc104_fifo *f, int32_t where)
+{
+    uint32_t stuck = 0;
+    while (f->put != f->got && stuck < STUCK_READS) {
+        const uint32_t before = f->got;
+        (void)pc104_fifo_out(f, where, 1);
+        stuck = before == f->got ? stuck + 1 : 0;
+    }
+    return f->put == f->got;
+}
+
+/* --- the log --- */
+
+int pc104_log_take(const void *rec, size_t len_B)
+{
+    const uint8_t *byte = rec;
+    if (dry) { fifo.put = fifo.got; }
+    if (pc104_par.log == PC104_LOG_DEBUG && !dry) {
+        for (size_t i = 0; i < len_B; i++) { pc104_out8(DEBUG_PORT, byte[i]); }
+        return (int)len_B;
+    }
+    return pc104_fifo_put(&fifo, byte, (uint32_t)len_B);
 }
 
 int pc104_idle(void)
 {
-    const uint32_t at = got % RING_B;
-    uint32_t n = put - got;
-    if (pc104_par.log == PC104_LOG_UDP) { return idle_udp(0); }
-    n = n < BURST_B ? n : BURST_B;
-    n = n < RING_B - at ? n : RING_B - at;
-    got += pc104_uart_offer(&ring[at], n);
-    return got != put;
+    return pc104_fifo_out(&fifo, pc104_par.log, 0) | pc104_dump_idle();
 }
 
 int pc104_scene_option(const struct exh_scene *sc, const char *name, const char *value)
@@ -80,49 +105,65 @@ void pc104_scene_ready(const struct exh_scene *sc)
     exh_params_apply(sc->params);
 }
 
+/* The log's hooks, or the black box's, which calls them. */
+static void start_records(const struct exh_scene *sc, struct exh_scene_board board)
+{
+    if (boxed) {
+        pc104_dump_start(sc, board);
+    } else if (pc104_par.log != PC104_LOG_OFF) {
+        exh_log_start(sc, board);
+    }
+}
+
 /* Records of a dry tick, which come to nothing but time; every 64th with a keyframe. */
 void pc104_scene_dry(const struct exh_scene *sc, uint32_t tick, const struct exh_scene_in *in,
                      const struct exh_drive_out *out)
 {
     const uint32_t every = EXH_LOG_KEYFRAME_TICKS / 64u;
-    if (pc104_par.log == PC104_LOG_OFF) { return; }
+    if (tick == 0) { boxed = (uint8_t)pc104_dump_open(); }
+    if (pc104_par.log == PC104_LOG_OFF && !boxed) { return; }
     dry = 1;
     if (tick == 0) {
-        exh_log_start(sc, (struct exh_scene_board){{1, 1000}, exh_board_info.enc_bits});
+        start_records(sc, (struct exh_scene_board){{1, sc->rate_Hz}, exh_board_info.enc_bits});
     }
+    if (boxed && tick % 16 == 0) { pc104_dump_dry(); }
     exh_log_after(tick * every + every - 1, in, out);
-    put = got = 0;
+    fifo.put = fifo.got = 0;
     dry = 0;
 }
 
 void pc104_scene_start(const struct exh_scene *sc, struct exh_scene_board board)
 {
+    boxed = (uint8_t)pc104_dump_open();
     started = pc104_par.log != PC104_LOG_OFF;
-    if (started) { exh_log_start(sc, board); }
+    start_records(sc, board);
 }
 
 void pc104_scene_before(uint32_t tick, struct exh_scene_in *in)
 {
-    if (started) { exh_log_before(tick, in); }
+    if (boxed) {
+        pc104_dump_before(tick, in);
+    } else if (started) {
+        exh_log_before(tick, in);
+    }
 }
 
 void pc104_scene_after(uint32_t tick, const struct exh_scene_in *in,
                        const struct exh_drive_out *out)
 {
     last_tick = tick;
-    if (started) { exh_log_after(tick, in, out); }
+    if (boxed) {
+        pc104_dump_after(tick, in, out);
+    } else if (started) {
+        exh_log_after(tick, in, out);
+    }
 }
 
 void pc104_log_flush(void)
 {
-    uint32_t stuck = 0;
-    while (put != got && stuck < STUCK_READS) {
-        const uint32_t before = got;
-        (void)(pc104_par.log == PC104_LOG_UDP ? idle_udp(1) : pc104_idle());
-        stuck = before == got ? stuck + 1 : 0;
-    }
-    unsent += put - got;
-    put = got;
+    (void)pc104_fifo_wait(&fifo, pc104_par.log);
+    unsent += fifo.put - fifo.got;
+    fifo.put = fifo.got;
 }
 
 void pc104_scene_end(void)

@@ -27,8 +27,8 @@ void pc104_scene_start(const struct exh_scene *sc, struct exh_scene_board board)
 {
     (void)sc;
     (void)board;
-    if (pc104_par.log != PC104_LOG_OFF) {
-        pc104_halt(PC104_EXIT_OPTION, "option log: this scene has no records");
+    if (pc104_par.log != PC104_LOG_OFF || pc104_par.dump != PC104_LOG_OFF) {
+        pc104_halt(PC104_EXIT_OPTION, "options log and dump: this scene has no records");
     }
 }
 
@@ -64,4 +64,9 @@ int pc104_log_take(const void *rec, size_t len_B)
 
 void pc104_log_flush(void)
 {
+}
+
+void pc104_dump_flush(int halted)
+{
+    (void)halted;
 }

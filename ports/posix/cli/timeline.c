@@ -177,7 +177,8 @@ static void said_state(struct walk *w, uint64_t tick)
         timeline_say(
             &w->notes, tick, "state: %s -> %s (%s)", names_word(&names_state, (unsigned)from),
             names_word(&names_state, (unsigned)to), names_says(&names_state, (unsigned)to));
-    } else if (from == to && w->command > 1 && w->command != EXH_CMD_OFF + 1) {
+    } else if (from == to && (w->command == EXH_CMD_CLEAR + 1 ? of(w->now, w->faults) != 0
+                                                              : w->command == EXH_CMD_RUN + 1)) {
         char why[NAMES_B];
         names_faults(why, sizeof why, (uint32_t)of(w->now, w->present));
         timeline_say(&w->notes, tick, "nothing follows it; present: %s", why);
