@@ -313,3 +313,9 @@ uint32_t exh_blackbox_read(uint8_t *to, uint32_t cap_B)
     }
     return n;
 }
+
+uint32_t exh_blackbox_rest(void)
+{
+    const uint32_t all = EXH_RECORD_OVERHEAD + (uint32_t)dump.out.len_B;
+    return is.state == EXH_BLACKBOX_FROZEN && dump.out.done_B > 0 ? all - dump.out.done_B : 0;
+}

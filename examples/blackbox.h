@@ -29,6 +29,8 @@ void exh_blackbox_stop(int halted);
  * parameters of the freeze, records, EXH_EVENT_FROZE, the end with the number of records that found
  * no room. 0: there is nothing, or nothing more. Then the box begins anew. */
 uint32_t exh_blackbox_read(uint8_t *to, uint32_t cap_B);
+/* Bytes to the end of the record that was last read from: where words may stand on the same line. */
+uint32_t exh_blackbox_rest(void);
 void exh_blackbox_clear(void);
 
 enum exh_blackbox_state {

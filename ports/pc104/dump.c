@@ -83,7 +83,9 @@ static void begin(void)
 static void finish(void)
 {
     if (pc104_par.dump == PC104_LOG_UDP) {
-        for (unsigned i = 0; i < 3; i++) { (void)pc104_link_log(queue, 0, 2); } /* may be lost, too */
+        for (unsigned i = 0; i < 3; i++) {
+            (void)pc104_link_log(queue, 0, 2);
+        } /* may be lost, too */
     }
     going = 0;
 }
@@ -100,6 +102,15 @@ int pc104_dump_idle(void)
 {
     if (!on || !going) { return 0; }
     return pc104_fifo_out(&fifo, pc104_par.dump, going == 2);
+}
+
+void pc104_dump_pause(void)
+{
+    uint32_t rest;
+    if (!on || !going || halting || pc104_par.dump != PC104_LOG_SERIAL) { return; }
+    while (pc104_fifo_wait(&fifo, pc104_par.dump) && (rest = exh_blackbox_rest()) > 0) {
+        (void)fill(rest < DUMP_TICK_B ? rest : DUMP_TICK_B);
+    }
 }
 
 /* Nothing runs any more, outputs are safe and the words are said. An exception in here comes here

@@ -37,6 +37,10 @@ int pc104_dump_idle(void)
     return 0;
 }
 
+void pc104_dump_pause(void)
+{
+}
+
 void pc104_dump_flush(int halted)
 {
     (void)halted;

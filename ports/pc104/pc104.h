@@ -132,6 +132,7 @@ void pc104_dump_dry(void); /* the next record of a dry tick has a keyframe behin
 void pc104_dump_before(uint32_t tick, struct exh_scene_in *in);
 void pc104_dump_after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out);
 int pc104_dump_idle(void); /* as pc104_idle() */
+void pc104_dump_pause(void); /* words follow: what is half out of a record goes first */
 void pc104_dump_flush(int halted); /* all of it, behind the last words             */
 
 /* --- hpet.c, pit.c: counters of known frequency that interrupt on IRQ 0 --- */

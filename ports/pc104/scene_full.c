@@ -164,13 +164,14 @@ void pc104_log_flush(void)
     (void)pc104_fifo_wait(&fifo, pc104_par.log);
     unsent += fifo.put - fifo.got;
     fifo.put = fifo.got;
+    pc104_dump_pause();
 }
 
 void pc104_scene_end(void)
 {
     uint32_t lost;
-    if (!started) { return; }
     pc104_log_flush();
+    if (!started) { return; }
     lost = exh_log_end(last_tick + 1);
     pc104_log_flush();
     if (pc104_par.log == PC104_LOG_UDP) {

@@ -54,7 +54,6 @@ static int read_header(struct logfile *l)
         return complain(l, "not a log: it does not start with a header: give a file made by "
                            "`exhand drop --out DIR` or `exhand glove --record FILE`");
     }
-    l->damaged = 0; /* words of a box before it, on the same line, are no damage */
     c = exh_bytes_reader(r.payload, r.len_B);
     exh_record_header_bytes(&c, &l->header);
     if (!exh_bytes_ok(&c)) { return complain(l, "its header is too short"); }
@@ -141,7 +140,8 @@ int logfile_next(struct logfile *l, struct exh_record *r)
 
 int logfile_complain(const struct logfile *l)
 {
-    if (l->damaged == 0 && l->gaps == 0 && l->ended) { return 0; }
+    /* Bytes between records of which none is missing are a box's words on the same line. */
+    if (l->gaps == 0 && l->ended) { return 0; }
     cli_complain("%s: %lu damaged bytes, %lu records missing (%lu reported lost by the writer), %s",
                  l->path, (unsigned long)l->damaged, (unsigned long)l->gaps, (unsigned long)l->lost,
                  l->ended ? "end reached" : "cut off before its end");

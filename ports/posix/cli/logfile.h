@@ -25,7 +25,8 @@ struct logfile {
     uint32_t params_len;
 };
 
-/* Reads the file and its header, which words may stand before and behind (a serial line's), finds the scene and checks versions and tables.
+/* Reads the file and its header, which words may stand between
+ * records of (a serial line's), finds the scene and checks versions and tables.
  * 0; 2 after a line on stderr that says what is wrong with it. */
 int logfile_open(struct logfile *l, const char *path);
 void logfile_close(struct logfile *l);
