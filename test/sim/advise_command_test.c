@@ -50,8 +50,8 @@ TEST(what_cannot_be_answered)
     char *dir = said_dir();
     said(&s, dir, cli_advise, WORDS("advise", "freeze", "--speed", "10", "--lag", "2000"));
     CHECK(s.status == 1 && strstr(s.err, "beyond 2 m"), "%s", s.err);
-    said(&s, dir, cli_advise, WORDS("advise", "gains"));
-    CHECK(s.status == 2 && strstr(s.err, "gains: nothing is known"), "%s", s.err);
+    said(&s, dir, cli_advise, WORDS("advise", "gain"));
+    CHECK(s.status == 2 && strstr(s.err, "gain: nothing is known"), "%s", s.err);
     said(&s, dir, cli_advise, WORDS("advise"));
     CHECK(s.status == 2 && strstr(s.err, "a word is missing"), "%s", s.err);
     said(&s, dir, cli_advise, WORDS("advise", "freeze", "--d-lim", "1"));

@@ -1,4 +1,4 @@
-/* exhand advise freeze: d_lim and the length of the ray, for a hand and a link. */
+/* exhand advise: gains is in gains.c; freeze is d_lim and the length of the ray, for a hand and a link. */
 #include "cli.h"
 
 #include "option.h"
@@ -82,6 +82,14 @@ static int advise(const struct asked *a)
     return print(a, &n, &advice, &own);
 }
 
+static int is_about(int argc, char **argv, const char *what)
+{
+    for (int i = 1; i < argc; i++) {
+        if (strcmp(argv[i], what) == 0) { return 1; }
+    }
+    return 0;
+}
+
 int cli_advise(int argc, char **argv)
 {
     struct asked a = {.speed_mps = 0.87, .rate_Hz = 2000, .fps = 100};
@@ -108,14 +116,17 @@ int cli_advise(int argc, char **argv)
         "so that no wall is late: |d_lim| >= v*(T + lag) + noise, ray >= |d_lim| + v*(T + age) + "
         "noise,\n"
         "age = 1/fps + link + jitter. error is what moves or curves meanwhile: v_object*age +\n"
-        "slide^2 / (2*radius). speed is the fastest approach that d_lim allows.",
+        "slide^2 / (2*radius). speed is the fastest approach that d_lim allows.\n"
+        "Of stiffness and damping: exhand advise gains --help.",
         option,
         sizeof option / sizeof option[0],
         1};
-    const int err = cli_parse(&c, argc, argv, about);
+    int err;
+    if (is_about(argc, argv, "gains")) { return cli_advise_gains(argc, argv); }
+    err = cli_parse(&c, argc, argv, about);
     if (err) { return err == 1 ? 0 : err; }
     if (strcmp(about[0], "freeze") != 0) {
-        cli_complain("%s: nothing is known about it: freeze", about[0]);
+        cli_complain("%s: nothing is known about it: freeze, gains", about[0]);
         return 2;
     }
     return advise(&a);

@@ -4,6 +4,7 @@
 #define CLI_CLI_H
 
 int cli_advise(int argc, char **argv);
+int cli_advise_gains(int argc, char **argv); /* `exhand advise gains` */
 int cli_bilateral(int argc, char **argv);
 int cli_bringup(int argc, char **argv);
 int cli_budget(int argc, char **argv);

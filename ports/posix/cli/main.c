@@ -12,7 +12,7 @@ static const struct {
     const char *name, *what;
     int (*run)(int argc, char **argv);
 } command[] = {
-    {"advise", "how far before contact to freeze q_lim, how far to look", cli_advise},
+    {"advise", "freeze: where q_lim stands still, how far to look; gains: stable k, b", cli_advise},
     {"bilateral", "hand, glove, link and world: contacts as in the paper's second experiment", cli_bilateral},
     {"bringup", "first power-up, step by step, rehearsed on the simulated device", cli_bringup},
     {"budget", "the highest rate of the loop that the box can hold, bound by bound", cli_budget},
