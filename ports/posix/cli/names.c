@@ -1,103 +1,101 @@
 #include "names.h"
 
+#include "exhand/drive.h"
+#include "exhand/safety.h"
+
 #include <stdio.h>
 #include <string.h>
 
-#define LEN(a)         (sizeof(a) / sizeof((a)[0]))
-#define TABLE(w, rows) {(w), (rows), LEN(rows)}
+static const char *const states[EXH_STATES] = {
+    "no current, drives disabled", "arming, step by step",
+    "forces follow the law",       "runs, a limit holds something back",
+    "the force falls to zero",     "no current, drives disabled, until it is cleared"};
+static const char *const faults[EXH_FAULTS] = {"emergency stop",
+                                               "a drive is not ready",
+                                               "too many ticks were missed",
+                                               "an encoder moved as no hand can",
+                                               "the dead-man switch was let go",
+                                               "a current does not follow what is coded",
+                                               "an encoder stands while current flows",
+                                               "a finger moved too fast for too long",
+                                               "the glove is not believed",
+                                               "a card failed",
+                                               "the link is lost",
+                                               "the supply is out of its range",
+                                               "the watchdog fired",
+                                               "parameters or calibration are damaged",
+                                               "a state that cannot be"};
+static const char *const limits[EXH_LIMITS] = {
+    "a string only pulls",   "the force limit",         "how fast force may change",
+    "the peak current",      "the motor's heat",        "the end of the D/A's range",
+    "the gate is closed",    "the ramp after arming",   "the release law",
+    "velocity into the law", "the passivity controller"};
+static const char *const arms[EXH_ARMS] = {"known answers come out",
+                                           "calibration valid",
+                                           "polarity of motor and encoder",
+                                           "encoders plausible",
+                                           "dead-man switch held, no cause of a fault",
+                                           "the law asks for a small force only",
+                                           "the force limit rises"};
+static const char *const commands[] = {"nothing", "run", "off", "clear the fault"};
+static const char *const inputs[] = {"emergency-stop loop",
+                                     "dead-man switch",
+                                     "watchdog",
+                                     "cards",
+                                     NULL,
+                                     NULL,
+                                     NULL,
+                                     NULL,
+                                     "drive of the thumb",
+                                     "drive of the index",
+                                     "drive of the middle",
+                                     "drive of the ring",
+                                     "drive of the little"};
+static const char *const fingers[] = {"thumb", "index", "middle", "ring", "little"};
 
-/* In the order of enum exh_state. */
-static const struct name states[] = {
-    {"off", "no current, drives disabled"},
-    {"arm", "arming, step by step"},
-    {"run", "forces follow the law"},
-    {"limit", "runs, a limit holds something back"},
-    {"release", "the force falls to zero"},
-    {"fault", "no current, drives disabled, until it is cleared"},
-};
-/* enum exh_command */
-static const struct name commands[] = {
-    {"none", "nothing"},
-    {"run", "run"},
-    {"off", "off"},
-    {"clear", "clear the fault"},
-};
-/* Bits of enum exh_fault. */
-static const struct name faults[] = {
-    {"estop", "emergency stop"},
-    {"drive", "a drive is not ready"},
-    {"overrun", "too many ticks were missed"},
-    {"encoder", "an encoder moved as no hand can"},
-    {"deadman", "the dead-man switch was let go"},
-    {"tracking", "a current does not follow what is coded"},
-    {"stuck", "an encoder stands while current flows"},
-    {"speed", "a finger moved too fast for too long"},
-    {"glove", "the glove is not believed"},
-    {"card", "a card failed"},
-    {"link", "the link is lost"},
-    {"supply", "the supply is out of its range"},
-    {"watchdog", "the watchdog fired"},
-    {"config", "parameters or calibration are damaged"},
-    {"logic", "a state that is none"},
-};
-/* Bits of enum exh_limit. */
-static const struct name limits[] = {
-    {"pull", "a string only pulls"},
-    {"force", "the force limit"},
-    {"slew", "how fast force may change"},
-    {"peak", "the peak current"},
-    {"i2t", "the motor's heat (I2t)"},
-    {"dac", "the end of the D/A's range"},
-    {"gate", "the gate is closed"},
-    {"ramp", "the ramp after arming"},
-    {"release", "the release law"},
-    {"speed", "velocity into the law is held back"},
-    {"passivity", "the passivity controller"},
-};
-/* Bits of enum exh_arm. */
-static const struct name arms[] = {
-    {"selftest", "self-test"},
-    {"calibration", "calibration valid"},
-    {"polarity", "polarity plausible"},
-    {"encoder", "encoders plausible"},
-    {"deadman", "dead-man switch held, emergency stop closed, drives ready"},
-    {"small_force", "the law asks for a small force only"},
-    {"ramp", "the force limit rises"},
-};
-/* Bits of enum exh_din: 1 is good. */
-static const struct name dins[] = {
-    {"estop", "emergency-stop loop"}, {"deadman", "dead-man switch"}, {"watchdog", "watchdog"},
-    {"cards", "cards"},               {NULL, NULL},                   {NULL, NULL},
-    {NULL, NULL},                     {NULL, NULL},                   {"drive0", "drive of the thumb"},
-    {"drive1", "drive of the index"}, {"drive2", "drive of the middle"},
-    {"drive3", "drive of the ring"},  {"drive4", "drive of the little"},
-};
-static const struct name fingers[] = {
-    {"thumb", "thumb"}, {"index", "index"}, {"middle", "middle"}, {"ring", "ring"}, {"little", "little"},
-};
+#define LEN(a) ((unsigned)(sizeof(a) / sizeof((a)[0])))
 
-const struct names names_state = TABLE("state", states);
-const struct names names_command = TABLE("command", commands);
-const struct names names_fault = TABLE("fault", faults);
-const struct names names_limit = TABLE("limit", limits);
-const struct names names_arm = TABLE("arming step", arms);
-const struct names names_din = TABLE("input", dins);
-const struct names names_finger = TABLE("finger", fingers);
+static const char *command_word(unsigned i)
+{
+    static const char *const word[LEN(commands)] = {"none", "run", "off", "clear"};
+    return i < LEN(word) ? word[i] : "";
+}
+
+static const char *input_word(unsigned i)
+{
+    static const char *const word[LEN(inputs)] = {
+        "estop", "deadman", "watchdog", "cards",  "",       "",      "",
+        "",      "drive0",  "drive1",   "drive2", "drive3", "drive4"};
+    return i < LEN(word) ? word[i] : "";
+}
+
+static const char *finger_word(unsigned i)
+{
+    return i < LEN(fingers) ? fingers[i] : "";
+}
+
+const struct names names_state = {"state", exh_state_name, states, LEN(states)};
+const struct names names_fault = {"fault", exh_fault_name, faults, LEN(faults)};
+const struct names names_limit = {"limit", exh_limit_name, limits, LEN(limits)};
+const struct names names_arm = {"arming step", exh_arm_name, arms, LEN(arms)};
+const struct names names_command = {"command", command_word, commands, LEN(commands)};
+const struct names names_din = {"input", input_word, inputs, LEN(inputs)};
+const struct names names_finger = {"finger", finger_word, fingers, LEN(fingers)};
 
 const char *names_word(const struct names *t, unsigned i)
 {
-    return i < t->n && t->name[i].word ? t->name[i].word : "?";
+    return t->word(i)[0] ? t->word(i) : "?";
 }
 
 const char *names_says(const struct names *t, unsigned i)
 {
-    return i < t->n && t->name[i].says ? t->name[i].says : "?";
+    return i < t->n && t->says[i] ? t->says[i] : "?";
 }
 
 int names_find(const struct names *t, const char *word)
 {
-    for (unsigned i = 0; i < t->n; i++) {
-        if (t->name[i].word && strcmp(t->name[i].word, word) == 0) { return (int)i; }
+    for (unsigned i = 0; word[0] && i < t->n; i++) {
+        if (strcmp(t->word(i), word) == 0) { return (int)i; }
     }
     return -1;
 }
@@ -110,8 +108,8 @@ void names_bits(char *to, size_t cap_B, const struct names *t, uint32_t bits)
     for (unsigned i = 0; i < 32 && at + 1 < cap_B; i++) {
         int n;
         if (!(bits >> i & 1)) { continue; }
-        if (i < t->n && t->name[i].word) {
-            n = snprintf(to + at, cap_B - at, "%s%s", at ? "+" : "", t->name[i].word);
+        if (t->word(i)[0]) {
+            n = snprintf(to + at, cap_B - at, "%s%s", at ? "+" : "", t->word(i));
         } else {
             n = snprintf(to + at, cap_B - at, "%sbit%u", at ? "+" : "", i);
         }

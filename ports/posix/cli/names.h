@@ -1,5 +1,6 @@
-/* Words for what the library counts in bits and numbers: the one place of them, for every command
- * that tells a person of states, faults, limits, arming steps, commands or inputs. */
+/* States, faults, limits, arming steps, commands, inputs, fingers: words for people. The short words are
+ * the library's where it has them (safety.h); sentences, and the rest, stand here alone, for every
+ * command of the host program. */
 #ifndef CLI_NAMES_H
 #define CLI_NAMES_H
 
@@ -8,20 +9,17 @@
 
 #define NAMES_B 512 /* room for every bit of any of them                        */
 
-/* The name of one, by its number or by the number of its bit; NULL: there is none. `word` is short,
- * as in options and tables ("deadman"); `says` is for people ("dead-man switch released"). */
-struct name {
-    const char *word, *says;
-};
+/* By number, or by the number of a bit. */
 struct names {
-    const char *what; /* "fault"                                               */
-    const struct name *name;
+    const char *what; /* "fault"                               */
+    const char *(*word)(unsigned i); /* "deadman"; "" for none                */
+    const char *const *says; /* "the dead-man switch was let go"       */
     unsigned n;
 };
 extern const struct names names_state, names_command, names_fault, names_limit, names_arm,
     names_din, names_finger;
 
-const char *names_word(const struct names *t, unsigned i); /* "fault 17" is not there: "?" */
+const char *names_word(const struct names *t, unsigned i); /* "?" for none      */
 const char *names_says(const struct names *t, unsigned i);
 int names_find(const struct names *t, const char *word); /* its number, or -1    */
 

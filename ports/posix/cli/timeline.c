@@ -153,8 +153,8 @@ static void said_inputs(struct walk *w, uint64_t tick)
                                           {"not ready", "ready"}};
     const uint32_t changed = w->frames ? w->in.drive.din ^ w->din : 0;
     for (unsigned i = 0; i < names_din.n; i++) {
-        if (changed >> i & 1 && names_din.name[i].says) {
-            timeline_say(&w->notes, tick, "%s: %s", names_din.name[i].says,
+        if (changed >> i & 1 && names_din.says[i]) {
+            timeline_say(&w->notes, tick, "%s: %s", names_din.says[i],
                          good[i < 4 ? i : 4][w->in.drive.din >> i & 1]);
         }
     }
@@ -163,7 +163,7 @@ static void said_inputs(struct walk *w, uint64_t tick)
 
 static int runs(int32_t state)
 {
-    return state == names_find(&names_state, "run") || state == names_find(&names_state, "limit");
+    return state == EXH_STATE_RUN || state == EXH_STATE_LIMIT;
 }
 
 /* RUN and LIMIT follow each other as limits act, and these are told. */
@@ -185,13 +185,22 @@ static void said_state(struct walk *w, uint64_t tick)
     }
 }
 
+/* The signal says on which step arming is, and in another state by which it was refused at last. */
 static void said_arming(struct walk *w, uint64_t tick)
 {
-    const int32_t step = of(w->now, w->arm);
-    if (w->arm < 0 || (w->frames && step == of(w->before, w->arm))) { return; }
-    if (step == 0 && !w->frames) { return; }
-    timeline_say(&w->notes, tick, "arming step: %s",
-                 step > 0 ? names_word(&names_arm, (unsigned)step - 1) : "none");
+    const uint32_t step = (uint32_t)of(w->now, w->arm),
+                   was = w->frames ? (uint32_t)of(w->before, w->arm) : 0;
+    const int arms = of(w->now, w->state) == EXH_STATE_ARM;
+    const int armed = w->frames && of(w->before, w->state) == EXH_STATE_ARM;
+    char what[NAMES_B];
+    unsigned i = 0;
+    if (step == 0) { return; }
+    while (!(step >> i & 1)) { i++; }
+    snprintf(what, sizeof what, "%s (%s)", names_word(&names_arm, i), names_says(&names_arm, i));
+    if (arms && (step != was || !armed)) { timeline_say(&w->notes, tick, "arming: %s", what); }
+    if (!arms && ((armed && !runs(of(w->now, w->state))) || (step != was && w->frames))) {
+        timeline_say(&w->notes, tick, "arming is refused by its step %s", what);
+    }
 }
 
 static void said_faults(struct walk *w, uint64_t tick)
@@ -232,9 +241,9 @@ static void on_frame(struct walk *w, const struct exh_record *r)
         return;
     }
     said_inputs(w, tick);
+    said_faults(w, tick);
     said_state(w, tick);
     said_arming(w, tick);
-    said_faults(w, tick);
     said_glove(w, tick);
     for (unsigned f = 0; f < w->log->scene->fingers && f < FINGERS_MAX; f++) {
         spans(w, f, tick, 0);
