@@ -119,6 +119,7 @@ static void start_mass(void)
     } else {
         sim_mass_fall(&sim.mass, &c->device, c->seed, c->falls, (double)sim.T.num / (double)sim.T.den);
     }
+    sim.mass.fall.waits = c->wait;
     if (c->from_here) { sim_mass_put(&sim.mass, c->from_x_m, c->from_q_m); }
     if (c->glove) {
         sim_operator_start(&sim.hand, &c->hand, &sim.glove, &c->glove_par, c->seed);
@@ -183,6 +184,11 @@ int exh_board_init(uint32_t rate_Hz, struct exh_period *achieved)
     *achieved = sim.T;
     if (sim.cfg.cards.how) { err = start_cards(); }
     return err;
+}
+
+void posix_ready(void)
+{
+    fall_ready(&sim.mass.fall, sim.now_s);
 }
 
 void posix_bench(enum bench_place place, double mass_kg)

@@ -27,6 +27,7 @@ struct posix_config {
     int bench;               /* 1: a bench for calibration instead of falls; it goes
                               * on until posix_stop()                          */
     unsigned wrong;          /* enum bench_wrong: what is wrong with the bench    */
+    int wait;                /* 1: the first fall is held until posix_ready()    */
     int from_here;           /* 1: the first fall begins at from_x_m, from_q_m   */
     double from_x_m, from_q_m; /* mass and string, 0 = virtual contact           */
     struct sim_exo_par exo;  /* fingers not 0: fingers in an exoskeleton instead of falls
@@ -63,6 +64,9 @@ int posix_fall(void);
 
 /* A finger in use, or NULL (tests, pictures). */
 const struct sim_finger *posix_finger(unsigned i);
+
+/* The box runs: whoever holds the mass counts from here. */
+void posix_ready(void);
 
 /* The person at the bench prepares a place; ready some time later. */
 void posix_bench(enum bench_place place, double mass_kg);

@@ -32,12 +32,19 @@ void fall_start(struct fall *f, struct plant *p, const struct sim_device *d,
     f->number = 1;
     f->falls = falls;
     f->T_s = T_s;
+    f->waits = 0;
     hold(f, r, 0);
+}
+
+void fall_ready(struct fall *f, double t_s)
+{
+    if (f->waits) { f->until_s += t_s; }
+    f->waits = 0;
 }
 
 double fall_next_s(const struct fall *f)
 {
-    return f->phase == FALL_DONE ? FAR_S : f->until_s;
+    return f->phase == FALL_DONE || f->waits ? FAR_S : f->until_s;
 }
 
 static void lift(const struct fall *f, struct plant *p, double t_s)
@@ -80,6 +87,6 @@ int fall_step(struct fall *f, struct plant *p, const struct sim_device *d, struc
         f->until_s = t_s + d->observe_s + longer(MARGIN_S, 2 * f->T_s);
     }
     if (f->phase == FALL_LIFT) { lift(f, p, t_s); }
-    if (t_s >= f->until_s && f->phase != FALL_DONE) { end_of_phase(f, p, d, r, t_s); }
+    if (t_s >= f->until_s && !f->waits && f->phase != FALL_DONE) { end_of_phase(f, p, d, r, t_s); }
     return before == FALL_HOLD && f->phase == FALL_FREE;
 }

@@ -14,6 +14,7 @@ struct fall {
     int number;        /* the fall being prepared or watched, from 1           */
     int falls;         /* how many are asked for                               */
     double until_s;    /* end of the phase; FREE: known once contact is made   */
+    int waits;         /* 1: the first hold goes on until fall_ready(); may be set after the start */
     double contact_s;  /* first time past the virtual contact, < 0: not yet    */
     double T_s;        /* the controller's period                              */
     double lift_s;     /* start of the lift                                    */
@@ -24,6 +25,9 @@ struct fall {
  * so that the controller sees every fall whole and a tick between any two. */
 void fall_start(struct fall *f, struct plant *p, const struct sim_device *d,
                 struct sim_random *r, int falls, double T_s);
+
+/* The box runs: what is held longer for its sake is let go as if it had begun now. */
+void fall_ready(struct fall *f, double t_s);
 
 /* When the phase ends, if known; a time far away otherwise. */
 double fall_next_s(const struct fall *f);
