@@ -111,6 +111,7 @@ static void let_go(struct run_cfg *c, struct run_setting *set)
     c->board.from_q_m = (1 - OFFSET) * rest_m;
     c->board.from_x_m = c->board.from_q_m + weight_N / d->cable_npm;
     set[c->settings++] = (struct run_setting){"q_lim", -c->board.from_q_m};
+    set[c->settings++] = (struct run_setting){"arm_force", 10}; /* the wall carries it already */
     d->observe_s = (double)TICKS / c->rate_Hz;
     if (d->observe_s < 1) { d->observe_s = 1; }
 }

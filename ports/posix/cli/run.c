@@ -1,5 +1,6 @@
 #include "run.h"
 
+#include "arming.h"
 #include "dumpfile.h"
 #include "option.h"
 #include "param.h"
@@ -25,6 +26,7 @@ static struct {
     double mon_gain;
     int logged; /* records cost a third of a run that nobody keeps */
     uint32_t last_tick;
+    int ran; /* the box came to run */
 } run;
 
 static void *grow(void *p, size_t *cap, size_t n, size_t size)
@@ -63,6 +65,21 @@ static double si(int32_t raw, int frac)
     return (double)raw / (double)(INT64_C(1) << frac);
 }
 
+/* The mass is held until the box runs; one that will not is no experiment. */
+static void watch_arming(const struct drop_signals *s)
+{
+    const enum arming is = arming_is(s->state);
+    if (run.ran || is == ARMING_GOES_ON) { return; }
+    run.ran = is == ARMING_RUNS;
+    if (run.ran) {
+        posix_ready();
+    } else {
+        arming_complain(s->arm_step, s->present);
+        run.r->refused = (uint32_t)s->arm_step;
+        posix_stop();
+    }
+}
+
 static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
 {
     struct drop_signals s;
@@ -71,6 +88,7 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
     run.last_tick = tick;
     run.r->ticks++;
     run.r->faults |= (uint32_t)s.faults;
+    watch_arming(&s);
     if (run.more) { run.more->after(tick, in, out); }
     if (run.fall == 0) { return; }
     run.sample = grow(run.sample, &run.samples_cap, run.r->log.samples, sizeof *run.sample);
@@ -124,6 +142,7 @@ int run_check(const struct run_cfg *c)
 int run_drop(const struct run_cfg *c, struct run *r)
 {
     static const struct exh_loop_hooks hooks = {start, before, after};
+    struct posix_config board;
     int err;
 
     memset(r, 0, sizeof *r);
@@ -134,11 +153,15 @@ int run_drop(const struct run_cfg *c, struct run *r)
     run.mon_gain = c->mon_gain != 0 ? c->mon_gain : 1;
     err = set_parameters(c);
     if (err == 0) {
-        posix_configure(&c->board);
+        board = c->board;
+        board.wait = 1;
+        posix_configure(&board);
         if (dumpfile_open(c->blackbox, run.logged, c->blackbox_B)) { return -EXH_E_SHORT; }
         err = exh_loop(&exh_scene_drop, c->rate_Hz, &hooks);
         r->dumps = dumpfile_close(err < 0);
-        if (err == -EXH_E_RATE) {
+        if (err == 0 && r->refused) {
+            err = -EXH_E_STATE; /* that was told */
+        } else if (err == -EXH_E_RATE) {
             cli_complain("rate: %lu Hz (allowed 1..%lu): choose one in that range",
                          (unsigned long)c->rate_Hz, (unsigned long)exh_board_info.rate_max_Hz);
         } else if (err < 0) {

@@ -32,6 +32,7 @@ struct run {
     uint64_t ticks;
     uint32_t lost;       /* log records lost                                   */
     uint32_t faults;     /* enum exh_fault                                     */
+    uint32_t refused;    /* enum exh_arm: the step at which arming was; no fall then */
     int dumps;           /* of the black box; -1: one could not be written      */
 };
 
