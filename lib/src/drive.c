@@ -183,7 +183,7 @@ static uint32_t no_force(struct exh_drive *s, int64_t asked_N_q20, int32_t small
 {
     s->force_N_q20 = 0;
     s->fall_N_q20 = 0;
-    f->clamp_N_q20 = -asked_N_q20;
+    f->clamp_N_q20 = exh_wrap_diff64(0, asked_N_q20);
     if (asked_N_q20 < 0) { return EXH_LIMIT_PULL; }
     return (asked_N_q20 > 0 ? EXH_LIMIT_GATE : 0u) |
            (asked_N_q20 > small_N_q20 ? EXH_LIMIT_FORCE : 0u);
@@ -201,7 +201,7 @@ static uint32_t release(struct exh_drive *s, int64_t asked_N_q20, const struct e
     rest = s->force_N_q20 - (int64_t)permit->ticks * s->fall_N_q20;
     s->force_N_q20 = rest > 0 ? (int32_t)rest : 0;
     f->force_N_q20 = s->force_N_q20;
-    f->release_N_q20 = s->force_N_q20 - asked_N_q20;
+    f->release_N_q20 = exh_wrap_diff64(s->force_N_q20, asked_N_q20);
     return EXH_LIMIT_RELEASE;
 }
 
@@ -210,7 +210,8 @@ uint32_t exh_drive_force(struct exh_drive *s, const struct exh_drive_cfg *cfg,
 {
     const struct exh_drive_par *par = cfg->par;
     const int64_t asked =
-        f->spring_N_q20 + f->damper_N_q20 + f->pullback_N_q20 + f->passivity_N_q20;
+        exh_wrap_add64(exh_wrap_add64(f->spring_N_q20, f->damper_N_q20),
+                       exh_wrap_add64(f->pullback_N_q20, f->passivity_N_q20));
     const int32_t top = par->f_max_N_q20 < cfg->f_top_N_q20 ? par->f_max_N_q20 : cfg->f_top_N_q20;
     const int32_t most = (int32_t)((int64_t)top * permit->share_q30 >> 30);
     const int32_t held = exh_clamp(asked, 0, most);
@@ -230,7 +231,7 @@ uint32_t exh_drive_force(struct exh_drive *s, const struct exh_drive_cfg *cfg,
     if (asked > top) { limits |= EXH_LIMIT_FORCE; }
     if (most < top && asked > most) { limits |= EXH_LIMIT_RAMP; }
     if (slewed != held) { limits |= EXH_LIMIT_SLEW; }
-    f->clamp_N_q20 = held - asked;
+    f->clamp_N_q20 = exh_wrap_diff64(held, asked);
     f->slew_N_q20 = slewed - held;
     f->force_N_q20 = (int32_t)slewed; /* between held and the last force: both int32 */
     s->force_N_q20 = f->force_N_q20;

@@ -33,14 +33,16 @@ void exh_gate(struct exh_safety *s, const struct exh_drive_cfg *cfg, unsigned n,
     }
     for (unsigned k = 0; k < n; k++) {
         const struct exh_drive_par *par = cfg[k].par;
-        const int64_t asked = i[k].table_A_q26 + i[k].peak_A_q26 + i[k].i2t_A_q26;
+        /* Whatever the ledger holds: no sum of it may be undefined here. */
+        const int64_t held_back = exh_wrap_add64(i[k].peak_A_q26, i[k].i2t_A_q26);
+        const int64_t asked = exh_wrap_add64(i[k].table_A_q26, held_back);
         const int32_t passed = open ? exh_sat32(asked) : 0;
 
         if (passed != asked) { limits[k] |= EXH_LIMIT_GATE; }
         out->dac_raw[k] = code_of(par, passed, &limits[k]);
         i[k].coded_A_q26 = exh_sat32(
             exh_gain_mul(cfg[k].dac_A_q26, (int32_t)out->dac_raw[k] - par->dac_zero_raw));
-        i[k].gate_A_q26 = passed - asked;
+        i[k].gate_A_q26 = exh_wrap_diff64(passed, asked);
         i[k].dac_A_q26 = (int64_t)i[k].coded_A_q26 - passed;
         s->limits |= limits[k];
     }

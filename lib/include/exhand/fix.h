@@ -107,6 +107,12 @@ static inline int64_t exh_wrap_add64(int64_t a, int64_t b)
     return exh_from_u64((uint64_t)a + (uint64_t)b);
 }
 
+/* a - b modulo 2^64, likewise. */
+static inline int64_t exh_wrap_diff64(int64_t a, int64_t b)
+{
+    return exh_from_u64((uint64_t)a - (uint64_t)b);
+}
+
 /* A positive factor mant * 2^-shift with 31 significant bits: what a division
  * at set-up leaves behind for the tick. */
 struct exh_gain {
