@@ -215,7 +215,7 @@ void bringup_tick(struct bringup *s, const struct bringup_cfg *cfg, const struct
     permit = exh_safety_step(&s->safety, &cfg->safety, box);
     f.pullback_N_q20 = go_on(s, cfg, command, v);
     live = s->result == EXH_PROBE_BUSY && exh_safety_runs(&s->safety) && needs_run(s, cfg);
-    if (!live && permit.mode == EXH_PERMIT_OPEN) { permit.mode = EXH_PERMIT_CLOSED; }
+    if (!live) { permit.mode = EXH_PERMIT_CLOSED; } /* at once, whatever was held */
     limits = exh_drive_force(&s->drive, &cfg->drive, &permit, &f);
     limits |= exh_drive_current(&s->drive, &cfg->drive, &f, &i);
     exh_gate(&s->safety, &cfg->drive, 1, &i, &limits, out);
