@@ -70,6 +70,9 @@ const uint32_t digest_filter[GOLDEN_RATES] = {
 const uint32_t digest_quantizer[GOLDEN_RATES] = {
 #include "digest/quantizer.inc"
 };
+const uint32_t digest_gains[GOLDEN_RATES] = {
+#include "digest/gains.inc"
+};
 const uint32_t digest_glove[GOLDEN_RATES] = {
 #include "digest/glove.inc"
 };

@@ -111,6 +111,7 @@ MODULE(home);
 MODULE(weigh);
 MODULE(filter);
 MODULE(quantizer);
+MODULE(gains);
 MODULE(glove);
 MODULE(glove_cal);
 MODULE(angle);
@@ -122,5 +123,5 @@ MODULE(bilateral);
 
 TEST_MAIN("golden", first_tick_that_differs_is_told, fix, bytes, record, signal, quad, quad_ab,
           velocity_window, velocity_pole, velocity_foaw, velocity_track, contact, table, drive,
-          track, watch, passivity, safety, calibrate, probe, home, weigh, filter, quantizer, glove, glove_cal, angle, hand,
+          track, watch, passivity, safety, calibrate, probe, home, weigh, filter, quantizer, gains, glove, glove_cal, angle, hand,
           precontact, wire, drop, bilateral);

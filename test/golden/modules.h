@@ -32,6 +32,7 @@ GOLDEN_MODULE(home);
 GOLDEN_MODULE(weigh);
 GOLDEN_MODULE(filter);
 GOLDEN_MODULE(quantizer);
+GOLDEN_MODULE(gains);
 GOLDEN_MODULE(glove);
 GOLDEN_MODULE(glove_cal);
 GOLDEN_MODULE(angle);

@@ -24,7 +24,7 @@ FLAGS = "-std=c99 -O1 -w -Ilib/include -Ilib/src -Iexamples -Itest -D_POSIX_C_SO
 
 L, H, X, Y = "lib/src/", "lib/include/exhand/", "examples/drop/", "examples/bilateral/"
 VELOCITY, QUAD, DRIVE, SAFETY = L + "velocity.c", L + "quad.c", L + "drive.c", L + "safety.c"
-TRACK, PASSIVITY = L + "track.c", L + "passivity.c"
+TRACK, PASSIVITY, GAINS = L + "track.c", L + "passivity.c", L + "gains.c"
 
 # module, source, text, what stands there instead. A changed header is compiled into the module's own
 # run, which is where its inline functions are.
@@ -89,6 +89,11 @@ MUTANTS = (
     ("passivity", PASSIVITY, "f->force_N_q20 > f->pullback_N_q20;", "1;"),
     ("passivity", PASSIVITY, "coded_A_q26) - f->pullback_N_q20;", "coded_A_q26);"),
     ("passivity", PASSIVITY, "par->on == LATE ? before", "par->on >= 1 ? before"),
+    ("gains", GAINS, "(k_Npm_q10 - k0) * (b1 - b0) <=", "(k_Npm_q10 - k0) * (b1 - b0) <"),
+    ("gains", GAINS, "k_Npm_q10 >= rule->k_min_Npm_q10)", "k_Npm_q10 > rule->k_min_Npm_q10)"),
+    ("gains", GAINS, "(off < 0 ? -off : off) * 100", "off * 100"),
+    ("gains", GAINS, "    p->staged[i] = was;", ""),
+    ("gains", GAINS, "    p->pending = pending;", ""),
     ("track", TRACK, "1 + LATE_TICKS;", "LATE_TICKS;"),
     ("track", TRACK, "mon_A_q26 >= lowest", "mon_A_q26 > lowest"),
     ("track", TRACK, "mon_A_q26 <= highest", "mon_A_q26 < highest"),

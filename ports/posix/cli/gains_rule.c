@@ -111,7 +111,7 @@ static void take(struct exh_gains_par *rule, const struct profile *p, int knots,
     rule->knots = knots;
     for (int n = knots - 1; n >= 0; n--) {
         const struct best from = best[n][j][level];
-        rule->b_Nspm_q20[n] = down(p->b[j], EXH_Q_B);
+        rule->b_Nspm_q20[n] = down(p->b[j], EXH_Q_B) - (n == knots - 1); /* not on the last edge */
         rule->k_Npm_q10[n] = down(height(p, j, level), EXH_Q_K);
         j = from.j;
         level = from.level;

@@ -170,10 +170,19 @@ int region_find(const struct region *r, double k_Npm, double b_Nspm, int *i, int
     return *i < r->o.columns && *j < r->o.rows;
 }
 
+static int on(double v, double edge)
+{
+    return v - edge <= 1e-9 * edge && edge - v <= 1e-9 * edge;
+}
+
 int region_allows(struct region *r, double k_Npm, double b_Nspm)
 {
-    int i, j;
-    return region_find(r, k_Npm, b_Nspm, &i, &j) && region_piece(r, i, j);
+    int i, j, right, up;
+    if (!region_find(r, k_Npm, b_Nspm, &i, &j)) { return 0; }
+    right = on(k_Npm, region_k(r, i + 1));
+    up = on(b_Nspm, region_b(r, j + 1));
+    return region_piece(r, i, j) && (!right || region_piece(r, i + 1, j)) &&
+           (!up || region_piece(r, i, j + 1)) && (!right || !up || region_piece(r, i + 1, j + 1));
 }
 
 /* --- all of it --- */

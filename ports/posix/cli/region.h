@@ -43,8 +43,10 @@ double region_b(const struct region *r, int j);
 /* Whether the piece above and right of node i, j is allowed; nodes are looked at as needed. */
 int region_piece(struct region *r, int i, int j);
 
-/* The piece that a pair lies in, at the border the lower one. 0: none has it. */
+/* The piece that a pair lies in, at an edge the lower one. 0: none has it. */
 int region_find(const struct region *r, double k_Npm, double b_Nspm, int *i, int *j);
+
+/* Whether all pieces are allowed that a pair lies in or on the edge of. */
 int region_allows(struct region *r, double k_Npm, double b_Nspm);
 
 #endif

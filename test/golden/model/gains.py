@@ -1,0 +1,144 @@
+"""gains: rules set up and refused, pairs asked, values staged under a rule."""
+
+from .num import AGAIN, MAX32, MIN32, MONOTONE, RANGE, TICKS, UNKNOWN, Rng, period
+
+RATE, GAINS = 8, 13
+K_MAX, B_MAX, K, B = 1024000000, 1048576000, 0x0401, 0x0402
+
+# id, largest value, default of the contact's rows; the smallest is 0.
+CONTACT = ((0x0401, K_MAX, 1536000), (0x0402, B_MAX, 0), (0x0403, 20971520, 112197), (0x0404, 10737418, 214748),
+           (0x0405, 10737418, 0))
+
+
+class Rule:
+    def __init__(self, rng, T):
+        b = rng.draw(0, 1 << 24)
+        self.rate = (256 * T[1] + T[0] // 2) // T[0]
+        self.n = rng.draw(2, 8)
+        self.least = rng.draw(0, 1) * rng.draw(0, 1 << 24)
+        self.b, self.k = [], []
+        for _ in range(8):
+            self.b.append(b)
+            self.k.append(rng.draw(0, K_MAX))
+            b += rng.draw(1, 1 << 26)
+
+    def spoil(self, how):
+        if how == 1:
+            self.n = 1
+        elif how == 2:
+            self.n = 9
+        elif how == 3:
+            self.rate = 255
+        elif how == 4:
+            self.least = -1
+        elif how == 5:
+            self.b[0] = -1
+        elif how == 6:
+            self.b[self.n - 1] = B_MAX + 1
+        elif how == 7:
+            self.k[1] = -1
+        elif how == 8:
+            self.b[1] = self.b[0]
+        elif how in (9, 12, 13):
+            self.rate += self.rate // 50
+        elif how == 10:
+            self.k[7] = K_MAX + 1
+        elif how == 11:
+            self.rate -= self.rate // 120
+
+    def setup(self, T):
+        if not (256 <= self.rate <= 20000 << 8 and 2 <= self.n <= 8 and 0 <= self.least <= K_MAX):
+            return -RANGE
+        for i in range(self.n):
+            if not (0 <= self.b[i] <= B_MAX and 0 <= self.k[i] <= K_MAX):
+                return -RANGE
+            if i > 0 and self.b[i] <= self.b[i - 1]:
+                return -MONOTONE
+        return -RATE if abs(256 * T[1] - T[0] * self.rate) * 100 > T[0] * self.rate else 0
+
+    def allows(self, k, b):
+        if k == 0 and b == 0:
+            return 1
+        return int(k >= self.least and any(
+            b0 <= b <= b1 and (k - k0) * (b1 - b0) <= (k1 - k0) * (b - b0)
+            for b0, b1, k0, k1 in zip(self.b, self.b[1:self.n], self.k, self.k[1:])))
+
+    def pair(self, rng):
+        how, i = rng.draw(0, 3), rng.draw(0, self.n - 2)
+        b0, b1, k0, k1 = self.b[i], self.b[i + 1], self.k[i], self.k[i + 1]
+        k = rng.draw(MIN32, MAX32) if how == 0 else rng.draw(0, K_MAX)
+        b = rng.draw(MIN32, MAX32) if how == 0 else rng.draw(b0, b1)
+        if how == 2:
+            b = b0
+        if how >= 2:
+            k = k0 + (k1 - k0) * (b - b0) // (b1 - b0) if k1 >= k0 else k1 + (k0 - k1) * (b1 - b) // (b1 - b0)
+            k += rng.draw(-2, 2)
+        return k, b
+
+
+class Params:
+    """Two instances of the contact's rows."""
+
+    def __init__(self, rule):
+        self.active = [{row[0]: row[2] for row in CONTACT} for _ in range(2)]
+        self.active[0][K] = 0
+        self.active[1][K], self.active[1][B] = rule.least, rule.b[0]
+        self.pending = 0
+        self.drop()
+
+    def drop(self):
+        self.staged, self.pending = [dict(v) for v in self.active], 0
+
+    def stage(self, rule, ident, instance, raw):
+        most = {row[0]: row[1] for row in CONTACT}
+        if ident not in most or instance > 1:
+            return -UNKNOWN
+        if not 0 <= raw <= most[ident]:
+            return -RANGE
+        now = dict(self.staged[instance])
+        now[ident] = raw
+        if rule and ident in (K, B) and not rule.allows(now[K], now[B]):
+            return -GAINS
+        self.staged[instance], self.pending = now, 1
+        return 0
+
+    def apply(self):
+        done, self.pending = self.pending, 0
+        if done:
+            self.active = [dict(v) for v in self.staged]
+        return done
+
+
+def gains(rate):
+    rng = Rng("gains", rate, 0)
+    for tick in range(TICKS):
+        err = 1
+        if tick in (0, AGAIN) or tick % 8 == 0:
+            T = period(rate, tick)
+            new = Rule(rng, T)
+            how = rng.draw(0, 15)
+            if tick not in (0, AGAIN):
+                new.spoil(how)
+            err = new.setup(T)
+            if err == 0:
+                rule, params = new, Params(new)
+        k, b = rule.pair(rng)
+        inside = rule.allows(k, b)
+        instance, ident = rng.draw(0, 8) // 4, 0x0401 + rng.draw(0, 5)
+        how, raw = rng.draw(0, 3), rng.draw(MIN32, MAX32)
+        if how > 0:
+            raw = raw & 0xFFFFFF if how == 1 else k if ident == K else b
+        past = rng.draw(0, 7) == 0
+        put = params.stage(None if past else rule, ident, instance, raw)
+        at = next((i for i, v in enumerate(params.staged) if not rule.allows(v[K], v[B])), 99)
+        bad = -GAINS if at < 99 else 0
+        if bad:
+            params.drop()
+        done = params.apply() if rng.draw(0, 3) == 0 else -1
+        yield (err, k, b, inside, put, ident, instance, raw, bad, at, done, params.pending,
+               *(v for s in params.staged for v in (s[K], s[B]))), b""
+
+
+COLUMNS = "setup k_Npm_q10 b_Nspm_q20 | inside stage id instance raw staged at apply pending k0 b0 k1 b1"
+
+MODULES = {"gains": (COLUMNS, gains)}
