@@ -94,6 +94,7 @@ $(boot): $(image) $(PORT_ISO) FORCE
 
 # The host program: every scene that has a subcommand, over the simulated device.
 cli_src := $(wildcard ports/posix/cli/*.c ports/posix/fit/*.c) examples/log.c examples/blackbox.c examples/deadman.c examples/drop/drop.c \
+           examples/guarded/guarded.c \
            examples/calibrate/calibrate.c examples/glove/glove.c examples/glove/cal.c \
            $(wildcard examples/bilateral/*.c examples/bringup/*.c) ports/pc104/stream.c
 # The world's core, without its pictures, answers in the same process.
@@ -283,7 +284,7 @@ $(B)/test/board/%_test: $(B)/posix/test/board/%_test.o $(B)/posix/test/board/pos
 	$(Q)$(CC) -o $@ $^ -lcmocka -lm
 
 # Golden vectors: the objects as they are shipped, at every rate.
-golden_src := $(wildcard test/golden/*.c) examples/drop/drop.c examples/glove/cal.c \
+golden_src := $(wildcard test/golden/*.c) examples/drop/drop.c examples/guarded/guarded.c examples/glove/cal.c \
               $(wildcard examples/bilateral/*.c)
 $(B)/test/golden/golden_test: $(golden_src:%.c=$(B)/posix/%.o) $(B)/posix/test/support.o $(B)/posix/libexhand.a
 	@mkdir -p $(@D)

@@ -1,13 +1,13 @@
 #include "drop.h"
 
-static const struct exh_signal own_rows[] = {
+const struct exh_signal drop_own_rows[DROP_OWN_ROWS] = {
     {0x8001, EXH_Q_POS, EXH_WHEN_ANY, -EXH_Q(1, 1, EXH_Q_POS), EXH_Q(1, 1, EXH_Q_POS),
      EXH_Q(7, 100, EXH_Q_POS), "q_lim", "m", "virtual contact, from where the string starts"},
     {0x8002, EXH_Q_FORCE, EXH_WHEN_SETUP, EXH_Q(1, 10, EXH_Q_FORCE), EXH_Q(100, 1, EXH_Q_FORCE),
      EXH_Q(3339, 1000, EXH_Q_FORCE), "kf", "n_per_a", "string force per motor current"},
 };
 
-static const struct exh_signal paper_rows[] = {
+const struct exh_signal drop_paper_rows[DROP_PAPER_ROWS] = {
     {0x8101, EXH_Q_POS, EXH_WHEN_OUTPUT, INT32_MIN, INT32_MAX, 0, "q", "m", "position"},
     {0x8102, EXH_Q_VEL, EXH_WHEN_OUTPUT, INT32_MIN, INT32_MAX, 0, "qd", "m_per_s", "velocity"},
     {0x8103, EXH_Q_FORCE, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "f_des", "n", "force commanded"},
@@ -17,7 +17,7 @@ static const struct exh_signal paper_rows[] = {
      "force by the current monitor"},
 };
 
-static const struct exh_signal more_rows[] = {
+const struct exh_signal drop_more_rows[DROP_MORE_ROWS] = {
     {0x8107, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "limits", "", "limits acting, bits"},
     {0x8108, 0, EXH_WHEN_OUTPUT, 0, 5, 0, "state", "",
      "0 off, 1 arm, 2 run, 3 limit, 4 release, 5 fault"},
@@ -26,25 +26,17 @@ static const struct exh_signal more_rows[] = {
     {0x810B, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "arm_step", "", "arming is at, or was refused by"},
 };
 
-#define ROWS(r) {(r), sizeof(r) / sizeof((r)[0]), 1}
+static const struct exh_signal_group param_groups[] = {DROP_PARAM_GROUPS};
+static const struct exh_signal_table param_table = {param_groups, DROP_PARAM_N};
 
-static const struct exh_signal_group param_groups[] = {
-    {exh_quad_rows, EXH_QUAD_ROWS, 1},       {exh_velocity_rows, EXH_VELOCITY_ROWS, 1},
-    {exh_contact_rows, EXH_CONTACT_ROWS, 1}, {exh_drive_rows, EXH_DRIVE_ROWS, 1},
-    {exh_track_rows, EXH_TRACK_ROWS, 1},     {exh_watch_rows, EXH_WATCH_ROWS, 1},
-    {exh_safety_rows, EXH_SAFETY_ROWS, 1},   ROWS(own_rows),
-};
-static const struct exh_signal_table param_table = {param_groups, 8};
-
-/* The first group is the paper's, in its order: what a CSV holds. */
-static const struct exh_signal_group signal_groups[] = {ROWS(paper_rows), ROWS(more_rows)};
-static const struct exh_signal_table signal_table = {signal_groups, 2};
+static const struct exh_signal_group signal_groups[] = {DROP_SIGNAL_GROUPS};
+static const struct exh_signal_table signal_table = {signal_groups, DROP_SIGNAL_N};
 
 #define PARAMS (sizeof(struct drop_par) / sizeof(int32_t))
 EXH_STATIC_ASSERT(drop_par_matches_rows,
                   PARAMS == EXH_QUAD_ROWS + EXH_VELOCITY_ROWS + EXH_CONTACT_ROWS +
                                 EXH_DRIVE_ROWS + EXH_TRACK_ROWS + EXH_WATCH_ROWS +
-                                EXH_SAFETY_ROWS + 2);
+                                EXH_SAFETY_ROWS + DROP_OWN_ROWS);
 
 int drop_setup(struct drop_cfg *cfg, const struct drop_par *par, struct exh_scene_board board)
 {
@@ -79,8 +71,8 @@ static uint8_t steps_held(const struct drop *s)
                      (s->quad.lost ? 0u : EXH_ARM_ENCODER));
 }
 
-void drop_tick(struct drop *s, const struct drop_cfg *cfg, const struct exh_scene_in *in,
-               struct exh_drive_out *out, struct drop_signals *sig)
+void drop_law(struct drop *s, const struct drop_cfg *cfg, const struct exh_scene_in *in,
+              struct drop_now *now, struct drop_signals *sig)
 {
     const struct drop_par *par = cfg->par;
     const int32_t cnt = exh_quad_extend(&s->quad, &cfg->quad, in->drive.enc_raw[0]);
@@ -95,27 +87,51 @@ void drop_tick(struct drop *s, const struct drop_cfg *cfg, const struct exh_scen
                             exh_watch_step(&s->watch, &cfg->watch, &q.vel_mps_q27, &limits);
     const struct exh_safety_in box = {in->drive.din, raised, in->missed, in->command, 1,
                                       steps_held(s)};
-    const struct exh_permit permit = exh_safety_step(&s->safety, &cfg->safety, box);
-    struct exh_force_ledger f;
-    struct exh_current_ledger i;
 
-    sig->c = exh_contact_law(&s->contact, &par->contact, q, &f);
-    limits |= exh_drive_force(&s->drive, &cfg->drive, &permit, &f);
-    limits |= exh_drive_current(&s->drive, &cfg->drive, &f, &i);
-    exh_gate(&s->safety, &cfg->drive, 1, &i, &limits, out);
-    exh_track_coded(&s->track, i.coded_A_q26);
-    exh_watch_coded(&s->watch, &cfg->watch, cnt, i.coded_A_q26);
-
+    now->permit = exh_safety_step(&s->safety, &cfg->safety, box);
+    now->cnt = cnt;
+    now->limits = limits;
+    sig->c = exh_contact_law(&s->contact, &par->contact, q, &now->f);
     sig->q_m_q30 = q.pos_m_q30;
     sig->qd_mps_q27 = q.vel_mps_q27;
-    sig->f_des_N_q20 = f.force_N_q20;
-    sig->i_des_A_q26 = i.coded_A_q26;
     sig->f_mon_N_q20 = exh_drive_monitor_N_q20(&cfg->drive, in->drive.mon_raw[0]);
-    sig->limits = (int32_t)limits;
+}
+
+void drop_out(struct drop *s, const struct drop_cfg *cfg, struct drop_now *now,
+              struct exh_drive_out *out, struct drop_signals *sig)
+{
+    now->limits |= exh_drive_force(&s->drive, &cfg->drive, &now->permit, &now->f);
+    now->limits |= exh_drive_current(&s->drive, &cfg->drive, &now->f, &now->i);
+    exh_gate(&s->safety, &cfg->drive, 1, &now->i, &now->limits, out);
+    exh_track_coded(&s->track, now->i.coded_A_q26);
+    exh_watch_coded(&s->watch, &cfg->watch, now->cnt, now->i.coded_A_q26);
+
+    sig->f_des_N_q20 = now->f.force_N_q20;
+    sig->i_des_A_q26 = now->i.coded_A_q26;
+    sig->limits = (int32_t)now->limits;
     sig->state = s->safety.state;
     sig->faults = (int32_t)s->safety.faults;
     sig->present = (int32_t)s->safety.present;
     sig->arm_step = exh_safety_arm(&s->safety);
+}
+
+void drop_tick(struct drop *s, const struct drop_cfg *cfg, const struct exh_scene_in *in,
+               struct exh_drive_out *out, struct drop_signals *sig)
+{
+    struct drop_now now;
+    drop_law(s, cfg, in, &now, sig);
+    drop_out(s, cfg, &now, out, sig);
+}
+
+void drop_bytes(struct exh_bytes *c, struct drop *s)
+{
+    exh_quad_bytes(c, &s->quad);
+    exh_velocity_window_bytes(c, &s->velocity);
+    exh_contact_bytes(c, &s->contact);
+    exh_drive_bytes(c, &s->drive);
+    exh_track_bytes(c, &s->track);
+    exh_watch_bytes(c, &s->watch);
+    exh_safety_bytes(c, &s->safety);
 }
 
 /* --- the one instance of this image --- */
@@ -145,13 +161,7 @@ static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
 
 static void state_bytes(struct exh_bytes *c)
 {
-    exh_quad_bytes(c, &state.quad);
-    exh_velocity_window_bytes(c, &state.velocity);
-    exh_contact_bytes(c, &state.contact);
-    exh_drive_bytes(c, &state.drive);
-    exh_track_bytes(c, &state.track);
-    exh_watch_bytes(c, &state.watch);
-    exh_safety_bytes(c, &state.safety);
+    drop_bytes(c, &state);
 }
 
 const struct exh_scene exh_scene_drop = {

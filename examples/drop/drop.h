@@ -13,6 +13,24 @@ struct drop_own_par {
     int32_t kf_NpA_q20;  /* string force per motor ampere                      */
 };
 
+#define DROP_OWN_ROWS   2
+#define DROP_PAPER_ROWS 6
+#define DROP_MORE_ROWS  5
+extern const struct exh_signal drop_own_rows[DROP_OWN_ROWS];
+extern const struct exh_signal drop_paper_rows[DROP_PAPER_ROWS];
+extern const struct exh_signal drop_more_rows[DROP_MORE_ROWS];
+
+/* Groups of its tables, for scenes that are this one and something more. */
+#define DROP_PARAM_N 8
+#define DROP_PARAM_GROUPS \
+    {exh_quad_rows, EXH_QUAD_ROWS, 1}, {exh_velocity_rows, EXH_VELOCITY_ROWS, 1}, \
+        {exh_contact_rows, EXH_CONTACT_ROWS, 1}, {exh_drive_rows, EXH_DRIVE_ROWS, 1}, \
+        {exh_track_rows, EXH_TRACK_ROWS, 1}, {exh_watch_rows, EXH_WATCH_ROWS, 1}, \
+        {exh_safety_rows, EXH_SAFETY_ROWS, 1}, {drop_own_rows, DROP_OWN_ROWS, 1}
+/* The first is the paper's, in its order: what a CSV holds. */
+#define DROP_SIGNAL_N 2
+#define DROP_SIGNAL_GROUPS {drop_paper_rows, DROP_PAPER_ROWS, 1}, {drop_more_rows, DROP_MORE_ROWS, 1}
+
 /* All parameters, in the order of the scene's signal table. */
 struct drop_par {
     struct exh_quad_par quad;
@@ -63,6 +81,25 @@ struct drop {
 
 /* Configuration from parameters. 0 or -EXH_E…. */
 int drop_setup(struct drop_cfg *cfg, const struct drop_par *par, struct exh_scene_board board);
+
+/* What the first half of a tick hands to the second. Between them a scene may add to the force
+ * ledger what acts behind the law. */
+struct drop_now {
+    int32_t cnt;
+    struct exh_permit permit;
+    struct exh_force_ledger f;
+    struct exh_current_ledger i;
+    uint32_t limits;
+};
+
+/* From the inputs through the law, and from there to the outputs. */
+void drop_law(struct drop *s, const struct drop_cfg *cfg, const struct exh_scene_in *in,
+              struct drop_now *now, struct drop_signals *sig);
+void drop_out(struct drop *s, const struct drop_cfg *cfg, struct drop_now *now,
+              struct exh_drive_out *out, struct drop_signals *sig);
+
+/* State through a cursor. */
+void drop_bytes(struct exh_bytes *c, struct drop *s);
 
 /* One tick. */
 void drop_tick(struct drop *s, const struct drop_cfg *cfg, const struct exh_scene_in *in,

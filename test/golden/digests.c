@@ -94,6 +94,9 @@ const uint32_t digest_wire[GOLDEN_RATES] = {
 const uint32_t digest_drop[GOLDEN_RATES] = {
 #include "digest/drop.inc"
 };
+const uint32_t digest_guarded[GOLDEN_RATES] = {
+#include "digest/guarded.inc"
+};
 const uint32_t digest_bilateral[GOLDEN_RATES] = {
 #include "digest/bilateral.inc"
 };

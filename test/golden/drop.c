@@ -1,16 +1,17 @@
-/* The scene drop: one tick from an encoder's counter to a D/A code. */
+/* The scenes drop and guarded: one tick from an encoder's counter to a D/A code. */
 #include "modules.h"
 
-#include "drop/drop.h"
+#include "guarded/guarded.h"
 
 #include "exhand/fix.h"
 
 #define HEALTHY 0x1F0Fu
 
 struct scene {
-    struct drop_par par;
-    struct drop_cfg cfg;
-    struct drop s;
+    int guarded;
+    struct guarded_par par;
+    struct guarded_cfg cfg;
+    struct guarded s;
 };
 
 static int32_t any_size(struct golden_rng *r, int32_t most)
@@ -37,21 +38,36 @@ static void any_par(struct drop_par *p, struct golden_rng *r, uint32_t rate_Hz)
     p->own.kf_NpA_q20 = (int32_t)golden_draw(r, 104858, 104857600);
 }
 
+static int scene_try(struct scene *d, struct exh_scene_board board)
+{
+    return d->guarded ? guarded_setup(&d->cfg, &d->par, board)
+                      : drop_setup(&d->cfg.drop, &d->par.drop, board);
+}
+
 static void scene_setup(struct scene *d, struct golden_rng *r, uint32_t rate_Hz, uint32_t k)
 {
     struct exh_scene_board board = {golden_period(rate_Hz, k), 16};
     int err;
+    const int guarded = d->guarded;
     (void)memset(d, 0, sizeof *d);
-    any_par(&d->par, r, rate_Hz);
-    while ((err = drop_setup(&d->cfg, &d->par, board)) != 0 && board.enc_bits < 32) {
+    d->guarded = guarded;
+    any_par(&d->par.drop, r, rate_Hz);
+    if (guarded) {
+        /* Quiet enough to run, and to and fro through the wall. */
+        d->par.drop.drive.slew_down_Nps = 10000000;
+        d->par.drop.own.q_lim_m_q30 >>= 8;
+        d->par.passivity.on = (int32_t)golden_draw(r, 0, 2);
+    }
+    while ((err = scene_try(d, board)) != 0 && board.enc_bits < 32) {
         board.enc_bits = (uint8_t)(board.enc_bits + 4);
     }
     CHECK_EQ_I64(err, 0);
 }
 
-static void any_in(struct exh_scene_in *in, struct golden_rng *r, uint32_t k, uint8_t state)
+static void any_in(struct exh_scene_in *in, struct golden_rng *r, uint32_t k, const struct scene *d)
 {
-    if (golden_draw(r, 0, 47) == 0) {
+    const uint8_t state = d->s.drop.safety.state;
+    if (golden_draw(r, 0, d->guarded ? 191 : 47) == 0) {
         in->drive.din ^= 1u << golden_draw(r, 0, 8);
     } else if (golden_draw(r, 0, 3) == 0) {
         in->drive.din = HEALTHY;
@@ -59,12 +75,13 @@ static void any_in(struct exh_scene_in *in, struct golden_rng *r, uint32_t k, ui
     if (state == EXH_STATE_FAULT && golden_draw(r, 0, 3) == 0) { in->drive.din ^= 2; }
     in->missed = golden_draw(r, 0, 127) == 0 ? 1 : 0;
     in->command = k % 8 == 2 ? EXH_CMD_RUN : k % 8 == 5 ? EXH_CMD_CLEAR : EXH_CMD_NONE;
-    if (golden_draw(r, 0, 63) == 0) { in->command = EXH_CMD_OFF; }
+    if (golden_draw(r, 0, d->guarded ? 255 : 63) == 0) { in->command = EXH_CMD_OFF; }
 }
 
-static void put_out(struct golden *g, const struct drop_signals *sig,
+static void put_out(struct golden *g, const struct guarded_signals *all, int guarded,
                     const struct exh_drive_out *out)
 {
+    const struct drop_signals *sig = &all->drop;
     golden_put(g, sig->q_m_q30);
     golden_put(g, sig->qd_mps_q27);
     golden_put(g, sig->f_des_N_q20);
@@ -76,6 +93,10 @@ static void put_out(struct golden *g, const struct drop_signals *sig,
     golden_put(g, sig->faults);
     golden_put(g, sig->present);
     golden_put(g, sig->arm_step);
+    if (guarded) {
+        golden_put(g, all->energy_J_q24);
+        golden_put(g, all->passivity_N_q20);
+    }
     golden_put(g, out->dac_raw[0]);
     golden_put(g, out->enable);
     golden_put(g, out->alive);
@@ -92,43 +113,65 @@ static void put_state(struct golden *g, struct drop *s)
     GOLDEN_STATE(g, exh_safety_bytes, &s->safety);
 }
 
-void golden_drop(struct golden *g, uint32_t rate_Hz)
+/* What the string moves in a tick at most. */
+static int32_t most_cnt(const struct scene *d)
+{
+    return d->guarded ? d->cfg.passivity.way_cnt : d->cfg.drop.quad.jump_cnt;
+}
+
+static void play(struct golden *g, uint32_t rate_Hz, const char *name, int guarded)
 {
     static struct golden_wave moves;
     static struct scene d;
-    struct golden_rng r = golden_rng("drop", rate_Hz, 0);
+    struct golden_rng r = golden_rng(name, rate_Hz, 0);
     struct exh_scene_in in = {.missed = 0};
-    struct drop_signals sig = {.i_des_A_q26 = 0};
+    struct guarded_signals sig = {.energy_J_q24 = 0};
     uint32_t raw = 0;
     unsigned astray = 0;
     while (g->tick < GOLDEN_TICKS) {
         const uint32_t k = g->tick;
-        const int32_t jump = d.cfg.quad.jump_cnt;
+        int32_t jump;
         struct exh_drive_out out;
         if (k == 0 || k == GOLDEN_AGAIN) {
+            d.guarded = guarded;
             scene_setup(&d, &r, rate_Hz, k);
-            golden_wave(&moves, "drop", rate_Hz, 1 + (k > 0), -d.cfg.quad.jump_cnt,
-                        d.cfg.quad.jump_cnt,
-                        d.cfg.quad.jump_cnt < 1024 ? 1 : d.cfg.quad.jump_cnt >> 10);
+            golden_wave(&moves, name, rate_Hz, 1 + (k > 0), -most_cnt(&d), most_cnt(&d),
+                        most_cnt(&d) < 1024 ? 1 : most_cnt(&d) >> 10);
             raw = (uint32_t)(golden_u64(&r) & UINT32_MAX);
             in.drive.din = HEALTHY;
-            sig.i_des_A_q26 = 0;
+            sig.drop.i_des_A_q26 = 0;
         }
+        jump = most_cnt(&d);
         raw += (uint32_t)(k >= 8 && k < 56 ? moves.at[k] >> 3 : moves.at[k]);
         if (k >= 180 && k < GOLDEN_AGAIN) {
             raw += (uint32_t)golden_draw(&r, -2 * (int64_t)jump, 2 * (int64_t)jump);
         }
         in.drive.enc_raw[0] = raw;
-        any_in(&in, &r, k, d.s.safety.state);
-        in.drive.mon_raw[0] = golden_monitor(&astray, &d.par.drive, &r, sig.i_des_A_q26);
+        any_in(&in, &r, k, &d);
+        in.drive.mon_raw[0] = golden_monitor(&astray, &d.par.drop.drive, &r, sig.drop.i_des_A_q26);
         golden_put(g, raw);
         golden_put(g, in.drive.mon_raw[0]);
         golden_put(g, in.drive.din);
         golden_put(g, in.missed);
         golden_put(g, in.command);
-        drop_tick(&d.s, &d.cfg, &in, &out, &sig);
-        put_out(g, &sig, &out);
-        put_state(g, &d.s);
+        if (guarded) {
+            guarded_tick(&d.s, &d.cfg, &in, &out, &sig);
+        } else {
+            drop_tick(&d.s.drop, &d.cfg.drop, &in, &out, &sig.drop);
+        }
+        put_out(g, &sig, guarded, &out);
+        put_state(g, &d.s.drop);
+        if (guarded) { GOLDEN_STATE(g, exh_passivity_bytes, &d.s.passivity); }
         golden_tick(g);
     }
+}
+
+void golden_drop(struct golden *g, uint32_t rate_Hz)
+{
+    play(g, rate_Hz, "drop", 0);
+}
+
+void golden_guarded(struct golden *g, uint32_t rate_Hz)
+{
+    play(g, rate_Hz, "guarded", 1);
 }

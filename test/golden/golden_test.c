@@ -119,9 +119,10 @@ MODULE(hand);
 MODULE(precontact);
 MODULE(wire);
 MODULE(drop);
+MODULE(guarded);
 MODULE(bilateral);
 
 TEST_MAIN("golden", first_tick_that_differs_is_told, fix, bytes, record, signal, quad, quad_ab,
           velocity_window, velocity_pole, velocity_foaw, velocity_track, contact, table, drive,
           track, watch, passivity, safety, calibrate, probe, home, weigh, filter, quantizer, gains, glove, glove_cal, angle, hand,
-          precontact, wire, drop, bilateral);
+          precontact, wire, drop, guarded, bilateral);

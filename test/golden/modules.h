@@ -40,6 +40,7 @@ GOLDEN_MODULE(hand);
 GOLDEN_MODULE(precontact);
 GOLDEN_MODULE(wire);
 GOLDEN_MODULE(drop);
+GOLDEN_MODULE(guarded);
 GOLDEN_MODULE(bilateral);
 
 #endif

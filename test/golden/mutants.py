@@ -178,7 +178,9 @@ MUTANTS = (
     ("bilateral", Y + "wire.c", "w->set += ack.result == 0;", "w->set++;"),
     ("bilateral", Y + "wire.c", "s->age_ticks = UINT32_MAX;", "s->age_ticks = 0;"),
     ("bilateral", Y + "bilateral.c", "raised |= EXH_FAULT_TRACKING;", ""),
-    ("drop", X + "drop.c", "exh_track_coded(&s->track, i.coded_A_q26);", ""),
+    ("guarded", "examples/guarded/guarded.c", "now.cnt, sig->drop.c, &now.f", "now.cnt, !sig->drop.c, &now.f"),
+    ("guarded", "examples/guarded/guarded.c", "par->drop.watch.speed_mps_q27);", "EXH_Q(3, 1, EXH_Q_VEL));"),
+    ("drop", X + "drop.c", "exh_track_coded(&s->track, now->i.coded_A_q26);", ""),
     ("drop", X + "drop.c", "s->quad.lost ? EXH_FAULT_ENCODER : 0u", "0u"),
     ("drop", X + "drop.c", "limits |= exh_drive_current", "limits = exh_drive_current"),
     ("drop", X + "drop.c", "exh_velocity_window_mps_q27(&s->velocity, &cfg->velocity, cnt)",
@@ -194,7 +196,7 @@ def objects_but(original):
     """The test's objects without the one that is made of `original`."""
     sources = sorted(glob.glob(os.path.join(ROOT, "test/golden/*.c")) +
                      glob.glob(os.path.join(ROOT, "examples/bilateral/*.c")))
-    sources += ["test/support.c", "examples/drop/drop.c", "examples/glove/cal.c"]
+    sources += ["test/support.c", "examples/drop/drop.c", "examples/guarded/guarded.c", "examples/glove/cal.c"]
     names = [os.path.relpath(os.path.join(ROOT, s), ROOT) for s in sources]
     return [os.path.join(B, "posix", s[:-2] + ".o") for s in names if s != original]
 

@@ -13,6 +13,7 @@
 #include "sweep.h"
 
 #include "drop/drop.h"
+#include "guarded/guarded.h"
 
 #include <errno.h>
 #include <stdint.h>
@@ -28,7 +29,7 @@ struct drop_options {
     int rates, rates_given;
     double k_Npm, b_Nspm, scale; /* < 0: the paper's at that rate                 */
     int64_t falls, seed, jobs, spread, friction;
-    int pace, cards, sweep, check, readings;
+    int pace, cards, sweep, check, readings, guarded;
     const char *out, *grid, *shard, *blackbox;
     double let_go_s;
     struct run_setting setting[SETTINGS_MAX];
@@ -104,10 +105,10 @@ static int take_setting(void *ctx, const char *text)
         cli_complain("--set: %s: give --%s VALUE: the gains belong to the table", text, name);
         return 2;
     }
-    exh_scene_drop.defaults();
-    if (cli_param_set(exh_scene_drop.params, name, value) < 0) { return 2; }
+    exh_scene_guarded.defaults(); /* knows all that drop knows */
+    if (cli_param_set(exh_scene_guarded.params, name, value) < 0) { return 2; }
     o->setting[o->settings++] = (struct run_setting){
-        cli_signal_find(exh_scene_drop.params->table, name, NULL)->name, value};
+        cli_signal_find(exh_scene_guarded.params->table, name, NULL)->name, value};
     return 0;
 }
 
@@ -123,11 +124,11 @@ static int take_device(void *ctx, const char *text)
     return err ? assign_refused("drop", name, value, row) : 0;
 }
 
-static void print_params(void)
+static void print_params(const struct exh_scene *scene)
 {
-    exh_scene_drop.defaults();
+    scene->defaults();
     printf("Parameters of the scene (--set NAME=VALUE)\n");
-    cli_signal_print(stdout, exh_scene_drop.params->table);
+    cli_signal_print(stdout, scene->params->table);
     printf("\nThe simulated device (--device NAME=VALUE); step, kf and the scales also calibrate the "
            "scene\n");
     for (int i = 0; i < sim_device_rows; i++) {
@@ -149,6 +150,7 @@ static struct run_cfg job_cfg(const struct drop_options *o, int rate_i, double s
     c.rate_Hz = (uint32_t)(o->rate_Hz[rate_i] + 0.5);
     c.k_Npm = (o->k_Npm < 0 ? g->k_Npm : o->k_Npm) * o->scale * scale;
     c.b_Nspm = (o->b_Nspm < 0 ? g->b_Nspm : o->b_Nspm) * o->scale * scale;
+    c.scene = o->guarded ? &exh_scene_guarded : &exh_scene_drop;
     c.setting = o->setting;
     c.settings = o->settings;
     c.board = posix_config_default();
@@ -285,6 +287,32 @@ static int report_readings(const struct drop_options *o, const struct table2_res
     return 0;
 }
 
+/* The same runs once more with passivity only observing. */
+static struct table2_result observed(const struct drop_options *o, int i)
+{
+    struct run_setting setting[SETTINGS_MAX + 1];
+    struct run_cfg c = job_cfg(o, i, 1, (uint64_t)o->seed);
+    memcpy(setting, o->setting, sizeof o->setting);
+    setting[o->settings] = (struct run_setting){"passivity", 0};
+    c.setting = setting;
+    c.settings = o->settings + 1;
+    return table2_measure(&c, NULL, 0);
+}
+
+static void report_guard(const struct drop_options *o, const struct table2_result *r)
+{
+    struct guard_row row[RATES_MAX];
+    int rows = 0;
+    for (int i = 0; i < o->rates; i++) {
+        const struct table2_result off = observed(o, i);
+        if (!r[i].done || !off.done) { continue; }
+        row[rows++] = (struct guard_row){r[i].rate_Hz, r[i].k_Npm, r[i].b_Nspm, r[i].guard, off.guard,
+                                         r[i].b_Npm, off.b_Npm, r[i].falls, r[i].oscillating,
+                                         off.oscillating};
+    }
+    guard_print(stdout, row, rows);
+}
+
 static int experiment(const struct drop_options *o)
 {
     const int further = 2 * o->rates * (int)o->spread, n = o->rates + further;
@@ -298,6 +326,7 @@ static int experiment(const struct drop_options *o)
     }
     ran = jobs_run(&jobs);
     err = check(o, r, n) | report(o, r);
+    if (ran == 0 && o->guarded) { report_guard(o, r); }
     if (ran == 0 && o->readings) { err |= report_readings(o, r); }
     if (ran == JOBS_INTERRUPTED) {
         cli_complain("interrupted: %d of %d rates and %d of %d further runs were finished%s%s",
@@ -399,6 +428,7 @@ int cli_drop(int argc, char **argv)
         {"shard", CLI_TEXT, &o.shard, 0, 0, "I/N", "the I-th of N parts of the sweep, in a file of its own"},
         {"border-check", CLI_FLAG, &o.check, 0, 0, NULL, "the simulated border beside that of the linear test"},
         {"friction", CLI_INT, &o.friction, 2, FRICTION_POINTS_MAX, "N", "the border against N amounts of friction, 0..2 times"},
+        {"guarded", CLI_FLAG, &o.guarded, 0, 0, NULL, "the scene with passivity, and what that takes away"},
         {"readings", CLI_FLAG, &o.readings, 0, 0, NULL, "the stiffness by every reading of the paper's analysis"},
         {"params", CLI_FLAG, &list, 0, 0, NULL, "list both, with units and ranges"},
     };
@@ -423,7 +453,7 @@ int cli_drop(int argc, char **argv)
     err = cli_parse(&c, argc, argv, NULL);
     if (err) { return err == 1 ? 0 : err; }
     if (list) {
-        print_params();
+        print_params(o.guarded ? &exh_scene_guarded : &exh_scene_drop);
         return 0;
     }
     err = refuse(&o);

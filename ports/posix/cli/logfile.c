@@ -5,6 +5,7 @@
 #include "bilateral/bilateral.h"
 #include "drop/drop.h"
 #include "glove/glove.h"
+#include "guarded/guarded.h"
 
 #include "exhand/error.h"
 #include "exhand/exhand.h"
@@ -14,7 +15,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const struct exh_scene *const scenes[] = {&exh_scene_drop, &exh_scene_glove, &exh_scene_bilateral};
+static const struct exh_scene *const scenes[] = {&exh_scene_drop, &exh_scene_guarded, &exh_scene_glove,
+                                                &exh_scene_bilateral};
 
 static const struct exh_scene *scene_by_name(const char *name)
 {

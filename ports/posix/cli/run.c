@@ -17,6 +17,7 @@
 
 static struct {
     struct run *r;
+    const struct exh_scene *scene;
     const struct exh_loop_hooks *more;
     struct fall_sample *sample;
     size_t *start;
@@ -42,6 +43,7 @@ static void *grow(void *p, size_t *cap, size_t n, size_t size)
 static void start(const struct exh_scene *sc, struct exh_scene_board board)
 {
     run.r->T = board.T;
+    if (sc == &exh_scene_guarded) { guard_start(&run.r->guard, board); }
     dumpfile_start(sc, board);
     if (run.more) { run.more->start(sc, board); }
 }
@@ -83,7 +85,8 @@ static void watch_arming(const struct drop_signals *s)
 static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
 {
     struct drop_signals s;
-    memcpy(&s, exh_scene_drop.signal, sizeof s);
+    memcpy(&s, run.scene->signal, sizeof s);
+    if (run.scene == &exh_scene_guarded) { guard_after(&run.r->guard); }
     dumpfile_after(tick, in, out);
     run.last_tick = tick;
     run.r->ticks++;
@@ -107,6 +110,11 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
     };
 }
 
+static const struct exh_scene *scene_of(const struct run_cfg *c)
+{
+    return c->scene ? c->scene : &exh_scene_drop;
+}
+
 static int set_parameters(const struct run_cfg *c)
 {
     const struct sim_device *d = &c->board.device;
@@ -116,9 +124,9 @@ static int set_parameters(const struct run_cfg *c)
         {"mon_scale", d->mon_apc},       {"q_lim", d->height_m},
         {"k", c->k_Npm},                 {"b", c->b_Nspm},
     };
-    struct exh_params *p = exh_scene_drop.params;
+    struct exh_params *p = scene_of(c)->params;
     int err = 0;
-    exh_scene_drop.defaults();
+    scene_of(c)->defaults();
     for (size_t i = 0; err == 0 && i < sizeof calibrated / sizeof calibrated[0]; i++) {
         err = cli_param_set(p, calibrated[i].name, calibrated[i].value);
     }
@@ -133,8 +141,8 @@ int run_check(const struct run_cfg *c)
     const struct exh_period T = c->board.T.num ? c->board.T : (struct exh_period){1, c->rate_Hz};
     int err = set_parameters(c);
     if (err < 0) { return err; }
-    exh_params_apply(exh_scene_drop.params);
-    err = exh_scene_drop.setup((struct exh_scene_board){T, exh_board_info.enc_bits});
+    exh_params_apply(scene_of(c)->params);
+    err = scene_of(c)->setup((struct exh_scene_board){T, exh_board_info.enc_bits});
     if (err < 0) { cli_complain("these parameters together: %s", exh_error_text(err)); }
     return err;
 }
@@ -148,6 +156,7 @@ int run_drop(const struct run_cfg *c, struct run *r)
     memset(r, 0, sizeof *r);
     memset(&run, 0, sizeof run);
     run.r = r;
+    run.scene = scene_of(c);
     run.more = c->more;
     run.logged = c->board.log != NULL;
     run.mon_gain = c->mon_gain != 0 ? c->mon_gain : 1;
@@ -157,7 +166,7 @@ int run_drop(const struct run_cfg *c, struct run *r)
         board.wait = 1;
         posix_configure(&board);
         if (dumpfile_open(c->blackbox, run.logged, c->blackbox_B)) { return -EXH_E_SHORT; }
-        err = exh_loop(&exh_scene_drop, c->rate_Hz, &hooks);
+        err = exh_loop(run.scene, c->rate_Hz, &hooks);
         r->dumps = dumpfile_close(err < 0);
         if (err == 0 && r->refused) {
             err = -EXH_E_STATE; /* that was told */

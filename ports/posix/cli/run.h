@@ -3,6 +3,7 @@
 #define CLI_RUN_H
 
 #include "analysis.h"
+#include "guard.h"
 #include "posix.h"
 
 #include "loop.h"
@@ -15,6 +16,7 @@ struct run_setting { /* a parameter of the scene, by name, in SI */
 };
 
 struct run_cfg {
+    const struct exh_scene *scene; /* drop, or one that begins with its parameters and signals; NULL: drop */
     uint32_t rate_Hz;
     double k_Npm, b_Nspm;
     const struct run_setting *setting; /* further parameters                   */
@@ -33,6 +35,7 @@ struct run {
     uint32_t lost;       /* log records lost                                   */
     uint32_t faults;     /* enum exh_fault                                     */
     uint32_t refused;    /* enum exh_arm: the step at which arming was; no fall then */
+    struct guard guard;  /* of scene guarded                                    */
     int dumps;           /* of the black box; -1: one could not be written      */
 };
 

@@ -154,6 +154,7 @@ struct table2_result table2_measure(const struct run_cfg *c, const char *plot_pr
         if (readings) { judge_readings(&run, &c->board.device, &r); }
         r.faults = run.faults;
         r.lost = run.lost;
+        r.guard = run.guard;
     }
     run_free(&run);
     return r;

@@ -32,6 +32,7 @@ struct table2_result {
     int falls, oscillating, buzzing, incomplete;
     unsigned faults;
     unsigned long lost;
+    struct guard guard; /* of scene guarded                                     */
 };
 
 #define TABLE2_PATH_B 1024 /* a path with its zero                              */

@@ -1,8 +1,9 @@
-"""The scene drop: one tick from an encoder's counter to a D/A code."""
+"""The scenes drop and guarded: one tick from an encoder's counter to a D/A code."""
 
 from .contact import Contact
 from .drive import Drive, Table, any_par
 from .num import AGAIN, M32, TICKS, Rng, period, sat32, shr, wave
+from .passivity import Passivity
 from .quad import narrowest, position
 from .safety import ENCODER, FAULT, HEALTHY, TRACKING, Safety, any_safety
 from .track import Monitor, Track, any_par as any_track
@@ -29,23 +30,50 @@ class Drop:
         permit = self.safety.step(din, raised | fast, missed, command, 1,
                                   7 if self.quad.lost else 15)
         c, spring, damper, pull = self.contact.tick(self.law, q, v, self.lim)
-        told, _, _, _, force = self.drive.take(permit, spring + damper + pull)
+        bit, term = self.behind(cnt, c, spring + damper)
+        told, _, _, _, force = self.drive.take(permit, spring + damper + pull + term)
         more, i0, peak, i2t = self.drive.current()
         ((limits, _, _, coded, code),), enable = self.safety.gate(
-            [self.drive_par], [i0 + peak + i2t], [limits | told | more])
+            [self.drive_par], [i0 + peak + i2t], [limits | bit | told | more])
         self.track.coded(coded)
         self.watch.coded(cnt, coded)
         self.last = coded
+        more = self.after(force, pull, coded, term)
         return (q, v, force, coded, c, f_mon, limits, self.safety.state_,
-                self.safety.faults, self.safety.present, self.safety.arm_step(), code, enable, self.safety.alive)
+                self.safety.faults, self.safety.present, self.safety.arm_step(), *more, code, enable, self.safety.alive)
+
+    def behind(self, cnt, c, asked):
+        """(bit, term) of what acts behind the law."""
+        return 0, 0
+
+    def after(self, force, pull, coded, term):
+        """Further signals."""
+        return ()
 
     def state(self):
         return (self.quad.state() + self.velocity.state() + self.contact.state() + self.drive.state() +
                 self.track.state() + self.watch.state() + self.safety.state())
 
 
-def drop(rate):
-    rng, monitor = Rng("drop", rate, 0), Monitor()
+class Guarded(Drop):
+    def guard(self, on, T):
+        top, peak = self.drive.to_cur.knots[-1]
+        self.on = on
+        self.passivity = Passivity(top, Table([(0, 0), (peak, top)]), self.step, T, self.watch.most)
+
+    def behind(self, cnt, c, asked):
+        return self.passivity.tick(self.on, self.drive_par[0], cnt, c, asked)
+
+    def after(self, force, pull, coded, term):
+        self.passivity.hold(self.on, force, pull, coded)
+        return self.passivity.joule(), sat32(term)
+
+    def state(self):
+        return super().state() + self.passivity.state()
+
+
+def drop(rate, name="drop", kind=Drop):
+    rng, monitor = Rng(name, rate, 0), Monitor()
     for k in range(TICKS):
         if k in (0, AGAIN):
             step, speed, p = scale(rng), rng.draw(13421773, (1 << 31) - 1), rng.draw(0, 4)
@@ -55,9 +83,13 @@ def drop(rate):
             drive, track = any_par(rng, rate), any_track(rng, rate)
             watch, safety = any_watch(rng, rate), any_safety(rng, rate)
             lim, kf = rng.draw(-(1 << 26), 1 << 26), rng.draw(104858, 104857600)
-            s = Drop(step, speed, p, law, drive, track, watch, safety, lim, kf, period(rate, k))
-            jump = s.quad.jump
-            moves = wave("drop", rate, 1 + (k > 0), -jump, jump, max(1, jump >> 10))
+            if kind is Guarded:  # quiet enough to run, and to and fro through the wall
+                drive, lim = drive[:2] + (10000000,) + drive[3:], lim >> 8
+            s = kind(step, speed, p, law, drive, track, watch, safety, lim, kf, period(rate, k))
+            if kind is Guarded:
+                s.guard(rng.draw(0, 2), period(rate, k))
+            jump = s.quad.jump if kind is Drop else s.passivity.way
+            moves = wave(name, rate, 1 + (k > 0), -jump, jump, max(1, jump >> 10))
             raw, din = rng.u64() & M32, HEALTHY
         if k < 8 or k >= 56:  # to both rails no longer than a hand would
             raw += moves[k]
@@ -65,7 +97,7 @@ def drop(rate):
             raw += moves[k] >> 3
         if 180 <= k < AGAIN:
             raw += rng.draw(-2 * jump, 2 * jump)
-        if rng.draw(0, 47) == 0:
+        if rng.draw(0, 47 if kind is Drop else 191) == 0:
             din ^= 1 << rng.draw(0, 8)
         elif rng.draw(0, 3) == 0:
             din = HEALTHY
@@ -73,7 +105,7 @@ def drop(rate):
             din ^= 2
         missed = 1 if rng.draw(0, 127) == 0 else 0
         command = 1 if k % 8 == 2 else 3 if k % 8 == 5 else 0
-        if rng.draw(0, 63) == 0:
+        if rng.draw(0, 63 if kind is Drop else 255) == 0:
             command = 2
         mon = monitor.draw(rng, drive, s.last)
         yield (raw & M32, mon, din, missed, command, *s.tick(raw & M32, mon, din, missed, command)), s.state()
@@ -82,4 +114,11 @@ def drop(rate):
 COLUMNS = ("raw mon_raw din missed command | q_m_q30 qd_mps_q27 f_des_N_q20 i_des_A_q26 c f_mon_N_q20 "
            "limits state faults present arm_step dac_raw enable alive")
 
-MODULES = {"drop": (COLUMNS, drop)}
+
+
+def guarded(rate):
+    return drop(rate, "guarded", Guarded)
+
+
+MODULES = {"drop": (COLUMNS, drop),
+           "guarded": (COLUMNS.replace("arm_step", "arm_step energy_J_q24 passivity_N_q20"), guarded)}

@@ -1,0 +1,94 @@
+#include "guarded.h"
+
+static const struct exh_signal rows[] = {
+    {0x8201, 24, EXH_WHEN_OUTPUT, INT32_MIN, INT32_MAX, 0, "energy", "j",
+     "taken up by the present contact, as coded"},
+    {0x8202, EXH_Q_FORCE, EXH_WHEN_OUTPUT, INT32_MIN, 0, 0, "f_pas", "n",
+     "what passivity takes from the law's force"},
+};
+
+static const struct exh_signal_group param_groups[] = {DROP_PARAM_GROUPS,
+                                                       {exh_passivity_rows, EXH_PASSIVITY_ROWS, 1}};
+static const struct exh_signal_table param_table = {param_groups, DROP_PARAM_N + 1};
+
+static const struct exh_signal_group signal_groups[] = {DROP_SIGNAL_GROUPS, {rows, 2, 1}};
+static const struct exh_signal_table signal_table = {signal_groups, DROP_SIGNAL_N + 1};
+
+EXH_STATIC_ASSERT(guarded_par_matches_rows,
+                  sizeof(struct guarded_par) ==
+                      sizeof(struct drop_par) + EXH_PASSIVITY_ROWS * sizeof(int32_t));
+
+int guarded_setup(struct guarded_cfg *cfg, const struct guarded_par *par,
+                  struct exh_scene_board board)
+{
+    const struct exh_velocity_scale scale = {par->drop.quad.step_m_q42, board.T};
+    const struct exh_table held = {cfg->held, 2};
+    int err = drop_setup(&cfg->drop, &par->drop, board);
+    if (err == 0) { err = exh_table_invert(cfg->held, cfg->drop.force_to_cur, 2); }
+    if (err == 0) {
+        err = exh_passivity_setup(&cfg->passivity, &par->passivity, &cfg->drop.drive, held, scale,
+                                  par->drop.watch.speed_mps_q27);
+    }
+    return err;
+}
+
+void guarded_tick(struct guarded *s, const struct guarded_cfg *cfg, const struct exh_scene_in *in,
+                  struct exh_drive_out *out, struct guarded_signals *sig)
+{
+    struct drop_now now;
+    drop_law(&s->drop, &cfg->drop, in, &now, &sig->drop);
+    now.limits |= exh_passivity_step(&s->passivity, &cfg->passivity, now.cnt, sig->drop.c, &now.f);
+    drop_out(&s->drop, &cfg->drop, &now, out, &sig->drop);
+    exh_passivity_held(&s->passivity, &cfg->passivity, &now.f, now.i.coded_A_q26);
+    sig->energy_J_q24 = exh_passivity_J_q24(&s->passivity, &cfg->passivity);
+    sig->passivity_N_q20 = exh_sat32(now.f.passivity_N_q20);
+}
+
+void guarded_bytes(struct exh_bytes *c, struct guarded *s)
+{
+    drop_bytes(c, &s->drop);
+    exh_passivity_bytes(c, &s->passivity);
+}
+
+/* --- the one instance of this image --- */
+
+static struct guarded_par active, staged;
+static struct exh_params params;
+static struct guarded_signals signals;
+static struct guarded_cfg cfg;
+static struct guarded state;
+
+static void defaults(void)
+{
+    exh_params_init(&params, &param_table, (int32_t *)&active, (int32_t *)&staged);
+}
+
+static int setup(struct exh_scene_board board)
+{
+    static const struct guarded power_on;
+    state = power_on;
+    return guarded_setup(&cfg, &active, board);
+}
+
+static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
+{
+    guarded_tick(&state, &cfg, in, out, &signals);
+}
+
+static void state_bytes(struct exh_bytes *c)
+{
+    guarded_bytes(c, &state);
+}
+
+const struct exh_scene exh_scene_guarded = {
+    .name = "guarded",
+    .rate_Hz = 2000,
+    .fingers = 1,
+    .params = &params,
+    .signals = &signal_table,
+    .signal = (int32_t *)&signals,
+    .defaults = defaults,
+    .setup = setup,
+    .tick = tick,
+    .state = state_bytes,
+};

@@ -1,0 +1,43 @@
+/* The drop scene, guarded: passivity between law and limits. */
+#ifndef EXAMPLES_GUARDED_H
+#define EXAMPLES_GUARDED_H
+
+#include "../drop/drop.h"
+
+/* Drop's parameters first, then what is added: so names and places of drop's stay. */
+struct guarded_par {
+    struct drop_par drop;
+    struct exh_passivity_par passivity;
+};
+
+struct guarded_signals {
+    struct drop_signals drop;
+    int32_t energy_J_q24; /* taken up by the present contact               */
+    int32_t passivity_N_q20; /* the ledger's term: taken away, <= 0           */
+};
+
+struct guarded_cfg {
+    struct drop_cfg drop;
+    struct exh_knot held[2];
+    struct exh_passivity_cfg passivity;
+};
+
+struct guarded {
+    struct drop drop;
+    struct exh_passivity passivity;
+};
+
+/* Configuration from parameters. 0 or -EXH_E…. */
+int guarded_setup(struct guarded_cfg *cfg, const struct guarded_par *par,
+                  struct exh_scene_board board);
+
+/* One tick. */
+void guarded_tick(struct guarded *s, const struct guarded_cfg *cfg, const struct exh_scene_in *in,
+                  struct exh_drive_out *out, struct guarded_signals *sig);
+
+/* State through a cursor. */
+void guarded_bytes(struct exh_bytes *c, struct guarded *s);
+
+extern const struct exh_scene exh_scene_guarded;
+
+#endif

@@ -1,0 +1,101 @@
+/* Scene guarded in closed loop with the simulated device: what no contact may give out, at gains far
+ * beyond the stable border; what is taken away at gains that are stable; its log replays. */
+#include "logs.h"
+
+#include "cli/table2.h"
+#include "posix.h"
+
+#include "guarded/guarded.h"
+
+#define LEN(a) (sizeof(a) / sizeof((a)[0]))
+/* The way of a tick is rounded up, by 2 of 23 counts at most, and half a code may be held above f_max. */
+#define ROUND 1.09
+
+static struct table2_result run(double rate_Hz, double k, double b, double on, FILE *log)
+{
+    const struct run_setting setting = {"passivity", on};
+    struct run_cfg c;
+    memset(&c, 0, sizeof c);
+    c.scene = &exh_scene_guarded;
+    c.rate_Hz = (uint32_t)rate_Hz;
+    c.k_Npm = k;
+    c.b_Nspm = b;
+    c.setting = &setting;
+    c.settings = 1;
+    c.board = posix_config_default();
+    c.board.device = sim_device_default();
+    c.board.device.observe_s = 2;
+    c.board.falls = 4;
+    c.board.log = log;
+    return table2_measure(&c, NULL, 0);
+}
+
+/* Up to 16 times the paper's gains, at each of its rates. Without the controller the bound is
+ * passed: the test can fail. */
+TEST(no_contact_gives_out_more_than_the_bound)
+{
+    static const double scale[][2] = {{1.5, 1.5}, {2, 1}, {4, 1}, {4, 0.25}, {16, 16}};
+    int runs = 0, beyond = 0;
+    for (int i = 0; i < TABLE2_ROWS; i++) {
+        const struct table2_row *p = &table2_paper[i];
+        for (size_t s = 0; s < LEN(scale); s++) {
+            const double k = scale[s][0] * p->k_Npm, b = scale[s][1] * p->b_Nspm;
+            const struct guard off = run(p->rate_Hz, k, b, 0, NULL).guard;
+            runs++;
+            beyond += off.out_J > ROUND * off.bound_J;
+            for (int on = 1; on <= 2; on++) {
+                const struct table2_result r = run(p->rate_Hz, k, b, on, NULL);
+                CHECK(r.done && r.guard.ticks > 0 && r.guard.out_J <= ROUND * r.guard.bound_J,
+                      "%g Hz, k %g, b %g, on %d: %g of %g mJ", p->rate_Hz, k, b, on,
+                      1e3 * r.guard.out_J, 1e3 * r.guard.bound_J);
+            }
+        }
+    }
+    CHECK(beyond >= 2, "%d", beyond);
+    check_note("without the controller %d of %d runs pass the bound, with it none", beyond, runs);
+}
+
+TEST(stable_gains_lose_nothing)
+{
+    for (int i = 0; i < TABLE2_ROWS; i++) {
+        const struct table2_row *p = &table2_paper[i];
+        const struct table2_result in_time = run(p->rate_Hz, p->k_Npm, p->b_Nspm, 1, NULL);
+        const struct table2_result off = run(p->rate_Hz, p->k_Npm, p->b_Nspm, 0, NULL);
+        const struct table2_result late = run(p->rate_Hz, p->k_Npm, p->b_Nspm, 2, NULL);
+        CHECK(in_time.done && in_time.guard.force_Ns > 0.1 && in_time.guard.acted == 0 &&
+                  in_time.b_Npm == off.b_Npm && in_time.oscillating == off.oscillating,
+              "%g Hz", p->rate_Hz);
+        CHECK(late.guard.taken_Ns < 1e-3 * late.guard.force_Ns &&
+                  late.oscillating == off.oscillating,
+              "%g Hz: %g of %g Ns", p->rate_Hz, late.guard.taken_Ns, late.guard.force_Ns);
+    }
+}
+
+/* A cell beyond the border comes to rest. */
+TEST(it_damps_what_oscillates)
+{
+    static const struct table2_row cell[] = {{2000, 30000, 90, 0}, {2000, 40000, 60, 0}};
+    for (size_t i = 0; i < LEN(cell); i++) {
+        const struct table2_result off =
+            run(cell[i].rate_Hz, cell[i].k_Npm, cell[i].b_Nspm, 0, NULL);
+        const struct table2_result on =
+            run(cell[i].rate_Hz, cell[i].k_Npm, cell[i].b_Nspm, 2, NULL);
+        CHECK(off.oscillating >= 3 && on.oscillating <= 1, "%zu: %d, with it %d of %d", i,
+              off.oscillating, on.oscillating, on.falls);
+    }
+}
+
+TEST(its_log_replays)
+{
+    const char *path = log_path();
+    FILE *log = fopen(path, "wb");
+    CHECK(log != NULL, "%s", path);
+    CHECK_EQ_I64(run(2000, 30000, 90, 2, log).done, 1);
+    CHECK_EQ_I64(fclose(log), 0);
+    CHECK_EQ_I64(replay(path, NULL), 0);
+    CHECK_EQ_I64(replay(path, "3000"), 0);
+    CHECK_EQ_I64(remove(path), 0);
+}
+
+TEST_MAIN("guarded", no_contact_gives_out_more_than_the_bound, stable_gains_lose_nothing,
+          it_damps_what_oscillates, its_log_replays);
