@@ -80,9 +80,11 @@ static void check_found(const struct calibration_cfg *c, double kf_share)
     for (int i = 0; i < c->masses; i++) { /* each point: within a step of its place */
         const double at_A = c->mass_kg[i] * SIM_GRAVITY / want;
         CHECK(size_of(si(r->point[i].cur_A_q26, EXH_Q_CUR) - at_A) < 1.2 * step_A,
-              "%g kg: %.4f A, want %.4f", c->mass_kg[i], si(r->point[i].cur_A_q26, EXH_Q_CUR), at_A);
+              "%g kg: %.4f A, want %.4f", c->mass_kg[i], si(r->point[i].cur_A_q26, EXH_Q_CUR),
+              at_A);
     }
-    CHECK(si(r->c.f0_A_q26, EXH_Q_CUR) > f0_A - step_A && si(r->c.f0_A_q26, EXH_Q_CUR) < f0_A + 2.5 * step_A,
+    CHECK(si(r->c.f0_A_q26, EXH_Q_CUR) > f0_A - step_A &&
+              si(r->c.f0_A_q26, EXH_Q_CUR) < f0_A + 2.5 * step_A,
           "F0 %.4f A, want %.4f", si(r->c.f0_A_q26, EXH_Q_CUR), f0_A);
     CHECK(size_of(r->home_m + 0.15) < 1.5 * d->step_m / d->decode, "home %.6f m", r->home_m);
     CHECK(r->most_A < 3.3003, "%.4f A", r->most_A);
@@ -111,9 +113,9 @@ TEST(other_devices)
     static const struct {
         const char *name;
         double value;
-    } row[] = {{"kf", 2.8}, {"kf", 6}, {"mu_motor", 0}, {"mu_mass", 0}, {"mu_mass", 0.15},
-               {"coulomb", 0.2}, {"decode", 4}, {"cable_k", 20000}, {"rotor", 0.2},
-               {"delay_tick", 2}, {"enc_start", 16777000}, {"mon_scale", 1e-4}};
+    } row[] = {{"kf", 2.8},       {"kf", 6},         {"mu_motor", 0},         {"mu_mass", 0},
+               {"mu_mass", 0.15}, {"coulomb", 0.2},  {"decode", 4},           {"cable_k", 20000},
+               {"rotor", 0.2},    {"delay_tick", 2}, {"enc_start", 16777000}, {"mon_scale", 1e-4}};
     for (size_t i = 0; i < LEN(row); i++) {
         const struct sim_device_row *r;
         struct calibration_cfg c = config(i + 1);
@@ -172,7 +174,8 @@ TEST(whatever_is_wrong_stops_at_its_step)
         {BENCH_NO_MASS, CALIBRATE_MASS, EXH_PROBE_TRAVEL, 0.06, 2, 0.0302},
         {BENCH_FIXED_MASS, CALIBRATE_MASS, EXH_PROBE_STILL, 0.491, 10, 0.001},
         {BENCH_PULLED, CALIBRATE_ZERO, EXH_PROBE_TRAVEL, 0, 0.1, 0.0005},
-        {BENCH_MOTOR_REVERSED | BENCH_ENCODER_REVERSED, CALIBRATE_HOME, EXH_PROBE_TRAVEL, 0.101, 6, 0.31},
+        {BENCH_MOTOR_REVERSED | BENCH_ENCODER_REVERSED, CALIBRATE_HOME, EXH_PROBE_TRAVEL, 0.101, 6,
+         0.31},
     };
     for (size_t i = 0; i < LEN(row); i++) {
         for (uint64_t seed = 1; seed <= 4; seed++) {
@@ -203,7 +206,8 @@ TEST(reversed_is_seen_at_the_least_current)
         r = calibrate(&c);
         CHECK(r->step == CALIBRATE_POLARITY && r->result == EXH_PROBE_WRONG_WAY, "%s",
               calibrate_result_text(r->result));
-        CHECK(r->last_most_A < coulomb_N[i] / c.board.device.kf_npa + 0.011, "%.4f A", r->last_most_A);
+        CHECK(r->last_most_A < coulomb_N[i] / c.board.device.kf_npa + 0.011, "%.4f A",
+              r->last_most_A);
         CHECK(r->most_A == r->last_most_A, "current before: %.4f A", r->most_A);
     }
 }
@@ -224,7 +228,8 @@ TEST(nobody_after_a_finished_step_is_no_calibration)
         r = calibrate(&c);
         CHECK(r->step == row[i].step && r->result == CALIBRATE_NOBODY, "row %zu: %s: %s", i,
               calibrate_step_text(r->step), calibrate_result_text(r->result));
-        CHECK(r->c.points == (i ? 2 : 0) && r->last_most_A == 0, "row %zu: %d points", i, r->c.points);
+        CHECK(r->c.points == (i ? 2 : 0) && r->last_most_A == 0, "row %zu: %d points", i,
+              r->c.points);
         CHECK(size_of(r->last_s - row[i].wait_ms / 1000) < 0.002, "row %zu: %.4f s", i, r->last_s);
     }
 }
@@ -244,8 +249,8 @@ TEST(ended_before_its_end_is_no_calibration)
             last = n;
             continue;
         }
-        CHECK(err == -EXH_E_STATE && out.result == EXH_PROBE_BUSY, "after %" PRIu32 " ticks: %d: %s",
-              n, err, calibrate_result_text(out.result));
+        CHECK(err == -EXH_E_STATE && out.result == EXH_PROBE_BUSY,
+              "after %" PRIu32 " ticks: %d: %s", n, err, calibrate_result_text(out.result));
     }
     CHECK(last > 5000 && out.result == EXH_PROBE_DONE && out.c.points == c.masses,
           "after %" PRIu32 " ticks", last);
@@ -334,12 +339,28 @@ static void under_way(struct rig *r)
     CHECK(r->sig.step == CALIBRATE_POLARITY && r->out.dac_raw[0] > 32768, "not under way");
 }
 
+/* From power-on: armed, until it runs. */
+static void run_up(struct rig *r)
+{
+    calibrate_start(&r->s, &r->cfg);
+    memset(&r->sig, 0, sizeof r->sig);
+    for (int n = 0; n < 2000 && r->sig.state != EXH_STATE_RUN; n++) {
+        r->in.command = n == 0 ? EXH_CMD_RUN : EXH_CMD_NONE;
+        calibrate_tick(&r->s, &r->cfg, &r->in, &r->out, &r->sig);
+        CHECK(r->out.dac_raw[0] == 32768, "tick %d: current", n);
+    }
+    CHECK(r->sig.state == EXH_STATE_RUN && r->sig.waits, "it does not run");
+}
+
+/* A cause that cuts: no current in its tick; any other: gone by the release law, 30 ticks. */
 TEST(a_fault_ends_it_in_its_tick_for_good)
 {
     static const struct {
         uint32_t din_off, missed, jump;
         uint32_t fault;
     } row[] = {{EXH_DIN_ESTOP, 0, 0, EXH_FAULT_ESTOP},
+               {EXH_DIN_CARDS, 0, 0, EXH_FAULT_CARD},
+               {EXH_DIN_WATCHDOG, 0, 0, EXH_FAULT_WATCHDOG},
                {EXH_DIN_DEADMAN, 0, 0, EXH_FAULT_DEADMAN},
                {EXH_DIN_DRIVE0, 0, 0, EXH_FAULT_DRIVE},
                {0, 10, 0, EXH_FAULT_OVERRUN},
@@ -351,15 +372,21 @@ TEST(a_fault_ends_it_in_its_tick_for_good)
         r.in.missed = row[i].missed;
         r.in.drive.enc_raw[0] += row[i].jump;
         calibrate_tick(&r.s, &r.cfg, &r.in, &r.out, &r.sig);
-        CHECK(r.out.dac_raw[0] == 32768 && r.out.enable == 0, "row %zu: current in its tick", i);
+        CHECK((r.out.dac_raw[0] == 32768 && r.out.enable == 0) ==
+                  ((row[i].fault & EXH_FAULT_CUT) != 0),
+              "row %zu: code %u in its tick", i, r.out.dac_raw[0]);
         CHECK(r.sig.result == CALIBRATE_OFF && r.sig.step == CALIBRATE_POLARITY, "row %zu", i);
         CHECK_EQ_I64(r.sig.faults, row[i].fault);
         r.in.drive.din |= row[i].din_off;
         r.in.missed = 0;
         for (int n = 0; n < 10000; n++) { /* cleared and in RUN again: nothing goes on */
-            r.in.command = (uint8_t)(n == 3000 ? EXH_CMD_CLEAR : n == 3002 ? EXH_CMD_RUN : EXH_CMD_NONE);
+            r.in.command = (uint8_t)(n == 3000   ? EXH_CMD_CLEAR
+                                     : n == 3002 ? EXH_CMD_RUN
+                                                 : EXH_CMD_NONE);
+            if (n == 2000) { r.in.drive.din &= ~(uint32_t)EXH_DIN_DEADMAN; }
+            if (n == 2100) { r.in.drive.din |= EXH_DIN_DEADMAN; }
             calibrate_tick(&r.s, &r.cfg, &r.in, &r.out, &r.sig);
-            CHECK(r.out.dac_raw[0] == 32768, "row %zu, tick %d: current", i, n);
+            CHECK(n < 30 || r.out.dac_raw[0] == 32768, "row %zu, tick %d: current", i, n);
         }
         /* a position once lost is a cause for good */
         CHECK(r.sig.state == (row[i].jump ? EXH_STATE_FAULT : EXH_STATE_RUN) &&
@@ -376,10 +403,11 @@ TEST(nothing_begins_outside_run)
     r.par.own.go = 0;
     calibrate_start(&r.s, &r.cfg);
     r.par.own.go = 1;
-    for (int n = 0; n < 3000; n++) {
+    for (int n = 0; n < 4000; n++) {
         r.in.command = n == 2000 ? EXH_CMD_RUN : EXH_CMD_NONE;
         calibrate_tick(&r.s, &r.cfg, &r.in, &r.out, &r.sig);
-        CHECK(r.sig.result == 0 && (n >= 2000) == !r.sig.waits, "tick %d", n);
+        CHECK(r.sig.result == 0 && (r.sig.state == EXH_STATE_RUN) == !r.sig.waits, "tick %d", n);
+        CHECK((n >= 3110) <= !r.sig.waits && (n < 3100) <= r.sig.waits, "tick %d", n);
         CHECK(r.out.dac_raw[0] == 32768, "tick %d: current", n);
     }
 }
@@ -395,10 +423,8 @@ TEST(each_step_needs_a_word_of_its_own)
         struct rig r;
         under_way(&r);
         r.par.own.go = row[i].at_setup;
-        calibrate_start(&r.s, &r.cfg);
-        memset(&r.sig, 0, sizeof r.sig);
+        run_up(&r);
         for (int n = 0; n < 3000; n++) { /* zero takes half a second */
-            r.in.command = n == 0 ? EXH_CMD_RUN : EXH_CMD_NONE;
             if (n == 100) { r.par.own.go = row[i].then; }
             if (n == 500 && row[i].begins) { r.par.own.go = 2; } /* in it: too early */
             calibrate_tick(&r.s, &r.cfg, &r.in, &r.out, &r.sig);
@@ -419,12 +445,8 @@ TEST(leaving_run_ends_a_wait_at_once)
     for (int i = 0; i < 2; i++) {
         struct rig r;
         under_way(&r);
-        calibrate_start(&r.s, &r.cfg);
-        memset(&r.sig, 0, sizeof r.sig);
-        for (int n = 0; n < 100; n++) {
-            r.in.command = n == 0 ? EXH_CMD_RUN : EXH_CMD_NONE;
-            calibrate_tick(&r.s, &r.cfg, &r.in, &r.out, &r.sig);
-        }
+        run_up(&r);
+        for (int n = 0; n < 100; n++) { calibrate_tick(&r.s, &r.cfg, &r.in, &r.out, &r.sig); }
         CHECK(r.sig.waits && r.sig.state == EXH_STATE_RUN, "it does not wait");
         if (i == 0) { r.in.drive.din &= ~(uint32_t)EXH_DIN_ESTOP; }
         if (i == 1) { r.in.command = EXH_CMD_OFF; }
@@ -445,12 +467,15 @@ TEST(an_acting_limit_ends_it)
     r = calibrate(&c);
     CHECK(r->step == CALIBRATE_MASS && r->result == CALIBRATE_LIMITED, "%s: %s",
           calibrate_step_text(r->step), calibrate_result_text(r->result));
-    CHECK(r->most_A < 0.2003 && r->limits == EXH_LIMIT_PEAK, "%.4f A, limits %x", r->most_A, r->limits);
+    CHECK(r->most_A < 0.2003 && r->limits == EXH_LIMIT_PEAK, "%.4f A, limits %x", r->most_A,
+          r->limits);
     c.setting = force;
     c.settings = LEN(force);
     r = calibrate(&c);
-    CHECK(r->step == CALIBRATE_MASS && r->result == CALIBRATE_LIMITED && r->limits == EXH_LIMIT_FORCE,
-          "%s: %s, limits %x", calibrate_step_text(r->step), calibrate_result_text(r->result), r->limits);
+    CHECK(r->step == CALIBRATE_MASS && r->result == CALIBRATE_LIMITED &&
+              r->limits == EXH_LIMIT_FORCE,
+          "%s: %s, limits %x", calibrate_step_text(r->step), calibrate_result_text(r->result),
+          r->limits);
     CHECK(r->most_A < 0.2003, "%.4f A", r->most_A);
 }
 
@@ -463,11 +488,12 @@ TEST(why_it_ended_is_named)
     } row[] = {{CALIBRATE_OFF, EXH_FAULT_ESTOP | EXH_FAULT_DEADMAN, 0,
                 "the box left RUN (emergency stop, dead-man released)"},
                {CALIBRATE_OFF, 0, 0, "the box left RUN (by command)"},
-               {CALIBRATE_LIMITED, 0, EXH_LIMIT_DAC | EXH_LIMIT_SLEW, "a limit of the drive acts (D/A span)"},
+               {CALIBRATE_LIMITED, 0, EXH_LIMIT_DAC | EXH_LIMIT_SLEW,
+                "a limit of the drive acts (D/A span)"},
                {EXH_PROBE_STILL, 0, EXH_LIMIT_DAC, "did not move"}};
     for (size_t i = 0; i < LEN(row); i++) {
-        const struct calibration r = {.result = row[i].result, .faults = row[i].faults,
-                                      .limits = row[i].limits};
+        const struct calibration r = {
+            .result = row[i].result, .faults = row[i].faults, .limits = row[i].limits};
         char why[CALIBRATION_WHY_B];
         calibration_why(why, &r);
         CHECK(strcmp(why, row[i].says) == 0, "%s", why);
@@ -481,17 +507,16 @@ TEST(no_movement_while_the_zero_is_measured)
         struct rig r;
         under_way(&r);
         r.par.own.go = 0;
-        calibrate_start(&r.s, &r.cfg);
-        memset(&r.sig, 0, sizeof r.sig);
+        run_up(&r);
         for (int n = 0; n < 900; n++) {
-            r.in.command = n == 0 ? EXH_CMD_RUN : EXH_CMD_NONE;
             r.par.own.go = n >= 100;
             if (n > 200 && n <= 600) { r.in.drive.enc_raw[0] += (uint32_t)way; }
             calibrate_tick(&r.s, &r.cfg, &r.in, &r.out, &r.sig);
         }
         CHECK(r.sig.step == CALIBRATE_ZERO &&
                   r.sig.result == (way ? (int32_t)EXH_PROBE_TRAVEL : (int32_t)EXH_PROBE_BUSY),
-              "%d: step %d: %s", way, (int)r.sig.step, calibrate_result_text((unsigned)r.sig.result));
+              "%d: step %d: %s", way, (int)r.sig.step,
+              calibrate_result_text((unsigned)r.sig.result));
     }
 }
 
@@ -537,13 +562,12 @@ TEST(either_residual_counts)
     said_clean(dir);
 }
 
-TEST_MAIN("sim/calibrate", kf_f0_and_home_are_the_devices, at_any_rate, other_devices, the_monitors_zero_is_found,
-          kf_itself_where_the_mass_has_no_friction, same_seed_same_image,
-          whatever_is_wrong_stops_at_its_step, reversed_is_seen_at_the_least_current,
-          exchanged_masses_are_refused_by_table_and_point, set_up_refuses,
-          a_fault_ends_it_in_its_tick_for_good, nothing_begins_outside_run,
+TEST_MAIN("sim/calibrate", kf_f0_and_home_are_the_devices, at_any_rate, other_devices,
+          the_monitors_zero_is_found, kf_itself_where_the_mass_has_no_friction,
+          same_seed_same_image, whatever_is_wrong_stops_at_its_step,
+          reversed_is_seen_at_the_least_current, exchanged_masses_are_refused_by_table_and_point,
+          set_up_refuses, a_fault_ends_it_in_its_tick_for_good, nothing_begins_outside_run,
           each_step_needs_a_word_of_its_own, leaving_run_ends_a_wait_at_once,
           an_acting_limit_ends_it, why_it_ended_is_named, no_movement_while_the_zero_is_measured,
-          it_does_not_wait_for_ever,
-          nobody_after_a_finished_step_is_no_calibration, ended_before_its_end_is_no_calibration,
-          either_residual_counts);
+          it_does_not_wait_for_ever, nobody_after_a_finished_step_is_no_calibration,
+          ended_before_its_end_is_no_calibration, either_residual_counts);

@@ -2,6 +2,7 @@
  * at its tick, and comes out of the replay bit for bit. */
 #include "logs.h"
 
+#include "cli/arming.h"
 #include "cli/logfile.h"
 #include "posix.h"
 
@@ -20,13 +21,13 @@ static int odd_write(const struct exh_drive_out *out);
 static void odd_safe(void);
 static struct exh_board_info odd_info;
 void late_assert_failed(const char *file, int line);
-#define exh_loop          late_loop
-#define exh_board_wait    late_wait
-#define exh_board_info    odd_info
-#define exh_board_read_drive odd_read
+#define exh_loop              late_loop
+#define exh_board_wait        late_wait
+#define exh_board_info        odd_info
+#define exh_board_read_drive  odd_read
 #define exh_board_write_drive odd_write
-#define exh_board_safe    odd_safe
-#define exh_assert_failed late_assert_failed
+#define exh_board_safe        odd_safe
+#define exh_assert_failed     late_assert_failed
 #include "loop.c"
 #undef exh_loop
 #undef exh_board_wait
@@ -41,6 +42,12 @@ void late_assert_failed(const char *file, int line);
 #define ID_K     0x0401
 #define ID_STEP  0x0201
 #define ID_Q_LIM 0x8001
+#define ID_ARM   0x0603
+#define ID_RAMP  0x0604
+#define AWAY     EXH_Q(70, 1000, EXH_Q_POS)
+/* At 1 kHz, armed in so short a time: commanded at tick n, it runs from n + 4. */
+#define ARMED    4
+#define RELEASED 15 /* ticks of the release law, 15 ms                        */
 
 /* ---- Scripted runs --------------------------------------------------------------- */
 
@@ -156,11 +163,14 @@ static void run_until(const struct act *act, unsigned acts, uint32_t ticks, cons
     script.acts = acts;
     script.safe_at = UINT32_MAX;
     c.max_ticks = ticks;
+    c.wait = 1; /* the mass is held for ever */
     odd_info = exh_board_info;
     c.log = fopen(path, "wb");
     CHECK(c.log != NULL, "%s", path);
     posix_configure(&c);
     exh_scene_drop.defaults();
+    CHECK_EQ_I64(exh_params_stage(exh_scene_drop.params, ID_ARM, 0, 1), 0);
+    CHECK_EQ_I64(exh_params_stage(exh_scene_drop.params, ID_RAMP, 0, 1), 0);
     CHECK_EQ_I64(late_loop(&exh_scene_drop, 1000, &hooks), want);
     CHECK_EQ_I64(exh_log_end(script.ticks), 0);
     CHECK_EQ_I64(fclose(c.log), 0);
@@ -257,8 +267,8 @@ TEST(setup_values_are_refused_while_locked)
     remove(path);
 }
 
-/* missed_max is 1: one missed tick is tolerated, two are a fault, with no current in that
- * very tick and until somebody clears it. */
+/* missed_max is 1: one missed tick is tolerated, two are a fault: the force falls from that very
+ * tick on, those missed being steps of it, and there is none until somebody clears it. */
 TEST(missed_ticks_reach_safety)
 {
     static const struct act act[] = {
@@ -266,12 +276,17 @@ TEST(missed_ticks_reach_safety)
         {10, STAGE, ID_Q_LIM, -EXH_Q(1, 1000, EXH_Q_POS), 0}, /* so that there is force */
         {20, MISS, 0, 1, 0},
         {30, MISS, 0, 2, 0},
-        {40, COMMAND, 0, EXH_CMD_RUN, 0}, /* not from FAULT */
-        {45, MISS, 0, 7, 0},
-        {45, COMMAND, 0, EXH_CMD_CLEAR, 0}, /* not while the cause is there, which is 64 ticks long */
+        {50, COMMAND, 0, EXH_CMD_RUN, 0}, /* not from FAULT */
+        {55, MISS, 0, 7, 0},
+        {55, COMMAND, 0, EXH_CMD_CLEAR,
+         0}, /* not while the cause is there, which is 64 ticks long */
+        {240, COMMAND, 0, EXH_CMD_CLEAR, 0}, /* nor before the dead-man was let go */
+        {250, OPEN, 0, EXH_DIN_DEADMAN, 0},
         {300, COMMAND, 0, EXH_CMD_CLEAR, 0},
+        {305, STAGE, ID_Q_LIM, AWAY, 0},
         {310, COMMAND, 0, EXH_CMD_RUN, 0},
-        {320, COMMAND, 0, EXH_CMD_OFF, 0},
+        {318, STAGE, ID_Q_LIM, -EXH_Q(1, 1000, EXH_Q_POS), 0},
+        {325, COMMAND, 0, EXH_CMD_OFF, 0},
     };
     static const struct exh_event event[] = {
         {EXH_EVENT_COMMAND, 0, 0, EXH_CMD_RUN},
@@ -282,26 +297,39 @@ TEST(missed_ticks_reach_safety)
         {EXH_EVENT_COMMAND, 0, 0, EXH_CMD_CLEAR},
         {EXH_EVENT_MISSED, 0, 0, 7},
         {EXH_EVENT_COMMAND, 0, 0, EXH_CMD_CLEAR},
+        {EXH_EVENT_COMMAND, 0, 0, EXH_CMD_CLEAR},
+        {EXH_EVENT_PARAM, ID_Q_LIM, 0, AWAY},
         {EXH_EVENT_COMMAND, 0, 0, EXH_CMD_RUN},
+        {EXH_EVENT_PARAM, ID_Q_LIM, 0, -EXH_Q(1, 1000, EXH_Q_POS)},
         {EXH_EVENT_COMMAND, 0, 0, EXH_CMD_OFF},
     };
-    static const uint32_t tick[] = {0, 10, 20, 30, 40, 45, 45, 300, 310, 320};
+    static const uint32_t tick[] = {0, 10, 20, 30, 50, 55, 55, 240, 300, 305, 310, 318, 325};
     const char *path = log_path();
-    run_script(act, LEN(act), 340, path);
-    for (uint32_t n = 0; n < 340; n++) {
+    run_script(act, LEN(act), 360, path);
+    for (uint32_t n = 0; n < 360; n++) {
         const struct seen *s = &script.at[n];
-        const int32_t state = n < 30   ? EXH_STATE_RUN
-                              : n < 300 ? EXH_STATE_FAULT
-                              : n < 310 ? EXH_STATE_OFF
-                              : n < 320 ? EXH_STATE_RUN
-                                       : EXH_STATE_OFF;
+        const uint32_t let_go = 30 + RELEASED - 2, off = 325 + RELEASED; /* two were missed */
+        const int32_t state = n < ARMED         ? EXH_STATE_ARM
+                              : n < 30          ? EXH_STATE_RUN
+                              : n < let_go      ? EXH_STATE_RELEASE
+                              : n < 300         ? EXH_STATE_FAULT
+                              : n < 310         ? EXH_STATE_OFF
+                              : n < 310 + ARMED ? EXH_STATE_ARM
+                              : n < 325         ? EXH_STATE_RUN
+                              : n < off         ? EXH_STATE_RELEASE
+                                                : EXH_STATE_OFF;
+        const int32_t faults =
+            n < 30 || n >= 300 ? 0 : EXH_FAULT_OVERRUN | (n >= 250 ? EXH_FAULT_DEADMAN : 0);
+        const int ramp = n == 2 || n == 3 || n == 312 || n == 313;
+        const int open = state == EXH_STATE_RUN || state == EXH_STATE_RELEASE || ramp;
+        const int force = (n >= 10 && n < let_go - 1) || (n >= 318 && n < off - 1);
         CHECK(s->sig.state == state, "tick %lu: state %ld, want %ld", (unsigned long)n,
               (long)s->sig.state, (long)state);
-        CHECK(s->sig.faults == (state == EXH_STATE_FAULT ? EXH_FAULT_OVERRUN : 0),
-              "tick %lu: faults %#lx", (unsigned long)n, (unsigned long)s->sig.faults);
-        CHECK(s->out.enable == (state == EXH_STATE_RUN), "tick %lu: enable %u", (unsigned long)n,
+        CHECK(s->sig.faults == faults, "tick %lu: faults %#lx", (unsigned long)n,
+              (unsigned long)s->sig.faults);
+        CHECK(s->out.enable == open, "tick %lu: enable %u", (unsigned long)n,
               (unsigned)s->out.enable);
-        CHECK((s->out.dac_raw[0] > DAC_ZERO) == (state == EXH_STATE_RUN && n >= 10) &&
+        CHECK((s->out.dac_raw[0] > DAC_ZERO) == force &&
                   (s->out.dac_raw[0] == DAC_ZERO) == (s->sig.i_des_A_q26 == 0),
               "tick %lu: code %u, %ld", (unsigned long)n, (unsigned)s->out.dac_raw[0],
               (long)s->sig.i_des_A_q26);
@@ -312,47 +340,79 @@ TEST(missed_ticks_reach_safety)
     remove(path);
 }
 
-/* Each cause through the whole scene: no current in the very tick it is seen, the cause
- * named, and nothing before somebody clears it. */
+/* A cause through the whole scene: what it does to the force, its name, and that nothing comes
+ * before somebody lets go, holds, clears, and runs outside of the wall. */
+static void cause(struct act what, int32_t fault)
+{
+    const struct act act[] = {
+        {0, COMMAND, 0, EXH_CMD_RUN, 0},
+        {10, STAGE, ID_Q_LIM, -EXH_Q(20, 1000, EXH_Q_POS), 0}, /* so that there is force */
+        what,
+        {48, OPEN, 0, EXH_DIN_DEADMAN, 0},
+        {50, COMMAND, 0, EXH_CMD_CLEAR, 0},
+        {60, COMMAND, 0, EXH_CMD_RUN, 0}, /* in the wall */
+        {62, STAGE, ID_Q_LIM, AWAY, 0},
+        {64, COMMAND, 0, EXH_CMD_RUN, 0},
+        {70, STAGE, ID_Q_LIM, -EXH_Q(20, 1000, EXH_Q_POS), 0},
+    };
+    /* A lost position stays a cause; the others are gone at once. */
+    const int lost = fault == EXH_FAULT_ENCODER;
+    const uint32_t gone = fault & (int32_t)EXH_FAULT_CUT ? 30 : 30 + RELEASED - 1;
+    const char *path = log_path();
+    run_script(act, LEN(act), 90, path);
+    for (uint32_t n = 11; n < 90; n++) {
+        const struct seen *s = &script.at[n];
+        const int force = n < gone || (n >= 70 && !lost);
+        CHECK((s->out.dac_raw[0] > DAC_ZERO) == force && (s->sig.f_des_N_q20 > 0) == force,
+              "fault %#lx, tick %lu: code %u", (unsigned long)fault, (unsigned long)n,
+              (unsigned)s->out.dac_raw[0]);
+        if (n >= 30 && n < gone) {
+            CHECK(s->sig.f_des_N_q20 < script.at[n - 1].sig.f_des_N_q20,
+                  "tick %lu: it does not fall", (unsigned long)n);
+        }
+        CHECK((s->sig.faults & fault) == (lost || n < 50 ? (n >= 30 ? fault : 0) : 0),
+              "fault %#lx, tick %lu: %#lx", (unsigned long)fault, (unsigned long)n,
+              (unsigned long)s->sig.faults);
+        CHECK((s->sig.present & fault) == (lost ? (n >= 30 ? fault : 0)
+                                           : n == 30 || (n == 48 && fault == EXH_FAULT_DEADMAN)
+                                               ? fault
+                                               : 0),
+              "fault %#lx, tick %lu: present", (unsigned long)fault, (unsigned long)n);
+    }
+    if (!lost) {
+        CHECK_EQ_I64(script.at[60].sig.state, EXH_STATE_OFF);
+        CHECK_EQ_I64(script.at[60].sig.arm_step, EXH_ARM_SMALL_FORCE);
+    }
+    CHECK_EQ_I64(replay(path, NULL), 0);
+    remove(path);
+}
+
 TEST(causes_reach_the_gate)
 {
-    static const struct {
-        struct act act;
-        int32_t fault;
-    } row[] = {
-        {{30, OPEN, 0, EXH_DIN_ESTOP, 0}, EXH_FAULT_ESTOP},
-        {{30, OPEN, 0, EXH_DIN_DEADMAN, 0}, EXH_FAULT_DEADMAN},
-        {{30, OPEN, 0, EXH_DIN_DRIVE0, 0}, EXH_FAULT_DRIVE},
-        {{30, JUMP, 0, 200, 0}, EXH_FAULT_ENCODER}, /* 13 mm in 1 ms */
-        {{30, JUMP, 0, -200, 0}, EXH_FAULT_ENCODER},
-        {{30, JUMP, 0, 100, 0}, 0},
+    cause((struct act){30, OPEN, 0, EXH_DIN_ESTOP, 0}, EXH_FAULT_ESTOP);
+    cause((struct act){30, OPEN, 0, EXH_DIN_DEADMAN, 0}, EXH_FAULT_DEADMAN);
+    cause((struct act){30, OPEN, 0, EXH_DIN_DRIVE0, 0}, EXH_FAULT_DRIVE);
+    cause((struct act){30, OPEN, 0, EXH_DIN_WATCHDOG, 0}, EXH_FAULT_WATCHDOG);
+    cause((struct act){30, OPEN, 0, EXH_DIN_CARDS, 0}, EXH_FAULT_CARD);
+    cause((struct act){30, JUMP, 0, 200, 0}, EXH_FAULT_ENCODER); /* 13 mm in 1 ms */
+    cause((struct act){30, JUMP, 0, -200, 0}, EXH_FAULT_ENCODER);
+}
+
+TEST(what_a_hand_can_do_is_no_cause)
+{
+    static const struct act act[] = {
+        {0, COMMAND, 0, EXH_CMD_RUN, 0},
+        {10, STAGE, ID_Q_LIM, -EXH_Q(20, 1000, EXH_Q_POS), 0},
+        {30, JUMP, 0, 100, 0},
     };
-    for (size_t i = 0; i < LEN(row); i++) {
-        const struct act act[] = {
-            {0, COMMAND, 0, EXH_CMD_RUN, 0},
-            {10, STAGE, ID_Q_LIM, -EXH_Q(20, 1000, EXH_Q_POS), 0}, /* so that there is force */
-            row[i].act,
-            {50, COMMAND, 0, EXH_CMD_CLEAR, 0},
-            {60, COMMAND, 0, EXH_CMD_RUN, 0},
-        };
-        const char *path = log_path();
-        run_script(act, LEN(act), 90, path);
-        for (uint32_t n = 11; n < 90; n++) {
-            const struct seen *s = &script.at[n];
-            /* A lost position stays a cause; the others are gone at once. */
-            const int lost = row[i].fault == EXH_FAULT_ENCODER && n >= 30;
-            const int faulty = lost || (row[i].fault != 0 && n >= 30 && n < 60);
-            CHECK((s->out.dac_raw[0] == DAC_ZERO) == faulty && (s->sig.f_des_N_q20 == 0) == faulty,
-                  "cause %zu, tick %lu: code %u", i, (unsigned long)n,
-                  (unsigned)s->out.dac_raw[0]);
-            CHECK(s->sig.faults == (lost || (faulty && n < 50) ? row[i].fault : 0), "cause %zu, tick %lu", i,
-                  (unsigned long)n);
-            CHECK(s->sig.present == (lost || n == 30 ? row[i].fault : 0), "cause %zu, tick %lu: present", i,
-                  (unsigned long)n);
-        }
-        CHECK_EQ_I64(replay(path, NULL), 0);
-        remove(path);
+    const char *path = log_path();
+    run_script(act, LEN(act), 90, path);
+    for (uint32_t n = 11; n < 90; n++) {
+        const struct seen *s = &script.at[n];
+        CHECK(s->out.dac_raw[0] > DAC_ZERO && s->sig.faults == 0 && s->sig.present == 0, "tick %lu",
+              (unsigned long)n);
     }
+    remove(path);
 }
 
 /* The inputs of the last two frames of a log. */
@@ -400,7 +460,11 @@ TEST(a_card_that_fails_is_seen_by_one_last_tick)
         in[0].din &= ~(uint32_t)EXH_DIN_CARDS;
         CHECK(memcmp(&in[0], &in[1], sizeof in[0]) == 0, "the last tick's inputs are others");
         CHECK(script.at[last - 1].out.dac_raw[0] > DAC_ZERO, "no current before");
-        CHECK_EQ_I64(script.at[last - 1].sig.state, EXH_STATE_RUN);
+        CHECK(arming_runs(script.at[last - 1].sig.state), "it did not run");
+        CHECK_EQ_I64(script.at[last].sig.state, EXH_STATE_FAULT);
+        CHECK_EQ_I64(script.at[last].sig.faults, EXH_FAULT_CARD);
+        CHECK(script.at[last].out.dac_raw[0] == DAC_ZERO && script.at[last].out.enable == 0,
+              "current");
         CHECK_EQ_I64(replay(path, NULL), 0);
         remove(path);
     }
@@ -442,5 +506,6 @@ TEST(a_board_that_does_not_fit_is_refused)
 }
 
 TEST_MAIN("loop", a_parameter_acts_at_the_tick_it_is_logged, setup_values_are_refused_while_locked,
-          missed_ticks_reach_safety, causes_reach_the_gate, a_card_that_fails_is_seen_by_one_last_tick, the_loop_commands_nothing_by_itself,
+          missed_ticks_reach_safety, causes_reach_the_gate, what_a_hand_can_do_is_no_cause,
+          a_card_that_fails_is_seen_by_one_last_tick, the_loop_commands_nothing_by_itself,
           a_board_that_does_not_fit_is_refused);

@@ -149,7 +149,8 @@ static uint32_t ticks_to_safe(uint32_t rate_Hz, uint32_t *limit, double *stood_A
         }
         drop_tick(&b.s, &b.cfg, &in, &out, &b.sig);
         if (b.sig.state == EXH_STATE_FAULT) { break; }
-        CHECK(n == 0 || b.sig.state == EXH_STATE_RUN, "tick %lu", (unsigned long)n);
+        CHECK(n < 5 + rate_Hz || exh_safety_runs(&b.s.safety), "tick %lu: state %ld",
+              (unsigned long)n, (long)b.sig.state);
         if (n == still) {
             stood = out;
             *stood_A = b.sig.i_des_A_q26 / 67108864.0;
