@@ -49,6 +49,7 @@ int drop_setup(struct drop_cfg *cfg, const struct drop_par *par, struct exh_scen
 
     /* Straight lines until the box is calibrated; the monitor's also below zero. */
     cfg->par = par;
+    cfg->tested = exh_selftest() == EXH_SELFTEST_OK;
     cfg->force_to_cur[0] = (struct exh_knot){0, 0, {0, 0}};
     cfg->force_to_cur[1] = (struct exh_knot){peak_N_q20, par->drive.i_peak_A_q26, {0, 0}};
     cfg->cur_to_force[0] = (struct exh_knot){-par->drive.i_peak_A_q26, -peak_N_q20, {0, 0}};
@@ -65,9 +66,9 @@ int drop_setup(struct drop_cfg *cfg, const struct drop_par *par, struct exh_scen
 }
 
 /* Steps of arming that hold. A mass has no calibration, and which way it falls is seen. */
-static uint8_t steps_held(const struct drop *s)
+static uint8_t steps_held(const struct drop *s, const struct drop_cfg *cfg)
 {
-    return (uint8_t)(EXH_UNTESTED | EXH_UNCALIBRATED | EXH_UNPOLARISED |
+    return (uint8_t)((cfg->tested ? EXH_ARM_SELFTEST : 0u) | EXH_UNCALIBRATED | EXH_UNPOLARISED |
                      (s->quad.lost ? 0u : EXH_ARM_ENCODER));
 }
 
@@ -84,9 +85,10 @@ void drop_law(struct drop *s, const struct drop_cfg *cfg, const struct exh_scene
     uint32_t limits = 0;
     const uint32_t raised = (s->quad.lost ? EXH_FAULT_ENCODER : 0u) |
                             (astray ? EXH_FAULT_TRACKING : 0u) |
+                            (s->broken ? EXH_FAULT_CONFIG : 0u) |
                             exh_watch_step(&s->watch, &cfg->watch, &q.vel_mps_q27, &limits);
     const struct exh_safety_in box = {in->drive.din, raised, in->missed, in->command, 1,
-                                      steps_held(s)};
+                                      steps_held(s, cfg)};
 
     now->permit = exh_safety_step(&s->safety, &cfg->safety, box);
     now->cnt = cnt;
@@ -141,6 +143,7 @@ static struct exh_params params;
 static struct drop_signals signals;
 static struct drop_cfg cfg;
 static struct drop state;
+static struct exh_guard guard;
 
 static void defaults(void)
 {
@@ -150,12 +153,16 @@ static void defaults(void)
 static int setup(struct exh_scene_board board)
 {
     static const struct drop power_on;
+    int err;
     state = power_on;
-    return drop_setup(&cfg, &active, board);
+    err = drop_setup(&cfg, &active, board);
+    exh_guard_seal(&guard, &cfg, sizeof cfg, &params);
+    return err;
 }
 
 static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
 {
+    state.broken = (uint8_t)exh_guard_step(&guard);
     drop_tick(&state, &cfg, in, out, &signals);
 }
 

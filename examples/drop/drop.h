@@ -66,6 +66,7 @@ struct drop_cfg {
     struct exh_track_cfg track;
     struct exh_watch_cfg watch;
     struct exh_safety_cfg safety;
+    uint8_t tested; /* 1: the self-test passed                                 */
     struct exh_knot force_to_cur[2], cur_to_force[2];
 };
 
@@ -77,6 +78,7 @@ struct drop {
     struct exh_track track;
     struct exh_watch watch;
     struct exh_safety safety;
+    uint8_t broken; /* 1: the guard found a change in configuration; not saved */
 };
 
 /* Configuration from parameters. 0 or -EXH_E…. */

@@ -338,6 +338,97 @@ TEST(not_running_is_no_force)
     CHECK_EQ_I64(f.force_N_q20, NEWTON); /* rises from nothing */
 }
 
+/* The release against its definition, at every number of ticks that any rate and time give, from any
+ * force: in every tick no more than force/R + 1 LSB goes, whatever the law says, and R are enough. */
+TEST(release_is_bounded_and_ends)
+{
+    struct axis a;
+    axis_par(&a.par);
+    CHECK_EQ_I64(axis_setup(&a, (struct exh_period){1, 2000}), 0);
+    for (uint32_t k = 0; k < 360 * 64; k++) {
+        const int32_t ticks = (int32_t)(3 + k % 358);
+        const int32_t from = k < 358                ? 0
+                             : k < 716              ? 100 * NEWTON
+                             : check_u64() % 8 == 0 ? ticks * check_i32_in(0, 10000)
+                                                    : check_i32_in(0, 100 * NEWTON);
+        struct exh_permit p = {EXH_PERMIT_RELEASE, 0, 0, 1, {0, 1}};
+        int32_t last = from;
+        CHECK_EQ_I64(exh_gain_set(&p.fall, 1, (uint64_t)ticks), 0);
+        a.s = (struct exh_drive){from, 0, 0};
+        for (int32_t n = 1; n <= ticks; n += (int32_t)p.ticks) {
+            struct exh_force_ledger f = {check_i64() >> 24, check_i32(), 0, 0, 5, 5, 5, 5};
+            const int64_t asked = f.spring_N_q20 + f.damper_N_q20;
+            p.ticks = check_u64() % 8 ? 1 : 1 + (uint32_t)(check_u64() % 3);
+            CHECK_EQ_I64(exh_drive_force(&a.s, &a.cfg, &p, &f), EXH_LIMIT_RELEASE);
+            CHECK(last - f.force_N_q20 >= 0 &&
+                      (int64_t)(last - f.force_N_q20) * ticks <=
+                          ((int64_t)from + ticks) * (int64_t)p.ticks,
+                  "%" PRId32 " of %" PRId32 " in %" PRId32, last - f.force_N_q20, from, ticks);
+            CHECK((int64_t)f.force_N_q20 * ticks <= (int64_t)from * (ticks - n), "late");
+            CHECK(f.force_N_q20 == asked + f.clamp_N_q20 + f.slew_N_q20 + f.release_N_q20, "sum");
+            CHECK(f.clamp_N_q20 == 0 && f.slew_N_q20 == 0, "a term of its own");
+            last = f.force_N_q20;
+        }
+        CHECK(last == 0, "%" PRId32 " left of %" PRId32 " after %" PRId32, last, from, ticks);
+    }
+}
+
+/* A second release starts from the force that there is then. */
+TEST(release_begins_anew)
+{
+    struct exh_permit p = {EXH_PERMIT_RELEASE, 0, 0, 1, {0, 1}};
+    struct exh_force_ledger f = {0};
+    struct axis a;
+    axis_par(&a.par);
+    CHECK_EQ_I64(axis_setup(&a, (struct exh_period){1, 2000}), 0);
+    CHECK_EQ_I64(exh_gain_set(&p.fall, 1, 4), 0);
+    a.s.force_N_q20 = 8 * NEWTON;
+    (void)exh_drive_force(&a.s, &a.cfg, &p, &f);
+    CHECK_EQ_I64(f.force_N_q20, 6 * NEWTON - 1);
+    (void)force(&a, 20 * NEWTON, &f);
+    (void)exh_drive_force(&a.s, &a.cfg, &p, &f);
+    CHECK_EQ_I64(f.force_N_q20, 15 * NEWTON - 1);
+}
+
+/* Half the limit is allowed: told by RAMP, and by FORCE too beyond the whole. */
+TEST(ramp_limits_the_force)
+{
+    static const struct {
+        int64_t asked_N;
+        int64_t want_N;
+        uint32_t limits;
+    } row[] = {{19, 19, 0},
+               {20, 20, 0},
+               {21, 20, EXH_LIMIT_RAMP},
+               {41, 20, EXH_LIMIT_RAMP | EXH_LIMIT_FORCE},
+               {-1, 0, EXH_LIMIT_PULL}};
+    const struct exh_permit half = {EXH_PERMIT_OPEN, 1 << 29, 0, 1, {0, 1}};
+    struct axis a;
+    axis_par(&a.par);
+    CHECK_EQ_I64(axis_setup(&a, (struct exh_period){1, 2000}), 0);
+    for (size_t i = 0; i < LEN(row); i++) {
+        struct exh_force_ledger f = {row[i].asked_N * NEWTON, 0, 0, 0, 0, 0, 0, 0};
+        CHECK_EQ_I64(exh_drive_force(&a.s, &a.cfg, &half, &f), row[i].limits);
+        CHECK_EQ_I64(f.force_N_q20, row[i].want_N * NEWTON);
+    }
+}
+
+/* Closed: what is asked for is told where it is not small, and only there. */
+TEST(small_force_is_told)
+{
+    static const int32_t off_N_q20[] = {-(1 << 20), -1, 0, 1, 1 << 20};
+    struct exh_permit p = {EXH_PERMIT_CLOSED, 1 << 30, NEWTON, 1, {0, 1}};
+    struct axis a;
+    axis_par(&a.par);
+    CHECK_EQ_I64(axis_setup(&a, (struct exh_period){1, 2000}), 0);
+    for (size_t i = 0; i < LEN(off_N_q20); i++) {
+        struct exh_force_ledger f = {NEWTON, 0, off_N_q20[i], 0, 0, 0, 0, 0};
+        const uint32_t bits = exh_drive_force(&a.s, &a.cfg, &p, &f);
+        CHECK_EQ_I64(bits, (i > 0 ? EXH_LIMIT_GATE : 0u) | (i > 2 ? EXH_LIMIT_FORCE : 0u));
+        CHECK_EQ_I64(f.force_N_q20, 0);
+    }
+}
+
 /* 2000 N/s up, 4000 N/s down, 2 kHz: 1 N a tick up, 2 N down. */
 TEST(slew_both_ways)
 {
@@ -539,7 +630,9 @@ TEST_MAIN("unit/drive", table_is_exact_at_knots_and_clamps_outside, table_betwee
           inverse_round_trip, inverse_refuses_what_set_refuses, setup_rejections,
           setup_refuses_tables_that_pull_at_no_force, no_force_beyond_the_table,
           setup_refuses_a_table_that_was_not_set, not_running_is_no_force,
-          setup_takes_every_documented_period, force_limit_and_pull_only, slew_both_ways,
+          setup_takes_every_documented_period, force_limit_and_pull_only,
+          release_is_bounded_and_ends, release_begins_anew, ramp_limits_the_force, small_force_is_told,
+          slew_both_ways,
           slowest_slew_still_moves, peak_limit, i2t_holds_folds_back_and_recovers,
           continuous_current_is_for_ever, bursts_add_up, peak_equal_to_continuous, monitor_by_hand,
           frames_round_trip, state_round_trip);

@@ -8,6 +8,7 @@
  *   hand                         the glove's angles to the robot hand's joints and fingertips
  *   quad -> velocity -> contact -> drive -> safety (the gate)      one tick
  *   passivity                    no contact gives back more energy than it was given
+ *   guard                        configuration that must stand still; self-test
  *   watch                        speed limit of a finger, and an encoder that stands
  *   filter, quantizer            glove voltages to codes that stand still
  *   gains                        which stiffness and damping are taken at this rate
@@ -39,6 +40,7 @@
 #include "exhand/fix.h"
 #include "exhand/gains.h"
 #include "exhand/glove.h"
+#include "exhand/guard.h"
 #include "exhand/hand.h"
 #include "exhand/passivity.h"
 #include "exhand/precontact.h"
