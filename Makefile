@@ -408,6 +408,11 @@ endif
 fuzz-corpus: $(B)/fuzz/plain
 	@$(B)/fuzz/plain --write test/fuzz/corpus
 
+## Prove the gate, force and current, tracking, state of the box (ARGS="--only gate", --update; test/proof)
+.PHONY: proof
+proof:
+	@test/proof/proof.py --out $(B)/proof $(ARGS)
+
 # --- the pc104 image in the loop ----------------------------------------------------------
 
 HIL_TICKS ?= 1000000

@@ -1,0 +1,35 @@
+/* The gate: any state of the box, any ledger, any output frame, every number of fingers; of the
+ * parameters and constants those that exh_drive_setup() lets pass. */
+#include "gate.c"
+
+#include "any.h"
+
+static struct exh_safety s;
+static struct exh_drive_par par[EXH_FINGERS];
+static struct exh_drive_cfg cfg[EXH_FINGERS];
+static struct exh_current_ledger i[EXH_FINGERS];
+static uint32_t limits[EXH_FINGERS];
+static struct exh_drive_out out;
+
+int main(void)
+{
+    const unsigned n = Frama_C_unsigned_int_interval(1, EXH_FINGERS);
+    /*@ assert n == 1 || n == 2 || n == 3 || n == 4 || n == 5; */
+    ANY(s);
+    ANY(par);
+    ANY(cfg);
+    ANY(i);
+    ANY(limits);
+    ANY(out);
+    for (unsigned k = 0; k < EXH_FINGERS; k++) {
+        par[k].dac_zero_raw = Frama_C_interval(0, UINT16_MAX);
+        par[k].dac_span_raw = Frama_C_interval(0, INT16_MAX);
+        cfg[k].par = &par[k];
+        cfg[k].dac_A_q26.mant = Frama_C_interval(0, INT32_MAX);
+        cfg[k].dac_A_q26.shift = (uint8_t)Frama_C_unsigned_int_interval(0, 62);
+    }
+    exh_gate(&s, cfg, n, i, limits, &out);
+    /*@ assert no_other_drive: out.enable == 0 || out.enable == (1 << n) - 1; */
+    END();
+    return 0;
+}

@@ -1,0 +1,33 @@
+/* The state of the box: any bit pattern of it, any input. */
+#include "gate.c"
+#include "safety.c"
+
+#include "any.h"
+
+static struct exh_safety s;
+static struct exh_safety_cfg cfg;
+
+static void step(uint8_t from, uint8_t to)
+{
+    struct exh_safety_in in;
+    struct exh_permit p;
+    ANY(s);
+    ANY(cfg);
+    ANY(in);
+    s.state = (uint8_t)Frama_C_unsigned_int_interval(from, to);
+    p = exh_safety_step(&s, &cfg, in);
+    /*@ assert a_state: s.state < 6; */
+    /*@ assert a_mode: p.mode <= 2; */
+    /*@ assert ticks: p.ticks >= 1; */
+    if (from > 5) {
+        /*@ assert shut: p.mode == 0; */
+    }
+}
+
+int main(void)
+{
+    step(0, 5);
+    step(6, 255); /* no state at all: told, and shut */
+    END();
+    return 0;
+}

@@ -1,0 +1,19 @@
+/* Current tracking: any state, any tolerance in range, any monitor, any code. */
+#include "track.c"
+
+#include "any.h"
+
+int main(void)
+{
+    static struct exh_track s;
+    static struct exh_track_cfg cfg;
+    int off;
+    ANY(s);
+    cfg.tol_A_q26 = Frama_C_interval(TOL_MIN_A_Q26, TOL_MAX_A_Q26);
+    cfg.ticks = Frama_C_unsigned_int_interval(5, UINT32_MAX);
+    off = exh_track_step(&s, &cfg, any32());
+    /*@ assert says: off == 0 || off == 1; */
+    exh_track_coded(&s, any32());
+    END();
+    return 0;
+}

@@ -1,0 +1,96 @@
+"""Lemmas about single expressions of the tick, for every value of their arguments.
+
+Bit vectors where wrapping and shifting are the point, integers where only size is. What is
+written here is the expression, not the source: the sources are judged by eva/ and wp/.
+"""
+import z3
+
+MS = 60000
+
+
+def holds(claim):
+    s = z3.Solver()
+    s.set("timeout", MS)
+    s.add(z3.Not(claim))
+    return s.check() == z3.unsat
+
+
+def shr_is_floor():
+    """>> of a negative 64-bit number is the floor, for every count 0..63."""
+    v, n = z3.BitVecs("v n", 64)
+    q = v >> n
+    back = q << n
+    return holds(z3.Implies(z3.ULT(n, 64), z3.And(v - back >= 0, z3.ULT(v - back, z3.BitVecVal(1, 64) << n))))
+
+
+def from_u64_keeps_bits():
+    """exh_from_u64() by arithmetic alone gives the same 64 bits."""
+    u = z3.BitVec("u", 64)
+    top = z3.BitVecVal((1 << 63) - 1, 64)
+    return holds(z3.If(z3.ULE(u, top), u, -(z3.BitVecVal(-1, 64) - u) - 1) == u)
+
+
+def wrapped_sum_is_the_sum():
+    """exh_wrap_add64() and exh_wrap_diff64() are exact wherever the result has 64 bits."""
+    a, b = z3.BitVecs("a b", 64)
+    wide = z3.SignExt(1, a) + z3.SignExt(1, b)
+    less = z3.SignExt(1, a) - z3.SignExt(1, b)
+    fits = z3.And(z3.BVAddNoOverflow(a, b, True), z3.BVAddNoUnderflow(a, b))
+    less_fits = z3.And(z3.BVSubNoOverflow(a, b), z3.BVSubNoUnderflow(a, b, True))
+    return holds(z3.Implies(fits, z3.SignExt(1, a + b) == wide)) and \
+        holds(z3.Implies(less_fits, z3.SignExt(1, a - b) == less))
+
+
+def gain_floor_is_no_more():
+    """exh_gain_floor() of x >= 0 is within 0..x when the gain is below 1 (shift 31..62)."""
+    x, m = z3.Ints("x m")
+    box = z3.And(x >= 0, x < 1 << 31, m >= 0, m < 1 << 31)
+    if not holds(z3.Implies(box, z3.And(x * m >= 0, x * m <= x * (1 << 31)))):
+        return False
+    p = z3.Int("p")  # the product
+    return all(holds(z3.Implies(z3.And(x >= 0, p >= 0, p <= x * (1 << 31)),
+                                z3.And(p / (1 << s) >= 0, p / (1 << s) <= x)))
+               for s in range(31, 63))
+
+
+def share_of_limit():
+    """A share 0..2^30 of a force limit, shifted down by 30, is within 0..limit."""
+    top, share, p = z3.Ints("top share p")
+    box = z3.And(top >= 0, top < 1 << 31, share >= 0, share <= 1 << 30)
+    return holds(z3.Implies(box, z3.And(top * share >= 0, top * share <= top * (1 << 30)))) and \
+        holds(z3.Implies(z3.And(top >= 0, p >= 0, p <= top * (1 << 30)),
+                         z3.And(p / (1 << 30) >= 0, p / (1 << 30) <= top)))
+
+
+def gain_of(ticks):
+    """What exh_gain_set(1 / ticks) leaves: 31 bits, rounded to nearest."""
+    shift = 30
+    while ((1 << shift + 1) + ticks) // (2 * ticks) < 1 << 30:
+        shift += 1
+    return ((1 << shift + 1) + ticks) // (2 * ticks), shift
+
+
+def release_ends():
+    """R steps of the release law take any force 0..100 N to zero, R = 3..360 (18 ms at 20 kHz)."""
+    f = z3.Int("f")
+    for ticks in range(3, 361):
+        mant, shift = gain_of(ticks)
+        fall = (f * mant) / (1 << shift) + 1
+        if not holds(z3.Implies(z3.And(f >= 0, f <= 100 << 20), f - ticks * fall <= 0)):
+            return False
+    return True
+
+
+def release_step_is_bounded():
+    """A step of the release law is the force held by R, and 1 LSB more at most."""
+    f = z3.Int("f")
+    for ticks in range(3, 361):
+        mant, shift = gain_of(ticks)
+        fall = (f * mant) / (1 << shift) + 1
+        if not holds(z3.Implies(z3.And(f >= 0, f <= 100 << 20), (fall - 1) * ticks <= f + ticks)):
+            return False
+    return True
+
+
+LEMMAS = [shr_is_floor, from_u64_keeps_bits, wrapped_sum_is_the_sum, gain_floor_is_no_more, share_of_limit,
+          release_ends, release_step_is_bounded]
