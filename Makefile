@@ -562,7 +562,7 @@ nic: all
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(B)/test/cable $(world)
 	@for s in minimal drop bilateral; do $(MAKE) --no-print-directory $(if $(V),,-s) PORT=pc104 SCENE=$$s CARDS=none all || exit; done
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(nic_tape) all
-	@B=$(B) FRAMES=$(NIC_FRAMES) SPEEDS=$(NIC_SPEEDS) APPROACHES=$(NIC_APPROACHES) test/pc104/nic.sh $(or $(ARGS),ways bilateral flood)
+	@B=$(B) FRAMES=$(NIC_FRAMES) SPEEDS=$(NIC_SPEEDS) APPROACHES=$(NIC_APPROACHES) test/pc104/nic.sh $(or $(ARGS),ways bilateral flood dump)
 
 # --- figures ------------------------------------------------------------------------
 

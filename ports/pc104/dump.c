@@ -6,6 +6,8 @@
 #include "blackbox.h"
 #include "io.h"
 
+#include "cards/wait.h"
+
 #define DEBUG_PORT  0xE9u
 #define DUMP_TICK_B 256u
 #define QUEUE_B     4096u /* a power of two: three pieces of a stream */
@@ -113,23 +115,37 @@ void pc104_dump_pause(void)
     }
 }
 
+/* A listener takes no flood: a piece a millisecond is 1.4 MB/s. 0: the card takes nothing. */
+static int out_paced(void)
+{
+    for (unsigned stuck = 0; stuck < 1000; stuck++) {
+        const uint32_t before = fifo.got;
+        struct exh_wait pace = exh_wait_us(1000);
+        (void)pc104_fifo_out(&fifo, pc104_par.dump, 1);
+        while (exh_wait_more(&pace)) {}
+        if (fifo.got != before || fifo.put == fifo.got) { return 1; }
+    }
+    return 0;
+}
+
 /* Nothing runs any more, outputs are safe and the words are said. An exception in here comes here
  * again, and finds nothing to do. */
 void pc104_dump_flush(int halted)
 {
-    uint32_t rest = 1;
+    int goes = 1;
     if (!on || halting) { return; }
     halting = 1;
     exh_blackbox_stop(halted);
     begin();
     if (!going) { return; }
     pc104_say("black box: the dump follows\n");
-    while (rest > 0 || fifo.put != fifo.got) {
-        if (going == 1) { rest = fill(DUMP_TICK_B); }
-        if (going == 1 && rest == 0) { going = 2; }
-        if (going == 2) { rest = 0; }
-        if (!pc104_fifo_wait(&fifo, pc104_par.dump)) { break; }
+    while (goes && (going == 1 || fifo.put != fifo.got)) {
+        while (going == 1 && QUEUE_B - (fifo.put - fifo.got) >= DUMP_TICK_B) {
+            if (fill(DUMP_TICK_B) == 0) { going = 2; }
+        }
+        goes =
+            pc104_par.dump == PC104_LOG_UDP ? out_paced() : pc104_fifo_wait(&fifo, pc104_par.dump);
     }
     finish();
-    pc104_say("\nblack box: its end\n");
+    pc104_say(goes ? "\nblack box: its end\n" : "\nblack box: the line takes no more of it\n");
 }

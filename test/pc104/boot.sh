@@ -74,7 +74,7 @@ if [ -x "$exhand" ]; then
     boots 0 '^records lost 0$' log=serial ticks=1000 rate=1000
 fi
 
-# The black box: a wall where the string begins, and a monitor that reads nothing: a fault, told by the
+# The black box: 0.8 N of a wall where the string begins, and a monitor that reads nothing: a fault, told by the
 # image and again by the host. In the loop, after a processor exception, and on the words' own line.
 told() # FILE PATTERN
 {
@@ -82,7 +82,7 @@ told() # FILE PATTERN
     grep -qE "$2" "$out/replay" || { fail "a dump without '$2'"; cat "$out/replay" >&2; }
 }
 if [ -x "$exhand" ]; then
-    wall="q_lim=-0.005 k=2000 rate=1000"
+    wall="q_lim=-0.0004 k=2000 track_tol=0.1 rate=1000"
     # shellcheck disable=SC2086 # words
     boots 0 '^ticks 2000 run, 0 missed$' dump=debug ticks=2000 idle=spin $wall
     told "$out/records" 'FAULT tracking: '

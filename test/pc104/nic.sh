@@ -3,6 +3,7 @@
 #   ways       what is said where there is no card, another card, no peer, or an option that is none
 #   bilateral  the paper's second experiment over it: the unmodified world simulator at the other end
 #   flood      FRAMES bad frames
+#   dump       the black box after a fault, over it
 # B: where things are built (build). SPEEDS (natural), APPROACHES (1), FRAMES (20000), SEED (1).
 #
 # bilateral: the host's experiment without the card leaves a log. Its inputs stand at the connectors of emulated
@@ -200,15 +201,44 @@ flood()
         "longest tick $(awk '/^tick_max/ { print $2 / 1000 }' "$dir/said") us at 2 ns an instruction"
 }
 
+# --- the black box ----------------------------------------------------------------
+
+# A wall where the string begins, and a monitor that reads nothing: a fault while the loop runs on.
+dump()
+{
+    start_listener
+    boot 0 "$card" "$b/pc104/drop-none.elf" dump=udp ip=10.0.2.15 peer=10.0.2.2 log_port=$((port + 1)) idle=spin \
+        ticks=8000 q_lim=-0.0004 k=2000 track_tol=0.1
+    wait "$listener"
+    check "the dump came whole: $(cat "$dir/listen")" [ $? = 0 ]
+    check "no tick missed" says '^ticks 8000 run, 0 missed$'
+    check "it was out before the end" fails says '^black box: '
+    check "the dump is replayed" replays "$dir/image.exh"
+    check "it has the fault: $(cat "$dir/replay")" grep -q 'fault tracking at tick' "$dir/replay"
+    start_listener
+    boot 5 "$card" "$b/pc104/drop-none.elf" dump=udp ip=10.0.2.15 peer=10.0.2.2 log_port=$((port + 1)) \
+        ticks=1000 provoke=divide provoke_at=800
+    wait "$listener"
+    check "the dump of a halt came whole: $(cat "$dir/listen")" [ $? = 0 ]
+    check "words come before it" says '^black box: the dump follows$'
+    check "the dump of a halt is replayed" replays "$dir/image.exh"
+    echo "  dump: $(cat "$dir/listen")"
+}
+
+fails() # COMMAND...
+{
+    ! "$@"
+}
+
 [ $# -gt 0 ] || {
-    echo "usage: $0 ways|bilateral|flood..." >&2
+    echo "usage: $0 ways|bilateral|flood|dump..." >&2
     exit 2
 }
 for part in "$@"; do
     case $part in
-    ways | bilateral | flood) $part ;;
+    ways | bilateral | flood | dump) $part ;;
     *)
-        echo "nic: $part: one of ways, bilateral, flood" >&2
+        echo "nic: $part: one of ways, bilateral, flood, dump" >&2
         exit 2
         ;;
     esac
