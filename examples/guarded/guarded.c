@@ -7,16 +7,33 @@ static const struct exh_signal rows[] = {
      "what passivity takes from the law's force"},
 };
 
+static const struct exh_signal own_rows[] = {
+    {0x8203, 0, EXH_WHEN_SETUP, 0, 1, 0, "rule_on", "",
+     "1: k and b outside the rule of gains are refused"},
+};
+
 static const struct exh_signal_group param_groups[] = {DROP_PARAM_GROUPS,
-                                                       {exh_passivity_rows, EXH_PASSIVITY_ROWS, 1}};
-static const struct exh_signal_table param_table = {param_groups, DROP_PARAM_N + 1};
+                                                       {exh_passivity_rows, EXH_PASSIVITY_ROWS, 1},
+                                                       {own_rows, 1, 1},
+                                                       {exh_gains_rows, EXH_GAINS_ROWS, 1}};
+static const struct exh_signal_table param_table = {param_groups, DROP_PARAM_N + 3};
 
 static const struct exh_signal_group signal_groups[] = {DROP_SIGNAL_GROUPS, {rows, 2, 1}};
 static const struct exh_signal_table signal_table = {signal_groups, DROP_SIGNAL_N + 1};
 
 EXH_STATIC_ASSERT(guarded_par_matches_rows,
                   sizeof(struct guarded_par) ==
-                      sizeof(struct drop_par) + EXH_PASSIVITY_ROWS * sizeof(int32_t));
+                      sizeof(struct drop_par) +
+                          (EXH_PASSIVITY_ROWS + 1 + EXH_GAINS_ROWS) * sizeof(int32_t));
+
+/* 0, or what is wrong with the rule, or that k and b are outside. */
+static int ask_rule(const struct guarded_par *par, struct exh_period T)
+{
+    const struct exh_contact_par *wall = &par->drop.contact;
+    const int err = par->own.rule_on ? exh_gains_setup(&par->gains, T) : 0;
+    if (err < 0 || !par->own.rule_on) { return err; }
+    return exh_gains_ok(&par->gains, wall->k_Npm_q10, wall->b_Nspm_q20) ? 0 : -EXH_E_GAINS;
+}
 
 int guarded_setup(struct guarded_cfg *cfg, const struct guarded_par *par,
                   struct exh_scene_board board)
@@ -29,7 +46,7 @@ int guarded_setup(struct guarded_cfg *cfg, const struct guarded_par *par,
         err = exh_passivity_setup(&cfg->passivity, &par->passivity, &cfg->drop.drive, held, scale,
                                   par->drop.watch.speed_mps_q27);
     }
-    return err;
+    return err == 0 ? ask_rule(par, board.T) : err;
 }
 
 void guarded_tick(struct guarded *s, const struct guarded_cfg *cfg, const struct exh_scene_in *in,
@@ -68,6 +85,12 @@ static int setup(struct exh_scene_board board)
     static const struct guarded power_on;
     state = power_on;
     return guarded_setup(&cfg, &active, board);
+}
+
+int guarded_stage(uint16_t id, uint16_t instance, int32_t raw)
+{
+    return active.own.rule_on ? exh_gains_stage(&params, &active.gains, id, instance, raw)
+                              : exh_params_stage(&params, id, instance, raw);
 }
 
 static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)

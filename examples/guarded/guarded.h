@@ -4,10 +4,16 @@
 
 #include "../drop/drop.h"
 
+struct guarded_own_par {
+    int32_t rule_on; /* 1: k and b outside the rule of gains are refused         */
+};
+
 /* Drop's parameters first, then what is added: so names and places of drop's stay. */
 struct guarded_par {
     struct drop_par drop;
     struct exh_passivity_par passivity;
+    struct guarded_own_par own;
+    struct exh_gains_par gains; /* looked at with rule_on alone                */
 };
 
 struct guarded_signals {
@@ -27,9 +33,14 @@ struct guarded {
     struct exh_passivity passivity;
 };
 
-/* Configuration from parameters. 0 or -EXH_E…. */
+/* Configuration from parameters. 0 or -EXH_E…; with rule_on also what exh_gains_setup() says of the rule,
+ * and -EXH_E_GAINS for k and b outside. */
 int guarded_setup(struct guarded_cfg *cfg, const struct guarded_par *par,
                   struct exh_scene_board board);
+
+/* For whoever stages values of this image's scene, over a link too: as exh_params_stage(), with rule_on
+ * as exh_gains_stage() under the rule that set-up took. */
+int guarded_stage(uint16_t id, uint16_t instance, int32_t raw);
 
 /* One tick. */
 void guarded_tick(struct guarded *s, const struct guarded_cfg *cfg, const struct exh_scene_in *in,

@@ -4,6 +4,11 @@
 
 #include "sim/random.h"
 
+#include "guarded/guarded.h"
+
+#include "exhand/error.h"
+#include "exhand/wire.h"
+
 #include <stdlib.h>
 
 static struct said s;
@@ -134,6 +139,79 @@ TEST(a_full_lattice_is_taken)
     CHECK(!exh_gains_ok(&rule, (int32_t)(1024 * g.k_top_Npm), 0), "the border is inside");
 }
 
+/* --- the scene that has a rule --- */
+
+static int stage(uint16_t id, int32_t raw)
+{
+    return exh_params_stage(exh_scene_guarded.params, id, 0, raw);
+}
+
+/* 0: 8000, 20: 8000, 30: 2000 N/m; from 100 up, at 500 Hz. */
+static int scene_with(int32_t k_Npm, int32_t b_Nspm, int on, uint32_t rate_Hz)
+{
+    static const int32_t b[] = {0, 20, 30}, k[] = {8000, 8000, 2000};
+    const struct exh_scene_board board = {{1, rate_Hz}, 24};
+    int err;
+    exh_scene_guarded.defaults();
+    err = stage(0x8203, on) | stage(0x1201, 500 * 256) | stage(0x1202, 3) |
+          stage(0x1203, 100 * 1024) | stage(0x0401, k_Npm * 1024) | stage(0x0402, b_Nspm * 1048576);
+    for (uint16_t i = 0; i < 3; i++) {
+        err |= stage((uint16_t)(0x1210 + i), b[i] * 1048576) |
+               stage((uint16_t)(0x1220 + i), k[i] * 1024);
+    }
+    CHECK(err == 0, "a value is refused");
+    exh_params_apply(exh_scene_guarded.params);
+    return exh_scene_guarded.setup(board);
+}
+
+TEST(the_scene_refuses_by_name)
+{
+    CHECK_EQ_I64(scene_with(8000, 20, 1, 500), 0);
+    CHECK_EQ_I64(scene_with(8001, 20, 1, 500), -EXH_E_GAINS);
+    CHECK_EQ_I64(scene_with(8001, 20, 0, 500), 0);
+    CHECK_EQ_I64(scene_with(2000, 31, 1, 500), -EXH_E_GAINS);
+    CHECK_EQ_I64(scene_with(8000, 20, 1, 1000), -EXH_E_RATE);
+    CHECK_EQ_I64(scene_with(8000, 20, 0, 1000), 0);
+}
+
+/* A PARAM from outside: what is outside the rule is not staged, and the ACK says why. */
+TEST(over_the_wire_too)
+{
+    static const struct {
+        uint16_t id;
+        int32_t raw;
+        int result;
+    } ask[] = {{0x0401, 8001 * 1024, -EXH_E_GAINS},
+               {0x0401, 8000 * 1024, 0},
+               {0x0402, 25 * 1048576, -EXH_E_GAINS},
+               {0x0401, 5000 * 1024, 0},
+               {0x0402, 25 * 1048576, 0},
+               {0x0401, -1, -EXH_E_RANGE},
+               {0x1220, 9000 * 1024, 0}}; /* not locked here */
+    struct exh_wire_tx tx = {7, 0};
+    struct exh_wire_rx rx;
+    struct exh_wire_packet p, got;
+    uint8_t buf[EXH_WIRE_MAX_B];
+    int32_t n;
+    memset(&rx, 0, sizeof rx);
+    memset(&p, 0, sizeof p);
+    CHECK_EQ_I64(scene_with(4000, 0, 1, 500), 0);
+    p.type = EXH_WIRE_HELLO;
+    n = exh_wire_write(&tx, &p, 0, buf, sizeof buf);
+    CHECK(n > 0 && exh_wire_take(&rx, &got, buf, (size_t)n) == EXH_WIRE_HELLO, "no hello");
+    for (size_t i = 0; i < sizeof ask / sizeof ask[0]; i++) {
+        const struct exh_wire_param param = {ask[i].id, 0, ask[i].raw};
+        const int result = guarded_stage(param.id, param.instance, param.value);
+        p.type = EXH_WIRE_ACK;
+        p.u.ack = (struct exh_wire_ack){param, (int16_t)result, 1};
+        n = exh_wire_write(&tx, &p, 0, buf, sizeof buf);
+        CHECK(n > 0 && exh_wire_take(&rx, &got, buf, (size_t)n) == EXH_WIRE_ACK, "ask %d", (int)i);
+        CHECK(got.u.ack.result == ask[i].result, "ask %d: %d", (int)i, got.u.ack.result);
+    }
+    exh_params_apply(exh_scene_guarded.params);
+    CHECK_EQ_I64(exh_scene_guarded.setup((struct exh_scene_board){{1, 500}, 24}), 0);
+}
+
 /* --- the command --- */
 
 #define SMALL "--grid", "12x6", "--cases", "4", "--jobs", "1"
@@ -153,8 +231,26 @@ TEST(a_pair_is_judged)
          WORDS("advise", "gains", "--rate", "500", "--k", "1000000", "--b", "15", SMALL));
     CHECK(s.status == 1 && strstr(s.out, "beyond all"), "%d\n%s%s", s.status, s.out, s.err);
     said(&s, dir, cli_advise, WORDS("advise", "gains", "--rate", "500", "--rule", SMALL));
-    CHECK(s.status == 0 && strncmp(s.out, "--set rule_rate=500 --set rule_n=", 33) == 0, "%d\n%s%s",
-          s.status, s.out, s.err);
+    CHECK(s.status == 0 &&
+              strncmp(s.out, "--set rule_on=1 --set rule_rate=500 --set rule_n=", 49) == 0,
+          "%d\n%s%s", s.status, s.out, s.err);
+    said_clean(dir);
+}
+
+TEST(a_run_is_refused_by_its_rule)
+{
+    char *dir = said_dir();
+#define RULE \
+    "--set", "rule_on=1", "--set", "rule_rate=500", "--set", "rule_b1=30", "--set", \
+        "rule_k0=9000", "--set", "rule_k1=2000"
+    said(&s, dir, cli_drop,
+         WORDS("drop", "--guarded", "--rate", "500", "--falls", "1", "--k", "9001", "--b", "0",
+               RULE));
+    CHECK(s.status == 2 && strstr(s.err, "outside the rule of gains"), "%d %s", s.status, s.err);
+    said(&s, dir, cli_drop,
+         WORDS("drop", "--guarded", "--rate", "500", "--falls", "1", "--k", "5000", "--b", "15",
+               RULE));
+    CHECK(s.status == 0, "%d %s", s.status, s.err);
     said_clean(dir);
 }
 
@@ -208,4 +304,5 @@ TEST(a_map_is_judged)
 }
 
 TEST_MAIN("gains", the_papers_points, cases_fill_all_phases, the_rule_is_inside_everywhere,
-          a_full_lattice_is_taken, a_pair_is_judged, bad_usage_is_named, a_map_is_judged);
+          a_full_lattice_is_taken, the_scene_refuses_by_name, over_the_wire_too, a_pair_is_judged,
+          a_run_is_refused_by_its_rule, bad_usage_is_named, a_map_is_judged);

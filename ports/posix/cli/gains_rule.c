@@ -148,7 +148,7 @@ static double si(int32_t raw, int frac)
 
 void gains_rule_print(FILE *f, const struct exh_gains_par *rule)
 {
-    fprintf(f, "--set rule_rate=%.10g --set rule_n=%ld --set rule_k_min=%.10g",
+    fprintf(f, "--set rule_on=1 --set rule_rate=%.10g --set rule_n=%ld --set rule_k_min=%.10g",
             si(rule->rate_Hz_q8, 8), (long)rule->knots, si(rule->k_min_Npm_q10, EXH_Q_K));
     for (int i = 0; i < rule->knots; i++) {
         fprintf(f, " --set rule_b%d=%.10g --set rule_k%d=%.10g", i,
