@@ -50,16 +50,21 @@ static int64_t half_a_code(void)
     return steepest + 4;
 }
 
-/* A drive of four knots, any encoder, any rate, any speed limit. 0 if set-up refuses it. */
-static int any_rig(int32_t on)
+static void defaults(int32_t on)
 {
     static const struct rig none;
-    struct exh_velocity_scale scale;
     rig = none;
     for (unsigned i = 0; i < EXH_DRIVE_ROWS; i++) {
         ((int32_t *)(void *)&rig.drive_par)[i] = exh_drive_rows[i].dflt;
     }
     rig.par.on = on;
+}
+
+/* A drive of four knots, any encoder, any rate, any speed limit. 0 if set-up refuses it. */
+static int any_rig(int32_t on)
+{
+    struct exh_velocity_scale scale;
+    defaults(on);
     rig.drive_par.f_max_N_q20 = check_i32_in(0, 100 * NEWTON);
     rig.drive_par.slew_down_Nps = 10000000;
     rig.drive_par.dac_rawpA_q16 = check_i32_in(EXH_Q(100, 1, 16), EXH_Q(2700, 1, 16));
@@ -264,6 +269,92 @@ TEST(missed_ticks_count_for_ticks)
     }
 }
 
+/* Every state of a small drive, f_max of 24 LSB and a way of 3 counts: of those that keep what docs/NUMERICS.md
+ * says of them, each step leads to one that does, whatever is moved, touched and asked. on = 2; on = 1 is
+ * the same with late = held and half the bound. */
+#define SMALL 24
+#define WAY   3
+#define BOUND (SMALL * WAY)
+
+static int may_be(const struct exh_passivity *s, int on)
+{
+    const int64_t e = s->energy_Ncnt_q20, debt = e < 0 ? e : 0;
+    const int32_t worst = s->held_N_q20 > s->late_N_q20 ? s->held_N_q20 : s->late_N_q20;
+    const int64_t next = BOUND + debt > 0 ? BOUND + debt : 0;
+    return s->held_N_q20 * WAY <= next && s->late_N_q20 <= SMALL &&
+           (on == 2 || s->late_N_q20 == s->held_N_q20) && e >= -on * BOUND &&
+           e - (int64_t)worst * WAY >= -on * BOUND;
+}
+
+static void small_rig(int on)
+{
+    const struct exh_velocity_scale scale = {EXH_Q(5, 100000, EXH_Q_STEP), {1, 1000}};
+    defaults(on);
+    rig.drive_par.f_max_N_q20 = SMALL;
+    for (int i = 0; i < 4; i++) { rig.to_cur[i].x = rig.to_cur[i].y = i << 24; } /* 1 to 1 */
+    CHECK_EQ_I64(exh_table_set(rig.to_cur, 4), 0);
+    CHECK_EQ_I64(exh_table_invert(rig.held, rig.to_cur, 4), 0);
+    CHECK_EQ_I64(exh_drive_setup(&rig.drive, &rig.drive_par, scale.T,
+                                 (struct exh_table){rig.to_cur, 4}, (struct exh_table){NULL, 0}),
+                 0);
+    CHECK_EQ_I64(exh_passivity_setup(&rig.cfg, &rig.par, &rig.drive,
+                                     (struct exh_table){rig.held, 4}, scale,
+                                     EXH_Q(1, 10, EXH_Q_VEL)),
+                 0);
+    CHECK_EQ_I64(rig.cfg.way_cnt, WAY);
+}
+
+/* One step from s; the state behind it may be again. 1 if the bound was come up to. */
+static int small_step(const struct exh_passivity *s, int moved, int touching, int32_t asked)
+{
+    struct exh_force_ledger f = {.spring_N_q20 = asked};
+    rig.s = *s;
+    (void)exh_passivity_step(&rig.s, &rig.cfg, moved, touching, &f);
+    f.force_N_q20 = exh_clamp(asked + f.passivity_N_q20, 0, SMALL);
+    exh_passivity_held(&rig.s, &rig.cfg, &f, f.force_N_q20);
+    if (!may_be(&rig.s, rig.par.on)) {
+        CHECK(0,
+              "on %d: e %" PRId64 ", held %" PRId32 ", late %" PRId32 ", moved %d, asked %" PRId32,
+              (int)rig.par.on, s->energy_Ncnt_q20, s->held_N_q20, s->late_N_q20, moved, asked);
+    }
+    return rig.s.energy_Ncnt_q20 == -rig.par.on * BOUND;
+}
+
+static uint32_t small_states(int on, int touched, uint32_t *attained)
+{
+    uint32_t n = 0;
+    struct exh_passivity s = {0, 0, 0, 0, (uint8_t)touched, 1};
+    for (s.energy_Ncnt_q20 = -on * BOUND; s.energy_Ncnt_q20 <= 40; s.energy_Ncnt_q20++) {
+        for (s.held_N_q20 = 0; s.held_N_q20 <= SMALL; s.held_N_q20++) {
+            for (s.late_N_q20 = 0; s.late_N_q20 <= SMALL; s.late_N_q20++) {
+                if (!may_be(&s, on)) { continue; }
+                for (int moved = -WAY; moved <= WAY; moved++) {
+                    for (int asked = 0; asked < 12; asked++, n++) {
+                        *attained +=
+                            (uint32_t)small_step(&s, moved, asked & 1, asked < 2 ? 0 : asked * 3);
+                    }
+                }
+            }
+        }
+    }
+    return n;
+}
+
+TEST(every_small_state_keeps_the_bound)
+{
+    uint32_t n = 0, attained = 0;
+    for (int on = 1; on <= 2; on++) {
+        uint32_t here = 0;
+        small_rig(on);
+        n += small_states(on, 0, &here) + small_states(on, 1, &here);
+        CHECK(here > 0, "on %d: nothing comes up to the bound", on);
+        attained += here;
+    }
+    check_note("%" PRIu32 " steps from every state of a small drive; %" PRIu32
+               " end at the bound, none beyond",
+               n, attained);
+}
+
 TEST_MAIN("passivity", no_contact_gives_out_more_than_the_bound, the_worst_turn_comes_up_to_it,
           late_outputs_come_up_to_twice_that, the_limit_is_never_above_and_hardly_below,
-          missed_ticks_count_for_ticks);
+          missed_ticks_count_for_ticks, every_small_state_keeps_the_bound);
