@@ -30,7 +30,7 @@ void pc104_link_report(void)
 {
 }
 
-/* Nobody is there. */
+/* Nobody is there. Each port has these of its own: it is copied and read without the others. */
 int exh_board_link_send(const void *buf, size_t len_B)
 {
     (void)buf;

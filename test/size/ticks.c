@@ -27,6 +27,7 @@ int exh_board_read_glove(struct exh_glove_in *in)
     return 0;
 }
 
+/* Nor is anybody at a link. These are no port's, so that what is counted holds nothing of one. */
 int exh_board_link_send(const void *buf, size_t len_B)
 {
     (void)buf;
