@@ -27,8 +27,8 @@ static int on;
 static void lines(void)
 {
     const unsigned held = ticks % HOLD_TICKS >= OPEN_TICKS ? 4 : 0;
-    box.pins.din[0] = (uint8_t)(EXH_SCENE.fingers > 1 ? 0xF : 3 | held);
-    box.pins.din[1] = (uint8_t)(3 | held);
+    box.pins.din[0] = (uint8_t)(EXH_SCENE.fingers > 1 ? 0xF : 0xB | held);
+    box.pins.din[1] = (uint8_t)(0xB | held);
 }
 
 static void power_on(void)
