@@ -11,6 +11,8 @@
 #define ARM_MAX_MS     1000
 #define RAMP_MAX_MS    5000
 #define RELEASE_MIN_MS 5
+#define SLOW_HZ        500 /* below it a release has no more than                */
+#define SLOW_TICKS     4
 #define RELEASE_MAX_MS 18 /* and the tick that sees it, at 500 Hz: 20            */
 #define FULL_Q30       (INT32_C(1) << 30)
 
@@ -57,6 +59,9 @@ int exh_safety_setup(struct exh_safety_cfg *cfg, const struct exh_safety_par *pa
     cfg->ramp_q30 = (int32_t)exh_udiv64(FULL_Q30 + ramp_ticks - 1, ramp_ticks, NULL);
     cfg->release_ticks = ticks_in(par->release_ms, T);
     if (cfg->release_ticks < 3) { cfg->release_ticks = 3; }
+    if (cfg->release_ticks > SLOW_TICKS && T.den < (uint64_t)SLOW_HZ * T.num) {
+        cfg->release_ticks = SLOW_TICKS;
+    }
     return exh_gain_set(&cfg->fall, 1, cfg->release_ticks);
 }
 

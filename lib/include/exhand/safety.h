@@ -108,7 +108,7 @@ struct exh_safety_par {
     int32_t arm_force_N_q20; /* small force, N, 0.1 .. 10                      */
     int32_t arm_ms;          /* for as long, ms, 1 .. 1000, and 2 ticks        */
     int32_t ramp_ms;         /* 0 to f_max, ms, 1 .. 5000                      */
-    int32_t release_ms;      /* force held to 0, ms, 5 .. 18; 3 ticks at least */
+    int32_t release_ms;      /* force held to 0, ms, 5 .. 18; 3 ticks at least, below 500 Hz 4 at most */
 };
 #define EXH_SAFETY_ROWS 5
 extern const struct exh_signal exh_safety_rows[EXH_SAFETY_ROWS];
@@ -118,7 +118,7 @@ struct exh_safety_cfg {
     int32_t small_N_q20;
     uint32_t arm_ticks;     /* arm_time, rounded up, 2 at least                */
     int32_t ramp_q30;       /* share of the force limit gained a tick          */
-    uint32_t release_ticks; /* release_time, rounded down, 3 at least          */
+    uint32_t release_ticks; /* release_time, rounded down, 3 at least, below 500 Hz 4 at most */
     struct exh_gain fall;   /* 1 / release_ticks                               */
 };
 

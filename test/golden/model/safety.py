@@ -33,6 +33,8 @@ class Safety:
         ticks = [ms * T[1] // (1000 * T[0]) for ms in (arm, ramp, release)]
         self.late_max, self.arm_ticks = LATE * most, max(2, ticks[0] + 1)
         self.ramp, self.release_ticks = -(-FULL // (ticks[1] + 1)), max(3, ticks[2])
+        if T[1] < 500 * T[0]:
+            self.release_ticks = min(4, self.release_ticks)
         self.fall = gain(1, self.release_ticks)
         self.present = self.faults = self.first = self.first_tick = self.tick = 0
         self.missed = self.late = self.limits = self.refusals = self.steps = self.share = 0
