@@ -27,6 +27,7 @@ UNITS = {
     "drive": ("force and current", "lib/src/drive.c",
               ["no_force", "release", "exh_drive_force", "i2t_limit", "exh_drive_current"]),
     "track": ("current tracking", "lib/src/track.c", ["exh_track_step", "exh_track_coded"]),
+    "passivity": ("energy", "lib/src/passivity.c", []),
     "safety": ("state of the box", "lib/src/safety.c", []),
 }
 
@@ -49,6 +50,7 @@ MUTANTS = [
     ("drive", "eva", "lib/src/drive.c", "exh_wrap_add64(f->spring_N_q20, f->damper_N_q20)",
      "f->spring_N_q20 + f->damper_N_q20"),
     ("track", "wp", "lib/src/track.c", "s->off_ticks >= cfg->ticks", "s->off_ticks > cfg->ticks"),
+    ("passivity", "eva", "lib/src/passivity.c", "= limited(e);", "= e;"),
     ("safety", "eva", "lib/src/safety.c", "if (!sane(s)) {", "if (0) {"),
 ]
 

@@ -5,6 +5,8 @@ written here is the expression, not the source: the sources are judged by eva/ a
 """
 import z3
 
+import smt_passivity
+
 MS = 60000
 
 
@@ -93,4 +95,4 @@ def release_step_is_bounded():
 
 
 LEMMAS = [shr_is_floor, from_u64_keeps_bits, wrapped_sum_is_the_sum, gain_floor_is_no_more, share_of_limit,
-          release_ends, release_step_is_bounded]
+          release_ends, release_step_is_bounded] + smt_passivity.LEMMAS
