@@ -3,6 +3,7 @@
 #include "said.h"
 
 #include "cli/logfile.h"
+#include "cli/param.h"
 #include "cli/run.h"
 #include "posix.h"
 
@@ -12,7 +13,7 @@
 #include "exhand/record.h"
 
 struct held { /* of a dump, by reading it                                       */
-    uint64_t first, last; /* ticks of its first keyframe and its last frame     */
+    int64_t first, last; /* ticks of its first keyframe and its last frame     */
     uint32_t frames, keyframes, damaged, gaps;
     int32_t c; /* contact in the first frame                                    */
     struct exh_event froze;
@@ -30,7 +31,7 @@ static struct held read_dump(const char *path)
     while (logfile_next(&l, &r)) {
         if (type == 0) {
             CHECK_EQ_I64(r.type, EXH_RECORD_KEYFRAME);
-            h.first = l.tick;
+            h.first = (int64_t)l.tick;
         }
         type = r.type;
         h.keyframes += r.type == EXH_RECORD_KEYFRAME;
@@ -47,8 +48,8 @@ static struct held read_dump(const char *path)
             struct exh_drive_out out;
             exh_log_frame_bytes(&c, l.scene, &in, &out, (int32_t *)&sig);
             if (h.frames++ == 0) { h.c = sig.c; }
-            CHECK(h.frames == 1 || l.tick == h.last + 1, "a frame is missing");
-            h.last = l.tick;
+            CHECK(h.frames == 1 || (int64_t)l.tick == h.last + 1, "a frame is missing");
+            h.last = (int64_t)l.tick;
         }
     }
     h.damaged = l.damaged;
@@ -92,12 +93,12 @@ TEST(a_dump_ends_behind_the_fault_and_replays_to_it)
         const struct run_cfg c = three_falls(rate_Hz[i], path, 0, 1.7);
         const uint32_t after = rate_Hz[i] / 20 + 1 > 8 ? rate_Hz[i] / 20 + 1 : 8;
         const struct held h = run_and_read(&c);
-        const uint64_t fault = h.last - h.froze.instance;
+        const int64_t fault = h.last - h.froze.instance;
         CHECK(h.ended && h.damaged == 0 && h.gaps == 0, "%lu Hz: %lu damaged, %lu gaps",
               (unsigned long)rate_Hz[i], (unsigned long)h.damaged, (unsigned long)h.gaps);
         CHECK_EQ_I64(h.froze.value, EXH_FAULT_DEADMAN);
         CHECK_EQ_I64(h.froze.instance, after);
-        CHECK(fault >= 17 * rate_Hz[i] / 10 && fault <= 17 * rate_Hz[i] / 10 + 1,
+        CHECK(fault >= 17 * (int64_t)rate_Hz[i] / 10 && fault <= 17 * (int64_t)rate_Hz[i] / 10 + 1,
               "fault at tick %lu of %lu Hz", (unsigned long)fault, (unsigned long)rate_Hz[i]);
         CHECK_EQ_I64(replay(path, NULL), 0);
     }
@@ -300,8 +301,206 @@ TEST(another_fault_than_told_is_told)
     said_clean(dir);
 }
 
+/* --- the hooks alone, tick by tick --- */
+
+static uint8_t memory[65536];
+
+static void start_box(int is_alone)
+{
+    const struct exh_scene_board board = {{1, 500}, 24};
+    exh_scene_drop.defaults();
+    CHECK_EQ_I64(exh_scene_drop.setup(board), 0);
+    exh_scene_drop.params->locked = 1;
+    exh_blackbox_memory(memory, sizeof memory, is_alone);
+    exh_blackbox_start(&exh_scene_drop, board);
+    CHECK_EQ_I64(exh_blackbox_is().state, EXH_BLACKBOX_RECORDS);
+}
+
+static void one_tick(uint32_t tick, uint32_t open)
+{
+    struct exh_scene_in in = {.drive.din = ~open,
+                              .command = tick == 0 ? EXH_CMD_RUN : EXH_CMD_NONE};
+    struct exh_drive_out out;
+    exh_blackbox_before(tick, &in);
+    exh_params_apply(exh_scene_drop.params);
+    exh_scene_drop.tick(&in, &out);
+    exh_blackbox_after(tick, &in, &out);
+}
+
+/* All of it, in pieces of another length each time. */
+static size_t read_all(uint8_t *to, size_t cap)
+{
+    size_t n = 0;
+    for (uint32_t piece = 1; n + piece < cap; piece = piece % 300 + 7) {
+        const uint32_t k = exh_blackbox_read(to + n, piece);
+        CHECK(k <= piece, "%lu of %lu", (unsigned long)k, (unsigned long)piece);
+        if (k == 0) { return n; }
+        n += k;
+    }
+    CHECK(0, "endless");
+    return n;
+}
+
+TEST(later_faults_are_counted_and_record_nothing_over)
+{
+    const char *path = log_path();
+    struct held h;
+    uint32_t tick = 0;
+    size_t n;
+    start_box(1);
+    for (; tick < 200; tick++) { one_tick(tick, 0); }
+    one_tick(tick++, EXH_DIN_DEADMAN); /* tick 200 */
+    for (; tick < 210; tick++) { one_tick(tick, EXH_DIN_DEADMAN); }
+    one_tick(tick++, EXH_DIN_DEADMAN | EXH_DIN_ESTOP); /* while it runs on */
+    for (; tick < 300; tick++) { one_tick(tick, EXH_DIN_DEADMAN); }
+    CHECK_EQ_I64(exh_blackbox_is().state, EXH_BLACKBOX_FROZEN);
+    one_tick(tick++, EXH_DIN_DEADMAN | EXH_DIN_CARDS); /* frozen */
+    for (; tick < 5000; tick++) { one_tick(tick, EXH_DIN_DEADMAN); }
+    CHECK_EQ_I64(exh_blackbox_is().later, 2);
+    CHECK_EQ_I64(exh_blackbox_is().cause, EXH_FAULT_DEADMAN);
+    CHECK_EQ_I64(exh_blackbox_is().tick, 200);
+    n = read_all(dump, sizeof dump);
+    spill(path, dump, n);
+    h = read_dump(path);
+    CHECK_EQ_I64(h.last, 226);
+    CHECK_EQ_I64(h.froze.id, 2);
+    CHECK_EQ_I64(h.froze.instance, 26);
+    CHECK_EQ_I64(replay(path, NULL), 0);
+    /* It was read: it begins anew, and the next fault is another dump. */
+    CHECK_EQ_I64(exh_blackbox_is().state, EXH_BLACKBOX_RECORDS);
+    for (; tick < 5100; tick++) { one_tick(tick, EXH_DIN_DEADMAN); }
+    one_tick(tick++, EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG);
+    for (; tick < 5200; tick++) { one_tick(tick, EXH_DIN_DEADMAN); }
+    n = read_all(dump, sizeof dump);
+    spill(path, dump, n);
+    h = read_dump(path);
+    CHECK_EQ_I64(h.first, 5001); /* the keyframe behind the first tick */
+    CHECK_EQ_I64(h.froze.value, EXH_FAULT_WATCHDOG);
+    CHECK_EQ_I64(h.last - h.froze.instance, 5100);
+    CHECK_EQ_I64(replay(path, NULL), 0);
+    exh_blackbox_memory(NULL, 0, 0);
+    exh_log_tap(NULL, 0);
+    remove(path);
+}
+
+/* Not those of the start: they were changed on the way. */
+TEST(the_header_has_the_parameters_of_the_fault)
+{
+    const char *path = log_path();
+    struct exh_params *p = exh_scene_drop.params;
+    uint32_t index = 0;
+    struct logfile l;
+    const struct exh_signal *row;
+    int32_t dflt;
+    start_box(1);
+    row = cli_signal_find(p->table, "k", &index);
+    dflt = p->active[index];
+    for (uint32_t tick = 0; tick < 200; tick++) {
+        if (tick == 50) { CHECK(exh_params_stage(p, row->id, 0, dflt + 4711) >= 0, "k"); }
+        one_tick(tick, tick < 100 ? 0 : EXH_DIN_DEADMAN);
+    }
+    spill(path, dump, read_all(dump, sizeof dump));
+    CHECK_EQ_I64(replay(path, NULL), 0);
+    CHECK_EQ_I64(logfile_open(&l, path), 0);
+    exh_scene_drop.defaults();
+    CHECK_EQ_I64(p->active[index], dflt);
+    CHECK_EQ_I64(exh_params_load(p, l.params, l.params_len, NULL), 0);
+    CHECK_EQ_I64(p->staged[index], dflt + 4711);
+    logfile_close(&l);
+    exh_blackbox_memory(NULL, 0, 0);
+    exh_log_tap(NULL, 0);
+    remove(path);
+}
+
+/* A box that ends for another reason: what it held is there all the same; a run that ends well has none. */
+TEST(a_halted_box_can_be_read)
+{
+    const char *path = log_path();
+    struct held h;
+    start_box(1);
+    for (uint32_t tick = 0; tick < 700; tick++) { one_tick(tick, 0); }
+    exh_blackbox_stop(0);
+    CHECK(read_all(dump, sizeof dump) == 0, "a dump of nothing");
+    exh_blackbox_stop(1);
+    spill(path, dump, read_all(dump, sizeof dump));
+    h = read_dump(path);
+    CHECK_EQ_I64(h.last, 699);
+    CHECK_EQ_I64(h.froze.value, 0);
+    CHECK_EQ_I64(replay(path, NULL), 0);
+    exh_blackbox_memory(NULL, 0, 0);
+    exh_log_tap(NULL, 0);
+    remove(path);
+}
+
+/* --- the command --- */
+
+/* Each of these behind the one before, in one text. */
+static void in_order(const char *text, const char *const *word, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        const char *at = strstr(text, word[i]);
+        CHECK(at != NULL, "no '%s' (behind the ones before) in %s", word[i], text);
+        if (at == NULL) { return; }
+        text = at;
+    }
+}
+
+TEST(the_timeline_tells_what_happened_in_order)
+{
+    static const char *const want[] = {
+        "scene drop on posix, a tick is 1/500 s",
+        "command: run",
+        "state: arm",
+        "arming: small_force",
+        "arming: ramp",
+        "contact begins",
+        "dead-man switch: let go",
+        "FAULT deadman: the dead-man switch was let go",
+        "-> release",
+        "limit release",
+        "state: release -> fault",
+        "the black box froze for deadman, 26 ticks behind it; 0 causes came later",
+        "end of the log, 0 records lost",
+        "fault deadman at tick 850, as recorded",
+        "identical"};
+    const char *path = log_path(), *dir = said_dir();
+    static struct said s;
+    const struct run_cfg c = three_falls(500, path, 0, 1.7);
+    (void)run_and_read(&c);
+    said(&s, dir, cli_replay, WORDS("replay", "--timeline", path));
+    CHECK_EQ_I64(s.status, 0);
+    in_order(s.out, want, sizeof want / sizeof want[0]);
+    remove(path);
+    said_clean(dir);
+}
+
+TEST(dumps_stand_beside_the_log_and_bad_usage_is_refused)
+{
+    const char *dir = said_dir();
+    static struct said s;
+    said(&s, dir, cli_drop,
+         WORDS("drop", "--rate", "500", "--falls", "1", "--let-go", "1.7", "--out", dir));
+    CHECK(s.status == 1 && strstr(s.err, "black box: fault deadman at tick 850"), "%d: %s",
+          s.status, s.err);
+    said(&s, dir, cli_replay, WORDS("replay", said_path(dir, "drop_500Hz_fault.exh")));
+    CHECK(s.status == 0 && strstr(s.out, "fault deadman at tick 850, as recorded"), "%d: %s",
+          s.status, s.err);
+    said(&s, dir, cli_drop, WORDS("drop", "--rate", "500", "--falls", "1", "--out", dir));
+    CHECK(said_size(said_path(dir, "drop_500Hz_fault.exh")) < 0, "an earlier run's dump stays");
+    said(&s, dir, cli_drop, WORDS("drop", "--rate", "500,1000", "--blackbox", said_path(dir, "x")));
+    CHECK(s.status == 2 && strstr(s.err, "--blackbox"), "%d: %s", s.status, s.err);
+    said(&s, dir, cli_bilateral, WORDS("bilateral", "--blackbox", said_path(dir, "x")));
+    CHECK(s.status == 2 && strstr(s.err, "--blackbox"), "%d: %s", s.status, s.err);
+    said(&s, dir, cli_replay, WORDS("replay", "--help"));
+    CHECK(s.status == 0 && strstr(s.out, "--timeline"), "%d: %s", s.status, s.out);
+    said_clean(dir);
+}
+
 TEST_MAIN("blackbox", a_dump_ends_behind_the_fault_and_replays_to_it,
           a_dump_that_begins_in_a_contact_replays_from_its_first_keyframe,
           the_log_is_the_same_with_a_black_box_beside_it, a_damaged_dump_is_told,
           forged_records_are_harmless, words_before_and_behind_a_dump_are_no_damage,
-          another_fault_than_told_is_told);
+          another_fault_than_told_is_told, later_faults_are_counted_and_record_nothing_over,
+          the_header_has_the_parameters_of_the_fault, a_halted_box_can_be_read,
+          the_timeline_tells_what_happened_in_order,
+          dumps_stand_beside_the_log_and_bad_usage_is_refused);

@@ -197,36 +197,48 @@ static int on_event(struct replay *p, const struct exh_record *r)
     return 0;
 }
 
-/* What a black box says of itself stands at its end. */
-static void foretell(struct replay *p, const struct exh_record *r)
+/* What a black box says of itself stands at its end. 1: it is one. */
+static int foretell(struct replay *p, const struct exh_record *r)
 {
     struct exh_bytes c = exh_bytes_reader(r->payload, r->len_B);
     struct exh_event e;
     exh_event_bytes(&c, &e);
-    if (exh_bytes_ok(&c) && e.type == EXH_EVENT_FROZE && e.value != 0 && e.instance < UINT16_MAX) {
+    if (!exh_bytes_ok(&c) || e.type != EXH_EVENT_FROZE) { return 0; }
+    if (e.value != 0 && e.instance < UINT16_MAX) {
         p->foretold = 1;
         p->foretold_cause = (uint32_t)e.value;
         p->foretold_tick = p->log.tick - 1 - e.instance;
     }
+    return 1;
 }
 
-/* Where to start: the last keyframe at or before the tick asked for; asked for none, the beginning,
- * or where no frame stands before the first keyframe (a dump), that. 0 when there is none. */
+/* Where to start: the last keyframe at or before the tick asked for. Asked for none: the beginning; of a
+ * dump, and of a log that begins with a later one, the first keyframe: a dump's header has the
+ * parameters of its end. 0 when there is none. */
 static int find_start(struct replay *p)
 {
     const uint32_t begin = p->log.at;
     struct exh_record r;
-    int found = 0, frames = 0;
+    int found = 0, frames = 0, first = 0, dump = 0;
+    uint64_t first_tick = 0;
     while (logfile_next(&p->log, &r)) {
-        if (r.type == EXH_RECORD_EVENT) { foretell(p, &r); }
+        if (r.type == EXH_RECORD_EVENT) { dump |= foretell(p, &r); }
         frames |= r.type == EXH_RECORD_FRAME;
         if (r.type != EXH_RECORD_KEYFRAME) { continue; }
-        if (p->from == 0 ? !found && !frames && p->log.tick > 0 : p->log.tick <= p->from) {
+        if (!first && !frames) {
+            first = 1;
+            first_tick = p->log.tick;
+        }
+        if (p->from != 0 && p->log.tick <= p->from) {
             p->start = p->log.tick;
             found = 1;
         }
     }
     logfile_rewind(&p->log, begin);
+    if (p->from == 0 && first && (dump || first_tick > 0)) {
+        p->start = first_tick;
+        found = 1;
+    }
     p->running = p->from == 0 && !found;
     return found || p->running;
 }
