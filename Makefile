@@ -25,6 +25,17 @@ version := $(shell awk '/define EXH_VERSION_(MAJOR|MINOR|PATCH)/{v=v s $$3; s=".
 Q       := $(if $(V),,@)
 out     := $(B)/$(PORT)
 
+# A job a core, unless -j says otherwise. What is built by a make of ours says what it has to in one piece.
+MAKEFLAGS += $(if $(filter 0,$(MAKELEVEL)),-j$(or $(shell nproc 2>/dev/null),1),$(if $(filter output-sync,$(.FEATURES)),-O))
+jobs       = $(or $(patsubst -j%,%,$(filter -j%,$(MAKEFLAGS))),1)
+
+# These call make for what they need, or take it away: two at a time would write the same files.
+callers := all test demo run image coverage stress test-i686 mutants fuzz hil hil-built strangers linux-program boot boot-built \
+           contract contract-built nic nic-built world two-computers bench-world bench size cards install diagrams clean check
+ifneq ($(and $(filter $(callers),$(MAKECMDGOALS)),$(word 2,$(MAKECMDGOALS))),)
+.NOTPARALLEL:
+endif
+
 # The library is C99 without extensions; the strictest warnings from day one.
 warn := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wcast-align -Wcast-qual \
         -Wstrict-prototypes -Wmissing-prototypes -Wundef -Wwrite-strings -Wpointer-arith \
@@ -194,7 +205,11 @@ world:
 .PHONY: two-computers
 two-computers:
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(exhand) $(world)
-	@test/world/two_computers.sh $(exhand) $(world)
+	@$(two_run)
+two_run = test/world/two_computers.sh $(exhand) $(world)
+.PHONY: two-run
+two-run:
+	@$(two_run)
 
 $(B)/bench/rays: $(B)/posix/test/world/rays.o $(world_core_obj) $(world_mesh)
 	@mkdir -p $(@D)
@@ -217,7 +232,7 @@ fit: all
 # --- tests ----------------------------------------------------------------------
 
 san       := -fsanitize=address,undefined -fno-sanitize-recover=all
-test_dirs := unit prop cards emu pc104 sim board golden world
+test_dirs := golden sim prop world cards emu pc104 board unit # in this order: long ones first
 test_src  := $(foreach d,$(test_dirs),$(wildcard test/$(d)/*_test.c))
 test_bin  := $(test_src:test/%_test.c=$(B)/test/%_test)
 tflags     = $(base) $(CFLAGS) -Itest -DEXH_FIX_AUDIT
@@ -295,7 +310,7 @@ $(B)/test/golden/golden_test: $(golden_src:%.c=$(B)/posix/%.o) $(B)/posix/test/s
 test:
 	@.ci/deps "the tests" "$(CC) $(foreach h,stdarg stddef setjmp stdint cmocka,-include $h.h) -fsyntax-only -xc /dev/null" libcmocka-dev || exit 3
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(test_bin)
-	@test/run.sh $(test_bin)
+	@JOBS=$(jobs) test/run.sh $(test_bin)
 
 ## Intervals of the analysis over 10^4 synthetic runs: coverage, and bias to k
 .PHONY: coverage
@@ -336,36 +351,38 @@ mutants: $(B)/test/golden/golden_test
 # The library's tests again for a 32-bit CPU, where there is no CMocka: own printer. What overflows
 # there and not in 64 bits traps.
 trap := -fsanitize=undefined -fsanitize-undefined-trap-on-error
-plain_bin := $(patsubst test/%_test.c,$(B)/i686/%_test,$(filter test/unit/% test/prop/% test/emu/%,$(test_src)))
-$(filter $(B)/i686/emu/%,$(plain_bin)): $(emu_src) $(wildcard test/emu/*.h test/emu/*.inc ports/posix/emu/*.h)
-$(plain_bin): $(B)/i686/%_test: test/%_test.c test/support.c $(lib_src) $(wildcard test/*.h lib/include/exhand/*.h lib/src/*.h) \
-              $(stamp)
-	@mkdir -p $(@D)
-	$(Q)i686-linux-gnu-gcc -static $(filter-out -MMD -MP,$(tflags)) $(trap) -D_POSIX_C_SOURCE=200809L \
-	    -DEXH_CHECK_PLAIN -o $@ $(filter %.c,$^)
+i686_cc   := i686-linux-gnu-gcc
+i686_base := -D_POSIX_C_SOURCE=200809L -DEXH_CHECK_PLAIN
+i686_dirs := golden prop unit cards emu pc104
+i686_bin  := $(foreach d,$(i686_dirs),$(patsubst test/%_test.c,$(B)/i686/%_test,$(filter test/$(d)/%,$(test_src))))
 
-cards_bin := $(patsubst test/%_test.c,$(B)/i686/%_test,$(filter test/cards/%,$(test_src)))
-$(cards_bin): $(B)/i686/%_test: test/%_test.c test/cards/bus.c test/cards/rig.c test/support.c $(cards_src) $(lib_src) \
-              $(wildcard test/*.h test/cards/*.h ports/cards/*.h lib/include/exhand/*.h) $(stamp)
+$(B)/i686/trap/%.o: %.c $(stamp)
 	@mkdir -p $(@D)
-	$(Q)i686-linux-gnu-gcc -static $(filter-out -MMD -MP,$(tflags)) $(trap) -Iports -D_POSIX_C_SOURCE=200809L \
-	    -DEXH_CHECK_PLAIN -o $@ $(filter %.c,$^)
+	$(Q)$(i686_cc) $(tflags) $(trap) $(i686_base) -c $< -o $@
+$(B)/i686/test/cards/%.o $(B)/i686/trap/test/cards/%.o $(B)/i686/trap/ports/cards/%.o: tflags += -Iports
+$(B)/i686/trap/test/pc104/%.o $(B)/i686/trap/ports/pc104/%.o: tflags += -Iports -Itest/pc104
+i686_lib   := $(patsubst %.c,$(B)/i686/trap/%.o,$(lib_src) test/support.c)
+i686_cards := $(patsubst %.c,$(B)/i686/trap/%.o,$(cards_src) test/cards/bus.c test/cards/rig.c)
+i686_emu   := $(emu_src:%.c=$(B)/i686/trap/%.o)
+i686_net   := $(patsubst $(B)/test/san/%,$(B)/i686/trap/%,$(filter-out %/stream.o,$(pc104_net)))
+$(filter $(B)/i686/cards/%,$(i686_bin)): $(i686_cards)
+$(filter $(B)/i686/emu/%,$(i686_bin)): $(i686_emu)
+$(filter $(B)/i686/pc104/%,$(i686_bin)): $(i686_net)
+$(filter-out $(B)/i686/golden/%,$(i686_bin)): $(B)/i686/%_test: $(B)/i686/trap/test/%_test.o $(i686_lib)
+	@mkdir -p $(@D)
+	$(Q)$(i686_cc) -static $(trap) -o $@ $^
 
-net_bin := $(B)/i686/pc104/net_test
-$(net_bin): test/pc104/net_test.c test/pc104/frames.c ports/pc104/net.c test/support.c $(wildcard test/*.h test/pc104/*.h ports/pc104/net.h) $(stamp)
+# Golden vectors: as they are shipped.
+$(B)/i686/plain/%.o: %.c $(stamp)
 	@mkdir -p $(@D)
-	$(Q)i686-linux-gnu-gcc -static $(filter-out -MMD -MP,$(tflags)) $(trap) -Iports -Itest/pc104 -D_POSIX_C_SOURCE=200809L \
-	    -DEXH_CHECK_PLAIN -o $@ $(filter %.c,$^)
-
-$(B)/i686/golden/golden_test: $(golden_src) test/support.c $(lib_src) $(wildcard test/*.h test/golden/*.h \
-                              test/golden/digest/*.inc lib/include/exhand/*.h) $(stamp)
+	$(Q)$(i686_cc) $(base) $(CFLAGS) -Itest $(i686_base) -c $< -o $@
+$(B)/i686/golden/golden_test: $(patsubst %.c,$(B)/i686/plain/%.o,$(golden_src) test/support.c $(lib_src))
 	@mkdir -p $(@D)
-	$(Q)i686-linux-gnu-gcc -static $(filter-out -MMD -MP,$(base) $(CFLAGS)) -Itest -D_POSIX_C_SOURCE=200809L \
-	    -DEXH_CHECK_PLAIN -o $@ $(filter %.c,$^)
+	$(Q)$(i686_cc) -static -o $@ $^
 
 .PHONY: test-i686
-test-i686: $(plain_bin) $(cards_bin) $(net_bin) $(B)/i686/golden/golden_test
-	@EXH_CASES=100000 test/run.sh $^
+test-i686: $(i686_bin)
+	@JOBS=$(jobs) EXH_CASES=100000 test/run.sh $^
 
 # --- anything into the packet parser ------------------------------------------------------
 
@@ -395,8 +412,8 @@ fuzz:
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(B)/fuzz/plain $(B)/fuzz/$(FUZZER) $(B)/fuzz/net$(if $(filter libfuzzer,$(FUZZER)),-libfuzzer)
 	@$(B)/fuzz/plain --check test/fuzz/corpus
 ifeq ($(FUZZER),plain)
-	@cd $(B)/fuzz && $(abspath $(B))/fuzz/plain $(FUZZ_SECONDS) $(FUZZ_SEED) $(CURDIR)/test/fuzz/corpus
-	@cd $(B)/fuzz && ./net $(FUZZ_SECONDS) $(FUZZ_SEED)
+	@cd $(B)/fuzz && { ./net $(FUZZ_SECONDS) $(FUZZ_SEED) & } && \
+	    ./plain $(FUZZ_SECONDS) $(FUZZ_SEED) $(CURDIR)/test/fuzz/corpus; packets=$$?; wait $$! && exit $$packets
 else
 	@mkdir -p $(B)/fuzz/found && cd $(B)/fuzz && ./libfuzzer -max_total_time=$(FUZZ_SECONDS) -max_len=1024 \
 	    -print_final_stats=1 found $(CURDIR)/test/fuzz/corpus
@@ -430,14 +447,18 @@ $(B)/test/hil: $(hil_obj) $(filter-out %/main.o,$(cli_obj)) $(sim_obj) $(B)/posi
 hil_inside := PORT=pc104 CARDS=inside cards_inside="$(wildcard ports/cards/*.c) $(emu_src) test/hil/inside/inside.c"
 
 ## The pc104 images in closed loop under processor emulators (HIL_TICKS=1000000 HIL_FEW=10000 HIL_QEMU=100000)
-.PHONY: hil
-hil:
+.PHONY: hil hil-built hil-run
+hil: hil-built
+	@$(hil_run)
+hil-built:
 	@B=$(B) test/hil/unicorn.sh
 	@for t in i686-linux-gnu-gcc qemu-system-i386; do .ci/deps "the pc104 image" $$t gcc-i686-linux-gnu qemu-system-x86 || exit 3; done
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(B)/test/hil $(exhand)
 	@for s in minimal drop bilateral slow contract; do $(MAKE) --no-print-directory $(if $(V),,-s) PORT=pc104 SCENE=$$s all || exit 1; done
 	@for s in drop bilateral contract; do $(MAKE) --no-print-directory $(if $(V),,-s) $(hil_inside) SCENE=$$s all || exit 1; done
-	@B=$(B) TICKS=$(HIL_TICKS) FEW=$(HIL_FEW) QEMU=$(HIL_QEMU) test/hil/hil.sh $(ARGS)
+hil_run = B=$(B) TICKS=$(HIL_TICKS) FEW=$(HIL_FEW) QEMU=$(HIL_QEMU) test/hil/hil.sh $(ARGS)
+hil-run:
+	@$(hil_run)
 
 # --- strangers' drivers ---------------------------------------------------------------------
 
@@ -495,55 +516,73 @@ undef-cortex-m3 undef-cortex-m0: undef-%:
 check_tools := clang i686-linux-gnu-gcc arm-none-eabi-gcc qemu-system-i386 qemu-system-arm valgrind python3
 check_pkgs  := clang gcc-i686-linux-gnu libc6-dev-i386-cross gcc-arm-none-eabi qemu-system-x86 qemu-system-arm valgrind python3
 
-## What CI runs: test, other compilers and CPUs, the pc104 image, sizes, costs
+## What CI runs after `test`: other compilers and CPUs, mutants, the pc104 image, sizes, costs
 .PHONY: check
 check: export WERROR = 1
 check:
 	@for t in $(check_tools); do .ci/deps "the checks" $$t $(check_pkgs) || exit 3; done
-	@$(MAKE) --no-print-directory all test
-	@$(MAKE) --no-print-directory test-i686
-	@$(MAKE) --no-print-directory golden ARGS="--check --every 40"
-	@$(MAKE) --no-print-directory mutants
-	@$(MAKE) --no-print-directory fuzz
-	@$(MAKE) --no-print-directory demo > $(B)/demo.txt && tail -n 40 $(B)/demo.txt
-	@$(MAKE) --no-print-directory $(variants:%=variant-%)
-	@$(MAKE) --no-print-directory -s linux-program
-	@$(MAKE) --no-print-directory $(patsubst %,golden-%,$(filter-out i686%,$(variants)))
-	@test/sim/bits.sh $(B)/bits $(B)/demo $(variants:%=$(B)/variant/%/posix/exhand)
-	@$(MAKE) --no-print-directory undef undef-cortex-m3 undef-cortex-m0
-	@$(MAKE) --no-print-directory PORT=pc104 SCENE=minimal undef-emu
-	@$(MAKE) --no-print-directory PORT=template SCENE=minimal all
-	@$(MAKE) --no-print-directory PORT=pc104 SCENE=minimal undef
-	@$(MAKE) --no-print-directory boot contract nic
-	@$(MAKE) --no-print-directory hil HIL_TICKS=2000 HIL_FEW=500 HIL_QEMU=2000 > $(B)/hil.txt || { cat $(B)/hil.txt; exit 1; }
+	@$(timed) all
+	@$(timed) test-i686
+	@$(timed) golden ARGS="--check --every 40"
+	@$(timed) mutants ARGS="--some 4"
+	@$(timed) fuzz
+	@$(timed) demo > $(B)/demo.txt && tail -n 40 $(B)/demo.txt
+	@$(timed) $(variants:%=variant-%)
+	@$(timed) linux-program
+	@$(timed) $(patsubst %,golden-%,$(filter-out i686%,$(variants)))
+	@$(timed) bits
+	@$(timed) undef undef-cortex-m3 undef-cortex-m0
+	@$(timed) PORT=pc104 SCENE=minimal undef undef-emu
+	@$(timed) PORT=template SCENE=minimal all
+	@$(timed) world boot-built contract-built nic-built hil-built
+	@$(timed) $(check_runs)
+	@$(timed) size
+	@$(timed) bench
+
+# What runs built images and programs, one core each: as many at a time as there are cores.
+check_runs := boot-run hil-short nic-run contract-run two-run picture
+.PHONY: hil-short picture bits
+hil-short:
+	@$(MAKE) --no-print-directory hil-run HIL_TICKS=2000 HIL_FEW=500 HIL_QEMU=2000 > $(B)/hil.txt || { cat $(B)/hil.txt; exit 1; }
 	@grep -cE '^  ok' $(B)/hil.txt | sed 's/^/hil, short: ok: /'
-	@$(MAKE) --no-print-directory world two-computers
+picture:
 	@$(world) --headless --script --seconds 1 --scene examples/world/scenes/collision.world --png $(B)/world.png || [ $$? = 3 ]
-	@$(MAKE) --no-print-directory size
-	@$(MAKE) --no-print-directory bench
+bits:
+	@JOBS=$(jobs) test/sim/bits.sh $(B)/bits $(B)/demo $(variants:%=$(B)/variant/%/posix/exhand)
+
+# A make of its own, and what it took.
+timed = +bash -c 'TIMEFORMAT="took: %0R s, %0U + %0S s of a core: $$*"; time "$$@"' make $(MAKE) --no-print-directory -s
 
 boot_scenes := minimal drop glove bilateral calibrate bringup
 
 ## Boot images of PORT=pc104 under QEMU, from an ISO too: what must end well, safe or refused
-.PHONY: boot
-boot: all
+.PHONY: boot boot-built boot-run
+boot: boot-built
+	@$(boot_run)
+boot-built: all
 	@.ci/deps "booting" qemu-system-i386 qemu-system-x86 || exit 3
 	@for c in real none; do for s in $(boot_scenes); do \
 	    $(MAKE) --no-print-directory $(if $(V),,-s) PORT=pc104 SCENE=$$s CARDS=$$c all || exit; done; done
 	@$(MAKE) --no-print-directory -s PORT=pc104 SCENE=drop CARDS=none image ARGS="ticks=500 k=1000 idle=spin"
-	@EXHAND=$(exhand) test/pc104/boot.sh $(B)/pc104
+boot_run = EXHAND=$(exhand) test/pc104/boot.sh $(B)/pc104
+boot-run:
+	@$(boot_run)
 
 contract_images := mps2/minimal mps2/contract mps2/contract_slow mps2/contract_fast mps2/overflow \
                    pc104/contract pc104/contract_slow pc104/overflow template/contract
 
 ## The port contract (test/board) and fault handlers on images under QEMU; `test` and `hil` run it too
-.PHONY: contract
-contract:
+.PHONY: contract contract-built contract-run
+contract: contract-built
+	@$(contract_run)
+contract-built:
 	@for t in arm-none-eabi-gcc qemu-system-arm i686-linux-gnu-gcc qemu-system-i386; do .ci/deps "the port contract" $$t \
 	    gcc-arm-none-eabi qemu-system-arm gcc-i686-linux-gnu qemu-system-x86 || exit 3; done
 	@for i in $(contract_images); do \
 	    $(MAKE) --no-print-directory $(if $(V),,-s) PORT=$${i%/*} SCENE=$${i#*/} CARDS=none all || exit; done
-	@test/board/contract.sh $(B)
+contract_run = test/board/contract.sh $(B)
+contract-run:
+	@$(contract_run)
 
 # The other end of the image's network cable, and the image with a log at its cards' connectors.
 $(B)/test/cable: test/pc104/cable.c test/pc104/frames.c test/pc104/frames.h ports/pc104/net.h $(stamp)
@@ -556,13 +595,17 @@ NIC_SPEEDS ?= natural
 NIC_APPROACHES ?= 1
 
 ## The pc104 image's network under QEMU: experiment, bad frames (NIC_FRAMES=1000000 NIC_SPEEDS=slow,natural,fast)
-.PHONY: nic
-nic: all
+.PHONY: nic nic-built nic-run
+nic: nic-built
+	@$(nic_run)
+nic-built: all
 	@for t in i686-linux-gnu-gcc qemu-system-i386; do .ci/deps "the pc104 image's network" $$t gcc-i686-linux-gnu qemu-system-x86 || exit 3; done
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(B)/test/cable $(world)
 	@for s in minimal drop bilateral; do $(MAKE) --no-print-directory $(if $(V),,-s) PORT=pc104 SCENE=$$s CARDS=none all || exit; done
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(nic_tape) all
-	@B=$(B) FRAMES=$(NIC_FRAMES) SPEEDS=$(NIC_SPEEDS) APPROACHES=$(NIC_APPROACHES) test/pc104/nic.sh $(or $(ARGS),ways bilateral flood dump)
+nic_run = B=$(B) FRAMES=$(NIC_FRAMES) SPEEDS=$(NIC_SPEEDS) APPROACHES=$(NIC_APPROACHES) test/pc104/nic.sh $(or $(ARGS),ways bilateral flood dump)
+nic-run:
+	@$(nic_run)
 
 # --- figures ------------------------------------------------------------------------
 

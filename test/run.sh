@@ -24,10 +24,13 @@ run_part()
     p=${p:-0} f=${f:-0}
     [ "$status" != 0 ] && [ "$f" = 0 ] && f=1 # died before it could say
     [ "$p$f" = 00 ] && f=1                    # ran nothing
-    printf '%-28s %4d passed %4d failed %4d s\n' "$name" "$p" "$f" $(($(date +%s) - start))
-    if [ "$f" = 0 ]; then grep '^  | ' "$log"; else cat "$log"; fi
+    { # in one piece, as others run beside it
+        printf '%-28s %4d passed %4d failed %4d s\n' "$name" "$p" "$f" $(($(date +%s) - start))
+        if [ "$f" = 0 ]; then grep '^  | ' "$log"; else cat "$log"; fi
+    } >"$log.said"
+    cat "$log.said"
     echo "$p $f" >>"$TALLY"
-    rm -f "$log"
+    rm -f "$log" "$log.said"
 }
 
 if [ "${1:-}" = --part ]; then

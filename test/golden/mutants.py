@@ -5,11 +5,15 @@ Each row names a module, a source and a text in it with another in its place. Th
 compiled and linked with the test's objects, the module is run at every rate, and the share of rates
 whose digest differs is printed. Below 95 %, a text that is not there, or a build that fails: exit 1.
 
-    mutants.py [MODULE...]     B, CC: where the test was built (build), the compiler (cc)
+    mutants.py [--some N] [--seed S] [MODULE...]     B, CC: where the test was built (build), the compiler (cc)
+
+--some N: of each module every Nth, and one at least, as the seed deals them (that of the commits, if none is given).
 """
 
+import argparse
 import glob
 import os
+import random
 import re
 import shutil
 import subprocess
@@ -246,8 +250,31 @@ def share(mutant):
         return 0.0 if ran.returncode == 0 else "died: " + " ".join(said.split())[:120]
 
 
+def dealt(every, seed):
+    """One in `every` of each module's, rounded up: no module goes without."""
+    deal = random.Random(seed)
+    of = {}
+    for m in MUTANTS:
+        of.setdefault(m[0], []).append(m)
+    return [m for ms in of.values() for m in deal.sample(ms, -(-len(ms) // every))]
+
+
+def commits():
+    """Each commit has others; with every Nth, N commits have seen most of them."""
+    said = run(["git", "rev-list", "--count", "HEAD"]).stdout.strip()
+    return int(said) if said.isdigit() else 1
+
+
 def main():
-    wanted = [m for m in MUTANTS if len(sys.argv) < 2 or m[0] in sys.argv[1:]]
+    p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p.add_argument("--some", type=int, default=1, metavar="N")
+    p.add_argument("--seed", type=int, metavar="S")
+    p.add_argument("module", nargs="*")
+    a = p.parse_args()
+    seed = commits() if a.seed is None else a.seed
+    wanted = [m for m in (dealt(a.some, seed) if a.some > 1 else MUTANTS) if not a.module or m[0] in a.module]
+    if a.some > 1:
+        print("%d of %d mutants, dealt by --some %d --seed %d:" % (len(wanted), len(MUTANTS), a.some, seed))
     bad = 0
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         for (module, source, old, new), got in zip(wanted, pool.map(share, wanted)):

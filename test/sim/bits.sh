@@ -2,37 +2,54 @@
 # bits.sh DIR LOGS EXHAND...: every EXHAND (other compilers, optimisations, CPUs) must
 # make the same tables and logs as those in LOGS, and replay these bit for bit from
 # the start and from keyframes. Works in DIR; ends with `N passed, N failed`.
-dir=$1 logs=$2
-shift 2
-passed=0 failed=0
-verdict() { # NAME STATUS
-    if [ "$2" = 0 ]; then passed=$((passed + 1)); else failed=$((failed + 1)) && echo "FAIL $1"; fi
-}
-mkdir -p "$dir"
-for exe in "$@"; do
-    before=$passed of=3
-    out=$dir/out
-    rm -rf "$out"
-    "$exe" drop --out "$out" >"$dir/table.txt" 2>&1
-    verdict "$exe: drop" $?
+# Environment: JOBS (1), of them at a time.
+
+# one EXHAND: what it says, and its `N of N` at the end
+one()
+{
+    exe=$1 passed=0 failed=0
+    work=$(mktemp -d "$dir/XXXXXX") || exit 3
+    out=$work/out
+    "$exe" drop --out "$out" >"$work/table.txt" 2>&1
+    verdict drop $?
     cmp "$logs/table2.csv" "$out/table2.csv"
-    verdict "$exe: table2.csv" $?
-    "$exe" calibrate --out "$out/calibration" >"$dir/calibration.txt" 2>&1 &&
+    verdict table2.csv $?
+    "$exe" calibrate --out "$out/calibration" >"$work/calibration.txt" 2>&1 &&
         cmp "$logs/calibration/calibration.csv" "$out/calibration/calibration.csv"
-    verdict "$exe: calibration.csv" $?
-    "$exe" glove --record "$out/glove.exh" --does poses --seconds 5 >"$dir/glove.txt" 2>&1
+    verdict calibration.csv $?
+    "$exe" glove --record "$out/glove.exh" --does poses --seconds 5 >"$work/glove.txt" 2>&1
     for log in "$logs"/*.exh; do
         cmp "$log" "$out/${log##*/}"
-        verdict "$exe: ${log##*/} made" $?
-        of=$((of + 4))
+        verdict "${log##*/} made" $?
         for from in 0 1 3000; do
-            "$exe" replay "$log" --from $from >"$dir/replay.txt" 2>&1
+            "$exe" replay "$log" --from $from >"$work/replay.txt" 2>&1
             status=$?
-            verdict "$exe: ${log##*/} replayed from $from" $status
-            [ $status = 0 ] || cat "$dir/replay.txt"
+            verdict "${log##*/} replayed from $from" $status
+            [ $status = 0 ] || cat "$work/replay.txt"
         done
     done
-    echo "$exe: $((passed - before)) of $of"
-done
-echo "$passed passed, $failed failed"
-[ "$failed" = 0 ]
+    rm -rf "$work"
+    echo "$exe: $passed of $((passed + failed))"
+}
+verdict() # NAME STATUS
+{
+    if [ "$2" = 0 ]; then passed=$((passed + 1)); else failed=$((failed + 1)) && echo "FAIL $exe: $1"; fi
+}
+
+if [ "$1" = --one ]; then
+    dir=$2 logs=$3
+    said=$(one "$4" 2>&1)
+    echo "$said"
+    exit 0
+fi
+
+dir=$1 logs=$2
+shift 2
+rm -rf "$dir"
+mkdir -p "$dir"
+for exe in "$@"; do echo "$exe"; done | xargs -n 1 -P "${JOBS:-1}" "$0" --one "$dir" "$logs" >"$dir/said"
+cat "$dir/said"
+awk -v want=$# '
+    / [0-9]+ of [0-9]+$/ { n++; passed += $(NF - 2); all += $NF }
+    END { failed = all - passed + want - n # one that said nothing has failed
+          printf "%d passed, %d failed\n", passed, failed; exit failed || !passed }' "$dir/said"

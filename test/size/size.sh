@@ -25,7 +25,7 @@ here=test/size
 ticks=2000
 update=no
 failed=no
-MAKEFLAGS='' # what the caller's make was told (CC, O, ...) would change the figures
+MAKEFLAGS=-j$(nproc 2>/dev/null || echo 1) # no more: what the caller's make was told (CC, O, ...) would change the figures
 export MAKEFLAGS
 
 [ -r "$here/size.sh" ] || { echo "$0: run it at the top of the tree" >&2; exit 2; }
