@@ -16,7 +16,8 @@ panels = words(rates)
 across = panels < 3 ? panels : 3
 down = (panels + across - 1) / across
 width = 130.0 + 600*across
-height = 190.0 + 520*down
+top = across == 1 && has_map ? 230.0 : across == 2 ? 160.0 : 120.0 # of the key
+height = 70.0 + top + 520*down
 set terminal pngcairo size width,height font 'DejaVu Sans,20' linewidth 1.6 background '#ffffff'
 set datafile separator ','
 
@@ -40,20 +41,28 @@ set key at screen 0.52, screen 1.0-20.0/height center top horizontal Left revers
 plot NaN with boxes ls 4 title 'allowed by the advisor', \
      NaN with lines ls 5 title 'the rule on the target', \
      NaN with points ls 6 title 'paper, Table II', \
-     NaN with points ls 1 ps 1.6 title 'simulated: every fall comes to rest', \
-     NaN with points ls 2 ps 1.6 title 'nine of ten', \
-     NaN with points ls 3 ps 1.2 title 'fewer'
+     NaN with points ls 1 ps 1.6 title has_map ? 'simulated: every fall comes to rest' : '', \
+     NaN with points ls 2 ps 1.6 title has_map ? 'nine of ten' : '', \
+     NaN with points ls 3 ps 1.2 title has_map ? 'fewer' : ''
 set key off
 set border 3 lc rgb ink lw 0.8
 set tics nomirror out scale 0.5 textcolor rgb ink
+
+boxes = "'allowed.csv' using (mine((column('k_low_n_per_m')+column('k_high_n_per_m'))/2e3)):". \
+        "((column('b_low_ns_per_m')+column('b_high_ns_per_m'))/2):". \
+        "(column('k_low_n_per_m')/1e3):(column('k_high_n_per_m')/1e3):". \
+        "(column('b_low_ns_per_m')):(column('b_high_ns_per_m')) with boxxyerror ls 4, ". \
+        "'rule.csv' using (mine(column('k_n_per_m')/1e3)):(column('b_ns_per_m')) with lines ls 5"
+dots(how, ls) = sprintf("'map.csv' using (column('k_n_per_m')/1e3):(%s(column('b_ns_per_m'))) with points ls %d", how, ls)
+cells = dots('none', 3).', '.dots('some', 2).', '.dots('all', 1)
 
 step(top) = (p = 10**floor(log10(top)), top/p > 5 ? 2*p : top/p > 2 ? p : p/2)
 do for [i = 1:panels] {
     c = (i-1) % across; r = (i-1) / across
     set lmargin at screen (130.0 + 600*c) / width
     set rmargin at screen (130.0 + 600*c + 510) / width
-    set tmargin at screen 1.0 - (120.0 + 520*r + 40) / height
-    set bmargin at screen 1.0 - (120.0 + 520*r + 440) / height
+    set tmargin at screen 1.0 - (top + 520*r + 40) / height
+    set bmargin at screen 1.0 - (top + 520*r + 440) / height
     k_top = real(word(k_tops, i)) / 1e3
     b_top = real(word(b_tops, i))
     RATE = real(word(rates, i))
@@ -70,15 +79,7 @@ do for [i = 1:panels] {
     none(v) = mine(10*column('stable_falls') < 9*column('falls') ? v : NaN)
     pk = real(word(paper_ks, i)); pb = real(word(paper_bs, i))
     set label 1 '' at (pk < 0 ? NaN : pk/1e3), pb point ls 6 front
-    seen = has_map ? 'map.csv' : '/dev/null'
-    plot 'allowed.csv' using (mine((column('k_low_n_per_m')+column('k_high_n_per_m'))/2e3)): \
-             ((column('b_low_ns_per_m')+column('b_high_ns_per_m'))/2): \
-             (column('k_low_n_per_m')/1e3):(column('k_high_n_per_m')/1e3): \
-             (column('b_low_ns_per_m')):(column('b_high_ns_per_m')) with boxxyerror ls 4, \
-         'rule.csv' using (mine(column('k_n_per_m')/1e3)):(column('b_ns_per_m')) with lines ls 5, \
-         for [n = 1:has_map] seen using (column('k_n_per_m')/1e3):(none(column('b_ns_per_m'))) with points ls 3, \
-         for [n = 1:has_map] seen using (column('k_n_per_m')/1e3):(some(column('b_ns_per_m'))) with points ls 2, \
-         for [n = 1:has_map] seen using (column('k_n_per_m')/1e3):(all(column('b_ns_per_m'))) with points ls 1
+    eval 'plot '.boxes.(has_map ? ', '.cells : '')
     unset label 1
 }
 unset multiplot
