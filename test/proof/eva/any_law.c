@@ -1,0 +1,29 @@
+/* The contact law: any state, position and velocity, parameters in their ranges. */
+#include "contact.c"
+
+#include "any.h"
+
+
+static void law(struct exh_force_ledger *f)
+{
+    static struct exh_contact s;
+    struct exh_contact_par par;
+    struct exh_contact_in in;
+    ANY(s);
+    ANY(in);
+    par.k_Npm_q10 = Frama_C_interval(0, 1024000000);
+    par.b_Nspm_q20 = Frama_C_interval(0, 1048576000);
+    par.f0_N_q20 = Frama_C_interval(0, 20 << 20);
+    par.f0_band_m_q30 = Frama_C_interval(0, 10737418);
+    par.hyst_m_q30 = Frama_C_interval(0, 10737418);
+    (void)exh_contact_law(&s, &par, in, f);
+    /*@ assert law_is_finite: -(1 << 52) * 256 <= f->spring_N_q20 <= (1 << 52) * 256; */
+}
+
+int main(void)
+{
+    static struct exh_force_ledger f;
+    law(&f);
+    END();
+    return 0;
+}
