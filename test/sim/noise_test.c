@@ -194,7 +194,7 @@ TEST(full_box_within_noise)
         }
         runs += (uint32_t)open;
     }
-    CHECK(n < 1000 || (runs > n / 20 && used > n / 20),
+    CHECK(n < 1000 || (runs > n / 200 && used > n / 200),
           "open in %" PRIu32 ", force in %" PRIu32 " of %" PRIu32 " ticks", runs, used, n);
     check_note("full box: gate open in %" PRIu32 " of %" PRIu32 " ticks, %" PRIu32 " forces", runs,
                n, used);
