@@ -3,7 +3,6 @@
 
 #include "any.h"
 
-
 static void law(struct exh_force_ledger *f)
 {
     static struct exh_contact s;
