@@ -26,6 +26,7 @@ int bilateral_setup(struct bilateral_cfg *cfg, struct bilateral *s, const struct
     cfg->par = par;
     place_fingers(cfg, (uint32_t)par->own.fingers);
     if (cfg->n == 0) { return -EXH_E_RANGE; }
+    cfg->tested = exh_selftest_glove() == EXH_SELFTEST_OK;
     if (num > UINT32_MAX) { return -EXH_E_RATE; }
     /* Every value of both in range: no overflow. */
     cfg->rest_ticks = (uint32_t)exh_udiv64((uint64_t)(uint32_t)par->own.f0_rest_ms * board.T.den,
@@ -38,6 +39,7 @@ int bilateral_setup(struct bilateral_cfg *cfg, struct bilateral *s, const struct
     }
     bilateral_wire_setup(&cfg->wire, &s->wire, (uint32_t)par->own.session, board.T);
     if (err == 0) { err = exh_safety_setup(&cfg->safety, &par->safety, board.T); }
+    if (err == 0) { err = bilateral_cause_setup(cfg, board.T); }
     return err;
 }
 
@@ -61,18 +63,22 @@ static void see(struct bilateral *s, const struct bilateral_cfg *cfg, const stru
     }
 }
 
-/* Position and velocity of all fingers in use, force by the monitor; the causes of faults they are. */
+/* Position and velocity of all fingers in use, force by the monitor; the causes of faults they are.
+ * cnt, limits: by place. */
 static uint32_t sense(struct bilateral *s, const struct bilateral_cfg *cfg,
-                      const struct exh_drive_in *in, struct bilateral_paper *p)
+                      const struct exh_drive_in *in, struct bilateral_paper *p, int32_t *cnt,
+                      uint32_t *limits)
 {
     uint32_t raised = 0;
     for (unsigned k = 0; k < cfg->n; k++) {
         const unsigned f = cfg->at[k];
         struct bilateral_finger *now = &s->finger[f];
         const struct bilateral_finger_cfg *c = &cfg->finger[f];
-        const int32_t cnt = exh_quad_extend(&now->quad, &c->quad, in->enc_raw[f]);
-        p[f].q_m_q30 = exh_quad_pos_m_q30(&cfg->par->quad[f], cnt);
-        p[f].qd_mps_q27 = exh_velocity_window_mps_q27(&now->velocity, &c->velocity, cnt);
+        cnt[k] = exh_quad_extend(&now->quad, &c->quad, in->enc_raw[f]);
+        limits[k] = 0;
+        p[f].q_m_q30 = exh_quad_pos_m_q30(&cfg->par->quad[f], cnt[k]);
+        p[f].qd_mps_q27 = exh_velocity_window_mps_q27(&now->velocity, &c->velocity, cnt[k]);
+        raised |= exh_watch_step(&now->watch, &c->watch, &p[f].qd_mps_q27, &limits[k]);
         s->drive_now[f] = cfg->par->drive[f]; /* it is no state: a tick from bytes has it, too */
         p[f].f_mon_N_q20 = exh_drive_monitor_N_q20(&cfg->drive[k], in->mon_raw[f]);
         if (now->quad.lost) { raised |= EXH_FAULT_ENCODER; }
@@ -150,21 +156,29 @@ static void tell_box(struct bilateral_box *b, const struct bilateral *s,
     b->silences = exh_from_u32(rx->silences);
     b->differs = (int32_t)s->wire.differs;
     b->odd = exh_from_u32(s->wire.odd);
+    b->arm_step = exh_safety_arm(&s->safety);
 }
 
-#define VOUCHED (EXH_UNTESTED | EXH_UNCALIBRATED | EXH_UNPOLARISED | EXH_ARM_ENCODER)
+/* Steps of arming that hold, of those a scene vouches for. A glove's calibration that is none was refused at
+ * set-up; polarity is what first power-up is for, and no image of this scene has seen it. */
+static uint8_t steps_held(const struct bilateral_cfg *cfg, uint32_t raised)
+{
+    return (uint8_t)((cfg->tested ? EXH_ARM_SELFTEST : 0u) | EXH_ARM_CALIBRATION | EXH_UNPOLARISED |
+                     (raised & EXH_FAULT_ENCODER ? 0u : EXH_ARM_ENCODER));
+}
 
 void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,
                     const struct exh_scene_in *in, const struct exh_scene_mail *mail,
                     struct exh_params *params, struct exh_drive_out *out,
                     struct bilateral_signals *sig)
 {
-    const uint32_t raised = sense(s, cfg, &in->drive, sig->paper);
-    const struct exh_safety_in box = {din_by_place(cfg, in->drive.din), raised, in->missed,
-                                      in->command, cfg->n, VOUCHED};
-    const struct exh_permit permit = exh_safety_step(&s->safety, &cfg->safety, box);
-    struct exh_current_ledger i[BILATERAL_FINGERS];
+    int32_t cnt[BILATERAL_FINGERS];
     uint32_t limits[BILATERAL_FINGERS];
+    const uint32_t fingers = sense(s, cfg, &in->drive, sig->paper, cnt, limits);
+    struct exh_safety_in box = {din_by_place(cfg, in->drive.din), fingers, in->missed,
+                                in->command, cfg->n, steps_held(cfg, fingers)};
+    struct exh_permit permit;
+    struct exh_current_ledger i[BILATERAL_FINGERS];
     struct exh_drive_out placed;
 
     age_glove(s, in);
@@ -173,9 +187,12 @@ void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,
     }
     bilateral_wire_take(s, cfg, mail, in->missed, params);
     see(s, cfg, in);
+    box.raised |= bilateral_causes(s, cfg, in);
+    permit = exh_safety_step(&s->safety, &cfg->safety, box);
     for (unsigned k = 0; k < cfg->n; k++) {
         const unsigned f = cfg->at[k];
-        limits[k] = bilateral_finger_feel(s, cfg, k, &permit, &i[k], &sig->paper[f], &sig->more[f].bits);
+        limits[k] |=
+            bilateral_finger_feel(s, cfg, k, &permit, &i[k], &sig->paper[f], &sig->more[f].bits);
     }
     exh_gate(&s->safety, cfg->drive, cfg->n, i, limits, &placed);
     out_by_finger(cfg, &placed, out);
@@ -183,6 +200,7 @@ void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,
         const unsigned f = cfg->at[k];
         sig->paper[f].i_des_A_q26 = i[k].coded_A_q26;
         exh_track_coded(&s->finger[f].track, i[k].coded_A_q26);
+        exh_watch_coded(&s->finger[f].watch, &cfg->finger[f].watch, cnt[k], i[k].coded_A_q26);
         sig->more[f].limits = (int32_t)limits[k];
         tell_finger(&sig->more[f], &s->finger[f]);
     }
@@ -197,6 +215,8 @@ void bilateral_bytes(struct exh_bytes *c, struct bilateral *s)
     bilateral_wire_bytes(c, &s->wire);
     exh_bytes_u8(c, &s->worn);
     exh_bytes_u32(c, &s->glove_faults);
+    exh_supply_bytes(c, &s->supply);
+    exh_bytes_u32(c, &s->unsure_ticks);
 }
 
 /* --- the one instance of this image --- */
@@ -206,6 +226,7 @@ static struct exh_params params;
 static struct bilateral_signals signals;
 static struct bilateral_cfg cfg;
 static struct bilateral state;
+static struct exh_guard guard;
 static struct exh_scene_mail mail_in, mail_out;
 
 static void defaults(void)
@@ -215,6 +236,7 @@ static void defaults(void)
     active.glove.fc_Hz_q16 = EXH_Q(200, 1, EXH_Q_RAW); /* it lags little: 1.1 ms */
     for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
         active.precontact[f].from_slope = 1;
+        active.watch[f].stuck_ms = 2000; /* a living finger trembles, a mass does not */
         active.precontact[f].d_lim_m_q30 = -EXH_Q(10, 1000, EXH_Q_POS);
     }
     staged = active;
@@ -234,6 +256,7 @@ static int setup(struct exh_scene_board board)
 {
     static const struct bilateral power_on;
     static const struct bilateral_signals silence;
+    int err;
     state = power_on;
     signals = silence;
     mail_in.packets = mail_out.packets = 0;
@@ -241,11 +264,14 @@ static int setup(struct exh_scene_board board)
     if (active.own.session == 0) {
         active.own.session = staged.own.session = (int32_t)(exh_board_cycles() >> 1 | 1u);
     }
-    return bilateral_setup(&cfg, &state, &active, board);
+    err = bilateral_setup(&cfg, &state, &active, board);
+    exh_guard_seal(&guard, &cfg, sizeof cfg, &params);
+    return err;
 }
 
 static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
 {
+    state.broken = (uint8_t)exh_guard_step(&guard);
     bilateral_tick(&state, &cfg, in, &mail_in, &params, out, &signals);
 }
 

@@ -19,6 +19,8 @@ struct bilateral_own_par {
     int32_t session;     /* of the link; 0: made up at set-up, of the board's cycle counter */
     int32_t quiet_ms;    /* nothing heard for so long: a HELLO begins anew      */
     int32_t f0_rest_ms;  /* a string that has run out no farther for so long is wound in */
+    int32_t glove_ms;    /* nothing known of a finger in use for so long: a fault; 0: never */
+    int32_t link_ms;     /* no planes for so long: a fault; 0: never, contacts are local */
 };
 
 /* All parameters, in the order of the scene's table. */
@@ -28,11 +30,13 @@ struct bilateral_par {
     struct exh_contact_par contact[BILATERAL_FINGERS]; /* k and b are the material's */
     struct exh_drive_par drive[BILATERAL_FINGERS];
     struct exh_track_par track[BILATERAL_FINGERS];
+    struct exh_watch_par watch[BILATERAL_FINGERS];
     int32_t kf_NpA_q20[BILATERAL_FINGERS];
     struct exh_hand_par hand[BILATERAL_FINGERS];
     struct exh_precontact_par precontact[BILATERAL_FINGERS];
     struct exh_material_par material[BILATERAL_MATERIALS];
     struct exh_safety_par safety;
+    struct exh_supply_par supply;
     struct exh_glove_par glove;
     struct bilateral_own_par own;
     struct glove_own_par glove_own;
@@ -73,6 +77,7 @@ struct bilateral_box {
     int32_t far, silences;
     int32_t differs; /* enum exh_wire_differs, of the newest HELLO              */
     int32_t odd;     /* HELLOs that differed                                   */
+    int32_t arm_step; /* enum exh_arm: on which arming is, or was refused       */
 };
 
 struct bilateral_signals {
@@ -91,6 +96,7 @@ struct bilateral_finger_cfg {
     struct exh_hand_finger hand;
     struct exh_precontact_cfg precontact;
     struct exh_track_cfg track;
+    struct exh_watch_cfg watch;
     struct exh_knot force_to_cur[2], cur_to_force[2];
     uint32_t sensors; /* bit i: sensor i moves it                              */
 };
@@ -101,6 +107,7 @@ struct bilateral_finger {
     struct exh_contact contact;
     struct exh_drive drive;
     struct exh_track track;
+    struct exh_watch watch;
     struct exh_precontact precontact;
     int32_t out_m_q30;   /* how far the string has run out                      */
     uint32_t rest_ticks; /* since then                                          */
@@ -143,9 +150,12 @@ struct bilateral_cfg {
     /* By place: fingers in use come first, then the others. */
     struct exh_drive_cfg drive[BILATERAL_FINGERS];
     struct exh_safety_cfg safety;
+    struct exh_supply_cfg supply;
+    uint32_t glove_ticks, link_ticks; /* glove_ms, link_ms; 0: never            */
     uint8_t at[BILATERAL_FINGERS]; /* which finger is at this place             */
     uint8_t n;                     /* in use                                    */
     uint32_t rest_ticks;           /* f0_rest                                   */
+    uint8_t tested;                /* 1: known answers came out at set-up       */
     struct bilateral_wire_cfg wire;
 };
 
@@ -156,6 +166,9 @@ struct bilateral {
     struct bilateral_wire wire;
     uint8_t worn;          /* a glove frame has come                           */
     uint32_t glove_faults; /* in the newest                                    */
+    struct exh_supply supply;
+    uint32_t unsure_ticks; /* nothing known of a finger in use since            */
+    uint8_t broken;        /* 1: configuration or parameters changed (guard.h); of whoever looks */
     /* Made anew in every tick: parameters as a material changes them; how old what the glove says is,
      * UINT32_MAX: it has not said anything, or not for very long. */
     struct exh_drive_par drive_now[BILATERAL_FINGERS];
@@ -194,6 +207,11 @@ void bilateral_finger_bytes(struct exh_bytes *c, struct bilateral_finger *s);
  * believed: held angles make a distance that is not. */
 uint32_t bilateral_finger_age(const struct bilateral *s, const struct bilateral_cfg *cfg,
                               unsigned f);
+/* Of the box, behind link and glove: enum exh_fault. */
+int bilateral_cause_setup(struct bilateral_cfg *cfg, struct exh_period T);
+uint32_t bilateral_causes(struct bilateral *s, const struct bilateral_cfg *cfg,
+                          const struct exh_scene_in *in);
+
 /* From the newest glove frame. */
 void bilateral_finger_see(struct bilateral_finger *s, const struct bilateral_cfg *cfg, unsigned f,
                           const int32_t *angle_turn_q32);

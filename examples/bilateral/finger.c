@@ -46,6 +46,7 @@ int bilateral_finger_setup(struct bilateral_cfg *cfg, struct bilateral *s, unsig
         err = exh_drive_setup(&cfg->drive[place], &s->drive_now[f], board.T, to_cur, to_force);
     }
     if (err == 0) { err = exh_track_setup(&c->track, &par->track[f], board.T); }
+    if (err == 0) { err = exh_watch_setup(&c->watch, &par->watch[f], board.T); }
     if (err == 0) { err = exh_hand_setup(&c->hand, &exh_hit2_bones[f], &par->hand[f]); }
     if (err == 0) { err = exh_hand_follow(&c->hand, &exh_hit2_map, f); }
     if (err == 0) {
@@ -136,6 +137,7 @@ void bilateral_finger_bytes(struct exh_bytes *c, struct bilateral_finger *s)
     exh_contact_bytes(c, &s->contact);
     exh_drive_bytes(c, &s->drive);
     exh_track_bytes(c, &s->track);
+    exh_watch_bytes(c, &s->watch);
     exh_precontact_bytes(c, &s->precontact);
     exh_bytes_i32(c, &s->out_m_q30);
     exh_bytes_u32(c, &s->rest_ticks);

@@ -13,6 +13,8 @@ static const struct exh_signal own_rows[] = {
     {0x8612, 0, EXH_WHEN_SETUP, 0, INT32_MAX, 0, "session", "", "of the link, another at every start; 0: of the board's cycle counter"},
     {0x8613, 0, EXH_WHEN_ANY, 100, 60000, 1000, "quiet", "ms", "nothing heard for so long: any hello begins anew"},
     {0x8614, 0, EXH_WHEN_SETUP, 1, 60000, 20, "f0_rest", "ms", "a string that runs out no farther for so long is wound in"},
+    {0x8615, 0, EXH_WHEN_SETUP, 0, 60000, 1000, "glove_time", "ms", "nothing known of a finger in use for so long: a fault; 0: never"},
+    {0x8616, 0, EXH_WHEN_SETUP, 0, 60000, 0, "link_time", "ms", "no planes for so long: a fault; 0: never, contacts are local"},
 };
 
 #define OUT(id, frac, min, max, name, unit, help) \
@@ -72,6 +74,7 @@ static const struct exh_signal box_rows[] = {
     ANY(0x8732, 0, "silences", "", "nothing heard for too long"),
     OUT(0x8733, 0, 0, 7, "differs", "", "of the world: 1 its role, 2 its version, 4 its table"),
     ANY(0x8734, 0, "odd", "", "hellos that differed"),
+    POS(0x8735, 0, "arm_step", "", "arming is at, or was refused by"),
 };
 
 #define LEN(a)     (sizeof(a) / sizeof((a)[0]))
@@ -83,11 +86,13 @@ static const struct exh_signal_group param_groups[] = {
     EACH(exh_contact_rows, EXH_CONTACT_ROWS),
     EACH(exh_drive_rows, EXH_DRIVE_ROWS),
     EACH(exh_track_rows, EXH_TRACK_ROWS),
+    EACH(exh_watch_rows, EXH_WATCH_ROWS),
     EACH(kf_rows, LEN(kf_rows)),
     EACH(exh_hand_rows, EXH_HAND_ROWS),
     EACH(exh_precontact_rows, EXH_PRECONTACT_ROWS),
     {exh_material_rows, EXH_MATERIAL_ROWS, BILATERAL_MATERIALS},
     {exh_safety_rows, EXH_SAFETY_ROWS, 1},
+    {exh_supply_rows, EXH_SUPPLY_ROWS, 1},
     {exh_glove_rows, EXH_GLOVE_ROWS, 1},
     {own_rows, LEN(own_rows), 1},
     {glove_own_rows, GLOVE_OWN_ROWS, 1},
@@ -108,9 +113,10 @@ EXH_STATIC_ASSERT(bilateral_par_matches_rows,
                       sizeof(int32_t) *
                           (BILATERAL_FINGERS *
                                (EXH_QUAD_ROWS + EXH_VELOCITY_ROWS + EXH_CONTACT_ROWS +
-                                EXH_DRIVE_ROWS + EXH_TRACK_ROWS + LEN(kf_rows) + EXH_HAND_ROWS +
+                                EXH_DRIVE_ROWS + EXH_TRACK_ROWS + EXH_WATCH_ROWS + LEN(kf_rows) + EXH_HAND_ROWS +
                                 EXH_PRECONTACT_ROWS) +
                            BILATERAL_MATERIALS * EXH_MATERIAL_ROWS + EXH_SAFETY_ROWS +
+                           EXH_SUPPLY_ROWS +
                            EXH_GLOVE_ROWS + LEN(own_rows) + GLOVE_OWN_ROWS +
                            GLOVE_CAL_ROWS * EXH_GLOVE_SENSORS));
 EXH_STATIC_ASSERT(bilateral_signals_match_rows,

@@ -32,6 +32,8 @@ static struct rig {
     struct exh_scene_in in;
     struct exh_scene_mail mail_in, mail_out;
     uint32_t raw[FINGERS], wrong;
+    int16_t good_raw; /* the supply's, while it is not dim                        */
+    int dim;
     unsigned astray[FINGERS]; /* monitors */
     /* the world's end */
     struct exh_wire_tx tx;
@@ -98,6 +100,7 @@ static void any_finger(unsigned f, struct golden_rng *r, uint32_t rate_Hz)
     p->contact[f].hyst_m_q30 = any_size(r, 10737418);
     golden_drive_par(&p->drive[f], r, rate_Hz);
     golden_track_par(&p->track[f], r, rate_Hz);
+    golden_watch_par(&p->watch[f], r, rate_Hz);
     p->kf_NpA_q20[f] = (int32_t)golden_draw(r, 104858, 104857600);
     p->hand[f].arm1_m_q30 = (int32_t)golden_draw(r, 4294968, 53687091);
     p->hand[f].arm2_m_q30 = (int32_t)golden_draw(r, 0, 53687091);
@@ -133,6 +136,18 @@ static void any_sensor(struct glove_sensor_par *s, unsigned i, struct golden_rng
     }
 }
 
+/* Limits that are two codes, the upper as it may fall. */
+static void any_supply(struct exh_supply_par *p, struct golden_rng *r, uint32_t rate_Hz)
+{
+    const int64_t scale = golden_draw(r, 100000, 1500000);
+    const int64_t low = golden_draw(r, 1, 20000), high = golden_draw(r, low + 1, 32000);
+    p->scale_V_q30 = (int32_t)scale;
+    p->min_V_q20 = golden_draw(r, 0, 3) ? (int32_t)(low * scale >> 10) : 0;
+    p->max_V_q20 = (int32_t)(high * scale >> 10);
+    p->time_ms = (int32_t)exh_clamp(golden_draw(r, 1, 12) * 1000 / rate_Hz, 1, 1000);
+    rig.good_raw = (int16_t)((low + high) >> 1);
+}
+
 static void any_par(struct golden_rng *r, uint32_t rate_Hz, uint32_t k)
 {
     struct bilateral_par *p = &rig.par;
@@ -142,6 +157,8 @@ static void any_par(struct golden_rng *r, uint32_t rate_Hz, uint32_t k)
     p->own.session = (int32_t)golden_draw(r, 1, INT32_MAX);
     p->own.quiet_ms = (int32_t)golden_draw(r, 100, 2000);
     p->own.f0_rest_ms = any_ms(r, 1, 12, rate_Hz);
+    p->own.glove_ms = golden_draw(r, 0, 3) ? any_ms(r, 1, 40, rate_Hz) : 0;
+    p->own.link_ms = golden_draw(r, 0, 1) ? any_ms(r, 20, 120, rate_Hz) : 0;
     p->glove_own.every = (int32_t)golden_draw(r, 1, 4);
     p->glove_own.present = (1 << EXH_GLOVE_SENSORS) - 1;
     for (unsigned f = 0; f < FINGERS; f++) { any_finger(f, r, rate_Hz); }
@@ -151,6 +168,7 @@ static void any_par(struct golden_rng *r, uint32_t rate_Hz, uint32_t k)
         p->material[i].f_max_N_q20 = any_size(r, 104857600);
     }
     golden_safety_par(&p->safety, r, rate_Hz);
+    any_supply(&p->supply, r, rate_Hz);
     T.num *= (uint32_t)p->glove_own.every;
     p->glove = golden_glove_par(r, T);
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) { any_sensor(&p->sensor[i], i, r); }
@@ -363,6 +381,8 @@ static void any_in(struct golden_rng *r, struct golden_wave moves[FINGERS], uint
         in->drive.din = HEALTHY;
     }
     if (rig.s.safety.state == EXH_STATE_FAULT && golden_draw(r, 0, 3) == 0) { in->drive.din ^= 2; }
+    if (golden_draw(r, 0, rig.dim ? 7 : 63) == 0) { rig.dim ^= 1; }
+    in->drive.supply_raw = rig.dim ? (int16_t)golden_draw(r, -32768, 32767) : rig.good_raw;
     in->missed = golden_draw(r, 0, 127) == 0 ? 1 : 0;
     in->command = k % 8 == 2 ? EXH_CMD_RUN : k % 8 == 5 ? EXH_CMD_CLEAR : EXH_CMD_NONE;
 }

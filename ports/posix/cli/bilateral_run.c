@@ -1,5 +1,6 @@
 #include "bilateral_run.h"
 
+#include "arming.h"
 #include "dumpfile.h"
 #include "option.h"
 #include "param.h"
@@ -15,6 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define PATIENCE_S 0.5 /* a link that has to be heard of, and the like */
 #define AFTER_S 0.2 /* the last thing that is kept after the last approach */
 
 static struct {
@@ -25,6 +27,7 @@ static struct {
     int logged, no_memory;
     uint32_t last_tick;
     double done_s; /* when all fingers had done; < 0: not yet */
+    int ran, again; /* the box came to run; what stood in its way is gone */
 } run;
 
 /* --- hooks --- */
@@ -38,7 +41,7 @@ static void start(const struct exh_scene *sc, struct exh_scene_board board)
 
 static void before(uint32_t tick, struct exh_scene_in *in)
 {
-    if (tick == 0) { in->command = EXH_CMD_RUN; }
+    if (tick == 0 || run.again) { in->command = EXH_CMD_RUN; }
     if (run.cfg->more) { run.cfg->more->before(tick, in); }
     dumpfile_before(tick, in);
 }
@@ -101,12 +104,29 @@ static int one_finger(unsigned f)
     return phase != SIM_PATH_DONE;
 }
 
+/* A box that will not run is no experiment. */
+static void watch_arming(void)
+{
+    const struct bilateral_signals *sig = (const void *)exh_scene_bilateral.signal;
+    const enum arming is = arming_is(sig->box.state);
+    if (run.ran || is == ARMING_GOES_ON) { return; }
+    run.ran = is == ARMING_RUNS;
+    run.again = !run.ran && sig->box.present == 0 && sig->box.arm_step == EXH_ARM_DEADMAN;
+    if (!run.ran && !run.again && posix_time_s() >= PATIENCE_S) {
+        run.r->unarmed = sig->box.arm_step;
+        run.r->faults = (uint32_t)sig->box.present;
+        if (!run.cfg->board.cards.quiet) { arming_complain(sig->box.arm_step, sig->box.present); }
+        posix_stop();
+    }
+}
+
 static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
 {
     int busy = 0;
     dumpfile_after(tick, in, out);
     run.last_tick = tick;
     run.r->ticks++;
+    watch_arming();
     for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
         if (run.cfg->board.exo.fingers >> f & 1) { busy |= one_finger(f); }
     }
@@ -268,7 +288,9 @@ int bilateral_run(const struct bilateral_run_cfg *c, struct bilateral_run *r)
     if (dumpfile_open(c->blackbox, run.logged, 0)) { return -EXH_E_SHORT; }
     err = exh_loop(&exh_scene_bilateral, c->rate_Hz, &hooks);
     r->dumps = dumpfile_close(err < 0);
-    if (err < 0 && !c->board.cards.quiet) {
+    if (err == 0 && r->unarmed) {
+        err = -EXH_E_STATE; /* that was told */
+    } else if (err < 0 && !c->board.cards.quiet) {
         cli_complain("%lu Hz: %s", (unsigned long)c->rate_Hz, exh_error_text(err));
     }
     if (run.logged && r->T.num != 0) { r->lost = exh_log_end(run.last_tick + 1); }

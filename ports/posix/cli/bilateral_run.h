@@ -64,6 +64,7 @@ struct bilateral_run {
     struct bilateral_box box; /* at the end                                     */
     uint64_t ticks;
     uint32_t lost, faults;
+    int32_t unarmed; /* enum exh_arm: the step at which arming was; faults: its causes */
     int dumps; /* of the black box; -1: one could not be written                  */
     struct sim_link_counts way[SIM_LINK_WAYS];
     uint64_t frames, answers;

@@ -159,9 +159,12 @@ static void names(char *to, size_t size, uint32_t bits, const char *const *name,
 void calibration_why(char to[CALIBRATION_WHY_B], const struct calibration *r)
 {
     static const char *const fault[] = {"emergency stop", "drive not ready", "ticks missed", "encoder",
-                                        "dead-man released", "current tracking"};
+                                        "dead-man released", "current tracking", "encoder stands",
+                                        "too fast", "glove", "card", "link", "supply", "watchdog",
+                                        "configuration", "state of the box"};
     static const char *const limit[] = {"pull", "force: f_max, or i_max", "slew", "peak: i_peak",
-                                        "I2t: i_cont, i_peak, peak_time", "D/A span", "gate"};
+                                        "I2t: i_cont, i_peak, peak_time", "D/A span", "gate", "ramp", "release", "speed",
+                                        "passivity"};
     char list[120] = "";
     if (r->result == CALIBRATE_OFF) {
         names(list, sizeof list, r->faults, fault, sizeof fault / sizeof fault[0]);

@@ -3,6 +3,7 @@
 
 #include "cli.h"
 #include "jobs.h"
+#include "names.h"
 #include "option.h"
 
 #include "../../cards/box.h"
@@ -51,14 +52,17 @@ static const char *without(const struct cards_cell *c)
 
 static const char *fault_text(uint32_t bit)
 {
+    static char text[80];
     switch (bit) {
     case EXH_FAULT_ESTOP: return "e-stop";
     case EXH_FAULT_DRIVE: return "drive not ready";
     case EXH_FAULT_ENCODER: return "encoder";
     case EXH_FAULT_DEADMAN: return "dead-man";
     case EXH_FAULT_TRACKING: return "current tracking";
-    default: return "overrun";
+    default: break;
     }
+    names_faults(text, sizeof text, bit);
+    return text;
 }
 
 /* "a; b", and before each but the first what parts it. */

@@ -13,9 +13,10 @@ from .hit2 import BENT, MAP, bones, sensors_of
 from .num import (AGAIN, M32, M64, MAX32, RANGE, STATE, TICKS, UNKNOWN, Rng, clamp, div, period, sat32, shr,
                   wave, wrap)
 from .quad import Quad, narrowest, position
-from .safety import ENCODER, FAULT, HEALTHY, TRACKING, Safety, any_safety
+from .safety import ENCODER, FAULT, GLOVE, HEALTHY, LINK, SUPPLY, TRACKING, Safety, any_safety
 from .track import Monitor, Track, any_par as any_track
 from .velocity import Window, scale
+from .watch import Watch, any_par as any_watch
 from .wire import ACK, HELLO, PARAM, PLANES, TELL, Receiver, Sender
 
 FINGERS, MATERIALS, ROOM, LATE = 5, 8, 8, 4
@@ -37,7 +38,7 @@ class FingerPar:
     def __init__(self, rng, rate):
         self.step, self.speed, self.p = scale(rng), rng.draw(13421773, MAX32), rng.draw(0, 4)
         self.f0 = rng.draw(0, 20971520), any_size(rng, 10737418), any_size(rng, 10737418)
-        self.drive, self.track = any_drive(rng, rate), any_track(rng, rate)
+        self.drive, self.track, self.watch = any_drive(rng, rate), any_track(rng, rate), any_watch(rng, rate)
         self.kf = rng.draw(104858, 104857600)
         self.arms = rng.draw(4294968, 53687091), rng.draw(0, 53687091), rng.draw(0, 53687091)
         self.pad, self.materials = rng.draw(0, 26843545), MATERIALS
@@ -58,14 +59,37 @@ def any_sensor(rng, i):
     return zero, gain, [0, 0], low, high, [NO_SENSOR, NO_SENSOR]
 
 
+def any_supply(rng, rate):
+    """least, most, scale, time; and a code between the limits"""
+    scale_, low = rng.draw(100000, 1500000), rng.draw(1, 20000)
+    high = rng.draw(low + 1, 32000)
+    least = low * scale_ >> 10 if rng.draw(0, 3) else 0
+    return least, high * scale_ >> 10, scale_, clamp(rng.draw(1, 12) * 1000 // rate, 1, 1000), low + high >> 1
+
+
+class Supply:
+    def __init__(self, par, T):
+        least, most, scale_, ms, _ = par
+        self.ticks, self.off = ms * T[1] // (1000 * T[0]) + 1, 0
+        self.within = (-(-(least << 10) // scale_), (most << 10) // scale_) if least else (-32768, 32767)
+
+    def step(self, code, missed):
+        good = self.within[0] <= code <= self.within[1]
+        self.off = 0 if good else min(self.ticks, self.off + 1 + missed)
+        return self.off >= self.ticks
+
+
 class Par:
     def __init__(self, rng, rate, T):
         self.fingers, self.state_every = rng.draw(1, 31), rng.draw(1, 12)
         self.session, self.quiet = rng.draw(1, MAX32), rng.draw(100, 2000)
-        self.f0_rest, self.every = any_ms(rng, 1, 12, rate), rng.draw(1, 4)
+        self.f0_rest = any_ms(rng, 1, 12, rate)
+        self.glove_time = any_ms(rng, 1, 40, rate) if rng.draw(0, 3) else 0
+        self.link_time = any_ms(rng, 20, 120, rate) if rng.draw(0, 1) else 0
+        self.every = rng.draw(1, 4)
         self.finger = [FingerPar(rng, rate) for _ in range(FINGERS)]
         self.material = [[any_size(rng, m) for m in (1024000000, 1048576000, 104857600)] for _ in range(MATERIALS)]
-        self.safety = any_safety(rng, rate)
+        self.safety, self.supply = any_safety(rng, rate), any_supply(rng, rate)
         self.glove = any_glove(rng, (T[0] * self.every, T[1]))
         self.sensor = [any_sensor(rng, i) for i in range(SENSORS)]
 
@@ -117,6 +141,7 @@ class Finger:
         self.drive = Drive(par.drive, T, Table([(0, 0), (top, peak)]), Table([(-peak, -top), (peak, top)]))
         self.track, self.last, self.monitor = Track(par.track, T), 0, Monitor()
         self.joint, self.tip, self.slope, self.clamped = [0] * 3, [0] * 3, [0] * 3, 0
+        self.watch, self.cnt = Watch(par.watch, T), 0
         self.out = self.rest = 0
 
     def wind_in(self, ticks):
@@ -153,7 +178,7 @@ class Finger:
     def state(self):
         quad = self.quad.state() if self.quad else bytes(10)
         return (quad + self.velocity.state() + self.contact.state() + self.drive.state() +
-                self.track.state() + self.pre.state() +
+                self.track.state() + self.watch.state() + self.pre.state() +
                 self.where(self.out, self.rest, *self.joint, *self.tip, *self.slope, self.clamped))
 
 
@@ -190,7 +215,10 @@ class Bilateral:
             self.glove.channel[i].pos = 0
         self.wire, self.params = Wire(par.session, T), Params(par)
         self.rest_ticks = par.f0_rest * T[1] // (1000 * T[0]) + 1
-        self.worn = self.faulty = 0
+        self.supply = Supply(par.supply, T)
+        self.glove_ticks, self.link_ticks = (ms * T[1] // (1000 * T[0]) + 1 if ms else 0
+                                             for ms in (par.glove_time, par.link_time))
+        self.worn = self.faulty = self.unsure = 0
         self.seen = M32
 
     def age(self, f):
@@ -236,18 +264,26 @@ class Bilateral:
         for f in self.at:
             self.finger[f].see(angle)
 
-    def tick(self, enc, mon, din, missed, command, raw, glove_age, mail):
+    def causes(self, code, missed):
+        """Of the box: glove, link, supply."""
+        ages, t = [self.age(f) for f in self.at], self.glove_ticks
+        self.unsure = min(M32, self.unsure + missed + 1) if M32 in ages else 0
+        lost = t and (self.unsure >= t or any(t <= a < M32 for a in ages))
+        cut = self.link_ticks and self.wire.age >= self.link_ticks
+        return (GLOVE if lost else 0) | (LINK if cut else 0) | (SUPPLY if self.supply.step(code, missed) else 0)
+
+    def tick(self, enc, mon, supply, din, missed, command, raw, glove_age, mail):
         """Signals by finger, the box's, and what goes to the D/A."""
         par, at = self.par, self.at
-        moved, seen, raised = {}, {}, 0
+        moved, seen, early, raised = {}, {}, {}, 0
         for f in at:
             s = self.finger[f]
             seen[f] = s.drive.monitor(mon[f])
-            cnt = s.quad.tick(enc[f])
-            moved[f] = position(cnt, s.par.step), s.velocity.tick(cnt)
-            raised |= (ENCODER if s.quad.lost else 0) | (TRACKING if s.track.step(seen[f][0]) else 0)
+            s.cnt = cnt = s.quad.tick(enc[f])
+            fast, v, early[f] = s.watch.step(s.velocity.tick(cnt))
+            moved[f] = position(cnt, s.par.step), v
+            raised |= fast | (ENCODER if s.quad.lost else 0) | (TRACKING if s.track.step(seen[f][0]) else 0)
         placed = din & 255 | sum(1 << 8 + k for k, f in enumerate(at) if din >> 8 + f & 1)
-        permit = self.safety.step(placed, raised, missed, command, self.n, 15)
         age = glove_age if glove_age < 65535 else M32
         self.seen = age if self.worn else M32
         for f in at:
@@ -255,9 +291,11 @@ class Bilateral:
         self.take(mail, missed)
         if raw:
             self.see(raw, age)
+        ready = 7 | (0 if raised & ENCODER else 8)
+        permit = self.safety.step(placed, raised | self.causes(supply, missed), missed, command, self.n, ready)
         felt = {f: self.finger[f].feel(self.age(f), permit, par.material, self.rest_ticks, *moved[f]) for f in at}
         gated, enable = self.safety.gate([par.finger[f].drive for f in at], [felt[f][6] for f in at],
-                                         [felt[f][4] for f in at])
+                                         [felt[f][4] | early[f] for f in at])
         paper, more = [[0] * 8 for _ in range(FINGERS)], [[0] * 15 for _ in range(FINGERS)]
         dac, enabled = [par.finger[at[0]].drive[6]] * FINGERS, 0
         for k, f in enumerate(at):
@@ -266,6 +304,7 @@ class Bilateral:
             enabled |= (enable >> k & 1) << f
             paper[f] = [*moved[f], force, coded, c, seen[f][1], d, lim]
             s.track.coded(coded)
+            s.watch.coded(s.cnt, coded)
             s.last = coded
             p = s.pre
             more[f] = [bits, limits, *s.joint, s.clamped, *s.tip,
@@ -274,7 +313,7 @@ class Bilateral:
         box = [sf.state_, sf.faults, sf.present, self.faulty, glove_age, min(w.age, MAX32), min(w.trip, MAX32),
                wrap(w.set), *map(wrap, (w.rx.count[c] for c in ("accepted missing duplicate reordered old stranger "
                                                                  "corrupt version unknown far silences").split())),
-               w.differs, wrap(w.odd)]
+               w.differs, wrap(w.odd), sf.arm_step()]
         return paper, more, box, (dac, enabled, self.safety.alive)
 
     def put(self, out, kind, body):
@@ -312,7 +351,7 @@ class Bilateral:
 
     def state(self):
         return (b"".join(s.state() for s in self.finger) + self.safety.state() + self.glove.state() +
-                self.wire.state() + pack("<BI", self.worn, self.faulty))
+                self.wire.state() + pack("<BIII", self.worn, self.faulty, self.supply.off, self.unsure))
 
 
 # --- stimuli ---
@@ -445,7 +484,7 @@ def bilateral(rate):
             par = Par(rng, rate, T)
             s = Bilateral(par, T)
             world, hand = World(rng, s), Hand(par, codes)
-            raw, din = [rng.u64() & M32 for _ in range(FINGERS)], HEALTHY
+            raw, din, dim = [rng.u64() & M32 for _ in range(FINGERS)], HEALTHY, 0
             jump = [s.finger[f].quad.jump if f in s.at else 0 for f in range(FINGERS)]
             moves = [wave("bilateral", rate, 1 + f + (8 if k else 0), -j, j, max(1, j >> 10))
                      for f, j in enumerate(jump)]
@@ -464,11 +503,15 @@ def bilateral(rate):
             din = HEALTHY
         if s.safety.state_ == FAULT and rng.draw(0, 3) == 0:
             din ^= 2
+        if rng.draw(0, 7 if dim else 63) == 0:
+            dim ^= 1
+        supply = rng.draw(-32768, 32767) if dim else par.supply[4]
         missed = 1 if rng.draw(0, 127) == 0 else 0
         command = 1 if k % 8 == 2 else 3 if k % 8 == 5 else 0
         for f in s.finger:
             f.pre.resumed = k == pre.RESTORED
-        paper, more, box, (dac, enable, alive) = s.tick(raw, mon, din, missed, command, glove, hand.age, mail)
+        paper, more, box, (dac, enable, alive) = s.tick(raw, mon, supply, din, missed, command, glove, hand.age,
+                                                          mail)
         out = s.write(paper)
         if k % 8 == 7:
             s.params.apply()

@@ -1,0 +1,46 @@
+/* Causes of faults that are the box's and not a finger's: glove, link, supply. */
+#include "bilateral.h"
+
+/* Whole ticks in a time and one more; 0: never. Every value in range: no overflow. */
+static uint32_t ticks_of(int32_t ms, struct exh_period T)
+{
+    if (ms == 0) { return 0; }
+    return (uint32_t)exh_udiv64((uint64_t)(uint32_t)ms * T.den, UINT64_C(1000) * T.num, NULL) + 1;
+}
+
+int bilateral_cause_setup(struct bilateral_cfg *cfg, struct exh_period T)
+{
+    cfg->glove_ticks = ticks_of(cfg->par->own.glove_ms, T);
+    cfg->link_ticks = ticks_of(cfg->par->own.link_ms, T);
+    return exh_supply_setup(&cfg->supply, &cfg->par->supply, T);
+}
+
+/* Of no finger in use the glove may have known nothing for so long: a sensor that is not believed, no
+ * frame, or an old one. What its finger does until then is precontact's: it is let go alone. */
+static int glove_lost(struct bilateral *s, const struct bilateral_cfg *cfg, uint32_t missed)
+{
+    int old = 0, unsure = 0;
+    for (unsigned k = 0; k < cfg->n; k++) {
+        const uint32_t age_ticks = bilateral_finger_age(s, cfg, cfg->at[k]);
+        unsure |= age_ticks == UINT32_MAX;
+        old |= age_ticks != UINT32_MAX && age_ticks >= cfg->glove_ticks;
+    }
+    if (!unsure) {
+        s->unsure_ticks = 0;
+    } else {
+        s->unsure_ticks += missed < UINT32_MAX - s->unsure_ticks ? missed : UINT32_MAX - s->unsure_ticks;
+        s->unsure_ticks += s->unsure_ticks < UINT32_MAX;
+    }
+    return cfg->glove_ticks != 0 && (old || s->unsure_ticks >= cfg->glove_ticks);
+}
+
+uint32_t bilateral_causes(struct bilateral *s, const struct bilateral_cfg *cfg,
+                          const struct exh_scene_in *in)
+{
+    const int glove = glove_lost(s, cfg, in->missed);
+    const int supply = exh_supply_step(&s->supply, &cfg->supply, in->drive.supply_raw, in->missed);
+    /* Contacts are local, frozen before they are felt: who wants a link for them says so. */
+    const int link = cfg->link_ticks != 0 && s->wire.age_ticks >= cfg->link_ticks;
+    return (s->broken ? EXH_FAULT_CONFIG : 0u) | (glove ? EXH_FAULT_GLOVE : 0u) | (supply ? EXH_FAULT_SUPPLY : 0u) |
+           (link ? EXH_FAULT_LINK : 0u);
+}

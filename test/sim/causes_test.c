@@ -1,0 +1,133 @@
+/* Causes of faults that are the full box's: supply, glove, link; each told when it should be, not before,
+ * and not at all where nobody asked. */
+#include "check.h"
+
+#include "cli/bilateral_run.h"
+
+#include <string.h>
+
+#define LEN(a) (sizeof(a) / sizeof((a)[0]))
+
+static struct {
+    double from_s, until_s; /* the supply is at rail_V                             */
+    int16_t rail_raw;
+    double dead_s; /* the index knuckle's wire breaks                              */
+} wrong;
+
+static double at_s[EXH_FAULTS]; /* when a fault was first latched; < 0: never    */
+
+static void wires_in(struct exh_drive_in *in)
+{
+    const double t_s = posix_time_s();
+    if (t_s >= wrong.from_s && t_s < wrong.until_s) { in->supply_raw = wrong.rail_raw; }
+    if (wrong.dead_s > 0 && t_s >= wrong.dead_s) { posix_glove()->fault[4] = SIM_GLOVE_OPEN; }
+}
+
+static void begin(const struct exh_scene *sc, struct exh_scene_board board)
+{
+    (void)sc;
+    (void)board;
+}
+
+static void before(uint32_t tick, struct exh_scene_in *in)
+{
+    (void)tick;
+    (void)in;
+}
+
+static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
+{
+    const struct bilateral_signals *sig = (const void *)exh_scene_bilateral.signal;
+    (void)tick;
+    (void)in;
+    (void)out;
+    for (unsigned k = 0; k < EXH_FAULTS; k++) {
+        if (sig->box.faults >> k & 1 && at_s[k] < 0) { at_s[k] = posix_time_s(); }
+    }
+}
+
+/* The faults of a run of 2.5 s with one finger that presses from 0.9 s on. */
+static uint32_t faults(const char *name, double value, const char *name2, double value2,
+                       double quiet_s)
+{
+    static const struct exh_loop_hooks more = {begin, before, after};
+    const struct run_setting set[] = {{"mat_f_max", 40}, {name, value}, {name2, value2}};
+    struct bilateral_run_cfg c;
+    struct bilateral_run r;
+    memset(&c, 0, sizeof c);
+    c.rate_Hz = 1000;
+    c.board = posix_config_default();
+    c.board.exo = sim_exo_default();
+    c.board.exo.fingers = 1u << EXH_INDEX;
+    c.board.exo.path[EXH_INDEX].first_s = 0.7;
+    c.board.exo.path[EXH_INDEX].approaches = 1;
+    c.board.max_ticks = 2500;
+    c.board.wires_in = wires_in;
+    c.setting = set;
+    c.settings = LEN(set);
+    c.k_Npm = 5000;
+    c.b_Nspm = 20;
+    c.at_m = 0.03;
+    c.fps = 400;
+    c.until_s = quiet_s;
+    c.fit_scale = 1;
+    c.more = &more;
+    for (unsigned k = 0; k < EXH_FAULTS; k++) { at_s[k] = -1; }
+    CHECK_EQ_I64(bilateral_run(&c, &r), 0);
+    bilateral_run_free(&r);
+    return r.faults;
+}
+
+static void told_at(unsigned k, double lo_s, double hi_s)
+{
+    CHECK(at_s[k] >= lo_s && at_s[k] <= hi_s, "%s at %.4f s, want %.4f..%.4f", exh_fault_name(k),
+          at_s[k], lo_s, hi_s);
+}
+
+static void all_is_well(void)
+{
+    memset(&wrong, 0, sizeof wrong);
+}
+
+TEST(a_supply_outside_its_limits_is_a_fault_where_it_is_judged)
+{
+    all_is_well();
+    CHECK_EQ_I64(faults("supply_min", 20, "supply_max", 28, 1e30), 0);
+    wrong.from_s = 1.2;
+    wrong.until_s = 9;
+    wrong.rail_raw = 14745; /* 18 V */
+    CHECK_EQ_I64(faults("supply_min", 20, "supply_max", 28, 1e30), EXH_FAULT_SUPPLY);
+    told_at(11, 1.210, 1.2115);
+    wrong.rail_raw = 24576; /* 30 V */
+    CHECK_EQ_I64(faults("supply_min", 20, "supply_max", 28, 1e30), EXH_FAULT_SUPPLY);
+    wrong.until_s = 1.2095; /* a dip */
+    CHECK_EQ_I64(faults("supply_min", 20, "supply_max", 28, 1e30), 0);
+    wrong.until_s = 9;
+    wrong.rail_raw = 0;
+    CHECK_EQ_I64(faults("supply_min", 0, "supply_max", 28, 1e30), 0); /* no monitor */
+}
+
+/* The finger is let go alone, after doubt_max; the box stops later. */
+TEST(a_sensor_that_is_not_believed_is_a_fault_after_its_time)
+{
+    all_is_well();
+    wrong.dead_s = 1.2;
+    CHECK_EQ_I64(faults("glove_time", 0.5 * 1000, "link_time", 0, 1e30), EXH_FAULT_GLOVE);
+    told_at(8, 1.7, 1.72);
+    CHECK_EQ_I64(faults("glove_time", 0, "link_time", 0, 1e30), 0); /* nobody asked */
+    CHECK_EQ_I64(faults("glove_time", 5000, "link_time", 0, 1e30), 0); /* not yet */
+}
+
+/* A silent world is no fault: contacts are local. Who wants one says so. */
+TEST(a_silent_link_is_a_fault_where_it_is_asked_for)
+{
+    all_is_well();
+    CHECK_EQ_I64(faults("glove_time", 1000, "link_time", 0, 1.2), 0);
+    CHECK_EQ_I64(faults("glove_time", 1000, "link_time", 300, 1e30), 0);
+    CHECK_EQ_I64(faults("glove_time", 1000, "link_time", 300, 1.2), EXH_FAULT_LINK);
+    told_at(10, 1.49, 1.51);
+}
+
+TEST_MAIN("causes", a_supply_outside_its_limits_is_a_fault_where_it_is_judged,
+          a_sensor_that_is_not_believed_is_a_fault_after_its_time,
+          a_silent_link_is_a_fault_where_it_is_asked_for);
