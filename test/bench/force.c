@@ -4,10 +4,10 @@
 #include "law.h"
 #include "path.h"
 
-#define CASES 300000
+#define CASES   300000
 #define FINGERS 5u
-#define HOUR 7200000u /* ticks at 2 kHz */
-#define SECOND 2000u
+#define HOUR    7200000u /* ticks at 2 kHz */
+#define SECOND  2000u
 
 static struct exh_contact_in at[FINGERS][BENCH_OPS];
 static double at_q[FINGERS][BENCH_OPS], at_v[FINGERS][BENCH_OPS];
@@ -44,13 +44,12 @@ static void start(void)
             at_vf[f][i] = (float)at_v[f][i];
         }
     }
-    in_double = (struct law_double){si(p->k_Npm_q10, EXH_Q_K), si(p->b_Nspm_q20, EXH_Q_B),
-                                    si(p->f0_N_q20, EXH_Q_FORCE),
-                                    si(path_par.own.q_lim_m_q30, EXH_Q_POS),
-                                    si(path_par.drive.f_max_N_q20, EXH_Q_FORCE)};
-    in_float = (struct law_float){(float)in_double.k_Npm, (float)in_double.b_Nspm,
-                                  (float)in_double.f0_N, (float)in_double.lim_m,
-                                  (float)in_double.f_max_N};
+    in_double = (struct law_double){
+        si(p->k_Npm_q10, EXH_Q_K), si(p->b_Nspm_q20, EXH_Q_B), si(p->f0_N_q20, EXH_Q_FORCE),
+        si(path_par.own.q_lim_m_q30, EXH_Q_POS), si(path_par.drive.f_max_N_q20, EXH_Q_FORCE)};
+    in_float =
+        (struct law_float){(float)in_double.k_Npm, (float)in_double.b_Nspm, (float)in_double.f0_N,
+                           (float)in_double.lim_m, (float)in_double.f_max_N};
     safety = (struct exh_safety){.state = EXH_STATE_RUN, .fingers = 1};
 }
 
@@ -159,8 +158,8 @@ static void double_error(struct error *e)
     start();
     for (uint32_t i = 0; i < HOUR; i++) {
         const struct exh_contact_in in = hour_in(i);
-        const double f = law_double(&in_double, si(in.pos_m_q30, EXH_Q_POS),
-                                    si(in.vel_mps_q27, EXH_Q_VEL));
+        const double f =
+            law_double(&in_double, si(in.pos_m_q30, EXH_Q_POS), si(in.vel_mps_q27, EXH_Q_VEL));
         error_add(e, (long double)f * (1 << EXH_Q_FORCE) - exact_plain(in));
     }
 }
@@ -194,9 +193,9 @@ static void law_force_error(struct error *e)
         struct exh_force_ledger l;
         exh_contact_law(&contact[0], &path_par.contact, in, &l);
         exh_drive_force(&drive[0], &path_cfg.drive, &open, &l);
-        error_add(e, l.force_N_q20 -
-                         bench_clamp(exact_law(&path_par.contact, in, contact[0].inward), 0,
-                                     most_q20()));
+        error_add(e,
+                  l.force_N_q20 - bench_clamp(exact_law(&path_par.contact, in, contact[0].inward),
+                                              0, most_q20()));
     }
 }
 
@@ -270,8 +269,8 @@ static void current_error(struct error *e)
         struct exh_current_ledger c;
         long double want = p->i_peak_A_q26 * bench_clamp(l.force_N_q20 / peak_N_q20(), 0, 1);
         exh_drive_current(&drive[0], &path_cfg.drive, &l, &c);
-        want = bench_clamp(want, 0, p->i_cont_A_q26 +
-                                        bench_clamp(extra, 0, p->i_peak_A_q26 - p->i_cont_A_q26));
+        want = bench_clamp(
+            want, 0, p->i_cont_A_q26 + bench_clamp(extra, 0, p->i_peak_A_q26 - p->i_cont_A_q26));
         error_add(e, (long double)(c.table_A_q26 + c.peak_A_q26 + c.i2t_A_q26) - want);
     }
 }
@@ -332,8 +331,8 @@ static void safety_error(struct error *e)
     start();
     for (int i = 0; i < CASES; i++) {
         const uint32_t din = bench_in(0, 3) ? PATH_HEALTHY : (uint32_t)bench_in(0, 0x1FF);
-        const struct exh_safety_in box = {din, 0, (uint32_t)bench_in(0, 2), EXH_CMD_NONE, 1,
-                                          EXH_ARM_ALL};
+        const struct exh_safety_in box = {din,          0, (uint32_t)bench_in(0, 2),
+                                          EXH_CMD_NONE, 1, EXH_ARM_ALL};
         const uint32_t want = (din & EXH_DIN_ESTOP ? 0u : EXH_FAULT_ESTOP) |
                               (din & EXH_DIN_DEADMAN ? 0u : EXH_FAULT_DEADMAN) |
                               (din & EXH_DIN_WATCHDOG ? 0u : EXH_FAULT_WATCHDOG) |
@@ -349,8 +348,8 @@ static void safety_error(struct error *e)
     }
 }
 
-#define NEWTON (1.0 / (1 << EXH_Q_FORCE))
-#define AMPERE (1.0 / (1 << EXH_Q_CUR))
+#define NEWTON  (1.0 / (1 << EXH_Q_FORCE))
+#define AMPERE  (1.0 / (1 << EXH_Q_CUR))
 #define HARNESS ", 5 fingers, private harness, gcc 12.2 -O2"
 
 static const struct kernel kernels[] = {
