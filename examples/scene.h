@@ -54,7 +54,6 @@ struct exh_scene {
     uint32_t rate_Hz; /* when nobody asks for another                         */
     uint8_t fingers;
     struct exh_params *params;              /* NULL: constants in ROM         */
-    const struct exh_safety *safety; /* the state of the box, for whoever commands it; or NULL */
     const struct exh_signal_table *signals; /* outputs per tick, or NULL      */
     int32_t *signal;                        /* their values, or NULL          */
     /* exh_board_read_glove, or NULL: only a scene that names it links it. */
@@ -74,6 +73,8 @@ struct exh_scene {
     void (*tell)(void);
     /* The whole state through a cursor; NULL: not replayable. */
     void (*state)(struct exh_bytes *c);
+    /* The state of the box, for whoever commands it; or NULL. */
+    const struct exh_safety *safety;
 };
 
 #endif
