@@ -52,6 +52,8 @@ TEST(bad_usage_is_refused_by_name)
         {{"--set", "q_lim=9"}, "q_lim: 9 (allowed"},
         {{"--device", "mass=9"}, "--device: mass: 9 (allowed"},
         {{"--device", "none=9"}, "--device: none: no such value"},
+        {{"--blackbox", "/nowhere/at/all", "--rate", "90"}, "--blackbox: /nowhere/at/all: No such file"},
+        {{"--sweep", "--let-go", "1"}, "leave out --k, --b, --scale, --spread, --pace, --let-go"},
         {{"--out", "/dev/null"}, "--out: /dev/null: Not a directory"},
         {{"--out", "/nowhere/at/all"}, "--out: /nowhere/at/all: No such file"},
         {{"--out", LONG_512 LONG_512}, "--out: 0123456789"},
@@ -67,6 +69,19 @@ TEST(bad_usage_is_refused_by_name)
         CHECK(strchr(s.err, '\n') == s.err + strlen(s.err) - 1, "row %zu: %s", i, s.err);
         CHECK(s.out[0] == '\0', "row %zu: %s", i, s.out);
     }
+    said_clean(dir);
+}
+
+/* A cause in the ramp is no refusal of a step before it, and no log that is damaged. */
+TEST(what_ends_the_ramp_is_named)
+{
+    const char *dir = said_dir();
+    static struct said s;
+    said(&s, dir, cli_drop, WORDS("drop", "--rate", "500", "--falls", "1", "--let-go", "0.2"));
+    CHECK(s.status == 1, "status %d: %s", s.status, s.err);
+    CHECK(strstr(s.err, "arming: refused at ramp, causes deadman: this came before") != NULL, "%s", s.err);
+    CHECK(strchr(s.err, '\n') == s.err + strlen(s.err) - 1, "%s", s.err);
+    CHECK(s.out[0] == '\0', "%s", s.out);
     said_clean(dir);
 }
 
@@ -327,7 +342,7 @@ TEST(a_job_that_dies_is_an_error)
     }
 }
 
-TEST_MAIN("cli", bad_usage_is_refused_by_name, printed_ranges_are_the_true_ones,
+TEST_MAIN("cli", bad_usage_is_refused_by_name, what_ends_the_ramp_is_named, printed_ranges_are_the_true_ones,
           gains_are_the_nearest_rows, the_paper_stands_beside_its_own_gains_alone,
           no_line_is_no_number, medians_are_of_runs_with_a_line,
           the_judge_observes_as_long_as_the_device, any_directory_name_will_do,

@@ -24,7 +24,7 @@ static const char *const advice[EXH_ARMS] = {"the processor or its memory is bro
                                              "the position is lost: start again",
                                              "close what is open, hold the dead-man",
                                              "a force is asked for already: begin outside the wall",
-                                             "it was let go before all of the force was there"};
+                                             "this came before all of the force was there"};
 
 static unsigned first_of(uint32_t bits)
 {
@@ -35,7 +35,8 @@ static unsigned first_of(uint32_t bits)
 
 void arming_complain(int32_t arm_step, int32_t present)
 {
-    const unsigned step = first_of((uint32_t)arm_step);
+    /* The ramp is over when it is not refused any more: a cause in it is no refusal, but its end. */
+    const unsigned step = first_of(arm_step ? (uint32_t)arm_step : (uint32_t)EXH_ARM_RAMP);
     char causes[128] = "";
     size_t at = 0;
     for (unsigned k = 0; k < EXH_FAULTS; k++) {

@@ -342,6 +342,17 @@ static int in_plane(const struct drop_options *o)
     return o->sweep || o->check || o->friction;
 }
 
+/* Before the run, whose fault comes once. What is there stays as it is, what is not stays away. */
+static int can_write(const char *path)
+{
+    FILE *was = fopen(path, "rb"), *f = fopen(path, "ab");
+    if (f == NULL) { cli_complain("--blackbox: %s: %s: give a file that can be written", path, strerror(errno)); }
+    if (f != NULL) { fclose(f); }
+    if (f != NULL && was == NULL) { (void)remove(path); }
+    if (was != NULL) { fclose(was); }
+    return f != NULL;
+}
+
 /* Whether what was asked for can be run at all: 0, or 2 after a line on stderr. */
 static int refuse(struct drop_options *o)
 {
@@ -357,6 +368,7 @@ static int refuse(struct drop_options *o)
         cli_complain("--blackbox: one rate, and no plane of gains: --out names a dump for each rate");
         return 2;
     }
+    if (o->blackbox && !can_write(o->blackbox)) { return 2; }
     if ((o->grid && !o->sweep && !o->check) || (o->shard && !o->sweep)) {
         cli_complain("--grid and --shard: only with --sweep, --grid with --border-check too");
         return 2;
@@ -380,8 +392,8 @@ static int plane(const struct drop_options *o)
         cli_complain("--sweep, --border-check, --friction: one at a time");
         return 2;
     }
-    if (o->k_Npm >= 0 || o->b_Nspm >= 0 || o->scale != 1 || o->spread > 0 || o->pace) {
-        cli_complain("--%s: chooses k and b itself: leave out --k, --b, --scale, --spread, --pace",
+    if (o->k_Npm >= 0 || o->b_Nspm >= 0 || o->scale != 1 || o->spread > 0 || o->pace || o->let_go_s > 0) {
+        cli_complain("--%s: chooses k and b itself: leave out --k, --b, --scale, --spread, --pace, --let-go",
                      o->sweep ? "sweep" : o->check ? "border-check" : "friction");
         return 2;
     }

@@ -250,7 +250,7 @@ static int advise(struct asked *a)
     static struct gains_rate rate[GAINS_RATES];
     static struct gains_share share[GAINS_RATES];
     struct gains_map m = {NULL, 0, 0, 0}, *map = a->judge ? &m : NULL;
-    int worst = map && gains_map(map, a->judge), inside = 1, restless = 0, n = 0;
+    int worst = map ? gains_map(map, a->judge) : 0, inside = 1, restless = 0, n = 0;
     memset(rate, 0, sizeof rate);
     if (worst == 0) { worst = rates_of(a, map); }
     for (; n < a->rates && (worst == 0 || worst == 1) && (map == NULL || m.n > 0); n++) {

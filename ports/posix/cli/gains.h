@@ -37,7 +37,7 @@ struct gains_map {
     int n, columns, rows;
 };
 
-/* All cells of a file that `exhand drop --sweep` wrote. 0, or 1 after a line on stderr. */
+/* All cells of a file that `exhand drop --sweep` wrote. 0, or a status after a line on stderr: 3 without the file. */
 int gains_map(struct gains_map *m, const char *path);
 
 /* The cells of the region's rate. */

@@ -67,8 +67,8 @@ int gains_map(struct gains_map *m, const char *path)
     int err;
     memset(m, 0, sizeof *m);
     if (f == NULL) {
-        cli_complain("--judge: %s: %s", path, strerror(errno));
-        return 1;
+        cli_complain("--judge: %s: %s: give the stability.csv of exhand drop --sweep", path, strerror(errno));
+        return 3;
     }
     err = read_all(f, m);
     fclose(f);
@@ -76,7 +76,7 @@ int gains_map(struct gains_map *m, const char *path)
     cli_complain(err ? "--judge: %s: out of memory"
                      : "--judge: %s: no cell in it: give the stability.csv of exhand drop --sweep",
                  path);
-    return 1;
+    return err ? 1 : 2;
 }
 
 static int same(double a, double b)

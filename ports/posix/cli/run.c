@@ -11,6 +11,7 @@
 
 #include "exhand/board.h"
 #include "exhand/error.h"
+#include "exhand/safety.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -77,7 +78,7 @@ static void watch_arming(const struct drop_signals *s)
         posix_ready();
     } else {
         arming_complain(s->arm_step, s->present);
-        run.r->refused = (uint32_t)s->arm_step;
+        run.r->refused = s->arm_step ? (uint32_t)s->arm_step : (uint32_t)EXH_ARM_RAMP;
         posix_stop();
     }
 }
