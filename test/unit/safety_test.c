@@ -196,6 +196,21 @@ TEST(the_first_of_several_steps_is_named)
     CHECK_EQ_I64(s.refused, EXH_ARM_CALIBRATION);
 }
 
+/* Armed in the end: no step is told any more, only how often one was. */
+TEST(a_refusal_is_forgotten_once_it_runs)
+{
+    const struct exh_safety_cfg cfg = cfg_of(par, 1000);
+    struct exh_safety s = box_in(&cfg, EXH_STATE_OFF, 0);
+    (void)exh_safety_step(&s, &cfg, with_cause(EXH_FAULT_ESTOP, EXH_CMD_RUN));
+    CHECK_EQ_I64(exh_safety_arm(&s), EXH_ARM_DEADMAN);
+    for (int i = 0; i < 5000 && !exh_safety_runs(&s); i++) {
+        (void)exh_safety_step(&s, &cfg, healthy(i == 0 ? EXH_CMD_RUN : EXH_CMD_NONE));
+    }
+    CHECK(exh_safety_runs(&s), "%s", exh_state_name(s.state));
+    CHECK_EQ_I64(exh_safety_arm(&s), 0);
+    CHECK_EQ_I64(s.refusals, 1);
+}
+
 /* What is vouched for may be lost while the limit rises: what force there is goes gently. */
 TEST(a_step_lost_in_the_ramp_releases)
 {
@@ -528,7 +543,7 @@ TEST(names_are_all_there)
 
 TEST_MAIN("unit/safety", every_cell_is_what_it_should_be, every_state_is_reached,
           every_fault_in_every_state, several_causes_cut_if_one_of_them_does, power_on_is_off,
-          each_step_is_named_where_it_does_not_hold, the_first_of_several_steps_is_named,
+          each_step_is_named_where_it_does_not_hold, the_first_of_several_steps_is_named, a_refusal_is_forgotten_once_it_runs,
           a_step_lost_in_the_ramp_releases, off_while_arming, arming_takes_its_time_at_every_rate,
           limits_are_told_and_counted, missed_ticks_are_tolerated_up_to_the_limit,
           late_too_often_is_an_overrun, only_drives_in_use_count, release_ends_at_every_rate,
