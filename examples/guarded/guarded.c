@@ -107,6 +107,7 @@ const struct exh_scene exh_scene_guarded = {
     .name = "guarded",
     .rate_Hz = 2000,
     .fingers = 1,
+    .safety = &state.drop.safety,
     .params = &params,
     .signals = &signal_table,
     .signal = (int32_t *)&signals,
