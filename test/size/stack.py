@@ -5,8 +5,9 @@ Each OBJECT was compiled by gcc with -fcallgraph-info=su: its call graph lies be
 ending .ci. The deepest path from the root is printed, the bytes first. Indirect calls: the few
 function pointers of this project stand in constant tables (struct exh_scene, struct
 exh_loop_hooks), so an indirect call is taken to reach any function whose address is in the data
-of any object; but one in the log (exh_log_*) only what a scene's own table points to: it calls the
-scene's state(), while the loop's hooks call the log. A function whose address is taken only by code is not seen: give it a table.
+of any object; but one in the log (exh_log_*, examples/log.c) only what a scene's own table or a tap's
+(struct exh_log_tap tap) points to: it calls the scene's state() and the tap, while the loop's hooks
+call the log. A function whose address is taken only by code is not seen: give it a table.
 Functions without a graph (assembler, the C library) count as nothing and are named.
 
 Exit status: 0 bounded, 1 not (recursion, a frame of unknown size), 2 bad usage, 3 no objdump.
@@ -22,6 +23,8 @@ BYTES = re.compile(r'(\d+) bytes \(([^)]*)\)')
 SECTION = re.compile(r'RELOCATION RECORDS FOR \[([^]]*)\]')
 RELOCATION = re.compile(r'^[0-9a-f]+ +R_\S+ +(\S+)')
 INDIRECT = '__indirect_call'
+LOG = re.compile(r'(^|:)exh_log_|(^|/)log\.c:')
+FOR_LOG = re.compile(r'exh_scene_|\.tap(\.\d+)?$')
 
 
 class Unbounded(Exception):
@@ -45,24 +48,24 @@ def read_graph(obj, frames, calls):
 
 
 def addresses_in_data(obj, objdump):
-    """(Name, whether a scene's table has it) of what the data of an object points to."""
+    """(Name, whether a table that the log calls has it) of what the data of an object points to."""
     text = subprocess.run([objdump, '-r', obj], check=True, capture_output=True, text=True).stdout
-    names, is_data, of_scene = set(), False, False
+    names, is_data, for_log = set(), False, False
     for line in text.splitlines():
         section = SECTION.match(line)
         relocation = RELOCATION.match(line)
         if section:
             is_data = re.match(r'\.(data|rodata)', section.group(1)) is not None
-            of_scene = 'exh_scene_' in section.group(1)
+            for_log = FOR_LOG.search(section.group(1)) is not None
         elif relocation and is_data:
-            names.add((re.sub(r'^\.text\.|[+-]0x[0-9a-f]+$', '', relocation.group(1)), of_scene))
+            names.add((re.sub(r'^\.text\.|[+-]0x[0-9a-f]+$', '', relocation.group(1)), for_log))
     return names
 
 
 def reached(caller, tables):
     """Titles that an indirect call of this caller may reach."""
-    in_log = caller.rsplit(':', 1)[-1].startswith('exh_log_')
-    return sorted(title for title, of_scene in tables.items() if of_scene or not in_log)
+    in_log = LOG.search(caller) is not None
+    return sorted(title for title, for_log in tables.items() if for_log or not in_log)
 
 
 def deepest(title, graph, done, path):
@@ -97,10 +100,10 @@ def main():
         for _, titles in per_object:
             names.update((t, t) for t in titles.values())
         for obj, titles in per_object:
-            for name, of_scene in addresses_in_data(obj, args.objdump):
+            for name, for_log in addresses_in_data(obj, args.objdump):
                 title = titles.get(name, names.get(name))
                 if title:
-                    tables[title] = tables.get(title, False) or of_scene
+                    tables[title] = tables.get(title, False) or for_log
     except FileNotFoundError as missing:
         print(f'{missing.filename}: not found: compile with -fcallgraph-info=su, '
               'or install the binutils', file=sys.stderr)

@@ -1,6 +1,11 @@
-/* Runs a scene's tick and nothing else, for whoever counts its instructions: every
- * input healthy, the string pulled out and let in one count a tick, so that the wall
- * is entered and left, the glove bent and stretched along with it. Usage: ticks N. */
+/* Runs a scene's tick and nothing else, for whoever counts its instructions: every input healthy,
+ * the string at rest until the box runs (armed, ramp over), then pulled out and let in one count a
+ * tick, so that a wall is entered and left, the glove bent and stretched along with it. Counted,
+ * in counted_tick(), are the ticks of the sweep that are asked for:
+ *     contact   RUN or LIMIT, and the tick before coded a current for finger 0
+ *     run       RUN or LIMIT
+ *     all       all: a scene without safety
+ * Their number goes to stdout. Usage: ticks N contact|run|all. */
 #include "scene.h"
 
 #include "exhand/board.h"
@@ -9,8 +14,13 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
-#define SWEEP_CNT 1000u /* 66 mm of string */
+#define SWEEP_CNT 1500u /* 99 mm of string: drop's wall is at 70 */
+#define ARM_TICKS 20000u /* by then a box that can be armed runs   */
+#define CODE_ZERO 32768
+
+enum which { ALL, RUN, CONTACT };
 
 extern const struct exh_scene EXH_SCENE;
 
@@ -66,34 +76,77 @@ static int set_up(void)
     return err;
 }
 
-int main(int argc, char **argv)
+__attribute__((noinline)) static void counted_tick(const struct exh_scene_in *in,
+                                                   struct exh_drive_out *out)
 {
-    const unsigned long ticks = argc == 2 ? strtoul(argv[1], NULL, 10) : 0;
-    struct exh_scene_in in = {.command = EXH_CMD_RUN};
-    struct exh_drive_out out = {.enable = 0};
+    EXH_SCENE.tick(in, out);
+}
 
-    if (ticks == 0) {
-        fprintf(stderr, "usage: ticks N (N > 0)\n");
-        return 2;
-    }
-    if (set_up() < 0) { return 1; }
-    in.drive.din = EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG | EXH_DIN_CARDS;
+static void inputs(struct exh_scene_in *in, const struct exh_drive_out *out, uint32_t cnt)
+{
+    in->drive.din = EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG | EXH_DIN_CARDS;
     for (unsigned i = 0; i < EXH_FINGERS; i++) {
-        in.drive.din |= (uint32_t)EXH_DIN_DRIVE0 << i;
+        const int codes = out->dac_raw[i] - CODE_ZERO;
+        in->drive.din |= (uint32_t)EXH_DIN_DRIVE0 << i;
+        in->drive.enc_raw[i] = cnt;
+        in->drive.mon_raw[i] = (int16_t)(codes + codes / 16); /* 1.06 for the drive's 1.05 */
     }
+    in->glove_new = 1;
+    for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
+        in->glove.raw[i] = (int16_t)((int32_t)cnt * 8 / 3 - 2000);
+    }
+}
+
+static int runs(void)
+{
+    return EXH_SCENE.safety != NULL && exh_safety_runs(EXH_SCENE.safety);
+}
+
+/* Until the box runs, or cannot. */
+static void arm(struct exh_scene_in *in, struct exh_drive_out *out)
+{
+    for (uint32_t k = 0; k < ARM_TICKS && EXH_SCENE.safety != NULL && !runs(); k++) {
+        in->command = (uint8_t)(k == 0 ? EXH_CMD_RUN : EXH_CMD_NONE);
+        inputs(in, out, 0);
+        EXH_SCENE.tick(in, out);
+    }
+    in->command = EXH_CMD_NONE;
+}
+
+static unsigned long sweep(unsigned long ticks, enum which which, struct exh_scene_in *in,
+                           struct exh_drive_out *out)
+{
+    unsigned long counted = 0;
     for (unsigned long k = 0; k < ticks; k++) {
         const uint32_t at = (uint32_t)(k % (2 * SWEEP_CNT));
-        for (unsigned i = 0; i < EXH_FINGERS; i++) {
-            const int codes = k ? out.dac_raw[i] - 32768 : 0;
-            in.drive.enc_raw[i] = at < SWEEP_CNT ? at : 2 * SWEEP_CNT - at;
-            in.drive.mon_raw[i] = (int16_t)(codes + codes / 16); /* 1.06 for the drive's 1.05 */
+        const int coded = out->dac_raw[0] != CODE_ZERO;
+        inputs(in, out, at < SWEEP_CNT ? at : 2 * SWEEP_CNT - at);
+        if (which == ALL || (runs() && (which == RUN || coded))) {
+            counted_tick(in, out);
+            counted++;
+        } else {
+            EXH_SCENE.tick(in, out);
         }
-        in.glove_new = 1;
-        for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
-            in.glove.raw[i] = (int16_t)((int32_t)in.drive.enc_raw[0] * 4 - 2000);
-        }
-        EXH_SCENE.tick(&in, &out);
-        in.command = EXH_CMD_NONE;
     }
+    return counted;
+}
+
+int main(int argc, char **argv)
+{
+    const unsigned long ticks = argc == 3 ? strtoul(argv[1], NULL, 10) : 0;
+    struct exh_scene_in in = {.command = EXH_CMD_NONE};
+    struct exh_drive_out out = {.enable = 0};
+    enum which which = ALL;
+
+    if (ticks == 0) {
+        fprintf(stderr, "usage: ticks N contact|run|all (N > 0)\n");
+        return 2;
+    }
+    if (strcmp(argv[2], "run") == 0) { which = RUN; }
+    if (strcmp(argv[2], "contact") == 0) { which = CONTACT; }
+    for (unsigned i = 0; i < EXH_FINGERS; i++) { out.dac_raw[i] = CODE_ZERO; }
+    if (set_up() < 0) { return 1; }
+    arm(&in, &out);
+    printf("%lu\n", sweep(ticks, which, &in, &out));
     return 0;
 }
