@@ -285,6 +285,12 @@ static void state_bytes(struct exh_bytes *c)
     bilateral_bytes(c, &state);
 }
 
+struct bilateral *bilateral_memory(struct bilateral_cfg **c)
+{
+    *c = &cfg;
+    return &state;
+}
+
 static const struct exh_scene_link wire = {exh_board_link_recv, exh_board_link_send, &mail_in,
                                            &mail_out, write_mail};
 

@@ -225,6 +225,9 @@ uint32_t bilateral_finger_feel(struct bilateral *s, const struct bilateral_cfg *
  * -EXH_E_RANGE with *bad (may be NULL). */
 int bilateral_stage_cal(const struct exh_glove_cal *cal, struct exh_glove_bad *bad);
 
+/* The memory of the one instance, for who damages it to see what happens. */
+struct bilateral *bilateral_memory(struct bilateral_cfg **cfg);
+
 extern const struct exh_scene exh_scene_bilateral;
 
 #endif

@@ -171,6 +171,12 @@ static void state_bytes(struct exh_bytes *c)
     drop_bytes(c, &state);
 }
 
+struct drop *drop_memory(struct drop_cfg **c)
+{
+    *c = &cfg;
+    return &state;
+}
+
 const struct exh_scene exh_scene_drop = {
     .name = "drop",
     .rate_Hz = 2000,

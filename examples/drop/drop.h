@@ -107,6 +107,9 @@ void drop_bytes(struct exh_bytes *c, struct drop *s);
 void drop_tick(struct drop *s, const struct drop_cfg *cfg, const struct exh_scene_in *in,
                struct exh_drive_out *out, struct drop_signals *sig);
 
+/* The memory of the one instance, for who damages it to see what happens. */
+struct drop *drop_memory(struct drop_cfg **cfg);
+
 extern const struct exh_scene exh_scene_drop;
 
 #endif

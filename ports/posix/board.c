@@ -390,6 +390,11 @@ int posix_hand_ready(void)
     return sim_operator_at_rest(&sim.hand, sim.now_s - 5e-3 /* behind the low-pass too */);
 }
 
+void posix_glove_stop(void)
+{
+    sim.frame_s = 1e30;
+}
+
 struct sim_glove *posix_glove(void)
 {
     return &sim.glove;

@@ -78,6 +78,7 @@ int posix_hand_ready(void);
 
 /* The glove itself, for faults. */
 struct sim_glove *posix_glove(void);
+void posix_glove_stop(void); /* no frame comes any more                             */
 
 /* Ends the run: the next wait says stop. */
 void posix_stop(void);

@@ -68,11 +68,12 @@ static double si(int32_t raw, int frac)
     return (double)raw / (double)(INT64_C(1) << frac);
 }
 
-/* The mass is held until the box runs; one that will not is no experiment. */
+/* The mass is held until the box runs; one that will not is no experiment, unless somebody else
+ * commands it. */
 static void watch_arming(const struct drop_signals *s)
 {
     const enum arming is = arming_is(s->state);
-    if (run.ran || is == ARMING_GOES_ON) { return; }
+    if (run.ran || is == ARMING_GOES_ON || (run.more && is != ARMING_RUNS)) { return; }
     run.ran = is == ARMING_RUNS;
     if (run.ran) {
         posix_ready();
