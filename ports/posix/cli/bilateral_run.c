@@ -104,12 +104,12 @@ static int one_finger(unsigned f)
     return phase != SIM_PATH_DONE;
 }
 
-/* A box that will not run is no experiment. */
+/* A box that will not run is no experiment, unless somebody else commands it. */
 static void watch_arming(void)
 {
     const struct bilateral_signals *sig = (const void *)exh_scene_bilateral.signal;
     const enum arming is = arming_is(sig->box.state);
-    if (run.ran || is == ARMING_GOES_ON) { return; }
+    if (run.ran || is == ARMING_GOES_ON || (run.cfg->more && is != ARMING_RUNS)) { return; }
     run.ran = is == ARMING_RUNS;
     run.again = !run.ran && sig->box.present == 0 && sig->box.arm_step == EXH_ARM_DEADMAN;
     if (!run.ran && !run.again && posix_time_s() >= PATIENCE_S) {

@@ -11,6 +11,7 @@ int cli_budget(int argc, char **argv);
 int cli_calibrate(int argc, char **argv);
 int cli_calibrate_glove(int argc, char **argv); /* `exhand calibrate --glove` */
 int cli_cards(int argc, char **argv);
+int cli_faults(int argc, char **argv);
 int cli_drop(int argc, char **argv);
 int cli_glove(int argc, char **argv);
 int cli_fit(int argc, char **argv);

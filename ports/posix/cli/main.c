@@ -17,6 +17,7 @@ static const struct {
     {"bringup", "first power-up, step by step, rehearsed on the simulated device", cli_bringup},
     {"budget", "the highest rate of the loop that the box can hold, bound by bound", cli_budget},
     {"calibrate", "known masses, F0 and home: tables of force and current; or --glove, poses", cli_calibrate},
+    {"faults", "every fault in every state of the box, and any fault at any time", cli_faults},
     {"cards", "every misbehaviour of a card in every phase of its driver, and how it ends", cli_cards},
     {"drop", "the paper's falling-mass experiment on the simulated device", cli_drop},
     {"fit", "a plant that does what the paper's device did, by every reading", cli_fit},

@@ -1,0 +1,270 @@
+/* Any fault at any tick: random times in closed loop, two causes, contacts that close again, somebody
+ * who will not stop commanding RUN. */
+#include "faults_part.h"
+
+#include "jobs.h"
+#include "option.h"
+#include "posix.h"
+
+#include "sim/random.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const uint32_t rate_Hz[] = {90, 200, 400, 500, 1000, 2000};
+#define RATES     (sizeof rate_Hz / sizeof rate_Hz[0])
+#define CASES_MAX 400 /* of one run                                                      */
+#define CONTROL   32 /* one of so many has no fault                                    */
+#define UNTIL_S   2.2
+#define QUIET_S   0.25 /* nothing may open by itself for so long                          */
+
+struct one {
+    uint32_t tick;
+    struct faults_case c;
+};
+
+struct plan {
+    struct faults_base base;
+    struct one at[CASES_MAX];
+    int n, next;
+    struct faults_random *sum;
+};
+
+struct asked {
+    int total, per_job, seeds;
+    uint64_t seed;
+};
+
+/* --- what to try --- */
+
+static uint8_t some_source(struct sim_random *r, uint8_t scene)
+{
+    uint8_t source;
+    do {
+        source = (uint8_t)(1 + sim_random_u64(r) % (FAULTS_SOURCES - 1));
+    } while (!faults_has(scene, source));
+    return source;
+}
+
+static struct faults_what some(struct sim_random *r, uint8_t scene)
+{
+    struct faults_what w = {some_source(r, scene), 0, 0, 0};
+    w.how = (uint32_t)sim_random_u64(r) | 0x10000u;
+    if (sim_random_u64(r) & 1) { w.for_ticks = 1 + (uint32_t)(sim_random_u64(r) % 40); }
+    return w;
+}
+
+/* Time to see both, to release, and then some. */
+static uint32_t follow(const struct faults_case *c, uint32_t rate)
+{
+    uint32_t n = (uint32_t)((QUIET_S + 0.02) * rate) + 8;
+    for (int k = 0; k < 2; k++) {
+        n += c->what[k].after_ticks + faults_seen_within(c->what[k].source, rate);
+    }
+    return n;
+}
+
+static int by_tick(const void *a, const void *b)
+{
+    const struct one *x = a, *y = b;
+    return (x->tick > y->tick) - (x->tick < y->tick);
+}
+
+static void plan_of(struct plan *p, const struct asked *a, int job)
+{
+    struct sim_random r = {a->seed ^ (uint64_t)job * UINT64_C(0xD1B54A32D192ED03)};
+    memset(p, 0, sizeof *p);
+    p->base.rate_Hz = rate_Hz[(size_t)job % RATES];
+    p->base.scene = (uint8_t)((size_t)job / RATES % FAULTS_SCENES);
+    p->base.cards = sim_random_u64(&r) & 1;
+    p->base.gentle = sim_random_u64(&r) % 3 != 0;
+    p->base.seed = (uint32_t)sim_random_u64(&r);
+    p->n = a->per_job;
+    for (int i = 0; i < p->n; i++) {
+        struct one *o = &p->at[i];
+        o->tick = (uint32_t)(sim_random_unit(&r) * UNTIL_S * p->base.rate_Hz);
+        o->c.what[0] = some(&r, p->base.scene);
+        if (i % CONTROL == 0) { o->c.what[0].source = FAULTS_NOTHING; }
+        if (i % CONTROL && sim_random_u64(&r) & 1) {
+            o->c.what[1] = some(&r, p->base.scene);
+            o->c.what[1].after_ticks = 1 + (uint32_t)(sim_random_unit(&r) * 0.03 * p->base.rate_Hz);
+        }
+        o->c.eager = sim_random_u64(&r) % 4 == 0;
+        o->c.follow_ticks = follow(&o->c, p->base.rate_Hz);
+    }
+    qsort(p->at, (size_t)p->n, sizeof p->at[0], by_tick);
+}
+
+/* Whoever commands RUN in OFF may have it, whoever lets go of the dead-man and takes it again may
+ * clear; what is gone before it was armed is no cause. */
+static void fit(struct faults_case *c, const struct faults_view *v)
+{
+    for (int k = 0; k < 2; k++) {
+        const uint8_t s = c->what[k].source;
+        if (s == FAULTS_DEADMAN || s == FAULTS_OFF) { c->eager = 0; }
+        if (!v->open && v->state != EXH_STATE_FAULT) { c->what[k].for_ticks = 0; }
+    }
+    if (!v->open) { c->eager = 0; }
+}
+
+/* --- and what came of it --- */
+
+static uint32_t bits_of(const struct faults_case *c)
+{
+    return faults_spec_of(c->what[0].source)->bits | faults_spec_of(c->what[1].source)->bits;
+}
+
+/* 1 if a cause was to be seen and was not. */
+static int unseen(const struct plan *p, const struct one *o, const struct faults_seen *s, int k)
+{
+    const struct faults_what *w = &o->c.what[k];
+    const struct faults_spec *spec = faults_spec_of(w->source);
+    const uint32_t within = faults_seen_within(w->source, p->base.rate_Hz);
+    if (w->source == FAULTS_NOTHING || spec->bits == 0 || spec->may) { return 0; }
+    if (s->seen_ticks[k] >= 0) { return s->seen_ticks[k] > (int32_t)within; }
+    if (w->for_ticks && w->for_ticks <= within) { return 0; } /* it was gone by then */
+    return (bits_of(&o->c) & EXH_FAULT_CARD) == 0; /* that ends the run */
+}
+
+static void count(struct plan *p, const struct one *o, const struct faults_seen *s)
+{
+    struct faults_random *r = p->sum;
+    struct faults_count *c = &r->by[o->c.what[0].source];
+    const int late = unseen(p, o, s, 0) || unseen(p, o, s, 1);
+    const int released = s->slope > 0;
+    const int dead =
+        o->c.what[0].source == FAULTS_DEAD_LOOP || o->c.what[1].source == FAULTS_DEAD_LOOP;
+    r->n++;
+    r->open += s->from.open != 0;
+    c->n++;
+    if (s->seen_ticks[0] >= 0) {
+        c->seen++;
+        if (s->seen_ticks[0] > c->seen_ticks) { c->seen_ticks = s->seen_ticks[0]; }
+    }
+    r->late += late;
+    if (s->bad || late) {
+        c->bad++;
+        for (int k = 0; k < FAULTS_BADS; k++) { r->kinds[k] += (int32_t)(s->bad >> k & 1); }
+        if (r->bad == 0) {
+            r->first = *o->c.what;
+            r->second = o->c.what[1];
+            r->first_tick = o->tick;
+            r->first_bad = s->bad;
+        }
+        r->bad++;
+    }
+    /* A loop that is dead codes nothing: there it is the motor's current that counts. */
+    if (s->from.open && !dead && s->zero_ticks > r->zero_ticks) { r->zero_ticks = s->zero_ticks; }
+    if (s->from.open && released && s->zero_s > r->zero_s) { r->zero_s = s->zero_s; }
+    if (s->slope > r->slope) { r->slope = s->slope; }
+    if (s->force_N > r->force_N) { r->force_N = s->force_N; }
+    r->released += released;
+    if (released && s->jerk_mps3 > r->jerk_mps3) { r->jerk_mps3 = s->jerk_mps3; }
+    if (released && s->back_mps > r->back_mps) { r->back_mps = s->back_mps; }
+    if (!released && s->force_N > 0 && s->jerk_mps3 > r->cut_jerk_mps3) {
+        r->cut_jerk_mps3 = s->jerk_mps3;
+    }
+    if (!released && s->force_N > 0 && s->back_mps > r->cut_back_mps) {
+        r->cut_back_mps = s->back_mps;
+    }
+}
+
+static void at(void *ctx, uint32_t tick, const struct faults_view *v)
+{
+    struct plan *p = ctx;
+    for (; p->next < p->n && p->at[p->next].tick <= tick; p->next++) {
+        struct one *o = &p->at[p->next];
+        struct faults_seen s;
+        fit(&o->c, v);
+        if (tick < faults_run_tick()) { o->c.run_tick = faults_run_tick(); }
+        if (faults_branch(&p->base, &o->c, tick, v, &s)) { return; }
+        if (o->c.what[0].source == FAULTS_NOTHING) {
+            struct faults_seen whole;
+            o->c.whole = 1;
+            if (faults_branch(&p->base, &o->c, tick, v, &whole)) { return; }
+            if (s.digest != whole.digest) { s.bad |= FAULTS_BAD_BYTES; }
+        }
+        count(p, o, &s);
+    }
+    if (p->next == p->n) { posix_stop(); }
+}
+
+static void work(const void *ctx, int i, void *result)
+{
+    static struct plan plan;
+    struct faults_random *r = result;
+    plan_of(&plan, ctx, i);
+    memset(r, 0, sizeof *r);
+    r->rate_Hz = plan.base.rate_Hz;
+    r->scene = plan.base.scene;
+    r->seed = (uint32_t)i;
+    plan.sum = r;
+    r->err = faults_run(&plan.base, at, &plan);
+}
+
+/* --- all of them --- */
+
+#define WORST(field) \
+    if (from->field > to->field) { to->field = from->field; }
+
+static void add(struct faults_random *to, const struct faults_random *from)
+{
+    if (to->bad == 0 && from->bad > 0) {
+        to->first = from->first;
+        to->second = from->second;
+        to->first_tick = from->first_tick;
+        to->first_bad = from->first_bad;
+        to->seed = from->seed;
+    }
+    to->n += from->n;
+    to->open += from->open;
+    to->bad += from->bad;
+    to->late += from->late;
+    to->released += from->released;
+    if (from->err) { to->err = from->err; }
+    WORST(zero_ticks)
+    WORST(zero_s)
+    WORST(slope)
+    WORST(force_N)
+    WORST(jerk_mps3)
+    WORST(back_mps)
+    WORST(cut_jerk_mps3)
+    WORST(cut_back_mps)
+    for (int k = 0; k < FAULTS_BADS; k++) { to->kinds[k] += from->kinds[k]; }
+    for (int k = 0; k < FAULTS_SOURCES; k++) {
+        to->by[k].n += from->by[k].n;
+        to->by[k].seen += from->by[k].seen;
+        to->by[k].bad += from->by[k].bad;
+        WORST(by[k].seen_ticks)
+    }
+}
+
+int faults_random(FILE *f, int total, uint64_t seed, int parallel)
+{
+    const int groups = (int)RATES * FAULTS_SCENES;
+    struct asked a = {total, 0, 1, seed};
+    struct faults_random *r, sum[RATES][FAULTS_SCENES];
+    struct jobs jobs = {0, parallel, sizeof *r, NULL, work, &a, "runs", posix_interrupt};
+    int err;
+    while (total > groups * a.seeds * CASES_MAX) { a.seeds++; }
+    a.per_job = (total + groups * a.seeds - 1) / (groups * a.seeds);
+    jobs.n = groups * a.seeds;
+    r = calloc((size_t)jobs.n, sizeof *r);
+    if (r == NULL) {
+        cli_complain("out of memory: fewer --times");
+        return 1;
+    }
+    jobs.result = r;
+    err = jobs_run(&jobs);
+    memset(sum, 0, sizeof sum);
+    for (int i = 0; i < jobs.n; i++) {
+        struct faults_random *s = &sum[(size_t)i % RATES][(size_t)i / RATES % FAULTS_SCENES];
+        s->rate_Hz = r[i].rate_Hz;
+        s->scene = r[i].scene;
+        add(s, &r[i]);
+    }
+    free(r);
+    if (err) { return err; }
+    return faults_print_random(f, &sum[0][0], groups);
+}
