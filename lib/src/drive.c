@@ -181,12 +181,13 @@ int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par,
 static uint32_t no_force(struct exh_drive *s, int64_t asked_N_q20, int32_t small_N_q20,
                          struct exh_force_ledger *f)
 {
+    /* What passivity takes for a while is no proof that the finger stands free. */
+    const int64_t law_N_q20 = exh_wrap_diff64(asked_N_q20, f->passivity_N_q20);
     s->force_N_q20 = 0;
     s->fall_N_q20 = 0;
     f->clamp_N_q20 = exh_wrap_diff64(0, asked_N_q20);
-    if (asked_N_q20 < 0) { return EXH_LIMIT_PULL; }
-    return (asked_N_q20 > 0 ? EXH_LIMIT_GATE : 0u) |
-           (asked_N_q20 > small_N_q20 ? EXH_LIMIT_FORCE : 0u);
+    return (asked_N_q20 < 0 ? EXH_LIMIT_PULL : 0u) | (asked_N_q20 > 0 ? EXH_LIMIT_GATE : 0u) |
+           (law_N_q20 > small_N_q20 ? EXH_LIMIT_FORCE : 0u);
 }
 
 /* Nothing that is asked for counts any more, only what is held: a law that lost its inputs must

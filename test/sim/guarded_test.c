@@ -97,5 +97,56 @@ TEST(its_log_replays)
     CHECK_EQ_I64(remove(path), 0);
 }
 
-TEST_MAIN("guarded", no_contact_gives_out_more_than_the_bound, stable_gains_lose_nothing,
+/* --- the scene's own box --- */
+
+/* Whoever runs the image sees in which state it is: a grip could clear no fault without. */
+TEST(its_state_is_seen)
+{
+    CHECK(exh_scene_guarded.safety != NULL, "the dead-man does not see the state");
+}
+
+static struct guarded_cfg box_cfg;
+static struct guarded box;
+static struct guarded_signals told;
+
+static void at(int32_t cnt, uint8_t command)
+{
+    struct exh_scene_in in = {.command = command};
+    struct exh_drive_out out;
+    in.drive.din = EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG | EXH_DIN_CARDS | EXH_DIN_DRIVE0;
+    in.drive.enc_raw[0] = (uint32_t)cnt & 0xFFFFFF;
+    in.drive.mon_raw[0] = (int16_t)((int64_t)told.drop.i_des_A_q26 * 16384 /
+                                     box_cfg.drop.drive.par->mon_A_q40);
+    guarded_tick(&box, &box_cfg, &in, &out, &told);
+}
+
+/* A finger that is owed energy to stays in the wall. What passivity takes away then is no reason to
+ * believe that it stands free. */
+TEST(no_run_in_a_wall_that_owes)
+{
+    static struct guarded_par par, staged;
+    const struct exh_scene_board board = {{1, 2000}, 24};
+    struct exh_params p;
+    int32_t cnt = 0;
+    exh_scene_guarded.defaults();
+    exh_params_init(&p, exh_scene_guarded.params->table, (int32_t *)&par, (int32_t *)&staged);
+    CHECK_EQ_I64(guarded_setup(&box_cfg, &par, board), 0);
+    at(cnt, EXH_CMD_RUN);
+    for (int n = 0; n < 1300; n++) { at(cnt, EXH_CMD_NONE); }
+    CHECK(exh_safety_runs(&box.drop.safety), "state %d", told.drop.state);
+    /* A wall out of nowhere, which gives without having been given. */
+    par.drop.own.q_lim_m_q30 = -EXH_Q(15, 1000, EXH_Q_POS);
+    for (int n = 0; n < 20; n++) { at(cnt -= 4, EXH_CMD_NONE); }
+    CHECK(exh_safety_runs(&box.drop.safety) && box.passivity.energy_Ncnt_q20 < 0, "state %d",
+          told.drop.state);
+    at(cnt, EXH_CMD_OFF);
+    for (int n = 0; n < 100; n++) { at(cnt, EXH_CMD_NONE); }
+    CHECK_EQ_I64(told.drop.state, EXH_STATE_OFF);
+    at(cnt, EXH_CMD_RUN);
+    for (int n = 0; n < 1300; n++) { at(cnt, EXH_CMD_NONE); }
+    CHECK(told.drop.state == EXH_STATE_OFF && told.drop.arm_step == EXH_ARM_SMALL_FORCE,
+          "state %d, step %d", told.drop.state, told.drop.arm_step);
+}
+
+TEST_MAIN("guarded", its_state_is_seen, no_run_in_a_wall_that_owes, no_contact_gives_out_more_than_the_bound, stable_gains_lose_nothing,
           it_damps_what_oscillates, its_log_replays);

@@ -425,6 +425,10 @@ TEST(small_force_is_told)
         struct exh_force_ledger f = {NEWTON, 0, off_N_q20[i], 0, 0, 0, 0, 0};
         const uint32_t bits = exh_drive_force(&a.s, &a.cfg, &p, &f);
         CHECK_EQ_I64(bits, (i > 0 ? EXH_LIMIT_GATE : 0u) | (i > 2 ? EXH_LIMIT_FORCE : 0u));
+        /* Passivity takes it away for a while: the wall is there. */
+        f = (struct exh_force_ledger){NEWTON, 0, off_N_q20[i], -2 * NEWTON, 0, 0, 0, 0};
+        CHECK_EQ_I64(exh_drive_force(&a.s, &a.cfg, &p, &f),
+                     i < 4 ? EXH_LIMIT_PULL | (i > 2 ? EXH_LIMIT_FORCE : 0u) : EXH_LIMIT_FORCE);
         CHECK_EQ_I64(f.force_N_q20, 0);
     }
 }

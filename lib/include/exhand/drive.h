@@ -52,7 +52,8 @@ void exh_drive_out_bytes(struct exh_bytes *c, struct exh_drive_out *out, unsigne
 
 enum exh_limit {
     EXH_LIMIT_PULL = 1u << 0,  /* law asked to push: a string only pulls       */
-    EXH_LIMIT_FORCE = 1u << 1, /* above f_max, or the end of the table; closed: above small_N_q20 */
+    EXH_LIMIT_FORCE = 1u << 1, /* above f_max, or the end of the table; closed: above small_N_q20,
+                                * without passivity, which may take the wall away for a while */
     EXH_LIMIT_SLEW = 1u << 2,
     EXH_LIMIT_PEAK = 1u << 3, /* above i_peak                                  */
     EXH_LIMIT_I2T = 1u << 4,

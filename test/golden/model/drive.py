@@ -71,7 +71,7 @@ class Drive:
         self.amp = gain(1 << 42, self.dac)
         self.force = self.fall = self.heat = 0
 
-    def take(self, permit, asked):
+    def take(self, permit, asked, term=0):
         """(limits, clamp, slew, release, force); permit: mode, share, small, ticks, fall"""
         mode, share, small, ticks, fall = permit
         if mode == 2:
@@ -82,8 +82,8 @@ class Drive:
         self.fall = 0
         if mode != 1:
             self.force = 0
-            limits = PULL if asked < 0 else GATE if asked else 0
-            return limits | (FORCE if asked > small else 0), -asked, 0, 0, 0
+            limits = PULL if asked < 0 else GATE if asked > 0 else 0
+            return limits | (FORCE if asked - term > small else 0), -asked, 0, 0, 0
         top = min(self.f_max, self.to_cur.knots[-1][0])
         most = top * share // FULL
         held = clamp(asked, 0, most)

@@ -31,7 +31,7 @@ class Drop:
                                   7 if self.quad.lost else 15)
         c, spring, damper, pull = self.contact.tick(self.law, q, v, self.lim)
         bit, term = self.behind(cnt, c, spring + damper)
-        told, _, _, _, force = self.drive.take(permit, spring + damper + pull + term)
+        told, _, _, _, force = self.drive.take(permit, spring + damper + pull + term, term)
         more, i0, peak, i2t = self.drive.current()
         ((limits, _, _, coded, code),), enable = self.safety.gate(
             [self.drive_par], [i0 + peak + i2t], [limits | bit | told | more])
