@@ -30,7 +30,7 @@ static void law_case(const struct exh_contact_par *par, struct exh_contact s,
     const struct exh_contact old = s;
     const int64_t past = (int64_t)in.pos_m_q30 - in.lim_m_q30;
     const uint32_t before = check_saturations;
-    struct exh_force_ledger f = {1, 1, 1, 1, 1, 1, 1};
+    struct exh_force_ledger f = {1, 1, 1, 1, 1, 1, 1, 1};
     const int touching = exh_contact_law(&s, par, in, &f);
     const int64_t sum = f.spring_N_q20 + f.damper_N_q20 + f.pullback_N_q20;
     const struct wide err = wide_sub(wide_shl(wide_of(sum), 27),
