@@ -52,12 +52,10 @@ static void scene_setup(struct scene *d, struct golden_rng *r, uint32_t rate_Hz,
     (void)memset(d, 0, sizeof *d);
     d->guarded = guarded;
     any_par(&d->par.drop, r, rate_Hz);
-    if (guarded) {
-        /* Quiet enough to run, and to and fro through the wall. */
-        d->par.drop.drive.slew_down_Nps = 10000000;
-        d->par.drop.own.q_lim_m_q30 >>= 8;
-        d->par.passivity.on = (int32_t)golden_draw(r, 0, 2);
-    }
+    /* Quiet enough to run, and to and fro through the wall. */
+    d->par.drop.drive.slew_down_Nps = 10000000;
+    d->par.drop.own.q_lim_m_q30 >>= 8;
+    if (guarded) { d->par.passivity.on = (int32_t)golden_draw(r, 0, 2); }
     while ((err = scene_try(d, board)) != 0 && board.enc_bits < 32) {
         board.enc_bits = (uint8_t)(board.enc_bits + 4);
     }
@@ -67,7 +65,7 @@ static void scene_setup(struct scene *d, struct golden_rng *r, uint32_t rate_Hz,
 static void any_in(struct exh_scene_in *in, struct golden_rng *r, uint32_t k, const struct scene *d)
 {
     const uint8_t state = d->s.drop.safety.state;
-    if (golden_draw(r, 0, d->guarded ? 191 : 47) == 0) {
+    if (golden_draw(r, 0, 191) == 0) {
         in->drive.din ^= 1u << golden_draw(r, 0, 8);
     } else if (golden_draw(r, 0, 3) == 0) {
         in->drive.din = HEALTHY;
@@ -75,7 +73,7 @@ static void any_in(struct exh_scene_in *in, struct golden_rng *r, uint32_t k, co
     if (state == EXH_STATE_FAULT && golden_draw(r, 0, 3) == 0) { in->drive.din ^= 2; }
     in->missed = golden_draw(r, 0, 127) == 0 ? 1 : 0;
     in->command = k % 8 == 2 ? EXH_CMD_RUN : k % 8 == 5 ? EXH_CMD_CLEAR : EXH_CMD_NONE;
-    if (golden_draw(r, 0, d->guarded ? 255 : 63) == 0) { in->command = EXH_CMD_OFF; }
+    if (golden_draw(r, 0, 255) == 0) { in->command = EXH_CMD_OFF; }
 }
 
 static void put_out(struct golden *g, const struct guarded_signals *all, int guarded,

@@ -83,8 +83,8 @@ def drop(rate, name="drop", kind=Drop):
             drive, track = any_par(rng, rate), any_track(rng, rate)
             watch, safety = any_watch(rng, rate), any_safety(rng, rate)
             lim, kf = rng.draw(-(1 << 26), 1 << 26), rng.draw(104858, 104857600)
-            if kind is Guarded:  # quiet enough to run, and to and fro through the wall
-                drive, lim = drive[:2] + (10000000,) + drive[3:], lim >> 8
+            # Quiet enough to run, and to and fro through the wall.
+            drive, lim = drive[:2] + (10000000,) + drive[3:], lim >> 8
             s = kind(step, speed, p, law, drive, track, watch, safety, lim, kf, period(rate, k))
             if kind is Guarded:
                 s.guard(rng.draw(0, 2), period(rate, k))
@@ -97,7 +97,7 @@ def drop(rate, name="drop", kind=Drop):
             raw += moves[k] >> 3
         if 180 <= k < AGAIN:
             raw += rng.draw(-2 * jump, 2 * jump)
-        if rng.draw(0, 47 if kind is Drop else 191) == 0:
+        if rng.draw(0, 191) == 0:
             din ^= 1 << rng.draw(0, 8)
         elif rng.draw(0, 3) == 0:
             din = HEALTHY
@@ -105,7 +105,7 @@ def drop(rate, name="drop", kind=Drop):
             din ^= 2
         missed = 1 if rng.draw(0, 127) == 0 else 0
         command = 1 if k % 8 == 2 else 3 if k % 8 == 5 else 0
-        if rng.draw(0, 63 if kind is Drop else 255) == 0:
+        if rng.draw(0, 255) == 0:
             command = 2
         mon = monitor.draw(rng, drive, s.last)
         yield (raw & M32, mon, din, missed, command, *s.tick(raw & M32, mon, din, missed, command)), s.state()
