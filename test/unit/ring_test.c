@@ -90,6 +90,30 @@ TEST(the_oldest_part_goes)
     CHECK_EQ_I64(ring.lost, 0);
 }
 
+/* 50 of 50 bytes are a part, 49 are none: a dump is no coarser than promised. */
+TEST(a_part_ends_on_its_very_byte)
+{
+    open_ring();
+    CHECK_EQ_I64(put(EXH_RECORD_KEYFRAME, 0, 25 - EXH_RING_HEAD_B), 1);
+    CHECK_EQ_I64(put(EXH_RECORD_FRAME, 0, 24 - EXH_RING_HEAD_B), 1);
+    CHECK(!exh_ring_due(&ring), "49 bytes of 50");
+    open_ring();
+    CHECK_EQ_I64(put(EXH_RECORD_KEYFRAME, 0, 25 - EXH_RING_HEAD_B), 1);
+    CHECK_EQ_I64(put(EXH_RECORD_FRAME, 0, 25 - EXH_RING_HEAD_B), 1);
+    CHECK(exh_ring_due(&ring), "50 bytes of 50");
+}
+
+/* A count that began anew would say that nothing is missing. */
+TEST(losses_do_not_wrap)
+{
+    open_ring();
+    ring.lost = UINT32_MAX - 1;
+    CHECK_EQ_I64(put(EXH_RECORD_FRAME, 0, 5), 0);
+    CHECK_EQ_I64(ring.lost, UINT32_MAX);
+    CHECK_EQ_I64(put(EXH_RECORD_FRAME, 0, 5), 0);
+    CHECK_EQ_I64(ring.lost, UINT32_MAX);
+}
+
 TEST(what_is_too_long_is_lost_and_harms_nothing)
 {
     static uint8_t all[65536];
@@ -174,6 +198,6 @@ TEST(damaged_memory_is_safe_to_read)
 
 TEST_MAIN("unit/ring", set_up_refuses_memory_that_is_none, nothing_before_the_first_keyframe,
           a_keyframe_is_wanted_when_a_part_is_long_enough, the_oldest_part_goes,
-          what_is_too_long_is_lost_and_harms_nothing,
+          what_is_too_long_is_lost_and_harms_nothing, a_part_ends_on_its_very_byte, losses_do_not_wrap,
           without_keyframes_there_is_nothing_to_begin_with, a_record_in_pieces_is_the_record,
           damaged_memory_is_safe_to_read);
