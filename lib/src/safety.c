@@ -6,6 +6,7 @@
 #include <stddef.h>
 
 #define MISSED_MAX     1
+#define LATE_MOST      (4u * EXH_LATE_TICKS) /* or a minute of overrun took an hour to be gone */
 #define SMALL_MIN_NQ20 EXH_Q(1, 10, EXH_Q_FORCE)
 #define SMALL_MAX_NQ20 EXH_Q(10, 1, EXH_Q_FORCE)
 #define ARM_MAX_MS     1000
@@ -80,6 +81,7 @@ static void count_missed(struct exh_safety *s, uint32_t missed)
     for (uint32_t k = 0; k < missed && k <= MISSED_MAX; k++) {
         s->late = add_sat(s->late, EXH_LATE_TICKS);
     }
+    if (s->late > LATE_MOST) { s->late = LATE_MOST; }
 }
 
 static void count_limits(struct exh_safety *s)

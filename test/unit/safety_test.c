@@ -340,6 +340,23 @@ TEST(late_too_often_is_an_overrun)
     }
 }
 
+/* However long it was late, it is over when it has been in time for 4 times 64 ticks. */
+TEST(an_overrun_is_gone_in_time)
+{
+    const struct exh_safety_cfg cfg = cfg_of(par, 1000);
+    struct exh_safety s = box_in(&cfg, EXH_STATE_RUN, 0);
+    struct exh_safety_in in = healthy(EXH_CMD_NONE);
+    in.missed = 1;
+    for (int n = 0; n < 10000; n++) { (void)exh_safety_step(&s, &cfg, in); }
+    in.missed = 0;
+    for (int n = 0; n < 4 * EXH_LATE_TICKS; n++) {
+        (void)exh_safety_step(&s, &cfg, in);
+        if (n < EXH_LATE_TICKS) { CHECK(s.present & EXH_FAULT_OVERRUN, "gone after %d", n); }
+    }
+    CHECK_EQ_I64(s.present, 0);
+    CHECK_EQ_I64(s.faults, EXH_FAULT_OVERRUN);
+}
+
 TEST(only_drives_in_use_count)
 {
     const struct exh_safety_cfg cfg = cfg_of(par, 1000);
@@ -546,7 +563,7 @@ TEST_MAIN("unit/safety", every_cell_is_what_it_should_be, every_state_is_reached
           each_step_is_named_where_it_does_not_hold, the_first_of_several_steps_is_named, a_refusal_is_forgotten_once_it_runs,
           a_step_lost_in_the_ramp_releases, off_while_arming, arming_takes_its_time_at_every_rate,
           limits_are_told_and_counted, missed_ticks_are_tolerated_up_to_the_limit,
-          late_too_often_is_an_overrun, only_drives_in_use_count, release_ends_at_every_rate,
+          late_too_often_is_an_overrun, an_overrun_is_gone_in_time, only_drives_in_use_count, release_ends_at_every_rate,
           clearing_in_every_order, a_fault_never_clears_by_itself,
           a_state_that_cannot_be_is_a_fault, no_byte_of_a_state_opens_the_gate, state_round_trip,
           setup_refuses_what_is_out_of_range, names_are_all_there);

@@ -133,7 +133,7 @@ struct exh_safety {
     uint32_t first_tick; /* and when                                           */
     uint32_t tick;       /* ticks since set-up, modulo 2^32                    */
     uint32_t missed;     /* ticks missed since set-up, saturating              */
-    uint32_t late;       /* EXH_LATE_TICKS a missed tick, less 1 for each in time */
+    uint32_t late;       /* EXH_LATE_TICKS a missed tick, less 1 for each in time; 4 times it at most */
     uint32_t limits;     /* enum exh_limit of the last tick, of all fingers    */
     uint32_t held[EXH_LIMITS]; /* ticks that each limit acted in, saturating   */
     uint32_t refusals;   /* of arming, saturating                              */

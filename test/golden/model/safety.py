@@ -99,7 +99,7 @@ class Safety:
     def step(self, din, raised, missed, command, fingers, ready):
         """mode, share, small, ticks, fall of the permit"""
         self.missed = min(M32, self.missed + missed)
-        self.late = max(0, self.late - 1) + LATE * min(missed, 2)
+        self.late = min(4 * LATE, max(0, self.late - 1) + LATE * min(missed, 2))
         self.held = [min(M32, h + (self.limits >> b & 1)) for b, h in enumerate(self.held)]
         self.present = p = self.causes(din, raised, fingers)
         lacks = ~ready & 15 | (16 if p else 0) | (32 if self.limits & FORCE else 0)
