@@ -45,7 +45,7 @@ TEST(truth_table)
 TEST(the_rest_of_the_ledger_is_zeroed)
 {
     struct exh_contact s = {0};
-    struct exh_force_ledger f = {1, 2, 3, 4, 5, 6, 7};
+    struct exh_force_ledger f = {1, 2, 3, 4, 5, 6, 7, 8};
     (void)exh_contact_law(&s, &par_20k, (struct exh_contact_in){0, 0, 1}, &f);
     CHECK(f.spring_N_q20 == 0 && f.damper_N_q20 == 0, "terms without contact");
     CHECK(f.passivity_N_q20 == 0 && f.clamp_N_q20 == 0, "passivity, clamp");
