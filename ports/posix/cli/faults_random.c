@@ -122,6 +122,11 @@ static int unseen(const struct plan *p, const struct one *o, const struct faults
     const struct faults_spec *spec = faults_spec_of(w->source);
     const uint32_t within = faults_seen_within(w->source, p->base.rate_Hz);
     if (w->source == FAULTS_NOTHING || spec->bits == 0 || spec->may) { return 0; }
+    /* What is told for the second was not told for the first, which was gone before. */
+    if (k == 0 && w->for_ticks && w->for_ticks <= within &&
+        faults_spec_of(o->c.what[1].source)->bits == spec->bits) {
+        return 0;
+    }
     if (s->seen_ticks[k] >= 0) { return s->seen_ticks[k] > (int32_t)within; }
     if (w->for_ticks && w->for_ticks <= within) { return 0; } /* it was gone by then */
     return (bits_of(&o->c) & EXH_FAULT_CARD) == 0; /* that ends the run */
@@ -170,6 +175,12 @@ static void count(struct plan *p, const struct one *o, const struct faults_seen 
     }
 }
 
+/* A tick that was late once is no cause any more when RUN comes: then it may run. */
+static int passes(const struct faults_case *c)
+{
+    return c->what[0].source == FAULTS_LATE || c->what[1].source == FAULTS_LATE;
+}
+
 static void at(void *ctx, uint32_t tick, const struct faults_view *v)
 {
     struct plan *p = ctx;
@@ -177,7 +188,7 @@ static void at(void *ctx, uint32_t tick, const struct faults_view *v)
         struct one *o = &p->at[p->next];
         struct faults_seen s;
         fit(&o->c, v);
-        if (tick < faults_run_tick()) { o->c.run_tick = faults_run_tick(); }
+        if (tick < faults_run_tick() && !passes(&o->c)) { o->c.run_tick = faults_run_tick(); }
         if (faults_branch(&p->base, &o->c, tick, v, &s)) { return; }
         if (o->c.what[0].source == FAULTS_NOTHING) {
             struct faults_seen whole;

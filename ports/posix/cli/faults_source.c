@@ -28,7 +28,7 @@ static struct {
     uint32_t tick; /* that is to come                                               */
     uint32_t gone; /* ticks of a dead loop                                           */
     double fed_s; /* the watchdog's                                                */
-    uint8_t alive, fired;
+    uint8_t alive, fired, dead;
     struct exh_drive_in in; /* the last, of a device with nothing wrong             */
     struct exh_drive_out out; /* and what it was given                               */
 } src;
@@ -150,6 +150,7 @@ uint32_t faults_late(uint64_t tick)
 {
     uint32_t missed = 0;
     (void)tick;
+    if (src.dead) { return 0; } /* there is no loop that could be late */
     for (unsigned k = 0; k < 2; k++) {
         const struct on *o = &src.on[k];
         if (!is_on(o)) { continue; }
@@ -166,6 +167,7 @@ uint32_t faults_late(uint64_t tick)
 static void dead(const struct on *o)
 {
     const uint32_t ticks = 6 + (uint32_t)(20 * chance(o, 0));
+    src.dead = 1;
     for (uint32_t k = 0; k < ticks; k++) {
         (void)exh_board_wait();
         if (!src.fired && posix_time_s() - src.fed_s > 2.5 * period_s()) {
@@ -174,6 +176,7 @@ static void dead(const struct on *o)
         }
         faults_dead_tick(src.fed_s);
     }
+    src.dead = 0;
     src.gone += ticks;
 }
 
