@@ -87,7 +87,8 @@ static void count_missed(struct exh_safety *s, uint32_t missed)
 static void count_limits(struct exh_safety *s)
 {
     for (unsigned k = 0; k < EXH_LIMITS; k++) {
-        s->held[k] = add_sat(s->held[k], s->limits >> k & 1u);
+        const uint32_t sum = s->held[k] + (s->limits >> k & 1u);
+        s->held[k] = sum - (sum < s->held[k]);
     }
 }
 
@@ -182,14 +183,12 @@ static uint32_t triggers(const struct exh_safety *s, const struct exh_safety_cfg
            ON(NONE, 1);
 }
 
-/* The first of them. */
+/* The first of them: the number of the lowest bit. */
 static uint8_t first_of(uint32_t due)
 {
-    uint8_t t = EXH_ON_NONE;
-    for (uint8_t k = EXH_ON_NONE; k > 0; k--) {
-        if (due >> (k - 1) & 1u) { t = (uint8_t)(k - 1); }
-    }
-    return t;
+    const uint32_t low = due & (~due + 1u);
+    return (uint8_t)(((low & 0xAAAAu) != 0) | ((low & 0xCCCCu) != 0) << 1 |
+                     ((low & 0xF0F0u) != 0) << 2 | ((low & 0xFF00u) != 0) << 3);
 }
 
 /* What a state counts: from its first tick on. */
