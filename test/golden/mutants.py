@@ -28,7 +28,8 @@ FLAGS = "-std=c99 -O1 -w -Ilib/include -Ilib/src -Iexamples -Itest -D_POSIX_C_SO
 
 L, H, X, Y = "lib/src/", "lib/include/exhand/", "examples/drop/", "examples/bilateral/"
 VELOCITY, QUAD, DRIVE, SAFETY = L + "velocity.c", L + "quad.c", L + "drive.c", L + "safety.c"
-TRACK, PASSIVITY, GAINS = L + "track.c", L + "passivity.c", L + "gains.c"
+TRACK, WATCH, GATE = L + "track.c", L + "watch.c", L + "gate.c"
+PASSIVITY, GAINS = L + "passivity.c", L + "gains.c"
 
 # module, source, text, what stands there instead. A changed header is compiled into the module's own
 # run, which is where its inline functions are.
@@ -84,7 +85,15 @@ MUTANTS = (
     ("drive", DRIVE, ">> cfg->i2t_shift >> 2;", ">> cfg->i2t_shift >> 1;"),
     ("drive", DRIVE, "heat < 0 ? 0 :", ""),
     ("drive", DRIVE, "const int32_t hot = i2t_limit(s, cfg);", "const int32_t hot = cfg->par->i_peak_A_q26;"),
-    ("drive", DRIVE, "f->clamp_N_q20 = held - asked;", "f->clamp_N_q20 = asked - held;"),
+    ("drive", DRIVE, "exh_wrap_diff64(held, asked);", "exh_wrap_diff64(asked, held);"),
+    ("drive", DRIVE, "permit->fall, s->force_N_q20) + 1;", "permit->fall, s->force_N_q20);"),
+    ("drive", DRIVE, "if (s->fall_N_q20 == 0) {", "{"),
+    ("drive", DRIVE, "rest = s->force_N_q20 - (int64_t)permit->ticks * s->fall_N_q20;",
+     "rest = s->force_N_q20 - (int64_t)s->fall_N_q20;"),
+    ("drive", DRIVE, "top * permit->share_q30 >> 30", "top"),
+    ("drive", DRIVE, "    s->fall_N_q20 = 0;\n    return limits;", "    return limits;"),
+    ("drive", DRIVE, "asked_N_q20 > small_N_q20 ?", "0 ?"),
+    ("drive", DRIVE, "most < top && asked > most", "most < top"),
     ("passivity", PASSIVITY, "cfg->share, x) + 1;", "cfg->share, x);"),
     ("passivity", PASSIVITY, "moved_cnt < 0 ? most : least", "held"),
     ("passivity", PASSIVITY, "!(touching && s->touching) && (e > 0 || late == 0)", "!touching && !s->touching"),
@@ -103,10 +112,19 @@ MUTANTS = (
     ("track", TRACK, "mon_A_q26 <= highest", "mon_A_q26 < highest"),
     ("track", TRACK, "s->off_ticks >= cfg->ticks;", "s->off_ticks + 1 >= cfg->ticks;"),
     ("track", TRACK, "anew || coded_A_q26 < s->lo_A_q26", "coded_A_q26 < s->lo_A_q26"),
+    ("watch", WATCH, "exh_clamp(*vel_mps_q27, -most, most)", "exh_clamp(*vel_mps_q27, 0, most)"),
+    ("watch", WATCH, "s->fast_ticks >= cfg->speed_ticks ?", "s->fast_ticks > cfg->speed_ticks ?"),
+    ("watch", WATCH, "return !on ? 0 :", "return !on ? ticks :"),
+    ("watch", WATCH, "    s->cnt = cnt;", ""),
+    ("watch", WATCH, "T.num, NULL) + 1;", "T.num, NULL) + 2;"),
     ("safety", SAFETY, "k <= MISSED_MAX", "k < MISSED_MAX"),
     ("safety", SAFETY, "s->faults |= now;", "s->faults = now;"),
-    ("safety", SAFETY, "in.command == EXH_CMD_CLEAR && now == 0", "in.command == EXH_CMD_CLEAR"),
-    ("safety", SAFETY, "asked, -par->dac_span_raw, par->dac_span_raw", "asked, 0, par->dac_span_raw"),
+    ("safety", SAFETY, "if (s->faults == 0 && now != 0) {", "if (now != 0) {"),
+    ("safety", SAFETY, "s->steps >= cfg->arm_ticks", "s->steps > cfg->arm_ticks"),
+    ("safety", SAFETY, "p.ticks = add_sat(missed, 1);", "p.ticks = 1;"),
+    ("safety", GATE, "s->state == EXH_STATE_ARM && s->share_q30 > 0", "s->state == EXH_STATE_ARM"),
+    ("safety", GATE, "asked, -par->dac_span_raw, par->dac_span_raw", "asked, 0, par->dac_span_raw"),
+    ("safety", GATE, "    s->limits = 0;", ""),
     ("calibrate", L + "calibrate.c", "rem >= m->n - rem", "rem > m->n - rem"),
     ("calibrate", L + "calibrate.c", "(int32_t)more);", "(int32_t)more - 1);"),
     ("calibrate", L + "calibrate.c", "knot[half - 1 - i].y = -y;", "knot[half - 1 - i].y = 1 - y;"),

@@ -24,8 +24,8 @@ void golden_safety_par(struct exh_safety_par *p, struct golden_rng *r, uint32_t 
 {
     p->missed_max = (int32_t)golden_draw(r, 0, 1);
     p->arm_force_N_q20 = (int32_t)golden_draw(r, 104858, 10485760);
-    p->arm_ms = some_ticks(r, 0, 5, rate_Hz, 1000);
-    p->ramp_ms = some_ticks(r, 0, 12, rate_Hz, 5000);
+    p->arm_ms = some_ticks(r, 2, 6, rate_Hz, 1000);
+    p->ramp_ms = some_ticks(r, 2, 16, rate_Hz, 5000);
     p->release_ms = (int32_t)golden_draw(r, 5, 18);
 }
 
@@ -52,22 +52,26 @@ static void any_in(struct box *b, struct golden_rng *r, uint32_t k)
 {
     static const uint8_t command[] = {EXH_CMD_RUN, EXH_CMD_CLEAR, EXH_CMD_RUN,  EXH_CMD_CLEAR,
                                       4,           EXH_CMD_NONE,  EXH_CMD_NONE, EXH_CMD_NONE};
+    static const uint8_t often[EXH_STATES] = {63, 127, 15, 15, 15, 31}; /* by state: a cause */
+    const int release = b->s.state == EXH_STATE_RELEASE;
     struct exh_safety_in *in = &b->in;
-    if (golden_draw(r, 0, 63) == 0) {
+    if (golden_draw(r, 0, 127) == 0) {
         in->din ^= 1u << golden_draw(r, 0, 12);
-    } else if (golden_draw(r, 0, 7) == 0) {
+    } else if (golden_draw(r, 0, 1) == 0) {
         in->din = HEALTHY;
     }
-    if (b->s.state == EXH_STATE_FAULT && golden_draw(r, 0, 3) == 0) { in->din ^= 2; }
+    if (b->s.state == EXH_STATE_FAULT && golden_draw(r, 0, 1) == 0) { in->din ^= 2; }
     in->raised = 0;
     in->missed = 0;
-    if (golden_draw(r, 0, 63) == 0) { in->raised = 1u << golden_draw(r, 0, 14); }
-    if (golden_draw(r, 0, 63) == 0) { in->missed = (uint32_t)golden_draw(r, 0, 2); }
+    if (golden_draw(r, 0, often[b->s.state]) == 0) { in->raised = 1u << golden_draw(r, 0, 14); }
+    if (golden_draw(r, 0, release ? 7 : 63) == 0) { in->missed = (uint32_t)golden_draw(r, 0, 2); }
     if (k == 188 || k == 190) { in->missed = (uint32_t)golden_draw(r, 0, UINT32_MAX); }
     in->command = command[golden_draw(r, 0, 7)];
     if (golden_draw(r, 0, 63) == 0) { in->command = EXH_CMD_OFF; }
     in->ready = 15;
-    if (golden_draw(r, 0, 63) == 0) { in->ready = (uint8_t)golden_draw(r, 0, 15); }
+    if (golden_draw(r, 0, b->s.state == EXH_STATE_OFF ? 7 : 63) == 0) {
+        in->ready = (uint8_t)golden_draw(r, 0, 15);
+    }
 }
 
 static void put_permit(struct golden *g, const struct exh_permit *p)
@@ -113,7 +117,10 @@ void golden_safety(struct golden *g, uint32_t rate_Hz)
         (void)memset(i, 0, sizeof i);
         for (unsigned f = 0; f < EXH_FINGERS; f++) {
             i[f].table_A_q26 = f < b.in.fingers ? cur[f].at[g->tick] : 0;
-            if (f < b.in.fingers && golden_draw(&r, 0, 15) == 0) { limits[f] = 1u << golden_draw(&r, 0, 10); }
+            if (f < b.in.fingers && golden_draw(&r, 0, 15) == 0) {
+                limits[f] = 1u << golden_draw(&r, 0, 10);
+            }
+            if (f == 0 && golden_draw(&r, 0, 3) == 0) { limits[f] |= EXH_LIMIT_PULL; }
         }
         golden_put(g, b.in.din);
         golden_put(g, b.in.raised);

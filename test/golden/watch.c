@@ -7,7 +7,7 @@
 void golden_watch_par(struct exh_watch_par *p, struct golden_rng *r, uint32_t rate_Hz)
 {
     p->speed_mps_q27 = (int32_t)golden_draw(r, 13421773, 1342177280);
-    p->speed_ms = exh_clamp(golden_draw(r, 1, 12) * 1000 / rate_Hz, 1, 1000);
+    p->speed_ms = exh_clamp(golden_draw(r, 1, 5) * 1000 / rate_Hz, 1, 1000);
     p->stuck_ms = exh_clamp(golden_draw(r, 1, 24) * 1000 / rate_Hz, 100, 60000);
     if (golden_draw(r, 0, 3) == 0) { p->stuck_ms = 0; }
     p->stuck_cur_A_q26 = (int32_t)golden_draw(r, 3355443, 442918502);
@@ -22,6 +22,7 @@ void golden_watch(struct golden *g, uint32_t rate_Hz)
     struct exh_watch s = {0, 0, 0};
     int32_t cnt = 0;
     unsigned stands = 0;
+    unsigned fast = 0;
     golden_wave(&moves, "watch", rate_Hz, 1, INT32_MIN, INT32_MAX, 1 << golden_draw(&r, 20, 27));
     while (g->tick < GOLDEN_TICKS) {
         const uint32_t k = g->tick;
@@ -34,10 +35,11 @@ void golden_watch(struct golden *g, uint32_t rate_Hz)
             CHECK_EQ_I64(exh_watch_setup(&cfg, &par, golden_period(rate_Hz, k)), 0);
             s = (struct exh_watch){0, 0, 0};
         }
-        if (golden_draw(&r, 0, 31) == 0) { stands ^= 1; }
-        if (stands || golden_draw(&r, 0, 3) > 0) { vel >>= 8; }
+        if (golden_draw(&r, 0, 15) == 0) { stands ^= 1; }
+        if (golden_draw(&r, 0, 15) == 0) { fast ^= 1; }
+        vel = fast ? (vel < 0 ? INT32_MIN : INT32_MAX) : vel >> 8;
         if (!stands) { cnt = exh_wrap_add(cnt, (int32_t)golden_draw(&r, -2, 2)); }
-        coded = par.stuck_cur_A_q26 + (int32_t)golden_draw(&r, stands ? 1 : -1, 1);
+        coded = par.stuck_cur_A_q26 + (int32_t)golden_draw(&r, -1, stands ? 31 : 1);
         golden_put(g, vel);
         golden_put(g, cnt);
         golden_put(g, coded);

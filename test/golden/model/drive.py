@@ -157,7 +157,7 @@ def drive(rate):
             mode = {0: 0, 1: 2, 2: 2, 3: 2, 4: 3}.get(rng.draw(0, 31), mode)
         share = rng.draw(0, FULL) if rng.draw(0, 3) == 0 else FULL
         small = rng.draw(0, 10485760)
-        ticks = rng.draw(1, 3) if rng.draw(0, 7) == 0 else 1
+        ticks = rng.draw(1, 3) if rng.draw(0, 1 if mode == 2 else 7) == 0 else 1
         limits, clamp_, slew, release, force = d.take((mode, share, small, ticks, fall),
                                                       s + damper[k] + p)
         more, i_table, i_peak, i_i2t = d.current()

@@ -21,7 +21,7 @@ LIMITS = 11
 def any_safety(rng, rate):
     """missed_max, arm_force, arm_time, ramp_time, release_time"""
     most, small = rng.draw(0, 1), rng.draw(104858, 10485760)
-    arm, ramp = (clamp(rng.draw(0, hi) * 1000 // rate, 1, ms) for hi, ms in ((5, 1000), (12, 5000)))
+    arm, ramp = (clamp(rng.draw(2, hi) * 1000 // rate, 1, ms) for hi, ms in ((6, 1000), (16, 5000)))
     return most, small, arm, ramp, rng.draw(5, 18)
 
 
@@ -154,7 +154,7 @@ class Safety:
         b = self.pack(self.present, self.faults, self.first, self.first_tick, self.tick, self.missed,
                       self.late, self.limits, *self.held, self.refusals, self.steps, self.share,
                       self.state_, self.alive, self.refused, self.opened, self.trigger)
-        return b + pack_once("<I", crc32(b))
+        return b + pack_once("<I", crc32(b) * 0x9E3779B1 & M32)
 
 
 def safety(rate):
@@ -167,21 +167,25 @@ def safety(rate):
             s, n = Safety(any_safety(rng, rate), period(rate, k)), rng.draw(1, FINGERS)
             pars = [any_par(rng, rate) for _ in range(n)]
             din = HEALTHY
-        if rng.draw(0, 63) == 0:
+        if rng.draw(0, 127) == 0:
             din ^= 1 << rng.draw(0, 12)
-        elif rng.draw(0, 7) == 0:
+        elif rng.draw(0, 1) == 0:
             din = HEALTHY
-        if s.state_ == FAULT and rng.draw(0, 3) == 0:
+        if s.state_ == FAULT and rng.draw(0, 1) == 0:
             din ^= 2
-        raised = 1 << rng.draw(0, 14) if rng.draw(0, 63) == 0 else 0
-        missed = rng.draw(0, 2) if rng.draw(0, 63) == 0 else 0
+        raised = 1 << rng.draw(0, 14) if rng.draw(0, (63, 127, 15, 15, 15, 31)[s.state_]) == 0 else 0
+        missed = rng.draw(0, 2) if rng.draw(0, 7 if s.state_ == RELEASE else 63) == 0 else 0
         if k in (188, 190):
             missed = rng.draw(0, M32)
         command = (1, 3, 1, 3, 4, 0, 0, 0)[rng.draw(0, 7)]
         if rng.draw(0, 63) == 0:
             command = 2
-        ready = rng.draw(0, 15) if rng.draw(0, 63) == 0 else 15
-        told = [1 << rng.draw(0, 10) if rng.draw(0, 15) == 0 else 0 for _ in range(n)]
+        ready = rng.draw(0, 15) if rng.draw(0, 7 if s.state_ == OFF else 63) == 0 else 15
+        told = []
+        for f in range(n):
+            told.append(1 << rng.draw(0, 10) if rng.draw(0, 15) == 0 else 0)
+            if f == 0 and rng.draw(0, 3) == 0:
+                told[0] |= PULL
         permit = s.step(din, raised, missed, command, n, ready)
         out, enable = s.gate(pars, [w[k] for w in waves[:n]], told)
         row = [din, raised, missed, command, ready, *permit[:4], *permit[4], enable, s.alive]

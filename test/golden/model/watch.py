@@ -10,7 +10,7 @@ SPEED_LIMIT, STUCK, SPEED = 1 << 9, 1 << 6, 1 << 7
 def any_par(rng, rate):
     """speed_limit, speed_time, stuck_time, stuck_cur"""
     speed = rng.draw(13421773, 1342177280)
-    ms = clamp(rng.draw(1, 12) * 1000 // rate, 1, 1000)
+    ms = clamp(rng.draw(1, 5) * 1000 // rate, 1, 1000)
     stuck = clamp(rng.draw(1, 24) * 1000 // rate, 100, 60000)
     if rng.draw(0, 3) == 0:
         stuck = 0
@@ -49,19 +49,19 @@ class Watch:
 def watch(rate):
     rng = Rng("watch", rate, 0)
     moves = wave("watch", rate, 1, MIN32, MAX32, 1 << rng.draw(20, 27))
-    cnt = stands = 0
+    cnt = stands = fast = 0
     for k in range(TICKS):
         v = moves[k]
         if k in (0, AGAIN):
             par = any_par(rng, rate)
             s = Watch(par, period(rate, k))
-        if rng.draw(0, 31) == 0:
+        if rng.draw(0, 15) == 0:
             stands ^= 1
-        if stands or rng.draw(0, 3) > 0:
-            v >>= 8
+        fast ^= rng.draw(0, 15) == 0
+        v = (MIN32 if v < 0 else MAX32) if fast else v >> 8
         if not stands:
             cnt += rng.draw(-2, 2)
-        coded = par[3] + rng.draw(1 if stands else -1, 1)
+        coded = par[3] + rng.draw(-1, 31 if stands else 1)
         out = s.step(v)
         s.coded(cnt, coded)
         yield (v, cnt, coded, *out), s.state()
