@@ -49,7 +49,7 @@ TEST(the_rest_of_the_ledger_is_zeroed)
     (void)exh_contact_law(&s, &par_20k, (struct exh_contact_in){0, 0, 1}, &f);
     CHECK(f.spring_N_q20 == 0 && f.damper_N_q20 == 0, "terms without contact");
     CHECK(f.passivity_N_q20 == 0 && f.clamp_N_q20 == 0, "passivity, clamp");
-    CHECK(f.slew_N_q20 == 0 && f.force_N_q20 == 0, "slew, force");
+    CHECK(f.slew_N_q20 == 0 && f.release_N_q20 == 0 && f.force_N_q20 == 0, "slew, release, force");
 }
 
 /* c = 1 at q >= q_lim, one LSB decides; 0 again below q_lim - hyst only. */
