@@ -29,10 +29,12 @@ static void begin(const struct exh_scene *sc, struct exh_scene_board board)
     (void)board;
 }
 
+/* Until it runs: before the first planes the link is a cause, where it is asked for. */
 static void before(uint32_t tick, struct exh_scene_in *in)
 {
+    const struct bilateral_signals *sig = (const void *)exh_scene_bilateral.signal;
     (void)tick;
-    (void)in;
+    if (sig->box.state == EXH_STATE_OFF && posix_time_s() < 0.5) { in->command = EXH_CMD_RUN; }
 }
 
 static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)

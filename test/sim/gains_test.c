@@ -267,8 +267,8 @@ TEST(bad_usage_is_named)
         {{"--window", "3"}, 2, "1, 2, 4, 8 or 16"},
         {{"--device", "mas=3"}, 2, "mas: no such value"},
         {{"--grid", "9"}, 2, "--grid"},
-        {{"--judge", "no/file"}, 1, "no/file"},
-        {{"--judge", "/dev/null"}, 1, "no cell in it"},
+        {{"--judge", "no/file"}, 3, "no/file"},
+        {{"--judge", "/dev/null"}, 2, "no cell in it"},
         {{"--device", "mass=5", "--grid", "8x6"}, 1, "nothing comes to rest"},
     };
     char *dir = said_dir();
