@@ -143,6 +143,7 @@ static uint32_t causes_of(const struct exh_safety_in *in, struct memory *m)
 {
     uint32_t now = in->raised;
     m->late = (m->late > 0 ? m->late - 1 : 0) + EXH_LATE_TICKS * (in->missed < 2 ? in->missed : 2);
+    if (m->late > 4 * EXH_LATE_TICKS) { m->late = 4 * EXH_LATE_TICKS; } /* gone after 256 ticks in time */
     now |= m->late > EXH_LATE_TICKS ? EXH_FAULT_OVERRUN : 0u;
     now |= in->din & EXH_DIN_ESTOP ? 0u : EXH_FAULT_ESTOP;
     now |= in->din & EXH_DIN_DEADMAN ? 0u : EXH_FAULT_DEADMAN;

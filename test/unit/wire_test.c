@@ -3,6 +3,7 @@
 #include "exhand/wire.h"
 
 #include "exhand/error.h"
+#include "exhand/safety.h"
 
 #include "check.h"
 
@@ -141,7 +142,7 @@ TEST(values_that_cannot_be)
     } bad[] = {
         {EXH_WIRE_HELLO, 18, 2, -EXH_E_CRC}, /* role */
         {EXH_WIRE_STATE, 18 + 4, 32, -EXH_E_CRC}, /* sixth finger */
-        {EXH_WIRE_STATE, 18 + 5, 3, -EXH_E_CRC}, /* no such state */
+        {EXH_WIRE_STATE, 18 + 5, EXH_STATES, -EXH_E_CRC}, /* no such state */
         {EXH_WIRE_STATE, 18 + 5, 255, -EXH_E_CRC},
         {EXH_WIRE_STATE, 18 + 6, 128, -EXH_E_CRC},
         {EXH_WIRE_STATE, 18 + 7, 64, -EXH_E_CRC},
