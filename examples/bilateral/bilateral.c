@@ -291,6 +291,11 @@ struct bilateral *bilateral_memory(struct bilateral_cfg **c)
     return &state;
 }
 
+struct exh_guard *bilateral_guard(void)
+{
+    return &guard;
+}
+
 static const struct exh_scene_link wire = {exh_board_link_recv, exh_board_link_send, &mail_in,
                                            &mail_out, write_mail};
 

@@ -227,6 +227,7 @@ int bilateral_stage_cal(const struct exh_glove_cal *cal, struct exh_glove_bad *b
 
 /* The memory of the one instance, for who damages it to see what happens. */
 struct bilateral *bilateral_memory(struct bilateral_cfg **cfg);
+struct exh_guard *bilateral_guard(void);
 
 extern const struct exh_scene exh_scene_bilateral;
 

@@ -177,6 +177,11 @@ struct drop *drop_memory(struct drop_cfg **c)
     return &state;
 }
 
+struct exh_guard *drop_guard(void)
+{
+    return &guard;
+}
+
 const struct exh_scene exh_scene_drop = {
     .name = "drop",
     .rate_Hz = 2000,

@@ -109,6 +109,7 @@ void drop_tick(struct drop *s, const struct drop_cfg *cfg, const struct exh_scen
 
 /* The memory of the one instance, for who damages it to see what happens. */
 struct drop *drop_memory(struct drop_cfg **cfg);
+struct exh_guard *drop_guard(void);
 
 extern const struct exh_scene exh_scene_drop;
 

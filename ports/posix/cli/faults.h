@@ -10,6 +10,7 @@
 #include "scene.h"
 
 #include "exhand/drive.h"
+#include "exhand/guard.h"
 #include "exhand/safety.h"
 
 #include <stdint.h>
@@ -44,11 +45,19 @@ enum faults_source {
     FAULTS_SOURCES
 };
 
+/* Where the guard is in its round when memory is damaged. */
+enum faults_place {
+    FAULTS_ANYWHERE, /* where it happens to be                               */
+    FAULTS_AHEAD, /* it comes to it soon                                     */
+    FAULTS_PASSED /* it has just passed by                                   */
+};
+
 struct faults_what {
     uint8_t source; /* enum faults_source                                    */
     uint32_t after_ticks; /* it begins so long after the branch does, 0: before the next tick */
     uint32_t for_ticks; /* and is gone after so many; 0: it stays                 */
     uint32_t how; /* which bit, which way, how far                         */
+    uint8_t place; /* of the guard, by then: enum faults_place            */
 };
 
 /* --- what must follow (faults_spec.c) --- */
@@ -81,7 +90,8 @@ struct faults_spec {
 
 const struct faults_spec *faults_spec_of(unsigned source);
 int faults_has(unsigned scene, unsigned source);
-uint32_t faults_seen_within(unsigned source, uint32_t rate_Hz);
+int faults_is_memory(unsigned source); /* of what the guard looks at           */
+uint32_t faults_seen_within(unsigned scene, unsigned source, uint32_t rate_Hz);
 uint32_t faults_release_ticks(uint32_t rate_Hz);
 uint32_t faults_zero_ticks(uint32_t rate_Hz); /* at most                              */
 int faults_next(unsigned source, int state, int open);
@@ -98,6 +108,7 @@ struct faults_base {
     uint32_t rate_Hz;
     uint32_t seed;
     uint32_t stuck_ms; /* 0: the scene's own                                        */
+    uint32_t wait_ms; /* so much longer before the finger moves                  */
 };
 
 /* What the box says of a tick. */
@@ -125,8 +136,12 @@ struct faults_memory {
     struct exh_safety *safety;
     int32_t *par;
     uint32_t pars;
+    const struct exh_signal_table *table; /* theirs                                 */
     void *cal; /* tables and what else set-up made of the calibration               */
     uint32_t cal_B;
+    struct exh_guard *guard;
+    const void *area; /* what the guard looks at: cal is part of it                  */
+    uint32_t area_B;
 };
 struct faults_memory faults_memory(uint8_t scene);
 
@@ -195,6 +210,8 @@ uint32_t faults_late(uint64_t tick);
 void faults_source_start(const struct faults_base *b, const struct faults_what what[2],
                          uint32_t tick);
 void faults_source_step(uint32_t tick);
+/* From damage with the guard FAULTS_AHEAD to the tick that sees it. */
+uint32_t faults_source_ahead(unsigned scene, unsigned source, uint32_t how);
 int faults_source_off(void); /* OFF is commanded in this tick                       */
 uint32_t faults_source_gone(void); /* ticks of a dead loop, once                         */
 void faults_dead_tick(double fed_s); /* one of them, in the branch                         */

@@ -38,6 +38,7 @@ struct plan {
     uint32_t ramp_for;
     int32_t latency[FAULTS_INS]; /* < 0: not known                                      */
     uint32_t small_at, ramp_at; /* of the pass before; 0: not known                     */
+    uint32_t press_at[2]; /* likewise: a limit holds, none does                          */
     struct row *row;
 };
 
@@ -96,6 +97,11 @@ static int when_arming(const struct plan *p, unsigned in, uint32_t tick, struct 
     return tick == early(p);
 }
 
+static uint32_t how_of(unsigned source)
+{
+    return source == FAULTS_PAR ? 8u * 4u * 40u + 3u : 0;
+}
+
 /* RELEASE and FAULT are come to on the way. */
 static void come_to(const struct plan *p, unsigned in, struct faults_case *c)
 {
@@ -114,16 +120,24 @@ static void come_to(const struct plan *p, unsigned in, struct faults_case *c)
 
 static int is_due(struct plan *p, unsigned in, uint32_t tick, struct faults_case *c)
 {
-    const int pressed = p->press_for == pressed_for(p);
+    /* What takes long to be seen begins so much earlier that it is seen while it presses. */
+    const int early_on = faults_is_memory(p->source) && in != FAULTS_IN_FAULT;
+    const int pressed = early_on ? p->pass > 0 && tick == p->press_at[p->base.gentle] - latency(p, in)
+                                 : p->press_for == pressed_for(p);
     memset(c, 0, sizeof *c);
     c->what[0].source = p->source;
-    c->what[0].how = p->source == FAULTS_PAR ? 8u * 4u * 40u + 3u : 0;
+    c->what[0].how = how_of(p->source);
     c->follow_ticks = (uint32_t)(WELL_S * p->base.rate_Hz);
-    if (sees(p, in)) { c->follow_ticks += 20 + 2 * faults_seen_within(p->source, p->base.rate_Hz); }
+    if (sees(p, in)) { c->follow_ticks += 20 + 2 * faults_seen_within(p->base.scene, p->source, p->base.rate_Hz); }
+    if (faults_is_memory(p->source)) {
+        c->what[0].place = in == FAULTS_IN_OFF || in == FAULTS_IN_ASKED || in == FAULTS_IN_FAULT
+                               ? FAULTS_PASSED
+                               : FAULTS_AHEAD;
+    }
     switch (in) {
     case FAULTS_IN_OFF: return tick == early(p);
     case FAULTS_IN_ASKED:
-        c->run_tick = early(p) + faults_seen_within(p->source, p->base.rate_Hz) + 2;
+        c->run_tick = early(p) + faults_seen_within(p->base.scene, p->source, p->base.rate_Hz) + 2;
         return tick == early(p);
     case FAULTS_IN_SMALL:
     case FAULTS_IN_RAMP: return p->pass > 0 && when_arming(p, in, tick, c);
@@ -158,7 +172,7 @@ static void keep(struct plan *p, unsigned in, const struct faults_seen *s)
         c->right &= is_in(before->state, in, s->seen_ticks[0]) &&
                     (in != FAULTS_IN_RAMP || before->open) &&
                     (in != FAULTS_IN_SMALL || !before->open);
-        c->right &= (uint32_t)s->seen_ticks[0] <= faults_seen_within(p->source, p->base.rate_Hz);
+        c->right &= (uint32_t)s->seen_ticks[0] <= faults_seen_within(p->base.scene, p->source, p->base.rate_Hz);
         c->right &= s->state[0] == faults_next(p->source, before->state, before->open);
         c->right &= s->end.state == faults_end(p->source, before->state, before->open);
         c->right &= s->end.state == EXH_STATE_FAULT ? (s->end.faults & spec->bits) != 0
@@ -174,14 +188,21 @@ static void keep(struct plan *p, unsigned in, const struct faults_seen *s)
     }
 }
 
+/* Where there is time before it for what is seen late. */
+static uint32_t least(const struct plan *p)
+{
+    return faults_is_memory(p->source) ? latency(p, FAULTS_IN_RUN) + early(p) : 0;
+}
+
 static void watch(struct plan *p, uint32_t tick, const struct faults_view *v)
 {
     const int state = p->base.gentle ? EXH_STATE_RUN : EXH_STATE_LIMIT;
-    const int presses = v->state == state &&
+    const int presses = v->state == state && tick >= least(p) &&
                         v->force_N_q20[faults_finger(p->base.scene)] > EXH_Q(3, 2, EXH_Q_FORCE);
     p->press_for = presses                          ? p->press_for + 1
                    : p->press_for >= pressed_for(p) ? pressed_for(p) + 1
                                                     : 0;
+    if (p->press_for == pressed_for(p)) { p->press_at[p->base.gentle] = tick; }
     if (v->state == EXH_STATE_ARM && !v->open && p->small_at == 0) { p->small_at = tick; }
     if (v->state == EXH_STATE_ARM && v->open && p->ramp_at == 0) { p->ramp_at = tick; }
 }
@@ -214,12 +235,19 @@ static void work(const void *ctx, int i, void *result)
     memset(&p, 0, sizeof p);
     memset(result, 0, sizeof *p.row);
     p.row = result;
-    p.base = (struct faults_base){FAULTS_BILATERAL, 1, 1, rate_Hz[i % (int)rates], 7, 0};
+    p.base = (struct faults_base){FAULTS_BILATERAL, 1, 1, rate_Hz[i % (int)rates], 7, 0, 0};
     p.source = (uint8_t)(1 + i / (int)rates);
     if (p.source == FAULTS_STILL) {
         p.base.stuck_ms = 100;
     } /* its own hand is too still for that */
-    for (unsigned k = 0; k < FAULTS_INS; k++) { p.latency[k] = -1; }
+    for (unsigned k = 0; k < FAULTS_INS; k++) {
+        p.latency[k] = -1;
+        if (faults_is_memory(p.source)) {
+            p.latency[k] = (int32_t)faults_source_ahead(p.base.scene, p.source, how_of(p.source));
+        }
+    }
+    /* The finger waits until what is damaged before it arms can have been seen. */
+    p.base.wait_ms = latency(&p, FAULTS_IN_RUN) * 1000 / p.base.rate_Hz;
     if (!faults_has(FAULTS_BILATERAL, p.source)) { return; }
     for (p.pass = 0; p.pass < PASSES && p.row->err == 0 && !all_right(p.row); p.pass++) {
         p.press_for = 0;
@@ -323,9 +351,13 @@ static void print_head(FILE *f)
     fprintf(f, "\n");
 }
 
-static void print_seen(FILE *f, const struct row *row)
+static void print_seen(FILE *f, const struct row *row, unsigned source)
 {
     int32_t seen[RATES_MAX];
+    if (faults_is_memory(source)) { /* how many ticks is the compiler's: it lays the area out */
+        fprintf(f, source == FAULTS_PAR ? " within the guard's round |" : " within two rounds |");
+        return;
+    }
     for (size_t r = 0; r < rates; r++) {
         seen[r] = -1;
         for (unsigned in = 0; in < FAULTS_INS; in++) {
@@ -353,7 +385,7 @@ int faults_matrix(FILE *f, uint32_t at_Hz, int parallel)
     for (unsigned s = 0; s < SOURCES; s++) {
         const struct faults_spec *spec = faults_spec_of(s + 1);
         fprintf(f, "| %s | %s |", spec->name, spec->what);
-        print_seen(f, &row[s * rates]);
+        print_seen(f, &row[s * rates], s + 1);
         for (unsigned in = 0; in < FAULTS_INS; in++) {
             wrong += print_cell(f, &row[s * rates], s + 1, in);
         }

@@ -43,24 +43,25 @@ static uint8_t some_source(struct sim_random *r, uint8_t scene)
     uint8_t source;
     do {
         source = (uint8_t)(1 + sim_random_u64(r) % (FAULTS_SOURCES - 1));
-    } while (!faults_has(scene, source));
+    } while (!faults_has(scene, source) || faults_is_memory(source)); /* docs/FAULTS.md: not yet */
     return source;
 }
 
 static struct faults_what some(struct sim_random *r, uint8_t scene)
 {
-    struct faults_what w = {some_source(r, scene), 0, 0, 0};
+    struct faults_what w = {some_source(r, scene), 0, 0, 0, FAULTS_ANYWHERE};
     w.how = (uint32_t)sim_random_u64(r) | 0x10000u;
     if (sim_random_u64(r) & 1) { w.for_ticks = 1 + (uint32_t)(sim_random_u64(r) % 40); }
+    if (faults_is_memory(w.source)) { w.for_ticks = 0; } /* no bit turns back */
     return w;
 }
 
 /* Time to see both, to release, and then some. */
-static uint32_t follow(const struct faults_case *c, uint32_t rate)
+static uint32_t follow(const struct faults_case *c, unsigned scene, uint32_t rate)
 {
     uint32_t n = (uint32_t)((QUIET_S + 0.02) * rate) + 8;
     for (int k = 0; k < 2; k++) {
-        n += c->what[k].after_ticks + faults_seen_within(c->what[k].source, rate);
+        n += c->what[k].after_ticks + faults_seen_within(scene, c->what[k].source, rate);
     }
     return n;
 }
@@ -91,7 +92,7 @@ static void plan_of(struct plan *p, const struct asked *a, int job)
             o->c.what[1].after_ticks = 1 + (uint32_t)(sim_random_unit(&r) * 0.03 * p->base.rate_Hz);
         }
         o->c.eager = sim_random_u64(&r) % 4 == 0;
-        o->c.follow_ticks = follow(&o->c, p->base.rate_Hz);
+        o->c.follow_ticks = follow(&o->c, p->base.scene, p->base.rate_Hz);
     }
     qsort(p->at, (size_t)p->n, sizeof p->at[0], by_tick);
 }
@@ -120,7 +121,7 @@ static int unseen(const struct plan *p, const struct one *o, const struct faults
 {
     const struct faults_what *w = &o->c.what[k];
     const struct faults_spec *spec = faults_spec_of(w->source);
-    const uint32_t within = faults_seen_within(w->source, p->base.rate_Hz);
+    const uint32_t within = faults_seen_within(p->base.scene, w->source, p->base.rate_Hz);
     if (w->source == FAULTS_NOTHING || spec->bits == 0 || spec->may) { return 0; }
     /* What is told for the second was not told for the first, which was gone before. */
     if (k == 0 && w->for_ticks && w->for_ticks <= within &&

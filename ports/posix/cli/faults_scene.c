@@ -72,18 +72,28 @@ void faults_look(uint8_t scene, struct faults_view *v)
 struct faults_memory faults_memory(uint8_t scene)
 {
     const struct exh_scene *sc = scene == FAULTS_DROP ? &exh_scene_drop : &exh_scene_bilateral;
-    struct faults_memory m = {.par = sc->params->active,
-                              .pars = exh_signal_count(sc->params->table)};
+    struct faults_memory m;
+    memset(&m, 0, sizeof m);
+    if (sc->params->table == NULL) { sc->defaults(); } /* asked before any run */
+    m.par = sc->params->active;
+    m.table = sc->params->table;
+    m.pars = exh_signal_count(sc->params->table);
     if (scene == FAULTS_DROP) {
         struct drop_cfg *cfg;
         m.safety = &drop_memory(&cfg)->safety;
         m.cal = cfg->force_to_cur;
         m.cal_B = sizeof cfg->force_to_cur;
+        m.guard = drop_guard();
+        m.area = cfg;
+        m.area_B = sizeof *cfg;
     } else {
         struct bilateral_cfg *cfg;
         m.safety = &bilateral_memory(&cfg)->safety;
         m.cal = cfg->finger[FAULTS_FINGER].force_to_cur;
         m.cal_B = sizeof cfg->finger[FAULTS_FINGER].force_to_cur;
+        m.guard = bilateral_guard();
+        m.area = cfg;
+        m.area_B = sizeof *cfg;
     }
     return m;
 }
@@ -176,7 +186,7 @@ static int run_finger(const struct faults_base *b)
     path = &c.board.exo.path[FAULTS_FINGER];
     path->speed_mps = 0.1 + 0.7 * sim_random_unit(&rng);
     path->approaches = 0; /* for ever */
-    path->first_s = 0.75; /* armed by then */
+    path->first_s = 0.75 + b->wait_ms / 1000.0; /* armed by then */
     path->hold_s = 0.3 + 0.3 * sim_random_unit(&rng); /* this finger does not tremble */
     path->back_s = path->rest_s = 0.25;
     path->push_m = 0.010 + 0.010 * sim_random_unit(&rng);

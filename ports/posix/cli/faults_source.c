@@ -194,15 +194,67 @@ static void lose_card(const struct on *o)
     box->fault.phase = (uint8_t)(o->what.how >> 2 & 1 ? EMU_PHASE_WRITE : EMU_PHASE_READ);
 }
 
+#define AHEAD_TICKS 8u /* until it comes to the parameter                             */
+
+static uint32_t bit_at(uint32_t size_B, uint32_t how)
+{
+    return (how >> 3) % size_B;
+}
+
+static uint32_t offset_in_area(const struct faults_memory *m, uint32_t how)
+{
+    return (uint32_t)((const uint8_t *)m->cal - (const uint8_t *)m->area) + bit_at(m->cal_B, how);
+}
+
+uint32_t faults_source_ahead(unsigned scene, unsigned source, uint32_t how)
+{
+    const struct faults_memory m = faults_memory((uint8_t)scene);
+    if (source == FAULTS_PAR) { return AHEAD_TICKS; }
+    return (m.area_B + 7) / 8 - offset_in_area(&m, how) / EXH_GUARD_B - 1;
+}
+
+/* As if it had been sealed so much earlier: it goes on until it is there. */
+static void place_guard(const struct faults_memory *m, const struct faults_what *w)
+{
+    const int passed = w->place == FAULTS_PASSED;
+    const uint32_t part = offset_in_area(m, w->how) / EXH_GUARD_B + (passed ? 1 : 0);
+    const uint32_t pairs = m->pars / EXH_GUARD_WORDS, pair = bit_at(m->pars * 4u, w->how) / 8;
+    const uint32_t to = (passed ? pair + 1 : pair + pairs - AHEAD_TICKS) % pairs;
+    if (w->place == FAULTS_ANYWHERE) { return; }
+    for (uint32_t k = 0; k < 2 * (m->area_B + m->pars); k++) {
+        if (w->source == FAULTS_CAL ? m->guard->at == part * EXH_GUARD_B % m->area_B
+                                    : m->guard->word == to * EXH_GUARD_WORDS) {
+            return;
+        }
+        (void)exh_guard_step(m->guard);
+    }
+}
+
 static void flip(void *memory, uint32_t size_B, uint32_t how)
 {
     uint8_t *byte = memory;
-    byte[(how >> 3) % size_B] ^= (uint8_t)(1u << (how & 7));
+    byte[bit_at(size_B, how)] ^= (uint8_t)(1u << (how & 7));
 }
 
-static void do_once(const struct on *o)
+/* The next bit that leaves its parameter a value of its row: a window longer than its memory, say,
+ * ends the process at once. */
+static uint32_t spanned(const struct faults_memory *m, uint32_t how)
+{
+    for (uint32_t k = 0; k < m->pars * 32u; k++, how++) {
+        const uint32_t byte = bit_at(m->pars * 4u, how);
+        const struct exh_signal *row = exh_signal_at(m->table, byte / 4, NULL);
+        int32_t raw = m->par[byte / 4];
+        ((uint8_t *)&raw)[byte % 4] ^= (uint8_t)(1u << (how & 7));
+        if (raw >= row->min && raw <= row->max) { break; }
+    }
+    return how;
+}
+
+static void do_once(struct on *o)
 {
     const struct faults_memory m = faults_memory(src.base->scene);
+    if (o->what.source == FAULTS_PAR) { o->what.how = spanned(&m, o->what.how); }
+    if (faults_is_memory(o->what.source)) { place_guard(&m, &o->what); }
     switch (o->what.source) {
     case FAULTS_GLOVE: posix_glove()->fault[SENSOR] = SIM_GLOVE_OPEN; break;
     case FAULTS_GLOVE_OLD: posix_glove_stop(); break;
@@ -238,7 +290,7 @@ void faults_source_step(uint32_t tick)
 {
     src.tick = tick + 1;
     for (unsigned k = 0; k < 2; k++) {
-        const struct on *o = &src.on[k];
+        struct on *o = &src.on[k];
         if (o->what.source && o->what.after_ticks && o->from_tick == src.tick) { do_once(o); }
     }
 }

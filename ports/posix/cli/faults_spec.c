@@ -32,8 +32,8 @@ static const struct faults_spec spec[FAULTS_SOURCES] = {
     [FAULTS_WATCHDOG] = {"watchdog", "contact says it fired", EXH_FAULT_WATCHDOG, 1, ALL, 0, 0, 0},
     [FAULTS_DEAD_LOOP] = {"watchdog", "no tick comes for 16 periods", EXH_FAULT_WATCHDOG, 1, ALL, 0,
                           0, 0},
-    [FAULTS_PAR] = {"memory", "a bit of a parameter", EXH_FAULT_CONFIG, 1, ALL, 300, 0, 0},
-    [FAULTS_CAL] = {"memory", "a bit of a calibration", EXH_FAULT_CONFIG, 1, ALL, 300, 0, 0},
+    [FAULTS_PAR] = {"memory", "a bit of a parameter", EXH_FAULT_CONFIG, 1, ALL, 0, 0, 0},
+    [FAULTS_CAL] = {"memory", "a bit of a calibration", EXH_FAULT_CONFIG, 1, ALL, 0, 0, 0},
     [FAULTS_STATE] = {"memory", "the state is none", EXH_FAULT_LOGIC, 1, ALL, 0, 0, 0},
     [FAULTS_OFF] = {"OFF", "is commanded", 0, 0, 0, 0, 0, 0},
 };
@@ -44,11 +44,9 @@ const struct faults_spec *faults_spec_of(unsigned source)
 }
 
 #define BIT(source) (UINT32_C(1) << FAULTS_##source)
-/* What a scene has no source for, or does not watch yet. */
+/* What a scene has no source for. */
 static const uint32_t without[FAULTS_SCENES] = {
-    [FAULTS_DROP] = BIT(GLOVE) | BIT(GLOVE_OLD) | BIT(LINK) | BIT(SUPPLY_LOW) | BIT(SUPPLY_HIGH) |
-                    BIT(PAR) | BIT(CAL),
-    [FAULTS_BILATERAL] = BIT(PAR) | BIT(CAL),
+    [FAULTS_DROP] = BIT(GLOVE) | BIT(GLOVE_OLD) | BIT(LINK) | BIT(SUPPLY_LOW) | BIT(SUPPLY_HIGH),
 };
 
 int faults_has(unsigned scene, unsigned source)
@@ -56,10 +54,23 @@ int faults_has(unsigned scene, unsigned source)
     return !(without[scene] >> source & 1);
 }
 
-uint32_t faults_seen_within(unsigned source, uint32_t rate_Hz)
+int faults_is_memory(unsigned source)
+{
+    return source == FAULTS_PAR || source == FAULTS_CAL;
+}
+
+/* A round, and for the area another, as its sum is known at the end and it may just have passed. */
+static uint32_t rounds_of(unsigned scene, unsigned source)
+{
+    const struct faults_memory m = faults_memory((uint8_t)scene);
+    if (source == FAULTS_PAR) { return (m.pars + 1) / 2; }
+    return source == FAULTS_CAL ? 2 * ((m.area_B + 7) / 8) : 0;
+}
+
+uint32_t faults_seen_within(unsigned scene, unsigned source, uint32_t rate_Hz)
 {
     const struct faults_spec *s = faults_spec_of(source);
-    return s->ticks + (s->ms * rate_Hz + 999) / 1000;
+    return s->ticks + (s->ms * rate_Hz + 999) / 1000 + rounds_of(scene, source);
 }
 
 /* 15 ms in whole ticks, three at least, and four at most where four are no longer than 20 ms. */
