@@ -92,7 +92,7 @@ MUTANTS = (
      "rest = s->force_N_q20 - (int64_t)s->fall_N_q20;"),
     ("drive", DRIVE, "top * permit->share_q30 >> 30", "top"),
     ("drive", DRIVE, "    s->fall_N_q20 = 0;\n    return limits;", "    return limits;"),
-    ("drive", DRIVE, "asked_N_q20 > small_N_q20 ?", "0 ?"),
+    ("drive", DRIVE, "law_N_q20 > small_N_q20 ?", "0 ?"),
     ("drive", DRIVE, "most < top && asked > most", "most < top"),
     ("passivity", PASSIVITY, "cfg->share, x) + 1;", "cfg->share, x);"),
     ("passivity", PASSIVITY, "moved_cnt < 0 ? most : least", "held"),

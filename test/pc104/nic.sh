@@ -6,7 +6,7 @@
 #   dump       the black box after a fault, over it
 # B: where things are built (build). SPEEDS (natural), APPROACHES (1), FRAMES (20000), SEED (1).
 #
-# bilateral: the host's experiment without the card leaves a log. Its inputs stand at the connectors of emulated
+# bilateral (with a ramp of 200 ms, for arming may end a tick apart and the first contact is at 0.52 s): the host's experiment without the card leaves a log. Its inputs stand at the connectors of emulated
 # cards inside the image (tape.c), tick by tick; planes, materials and HELLOs come from build/posix/world over
 # UDP, the image's log goes out over UDP. From the first freeze on its nine signals must be the host's, in every
 # tick: so the host's strings would have moved as they did. It says nothing of a real machine's timing.
@@ -170,7 +170,7 @@ one_speed() # SPEED
 bilateral()
 {
     check "the host's experiment" "$exhand" bilateral --scene examples/world/scenes/collision.world --speed "$speeds" \
-        --approaches "${APPROACHES:-1}" --out "$dir/host" >"$dir/said" 2>"$dir/err"
+        --approaches "${APPROACHES:-1}" --set ramp_time=200 --out "$dir/host" >"$dir/said" 2>"$dir/err"
     for speed in ${speeds//,/ }; do one_speed "$speed"; done
 }
 
