@@ -214,7 +214,7 @@ MUTANTS = (
 # Rows that the 256 ticks of bilateral show at fewer rates, since arming takes many of them: what they must be seen at
 # all the same, and what tells them besides. Open: stimuli that come to it at every rate.
 THIN = {
-    "if (p->phase == EXH_PRECONTACT_FROZEN &&": 0.70,  # sim/bilateral
+    "if (p->phase == EXH_PRECONTACT_FROZEN &&": 0.70,  # sim/bilateral_tick
     "s->wire.age_ticks >= cfg->link_ticks": 0.04,      # sim/causes
     "raw <= cfg->max_raw": 0.70,                       # unit/supply
 }
