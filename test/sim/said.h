@@ -110,4 +110,24 @@ static inline long said_size(const char *path)
     return stat(path, &st) == 0 ? (long)st.st_size : -1;
 }
 
+/* What DOC (a path from the project's root) has between the lines <!-- BEGINS --> and <!-- end -->
+ * is what was said on standard output. */
+static inline void said_as_document(const struct said *s, const char *doc, const char *begins)
+{
+    static char text[65536];
+    char mark[80], *from, *to;
+    FILE *f = fopen(doc, "r");
+    CHECK(f != NULL, "%s: not there", doc);
+    text[fread(text, 1, sizeof text - 1, f)] = '\0';
+    fclose(f);
+    snprintf(mark, sizeof mark, "<!-- %s -->\n", begins);
+    from = strstr(text, mark);
+    CHECK(from != NULL, "%s: no %s", doc, mark);
+    from += strlen(mark);
+    to = strstr(from, "<!-- end -->\n");
+    CHECK(to != NULL, "%s: no end", doc);
+    *to = '\0';
+    CHECK(strcmp(from, s->out) == 0, "%s is stale:\n%s", doc, s->out);
+}
+
 #endif
