@@ -136,18 +136,6 @@ static void any_sensor(struct glove_sensor_par *s, unsigned i, struct golden_rng
     }
 }
 
-/* Limits that are two codes, the upper as it may fall. */
-static void any_supply(struct exh_supply_par *p, struct golden_rng *r, uint32_t rate_Hz)
-{
-    const int64_t scale = golden_draw(r, 100000, 1500000);
-    const int64_t low = golden_draw(r, 1, 20000), high = golden_draw(r, low + 1, 32000);
-    p->scale_V_q30 = (int32_t)scale;
-    p->min_V_q20 = golden_draw(r, 0, 3) ? (int32_t)(low * scale >> 10) : 0;
-    p->max_V_q20 = (int32_t)(high * scale >> 10);
-    p->time_ms = (int32_t)exh_clamp(golden_draw(r, 1, 12) * 1000 / rate_Hz, 1, 1000);
-    rig.good_raw = (int16_t)((low + high) >> 1);
-}
-
 static void any_par(struct golden_rng *r, uint32_t rate_Hz, uint32_t k)
 {
     struct bilateral_par *p = &rig.par;
@@ -168,7 +156,7 @@ static void any_par(struct golden_rng *r, uint32_t rate_Hz, uint32_t k)
         p->material[i].f_max_N_q20 = any_size(r, 104857600);
     }
     golden_safety_par(&p->safety, r, rate_Hz);
-    any_supply(&p->supply, r, rate_Hz);
+    golden_supply_par(&p->supply, &rig.good_raw, r, rate_Hz);
     T.num *= (uint32_t)p->glove_own.every;
     p->glove = golden_glove_par(r, T);
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) { any_sensor(&p->sensor[i], i, r); }

@@ -10,6 +10,9 @@ const uint32_t digest_bytes[GOLDEN_RATES] = {
 const uint32_t digest_record[GOLDEN_RATES] = {
 #include "digest/record.inc"
 };
+const uint32_t digest_ring[GOLDEN_RATES] = {
+#include "digest/ring.inc"
+};
 const uint32_t digest_signal[GOLDEN_RATES] = {
 #include "digest/signal.inc"
 };
@@ -48,6 +51,12 @@ const uint32_t digest_passivity[GOLDEN_RATES] = {
 };
 const uint32_t digest_watch[GOLDEN_RATES] = {
 #include "digest/watch.inc"
+};
+const uint32_t digest_guard[GOLDEN_RATES] = {
+#include "digest/guard.inc"
+};
+const uint32_t digest_supply[GOLDEN_RATES] = {
+#include "digest/supply.inc"
 };
 const uint32_t digest_safety[GOLDEN_RATES] = {
 #include "digest/safety.inc"

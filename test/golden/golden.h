@@ -92,6 +92,10 @@ void golden_track_par(struct exh_track_par *p, struct golden_rng *r, uint32_t ra
 void golden_safety_par(struct exh_safety_par *p, struct golden_rng *r, uint32_t rate_Hz);
 void golden_watch_par(struct exh_watch_par *p, struct golden_rng *r, uint32_t rate_Hz);
 
+/* Limits that are two codes, the upper as it may fall, mostly; a code between them. */
+void golden_supply_par(struct exh_supply_par *p, int16_t *good_raw, struct golden_rng *r,
+                       uint32_t rate_Hz);
+
 /* A scene's monitor: mostly the code of what was coded, now and then for a while any. */
 int16_t golden_monitor(unsigned *astray, const struct exh_drive_par *p, struct golden_rng *r,
                        int32_t coded_A_q26);

@@ -91,6 +91,7 @@ TEST(first_tick_that_differs_is_told)
 MODULE(fix);
 MODULE(bytes);
 MODULE(record);
+MODULE(ring);
 MODULE(signal);
 MODULE(quad);
 MODULE(quad_ab);
@@ -104,6 +105,8 @@ MODULE(drive);
 MODULE(track);
 MODULE(passivity);
 MODULE(watch);
+MODULE(guard);
+MODULE(supply);
 MODULE(safety);
 MODULE(calibrate);
 MODULE(probe);
@@ -122,7 +125,7 @@ MODULE(drop);
 MODULE(guarded);
 MODULE(bilateral);
 
-TEST_MAIN("golden", first_tick_that_differs_is_told, fix, bytes, record, signal, quad, quad_ab,
+TEST_MAIN("golden", first_tick_that_differs_is_told, fix, bytes, record, ring, signal, quad, quad_ab,
           velocity_window, velocity_pole, velocity_foaw, velocity_track, contact, table, drive,
-          track, watch, passivity, safety, calibrate, probe, home, weigh, filter, quantizer, gains, glove, glove_cal, angle, hand,
-          precontact, wire, drop, guarded, bilateral);
+          track, watch, guard, supply, passivity, safety, calibrate, probe, home, weigh, filter, quantizer,
+          gains, glove, glove_cal, angle, hand, precontact, wire, drop, guarded, bilateral);

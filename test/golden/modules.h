@@ -12,6 +12,7 @@
 GOLDEN_MODULE(fix);
 GOLDEN_MODULE(bytes);
 GOLDEN_MODULE(record);
+GOLDEN_MODULE(ring);
 GOLDEN_MODULE(signal);
 GOLDEN_MODULE(quad);
 GOLDEN_MODULE(quad_ab);
@@ -25,6 +26,8 @@ GOLDEN_MODULE(drive);
 GOLDEN_MODULE(track);
 GOLDEN_MODULE(passivity);
 GOLDEN_MODULE(watch);
+GOLDEN_MODULE(guard);
+GOLDEN_MODULE(supply);
 GOLDEN_MODULE(safety);
 GOLDEN_MODULE(calibrate);
 GOLDEN_MODULE(probe);

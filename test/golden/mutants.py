@@ -47,6 +47,16 @@ MUTANTS = (
     ("record", L + "record.c", "if (crc != exh_crc32(0, p, end))", "if (0)"),
     ("record", L + "record.c", "r->version != EXH_RECORD_VERSION", "0"),
     ("record", L + "record.c", "#define LEN_AT 4u", "#define LEN_AT 6u"),
+    ("ring", L + "ring.c", "need >= r->cap_B - used(r)", "need > r->cap_B - used(r)"),
+    ("ring", L + "ring.c", "need >= r->cap_B ||", "need > r->cap_B ||"),
+    ("ring", L + "ring.c", "len_B > UINT16_MAX ||", "(len = (uint16_t)(len & 7)) > 7 ||"),
+    ("ring", L + "ring.c", ">= r->cap_B / EXH_RING_PARTS;", "> r->cap_B / EXH_RING_PARTS;"),
+    ("ring", L + "ring.c", "    if (parts(r) == 0 && !begins) { return lose(r); } /*", "/*"),
+    ("ring", L + "ring.c", "r->lost += r->lost < UINT32_MAX;", ""),
+    ("ring", L + "ring.c", "return at < r->cap_B ? at : at - r->cap_B;", "return at <= r->cap_B ? at : at - r->cap_B;"),
+    ("ring", L + "ring.c", "payload.len_B > p->left_B - EXH_RING_HEAD_B", "payload.len_B >= p->left_B - EXH_RING_HEAD_B"),
+    ("ring", L + "ring.c", "o->crc >> 8 * (from + i)", "o->crc >> 8 * i"),
+    ("ring", L + "ring.c", "cap_B < EXH_RING_MIN_B ||", "cap_B <= EXH_RING_MIN_B ||"),
     ("signal", L + "signal.c", "exh_bytes_u8(&c, &row.when);", ""),
     ("signal", L + "signal.c", "raw != p->staged[i]", "raw != p->active[i]"),
     ("signal", L + "signal.c", "raw < row->min ||", "raw <= row->min ||"),
@@ -117,6 +127,17 @@ MUTANTS = (
     ("watch", WATCH, "return !on ? 0 :", "return !on ? ticks :"),
     ("watch", WATCH, "    s->cnt = cnt;", ""),
     ("watch", WATCH, "T.num, NULL) + 1;", "T.num, NULL) + 2;"),
+    ("guard", L + "guard.c", "if (g->crc != g->want) {", "if (g->crc > g->want) {"),
+    ("guard", L + "guard.c", "    g->at = g->crc = 0;\n}", "    g->at = 0;\n}"),
+    ("guard", L + "guard.c", "differ && !g->params->pending", "differ"),
+    ("guard", L + "guard.c", "g->word + 1 < g->words ?", "g->word + 2 < g->words ?"),
+    ("guard", H + "guard.h", "EXH_GUARD_WORDS 2", "EXH_GUARD_WORDS 1"),
+    ("supply", L + "supply.c", "raw <= cfg->max_raw", "raw < cfg->max_raw"),
+    ("supply", L + "supply.c", "raw >= cfg->min_raw", "raw > cfg->min_raw"),
+    ("supply", L + "supply.c", "least += rest != 0;", ""),
+    ("supply", L + "supply.c", "most >= INT16_MAX ||", "most > UINT16_MAX ||"),
+    ("supply", L + "supply.c", "missed < left ?", "1 ?"),
+    ("supply", L + "supply.c", "cfg->ticks = 1 +", "cfg->ticks ="),
     ("safety", SAFETY, "k <= MISSED_MAX", "k < MISSED_MAX"),
     ("safety", SAFETY, "s->faults |= now;", "s->faults = now;"),
     ("safety", SAFETY, "if (s->faults == 0 && now != 0) {", "if (now != 0) {"),
@@ -221,7 +242,7 @@ THIN = {
 
 # Where the inline functions of a header are called for a module.
 CALLS = {"fix": "test/golden/basics.c", "velocity_window": VELOCITY, "table": DRIVE, "angle": L + "angle.c",
-         "precontact": L + "precontact.c"}
+         "precontact": L + "precontact.c", "guard": L + "guard.c"}
 
 
 def objects_but(original):

@@ -1,9 +1,9 @@
 """The modules that have golden vectors: {name: (columns, run(rate) -> (row, state) a tick)}."""
 
-from . import (basics, bilateral, calibrate, contact, drive, drop, filter, gains, glove, glove_cal, hand, passivity,
-               precontact, probe, quad, safety, signal, track, velocity, watch, wire)
+from . import (basics, bilateral, calibrate, contact, drive, drop, filter, gains, glove, glove_cal, guard, hand, passivity,
+               precontact, probe, quad, ring, safety, signal, track, velocity, watch, wire)
 
 MODULES = {}
-for part in (basics, signal, quad, velocity, contact, drive, track, passivity, watch, safety, calibrate, filter, gains, glove,
-             glove_cal, hand, precontact, wire, drop, bilateral, probe):
+for part in (basics, ring, signal, quad, velocity, contact, drive, track, passivity, watch, guard, safety, calibrate, filter,
+             gains, glove, glove_cal, hand, precontact, wire, drop, bilateral, probe):
     MODULES.update(part.MODULES)

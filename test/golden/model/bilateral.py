@@ -8,6 +8,7 @@ from .contact import Contact
 from .drive import Drive, Table, any_par as any_drive
 from .filter import Channel
 from .glove import NONE as NO_SENSOR, SENSORS, Glove, any_par as any_glove
+from .guard import Supply, any_supply
 from .hand import any_turn, joints
 from .hit2 import BENT, MAP, bones, sensors_of
 from .num import (AGAIN, M32, M64, MAX32, RANGE, STATE, TICKS, UNKNOWN, Rng, clamp, div, period, sat32, shr,
@@ -57,26 +58,6 @@ def any_sensor(rng, i):
     if i in (3, 10, 14, 18):
         return zero, gain, [rng.draw(-(1 << 28), 1 << 28) for _ in range(2)], low, high, [i - 1, i + 1]
     return zero, gain, [0, 0], low, high, [NO_SENSOR, NO_SENSOR]
-
-
-def any_supply(rng, rate):
-    """least, most, scale, time; and a code between the limits"""
-    scale_, low = rng.draw(100000, 1500000), rng.draw(1, 20000)
-    high = rng.draw(low + 1, 32000)
-    least = low * scale_ >> 10 if rng.draw(0, 3) else 0
-    return least, high * scale_ >> 10, scale_, clamp(rng.draw(1, 12) * 1000 // rate, 1, 1000), low + high >> 1
-
-
-class Supply:
-    def __init__(self, par, T):
-        least, most, scale_, ms, _ = par
-        self.ticks, self.off = ms * T[1] // (1000 * T[0]) + 1, 0
-        self.within = (-(-(least << 10) // scale_), (most << 10) // scale_) if least else (-32768, 32767)
-
-    def step(self, code, missed):
-        good = self.within[0] <= code <= self.within[1]
-        self.off = 0 if good else min(self.ticks, self.off + 1 + missed)
-        return self.off >= self.ticks
 
 
 class Par:
