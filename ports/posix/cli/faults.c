@@ -16,15 +16,31 @@
 
 static const char *const scene_name[FAULTS_SCENES] = {"a mass falls", "a finger presses"};
 
-static void print_first(FILE *f, const struct faults_random *r)
+static void print_what(FILE *f, const struct faults_wrong *w, int k)
 {
-    fprintf(f,
-            "WRONG at %" PRIu32 " Hz, %s, run %" PRIu32 ", tick %" PRIu32 ": %s (%s) how %#" PRIx32
-            " for %" PRIu32 ", then %s (%s) after %" PRIu32 ": bad %#" PRIx32 "\n",
-            r->rate_Hz, scene_name[r->scene], r->seed, r->first_tick,
-            faults_spec_of(r->first.source)->name, faults_spec_of(r->first.source)->what,
-            r->first.how, r->first.for_ticks, faults_spec_of(r->second.source)->name,
-            faults_spec_of(r->second.source)->what, r->second.after_ticks, r->first_bad);
+    const struct faults_what *a = &w->what[k];
+    const struct faults_spec *spec = faults_spec_of(a->source);
+    if (a->source == FAULTS_NOTHING) { return; }
+    fprintf(f, "%s %s (%s) how %#" PRIx32, k ? ", then" : ":", spec->name, spec->what, a->how);
+    if (k) { fprintf(f, " after %" PRIu32, a->after_ticks); }
+    if (a->for_ticks) { fprintf(f, " for %" PRIu32, a->for_ticks); }
+    fprintf(f, ": seen in %" PRId32 " in state %" PRId32, w->seen_ticks[k], w->state[k]);
+}
+
+/* The first of each run. */
+void faults_print_wrong(FILE *f, const struct faults_random *r, int n)
+{
+    for (int i = 0; i < n; i++) {
+        for (int k = 0; k < r[i].bad && k < FAULTS_WRONGS; k++) {
+            const struct faults_wrong *w = &r[i].wrong[k];
+            fprintf(f, "WRONG at %" PRIu32 " Hz, %s, --run %" PRIu32 ", tick %" PRIu32 "%s%s",
+                    r[i].rate_Hz, scene_name[r[i].scene], w->run, w->tick,
+                    w->cards ? ", cards" : "", w->eager ? ", eager" : "");
+            print_what(f, w, 0);
+            print_what(f, w, 1);
+            fprintf(f, ": bad %#" PRIx32 "\n", w->bad);
+        }
+    }
 }
 
 /* Every kind of fault by itself. */
@@ -88,7 +104,7 @@ int faults_print_random(FILE *f, const struct faults_random *r, int n)
             "held | fall over the law's | released | cut | wrong |\n"
             "|---|---|---|---|---|---|---|---|---|---|---|---|\n");
     for (int i = 0; i < n; i++) {
-        print_rate(f, &r[i]);
+        if (r[i].rate_Hz) { print_rate(f, &r[i]); } /* one run is of one */
         all += r[i].n;
         bad += r[i].bad;
         err |= r[i].err != 0 || (r[i].n >= ENOUGH && r[i].slope < NEAR);
@@ -97,7 +113,6 @@ int faults_print_random(FILE *f, const struct faults_random *r, int n)
     fprintf(f, "\n%" PRId32 " times: %" PRId32 " wrong. ", all, bad);
     print_rules(f, r, n);
     for (int i = 0; i < n; i++) {
-        if (r[i].bad) { print_first(f, &r[i]); }
         if (r[i].err) {
             fprintf(f, "WRONG at %" PRIu32 " Hz, %s: %s\n", r[i].rate_Hz, scene_name[r[i].scene],
                     exh_error_text(r[i].err));
@@ -108,7 +123,7 @@ int faults_print_random(FILE *f, const struct faults_random *r, int n)
 
 int cli_faults(int argc, char **argv)
 {
-    int64_t times = 0, seed = 1, rate_Hz = 0, parallel = jobs_cores();
+    int64_t times = 0, seed = 1, rate_Hz = 0, run = -1, parallel = jobs_cores();
     const char *out = NULL;
     int err;
     const struct cli_option option[] = {
@@ -116,6 +131,7 @@ int cli_faults(int argc, char **argv)
          "so many random faults at random times, instead of the table"},
         {"rate", CLI_INT, &rate_Hz, 20, 20000, "HZ", "the table at this rate (90, 1000 and 2000)"},
         {"seed", CLI_INT, &seed, 0, 1e9, "N", "of these (1)"},
+        {"run", CLI_INT, &run, 0, 1e6, "N", "of these the times of one run, as WRONG names it"},
         {"out", CLI_TEXT, (void *)&out, 0, 0, "DIR",
          "write what the picture needs there, instead of the table"},
         {"jobs", CLI_INT, &parallel, 1, 1024, "N", "processes at a time (one a core)"},
@@ -131,7 +147,9 @@ int cli_faults(int argc, char **argv)
         0};
     err = cli_parse(&c, argc, argv, NULL);
     if (err) { return err == 1 ? 0 : err; }
-    if (times) { return faults_random(stdout, (int)times, (uint64_t)seed, (int)parallel); }
+    if (times) {
+        return faults_random(stdout, (int)times, (uint64_t)seed, (int)run, (int)parallel);
+    }
     if (out) { return faults_pictures(out); }
     return faults_matrix(stdout, (uint32_t)rate_Hz, (int)parallel);
 }

@@ -45,6 +45,9 @@ enum faults_source {
     FAULTS_SOURCES
 };
 
+#define FAULTS_DEAD_TICKS 26 /* of a loop that is dead, at most                    */
+#define FAULTS_LINK_HZ    400 /* packets of the world                                  */
+
 /* Where the guard is in its round when memory is damaged. */
 enum faults_place {
     FAULTS_ANYWHERE, /* where it happens to be                               */
@@ -81,6 +84,7 @@ struct faults_spec {
     uint8_t in; /* bit i: can be seen in enum faults_in i; else there is nothing to see */
     uint32_t ticks, ms; /* seen within                                            */
     uint8_t may; /* 1: at random times it may be none: what is to be seen is not there */
+    uint32_t also; /* enum exh_fault that it may raise besides, while it lasts           */
 };
 
 /* The faults that cut, in bits. */
@@ -92,6 +96,8 @@ const struct faults_spec *faults_spec_of(unsigned source);
 int faults_has(unsigned scene, unsigned source);
 int faults_is_memory(unsigned source); /* of what the guard looks at           */
 uint32_t faults_seen_within(unsigned scene, unsigned source, uint32_t rate_Hz);
+/* The same of one of two, the other being `beside`. */
+uint32_t faults_seen_beside(unsigned scene, unsigned source, unsigned beside, uint32_t rate_Hz);
 uint32_t faults_release_ticks(uint32_t rate_Hz);
 uint32_t faults_zero_ticks(uint32_t rate_Hz); /* at most                              */
 int faults_next(unsigned source, int state, int open);

@@ -122,13 +122,16 @@ static int is_due(struct plan *p, unsigned in, uint32_t tick, struct faults_case
 {
     /* What takes long to be seen begins so much earlier that it is seen while it presses. */
     const int early_on = faults_is_memory(p->source) && in != FAULTS_IN_FAULT;
-    const int pressed = early_on ? p->pass > 0 && tick == p->press_at[p->base.gentle] - latency(p, in)
-                                 : p->press_for == pressed_for(p);
+    const int pressed = early_on
+                            ? p->pass > 0 && tick == p->press_at[p->base.gentle] - latency(p, in)
+                            : p->press_for == pressed_for(p);
     memset(c, 0, sizeof *c);
     c->what[0].source = p->source;
     c->what[0].how = how_of(p->source);
     c->follow_ticks = (uint32_t)(WELL_S * p->base.rate_Hz);
-    if (sees(p, in)) { c->follow_ticks += 20 + 2 * faults_seen_within(p->base.scene, p->source, p->base.rate_Hz); }
+    if (sees(p, in)) {
+        c->follow_ticks += 20 + 2 * faults_seen_within(p->base.scene, p->source, p->base.rate_Hz);
+    }
     if (faults_is_memory(p->source)) {
         c->what[0].place = in == FAULTS_IN_OFF || in == FAULTS_IN_ASKED || in == FAULTS_IN_FAULT
                                ? FAULTS_PASSED
@@ -172,7 +175,8 @@ static void keep(struct plan *p, unsigned in, const struct faults_seen *s)
         c->right &= is_in(before->state, in, s->seen_ticks[0]) &&
                     (in != FAULTS_IN_RAMP || before->open) &&
                     (in != FAULTS_IN_SMALL || !before->open);
-        c->right &= (uint32_t)s->seen_ticks[0] <= faults_seen_within(p->base.scene, p->source, p->base.rate_Hz);
+        c->right &= (uint32_t)s->seen_ticks[0] <=
+                    faults_seen_within(p->base.scene, p->source, p->base.rate_Hz);
         c->right &= s->state[0] == faults_next(p->source, before->state, before->open);
         c->right &= s->end.state == faults_end(p->source, before->state, before->open);
         c->right &= s->end.state == EXH_STATE_FAULT ? (s->end.faults & spec->bits) != 0

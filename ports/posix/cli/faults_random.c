@@ -28,11 +28,12 @@ struct plan {
     struct faults_base base;
     struct one at[CASES_MAX];
     int n, next;
+    uint32_t run;
     struct faults_random *sum;
 };
 
 struct asked {
-    int total, per_job, seeds;
+    int total, jobs, first; /* times in all, over so many runs; the first of those asked for */
     uint64_t seed;
 };
 
@@ -75,13 +76,15 @@ static int by_tick(const void *a, const void *b)
 static void plan_of(struct plan *p, const struct asked *a, int job)
 {
     struct sim_random r = {a->seed ^ (uint64_t)job * UINT64_C(0xD1B54A32D192ED03)};
+    const int rest = a->total % a->jobs;
     memset(p, 0, sizeof *p);
+    p->run = (uint32_t)job;
     p->base.rate_Hz = rate_Hz[(size_t)job % RATES];
     p->base.scene = (uint8_t)((size_t)job / RATES % FAULTS_SCENES);
     p->base.cards = sim_random_u64(&r) & 1;
     p->base.gentle = sim_random_u64(&r) % 3 != 0;
     p->base.seed = (uint32_t)sim_random_u64(&r);
-    p->n = a->per_job;
+    p->n = a->total / a->jobs + (job < rest);
     for (int i = 0; i < p->n; i++) {
         struct one *o = &p->at[i];
         o->tick = (uint32_t)(sim_random_unit(&r) * UNTIL_S * p->base.rate_Hz);
@@ -119,18 +122,37 @@ static uint32_t bits_of(const struct faults_case *c)
 /* 1 if a cause was to be seen and was not. */
 static int unseen(const struct plan *p, const struct one *o, const struct faults_seen *s, int k)
 {
-    const struct faults_what *w = &o->c.what[k];
+    const struct faults_what *w = &o->c.what[k], *other = &o->c.what[!k];
     const struct faults_spec *spec = faults_spec_of(w->source);
-    const uint32_t within = faults_seen_within(p->base.scene, w->source, p->base.rate_Hz);
+    const struct faults_spec *beside = faults_spec_of(other->source);
+    const uint32_t within =
+        faults_seen_beside(p->base.scene, w->source, other->source, p->base.rate_Hz);
+    const int gone = w->for_ticks && w->for_ticks <= within; /* before it had to be seen */
     if (w->source == FAULTS_NOTHING || spec->bits == 0 || spec->may) { return 0; }
-    /* What is told for the second was not told for the first, which was gone before. */
-    if (k == 0 && w->for_ticks && w->for_ticks <= within &&
-        faults_spec_of(o->c.what[1].source)->bits == spec->bits) {
+    /* What is told from when the second begins on may be the second's. */
+    if (k == 0 && gone && (beside->bits | beside->also) & spec->bits &&
+        s->seen_ticks[0] >= (int32_t)other->after_ticks) {
         return 0;
     }
     if (s->seen_ticks[k] >= 0) { return s->seen_ticks[k] > (int32_t)within; }
-    if (w->for_ticks && w->for_ticks <= within) { return 0; } /* it was gone by then */
+    if (gone) { return 0; }
     return (bits_of(&o->c) & EXH_FAULT_CARD) == 0; /* that ends the run */
+}
+
+static void note(struct faults_wrong *w, const struct plan *p, const struct one *o,
+                 const struct faults_seen *s)
+{
+    memset(w, 0, sizeof *w);
+    w->run = p->run;
+    w->tick = o->tick;
+    w->eager = o->c.eager;
+    w->cards = p->base.cards;
+    w->bad = s->bad;
+    for (int k = 0; k < 2; k++) {
+        w->what[k] = o->c.what[k];
+        w->seen_ticks[k] = s->seen_ticks[k];
+        w->state[k] = s->state[k];
+    }
 }
 
 static void count(struct plan *p, const struct one *o, const struct faults_seen *s)
@@ -152,12 +174,7 @@ static void count(struct plan *p, const struct one *o, const struct faults_seen 
     if (s->bad || late) {
         c->bad++;
         for (int k = 0; k < FAULTS_BADS; k++) { r->kinds[k] += (int32_t)(s->bad >> k & 1); }
-        if (r->bad == 0) {
-            r->first = *o->c.what;
-            r->second = o->c.what[1];
-            r->first_tick = o->tick;
-            r->first_bad = s->bad;
-        }
+        if (r->bad < FAULTS_WRONGS) { note(&r->wrong[r->bad], p, o, s); }
         r->bad++;
     }
     /* A loop that is dead codes nothing: there it is the motor's current that counts. */
@@ -205,12 +222,12 @@ static void at(void *ctx, uint32_t tick, const struct faults_view *v)
 static void work(const void *ctx, int i, void *result)
 {
     static struct plan plan;
+    const struct asked *a = ctx;
     struct faults_random *r = result;
-    plan_of(&plan, ctx, i);
+    plan_of(&plan, a, a->first + i);
     memset(r, 0, sizeof *r);
     r->rate_Hz = plan.base.rate_Hz;
     r->scene = plan.base.scene;
-    r->seed = (uint32_t)i;
     plan.sum = r;
     r->err = faults_run(&plan.base, at, &plan);
 }
@@ -222,13 +239,6 @@ static void work(const void *ctx, int i, void *result)
 
 static void add(struct faults_random *to, const struct faults_random *from)
 {
-    if (to->bad == 0 && from->bad > 0) {
-        to->first = from->first;
-        to->second = from->second;
-        to->first_tick = from->first_tick;
-        to->first_bad = from->first_bad;
-        to->seed = from->seed;
-    }
     to->n += from->n;
     to->open += from->open;
     to->bad += from->bad;
@@ -252,16 +262,21 @@ static void add(struct faults_random *to, const struct faults_random *from)
     }
 }
 
-int faults_random(FILE *f, int total, uint64_t seed, int parallel)
+/* Every run by itself is as it is among all: --times says how many times each has. */
+int faults_random(FILE *f, int total, uint64_t seed, int run, int parallel)
 {
     const int groups = (int)RATES * FAULTS_SCENES;
-    struct asked a = {total, 0, 1, seed};
+    struct asked a = {total, groups, 0, seed};
     struct faults_random *r, sum[RATES][FAULTS_SCENES];
     struct jobs jobs = {0, parallel, sizeof *r, NULL, work, &a, "runs", posix_interrupt};
     int err;
-    while (total > groups * a.seeds * CASES_MAX) { a.seeds++; }
-    a.per_job = (total + groups * a.seeds - 1) / (groups * a.seeds);
-    jobs.n = groups * a.seeds;
+    while (total > a.jobs * CASES_MAX) { a.jobs += groups; }
+    if (run >= a.jobs) {
+        cli_complain("no run %d: %d times are runs 0 to %d", run, total, a.jobs - 1);
+        return 2;
+    }
+    jobs.n = run < 0 ? a.jobs : 1;
+    a.first = run < 0 ? 0 : run;
     r = calloc((size_t)jobs.n, sizeof *r);
     if (r == NULL) {
         cli_complain("out of memory: fewer --times");
@@ -271,12 +286,14 @@ int faults_random(FILE *f, int total, uint64_t seed, int parallel)
     err = jobs_run(&jobs);
     memset(sum, 0, sizeof sum);
     for (int i = 0; i < jobs.n; i++) {
-        struct faults_random *s = &sum[(size_t)i % RATES][(size_t)i / RATES % FAULTS_SCENES];
+        const size_t k = (size_t)(a.first + i);
+        struct faults_random *s = &sum[k % RATES][k / RATES % FAULTS_SCENES];
         s->rate_Hz = r[i].rate_Hz;
         s->scene = r[i].scene;
         add(s, &r[i]);
     }
+    err = err ? err : faults_print_random(f, &sum[0][0], groups);
+    faults_print_wrong(f, r, jobs.n);
     free(r);
-    if (err) { return err; }
-    return faults_print_random(f, &sum[0][0], groups);
+    return err;
 }

@@ -166,7 +166,7 @@ uint32_t faults_late(uint64_t tick)
  * drives' enable away. It is set to two and a half periods. */
 static void dead(const struct on *o)
 {
-    const uint32_t ticks = 6 + (uint32_t)(20 * chance(o, 0));
+    const uint32_t ticks = 6 + (uint32_t)((FAULTS_DEAD_TICKS - 6) * chance(o, 0));
     src.dead = 1;
     for (uint32_t k = 0; k < ticks; k++) {
         (void)exh_board_wait();
@@ -187,6 +187,7 @@ static void lose_card(const struct on *o)
 {
     struct emu_box *box = posix_cards_box();
     if (!src.base->cards) { return; }
+    if (box->wrong) { return; } /* one that is dead stays so, and with it the run ends */
     memset(&box->fault, 0, sizeof box->fault);
     memset(box->in_phase, 0, sizeof box->in_phase);
     box->fault.kind = EMU_ABSENT;
