@@ -120,13 +120,24 @@ world_mesh := $(B)/posix/examples/world/$(if $(world_rays),mesh_embree,mesh_none
 
 cli_obj := $(cli_src:%.c=$(B)/posix/%.o) $(world_core:%.c=$(B)/posix/%.o) $(world_mesh)
 cli_libs := $(if $(world_rays),-ldl) -lm
-sim_obj := $(patsubst %.c,$(B)/posix/%.o,$(wildcard ports/posix/*.c ports/posix/sim/*.c ports/posix/emu/*.c \
-                                                    ports/cards/*.c)) \
+# Lines of a GPIO chip, if the package is here, for this compiler and this way to link, by its version. The program alone has
+# them: tests and benches must be the same on every machine.
+gives     = $(if $(call have,gpiod.h),$(shell echo 'int main(void){return !$(1);}' | \
+              $(CC) $(CFLAGS) $(LDFLAGS) -include gpiod.h -xc - -o /dev/null -lgpiod 2>/dev/null && echo yes))
+gpio     := $(if $(call gives,gpiod_line_request_bulk),v1,$(if $(call gives,gpiod_chip_request_lines),v2,none))
+gpio_none := $(B)/posix/ports/posix/gpio_none.o
+gpio_obj := $(B)/posix/ports/posix/gpio_$(gpio).o
+gpio_libs := $(if $(filter none,$(gpio)),,-lgpiod)
+
+# The board and the device, without lines.
+dev_obj := $(patsubst %.c,$(B)/posix/%.o,$(filter-out ports/posix/gpio_v%.c ports/posix/gpio_none.c,$(wildcard ports/posix/*.c)) \
+                                         $(wildcard ports/posix/sim/*.c ports/posix/emu/*.c ports/cards/*.c)) \
            $(B)/posix/examples/loop.o
+sim_obj := $(dev_obj) $(gpio_none)
 exhand  := $(B)/posix/exhand
 
-$(exhand): $(cli_obj) $(sim_obj) $(B)/posix/libexhand.a
-	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(cli_libs)
+$(exhand): $(cli_obj) $(dev_obj) $(gpio_obj) $(B)/posix/libexhand.a
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(cli_libs) $(gpio_libs)
 
 ifeq ($(PORT),posix)
 products := $(exhand)
@@ -232,7 +243,7 @@ fit: all
 # --- tests ----------------------------------------------------------------------
 
 san       := -fsanitize=address,undefined -fno-sanitize-recover=all
-test_dirs := golden sim prop world cards emu pc104 board unit # in this order: long ones first
+test_dirs := golden sim prop world gpio cards emu pc104 board unit # in this order: long ones first
 test_src  := $(foreach d,$(test_dirs),$(wildcard test/$(d)/*_test.c))
 test_bin  := $(test_src:test/%_test.c=$(B)/test/%_test)
 tflags     = $(base) $(CFLAGS) -Itest -DEXH_FIX_AUDIT
@@ -284,6 +295,11 @@ $(B)/posix/test/%.o: test/%.c $(stamp)
 $(B)/test/loop.o: examples/loop.c $(stamp)
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(base) $(CFLAGS) -Dexh_assert_failed=exh_loop_assert_failed -Wno-missing-prototypes -c $< -o $@
+# The text after --gpio; and the lines by both versions of libgpiod, of which test/gpio has headers and a chip of its own.
+$(B)/test/san/ports/posix/gpio_take.o $(B)/test/san/test/gpio/take_test.o: tflags += -Iports/posix
+$(B)/test/gpio/take_test: $(B)/test/san/test/gpio/take_test.o $(B)/test/san/ports/posix/gpio_take.o $(B)/test/san/test/support.o
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(san) -o $@ $^ -lcmocka
 # The virtual world; rays into meshes where their package is.
 $(B)/test/world/%_test: $(B)/posix/test/world/%_test.o $(B)/posix/test/support.o $(world_core_obj) $(world_mesh) \
                         $(B)/posix/examples/world/solo.o $(B)/posix/examples/world/link.o \

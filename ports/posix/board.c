@@ -4,6 +4,7 @@
 #include "posix.h"
 
 #include "cards.h"
+#include "gpio.h"
 #include "line.h"
 #include "sim/codes.h"
 #include "sim/exo.h"
@@ -180,6 +181,7 @@ int exh_board_init(uint32_t rate_Hz, struct exh_period *achieved)
         start_mass();
     }
     if (line_start(&sim.cfg.line, sim.cfg.seed) < 0) { return -EXH_E_IO; }
+    if (sim.cfg.gpio) { gpio_start(sim.T); }
     stop = 0;
     *achieved = sim.T;
     if (sim.cfg.cards.how) { err = start_cards(); }
@@ -278,7 +280,8 @@ static double load_A(void)
     return sum_A;
 }
 
-int exh_board_read_drive(struct exh_drive_in *in)
+/* What the simulated device, or its cards, show. */
+static int read_device(struct exh_drive_in *in)
 {
     const double jitter_cnt = sim.cfg.enc_jitter_cnt;
     memset(in, 0, sizeof *in);
@@ -294,6 +297,14 @@ int exh_board_read_drive(struct exh_drive_in *in)
     if (sim.cfg.let_go_s > 0 && sim.now_s >= sim.cfg.let_go_s) { in->din &= ~(uint32_t)EXH_DIN_DEADMAN; }
     if (sim.cfg.wires_in) { sim.cfg.wires_in(in); }
     return sim.cfg.cards.how ? cards_read_drive(in) : 0;
+}
+
+/* Contacts that are wired are closed when they and the device's both are. */
+int exh_board_read_drive(struct exh_drive_in *in)
+{
+    const int err = read_device(in);
+    const int wired = sim.cfg.gpio ? gpio_read(&in->din) : 0;
+    return err ? err : wired;
 }
 
 /* The device gets these codes, when its delay is over. */
@@ -316,7 +327,7 @@ static int put_out(const struct exh_drive_out *from)
     return 0;
 }
 
-int exh_board_write_drive(const struct exh_drive_out *out)
+static int write_device(const struct exh_drive_out *out)
 {
     struct exh_drive_out seen;
     int err, put;
@@ -326,8 +337,16 @@ int exh_board_write_drive(const struct exh_drive_out *out)
     return err ? err : put;
 }
 
+int exh_board_write_drive(const struct exh_drive_out *out)
+{
+    const int err = write_device(out);
+    const int wired = sim.cfg.gpio ? gpio_write(out) : 0;
+    return err ? err : wired;
+}
+
 void exh_board_safe(void)
 {
+    if (sim.cfg.gpio) { gpio_safe(); }
     if (sim.cfg.cards.how) {
         struct exh_drive_out seen;
         cards_safe(&seen);

@@ -37,6 +37,7 @@ struct posix_config {
                               * of fingers in use                             */
     struct posix_cards cards; /* how: all codes go through drivers and emulated cards */
     struct posix_line line;  /* on: the link leads somewhere                     */
+    int gpio;                /* 1: contacts and outputs of gpio.h, which is open; with pace */
     double let_go_s;         /* the dead-man switch opens then; 0: never          */
     double enc_jitter_cnt;   /* peak to peak, uniform: 1 makes a resting encoder change
                               * between two counts                             */

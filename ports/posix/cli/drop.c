@@ -3,6 +3,7 @@
 
 #include "assign.h"
 #include "border.h"
+#include "contacts.h"
 #include "csv.h"
 #include "friction.h"
 #include "jobs.h"
@@ -36,6 +37,7 @@ struct drop_options {
     int settings;
     struct sim_device device;
     struct exh_period T;
+    struct contacts gpio;
 };
 
 /* --- options with a syntax of their own --- */
@@ -159,6 +161,7 @@ static struct run_cfg job_cfg(const struct drop_options *o, int rate_i, double s
     c.board.falls = o->falls < 0 ? 10 : (int)o->falls;
     c.board.T = o->T;
     c.board.pace = o->pace;
+    c.board.gpio = o->gpio.given;
     c.board.let_go_s = o->let_go_s;
     c.board.cards.how = o->cards ? POSIX_CARDS_INSTANT : POSIX_CARDS_NONE;
     return c;
@@ -369,6 +372,13 @@ static int refuse(struct drop_options *o)
         return 2;
     }
     if (o->blackbox && !can_write(o->blackbox)) { return 2; }
+    if (o->gpio.given && (o->rates != 1 || o->spread > 0 || in_plane(o))) {
+        cli_complain("--gpio: one rate and one run at a time, since lines are one program's: leave out "
+                     "--spread and planes of gains");
+        return 2;
+    }
+    if (o->gpio.given) { o->jobs = 1; } /* the process that holds the lines */
+    if (contacts_check(&o->gpio, o->pace)) { return 2; }
     if ((o->grid && !o->sweep && !o->check) || (o->shard && !o->sweep)) {
         cli_complain("--grid and --shard: only with --sweep, --grid with --border-check too");
         return 2;
@@ -414,10 +424,11 @@ int cli_drop(int argc, char **argv)
     int list = 0, err;
     const struct cli_call rates = {take_rates, &o}, period = {take_period, &o};
     const struct cli_call setting = {take_setting, &o}, device = {take_device, &o};
+    const struct cli_call gpio = {contacts_take, &o.gpio};
     union {
         const struct cli_call *view;
         void *to;
-    } u[4] = {{&rates}, {&period}, {&setting}, {&device}};
+    } u[5] = {{&rates}, {&period}, {&setting}, {&device}, {&gpio}};
     const struct cli_option option[] = {
         {"rate", CLI_CALL, u[0].to, 0, 0, "HZ[,HZ...]", "loop rates, 1..20000 (the paper's six)"},
         {"period", CLI_CALL, u[1].to, 0, 0, "N/D", "one exact period in s, as a timer makes it; not with --rate"},
@@ -433,6 +444,7 @@ int cli_drop(int argc, char **argv)
         {"jobs", CLI_INT, &o.jobs, 1, 1024, "N", "processes at a time (one a core)"},
         {"cards", CLI_FLAG, &o.cards, 0, 0, NULL, "through the drivers and emulated cards: the same bits"},
         {"pace", CLI_FLAG, &o.pace, 0, 0, NULL, "follow the wall clock, for people who watch"},
+        {"gpio", CLI_CALL, u[4].to, 0, 0, CONTACTS_ARG, CONTACTS_HELP},
         {"set", CLI_CALL, u[2].to, 0, 0, "NAME=VALUE", "a parameter of the scene"},
         {"device", CLI_CALL, u[3].to, 0, 0, "NAME=VALUE", "a value of the simulated device"},
         {"sweep", CLI_FLAG, &o.sweep, 0, 0, NULL, "the stability border in the k-b plane, in DIR/stability.csv"},
@@ -469,5 +481,8 @@ int cli_drop(int argc, char **argv)
         return 0;
     }
     err = refuse(&o);
-    return err ? err : in_plane(&o) ? plane(&o) : experiment(&o);
+    if (err == 0) { err = contacts_begin(&o.gpio); }
+    if (err == 0) { err = in_plane(&o) ? plane(&o) : experiment(&o); }
+    contacts_end();
+    return err;
 }

@@ -1,0 +1,43 @@
+#include "contacts.h"
+
+#include "option.h"
+
+int contacts_take(void *ctx, const char *text)
+{
+    struct contacts *c = ctx;
+    char said[GPIO_SAID_B];
+    if (c->given) {
+        cli_complain("--gpio: given twice: all lines of one chip in one");
+        return 2;
+    }
+    if (gpio_take(&c->spec, text, said) < 0) {
+        cli_complain("--gpio: %s", said);
+        return 2;
+    }
+    c->given = 1;
+    return 0;
+}
+
+int contacts_check(const struct contacts *c, int pace)
+{
+    if (!c->given || pace) { return 0; }
+    cli_complain("--gpio: without --pace a run goes as fast as it can, and nobody's hand on a contact "
+                 "keeps up with that: give --pace, too");
+    return 2;
+}
+
+int contacts_begin(const struct contacts *c)
+{
+    char said[GPIO_SAID_B];
+    if (!c->given) { return 0; }
+    if (gpio_open(&c->spec, said) < 0) {
+        cli_complain("--gpio: %s", said);
+        return 3;
+    }
+    return 0;
+}
+
+void contacts_end(void)
+{
+    gpio_close();
+}

@@ -1,0 +1,50 @@
+/* Lines of a Linux GPIO chip: the contacts of a person, and what a watchdog relay and a drive's
+ * enable hang on. Wiring and what this is not for: docs/GPIO.md. */
+#ifndef POSIX_GPIO_H
+#define POSIX_GPIO_H
+
+#include "exhand/drive.h"
+#include "exhand/units.h"
+
+#include <stdint.h>
+
+enum gpio_channel { GPIO_ESTOP, GPIO_DEADMAN, GPIO_CHANNELS };
+enum gpio_output { GPIO_ENABLE, GPIO_ALIVE, GPIO_OUTPUTS };
+
+#define GPIO_PATH_B   64
+#define GPIO_SAID_B   256
+#define GPIO_LINE_TOP 1023 /* the highest number taken for a line's               */
+#define GPIO_DIFFER_S 0.5  /* two contacts of a channel may disagree for so long   */
+
+struct gpio_spec {
+    char path[GPIO_PATH_B];           /* /dev/gpiochip0                        */
+    unsigned contacts[GPIO_CHANNELS]; /* 0: not wired, closed as simulated; 1; 2 */
+    unsigned contact[GPIO_CHANNELS][2];
+    int wired[GPIO_OUTPUTS];
+    unsigned output[GPIO_OUTPUTS];
+};
+
+/* "gpiochip0:estop=4,deadman=5+9,enable=6,alive=7": a chip's name or path, and at least one of the
+ * four, each line once. 0, or -1 with what is wrong and what to do in said. */
+int gpio_take(struct gpio_spec *s, const char *text, char said[GPIO_SAID_B]);
+
+/* Requests the lines, outputs low. 0, or -1 with what is wrong and what to do in said. From here on
+ * outputs go low when the process ends, also by a signal; only SIGKILL leaves that to the kernel. */
+int gpio_open(const struct gpio_spec *s, char said[GPIO_SAID_B]);
+void gpio_close(void);
+
+/* The board's: nothing without an open chip. A loop of this period begins, outputs low. */
+void gpio_start(struct exh_period T);
+
+/* Once a tick: takes the bits of channels that are not believed closed out of din. 0, or -EXH_E_IO
+ * after a line on stderr, and then no channel is. */
+int gpio_read(uint32_t *din);
+
+/* Once a tick: enable is high while any drive is enabled; alive turns over when out->alive has
+ * changed. 0, or -EXH_E_IO after a line on stderr. */
+int gpio_write(const struct exh_drive_out *out);
+
+/* Both low; any time, any context, repeatable. */
+void gpio_safe(void);
+
+#endif
