@@ -89,10 +89,10 @@ void exh_params_init(struct exh_params *p, const struct exh_signal_table *table,
     }
 }
 
-/* May value index i become raw now? */
-static int allowed(const struct exh_params *p, uint32_t i, int32_t raw)
+int exh_params_may(const struct exh_params *p, uint32_t i, int32_t raw)
 {
     const struct exh_signal *row = exh_signal_at(p->table, i, NULL);
+    if (row == NULL) { return -EXH_E_UNKNOWN; }
     if (row->when == EXH_WHEN_OUTPUT) { return -EXH_E_STATE; }
     if (raw < row->min || raw > row->max) { return -EXH_E_RANGE; }
     if (p->locked && row->when == EXH_WHEN_SETUP && raw != p->staged[i]) { return -EXH_E_STATE; }
@@ -102,7 +102,12 @@ static int allowed(const struct exh_params *p, uint32_t i, int32_t raw)
 int exh_params_stage(struct exh_params *p, uint16_t id, uint16_t instance, int32_t raw)
 {
     const int32_t i = exh_signal_find(p->table, id, instance);
-    const int err = i < 0 ? (int)i : allowed(p, (uint32_t)i, raw);
+    return i < 0 ? (int)i : exh_params_stage_at(p, (uint32_t)i, raw);
+}
+
+int exh_params_stage_at(struct exh_params *p, uint32_t i, int32_t raw)
+{
+    const int err = exh_params_may(p, i, raw);
     if (err < 0) { return err; }
     p->staged[i] = raw;
     p->pending = 1;
@@ -177,7 +182,7 @@ int exh_params_load(struct exh_params *p, const void *buf, size_t len_B, uint32_
             int32_t v = 0;
             exh_bytes_i32(&c, &v);
             if (pass == 0) {
-                const int err = allowed(p, i, v);
+                const int err = exh_params_may(p, i, v);
                 if (err < 0) {
                     if (bad != NULL) { *bad = i; }
                     return err;

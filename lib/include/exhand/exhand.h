@@ -16,6 +16,7 @@
  *   wire                         packets between controller and world
  *   calibrate, probe             tables of the box, and the motions that measure them
  *   record                       log and replay
+ *   modbus                       the box as registers; a Modbus slave
  *   board                        what a port provides; only the loop calls it
  *
  * A scene is a pure function over these modules (examples/minimal is the
@@ -42,6 +43,7 @@
 #include "exhand/glove.h"
 #include "exhand/guard.h"
 #include "exhand/hand.h"
+#include "exhand/modbus.h"
 #include "exhand/passivity.h"
 #include "exhand/precontact.h"
 #include "exhand/probe.h"

@@ -85,6 +85,10 @@ void exh_params_init(struct exh_params *p, const struct exh_signal_table *table,
  * accepted); nothing is staged then. */
 int exh_params_stage(struct exh_params *p, uint16_t id, uint16_t instance, int32_t raw);
 
+/* The same by index of the value, for whoever walks the table; and whether it would be staged. */
+int exh_params_stage_at(struct exh_params *p, uint32_t i, int32_t raw);
+int exh_params_may(const struct exh_params *p, uint32_t i, int32_t raw);
+
 /* Copies what is staged; call between ticks only. 1 if anything was pending. */
 int exh_params_apply(struct exh_params *p);
 
