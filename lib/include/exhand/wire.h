@@ -22,7 +22,7 @@
 extern "C" {
 #endif
 
-#define EXH_WIRE_VERSION  1
+#define EXH_WIRE_VERSION  2 /* 1: the state in STATE was 0 off, 1 run, 2 fault   */
 #define EXH_WIRE_MAGIC    0x5758u
 #define EXH_WIRE_FINGERS  5
 #define EXH_WIRE_OVERHEAD 22  /* bytes around a payload                          */

@@ -39,7 +39,7 @@ class Sender:
             return -RANGE
         if len(body) + 22 > cap:
             return -SHORT
-        p = sealed(pack("<HBBHIII", 0x5758, 1, kind, len(body), self.session, self.seq, stamp) + body)
+        p = sealed(pack("<HBBHIII", 0x5758, 2, kind, len(body), self.session, self.seq, stamp) + body)
         self.seq = self.seq + 1 & M32
         return p
 
@@ -62,7 +62,7 @@ class Receiver:
         magic, version, kind, n, session, seq = unpack_from("<HBBHII", p)
         if magic != 0x5758 or session == 0 or sealed(p[:-4]) != p:
             return self.wrong("corrupt", CRC)
-        if version != 1:
+        if version != 2:
             return self.wrong("version", VERSION)
         if kind not in LENGTH:
             return self.wrong("unknown", UNKNOWN)
