@@ -132,8 +132,14 @@ static void latch(struct exh_safety *s, uint32_t now)
         s->first = now;
         s->first_tick = s->tick;
     }
-    if (now & ~s->faults) { s->opened = 0; }
     s->faults |= now;
+}
+
+/* Let go after the last cause, also one that came back while the switch was open: nobody clears what he has not seen
+ * the end of. */
+static void see_hand(struct exh_safety *s, uint32_t din)
+{
+    if (s->present) { s->opened = s->present == EXH_FAULT_DEADMAN && !(din & EXH_DIN_DEADMAN); }
 }
 
 /* --- what follows from it --- */
@@ -234,7 +240,7 @@ struct exh_permit exh_safety_step(struct exh_safety *s, const struct exh_safety_
     s->present = causes(s, cfg, &in);
     lacks = lacking(s, in.ready, s->present);
     if (exh_safety_open(s) || s->state == EXH_STATE_FAULT) { latch(s, s->present); }
-    if (!(in.din & EXH_DIN_DEADMAN)) { s->opened = 1; }
+    see_hand(s, in.din);
     s->trigger = first_of(triggers(s, cfg, &in, lacks));
     if (s->trigger == EXH_ON_REFUSED && lacks) {
         s->refused = (uint8_t)(lacks & (~lacks + 1u)); /* the lowest: the first step */

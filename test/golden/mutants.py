@@ -141,6 +141,7 @@ MUTANTS = (
     ("safety", SAFETY, "k <= MISSED_MAX", "k < MISSED_MAX"),
     ("safety", SAFETY, "s->faults |= now;", "s->faults = now;"),
     ("safety", SAFETY, "if (s->faults == 0 && now != 0) {", "if (now != 0) {"),
+    ("safety", SAFETY, "s->present == EXH_FAULT_DEADMAN && !", "!"),
     ("safety", SAFETY, "s->steps >= cfg->arm_ticks", "s->steps > cfg->arm_ticks"),
     ("safety", SAFETY, "p.ticks = add_sat(missed, 1);", "p.ticks = 1;"),
     ("safety", GATE, "s->state == EXH_STATE_ARM && s->share_q30 > 0", "s->state == EXH_STATE_ARM"),

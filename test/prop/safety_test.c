@@ -156,8 +156,8 @@ static uint32_t causes_of(const struct exh_safety_in *in, struct memory *m)
 }
 
 /* Whatever comes: the gate opens by RUN, small force and a ramp alone; a cause ends an open gate in
- * its tick; FAULT is left by CLEAR alone, with no cause and the dead-man opened since the last new
- * one; the first cause does not change; a release ends after its ticks. */
+ * its tick; FAULT is left by CLEAR alone, with no cause and the dead-man opened since the last
+ * other one; the first cause does not change; a release ends after its ticks. */
 static void check_step(const struct exh_safety *old, const struct exh_safety *s,
                        const struct exh_safety_in *in, uint32_t now, struct memory *m)
 {
@@ -183,8 +183,7 @@ static void check_step(const struct exh_safety *old, const struct exh_safety *s,
         CHECK(s->state == EXH_STATE_OFF || (s->state == EXH_STATE_ARM && in->command == EXH_CMD_RUN),
               "from OFF to %d", s->state);
     }
-    if (s->faults & ~old->faults) { m->opened = 0; }
-    if (!(in->din & EXH_DIN_DEADMAN)) { m->opened = 1; }
+    if (now) { m->opened = now == EXH_FAULT_DEADMAN && !(in->din & EXH_DIN_DEADMAN); }
     m->in_release = s->state == EXH_STATE_RELEASE ? m->in_release + 1 + in->missed : 0;
     CHECK(m->in_release < 30 + 4 + 4, "%" PRIu32 " ticks of release", m->in_release);
     CHECK(s->tick == ++m->ticks, "tick %" PRIu32, s->tick);

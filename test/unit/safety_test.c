@@ -406,22 +406,19 @@ TEST(release_ends_at_every_rate)
 
 /* All sequences of six ticks, each healthy with a command to clear, healthy, let go, or with the
  * cause: FAULT is left by the first tick that clears, held, with no cause, after a tick let go since
- * a cause was new. */
+ * the cause was there. */
 TEST(clearing_in_every_order)
 {
     const struct exh_safety_cfg cfg = cfg_of(par, 1000);
     unsigned cleared = 0;
     for (unsigned code = 0; code < 4096; code++) {
         struct exh_safety s = box_in(&cfg, EXH_STATE_FAULT, 0); /* e-stop */
-        uint32_t seen = EXH_FAULT_ESTOP;
         int opened = 0, left = 0;
         for (unsigned k = 0; k < 6 && !left; k++) {
             const unsigned what = code >> 2 * k & 3u;
             const uint32_t fault = what == 2 ? EXH_FAULT_DEADMAN : what == 3 ? EXH_FAULT_LINK : 0;
             struct exh_safety_in in = with_cause(fault, what == 1 ? EXH_CMD_RUN : EXH_CMD_CLEAR);
-            if (fault & ~seen) { opened = 0; }
-            seen |= fault;
-            if (what == 2) { opened = 1; }
+            if (what >= 2) { opened = what == 2; }
             (void)exh_safety_step(&s, &cfg, in);
             left = what == 0 && opened;
             CHECK((s.state == EXH_STATE_OFF) == left, "sequence %u, tick %u", code, k);
@@ -430,6 +427,26 @@ TEST(clearing_in_every_order)
         cleared += (unsigned)left;
     }
     CHECK(cleared > 500 && cleared < 3500, "%u of 4096 cleared", cleared);
+}
+
+/* The cause of the fault itself comes back, while the switch is open or held: one more grip. */
+TEST(a_cause_that_comes_back_asks_for_the_hand_again)
+{
+    const struct exh_safety_cfg cfg = cfg_of(par, 1000);
+    const uint32_t open = EXH_FAULT_DEADMAN;
+    for (int held = 0; held < 2; held++) {
+        struct exh_safety s = box_in(&cfg, EXH_STATE_FAULT, 0); /* e-stop */
+        struct exh_safety_in again = with_cause(EXH_FAULT_ESTOP, EXH_CMD_NONE);
+        if (!held) { again.din &= ~(uint32_t)EXH_DIN_DEADMAN; }
+        (void)exh_safety_step(&s, &cfg, with_cause(open, EXH_CMD_NONE));
+        (void)exh_safety_step(&s, &cfg, again);
+        (void)exh_safety_step(&s, &cfg, healthy(EXH_CMD_CLEAR));
+        CHECK(s.state == EXH_STATE_FAULT && s.opened == 0, "held %d: cleared unseen", held);
+        (void)exh_safety_step(&s, &cfg, with_cause(open, EXH_CMD_CLEAR));
+        CHECK_EQ_I64(s.state, EXH_STATE_FAULT);
+        (void)exh_safety_step(&s, &cfg, healthy(EXH_CMD_CLEAR));
+        CHECK_EQ_I64(s.state, EXH_STATE_OFF);
+    }
 }
 
 TEST(a_fault_never_clears_by_itself)
@@ -564,6 +581,6 @@ TEST_MAIN("unit/safety", every_cell_is_what_it_should_be, every_state_is_reached
           a_step_lost_in_the_ramp_releases, off_while_arming, arming_takes_its_time_at_every_rate,
           limits_are_told_and_counted, missed_ticks_are_tolerated_up_to_the_limit,
           late_too_often_is_an_overrun, an_overrun_is_gone_in_time, only_drives_in_use_count, release_ends_at_every_rate,
-          clearing_in_every_order, a_fault_never_clears_by_itself,
+          clearing_in_every_order, a_cause_that_comes_back_asks_for_the_hand_again, a_fault_never_clears_by_itself,
           a_state_that_cannot_be_is_a_fault, no_byte_of_a_state_opens_the_gate, state_round_trip,
           setup_refuses_what_is_out_of_range, names_are_all_there);

@@ -32,7 +32,7 @@ enum exh_command {
     EXH_CMD_NONE,
     EXH_CMD_RUN,  /* OFF -> ARM when every step of arming holds                */
     EXH_CMD_OFF,  /* to OFF, by way of RELEASE where there may be a force      */
-    EXH_CMD_CLEAR /* FAULT -> OFF when no cause is present, and the dead-man was open since */
+    EXH_CMD_CLEAR /* FAULT -> OFF when no cause is present, and the dead-man was open since any was */
 };
 
 enum exh_fault {
@@ -142,7 +142,7 @@ struct exh_safety {
     uint8_t state;       /* enum exh_state                                     */
     uint8_t alive;       /* completed ticks, modulo 256                        */
     uint8_t refused;     /* enum exh_arm: the step that arming failed at last; 0 none */
-    uint8_t opened;      /* 1: the dead-man was open since the last new cause was latched */
+    uint8_t opened;      /* 1: the dead-man was open since another cause was present */
     uint8_t trigger;     /* enum exh_trigger of the last tick                  */
     uint8_t fingers;     /* drives seen ready in this tick: the gate opens no other */
 };

@@ -58,8 +58,6 @@ class Safety:
     def latch(self, p):
         if p and not self.faults:
             self.first, self.first_tick = p, self.tick
-        if p & ~self.faults:
-            self.opened = 0
         self.faults |= p
 
     def move(self, p, lacks, command):
@@ -105,8 +103,8 @@ class Safety:
         lacks = ~ready & 15 | (16 if p else 0) | (32 if self.limits & FORCE else 0)
         if self.open() or self.state_ == FAULT:
             self.latch(p)
-        if not din & 2:
-            self.opened = 1
+        if p:
+            self.opened = int(p == DEADMAN and not din & 2)
         before = self.state_
         trigger, self.state_ = self.move(p, lacks, command)
         self.trigger = ON[trigger]
