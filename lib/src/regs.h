@@ -1,0 +1,75 @@
+/* What the two files of the register map share; not part of the library's interface. */
+#ifndef EXH_REGS_PRIVATE_H
+#define EXH_REGS_PRIVATE_H
+
+#include "exhand/modbus.h"
+
+/* --- walking a table --- */
+
+/* The row of one value after the other, without a search for each. */
+struct exh_regs_walk {
+    const struct exh_signal_group *group;
+    uint16_t instance, row;
+};
+
+static inline struct exh_regs_walk exh_regs_walk_to(const struct exh_signal_table *t, uint32_t i)
+{
+    struct exh_regs_walk w = {t->group, 0, 0};
+    while (i >= w.group->rows) {
+        i -= w.group->rows;
+        if (++w.instance == w.group->instances) {
+            w.instance = 0;
+            w.group++;
+        }
+    }
+    w.row = (uint16_t)i;
+    return w;
+}
+
+/* Beyond the last value it points behind the table. */
+static inline void exh_regs_walk_on(struct exh_regs_walk *w)
+{
+    if (++w->row < w->group->rows) { return; }
+    w->row = 0;
+    if (++w->instance < w->group->instances) { return; }
+    w->instance = 0;
+    w->group++;
+}
+
+static inline const struct exh_signal *exh_regs_row_of(const struct exh_regs_walk *w)
+{
+    return &w->group->row[w->row];
+}
+
+/* --- values --- */
+
+static inline int exh_regs_is_staged(const struct exh_regs *r, uint32_t i)
+{
+    return (int)(r->touched[i >> 5] >> (i & 31u) & 1u);
+}
+
+/* What a holding register shows. */
+static inline int32_t exh_regs_held(const struct exh_regs *r, uint32_t i)
+{
+    return exh_regs_is_staged(r, i) ? r->staged[i] : r->wanted[i];
+}
+
+/* --- blocks --- */
+
+enum exh_regs_source { EXH_REGS_HEAD, EXH_REGS_SIGNAL, EXH_REGS_ACTIVE, EXH_REGS_HELD };
+
+/* Where a request lies: registers from..end-1 of a block. */
+struct exh_regs_span {
+    enum exh_regs_source source;
+    int is_float;
+    uint32_t from, end;
+};
+
+/* 0 or exception 2. */
+int exh_regs_locate(const struct exh_regs *r, enum exh_regs_kind kind, uint16_t at, uint16_t n,
+                    struct exh_regs_span *s);
+
+/* Nothing is staged any more. */
+void exh_regs_forget(struct exh_regs *r);
+
+#endif
