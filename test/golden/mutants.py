@@ -233,12 +233,13 @@ MUTANTS = (
     ("drop", X + "drop.c", "exh_velocity_window_mps_q27(&s->velocity, &cfg->velocity, cnt)",
      "exh_velocity_window_mps_q27(&s->velocity, &cfg->velocity, cnt + 1)"),
 )
-# Rows that the 256 ticks of bilateral show at fewer rates, since arming takes many of them: what they must be seen at
+# Rows that 256 ticks, of bilateral above all, show at fewer rates, since arming takes many of them: what they must be seen at
 # all the same, and what tells them besides. Open: stimuli that come to it at every rate.
 THIN = {
     "if (p->phase == EXH_PRECONTACT_FROZEN &&": 0.70,  # sim/bilateral_tick
     "s->wire.age_ticks >= cfg->link_ticks": 0.04,      # sim/causes
     "raw <= cfg->max_raw": 0.70,                       # unit/supply
+    "s->present == EXH_FAULT_DEADMAN && !": 0.93,      # unit/safety
 }
 
 # Where the inline functions of a header are called for a module.

@@ -124,6 +124,7 @@ int faults_print_random(FILE *f, const struct faults_random *r, int n)
 int cli_faults(int argc, char **argv)
 {
     int64_t times = 0, seed = 1, rate_Hz = 0, run = -1, parallel = jobs_cores();
+    int states = 0;
     const char *out = NULL;
     int err;
     const struct cli_option option[] = {
@@ -132,6 +133,8 @@ int cli_faults(int argc, char **argv)
         {"rate", CLI_INT, &rate_Hz, 20, 20000, "HZ", "the table at this rate (90, 1000 and 2000)"},
         {"seed", CLI_INT, &seed, 0, 1e9, "N", "of these (1)"},
         {"run", CLI_INT, &run, 0, 1e6, "N", "of these the times of one run, as WRONG names it"},
+        {"states", CLI_FLAG, &states, 0, 0, NULL,
+         "the state machine as the library has it, and every name in it"},
         {"out", CLI_TEXT, (void *)&out, 0, 0, "DIR",
          "write what the picture needs there, instead of the table"},
         {"jobs", CLI_INT, &parallel, 1, 1024, "N", "processes at a time (one a core)"},
@@ -147,6 +150,7 @@ int cli_faults(int argc, char **argv)
         0};
     err = cli_parse(&c, argc, argv, NULL);
     if (err) { return err == 1 ? 0 : err; }
+    if (states) { return faults_states(stdout); }
     if (times) {
         return faults_random(stdout, (int)times, (uint64_t)seed, (int)run, (int)parallel);
     }

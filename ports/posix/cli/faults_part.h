@@ -40,5 +40,6 @@ int faults_print_random(FILE *f, const struct faults_random *r, int n);
 void faults_print_wrong(FILE *f, const struct faults_random *r, int n);
 int faults_matrix(FILE *f, uint32_t at_Hz, int parallel); /* at_Hz 0: at three rates   */
 int faults_pictures(const char *dir);
+int faults_states(FILE *f); /* of the box, and every name */
 
 #endif
