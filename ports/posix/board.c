@@ -193,6 +193,11 @@ void posix_ready(void)
     fall_ready(&sim.mass.fall, sim.now_s);
 }
 
+void posix_hold(void)
+{
+    sim.mass.fall.waits = 1;
+}
+
 void posix_bench(enum bench_place place, double mass_kg)
 {
     bench_prepare(&sim.mass.bench, &sim.mass.plant, &sim.mass.rng, place, mass_kg);

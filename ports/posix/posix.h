@@ -68,6 +68,8 @@ const struct sim_finger *posix_finger(unsigned i);
 
 /* The box runs: whoever holds the mass counts from here. */
 void posix_ready(void);
+/* It does not any more: the next hold goes on until it does. */
+void posix_hold(void);
 
 /* The person at the bench prepares a place; ready some time later. */
 void posix_bench(enum bench_place place, double mass_kg);

@@ -26,7 +26,7 @@ static int load_scene(struct bilateral_options *o)
     return 0;
 }
 
-static void defaults(struct bilateral_options *o)
+void bilateral_defaults(struct bilateral_options *o)
 {
     static struct run_setting own = {"mat_f_max", 40};
     memset(o, 0, sizeof *o);
@@ -164,7 +164,7 @@ int cli_bilateral(int argc, char **argv)
         "contact is frozen before it is touched and rendered here alone, whatever the link does.",
         option, (int)(sizeof option / sizeof option[0]), 0};
 
-    defaults(&o);
+    bilateral_defaults(&o);
     err = cli_parse(&c, argc, argv, NULL);
     if (err) { return err == 1 ? 0 : err; }
     if (list) {

@@ -33,6 +33,9 @@ struct bilateral_options {
 
 extern const char *const bilateral_finger_name[BILATERAL_FINGERS];
 
+/* bilateral.c: what holds without options. */
+void bilateral_defaults(struct bilateral_options *o);
+
 /* bilateral_take.c, bilateral_link.c: options by cli_call, ctx the struct above. 0, or 2 after a
  * line on stderr. */
 int bilateral_take_speeds(void *ctx, const char *text);

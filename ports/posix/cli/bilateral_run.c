@@ -41,7 +41,7 @@ static void start(const struct exh_scene *sc, struct exh_scene_board board)
 
 static void before(uint32_t tick, struct exh_scene_in *in)
 {
-    if (tick == 0 || run.again) { in->command = EXH_CMD_RUN; }
+    if ((tick == 0 || run.again) && !run.cfg->live.on) { in->command = EXH_CMD_RUN; }
     if (run.cfg->more) { run.cfg->more->before(tick, in); }
     dumpfile_before(tick, in);
 }
@@ -201,6 +201,7 @@ static int set_parameters(const struct bilateral_run_cfg *c)
     }
     if (err == 0 && c->k_Npm >= 0) { err = cli_param_set(p, "mat_k", c->k_Npm); }
     if (err == 0 && c->b_Nspm >= 0) { err = cli_param_set(p, "mat_b", c->b_Nspm); }
+    if (err == 0) { err = run_image(&c->live, p); }
     for (int i = 0; err == 0 && i < c->settings; i++) {
         err = cli_param_set(p, c->setting[i].name, c->setting[i].value);
     }

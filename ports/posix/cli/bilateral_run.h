@@ -28,6 +28,7 @@ struct bilateral_run_cfg {
     int keep;                  /* keep samples                                  */
     const char *blackbox;      /* dumps go there (dumpfile.h); NULL: no black box */
     const struct exh_loop_hooks *more; /* behind the run's own; NULL: none      */
+    struct run_live live;
 };
 
 /* One finger in one tick, as the scene says it, and as it is. */

@@ -24,6 +24,7 @@ static struct {
     size_t *start;
     size_t samples_cap, starts_cap;
     int fall; /* under observation in the present tick, 0 = none */
+    int live;
     int no_memory;
     double mon_gain;
     int logged; /* records cost a third of a run that nobody keeps */
@@ -52,9 +53,9 @@ static void start(const struct exh_scene *sc, struct exh_scene_board board)
 static void before(uint32_t tick, struct exh_scene_in *in)
 {
     const int fall = posix_fall();
-    if (tick == 0) { in->command = EXH_CMD_RUN; }
+    if (tick == 0 && !run.live) { in->command = EXH_CMD_RUN; }
     if (run.logged && fall != run.fall) { exh_log_mark(tick, fall); }
-    if (fall != 0 && fall != run.fall) {
+    if (fall != 0 && fall != run.fall && !run.live) {
         run.start = grow(run.start, &run.starts_cap, run.r->log.falls, sizeof *run.start);
         if (!run.no_memory) { run.start[run.r->log.falls++] = run.r->log.samples; }
     }
@@ -73,6 +74,10 @@ static double si(int32_t raw, int frac)
 static void watch_arming(const struct drop_signals *s)
 {
     const enum arming is = arming_is(s->state);
+    if (run.live && run.ran && is == ARMING_REFUSED) {
+        run.ran = 0;
+        posix_hold();
+    }
     if (run.ran || is == ARMING_GOES_ON || (run.more && is != ARMING_RUNS)) { return; }
     run.ran = is == ARMING_RUNS;
     if (run.ran) {
@@ -95,7 +100,7 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
     run.r->faults |= (uint32_t)s.faults;
     watch_arming(&s);
     if (run.more) { run.more->after(tick, in, out); }
-    if (run.fall == 0) { return; }
+    if (run.fall == 0 || run.live) { return; }
     run.sample = grow(run.sample, &run.samples_cap, run.r->log.samples, sizeof *run.sample);
     if (run.no_memory) {
         posix_stop();
@@ -117,6 +122,20 @@ static const struct exh_scene *scene_of(const struct run_cfg *c)
     return c->scene ? c->scene : &exh_scene_drop;
 }
 
+int run_image(const struct run_live *l, struct exh_params *p)
+{
+    uint32_t bad = 0;
+    const int err = l->image ? exh_params_load(p, l->image, l->image_B, &bad) : 0;
+    if (err == -EXH_E_RANGE || err == -EXH_E_STATE) {
+        cli_complain("--params: its value of %s may not be: save it anew",
+                     exh_signal_at(p->table, bad, NULL)->name);
+    } else if (err < 0) {
+        cli_complain("--params: %s: give an image that this scene, of this version, saved",
+                     exh_error_text(err));
+    }
+    return err;
+}
+
 static int set_parameters(const struct run_cfg *c)
 {
     const struct sim_device *d = &c->board.device;
@@ -132,6 +151,7 @@ static int set_parameters(const struct run_cfg *c)
     for (size_t i = 0; err == 0 && i < sizeof calibrated / sizeof calibrated[0]; i++) {
         err = cli_param_set(p, calibrated[i].name, calibrated[i].value);
     }
+    if (err == 0) { err = run_image(&c->live, p); }
     for (int i = 0; err == 0 && i < c->settings; i++) {
         err = cli_param_set(p, c->setting[i].name, c->setting[i].value);
     }
@@ -160,6 +180,7 @@ int run_drop(const struct run_cfg *c, struct run *r)
     run.r = r;
     run.scene = scene_of(c);
     run.more = c->more;
+    run.live = c->live.on;
     run.logged = c->board.log != NULL;
     run.mon_gain = c->mon_gain != 0 ? c->mon_gain : 1;
     err = set_parameters(c);

@@ -15,6 +15,14 @@ struct run_setting { /* a parameter of the scene, by name, in SI */
     double value;
 };
 
+/* A run without an end of its own: nothing is kept of it, its commands come from `more`, and a fault
+ * is no reason to stop. */
+struct run_live {
+    int on;
+    const void *image; /* of parameters, staged before the settings; NULL: none */
+    size_t image_B;
+};
+
 struct run_cfg {
     const struct exh_scene *scene; /* drop, or one that begins with its parameters and signals; NULL: drop */
     uint32_t rate_Hz;
@@ -26,6 +34,7 @@ struct run_cfg {
     struct posix_config board; /* device, seed, falls, log, pace               */
     const char *blackbox; /* dumps go there (dumpfile.h); NULL: no black box      */
     size_t blackbox_B;    /* its memory; 0: as it is there                       */
+    struct run_live live;
 };
 
 struct run {
@@ -38,6 +47,9 @@ struct run {
     struct guard guard;  /* of scene guarded                                    */
     int dumps;           /* of the black box; -1: one could not be written      */
 };
+
+/* Stages an image of parameters. 0, or -EXH_E… after a line on stderr; without an image nothing. */
+int run_image(const struct run_live *l, struct exh_params *p);
 
 /* Whether the scene takes these parameters at this period: 0, or -EXH_E… after a
  * line on stderr. */

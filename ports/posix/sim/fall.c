@@ -20,6 +20,7 @@ static double longer(double a, double b)
 static void hold(struct fall *f, struct sim_random *r, double t_s)
 {
     f->phase = FALL_HOLD;
+    f->held_s = t_s;
     f->until_s = t_s + longer(HOLD_S, f->T_s) * (1 + 0.5 * sim_random_unit(r));
 }
 
@@ -36,15 +37,20 @@ void fall_start(struct fall *f, struct plant *p, const struct sim_device *d,
     hold(f, r, 0);
 }
 
+static int waits(const struct fall *f)
+{
+    return f->waits && f->phase == FALL_HOLD;
+}
+
 void fall_ready(struct fall *f, double t_s)
 {
-    if (f->waits) { f->until_s += t_s; }
+    if (waits(f)) { f->until_s += t_s - f->held_s; }
     f->waits = 0;
 }
 
 double fall_next_s(const struct fall *f)
 {
-    return f->phase == FALL_DONE || f->waits ? FAR_S : f->until_s;
+    return f->phase == FALL_DONE || waits(f) ? FAR_S : f->until_s;
 }
 
 static void lift(const struct fall *f, struct plant *p, double t_s)
@@ -87,6 +93,6 @@ int fall_step(struct fall *f, struct plant *p, const struct sim_device *d, struc
         f->until_s = t_s + d->observe_s + longer(MARGIN_S, 2 * f->T_s);
     }
     if (f->phase == FALL_LIFT) { lift(f, p, t_s); }
-    if (t_s >= f->until_s && !f->waits && f->phase != FALL_DONE) { end_of_phase(f, p, d, r, t_s); }
+    if (t_s >= f->until_s && !waits(f) && f->phase != FALL_DONE) { end_of_phase(f, p, d, r, t_s); }
     return before == FALL_HOLD && f->phase == FALL_FREE;
 }

@@ -14,7 +14,8 @@ struct fall {
     int number;        /* the fall being prepared or watched, from 1           */
     int falls;         /* how many are asked for                               */
     double until_s;    /* end of the phase; FREE: known once contact is made   */
-    int waits;         /* 1: the first hold goes on until fall_ready(); may be set after the start */
+    int waits;         /* 1: a hold goes on until fall_ready(); may be set at any time */
+    double held_s;     /* start of the hold                                    */
     double contact_s;  /* first time past the virtual contact, < 0: not yet    */
     double T_s;        /* the controller's period                              */
     double lift_s;     /* start of the lift                                    */
