@@ -167,7 +167,7 @@ struct bilateral {
     uint8_t worn;          /* a glove frame has come                           */
     uint32_t glove_faults; /* in the newest                                    */
     struct exh_supply supply;
-    uint32_t unsure_ticks; /* nothing known of a finger in use since            */
+    uint32_t unsure_ticks; /* nothing new known of a finger in use since        */
     uint8_t broken;        /* 1: configuration or parameters changed (guard.h); of whoever looks */
     /* Made anew in every tick: parameters as a material changes them; how old what the glove says is,
      * UINT32_MAX: it has not said anything, or not for very long. */

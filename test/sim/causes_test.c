@@ -120,6 +120,32 @@ TEST(a_sensor_that_is_not_believed_is_a_fault_after_its_time)
     CHECK_EQ_I64(faults("glove_time", 5000, "link_time", 0, 1e30), 0); /* not yet */
 }
 
+/* Frames end; their age of 16 bits ends at tick 65534, the time goes on. */
+TEST(a_glove_that_is_silent_for_longer_than_an_age_can_tell)
+{
+    static struct bilateral_par par;
+    static struct bilateral_cfg cfg;
+    static struct bilateral s;
+    static const struct exh_scene_in in;
+    uint32_t want, n = 0;
+    memset(&par, 0, sizeof par);
+    par.own.glove_ms = 60000;
+    par.supply.max_V_q20 = par.supply.scale_V_q30 = par.supply.time_ms = 1;
+    cfg.par = &par;
+    cfg.n = 1;
+    CHECK_EQ_I64(bilateral_cause_setup(&cfg, (struct exh_period){1, 2000}), 0);
+    want = 120001;
+    do {
+        s.glove_age_ticks = n < UINT16_MAX ? n : UINT32_MAX;
+        n++;
+        CHECK(n <= want + 1, "not told");
+    } while (!(bilateral_causes(&s, &cfg, &in) & EXH_FAULT_GLOVE));
+    CHECK_EQ_I64(n - 1, want);
+    s.glove_age_ticks = 3;
+    CHECK_EQ_I64(bilateral_causes(&s, &cfg, &in), 0);
+    CHECK_EQ_I64(s.unsure_ticks, 3);
+}
+
 /* A silent world is no fault: contacts are local. Who wants one says so. */
 TEST(a_silent_link_is_a_fault_where_it_is_asked_for)
 {
@@ -132,4 +158,5 @@ TEST(a_silent_link_is_a_fault_where_it_is_asked_for)
 
 TEST_MAIN("causes", a_supply_outside_its_limits_is_a_fault_where_it_is_judged,
           a_sensor_that_is_not_believed_is_a_fault_after_its_time,
+          a_glove_that_is_silent_for_longer_than_an_age_can_tell,
           a_silent_link_is_a_fault_where_it_is_asked_for);

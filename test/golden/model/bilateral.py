@@ -248,8 +248,9 @@ class Bilateral:
     def causes(self, code, missed):
         """Of the box: glove, link, supply."""
         ages, t = [self.age(f) for f in self.at], self.glove_ticks
-        self.unsure = min(M32, self.unsure + missed + 1) if M32 in ages else 0
-        lost = t and (self.unsure >= t or any(t <= a < M32 for a in ages))
+        known = [a for a in ages if a < M32]
+        self.unsure = max(min(M32, self.unsure + missed + 1) if M32 in ages else 0, *known, 0)
+        lost = t and self.unsure >= t
         cut = self.link_ticks and self.wire.age >= self.link_ticks
         return (GLOVE if lost else 0) | (LINK if cut else 0) | (SUPPLY if self.supply.step(code, missed) else 0)
 
