@@ -300,6 +300,15 @@ $(B)/test/san/ports/posix/gpio_take.o $(B)/test/san/test/gpio/take_test.o: tflag
 $(B)/test/gpio/take_test: $(B)/test/san/test/gpio/take_test.o $(B)/test/san/ports/posix/gpio_take.o $(B)/test/san/test/support.o
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(san) -o $@ $^ -lcmocka
+$(B)/test/gpio/v%_test: $(B)/posix/test/gpio/v%_test.o $(B)/test/gpio/v%.o $(B)/test/gpio/v%_fake.o $(B)/posix/test/gpio/chip.o \
+                        $(B)/posix/test/support.o $(filter-out %/loop.o,$(dev_obj)) $(B)/test/loop.o $(B)/posix/examples/drop/drop.o $(B)/posix/libexhand.a
+	@mkdir -p $(@D)
+	$(Q)$(CC) -o $@ $^ -lcmocka -lm
+gpio_fake = $(Q)mkdir -p $(@D) && $(CC) $(base) $(PORT_HOSTFLAGS) $(CFLAGS) -Itest/gpio/v$* -Itest/gpio -c $< -o $@
+$(B)/test/gpio/v%.o: ports/posix/gpio_v%.c $(stamp)
+	$(gpio_fake)
+$(B)/test/gpio/v%_fake.o: test/gpio/v%/fake.c $(stamp)
+	$(gpio_fake)
 # The virtual world; rays into meshes where their package is.
 $(B)/test/world/%_test: $(B)/posix/test/world/%_test.o $(B)/posix/test/support.o $(world_core_obj) $(world_mesh) \
                         $(B)/posix/examples/world/solo.o $(B)/posix/examples/world/link.o \
