@@ -6,6 +6,7 @@
 
 #include "../../ports/pc104/stream.h"
 
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/wait.h>
@@ -20,8 +21,8 @@ static pid_t listener;
 
 static int call(int n, const char *const *words)
 {
-    static char word[8][64];
-    char *argv[9] = {word[0]};
+    static char word[10][64];
+    char *argv[11] = {word[0]};
     (void)snprintf(word[0], sizeof word[0], "listen");
     for (int i = 0; i < n; i++) {
         (void)snprintf(word[i + 1], sizeof word[0], "%s", words[i]);
@@ -121,6 +122,27 @@ TEST(silence_ends_it_and_is_told)
     CHECK(check_same_text(got, "1111"), "%s", got);
 }
 
+/* Words that are no log's do not prolong it. */
+TEST(nothing_in_time_is_told)
+{
+    const char *const words[] = {"--at", at, "--out", out, "--wait", "0.3"};
+    const struct timespec a_while = {0, 20000000};
+    int status = 0, n = 0;
+    start();
+    CHECK_EQ_I64(kill(listener, SIGTERM), 0);
+    CHECK_EQ_I64(waitpid(listener, &status, 0), listener);
+    listener = fork();
+    if (listener == 0) { _exit(call(6, words)); }
+    while (waitpid(listener, &status, WNOHANG) == 0 && ++n < 500) {
+        (void)udp_send(&from, "what", 4);
+        (void)nanosleep(&a_while, NULL);
+    }
+    CHECK(n < 500 && WIFEXITED(status) && WEXITSTATUS(status) == 1, "%d after %d", status, n);
+    CHECK(n > 5, "ended after %d", n);
+    CHECK_EQ_I64(remove(out), 0);
+    udp_close(&from);
+}
+
 TEST(bad_usage)
 {
     const char *const where[] = {"--out", "x", "--at", "here"};
@@ -129,4 +151,4 @@ TEST(bad_usage)
 }
 
 TEST_MAIN("listen", a_whole_log_in_whatever_order, what_is_missing_is_told_and_leaves_a_hole,
-          silence_ends_it_and_is_told, bad_usage);
+          silence_ends_it_and_is_told, nothing_in_time_is_told, bad_usage);

@@ -12,12 +12,13 @@
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <time.h>
 
 #define BACK 64u /* pieces that may still come, late */
 
 struct listen {
     const char *at, *out;
-    double silence_s;
+    double silence_s, wait_s, heard_s;
     FILE *file;
     uint32_t session, next; /* number */
     uint64_t end;           /* of the stream, as far as it came */
@@ -47,6 +48,13 @@ static int complain(const struct listen *l)
 {
     cli_complain("%s: %s", l->out, strerror(errno));
     return 2;
+}
+
+static double now_s(void)
+{
+    struct timespec t;
+    (void)clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
 /* 1: came for the first time. */
@@ -91,6 +99,7 @@ static int take(struct listen *l, const uint8_t *datagram, size_t n)
         l->other++;
         return 0;
     }
+    l->heard_s = now_s();
     if (!l->begun) {
         l->begun = 1;
         l->session = p.session;
@@ -101,16 +110,26 @@ static int take(struct listen *l, const uint8_t *datagram, size_t n)
     return put(l, &p);
 }
 
+/* What is heard and not the log's is no reason to wait for longer. Never long: a signal may come just
+ * before poll(). 0: it is over. */
+static int wait_ms(const struct listen *l)
+{
+    const double most_s = l->ended ? 0.2 : l->begun ? l->silence_s : l->wait_s;
+    const double left_s = most_s - (now_s() - l->heard_s);
+    if (!l->begun && l->wait_s <= 0) { return 1000; }
+    return left_s <= 0 ? 0 : left_s >= 1 ? 1000 : 1 + (int)(1000 * left_s);
+}
+
 static int go(struct listen *l, struct udp *u)
 {
     uint8_t datagram[STREAM_PIECE_B];
     struct pollfd f = {u->fd, POLLIN, 0};
     int err = 0;
     while (err == 0 && !stopped && !(l->ended && l->missing == 0)) {
-        const int wait_ms = l->ended ? 200 : l->begun ? (int)(1000 * l->silence_s) : 1000;
-        const int came = poll(&f, 1, wait_ms);
+        const int ms = wait_ms(l);
         int n;
-        if (came == 0 && l->begun) { break; }
+        if (ms == 0) { break; }
+        (void)poll(&f, 1, ms);
         while (err == 0 && (n = udp_recv(u, datagram, sizeof datagram)) > 0) {
             err = take(l, datagram, (size_t)n);
         }
@@ -120,6 +139,11 @@ static int go(struct listen *l, struct udp *u)
 
 static int report(const struct listen *l)
 {
+    if (!l->begun) {
+        cli_complain("--at: %s: nothing of a log came%s: is it the box's log_port=, and this machine its peer=?", l->at,
+                     stopped ? "" : " in time");
+        return 1;
+    }
     printf("%s: %" PRIu64 " bytes in %" PRIu64 " pieces; missing %" PRIu64 ", late %" PRIu64 ", twice %" PRIu64
            ", not the log's %" PRIu64 "; %s\n", l->out, l->bytes, l->pieces, l->missing, l->late, l->twice,
            l->other, l->ended ? "its end came" : "its end did not come");
@@ -133,6 +157,7 @@ int cli_listen(int argc, char **argv)
         {"at", CLI_TEXT, &l.at, 0, 0, "ADDRESS:PORT", "where the box sends its log (0.0.0.0:4748)"},
         {"out", CLI_TEXT, &l.out, 0, 0, "FILE", "the log, for `exhand replay` and `exhand csv`"},
         {"silence", CLI_REAL, &l.silence_s, 0.1, 1e6, "S", "once it began, so much of it is its end (5)"},
+        {"wait", CLI_REAL, &l.wait_s, 0, 1e6, "S", "nothing for so long before it begins ends it, status 1 (0: waits for ever)"},
     };
     const struct cli_command c = {"listen", "--out FILE [options]",
                                   "The log of a box that sends it over UDP (pc104: log=udp), until its end or Ctrl-C.\n"
@@ -154,6 +179,9 @@ int cli_listen(int argc, char **argv)
         err = complain(&l);
     } else {
         catch_signals();
+        cli_complain("waits at %s for a log to begin (the box: log=udp or dump=udp)%s", l.at,
+                     l.wait_s > 0 ? "" : "; Ctrl-C or --wait ends it");
+        l.heard_s = now_s();
         err = go(&l, &u);
         if (fclose(l.file) != 0 && err == 0) { err = complain(&l); }
     }
