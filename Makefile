@@ -40,7 +40,7 @@ endif
 warn := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wcast-align -Wcast-qual \
         -Wstrict-prototypes -Wmissing-prototypes -Wundef -Wwrite-strings -Wpointer-arith \
         -Wdouble-promotion -Wformat=2 -Wvla -Wswitch-enum $(if $(WERROR),-Werror)
-base := -std=c99 -O$(O) -g $(warn) -ffunction-sections -fdata-sections -Ilib/include -Iexamples -MMD -MP
+base := -std=c99 -O$(O) -g $(warn) -ffunction-sections -fdata-sections -Ilib/include -Iexamples -MMD -MP $(if $(UNCALIBRATED),-DUNCALIBRATED)
 
 # What objects are compiled with, of every kind of them: another text, and all are compiled anew.
 stamp      := $(out)/flags
@@ -105,7 +105,7 @@ $(boot): $(image) $(PORT_ISO) FORCE
 
 # The host program: every scene that has a subcommand, over the simulated device.
 cli_src := $(wildcard ports/posix/cli/*.c ports/posix/fit/*.c) examples/log.c examples/blackbox.c examples/deadman.c examples/drop/drop.c \
-           examples/guarded/guarded.c \
+           examples/guarded/guarded.c examples/calib.c \
            examples/calibrate/calibrate.c examples/glove/glove.c examples/glove/cal.c \
            $(wildcard examples/bilateral/*.c examples/bringup/*.c) ports/pc104/stream.c
 # The world's core, without its pictures, answers in the same process.
@@ -196,7 +196,8 @@ world      := $(B)/posix/world
 world_part := main live alone bench solo link link_param view $(if $(world_gl),gl gl_form gl_batch gl_solid gl_layer gl_text,picture_none)
 world_core_obj := $(patsubst %.c,$(B)/posix/%.o,$(world_core) ports/posix/sim/lag.c ports/posix/sim/plant.c)
 world_obj  := $(world_core_obj) $(world_mesh) $(world_part:%=$(B)/posix/examples/world/%.o) \
-              $(B)/posix/ports/posix/cli/option.o $(B)/posix/examples/bilateral/tables.o $(B)/posix/examples/glove/cal.o
+              $(B)/posix/ports/posix/cli/option.o $(B)/posix/examples/bilateral/tables.o $(B)/posix/examples/glove/cal.o \
+              $(B)/posix/examples/calib.o
 world_libs := $(if $(world_gl),-lSDL2 -lSDL2_ttf -lGL -lpng) $(if $(world_rays),-ldl) -lpthread -lm
 
 $(filter $(B)/posix/examples/world/%,$(world_obj)): PORT_HOSTFLAGS += -fno-math-errno \
@@ -324,7 +325,7 @@ $(B)/test/board/%_test: $(B)/posix/test/board/%_test.o $(B)/posix/test/board/pos
 	$(Q)$(CC) -o $@ $^ -lcmocka -lm
 
 # Golden vectors: the objects as they are shipped, at every rate.
-golden_src := $(wildcard test/golden/*.c) examples/drop/drop.c examples/guarded/guarded.c examples/glove/cal.c \
+golden_src := $(wildcard test/golden/*.c) examples/drop/drop.c examples/guarded/guarded.c examples/calib.c examples/glove/cal.c \
               $(wildcard examples/bilateral/*.c)
 $(B)/test/golden/golden_test: $(golden_src:%.c=$(B)/posix/%.o) $(B)/posix/test/support.o $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
@@ -588,7 +589,7 @@ boot-built: all
 	@.ci/deps "booting" qemu-system-i386 qemu-system-x86 || exit 3
 	@for c in real none; do for s in $(boot_scenes); do \
 	    $(MAKE) --no-print-directory $(if $(V),,-s) PORT=pc104 SCENE=$$s CARDS=$$c all || exit; done; done
-	@$(MAKE) --no-print-directory -s PORT=pc104 SCENE=drop CARDS=none image ARGS="ticks=500 k=1000 idle=spin"
+	@$(MAKE) --no-print-directory -s PORT=pc104 SCENE=drop CARDS=none image ARGS="ticks=500 k=1000 uncalibrated=1 idle=spin"
 boot_run = EXHAND=$(exhand) test/pc104/boot.sh $(B)/pc104
 boot-run:
 	@$(boot_run)
@@ -657,16 +658,16 @@ size:
 bench_obj := $(patsubst %,$(B)/posix/test/bench/%.o,kernels measure number estimate force path law filter glove hand precontact passivity scene minimal)
 bench_bin := $(B)/bench/kernels $(B)/bench/velocity $(B)/bench/speed
 $(B)/posix/test/bench/kernels.o: PORT_HOSTFLAGS += -DBENCH_FLAGS='"-std=c99 -O$(O)$(if $(CFLAGS), $(CFLAGS))"'
-$(B)/bench/kernels: $(bench_obj) $(B)/posix/examples/drop/drop.o
+$(B)/bench/kernels: $(bench_obj) $(B)/posix/examples/drop/drop.o $(B)/posix/examples/calib.o
 $(B)/bench/velocity: $(B)/posix/test/bench/velocity.o $(B)/posix/test/bench/measure.o
-$(B)/bench/speed: $(B)/posix/test/bench/speed.o $(B)/posix/examples/drop/drop.o $(sim_obj)
+$(B)/bench/speed: $(B)/posix/test/bench/speed.o $(B)/posix/examples/drop/drop.o $(B)/posix/examples/calib.o $(sim_obj)
 $(bench_bin): $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $(filter %.o,$^) $(filter %.a,$^) -Wl,--strip-debug -lm
 
 # The kernels again for a 32-bit CPU, where only instructions are counted: the same flags, static.
 bench_i686 := $(B)/bench/kernels-i686
-i686_src   := $(patsubst $(B)/posix/%.o,%.c,$(filter-out %/velocity.o,$(bench_obj))) examples/drop/drop.c $(lib_src)
+i686_src   := $(patsubst $(B)/posix/%.o,%.c,$(filter-out %/velocity.o,$(bench_obj))) examples/drop/drop.c examples/calib.c $(lib_src)
 $(bench_i686): $(i686_src) $(wildcard test/bench/*.h lib/src/*.h lib/include/exhand/*.h test/wide.h) $(stamp)
 	@mkdir -p $(@D)
 	$(Q)i686-linux-gnu-gcc -static $(filter-out -MMD -MP -g,$(base)) $(PORT_HOSTFLAGS) $(CFLAGS) -Itest \

@@ -23,7 +23,8 @@ static uint32_t last_tick; /* recorded */
 /* The parameters in the header's payload: brought up to date value by value while it runs on, since
  * all of them at once cost as much as a dozen ticks. Layout as exh_params_save() makes it. */
 static struct {
-    uint32_t header_B; /* of the payload, with the image at its end */
+    uint32_t header_B; /* of the payload */
+    uint32_t end_B; /* of it, to the end of the parameters; behind them are calibrations */
     uint32_t n, at; /* values, done */
     uint32_t slice; /* of them a tick */
     uint32_t crc;
@@ -130,6 +131,7 @@ static void first_image(void)
     struct exh_bytes c = exh_bytes_writer(memory, header_B);
     exh_log_header_bytes(&c);
     image.header_B = c.at;
+    image.end_B = c.at - exh_log_images_B();
     image.n = scene->params ? exh_signal_count(scene->params->table) : 0;
     image.slice = (uint32_t)exh_udiv64(image.n, after_ticks, NULL) + 1;
 }
@@ -159,7 +161,7 @@ void exh_blackbox_start(const struct exh_scene *sc, struct exh_scene_board board
 
 static uint8_t *value_at(uint32_t i)
 {
-    return memory + image.header_B - 4 - 4 * (image.n - i);
+    return memory + image.end_B - 4 - 4 * (image.n - i);
 }
 
 static void begin_image(void)

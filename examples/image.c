@@ -14,6 +14,10 @@ int main(void)
                                                 .before = exh_deadman_before};
     int err;
     if (EXH_SCENE.defaults) { EXH_SCENE.defaults(); }
+#ifdef UNCALIBRATED
+    /* A build that says so (make UNCALIBRATED=1): no option can, and there is no calibration. */
+    if (EXH_SCENE.calib) { (void)exh_params_stage(EXH_SCENE.params, 0x8903, 0, 1); }
+#endif
     err = exh_loop(&EXH_SCENE, 0, &hooks);
     exh_board_halt(err < 0 ? exh_error_text(err) : "done");
     return 0;

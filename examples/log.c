@@ -101,6 +101,21 @@ void exh_log_header_bytes(struct exh_bytes *c)
         EXH_ASSERT(n > 0);
         c->at += (uint32_t)n;
     }
+    for (unsigned i = 0; scene->calib && i < scene->calib->images; i++) {
+        for (uint32_t k = 0; k < scene->calib->image[i].len_B; k++) {
+            uint8_t byte = scene->calib->image[i].byte[k];
+            exh_bytes_u8(c, &byte);
+        }
+    }
+}
+
+uint32_t exh_log_images_B(void)
+{
+    uint32_t n = 0;
+    for (unsigned i = 0; scene->calib && i < scene->calib->images; i++) {
+        n += scene->calib->image[i].len_B;
+    }
+    return n;
 }
 
 void exh_log_start(const struct exh_scene *sc, struct exh_scene_board board)

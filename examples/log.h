@@ -29,6 +29,8 @@ struct exh_log_tap {
 void exh_log_tap(const struct exh_log_tap *tap, int alone);
 /* The header's payload with the parameters as they are now. */
 void exh_log_header_bytes(struct exh_bytes *c);
+/* How many of its bytes, the last, are calibrations of fingers. */
+uint32_t exh_log_images_B(void);
 
 /* Payloads, shared with the replay: what is written is what is read. A keyframe that
  * is read goes through the parameters' own checks; one that fails them is not ok.

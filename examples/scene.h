@@ -49,6 +49,21 @@ struct exh_scene_board {
     uint8_t enc_bits;    /* width of its counters                             */
 };
 
+/* Calibrations of fingers as images (exhand/calibrate.h), from whoever sets the scene up, before that: one a
+ * finger, in any order. Their bytes stay where they are and as they are: a log's header has them. */
+struct exh_scene_calib {
+    struct {
+        const uint8_t *byte;
+        uint32_t len_B;
+    } image[EXH_FINGERS];
+    uint8_t images;
+    /* Why the last set-up refused one: 0 it did not, or -EXH_E_…; which, from 0; of what a table does not
+     * hold, the point; a name for people. */
+    int refused;
+    uint8_t image_at, point_at;
+    const char *what;
+};
+
 struct exh_scene {
     const char *name; /* at most 15 characters                                */
     uint32_t rate_Hz; /* when nobody asks for another                         */
@@ -60,6 +75,7 @@ struct exh_scene {
     int (*read_glove)(struct exh_glove_in *in);
     const int32_t *glove_every; /* asks for a frame every so many ticks; NULL: every tick */
     const struct exh_scene_link *link; /* or NULL                             */
+    struct exh_scene_calib *calib;     /* or NULL: takes none                 */
 
     /* Parameters to their defaults and unlocked; NULL without parameters. Before
      * staging any and before the loop. */

@@ -19,7 +19,7 @@ static void place_fingers(struct bilateral_cfg *cfg, uint32_t mask)
 }
 
 int bilateral_setup(struct bilateral_cfg *cfg, struct bilateral *s, const struct bilateral_par *par,
-                    struct exh_scene_board board)
+                    struct exh_scene_board board, struct exh_scene_calib *calib)
 {
     const uint64_t num = (uint64_t)board.T.num * (uint32_t)par->glove_own.every;
     int err;
@@ -34,8 +34,10 @@ int bilateral_setup(struct bilateral_cfg *cfg, struct bilateral *s, const struct
     glove_cal_of_rows(&cfg->cal, &par->glove_own, par->sensor);
     err = exh_glove_setup(&cfg->glove, &par->glove, &cfg->cal,
                           (struct exh_period){(uint32_t)num, board.T.den});
+    cfg->vouches = EXH_ARM_CALIBRATION | EXH_ARM_POLARITY;
     for (unsigned k = 0; err == 0 && k < cfg->n; k++) {
-        err = bilateral_finger_setup(cfg, s, k, board);
+        err = bilateral_finger_setup(cfg, s, k, board, calib);
+        cfg->vouches &= cfg->finger[cfg->at[k]].calib.vouches;
     }
     bilateral_wire_setup(&cfg->wire, &s->wire, (uint32_t)par->own.session, board.T);
     if (err == 0) { err = exh_safety_setup(&cfg->safety, &par->safety, board.T); }
@@ -159,11 +161,11 @@ static void tell_box(struct bilateral_box *b, const struct bilateral *s,
     b->arm_step = exh_safety_arm(&s->safety);
 }
 
-/* Steps of arming that hold, of those a scene vouches for. A glove's calibration that is none was refused at
- * set-up; polarity is what first power-up is for, and no image of this scene has seen it. */
+/* Steps of arming that hold, of those a scene vouches for. A calibration that is none, a glove's or a finger's, was
+ * refused at set-up. */
 static uint8_t steps_held(const struct bilateral_cfg *cfg, uint32_t raised)
 {
-    return (uint8_t)((cfg->tested ? EXH_ARM_SELFTEST : 0u) | EXH_ARM_CALIBRATION | EXH_UNPOLARISED |
+    return (uint8_t)((cfg->tested ? EXH_ARM_SELFTEST : 0u) | cfg->vouches |
                      (raised & EXH_FAULT_ENCODER ? 0u : EXH_ARM_ENCODER));
 }
 
@@ -227,6 +229,7 @@ static struct bilateral_signals signals;
 static struct bilateral_cfg cfg;
 static struct bilateral state;
 static struct exh_guard guard;
+static struct exh_scene_calib calib;
 static struct exh_scene_mail mail_in, mail_out;
 
 static void defaults(void)
@@ -264,7 +267,8 @@ static int setup(struct exh_scene_board board)
     if (active.own.session == 0) {
         active.own.session = staged.own.session = (int32_t)(exh_board_cycles() >> 1 | 1u);
     }
-    err = bilateral_setup(&cfg, &state, &active, board);
+    err = calib_take(&calib, &params, &active.calib, (1u << BILATERAL_FINGERS) - 1u);
+    if (err == 0) { err = bilateral_setup(&cfg, &state, &active, board, &calib); }
     exh_guard_seal(&guard, &cfg, sizeof cfg, &params);
     return err;
 }
@@ -310,6 +314,7 @@ const struct exh_scene exh_scene_bilateral = {
     .read_glove = exh_board_read_glove,
     .glove_every = &active.glove_own.every,
     .link = &wire,
+    .calib = &calib,
     .defaults = defaults,
     .setup = setup,
     .tick = tick,

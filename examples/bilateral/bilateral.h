@@ -4,6 +4,7 @@
 #ifndef EXAMPLES_BILATERAL_H
 #define EXAMPLES_BILATERAL_H
 
+#include "../calib.h"
 #include "../glove/cal.h"
 #include "../scene.h"
 
@@ -39,6 +40,7 @@ struct bilateral_par {
     struct exh_supply_par supply;
     struct exh_glove_par glove;
     struct bilateral_own_par own;
+    struct calib_par calib;
     struct glove_own_par glove_own;
     struct glove_sensor_par sensor[EXH_GLOVE_SENSORS];
 };
@@ -97,7 +99,7 @@ struct bilateral_finger_cfg {
     struct exh_precontact_cfg precontact;
     struct exh_track_cfg track;
     struct exh_watch_cfg watch;
-    struct exh_knot force_to_cur[2], cur_to_force[2];
+    struct calib_tables calib;
     uint32_t sensors; /* bit i: sensor i moves it                              */
 };
 
@@ -156,6 +158,7 @@ struct bilateral_cfg {
     uint8_t n;                     /* in use                                    */
     uint32_t rest_ticks;           /* f0_rest                                   */
     uint8_t tested;                /* 1: known answers came out at set-up       */
+    uint8_t vouches;               /* enum exh_arm: by calibrations of all fingers in use, or waived */
     struct bilateral_wire_cfg wire;
 };
 
@@ -175,9 +178,10 @@ struct bilateral {
     uint32_t glove_age_ticks;
 };
 
-/* Configuration from parameters; cfg keeps pointers to par and to s. 0 or -EXH_E…. */
+/* Configuration from parameters, and of the calibrations that calib has of fingers in use (NULL: none); cfg
+ * keeps pointers to par and to s. 0 or -EXH_E…. */
 int bilateral_setup(struct bilateral_cfg *cfg, struct bilateral *s, const struct bilateral_par *par,
-                    struct exh_scene_board board);
+                    struct exh_scene_board board, struct exh_scene_calib *calib);
 
 /* One tick; params: where packets stage what they ask for. */
 void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,
@@ -194,7 +198,7 @@ void bilateral_bytes(struct exh_bytes *c, struct bilateral *s);
 /* --- parts (finger.c, wire.c) --- */
 
 int bilateral_finger_setup(struct bilateral_cfg *cfg, struct bilateral *s, unsigned place,
-                           struct exh_scene_board board);
+                           struct exh_scene_board board, struct exh_scene_calib *calib);
 void bilateral_wire_setup(struct bilateral_wire_cfg *cfg, struct bilateral_wire *s,
                           uint32_t session, struct exh_period T);
 void bilateral_wire_take(struct bilateral *s, const struct bilateral_cfg *cfg,

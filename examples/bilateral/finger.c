@@ -19,31 +19,24 @@ uint32_t bilateral_finger_age(const struct bilateral *s, const struct bilateral_
 }
 
 int bilateral_finger_setup(struct bilateral_cfg *cfg, struct bilateral *s, unsigned place,
-                           struct exh_scene_board board)
+                           struct exh_scene_board board, struct exh_scene_calib *calib)
 {
     const unsigned f = cfg->at[place];
     const struct bilateral_par *par = cfg->par;
     const struct exh_drive_par *drive = &par->drive[f];
     struct bilateral_finger_cfg *c = &cfg->finger[f];
     const struct exh_velocity_scale scale = {par->quad[f].step_m_q42, board.T};
-    const struct exh_table to_cur = {c->force_to_cur, 2}, to_force = {c->cur_to_force, 2};
-    const int32_t peak_N_q20 =
-        exh_sat32(exh_mul_shr(par->kf_NpA_q20[f], drive->i_peak_A_q26, EXH_Q_CUR));
+    const struct calib_finger finger = {f, drive, par->kf_NpA_q20[f]};
     int err;
 
-    /* Straight lines until the box is calibrated; the monitor's also below zero. */
-    c->force_to_cur[0] = (struct exh_knot){0, 0, {0, 0}};
-    c->force_to_cur[1] = (struct exh_knot){peak_N_q20, drive->i_peak_A_q26, {0, 0}};
-    c->cur_to_force[0] = (struct exh_knot){-drive->i_peak_A_q26, -peak_N_q20, {0, 0}};
-    c->cur_to_force[1] = (struct exh_knot){drive->i_peak_A_q26, peak_N_q20, {0, 0}};
     s->drive_now[f] = *drive;
     c->sensors = sensors_of(&exh_hit2_map, f);
-    err = exh_table_set(c->force_to_cur, 2);
-    if (err == 0) { err = exh_table_set(c->cur_to_force, 2); }
+    err = calib_setup(&c->calib, calib, &par->calib, &finger);
     if (err == 0) { err = exh_quad_setup(&c->quad, &par->quad[f], board.T, board.enc_bits); }
     if (err == 0) { err = exh_velocity_window_setup(&c->velocity, scale, &par->velocity[f]); }
     if (err == 0) {
-        err = exh_drive_setup(&cfg->drive[place], &s->drive_now[f], board.T, to_cur, to_force);
+        err = exh_drive_setup(&cfg->drive[place], &s->drive_now[f], board.T, calib_to_cur(&c->calib),
+                              calib_to_force(&c->calib));
     }
     if (err == 0) { err = exh_track_setup(&c->track, &par->track[f], board.T); }
     if (err == 0) { err = exh_watch_setup(&c->watch, &par->watch[f], board.T); }

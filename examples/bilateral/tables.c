@@ -4,7 +4,7 @@
 
 static const struct exh_signal kf_rows[] = {
     {0x8601, EXH_Q_FORCE, EXH_WHEN_SETUP, EXH_Q(1, 10, EXH_Q_FORCE), EXH_Q(100, 1, EXH_Q_FORCE),
-     EXH_Q(3339, 1000, EXH_Q_FORCE), "kf", "n_per_a", "string force per motor current"},
+     EXH_Q(3339, 1000, EXH_Q_FORCE), "kf", "n_per_a", "string force per motor current, without a calibration"},
 };
 
 static const struct exh_signal own_rows[] = {
@@ -95,6 +95,7 @@ static const struct exh_signal_group param_groups[] = {
     {exh_supply_rows, EXH_SUPPLY_ROWS, 1},
     {exh_glove_rows, EXH_GLOVE_ROWS, 1},
     {own_rows, LEN(own_rows), 1},
+    {calib_rows, CALIB_ROWS, 1},
     {glove_own_rows, GLOVE_OWN_ROWS, 1},
     {glove_cal_rows, GLOVE_CAL_ROWS, EXH_GLOVE_SENSORS},
 };
@@ -117,7 +118,7 @@ EXH_STATIC_ASSERT(bilateral_par_matches_rows,
                                 EXH_PRECONTACT_ROWS) +
                            BILATERAL_MATERIALS * EXH_MATERIAL_ROWS + EXH_SAFETY_ROWS +
                            EXH_SUPPLY_ROWS +
-                           EXH_GLOVE_ROWS + LEN(own_rows) + GLOVE_OWN_ROWS +
+                           EXH_GLOVE_ROWS + LEN(own_rows) + CALIB_ROWS + GLOVE_OWN_ROWS +
                            GLOVE_CAL_ROWS * EXH_GLOVE_SENSORS));
 EXH_STATIC_ASSERT(bilateral_signals_match_rows,
                   sizeof(struct bilateral_signals) ==

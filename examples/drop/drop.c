@@ -4,7 +4,7 @@ const struct exh_signal drop_own_rows[DROP_OWN_ROWS] = {
     {0x8001, EXH_Q_POS, EXH_WHEN_ANY, -EXH_Q(1, 1, EXH_Q_POS), EXH_Q(1, 1, EXH_Q_POS),
      EXH_Q(7, 100, EXH_Q_POS), "q_lim", "m", "virtual contact, from where the string starts"},
     {0x8002, EXH_Q_FORCE, EXH_WHEN_SETUP, EXH_Q(1, 10, EXH_Q_FORCE), EXH_Q(100, 1, EXH_Q_FORCE),
-     EXH_Q(3339, 1000, EXH_Q_FORCE), "kf", "n_per_a", "string force per motor current"},
+     EXH_Q(3339, 1000, EXH_Q_FORCE), "kf", "n_per_a", "string force per motor current, without a calibration"},
 };
 
 const struct exh_signal drop_paper_rows[DROP_PAPER_ROWS] = {
@@ -36,39 +36,34 @@ static const struct exh_signal_table signal_table = {signal_groups, DROP_SIGNAL_
 EXH_STATIC_ASSERT(drop_par_matches_rows,
                   PARAMS == EXH_QUAD_ROWS + EXH_VELOCITY_ROWS + EXH_CONTACT_ROWS +
                                 EXH_DRIVE_ROWS + EXH_TRACK_ROWS + EXH_WATCH_ROWS +
-                                EXH_SAFETY_ROWS + DROP_OWN_ROWS);
+                                EXH_SAFETY_ROWS + DROP_OWN_ROWS + CALIB_ROWS);
 
-int drop_setup(struct drop_cfg *cfg, const struct drop_par *par, struct exh_scene_board board)
+int drop_setup(struct drop_cfg *cfg, const struct drop_par *par, struct exh_scene_board board,
+               struct exh_scene_calib *calib)
 {
     const struct exh_velocity_scale scale = {par->quad.step_m_q42, board.T};
-    const struct exh_table to_cur = {cfg->force_to_cur, 2};
-    const struct exh_table to_force = {cfg->cur_to_force, 2};
-    const int32_t peak_N_q20 =
-        exh_sat32(exh_mul_shr(par->own.kf_NpA_q20, par->drive.i_peak_A_q26, EXH_Q_CUR));
+    const struct calib_finger finger = {0, &par->drive, par->own.kf_NpA_q20};
     int err;
 
-    /* Straight lines until the box is calibrated; the monitor's also below zero. */
     cfg->par = par;
     cfg->tested = exh_selftest() == EXH_SELFTEST_OK;
-    cfg->force_to_cur[0] = (struct exh_knot){0, 0, {0, 0}};
-    cfg->force_to_cur[1] = (struct exh_knot){peak_N_q20, par->drive.i_peak_A_q26, {0, 0}};
-    cfg->cur_to_force[0] = (struct exh_knot){-par->drive.i_peak_A_q26, -peak_N_q20, {0, 0}};
-    cfg->cur_to_force[1] = (struct exh_knot){par->drive.i_peak_A_q26, peak_N_q20, {0, 0}};
-    err = exh_table_set(cfg->force_to_cur, 2);
-    if (err == 0) { err = exh_table_set(cfg->cur_to_force, 2); }
+    err = calib_setup(&cfg->calib, calib, &par->calib, &finger);
     if (err == 0) { err = exh_quad_setup(&cfg->quad, &par->quad, board.T, board.enc_bits); }
     if (err == 0) { err = exh_velocity_window_setup(&cfg->velocity, scale, &par->velocity); }
-    if (err == 0) { err = exh_drive_setup(&cfg->drive, &par->drive, board.T, to_cur, to_force); }
+    if (err == 0) {
+        err = exh_drive_setup(&cfg->drive, &par->drive, board.T, calib_to_cur(&cfg->calib),
+                              calib_to_force(&cfg->calib));
+    }
     if (err == 0) { err = exh_track_setup(&cfg->track, &par->track, board.T); }
     if (err == 0) { err = exh_watch_setup(&cfg->watch, &par->watch, board.T); }
     if (err == 0) { err = exh_safety_setup(&cfg->safety, &par->safety, board.T); }
     return err;
 }
 
-/* Steps of arming that hold. A mass has no calibration, and which way it falls is seen. */
+/* Steps of arming that hold. */
 static uint8_t steps_held(const struct drop *s, const struct drop_cfg *cfg)
 {
-    return (uint8_t)((cfg->tested ? EXH_ARM_SELFTEST : 0u) | EXH_UNCALIBRATED | EXH_UNPOLARISED |
+    return (uint8_t)((cfg->tested ? EXH_ARM_SELFTEST : 0u) | cfg->calib.vouches |
                      (s->quad.lost ? 0u : EXH_ARM_ENCODER));
 }
 
@@ -144,6 +139,7 @@ static struct drop_signals signals;
 static struct drop_cfg cfg;
 static struct drop state;
 static struct exh_guard guard;
+static struct exh_scene_calib calib;
 
 static void defaults(void)
 {
@@ -155,7 +151,8 @@ static int setup(struct exh_scene_board board)
     static const struct drop power_on;
     int err;
     state = power_on;
-    err = drop_setup(&cfg, &active, board);
+    err = calib_take(&calib, &params, &active.calib, 1u);
+    if (err == 0) { err = drop_setup(&cfg, &active, board, &calib); }
     exh_guard_seal(&guard, &cfg, sizeof cfg, &params);
     return err;
 }
@@ -190,6 +187,7 @@ const struct exh_scene exh_scene_drop = {
     .safety = &state.safety,
     .signals = &signal_table,
     .signal = (int32_t *)&signals,
+    .calib = &calib,
     .defaults = defaults,
     .setup = setup,
     .tick = tick,

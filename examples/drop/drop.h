@@ -3,14 +3,14 @@
 #ifndef EXAMPLES_DROP_H
 #define EXAMPLES_DROP_H
 
-#include "../scene.h"
+#include "../calib.h"
 
 #include "exhand/exhand.h"
 
 /* Rows of the scene's own parameters. */
 struct drop_own_par {
     int32_t q_lim_m_q30; /* virtual contact, from the first count              */
-    int32_t kf_NpA_q20;  /* string force per motor ampere                      */
+    int32_t kf_NpA_q20;  /* string force per motor ampere, without a calibration */
 };
 
 #define DROP_OWN_ROWS   2
@@ -21,12 +21,13 @@ extern const struct exh_signal drop_paper_rows[DROP_PAPER_ROWS];
 extern const struct exh_signal drop_more_rows[DROP_MORE_ROWS];
 
 /* Groups of its tables, for scenes that are this one and something more. */
-#define DROP_PARAM_N 8
+#define DROP_PARAM_N 9
 #define DROP_PARAM_GROUPS \
     {exh_quad_rows, EXH_QUAD_ROWS, 1}, {exh_velocity_rows, EXH_VELOCITY_ROWS, 1}, \
         {exh_contact_rows, EXH_CONTACT_ROWS, 1}, {exh_drive_rows, EXH_DRIVE_ROWS, 1}, \
         {exh_track_rows, EXH_TRACK_ROWS, 1}, {exh_watch_rows, EXH_WATCH_ROWS, 1}, \
-        {exh_safety_rows, EXH_SAFETY_ROWS, 1}, {drop_own_rows, DROP_OWN_ROWS, 1}
+        {exh_safety_rows, EXH_SAFETY_ROWS, 1}, {drop_own_rows, DROP_OWN_ROWS, 1}, \
+        {calib_rows, CALIB_ROWS, 1}
 /* The first is the paper's, in its order: what a CSV holds. */
 #define DROP_SIGNAL_N 2
 #define DROP_SIGNAL_GROUPS {drop_paper_rows, DROP_PAPER_ROWS, 1}, {drop_more_rows, DROP_MORE_ROWS, 1}
@@ -41,6 +42,7 @@ struct drop_par {
     struct exh_watch_par watch;
     struct exh_safety_par safety;
     struct drop_own_par own;
+    struct calib_par calib;
 };
 
 /* The paper's signals, then ours, in the order of the table. */
@@ -67,7 +69,7 @@ struct drop_cfg {
     struct exh_watch_cfg watch;
     struct exh_safety_cfg safety;
     uint8_t tested; /* 1: the self-test passed                                 */
-    struct exh_knot force_to_cur[2], cur_to_force[2];
+    struct calib_tables calib;
 };
 
 struct drop {
@@ -81,8 +83,10 @@ struct drop {
     uint8_t broken; /* 1: the guard found a change in configuration; not saved */
 };
 
-/* Configuration from parameters. 0 or -EXH_E…. */
-int drop_setup(struct drop_cfg *cfg, const struct drop_par *par, struct exh_scene_board board);
+/* Configuration from parameters, and of a calibration of finger 0 if calib has one (NULL: none). 0 or
+ * -EXH_E…. */
+int drop_setup(struct drop_cfg *cfg, const struct drop_par *par, struct exh_scene_board board,
+               struct exh_scene_calib *calib);
 
 /* What the first half of a tick hands to the second. Between them a scene may add to the force
  * ledger what acts behind the law. */

@@ -36,12 +36,14 @@ static int ask_rule(const struct guarded_par *par, struct exh_period T)
 }
 
 int guarded_setup(struct guarded_cfg *cfg, const struct guarded_par *par,
-                  struct exh_scene_board board)
+                  struct exh_scene_board board, struct exh_scene_calib *calib)
 {
     const struct exh_velocity_scale scale = {par->drop.quad.step_m_q42, board.T};
-    const struct exh_table held = {cfg->held, 2};
-    int err = drop_setup(&cfg->drop, &par->drop, board);
-    if (err == 0) { err = exh_table_invert(cfg->held, cfg->drop.force_to_cur, 2); }
+    const struct calib_tables *t = &cfg->drop.calib;
+    struct exh_table held = {cfg->held, 0};
+    int err = drop_setup(&cfg->drop, &par->drop, board, calib);
+    held.n = t->to_cur_n;
+    if (err == 0) { err = exh_table_invert(cfg->held, t->force_to_cur, t->to_cur_n); }
     if (err == 0) {
         err = exh_passivity_setup(&cfg->passivity, &par->passivity, &cfg->drop.drive, held, scale,
                                   par->drop.watch.speed_mps_q27);
@@ -74,6 +76,7 @@ static struct exh_params params;
 static struct guarded_signals signals;
 static struct guarded_cfg cfg;
 static struct guarded state;
+static struct exh_scene_calib calib;
 
 static void defaults(void)
 {
@@ -83,8 +86,10 @@ static void defaults(void)
 static int setup(struct exh_scene_board board)
 {
     static const struct guarded power_on;
+    int err;
     state = power_on;
-    return guarded_setup(&cfg, &active, board);
+    err = calib_take(&calib, &params, &active.drop.calib, 1u);
+    return err == 0 ? guarded_setup(&cfg, &active, board, &calib) : err;
 }
 
 int guarded_stage(uint16_t id, uint16_t instance, int32_t raw)
@@ -111,6 +116,7 @@ const struct exh_scene exh_scene_guarded = {
     .params = &params,
     .signals = &signal_table,
     .signal = (int32_t *)&signals,
+    .calib = &calib,
     .defaults = defaults,
     .setup = setup,
     .tick = tick,

@@ -24,7 +24,7 @@ struct guarded_signals {
 
 struct guarded_cfg {
     struct drop_cfg drop;
-    struct exh_knot held[2];
+    struct exh_knot held[EXH_CALIB_POINTS_MAX + 2];
     struct exh_passivity_cfg passivity;
 };
 
@@ -33,10 +33,10 @@ struct guarded {
     struct exh_passivity passivity;
 };
 
-/* Configuration from parameters. 0 or -EXH_E…; with rule_on also what exh_gains_setup() says of the rule,
+/* Configuration from parameters; calib as drop_setup(). 0 or -EXH_E…; with rule_on also what exh_gains_setup() says of the rule,
  * and -EXH_E_GAINS for k and b outside. */
 int guarded_setup(struct guarded_cfg *cfg, const struct guarded_par *par,
-                  struct exh_scene_board board);
+                  struct exh_scene_board board, struct exh_scene_calib *calib);
 
 /* For whoever stages values of this image's scene, over a link too: as exh_params_stage(), with rule_on
  * as exh_gains_stage() under the rule that set-up took. */

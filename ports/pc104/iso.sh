@@ -1,6 +1,7 @@
 #!/bin/sh
 # A bootable ISO of an image: iso.sh IMAGE ISO [OPTION...]; GRUB 2 on it starts the image with
 # these options after two seconds, in which others can be typed (e).
+# Environment: MODULES, files that GRUB brings along, blanks between: calibrations of fingers.
 # Exit status: 0 made, 1 not, 2 bad usage, 3 a tool is missing.
 set -eu
 
@@ -21,11 +22,17 @@ tree=$(mktemp -d)
 trap 'rm -rf "$tree"' EXIT
 mkdir -p "$tree/disc/boot/grub"
 cp "$image" "$tree/disc/boot/exhand.elf"
+bring=
+for file in ${MODULES:-}; do
+    bring="$bring    module /boot/$(basename "$file")
+"
+    cp "$file" "$tree/disc/boot/"
+done
 cat >"$tree/disc/boot/grub/grub.cfg" <<EOF
 set timeout=${ISO_TIMEOUT_s:-2}
 menuentry "exhand $(basename "$image" .elf) $*" {
     multiboot /boot/exhand.elf $*
-}
+$bring}
 EOF
 grub-mkrescue -d "$modules" --install-modules="multiboot iso9660 biosdisk normal part_msdos" \
     --fonts= --locales= --themes= -o "$iso.new" "$tree/disc" >"$tree/said" 2>&1 ||

@@ -41,6 +41,17 @@ static void before(uint32_t tick, struct exh_scene_in *in)
     pc104_scene_before(tick, in);
 }
 
+/* Which module set-up did not take, and what of it. */
+static void say_refused(const struct exh_scene_calib *k)
+{
+    if (k == NULL || k->refused == 0) { return; }
+    say_version("calibration ", k->image_at + 1u);
+    pc104_say(": ");
+    pc104_say(k->what);
+    if (k->point_at) { say_version(", point ", k->point_at + 1u); }
+    pc104_say(": refused\n");
+}
+
 int main(void)
 {
     static const struct exh_loop_hooks hooks = {start, before, pc104_scene_after};
@@ -59,6 +70,7 @@ int main(void)
         pc104_load_scene(sc);
         err = exh_loop(sc, (uint32_t)pc104_par.rate_Hz, &hooks);
         pc104_load_stop();
+        if (err < 0) { say_refused(sc->calib); }
     }
     pc104_restart_end(); /* also where a card failed: that was told, and is no crash */
     pc104_scene_end();

@@ -172,6 +172,9 @@ uint32_t pc104_timer_Hz(void);
 uint32_t pc104_timer_us(uint32_t counts);
 void pc104_timer_kill(void); /* stops it behind everybody's back: a test */
 
+/* --- module.c: calibrations of fingers that the loader brought, into the scene --- */
+void pc104_modules(const struct exh_scene *sc);
+
 /* --- load.c: what a tick costs, and too much of it --- */
 void pc104_load_stop(void); /* no tick runs any more */
 void pc104_load_scene(const struct exh_scene *sc); /* times dry ticks of it               */

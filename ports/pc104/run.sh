@@ -6,7 +6,8 @@
 # an option, 3 no QEMU, 4 cards absent or broken, 5 processor exception, 6 rate refused,
 # 7 overload, 8 timer absent or dead.
 # Environment: QEMU_CPU (n270), QEMU_FLAGS (virtual time, 8 ns an instruction), TIMEOUT_s (60), RECORDS (a file for what
-# log=debug puts out), REBOOT ("-action reboot=reset": a reset boots again instead of ending QEMU).
+# log=debug puts out), REBOOT ("-action reboot=reset": a reset boots again instead of ending QEMU),
+# MODULES (files that a loader would bring, commas between: calibrations of fingers).
 # QEMU_FLAGS="-icount shift=0,sleep=off" counts instructions; QEMU_FLAGS= takes the host's time, whose
 # other work then shows as missed ticks.
 set -u
@@ -31,6 +32,7 @@ case $image in
     case " $* " in *" ticks="*) ;; *) set -- "$@" ticks=1000 ;; esac
     ;;
 esac
+[ -z "${MODULES:-}" ] || from="-initrd $MODULES $from"
 [ -z "${RECORDS:-}" ] || from="-debugcon file:$RECORDS $from"
 
 # shellcheck disable=SC2086 # lists of words

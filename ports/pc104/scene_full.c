@@ -18,6 +18,7 @@ static struct pc104_fifo fifo = {ring, RING_B, 0, 0};
 static uint32_t unsent; /* bytes given up at the end */
 static uint32_t last_tick;
 static uint8_t started, dry, boxed;
+static const struct exh_scene *scene;
 
 /* --- bytes that wait for a line --- */
 
@@ -102,7 +103,9 @@ int pc104_scene_option(const struct exh_scene *sc, const char *name, const char 
 /* Before anything is timed: the parameters are part of what a tick costs. */
 void pc104_scene_ready(const struct exh_scene *sc)
 {
+    scene = sc;
     exh_params_apply(sc->params);
+    pc104_modules(sc);
 }
 
 /* The log's hooks, or the black box's, which calls them. */
@@ -167,9 +170,22 @@ void pc104_log_flush(void)
     pc104_dump_pause();
 }
 
+/* The step at which the last arming was refused. */
+static void say_refusal(const struct exh_safety *s)
+{
+    for (unsigned k = 0; k < EXH_ARMS; k++) {
+        if (s->refused == 1u << k) {
+            pc104_say("arming refused at ");
+            pc104_say(exh_arm_name(k));
+            pc104_say("\n");
+        }
+    }
+}
+
 void pc104_scene_end(void)
 {
     uint32_t lost;
+    if (scene && scene->safety) { say_refusal(scene->safety); }
     pc104_log_flush();
     if (!started) { return; }
     lost = exh_log_end(last_tick + 1);

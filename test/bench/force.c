@@ -252,7 +252,7 @@ static void current_op(uint32_t i)
 /* N q20 at the peak current, which the straight table of the scene ends at. */
 static long double peak_N_q20(void)
 {
-    return path_cfg.force_to_cur[1].y == 0 ? 1 : path_cfg.force_to_cur[1].x;
+    return path_cfg.calib.force_to_cur[1].y == 0 ? 1 : path_cfg.calib.force_to_cur[1].x;
 }
 
 /* 3 s hot and 3 s cool in turn, so that the whole I2t budget is used and regained. */

@@ -18,7 +18,7 @@ static void start(void)
     scale.step_m_q42 = path_par.quad.step_m_q42;
     state = (struct exh_passivity){0, 0, 0, 0, 0, 0};
     ledger = (struct exh_force_ledger){.spring_N_q20 = 20 << EXH_Q_FORCE};
-    EXH_ASSERT(exh_table_invert(held, path_cfg.force_to_cur, 2) == 0);
+    EXH_ASSERT(exh_table_invert(held, path_cfg.calib.force_to_cur, 2) == 0);
     EXH_ASSERT(exh_passivity_setup(&cfg, &par, &path_cfg.drive, (struct exh_table){held, 2}, scale,
                                    EXH_Q(3, 1, EXH_Q_VEL)) == 0);
 }

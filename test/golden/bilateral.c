@@ -147,6 +147,7 @@ static void any_par(struct golden_rng *r, uint32_t rate_Hz, uint32_t k)
     p->own.f0_rest_ms = any_ms(r, 1, 12, rate_Hz);
     p->own.glove_ms = golden_draw(r, 0, 3) ? any_ms(r, 1, 40, rate_Hz) : 0;
     p->own.link_ms = golden_draw(r, 0, 1) ? any_ms(r, 20, 120, rate_Hz) : 0;
+    p->calib.uncalibrated = 1;
     p->glove_own.every = (int32_t)golden_draw(r, 1, 4);
     p->glove_own.present = (1 << EXH_GLOVE_SENSORS) - 1;
     for (unsigned f = 0; f < FINGERS; f++) { any_finger(f, r, rate_Hz); }
@@ -170,7 +171,7 @@ static void set_up(struct golden_rng *r, uint32_t rate_Hz, uint32_t k)
     exh_params_init(&rig.params, &bilateral_params, (int32_t *)&rig.par, (int32_t *)&rig.staged);
     any_par(r, rate_Hz, k);
     rig.staged = rig.par;
-    while ((err = bilateral_setup(&rig.cfg, &rig.s, &rig.par, board)) != 0 && board.enc_bits < 32) {
+    while ((err = bilateral_setup(&rig.cfg, &rig.s, &rig.par, board, NULL)) != 0 && board.enc_bits < 32) {
         board.enc_bits = (uint8_t)(board.enc_bits + 4);
     }
     CHECK_EQ_I64(err, 0);

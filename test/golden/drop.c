@@ -36,12 +36,13 @@ static void any_par(struct drop_par *p, struct golden_rng *r, uint32_t rate_Hz)
     golden_safety_par(&p->safety, r, rate_Hz);
     p->own.q_lim_m_q30 = (int32_t)golden_draw(r, -(1 << 26), 1 << 26);
     p->own.kf_NpA_q20 = (int32_t)golden_draw(r, 104858, 104857600);
+    p->calib.uncalibrated = 1;
 }
 
 static int scene_try(struct scene *d, struct exh_scene_board board)
 {
-    return d->guarded ? guarded_setup(&d->cfg, &d->par, board)
-                      : drop_setup(&d->cfg.drop, &d->par.drop, board);
+    return d->guarded ? guarded_setup(&d->cfg, &d->par, board, NULL)
+                      : drop_setup(&d->cfg.drop, &d->par.drop, board, NULL);
 }
 
 static void scene_setup(struct scene *d, struct golden_rng *r, uint32_t rate_Hz, uint32_t k)

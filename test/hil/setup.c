@@ -25,6 +25,7 @@ static void set_device(struct ref_cfg *c)
     set(c, "dac_scale", d->dac_perA);
     set(c, "dac_zero", d->dac_zero);
     set(c, "mon_scale", d->mon_apc);
+    set(c, "uncalibrated", 1);
 }
 
 /* The paper's first experiment, falls without end. */

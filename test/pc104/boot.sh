@@ -52,7 +52,7 @@ safe()
 }
 
 # Well.
-boots 0 '^rate 2000 Hz asked, timer HPET of 100000000 Hz, period 1/2000 s, 0 ppm off$' ticks=4000 idle=spin
+boots 0 '^rate 2000 Hz asked, timer HPET of 100000000 Hz, period 1/2000 s, 0 ppm off$' ticks=4000 uncalibrated=1 idle=spin
 says '^exhand [0-9.]+, wire [0-9]+, record [0-9]+, board pc104 version 1, scene drop$'
 says '^second clock local APIC$'
 says '^budget measured: scene [0-9.]+ us, cards and link [0-9.]+ us, with headroom [0-9.]+ us$'
@@ -68,10 +68,47 @@ says '^ticks 1000 run, 0 missed$'
 
 # Records of bare metal, replayed here bit for bit.
 if [ -x "$exhand" ]; then
-    boots 0 '^records lost 0$' log=debug ticks=3000 k=1234.5 q_lim=0.05 b=12
+    boots 0 '^records lost 0$' log=debug ticks=3000 uncalibrated=1 k=1234.5 q_lim=0.05 b=12
     "$exhand" replay "$out/records" >"$out/replay" 2>&1 || { fail "replay"; cat "$out/replay" >&2; }
     grep -q '3000 ticks from tick 0 and 3 keyframes identical' "$out/replay" || { fail "replay"; cat "$out/replay" >&2; }
     boots 0 '^records lost 0$' log=serial ticks=1000 rate=1000
+fi
+
+# Calibrations: none, and the box does not arm; a good one, and it does; one that is none, another box's, too old, of
+# another finger, made with other scales: refused by name.
+boots 0 '^arming refused at calibration$' ticks=1000
+says '^no calibration: arming will be refused at calibration '
+says ', enable 0x00000000$'
+if [ -x "$exhand" ]; then
+    calibrated() # FINGER: made with the scales that the scene has
+    {
+        "$exhand" calibrate --finger "$1" --day 20000 --device dac_scale=1846.02272034 --device mon_scale=0.000516399999469 \
+            --out "$out/$1" >"$out/replay" || { fail "calibrate"; cat "$out/replay" >&2; }
+    }
+    calibrated 0
+    export MODULES=$out/0/calibration.bin
+    boots 0 '^module 1: calibration, 132 bytes$' ticks=1000 device_id=1 day=20090
+    says ', enable 0x00000001$'
+    boots 1 '^calibration 1: device: refused$' ticks=1000 day=20000
+    boots 1 '^calibration 1: age: refused$' ticks=1000 device_id=1
+    boots 1 '^calibration 1: age: refused$' ticks=1000 device_id=1 day=20091
+    boots 1 '^calibration 1: scale or zero of D/A or monitor: refused$' ticks=1000 device_id=1 day=20000 dac_zero=32700
+    says '^calibration too old, or made before a change$'
+    MODULES=$out/1.bin
+    head -c 100 "$out/0/calibration.bin" >"$MODULES"
+    boots 1 '^calibration 1: image: refused$' ticks=1000 device_id=1 day=20000 uncalibrated=1
+    image=$1/bilateral-none.elf
+    MODULES=$out/0/calibration.bin
+    boots 0 '^arming refused at calibration$' ticks=1000 device_id=1 day=20000 # of the index finger there is none
+    says ', enable 0x00000000$'
+    calibrated 1
+    MODULES=$out/1/calibration.bin,$out/0/calibration.bin
+    boots 0 '^module 2: calibration, 132 bytes$' ticks=1000 device_id=1 day=20000 fingers=3
+    says ', enable 0x00000003$'
+    image=$1/drop-none.elf
+    MODULES=$out/1/calibration.bin
+    boots 1 '^calibration 1: finger: refused$' ticks=1000 device_id=1 day=20000
+    unset MODULES
 fi
 
 # The black box: 0.8 N of a wall where the string begins, and a monitor that reads nothing: a fault, told by the
@@ -82,11 +119,11 @@ told() # FILE PATTERN
     grep -qE "$2" "$out/replay" || { fail "a dump without '$2'"; cat "$out/replay" >&2; }
 }
 if [ -x "$exhand" ]; then
-    wall="q_lim=-0.0004 k=2000 track_tol=0.1 rate=1000"
+    wall="uncalibrated=1 q_lim=-0.0004 k=2000 track_tol=0.1 rate=1000"
     # shellcheck disable=SC2086 # words
     boots 0 '^ticks 2000 run, 0 missed$' dump=debug ticks=2000 idle=spin $wall
     told "$out/records" 'FAULT tracking: '
-    boots 5 '^black box: its end$' dump=debug provoke=divide provoke_at=800
+    boots 5 '^black box: its end$' dump=debug uncalibrated=1 provoke=divide provoke_at=800
     told "$out/records" 'the box was halted: the black box ends here$'
     # shellcheck disable=SC2086 # words
     boots 0 '^ticks 2500 run, 0 missed$' dump=serial dump_kib=48 ticks=2500 idle=spin $wall

@@ -184,7 +184,7 @@ flood()
     pids="$pids $end"
     sleep 0.3
     boot 0 "-device e1000e,netdev=n -netdev stream,id=n,server=off,addr.type=unix,addr.path=$dir/cable" \
-        "$b/pc104/bilateral-none.elf" ip=10.0.0.2 peer=10.0.0.1 idle=spin ticks="$ticks"
+        "$b/pc104/bilateral-none.elf" ip=10.0.0.2 peer=10.0.0.1 uncalibrated=1 idle=spin ticks="$ticks"
     wait "$end"
     check "all frames were sent before the image ended: $(cat "$dir/sent")" [ $? = 0 ]
     check "no tick missed" says "^ticks $ticks run, 0 missed$"
@@ -208,7 +208,7 @@ dump()
 {
     start_listener
     boot 0 "$card" "$b/pc104/drop-none.elf" dump=udp ip=10.0.2.15 peer=10.0.2.2 log_port=$((port + 1)) idle=spin \
-        ticks=8000 q_lim=-0.0004 k=2000 track_tol=0.1
+        ticks=8000 uncalibrated=1 q_lim=-0.0004 k=2000 track_tol=0.1
     wait "$listener"
     check "the dump came whole: $(cat "$dir/listen")" [ $? = 0 ]
     check "no tick missed" says '^ticks 8000 run, 0 missed$'
@@ -217,7 +217,7 @@ dump()
     check "it has the fault: $(cat "$dir/replay")" grep -q 'fault tracking at tick' "$dir/replay"
     start_listener
     boot 5 "$card" "$b/pc104/drop-none.elf" dump=udp ip=10.0.2.15 peer=10.0.2.2 log_port=$((port + 1)) \
-        ticks=1000 provoke=divide provoke_at=800
+        ticks=1000 uncalibrated=1 provoke=divide provoke_at=800
     wait "$listener"
     check "the dump of a halt came whole: $(cat "$dir/listen")" [ $? = 0 ]
     check "words come before it" says '^black box: the dump follows$'

@@ -26,6 +26,7 @@ static void start(void)
     static const struct bilateral off;
     exh_scene_bilateral.defaults();
     memcpy(&par, exh_scene_bilateral.params->active, sizeof par);
+    par.calib.uncalibrated = 1;
     par.own.session = 7;
     box = off;
     memset(&from_board, 0, sizeof from_board);
@@ -35,7 +36,7 @@ static void start(void)
     }
     world = (struct exh_wire_tx){3, 0};
     tick_n = 0;
-    CHECK_EQ_I64(bilateral_setup(&cfg, &box, &par, (struct exh_scene_board){{1, RATE_HZ}, 16}), 0);
+    CHECK_EQ_I64(bilateral_setup(&cfg, &box, &par, (struct exh_scene_board){{1, RATE_HZ}, 16}, NULL), 0);
 }
 
 static void post(struct exh_wire_packet *p)

@@ -309,6 +309,8 @@ static void start_box(int is_alone)
 {
     const struct exh_scene_board board = {{1, 500}, 24};
     exh_scene_drop.defaults();
+    CHECK_EQ_I64(exh_params_stage(exh_scene_drop.params, calib_rows[CALIB_ROWS - 1].id, 0, 1), 0); /* uncalibrated */
+    exh_params_apply(exh_scene_drop.params);
     CHECK_EQ_I64(exh_scene_drop.setup(board), 0);
     exh_scene_drop.params->locked = 1;
     exh_blackbox_memory(memory, sizeof memory, is_alone);

@@ -130,7 +130,8 @@ TEST(no_run_in_a_wall_that_owes)
     int32_t cnt = 0;
     exh_scene_guarded.defaults();
     exh_params_init(&p, exh_scene_guarded.params->table, (int32_t *)&par, (int32_t *)&staged);
-    CHECK_EQ_I64(guarded_setup(&box_cfg, &par, board), 0);
+    par.drop.calib.uncalibrated = 1;
+    CHECK_EQ_I64(guarded_setup(&box_cfg, &par, board, NULL), 0);
     at(cnt, EXH_CMD_RUN);
     for (int n = 0; n < 1300; n++) { at(cnt, EXH_CMD_NONE); }
     CHECK(exh_safety_runs(&box.drop.safety), "state %d", told.drop.state);

@@ -44,6 +44,7 @@ void late_assert_failed(const char *file, int line);
 #define ID_Q_LIM 0x8001
 #define ID_ARM   0x0603
 #define ID_RAMP  0x0604
+#define ID_UNCALIBRATED 0x8903
 #define AWAY     EXH_Q(70, 1000, EXH_Q_POS)
 /* At 1 kHz, armed in so short a time: commanded at tick n, it runs from n + 4. */
 #define ARMED    4
@@ -171,6 +172,7 @@ static void run_until(const struct act *act, unsigned acts, uint32_t ticks, cons
     exh_scene_drop.defaults();
     CHECK_EQ_I64(exh_params_stage(exh_scene_drop.params, ID_ARM, 0, 1), 0);
     CHECK_EQ_I64(exh_params_stage(exh_scene_drop.params, ID_RAMP, 0, 1), 0);
+    CHECK_EQ_I64(exh_params_stage(exh_scene_drop.params, ID_UNCALIBRATED, 0, 1), 0);
     CHECK_EQ_I64(late_loop(&exh_scene_drop, 1000, &hooks), want);
     CHECK_EQ_I64(exh_log_end(script.ticks), 0);
     CHECK_EQ_I64(fclose(c.log), 0);

@@ -114,7 +114,8 @@ TEST(drop_within_noise)
     uint32_t n = 0;
     exh_scene_drop.defaults();
     memcpy(&drop_par, exh_scene_drop.params->active, sizeof drop_par);
-    CHECK_EQ_I64(drop_setup(&drop_cfg, &drop_par, board), 0);
+    drop_par.calib.uncalibrated = 1;
+    CHECK_EQ_I64(drop_setup(&drop_cfg, &drop_par, board, NULL), 0);
     drop_cfg.quad.jump_cnt = INT32_MAX; /* noise is no movement that a hand can make */
     while (check_case(1)) {
         int open;
@@ -171,8 +172,9 @@ TEST(full_box_within_noise)
     uint32_t n = 0, used = 0;
     exh_scene_bilateral.defaults();
     memcpy(&par, exh_scene_bilateral.params->active, sizeof par);
+    par.calib.uncalibrated = 1;
     par.own.fingers = (1 << BILATERAL_FINGERS) - 1;
-    CHECK_EQ_I64(bilateral_setup(&cfg, &box, &par, board), 0);
+    CHECK_EQ_I64(bilateral_setup(&cfg, &box, &par, board, NULL), 0);
     for (unsigned f = 0; f < BILATERAL_FINGERS; f++) { cfg.finger[f].quad.jump_cnt = INT32_MAX; }
     runs = 0;
     while (check_case(10)) {

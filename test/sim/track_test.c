@@ -118,9 +118,10 @@ static void set_up(struct stuck *b, const struct posix_config *c, struct exh_per
     exh_scene_drop.defaults();
     memset(b, 0, sizeof *b);
     memcpy(&b->par, exh_scene_drop.params->active, sizeof b->par);
+    b->par.calib.uncalibrated = 1;
     b->par.quad.step_m_q42 = (int32_t)(c->device.step_m * 4398046511104.0);
     b->par.contact.k_Npm_q10 = EXH_Q(1000, 1, EXH_Q_K);
-    CHECK_EQ_I64(drop_setup(&b->cfg, &b->par, (struct exh_scene_board){T, 24}), 0);
+    CHECK_EQ_I64(drop_setup(&b->cfg, &b->par, (struct exh_scene_board){T, 24}, NULL), 0);
 }
 
 /* The mass hangs at rest in the wall, then the D/A stands; somebody pulls. Ticks from the first current

@@ -19,6 +19,7 @@
 #define SWEEP_CNT 1500u /* 99 mm of string: drop's wall is at 70 */
 #define ARM_TICKS 20000u /* by then a box that can be armed runs   */
 #define CODE_ZERO 32768
+#define UNCALIBRATED_ID 0x8903 /* examples/calib: it has none, and arms */
 
 enum which { ALL, RUN, CONTACT };
 
@@ -70,6 +71,7 @@ static int set_up(void)
     int err;
 
     if (EXH_SCENE.defaults) { EXH_SCENE.defaults(); }
+    if (EXH_SCENE.calib) { (void)exh_params_stage(EXH_SCENE.params, UNCALIBRATED_ID, 0, 1); }
     if (EXH_SCENE.params) { exh_params_apply(EXH_SCENE.params); }
     err = EXH_SCENE.setup(board);
     if (err < 0) { fprintf(stderr, "%s: %s\n", EXH_SCENE.name, exh_error_text(err)); }

@@ -51,6 +51,7 @@ void fresh(void)
     rig.w.q_max = INT32_MIN;
     exh_params_init(&rig.params, exh_scene_drop.params->table, (int32_t *)&rig.active,
                     (int32_t *)&rig.staged);
+    rig.active.calib.uncalibrated = rig.staged.calib.uncalibrated = 1; /* there is no image here */
 }
 
 void set(uint16_t id, int32_t raw)
@@ -71,7 +72,7 @@ int ready(struct exh_period T)
     exh_params_apply(&rig.params);
     rig.params.locked = 1;
     rig.T = T;
-    err = drop_setup(&rig.cfg, &rig.active, (struct exh_scene_board){T, rig.enc_bits});
+    err = drop_setup(&rig.cfg, &rig.active, (struct exh_scene_board){T, rig.enc_bits}, NULL);
     if (rig.blind) { rig.cfg.quad.jump_cnt = INT32_MAX; }
     return err;
 }

@@ -120,7 +120,7 @@ static void check_signals(const struct hidden *h)
     const struct drop_signals *s = &rig.sig;
     const struct drop_par *par = &rig.active;
     const int64_t past = (int64_t)s->q_m_q30 - par->own.q_lim_m_q30;
-    const int32_t end = rig.cfg.cur_to_force[1].y;
+    const int32_t end = rig.cfg.calib.cur_to_force[1].y;
     must(s->c == h->touching && s->f_des_N_q20 == h->f.force_N_q20 &&
              s->i_des_A_q26 == h->i.coded_A_q26 && s->limits == (int32_t)h->limits,
          "output", "signals are not those of the modules");

@@ -52,7 +52,8 @@ struct exh_event {
     int32_t value;
 };
 
-/* The fixed part of the header's payload; the parameter image follows it. */
+/* The fixed part of the header's payload; the parameter image follows it, and behind that whole
+ * calibration images of fingers (calibrate.h), none or one each. */
 struct exh_record_header {
     char scene[16]; /* zero-padded                                             */
     char board[16];

@@ -43,6 +43,7 @@ void bilateral_defaults(struct bilateral_options *o)
     o->run.at_m = 0.03;
     o->run.fps = 400;
     o->run.until_s = 1e30;
+    o->run.images = &o->images;
     (void)bilateral_take_speeds(o, "slow,natural,fast");
 }
 
@@ -120,11 +121,12 @@ int cli_bilateral(int argc, char **argv)
     int list = 0, err;
     double rate_Hz = 2000;
     const struct cli_call speeds = {bilateral_take_speeds, &o}, fingers = {bilateral_take_fingers, &o}, link = {bilateral_take_link, &o};
+    const struct cli_call calibration = {images_take, &o.images};
     const struct cli_call setting = {bilateral_take_setting, &o}, device = {bilateral_take_device, &o}, pose = {bilateral_take_pose, &o};
     union {
         const struct cli_call *view;
         void *to;
-    } u[6] = {{&speeds}, {&fingers}, {&link}, {&setting}, {&device}, {&pose}};
+    } u[7] = {{&speeds}, {&fingers}, {&link}, {&setting}, {&device}, {&pose}, {&calibration}};
     const struct cli_option option[] = {
         {"speed", CLI_CALL, u[0].to, 0, 0, "V[,V...]", "slow, natural, fast or m/s of string (these three)"},
         {"fingers", CLI_CALL, u[1].to, 0, 0, "F[,F...]", "thumb, index, middle, ring, little or all (index)"},
@@ -150,6 +152,7 @@ int cli_bilateral(int argc, char **argv)
         {"let-go", CLI_REAL, &o.run.board.let_go_s, 0, 1e9, "S", "the dead-man switch opens then: a fault (never)"},
         {"set", CLI_CALL, u[3].to, 0, 0, "NAME=VALUE", "a parameter of the scene, of all fingers"},
         {"device", CLI_CALL, u[4].to, 0, 0, "NAME=VALUE", "a value of the simulated hand, glove or motors"},
+        {"calibration", CLI_CALL, u[6].to, 0, 0, "FILE[,FILE...]", "of the fingers, or a directory of them (none: the simulated device as it is, uncalibrated=1)"},
         {"sweep", CLI_FLAG, &o.sweep, 0, 0, NULL, "stiffness and missed contacts over delay, jitter and loss"},
         {"check", CLI_INT, &o.check, 1, 1e6, "N", "random approaches: none may be felt before its freeze"},
         {"hands", CLI_FLAG, &o.hands, 0, 0, NULL, "80 fingers and hands: settling and stiffness of each"},

@@ -29,6 +29,7 @@ struct bilateral_options {
     int settings;
     struct sim_trace trace;
     struct hand_record hand;
+    struct images images;
 };
 
 extern const char *const bilateral_finger_name[BILATERAL_FINGERS];

@@ -196,6 +196,7 @@ static int set_parameters(const struct bilateral_run_cfg *c)
     exh_scene_bilateral.defaults();
     bilateral_cal_of(&cal, &c->board.glove_par);
     err = bilateral_stage_cal(&cal, NULL);
+    if (err == 0) { err = images_give(c->images, &exh_scene_bilateral); }
     for (size_t i = 0; err == 0 && i < sizeof known / sizeof known[0]; i++) {
         err = cli_param_set(p, known[i].name, known[i].value);
     }
@@ -291,7 +292,7 @@ int bilateral_run(const struct bilateral_run_cfg *c, struct bilateral_run *r)
     r->dumps = dumpfile_close(err < 0);
     if (err == 0 && r->unarmed) {
         err = -EXH_E_STATE; /* that was told */
-    } else if (err < 0 && !c->board.cards.quiet) {
+    } else if (err < 0 && !c->board.cards.quiet && !images_complain(c->images, &exh_scene_bilateral)) {
         cli_complain("%lu Hz: %s", (unsigned long)c->rate_Hz, exh_error_text(err));
     }
     if (run.logged && r->T.num != 0) { r->lost = exh_log_end(run.last_tick + 1); }

@@ -4,6 +4,7 @@
 
 #include "analysis.h"
 #include "bilateral_peer.h"
+#include "images.h"
 #include "posix.h"
 #include "run.h"
 
@@ -26,6 +27,7 @@ struct bilateral_run_cfg {
     int32_t session;           /* of the controller; 0: of the seed, over UDP of the clock */
     int fit_scale;             /* s of each finger: as it fits, not as the scene has it */
     int keep;                  /* keep samples                                  */
+    const struct images *images; /* calibrations of fingers; NULL, or none: uncalibrated */
     const char *blackbox;      /* dumps go there (dumpfile.h); NULL: no black box */
     const struct exh_loop_hooks *more; /* behind the run's own; NULL: none      */
     struct run_live live;

@@ -6,6 +6,7 @@
 #include "contacts.h"
 #include "csv.h"
 #include "friction.h"
+#include "images.h"
 #include "jobs.h"
 #include "names.h"
 #include "option.h"
@@ -36,6 +37,7 @@ struct drop_options {
     struct run_setting setting[SETTINGS_MAX];
     int settings;
     struct sim_device device;
+    struct images images;
     struct exh_period T;
     struct contacts gpio;
 };
@@ -155,6 +157,7 @@ static struct run_cfg job_cfg(const struct drop_options *o, int rate_i, double s
     c.scene = o->guarded ? &exh_scene_guarded : &exh_scene_drop;
     c.setting = o->setting;
     c.settings = o->settings;
+    c.images = &o->images;
     c.board = posix_config_default();
     c.board.device = o->device;
     c.board.seed = seed;
@@ -424,11 +427,11 @@ int cli_drop(int argc, char **argv)
     int list = 0, err;
     const struct cli_call rates = {take_rates, &o}, period = {take_period, &o};
     const struct cli_call setting = {take_setting, &o}, device = {take_device, &o};
-    const struct cli_call gpio = {contacts_take, &o.gpio};
+    const struct cli_call gpio = {contacts_take, &o.gpio}, calibration = {images_take, &o.images};
     union {
         const struct cli_call *view;
         void *to;
-    } u[5] = {{&rates}, {&period}, {&setting}, {&device}, {&gpio}};
+    } u[6] = {{&rates}, {&period}, {&setting}, {&device}, {&gpio}, {&calibration}};
     const struct cli_option option[] = {
         {"rate", CLI_CALL, u[0].to, 0, 0, "HZ[,HZ...]", "loop rates, 1..20000 (the paper's six)"},
         {"period", CLI_CALL, u[1].to, 0, 0, "N/D", "one exact period in s, as a timer makes it; not with --rate"},
@@ -447,6 +450,7 @@ int cli_drop(int argc, char **argv)
         {"gpio", CLI_CALL, u[4].to, 0, 0, CONTACTS_ARG, CONTACTS_HELP},
         {"set", CLI_CALL, u[2].to, 0, 0, "NAME=VALUE", "a parameter of the scene"},
         {"device", CLI_CALL, u[3].to, 0, 0, "NAME=VALUE", "a value of the simulated device"},
+        {"calibration", CLI_CALL, u[5].to, 0, 0, "FILE", "of finger 0, by `exhand calibrate` (none: the simulated device as it is, uncalibrated=1)"},
         {"sweep", CLI_FLAG, &o.sweep, 0, 0, NULL, "the stability border in the k-b plane, in DIR/stability.csv"},
         {"grid", CLI_TEXT, &o.grid, 0, 0, "KxB", "cells at each rate of --sweep (20x16), --border-check (16x16)"},
         {"shard", CLI_TEXT, &o.shard, 0, 0, "I/N", "the I-th of N parts of the sweep, in a file of its own"},

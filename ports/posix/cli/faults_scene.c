@@ -81,16 +81,16 @@ struct faults_memory faults_memory(uint8_t scene)
     if (scene == FAULTS_DROP) {
         struct drop_cfg *cfg;
         m.safety = &drop_memory(&cfg)->safety;
-        m.cal = cfg->force_to_cur;
-        m.cal_B = sizeof cfg->force_to_cur;
+        m.cal = cfg->calib.force_to_cur;
+        m.cal_B = 2 * sizeof cfg->calib.force_to_cur[0]; /* a straight line */
         m.guard = drop_guard();
         m.area = cfg;
         m.area_B = sizeof *cfg;
     } else {
         struct bilateral_cfg *cfg;
         m.safety = &bilateral_memory(&cfg)->safety;
-        m.cal = cfg->finger[FAULTS_FINGER].force_to_cur;
-        m.cal_B = sizeof cfg->finger[FAULTS_FINGER].force_to_cur;
+        m.cal = cfg->finger[FAULTS_FINGER].calib.force_to_cur;
+        m.cal_B = 2 * sizeof cfg->finger[FAULTS_FINGER].calib.force_to_cur[0];
         m.guard = bilateral_guard();
         m.area = cfg;
         m.area_B = sizeof *cfg;

@@ -7,6 +7,7 @@
 #include "glove/glove.h"
 #include "guarded/guarded.h"
 
+#include "exhand/calibrate.h"
 #include "exhand/error.h"
 #include "exhand/exhand.h"
 
@@ -83,6 +84,34 @@ int logfile_open(struct logfile *l, const char *path)
     l->path = path;
     err = read_file(l);
     return err ? err : read_header(l);
+}
+
+/* Of an image that begins there: what its number of points makes of it; 0: it is cut off. */
+static uint32_t calibration_B(const uint8_t *at, uint32_t left_B)
+{
+    struct exh_calib_point point[EXH_CALIB_POINTS_MAX];
+    struct exh_calib c = {.point = point, .cap = EXH_CALIB_POINTS_MAX};
+    if (exh_calib_load(&c, at, left_B, NULL) < 0) { return 0; }
+    return EXH_CALIB_IMAGE_B - 16u * (EXH_CALIB_POINTS_MAX - (uint32_t)c.points);
+}
+
+int logfile_calibrations(const struct logfile *l)
+{
+    struct exh_scene_calib *k = l->scene->calib;
+    const uint32_t n = l->scene->params ? exh_signal_count(l->scene->params->table) : 0;
+    uint32_t at = 12 + 4 * n + 4; /* behind exh_params_save() */
+    if (k == NULL) { return 0; }
+    k->images = 0;
+    while (at < l->params_len) {
+        const uint32_t len_B = calibration_B(l->params + at, l->params_len - at);
+        if (len_B == 0 || k->images == EXH_FINGERS) {
+            return complain(l, "calibration image of its header: damaged");
+        }
+        k->image[k->images].byte = l->params + at;
+        k->image[k->images++].len_B = len_B;
+        at += len_B;
+    }
+    return 0;
 }
 
 void logfile_close(struct logfile *l)

@@ -31,6 +31,10 @@ struct logfile {
 int logfile_open(struct logfile *l, const char *path);
 void logfile_close(struct logfile *l);
 
+/* Its calibrations of fingers, behind the parameters, into the scene; they stay the log's bytes. 0, or 2 after a line on
+ * stderr: what is there is none. */
+int logfile_calibrations(const struct logfile *l);
+
 /* Back to just behind the header, where `at` was after opening. */
 void logfile_rewind(struct logfile *l, uint32_t at);
 

@@ -54,9 +54,11 @@ static int start_scene(struct replay *p)
         }
         exh_params_apply(sc->params);
     }
+    if (logfile_calibrations(&p->log)) { return 2; }
     err = sc->setup((struct exh_scene_board){p->log.header.T, (uint8_t)p->log.header.enc_bits});
     if (err < 0) {
-        cli_complain("%s: set-up: %s", p->log.path, exh_error_text(err));
+        const char *what = sc->calib && sc->calib->refused ? sc->calib->what : "set-up";
+        cli_complain("%s: %s: %s", p->log.path, what, exh_error_text(err));
         return 2;
     }
     if (sc->params != NULL) { sc->params->locked = 1; }

@@ -148,6 +148,7 @@ static int set_parameters(const struct run_cfg *c)
     struct exh_params *p = scene_of(c)->params;
     int err = 0;
     scene_of(c)->defaults();
+    err = images_give(c->images, scene_of(c));
     for (size_t i = 0; err == 0 && i < sizeof calibrated / sizeof calibrated[0]; i++) {
         err = cli_param_set(p, calibrated[i].name, calibrated[i].value);
     }
@@ -165,7 +166,7 @@ int run_check(const struct run_cfg *c)
     if (err < 0) { return err; }
     exh_params_apply(scene_of(c)->params);
     err = scene_of(c)->setup((struct exh_scene_board){T, exh_board_info.enc_bits});
-    if (err < 0) { cli_complain("these parameters together: %s", exh_error_text(err)); }
+    if (err < 0 && !images_complain(c->images, scene_of(c))) { cli_complain("these parameters together: %s", exh_error_text(err)); }
     return err;
 }
 
@@ -196,7 +197,7 @@ int run_drop(const struct run_cfg *c, struct run *r)
         } else if (err == -EXH_E_RATE) {
             cli_complain("rate: %lu Hz (allowed 1..%lu): choose one in that range",
                          (unsigned long)c->rate_Hz, (unsigned long)exh_board_info.rate_max_Hz);
-        } else if (err < 0) {
+        } else if (err < 0 && !images_complain(c->images, run.scene)) {
             cli_complain("%lu Hz: %s", (unsigned long)c->rate_Hz, exh_error_text(err));
         }
         if (run.logged && r->T.num != 0) { r->lost = exh_log_end(run.last_tick + 1); } /* it was started */

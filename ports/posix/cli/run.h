@@ -4,6 +4,7 @@
 
 #include "analysis.h"
 #include "guard.h"
+#include "images.h"
 #include "posix.h"
 
 #include "loop.h"
@@ -32,6 +33,7 @@ struct run_cfg {
     const struct exh_loop_hooks *more; /* behind the run's own; NULL: none      */
     double mon_gain; /* on the monitor's force, behind the box; 0: 1           */
     struct posix_config board; /* device, seed, falls, log, pace               */
+    const struct images *images; /* calibrations; NULL, or none: uncalibrated   */
     const char *blackbox; /* dumps go there (dumpfile.h); NULL: no black box      */
     size_t blackbox_B;    /* its memory; 0: as it is there                       */
     struct run_live live;

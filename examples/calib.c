@@ -1,0 +1,141 @@
+#include "calib.h"
+
+#include "exhand/error.h"
+#include "exhand/exhand.h"
+
+#define MON_ZERO_ID 0x050A
+
+const struct exh_signal calib_rows[CALIB_ROWS] = {
+    {0x8901, 0, EXH_WHEN_SETUP, 0, INT32_MAX, 0, "device_id", "",
+     "of this box: calibrations are made for one"},
+    {0x8902, 0, EXH_WHEN_SETUP, 0, INT32_MAX, 0, "day", "",
+     "today, days since 1970; 0: not known, no calibration of a day holds"},
+    {0x8903, 0, EXH_WHEN_SETUP, 0, 1, 0, "uncalibrated", "",
+     "1: a finger without a calibration arms without, by kf, polarity on trust"},
+};
+
+/* Images carry at most so many points. */
+struct loaded {
+    struct exh_calib c;
+    struct exh_calib_point point[EXH_CALIB_POINTS_MAX];
+};
+
+static int refuse(struct exh_scene_calib *k, unsigned i, struct exh_calib_bad bad, int err)
+{
+    k->refused = err;
+    k->image_at = (uint8_t)i;
+    k->point_at = bad.at;
+    k->what = exh_calib_what_text(bad.what);
+    return err;
+}
+
+static int load(struct loaded *to, struct exh_scene_calib *k, unsigned i)
+{
+    struct exh_calib_bad bad = {0, 0};
+    int err;
+    to->c.point = to->point;
+    to->c.cap = EXH_CALIB_POINTS_MAX;
+    err = exh_calib_load(&to->c, k->image[i].byte, k->image[i].len_B, &bad);
+    return err < 0 ? refuse(k, i, bad, err) : 0;
+}
+
+/* With the image's own scales where `drive` is NULL. */
+static struct exh_calib_here here(const struct exh_calib *c, const struct calib_par *par,
+                                  const struct exh_drive_par *drive)
+{
+    struct exh_calib_here h = {(uint32_t)par->device_id, c->finger, (uint32_t)par->day,
+                               c->dac_rawpA_q16, c->dac_zero_raw, c->mon_A_q40, c->mon_zero_raw};
+    if (drive) {
+        h.dac_rawpA_q16 = drive->dac_rawpA_q16;
+        h.dac_zero_raw = drive->dac_zero_raw;
+        h.mon_A_q40 = drive->mon_A_q40;
+        h.mon_zero_raw = drive->mon_zero_raw;
+    }
+    return h;
+}
+
+/* All images; *fingers: those that have none yet. */
+static int check(struct exh_scene_calib *k, const struct calib_par *par, uint32_t fingers)
+{
+    static const struct exh_calib_bad wrong_finger = {EXH_CALIB_FINGER, 0};
+    struct loaded now;
+    for (unsigned i = 0; i < k->images; i++) {
+        struct exh_calib_here h;
+        struct exh_calib_bad bad = {0, 0};
+        int err = load(&now, k, i);
+        if (err < 0) { return err; }
+        if (!(fingers >> now.c.finger & 1u)) { return refuse(k, i, wrong_finger, -EXH_E_VERSION); }
+        fingers &= ~(UINT32_C(1) << now.c.finger); /* a second one for it is refused */
+        h = here(&now.c, par, NULL);
+        err = exh_calib_check(&now.c, &h, &bad);
+        if (err < 0) { return refuse(k, i, bad, err); }
+    }
+    return 0;
+}
+
+int calib_take(struct exh_scene_calib *k, struct exh_params *params, const struct calib_par *par,
+               uint32_t fingers)
+{
+    static const struct exh_calib_bad scale = {EXH_CALIB_SCALE, 0};
+    struct loaded now;
+    int err;
+    k->refused = 0;
+    k->what = NULL;
+    err = check(k, par, fingers);
+    for (unsigned i = 0; err == 0 && i < k->images; i++) {
+        (void)load(&now, k, i);
+        err = exh_params_stage(params, MON_ZERO_ID, (uint16_t)now.c.finger, now.c.mon_zero_raw);
+        if (err < 0) { (void)refuse(k, i, scale, err); }
+    }
+    if (err == 0) { exh_params_apply(params); }
+    return err;
+}
+
+/* --- tables --- */
+
+/* Straight lines; the monitor's also below zero. */
+static int lines(struct calib_tables *t, const struct calib_finger *of)
+{
+    const int32_t peak_A_q26 = of->drive->i_peak_A_q26;
+    const int32_t peak_N_q20 = exh_sat32(exh_mul_shr(of->kf_NpA_q20, peak_A_q26, EXH_Q_CUR));
+    int err;
+    t->to_cur_n = t->to_force_n = 2;
+    t->force_to_cur[0] = (struct exh_knot){0, 0, {0, 0}};
+    t->force_to_cur[1] = (struct exh_knot){peak_N_q20, peak_A_q26, {0, 0}};
+    t->cur_to_force[0] = (struct exh_knot){-peak_A_q26, -peak_N_q20, {0, 0}};
+    t->cur_to_force[1] = (struct exh_knot){peak_A_q26, peak_N_q20, {0, 0}};
+    err = exh_table_set(t->force_to_cur, 2);
+    return err == 0 ? exh_table_set(t->cur_to_force, 2) : err;
+}
+
+static int measured(struct calib_tables *t, struct exh_scene_calib *k, unsigned i,
+                    const struct loaded *now)
+{
+    struct exh_calib_bad bad = {0, 0};
+    int m, n = exh_calib_force_table(&now->c, t->force_to_cur, EXH_CALIB_POINTS_MAX + 2, &bad);
+    if (n < 0) { return refuse(k, i, bad, n); }
+    m = exh_calib_monitor_table(&now->c, t->cur_to_force, 2 * EXH_CALIB_POINTS_MAX + 3, &bad);
+    if (m < 0) { return refuse(k, i, bad, m); }
+    t->to_cur_n = (uint8_t)n;
+    t->to_force_n = (uint8_t)m;
+    t->vouches = EXH_ARM_CALIBRATION | EXH_ARM_POLARITY;
+    return 0;
+}
+
+int calib_setup(struct calib_tables *t, struct exh_scene_calib *k, const struct calib_par *par,
+                const struct calib_finger *of)
+{
+    struct loaded now;
+    t->vouches = par->uncalibrated ? EXH_UNCALIBRATED | EXH_UNPOLARISED : 0;
+    for (unsigned i = 0; k && i < k->images; i++) {
+        struct exh_calib_here h;
+        struct exh_calib_bad bad = {0, 0};
+        int err = load(&now, k, i);
+        if (err < 0) { return err; }
+        if (now.c.finger != of->f) { continue; }
+        h = here(&now.c, par, of->drive);
+        err = exh_calib_check(&now.c, &h, &bad);
+        return err < 0 ? refuse(k, i, bad, err) : measured(t, k, i, &now);
+    }
+    return lines(t, of);
+}
