@@ -18,6 +18,7 @@ int cli_fit(int argc, char **argv);
 int cli_listen(int argc, char **argv);
 int cli_csv(int argc, char **argv);
 int cli_run(int argc, char **argv);
+int cli_regs(int argc, char **argv);
 int cli_replay(int argc, char **argv);
 int cli_diagram(int argc, char **argv);
 int cli_quad(int argc, char **argv);

@@ -25,6 +25,7 @@ static const struct {
     {"csv", "a log as comma-separated values", cli_csv},
     {"listen", "the log of a box that sends it over the network, as a file", cli_listen},
     {"run", "a box that goes on: live values and parameters, over Modbus too", cli_run},
+    {"regs", "the Modbus registers of a scene: address, name, unit, range", cli_regs},
     {"replay", "the recorded inputs again, every output compared bit for bit", cli_replay},
     {"diagram", "a block diagram made from the signal and device tables", cli_diagram},
     {"quad", "samples of an encoder's two lines: count, edges, illegal steps", cli_quad},
