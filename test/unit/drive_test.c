@@ -629,6 +629,37 @@ TEST(state_round_trip)
     CHECK(back.force_N_q20 == 0 && back.fall_N_q20 == 0 && back.i2t_q32 == INT64_MAX / 2, "damaged state");
 }
 
+/* Whatever the bytes: no pull but what current limits allow, and none rises while it is released. */
+TEST(hostile_bytes_come_into_range)
+{
+    struct axis a;
+    struct exh_permit let = {EXH_PERMIT_RELEASE, 1 << 30, 1 << 20, 1, {0, 0}};
+    axis_par(&a.par);
+    CHECK_EQ_I64(axis_setup(&a, (struct exh_period){1, 1000}), 0);
+    CHECK_EQ_I64(exh_gain_set(&let.fall, 1, 15), 0);
+    for (int k = 0; k < 20000; k++) {
+        struct exh_force_ledger f = {0};
+        struct exh_current_ledger i = {0};
+        struct exh_drive s;
+        uint8_t buf[16];
+        struct exh_bytes c = exh_bytes_reader(buf, sizeof buf);
+        int64_t cur_A_q26;
+        int32_t last;
+        for (size_t b = 0; b < sizeof buf; b++) { buf[b] = (uint8_t)(check_u64() & 255); }
+        exh_drive_bytes(&c, &s);
+        CHECK(s.force_N_q20 >= 0 && s.force_N_q20 <= 100 << 20, "force %" PRId32, s.force_N_q20);
+        CHECK(s.fall_N_q20 >= 0 && s.fall_N_q20 <= (100 << 20) + 1, "fall %" PRId32, s.fall_N_q20);
+        CHECK(s.i2t_q32 >= 0 && s.i2t_q32 <= INT64_MAX / 2, "heat %" PRId64, s.i2t_q32);
+        last = s.force_N_q20;
+        f.spring_N_q20 = (int32_t)check_i32_in(INT32_MIN, INT32_MAX);
+        (void)exh_drive_force(&s, &a.cfg, &let, &f);
+        (void)exh_drive_current(&s, &a.cfg, &f, &i);
+        cur_A_q26 = i.table_A_q26 + i.peak_A_q26 + i.i2t_A_q26;
+        CHECK(f.force_N_q20 >= 0 && f.force_N_q20 <= last, "released upwards");
+        CHECK(cur_A_q26 >= 0 && cur_A_q26 <= a.par.i_peak_A_q26, "current %" PRId64, cur_A_q26);
+    }
+}
+
 TEST_MAIN("unit/drive", table_is_exact_at_knots_and_clamps_outside, table_between_knots,
           table_is_monotone_around_every_knot, table_rejections, steepest_table_is_accepted,
           inverse_round_trip, inverse_refuses_what_set_refuses, setup_rejections,
@@ -636,7 +667,7 @@ TEST_MAIN("unit/drive", table_is_exact_at_knots_and_clamps_outside, table_betwee
           setup_refuses_a_table_that_was_not_set, not_running_is_no_force,
           setup_takes_every_documented_period, force_limit_and_pull_only,
           release_is_bounded_and_ends, release_begins_anew, ramp_limits_the_force, small_force_is_told,
-          slew_both_ways,
+          slew_both_ways, hostile_bytes_come_into_range,
           slowest_slew_still_moves, peak_limit, i2t_holds_folds_back_and_recovers,
           continuous_current_is_for_ever, bursts_add_up, peak_equal_to_continuous, monitor_by_hand,
           frames_round_trip, state_round_trip);
