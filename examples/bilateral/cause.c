@@ -4,8 +4,7 @@
 /* Whole ticks in a time and one more; 0: never. Every value in range: no overflow. */
 static uint32_t ticks_of(int32_t ms, struct exh_period T)
 {
-    if (ms == 0) { return 0; }
-    return (uint32_t)exh_udiv64((uint64_t)(uint32_t)ms * T.den, UINT64_C(1000) * T.num, NULL) + 1;
+    return ms == 0 ? 0 : exh_ticks_in(ms, T) + 1;
 }
 
 int bilateral_cause_setup(struct bilateral_cfg *cfg, struct exh_period T)

@@ -14,18 +14,20 @@
 #define PEAK_MAX_MS       2700
 
 const struct exh_signal exh_drive_rows[EXH_DRIVE_ROWS] = {
-    {0x0501, EXH_Q_FORCE, EXH_WHEN_ANY, 0, F_MAX_N_Q20, EXH_Q(40, 1, EXH_Q_FORCE),
-     "f_max", "n", "force limit"},
-    {0x0502, 0, EXH_WHEN_ANY, 1, SLEW_MAX_NPS, 200000, "slew_up", "n_per_s", "fastest rise of force"},
+    {0x0501, EXH_Q_FORCE, EXH_WHEN_ANY, 0, F_MAX_N_Q20, EXH_Q(40, 1, EXH_Q_FORCE), "f_max", "n",
+     "force limit"},
+    {0x0502, 0, EXH_WHEN_ANY, 1, SLEW_MAX_NPS, 200000, "slew_up", "n_per_s",
+     "fastest rise of force"},
     /* At 1 kN/s the 22 N of a CyberGrasp motor are gone in 22 ms: letting go is never slow. */
     {0x0503, 0, EXH_WHEN_ANY, SLEW_DOWN_MIN_NPS, SLEW_MAX_NPS, 200000, "slew_down", "n_per_s",
      "fastest fall of force"},
     /* Elmo Castanet: 6.6 A peak for about 2.7 s, 3.3 A for ever (hardware facts). */
     {0x0504, EXH_Q_CUR, EXH_WHEN_SETUP, I_PEAK_MIN_A_Q26, I_PEAK_MAX_A_Q26, I_PEAK_MAX_A_Q26,
      "i_peak", "a", "peak current of the drive"},
-    {0x0505, EXH_Q_CUR, EXH_WHEN_SETUP, 0, I_CONT_MAX_A_Q26, I_CONT_MAX_A_Q26,
-     "i_cont", "a", "continuous current of the drive"},
-    {0x0506, 0, EXH_WHEN_SETUP, 1, PEAK_MAX_MS, PEAK_MAX_MS, "peak_time", "ms", "peak current from cold"},
+    {0x0505, EXH_Q_CUR, EXH_WHEN_SETUP, 0, I_CONT_MAX_A_Q26, I_CONT_MAX_A_Q26, "i_cont", "a",
+     "continuous current of the drive"},
+    {0x0506, 0, EXH_WHEN_SETUP, 1, PEAK_MAX_MS, PEAK_MAX_MS, "peak_time", "ms",
+     "peak current from cold"},
     /* Sensoray 526: offset binary, 3249 codes/V; Castanet: 1.76 A/V, +-3.75 V. */
     {0x0507, 0, EXH_WHEN_SETUP, 0, 65535, 32768, "dac_zero", "", "D/A code of no current"},
     {0x0508, 0, EXH_WHEN_SETUP, 0, 32767, 12184, "dac_span", "", "codes used either side of it"},
@@ -103,8 +105,7 @@ static int setup_i2t(struct exh_drive_cfg *cfg, const struct exh_drive_par *par,
 {
     const int64_t peak_A_q16 = par->i_peak_A_q26 >> (EXH_Q_CUR - 16);
     const int64_t cont_A_q16 = par->i_cont_A_q26 >> (EXH_Q_CUR - 16);
-    const uint64_t ticks =
-        exh_udiv64((uint64_t)(uint32_t)par->peak_ms * T.den, UINT64_C(1000) * T.num, NULL) + 1;
+    const uint64_t ticks = exh_ticks_in(par->peak_ms, T) + 1;
     const uint64_t excess_q32 = (uint64_t)(peak_A_q16 * peak_A_q16 - cont_A_q16 * cont_A_q16);
     uint64_t knee;
 
@@ -121,11 +122,6 @@ static int setup_i2t(struct exh_drive_cfg *cfg, const struct exh_drive_par *par,
                         knee ? knee : 1);
 }
 
-static int inside(int32_t v, int32_t lo, int32_t hi)
-{
-    return v >= lo && v <= hi;
-}
-
 /* exh_table_set() was here: slopes are filled, so knots rise. */
 static int table_ok(struct exh_table t)
 {
@@ -139,20 +135,20 @@ static int table_ok(struct exh_table t)
  * gate. The rows are not linked for this: they are names and help besides. */
 static int par_ok(const struct exh_drive_par *par, int monitor)
 {
-    return inside(par->f_max_N_q20, 0, F_MAX_N_Q20) &&
-           inside(par->slew_up_Nps, 1, SLEW_MAX_NPS) &&
-           inside(par->slew_down_Nps, SLEW_DOWN_MIN_NPS, SLEW_MAX_NPS) &&
-           inside(par->i_peak_A_q26, I_PEAK_MIN_A_Q26, I_PEAK_MAX_A_Q26) &&
-           inside(par->i_cont_A_q26, 0, I_CONT_MAX_A_Q26) &&
-           par->i_cont_A_q26 <= par->i_peak_A_q26 && inside(par->peak_ms, 1, PEAK_MAX_MS) &&
-           inside(par->dac_zero_raw, 0, UINT16_MAX) && inside(par->dac_span_raw, 0, INT16_MAX) &&
-           inside(par->dac_rawpA_q16, EXH_Q(1, 1, EXH_Q_DAC), INT32_MAX) &&
-           inside(par->mon_zero_raw, INT16_MIN, INT16_MAX) && (!monitor || par->mon_A_q40 > 0);
+    return exh_inside(par->f_max_N_q20, 0, F_MAX_N_Q20) &&
+           exh_inside(par->slew_up_Nps, 1, SLEW_MAX_NPS) &&
+           exh_inside(par->slew_down_Nps, SLEW_DOWN_MIN_NPS, SLEW_MAX_NPS) &&
+           exh_inside(par->i_peak_A_q26, I_PEAK_MIN_A_Q26, I_PEAK_MAX_A_Q26) &&
+           exh_inside(par->i_cont_A_q26, 0, I_CONT_MAX_A_Q26) &&
+           par->i_cont_A_q26 <= par->i_peak_A_q26 && exh_inside(par->peak_ms, 1, PEAK_MAX_MS) &&
+           exh_inside(par->dac_zero_raw, 0, UINT16_MAX) &&
+           exh_inside(par->dac_span_raw, 0, INT16_MAX) &&
+           exh_inside(par->dac_rawpA_q16, EXH_Q(1, 1, EXH_Q_DAC), INT32_MAX) &&
+           exh_inside(par->mon_zero_raw, INT16_MIN, INT16_MAX) && (!monitor || par->mon_A_q40 > 0);
 }
 
-int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par,
-                    struct exh_period T, struct exh_table force_to_cur,
-                    struct exh_table cur_to_force)
+int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par, struct exh_period T,
+                    struct exh_table force_to_cur, struct exh_table cur_to_force)
 {
     int err;
     if (!par_ok(par, cur_to_force.n > 0) || T.num == 0 || T.den == 0 || force_to_cur.n < 2 ||
@@ -210,9 +206,8 @@ uint32_t exh_drive_force(struct exh_drive *s, const struct exh_drive_cfg *cfg,
                          const struct exh_permit *permit, struct exh_force_ledger *f)
 {
     const struct exh_drive_par *par = cfg->par;
-    const int64_t asked =
-        exh_wrap_add64(exh_wrap_add64(f->spring_N_q20, f->damper_N_q20),
-                       exh_wrap_add64(f->pullback_N_q20, f->passivity_N_q20));
+    const int64_t asked = exh_wrap_add64(exh_wrap_add64(f->spring_N_q20, f->damper_N_q20),
+                                         exh_wrap_add64(f->pullback_N_q20, f->passivity_N_q20));
     const int32_t top = par->f_max_N_q20 < cfg->f_top_N_q20 ? par->f_max_N_q20 : cfg->f_top_N_q20;
     const int32_t most = (int32_t)((int64_t)top * permit->share_q30 >> 30);
     const int32_t held = exh_clamp(asked, 0, most);

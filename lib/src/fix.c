@@ -22,6 +22,11 @@ uint64_t exh_udiv64(uint64_t num, uint64_t den, uint64_t *rem)
     return quot;
 }
 
+uint32_t exh_ticks_in(int32_t ms, struct exh_period T)
+{
+    return (uint32_t)exh_udiv64((uint64_t)(uint32_t)ms * T.den, UINT64_C(1000) * T.num, NULL);
+}
+
 int exh_gain_set(struct exh_gain *g, uint64_t num, uint64_t den)
 {
     uint64_t rem;

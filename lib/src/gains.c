@@ -2,6 +2,7 @@
 
 #include "exhand/contact.h"
 #include "exhand/error.h"
+#include "exhand/fix.h"
 
 #include <stddef.h>
 
@@ -45,11 +46,6 @@ const struct exh_signal exh_gains_rows[EXH_GAINS_ROWS] = {
     KNOT_K(7),
 };
 
-static int inside(int32_t v, int32_t lo, int32_t hi)
-{
-    return v >= lo && v <= hi;
-}
-
 /* |rate of T - rate| <= 1 % of rate: |256 den - num rate| * 100 <= num rate. Below 2^57. */
 static int same_rate(int32_t rate_Hz_q8, struct exh_period T)
 {
@@ -60,12 +56,14 @@ static int same_rate(int32_t rate_Hz_q8, struct exh_period T)
 
 int exh_gains_setup(const struct exh_gains_par *rule, struct exh_period T)
 {
-    if (!inside(rule->rate_Hz_q8, 1 << 8, 20000 << 8) || !inside(rule->knots, 2, EXH_GAINS_KNOTS) ||
-        !inside(rule->k_min_Npm_q10, 0, K_MAX)) {
+    if (!exh_inside(rule->rate_Hz_q8, 1 << 8, 20000 << 8) ||
+        !exh_inside(rule->knots, 2, EXH_GAINS_KNOTS) ||
+        !exh_inside(rule->k_min_Npm_q10, 0, K_MAX)) {
         return -EXH_E_RANGE;
     }
     for (int32_t i = 0; i < rule->knots; i++) {
-        if (!inside(rule->b_Nspm_q20[i], 0, B_MAX) || !inside(rule->k_Npm_q10[i], 0, K_MAX)) {
+        if (!exh_inside(rule->b_Nspm_q20[i], 0, B_MAX) ||
+            !exh_inside(rule->k_Npm_q10[i], 0, K_MAX)) {
             return -EXH_E_RANGE;
         }
         if (i > 0 && rule->b_Nspm_q20[i] <= rule->b_Nspm_q20[i - 1]) { return -EXH_E_MONOTONE; }

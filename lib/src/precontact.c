@@ -47,7 +47,7 @@ static int in_rows(const struct exh_signal *row, const int32_t *v, int n)
 /* The first number of ticks that lasts longer. At 20 kHz and a minute 1.2 million: far from any end. */
 static uint32_t more_than(int32_t ms, struct exh_period T)
 {
-    return (uint32_t)exh_udiv64((uint64_t)(uint32_t)ms * T.den, UINT64_C(1000) * T.num, NULL) + 1;
+    return exh_ticks_in(ms, T) + 1;
 }
 
 int exh_precontact_setup(struct exh_precontact_cfg *cfg, const struct exh_precontact_par *par,

@@ -1,6 +1,7 @@
 #include "exhand/probe.h"
 
 #include "exhand/error.h"
+#include "exhand/fix.h"
 
 #define STEP_MIN_A_Q26 EXH_Q(1, 1000000, EXH_Q_CUR)
 #define STEP_MAX_A_Q26 EXH_Q(1, 2, EXH_Q_CUR)
@@ -14,28 +15,18 @@
 const char *exh_probe_text(unsigned result)
 {
     static const char *const text[EXH_PROBE_RESULTS] = {
-        "busy",
-        "done",
-        "went the wrong way",
-        "did not move",
-        "moved too far",
-        "took too long",
-        "jammed",
+        "busy",          "done",   "went the wrong way", "did not move", "moved too far",
+        "took too long", "jammed",
     };
     return result < EXH_PROBE_RESULTS ? text[result] : "unknown";
 }
 
 /* --- set-up --- */
 
-static int inside(int32_t v, int32_t lo, int32_t hi)
-{
-    return v >= lo && v <= hi;
-}
-
 uint32_t exh_probe_ticks(int32_t ms, struct exh_period T)
 {
-    const uint64_t n = exh_udiv64((uint64_t)(uint32_t)ms * T.den, UINT64_C(1000) * T.num, NULL);
-    return n < 1 ? 1 : (uint32_t)n; /* 10^6 ms at 20 kHz are 2*10^7 */
+    const uint32_t n = exh_ticks_in(ms, T);
+    return n < 1 ? 1 : n; /* 10^6 ms at 20 kHz are 2*10^7 */
 }
 
 /* Two at least: in one alone nothing can have moved. */
@@ -63,10 +54,10 @@ int exh_probe_setup(struct exh_probe_cfg *cfg, const struct exh_probe_par *par,
     const int64_t step = par->step_A_q26;
     const int64_t size = step < 0 ? -step : step;
     if (!scale_ok(scale) || size < STEP_MIN_A_Q26 || size > STEP_MAX_A_Q26 ||
-        !inside(par->end_A_q26, 0, EXH_PROBE_CUR_MAX_A_Q26) ||
-        !inside(par->dwell_ms, 1, DWELL_MAX_MS) || !inside(par->time_ms, 1, TIME_MAX_MS) ||
-        !inside(par->move_m_q30, 1, MAX_M_Q30) ||
-        !inside(par->travel_m_q30, par->move_m_q30, MAX_M_Q30)) {
+        !exh_inside(par->end_A_q26, 0, EXH_PROBE_CUR_MAX_A_Q26) ||
+        !exh_inside(par->dwell_ms, 1, DWELL_MAX_MS) || !exh_inside(par->time_ms, 1, TIME_MAX_MS) ||
+        !exh_inside(par->move_m_q30, 1, MAX_M_Q30) ||
+        !exh_inside(par->travel_m_q30, par->move_m_q30, MAX_M_Q30)) {
         return -EXH_E_RANGE;
     }
     cfg->step_A_q26 = par->step_A_q26;
@@ -83,7 +74,9 @@ int exh_probe_setup(struct exh_probe_cfg *cfg, const struct exh_probe_par *par,
 void exh_probe_start(struct exh_probe *s, int32_t cnt, int32_t cur_A_q26)
 {
     *s = (struct exh_probe){.cur_A_q26 = exh_clamp(cur_A_q26, 0, EXH_PROBE_CUR_MAX_A_Q26),
-                            .start_cnt = cnt, .dwell_cnt = cnt, .result = EXH_PROBE_BUSY};
+                            .start_cnt = cnt,
+                            .dwell_cnt = cnt,
+                            .result = EXH_PROBE_BUSY};
 }
 
 /* What the counts say; BUSY: nothing yet. out: counts moved outwards in this dwell. */
@@ -134,11 +127,11 @@ uint8_t exh_probe_step(struct exh_probe *s, const struct exh_probe_cfg *cfg, int
 int exh_home_setup(struct exh_home_cfg *cfg, const struct exh_home_par *par,
                    struct exh_probe_scale scale)
 {
-    if (!scale_ok(scale) || !inside(par->cur_A_q26, 1, HOME_MAX_A_Q26) ||
-        !inside(par->dwell_ms, 1, DWELL_MAX_MS) || !inside(par->time_ms, 1, TIME_MAX_MS) ||
-        !inside(par->move_m_q30, 1, MAX_M_Q30) ||
-        !inside(par->most_m_q30, par->move_m_q30, MAX_M_Q30) ||
-        !inside(par->least_m_q30, 0, par->most_m_q30)) {
+    if (!scale_ok(scale) || !exh_inside(par->cur_A_q26, 1, HOME_MAX_A_Q26) ||
+        !exh_inside(par->dwell_ms, 1, DWELL_MAX_MS) || !exh_inside(par->time_ms, 1, TIME_MAX_MS) ||
+        !exh_inside(par->move_m_q30, 1, MAX_M_Q30) ||
+        !exh_inside(par->most_m_q30, par->move_m_q30, MAX_M_Q30) ||
+        !exh_inside(par->least_m_q30, 0, par->most_m_q30)) {
         return -EXH_E_RANGE;
     }
     cfg->cur_A_q26 = par->cur_A_q26;
@@ -170,7 +163,9 @@ uint8_t exh_home_step(struct exh_home *s, const struct exh_home_cfg *cfg, int32_
     } else if (s->tick >= cfg->ticks) {
         s->result = EXH_PROBE_TIME;
     } else if (s->dwell >= cfg->dwell_ticks) {
-        if (in < cfg->move_cnt) { s->result = far < cfg->least_cnt ? EXH_PROBE_JAM : EXH_PROBE_DONE; }
+        if (in < cfg->move_cnt) {
+            s->result = far < cfg->least_cnt ? EXH_PROBE_JAM : EXH_PROBE_DONE;
+        }
         s->home_cnt = cnt;
         s->dwell_cnt = cnt;
         s->dwell = 0;

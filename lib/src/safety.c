@@ -30,35 +30,24 @@ const struct exh_signal exh_safety_rows[EXH_SAFETY_ROWS] = {
 
 /* --- set-up --- */
 
-static int inside(int32_t v, int32_t lo, int32_t hi)
-{
-    return v >= lo && v <= hi;
-}
-
-/* Whole ticks in a time. */
-static uint32_t ticks_in(int32_t ms, struct exh_period T)
-{
-    return (uint32_t)exh_udiv64((uint64_t)(uint32_t)ms * T.den, UINT64_C(1000) * T.num, NULL);
-}
-
 int exh_safety_setup(struct exh_safety_cfg *cfg, const struct exh_safety_par *par,
                      struct exh_period T)
 {
     uint32_t ramp_ticks;
-    if (!inside(par->missed_max, 0, MISSED_MAX) ||
-        !inside(par->arm_force_N_q20, SMALL_MIN_NQ20, SMALL_MAX_NQ20) ||
-        !inside(par->arm_ms, 1, ARM_MAX_MS) || !inside(par->ramp_ms, 1, RAMP_MAX_MS) ||
-        !inside(par->release_ms, RELEASE_MIN_MS, RELEASE_MAX_MS)) {
+    if (!exh_inside(par->missed_max, 0, MISSED_MAX) ||
+        !exh_inside(par->arm_force_N_q20, SMALL_MIN_NQ20, SMALL_MAX_NQ20) ||
+        !exh_inside(par->arm_ms, 1, ARM_MAX_MS) || !exh_inside(par->ramp_ms, 1, RAMP_MAX_MS) ||
+        !exh_inside(par->release_ms, RELEASE_MIN_MS, RELEASE_MAX_MS)) {
         return -EXH_E_RANGE;
     }
     if (!exh_period_ok(T)) { return -EXH_E_RATE; }
     cfg->late_max = (uint32_t)par->missed_max * EXH_LATE_TICKS;
     cfg->small_N_q20 = par->arm_force_N_q20;
-    cfg->arm_ticks = ticks_in(par->arm_ms, T) + 1;
+    cfg->arm_ticks = exh_ticks_in(par->arm_ms, T) + 1;
     if (cfg->arm_ticks < 2) { cfg->arm_ticks = 2; }
-    ramp_ticks = ticks_in(par->ramp_ms, T) + 1;
+    ramp_ticks = exh_ticks_in(par->ramp_ms, T) + 1;
     cfg->ramp_q30 = (int32_t)exh_udiv64(FULL_Q30 + ramp_ticks - 1, ramp_ticks, NULL);
-    cfg->release_ticks = ticks_in(par->release_ms, T);
+    cfg->release_ticks = exh_ticks_in(par->release_ms, T);
     if (cfg->release_ticks < 3) { cfg->release_ticks = 3; }
     if (cfg->release_ticks > SLOW_TICKS && T.den < (uint64_t)SLOW_HZ * T.num) {
         cfg->release_ticks = SLOW_TICKS;

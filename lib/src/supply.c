@@ -1,6 +1,7 @@
 #include "exhand/drive.h"
 
 #include "exhand/error.h"
+#include "exhand/fix.h"
 
 #define V_MAX_Q20   EXH_Q(100, 1, EXH_Q_SUPPLY)
 #define TIME_MAX_MS 1000
@@ -30,8 +31,7 @@ int exh_supply_setup(struct exh_supply_cfg *cfg, const struct exh_supply_par *pa
         return -EXH_E_RANGE;
     }
     if (!exh_period_ok(T)) { return -EXH_E_RATE; }
-    cfg->ticks = 1 + (uint32_t)exh_udiv64((uint64_t)(uint32_t)par->time_ms * T.den,
-                                          UINT64_C(1000) * T.num, NULL);
+    cfg->ticks = exh_ticks_in(par->time_ms, T) + 1;
     if (par->min_V_q20 == 0) { return 0; }
     least = exh_udiv64((uint64_t)(uint32_t)par->min_V_q20 << up, (uint32_t)par->scale_V_q30, &rest);
     least += rest != 0;

@@ -1,6 +1,7 @@
 #include "exhand/drive.h"
 
 #include "exhand/error.h"
+#include "exhand/fix.h"
 
 #include <stddef.h>
 
@@ -29,9 +30,7 @@ int exh_track_setup(struct exh_track_cfg *cfg, const struct exh_track_par *par, 
     }
     if (!exh_period_ok(T)) { return -EXH_E_RATE; }
     cfg->tol_A_q26 = par->tol_A_q26;
-    cfg->ticks = (uint32_t)exh_udiv64((uint64_t)(uint32_t)par->time_ms * T.den,
-                                      UINT64_C(1000) * T.num, NULL) +
-                 1 + LATE_TICKS;
+    cfg->ticks = exh_ticks_in(par->time_ms, T) + 1 + LATE_TICKS;
     return 0;
 }
 

@@ -25,23 +25,17 @@ const struct exh_signal exh_watch_rows[EXH_WATCH_ROWS] = {
      "stuck_cur", "a", "while more than this is coded"},
 };
 
-static int inside(int32_t v, int32_t lo, int32_t hi)
-{
-    return v >= lo && v <= hi;
-}
-
 static uint32_t ticks_of(int32_t ms, struct exh_period T)
 {
-    return (uint32_t)exh_udiv64((uint64_t)(uint32_t)ms * T.den, UINT64_C(1000) * T.num, NULL) + 1;
+    return exh_ticks_in(ms, T) + 1;
 }
 
-int exh_watch_setup(struct exh_watch_cfg *cfg, const struct exh_watch_par *par,
-                    struct exh_period T)
+int exh_watch_setup(struct exh_watch_cfg *cfg, const struct exh_watch_par *par, struct exh_period T)
 {
-    if (!inside(par->speed_mps_q27, SPEED_MIN_MPS_Q27, SPEED_MAX_MPS_Q27) ||
-        !inside(par->speed_ms, 1, SPEED_MAX_MS) ||
-        !(par->stuck_ms == 0 || inside(par->stuck_ms, STUCK_MIN_MS, STUCK_MAX_MS)) ||
-        !inside(par->stuck_cur_A_q26, CUR_MIN_A_Q26, CUR_MAX_A_Q26)) {
+    if (!exh_inside(par->speed_mps_q27, SPEED_MIN_MPS_Q27, SPEED_MAX_MPS_Q27) ||
+        !exh_inside(par->speed_ms, 1, SPEED_MAX_MS) ||
+        !(par->stuck_ms == 0 || exh_inside(par->stuck_ms, STUCK_MIN_MS, STUCK_MAX_MS)) ||
+        !exh_inside(par->stuck_cur_A_q26, CUR_MIN_A_Q26, CUR_MAX_A_Q26)) {
         return -EXH_E_RANGE;
     }
     if (!exh_period_ok(T)) { return -EXH_E_RATE; }
@@ -57,8 +51,8 @@ static uint32_t run_of(uint32_t ticks, int on, uint32_t most)
     return !on ? 0 : ticks < most ? ticks + 1 : most;
 }
 
-uint32_t exh_watch_step(struct exh_watch *s, const struct exh_watch_cfg *cfg,
-                        int32_t *vel_mps_q27, uint32_t *limits)
+uint32_t exh_watch_step(struct exh_watch *s, const struct exh_watch_cfg *cfg, int32_t *vel_mps_q27,
+                        uint32_t *limits)
 {
     const int32_t most = cfg->par->speed_mps_q27;
     const int32_t held = exh_clamp(*vel_mps_q27, -most, most);

@@ -126,7 +126,7 @@ MUTANTS = (
     ("watch", WATCH, "s->fast_ticks >= cfg->speed_ticks ?", "s->fast_ticks > cfg->speed_ticks ?"),
     ("watch", WATCH, "return !on ? 0 :", "return !on ? ticks :"),
     ("watch", WATCH, "    s->cnt = cnt;", ""),
-    ("watch", WATCH, "T.num, NULL) + 1;", "T.num, NULL) + 2;"),
+    ("watch", WATCH, "exh_ticks_in(ms, T) + 1;", "exh_ticks_in(ms, T) + 2;"),
     ("guard", L + "guard.c", "if (g->crc != g->want) {", "if (g->crc > g->want) {"),
     ("guard", L + "guard.c", "    g->at = g->crc = 0;\n}", "    g->at = 0;\n}"),
     ("guard", L + "guard.c", "differ && !g->params->pending", "differ"),

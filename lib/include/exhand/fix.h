@@ -7,6 +7,8 @@
 #ifndef EXHAND_FIX_H
 #define EXHAND_FIX_H
 
+#include "exhand/units.h"
+
 #include <stdint.h>
 
 #ifdef __cplusplus
@@ -45,6 +47,12 @@ static inline int32_t exh_sat32(int64_t v)
 static inline int32_t exh_clamp(int64_t v, int32_t lo, int32_t hi)
 {
     return v < lo ? lo : v > hi ? hi : (int32_t)v;
+}
+
+/* 1 if lo <= v <= hi. */
+static inline int exh_inside(int32_t v, int32_t lo, int32_t hi)
+{
+    return v >= lo && v <= hi;
 }
 
 /* floor(v / 2^n + 1/2), 1 <= n <= 63; exact for every v. */
@@ -163,6 +171,9 @@ int exh_gain_set(struct exh_gain *g, uint64_t num, uint64_t den);
 /* floor(num/den), den > 0, without the compiler's division helpers; the
  * remainder goes to *rem unless NULL. Set-up only: 64 steps. */
 uint64_t exh_udiv64(uint64_t num, uint64_t den, uint64_t *rem);
+
+/* Whole ticks in ms >= 0, of a period that exh_period_ok(). Set-up only; at 20 kHz a day fits. */
+uint32_t exh_ticks_in(int32_t ms, struct exh_period T);
 
 #ifdef __cplusplus
 }
