@@ -5,14 +5,17 @@
 
 int exh_safety_open(const struct exh_safety *s)
 {
-    return exh_safety_runs(s) || s->state == EXH_STATE_RELEASE || (s->state == EXH_STATE_ARM && s->share_q30 > 0);
+    return exh_safety_runs(s) || s->state == EXH_STATE_RELEASE ||
+           (s->state == EXH_STATE_ARM && s->share_q30 > 0);
 }
 
-/* The code for one current: within the span of zero, and of 16 bits. */
-static uint16_t code_of(const struct exh_drive_par *par, int32_t cur_A_q26, uint32_t *limits)
+/* The code for one current: within the span of zero, no further from it than `most`, and of 16 bits. */
+static uint16_t code_of(const struct exh_drive_par *par, int32_t cur_A_q26, uint16_t most_raw,
+                        uint32_t *limits)
 {
     const int64_t asked = exh_mul_shr(cur_A_q26, par->dac_rawpA_q16, EXH_Q_CUR + EXH_Q_DAC);
-    const int32_t spanned = exh_clamp(asked, -par->dac_span_raw, par->dac_span_raw);
+    const int32_t span = par->dac_span_raw < most_raw ? par->dac_span_raw : most_raw;
+    const int32_t spanned = exh_clamp(asked, -span, span);
     const int32_t code = exh_clamp((int64_t)par->dac_zero_raw + spanned, 0, UINT16_MAX);
     if (code != par->dac_zero_raw + asked) { *limits |= EXH_LIMIT_DAC; }
     return (uint16_t)code;
@@ -21,7 +24,7 @@ static uint16_t code_of(const struct exh_drive_par *par, int32_t cur_A_q26, uint
 void exh_gate(struct exh_safety *s, const struct exh_drive_cfg *cfg, unsigned n,
               struct exh_current_ledger *i, uint32_t *limits, struct exh_drive_out *out)
 {
-    const int open = exh_safety_open(s);
+    const int open = exh_safety_open(s), falls = s->state == EXH_STATE_RELEASE;
 
     EXH_ASSERT(n >= 1);
     EXH_ASSERT(n <= s->fingers);
@@ -37,11 +40,14 @@ void exh_gate(struct exh_safety *s, const struct exh_drive_cfg *cfg, unsigned n,
         const int64_t held_back = exh_wrap_add64(i[k].peak_A_q26, i[k].i2t_A_q26);
         const int64_t asked = exh_wrap_add64(i[k].table_A_q26, held_back);
         const int32_t passed = open ? exh_sat32(asked) : 0;
+        int32_t off;
 
         if (passed != asked) { limits[k] |= EXH_LIMIT_GATE; }
-        out->dac_raw[k] = code_of(par, passed, &limits[k]);
-        i[k].coded_A_q26 = exh_sat32(
-            exh_gain_mul(cfg[k].dac_A_q26, (int32_t)out->dac_raw[k] - par->dac_zero_raw));
+        /* What falls never rises, whatever became of table, scale and limits since. */
+        out->dac_raw[k] = code_of(par, passed, falls ? s->off_raw[k] : UINT16_MAX, &limits[k]);
+        off = (int32_t)out->dac_raw[k] - par->dac_zero_raw;
+        s->off_raw[k] = (uint16_t)(off < 0 ? -off : off);
+        i[k].coded_A_q26 = exh_sat32(exh_gain_mul(cfg[k].dac_A_q26, off));
         i[k].gate_A_q26 = exh_wrap_diff64(passed, asked);
         i[k].dac_A_q26 = (int64_t)i[k].coded_A_q26 - passed;
         s->limits |= limits[k];

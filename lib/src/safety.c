@@ -284,6 +284,7 @@ void exh_safety_bytes(struct exh_bytes *c, struct exh_safety *s)
     exh_bytes_u8(c, &s->refused);
     exh_bytes_u8(c, &s->opened);
     exh_bytes_u8(c, &s->trigger);
+    for (unsigned k = 0; k < EXH_FINGERS; k++) { exh_bytes_u16(c, &s->off_raw[k]); }
     if (!sealed(c, from) && c->mode == EXH_BYTES_READ) {
         s->state = EXH_STATE_FAULT;
         s->faults |= EXH_FAULT_LOGIC;

@@ -35,12 +35,13 @@ UNITS = {
 
 # Planted errors: unit, tool that must tell (WP: in which functions), file, text, what it becomes.
 MUTANTS = [
-    ("gate", "wp code_of", "lib/src/gate.c", "exh_clamp(asked, -par->dac_span_raw, par->dac_span_raw)",
+    ("gate", "wp code_of", "lib/src/gate.c", "exh_clamp(asked, -span, span)",
      "exh_clamp(asked, INT32_MIN, INT32_MAX)"),
-    ("gate", "wp code_of", "lib/src/gate.c", "exh_clamp(asked, -par->dac_span_raw, par->dac_span_raw)",
-     "exh_clamp(asked, -par->dac_span_raw - 1, par->dac_span_raw)"),
+    ("gate", "wp code_of", "lib/src/gate.c", "exh_clamp(asked, -span, span)",
+     "exh_clamp(asked, -span - 1, span)"),
     ("gate", "wp code_of", "lib/src/gate.c", "dac_zero_raw + spanned, 0, UINT16_MAX)",
      "dac_zero_raw + spanned, 0, 2 * UINT16_MAX)"),
+    ("gate", "wp any_gate", "lib/src/gate.c", "falls ? s->off_raw[k] : UINT16_MAX", "UINT16_MAX"),
     ("gate", "wp any_gate", "lib/src/gate.c", "= open ? exh_sat32(asked) : 0;", "= exh_sat32(asked);"),
     ("gate", "wp any_gate", "lib/src/gate.c", "cfg[k < n ? k : 0].par->dac_zero_raw", "out->dac_raw[k]"),
     ("gate", "eva", "lib/src/gate.c", "(1u << n) - 1u : 0u", "(1u << n) : 0u"),

@@ -48,6 +48,7 @@ TEST(gate_in_every_state)
         b.s.share_q30 = share;
         b.s.limits = 0xFFFF; /* of the tick before */
         b.limits[2] = EXH_LIMIT_SPEED;
+        for (unsigned k = 0; k < 5; k++) { b.s.off_raw[k] = 5538; } /* and its code */
         CHECK_EQ_I64(exh_safety_open(&b.s), open);
         exh_gate(&b.s, b.cfg, 5, b.i, b.limits, &b.out);
         CHECK_EQ_I64(b.out.enable, open ? 0x1F : 0);
@@ -66,6 +67,35 @@ TEST(gate_in_every_state)
         CHECK_EQ_I64(b.s.limits, all);
         CHECK(all & EXH_LIMIT_SPEED, "told by the scene");
     }
+}
+
+/* A table, a scale, a limit that is damaged while a force is let go: the code stays where it was, and
+ * once it was nearer to zero it is no further again. */
+TEST(a_release_never_rises)
+{
+    static const int32_t amp[] = {2, 3, -3, 1, 2, -6, 0, 1};
+    static const int32_t most[] = {2, 2, -2, 1, 1, -1, 0, 0};
+    struct box b;
+    box_setup(&b);
+    b.s.state = EXH_STATE_RUN;
+    for (size_t t = 0; t < LEN(amp); t++) {
+        b.i[0].table_A_q26 = amp[t] * (1 << 26);
+        b.limits[0] = 0;
+        exh_gate(&b.s, b.cfg, 1, b.i, b.limits, &b.out);
+        CHECK_EQ_I64(b.out.dac_raw[0], 32768 + most[t] * 1846);
+        CHECK((b.limits[0] != 0) == (amp[t] != most[t]), "%zu: told", t);
+        CHECK_EQ_I64(b.i[0].coded_A_q26, b.i[0].table_A_q26 + b.i[0].gate_A_q26 + b.i[0].dac_A_q26);
+        b.s.state = EXH_STATE_RELEASE;
+    }
+    b.par[0].dac_rawpA_q16 *= 2; /* nor by the scale */
+    b.s.off_raw[0] = 100;
+    exh_gate(&b.s, b.cfg, 1, b.i, b.limits, &b.out);
+    CHECK_EQ_I64(b.out.dac_raw[0], 32868);
+    b.s.state = EXH_STATE_FAULT; /* and from the shut gate on there is nothing to fall */
+    exh_gate(&b.s, b.cfg, 1, b.i, b.limits, &b.out);
+    b.s.state = EXH_STATE_RELEASE;
+    exh_gate(&b.s, b.cfg, 1, b.i, b.limits, &b.out);
+    CHECK_EQ_I64(b.out.dac_raw[0], 32768);
 }
 
 TEST(span_is_never_exceeded)
@@ -130,5 +160,6 @@ TEST(alive_changes_at_every_tick_in_every_state)
     }
 }
 
-TEST_MAIN("unit/gate", gate_in_every_state, span_is_never_exceeded, converter_end_is_reported,
-          fingers_not_in_use_get_zero, alive_changes_at_every_tick_in_every_state);
+TEST_MAIN("unit/gate", gate_in_every_state, a_release_never_rises, span_is_never_exceeded,
+          converter_end_is_reported, fingers_not_in_use_get_zero,
+          alive_changes_at_every_tick_in_every_state);

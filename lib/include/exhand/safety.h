@@ -144,6 +144,7 @@ struct exh_safety {
     uint8_t refused;     /* enum exh_arm: the step that arming failed at last; 0 none */
     uint8_t opened;      /* 1: the dead-man was open since another cause was present */
     uint8_t trigger;     /* enum exh_trigger of the last tick                  */
+    uint16_t off_raw[EXH_FINGERS]; /* the last code from dac_zero: in RELEASE none further */
     uint8_t fingers;     /* drives seen ready in this tick: the gate opens no other */
 };
 
@@ -176,7 +177,7 @@ int exh_safety_open(const struct exh_safety *s);
 /* Last thing of a tick (gate.c): the currents of fingers 0..n-1 into codes. Completes
  * each ledger (gate, dac, coded); fingers not in use, and all of them while it is closed,
  * get dac_zero and are disabled. No input makes a code beyond dac_zero +-
- * dac_span. 1 <= n <= the fingers of exh_safety_step(); cfg, i and limits are arrays of n. Adds
+ * dac_span, and in RELEASE none that is further from dac_zero than in the tick before. 1 <= n <= the fingers of exh_safety_step(); cfg, i and limits are arrays of n. Adds
  * EXH_LIMIT_DAC and EXH_LIMIT_GATE (current held back) to limits, and keeps all of them for the
  * next exh_safety_step(), which counts them. */
 void exh_gate(struct exh_safety *s, const struct exh_drive_cfg *cfg, unsigned n,

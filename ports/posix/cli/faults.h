@@ -182,6 +182,7 @@ enum faults_bad {
 struct faults_seen {
     struct faults_view from; /* at the end of the tick of the branch                 */
     uint32_t bad; /* enum faults_bad                                    */
+    uint8_t ended; /* the run has, by a card's error                          */
     uint32_t present; /* causes, in the ticks that saw them                   */
     uint32_t digest; /* CRC-32 of all that came out                          */
     int32_t seen_ticks[2]; /* from when it began to the tick that says so; -1: none  */
@@ -218,6 +219,7 @@ void faults_source_start(const struct faults_base *b, const struct faults_what w
 void faults_source_step(uint32_t tick);
 /* From damage with the guard FAULTS_AHEAD to the tick that sees it. */
 uint32_t faults_source_ahead(unsigned scene, unsigned source, uint32_t how);
+const struct exh_signal *faults_source_row(void); /* that is damaged by now; NULL: none */
 int faults_source_off(void); /* OFF is commanded in this tick                       */
 uint32_t faults_source_gone(void); /* ticks of a dead loop, once                         */
 void faults_dead_tick(double fed_s); /* one of them, in the branch                         */

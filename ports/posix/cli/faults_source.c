@@ -251,6 +251,18 @@ static uint32_t spanned(const struct faults_memory *m, uint32_t how)
     return how;
 }
 
+const struct exh_signal *faults_source_row(void)
+{
+    for (unsigned k = 0; k < 2; k++) {
+        const struct on *o = &src.on[k];
+        if (o->what.source == FAULTS_PAR && o->begun) {
+            const struct faults_memory m = faults_memory(src.base->scene);
+            return exh_signal_at(m.table, bit_at(m.pars * 4u, o->what.how) / 4, NULL);
+        }
+    }
+    return NULL;
+}
+
 static void do_once(struct on *o)
 {
     const struct faults_memory m = faults_memory(src.base->scene);
@@ -262,7 +274,10 @@ static void do_once(struct on *o)
     case FAULTS_CARD: lose_card(o); break;
     case FAULTS_LINK: posix_link()->way[SIM_LINK_IN].par.loss = 1; break;
     case FAULTS_DEAD_LOOP: dead(o); break;
-    case FAULTS_PAR: flip(m.par, m.pars * 4u, o->what.how); break;
+    case FAULTS_PAR:
+        flip(m.par, m.pars * 4u, o->what.how);
+        o->begun = 1;
+        break;
     case FAULTS_CAL: flip(m.cal, m.cal_B, o->what.how); break;
     case FAULTS_STATE: m.safety->state = (uint8_t)(200 + o->what.how % 56); break;
     default: break;

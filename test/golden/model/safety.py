@@ -26,7 +26,7 @@ def any_safety(rng, rate):
 
 
 class Safety:
-    pack = Struct("<21Ii5B").pack
+    pack = Struct("<21Ii5B5H").pack
 
     def __init__(self, par, T):
         most, self.small, arm, ramp, release = par
@@ -39,6 +39,7 @@ class Safety:
         self.present = self.faults = self.first = self.first_tick = self.tick = 0
         self.missed = self.late = self.limits = self.refusals = self.steps = self.share = 0
         self.held = [0] * LIMITS
+        self.off = [0] * FINGERS
         self.state_ = self.alive = self.refused = self.opened = self.trigger = 0
 
     def open(self):
@@ -133,15 +134,18 @@ class Safety:
         out, enable = [], 0
         for i, (par, cur, told) in enumerate(zip(pars, currents, limits)):
             zero, span, scale = par[6:9]
+            code = zero
             if self.open():
                 enable |= 1 << i
                 asked = shr(cur * scale, 42)
-                code = clamp(zero + clamp(asked, -span, span), 0, 65535)
+                most = min(span, self.off[i]) if self.state_ == RELEASE else span
+                code = clamp(zero + clamp(asked, -most, most), 0, 65535)
                 told |= DAC if code != zero + asked else 0
                 coded = times(gain(1 << 42, scale), code - zero)
                 out.append((told, 0, coded - cur, coded, code))
             else:
                 out.append((told | (GATE if cur else 0), -cur, 0, 0, zero))
+            self.off[i] = abs(code - zero)
         self.alive = (self.alive + 1) & 255
         self.limits = 0
         for o in out:
@@ -151,7 +155,7 @@ class Safety:
     def state(self):
         b = self.pack(self.present, self.faults, self.first, self.first_tick, self.tick, self.missed,
                       self.late, self.limits, *self.held, self.refusals, self.steps, self.share,
-                      self.state_, self.alive, self.refused, self.opened, self.trigger)
+                      self.state_, self.alive, self.refused, self.opened, self.trigger, *self.off)
         return b + pack_once("<I", crc32(b) * 0x9E3779B1 & M32)
 
 
