@@ -432,19 +432,29 @@ $(B)/fuzz/net-libfuzzer: test/fuzz/net_fuzz.c test/pc104/frames.c ports/pc104/ne
 	@mkdir -p $(@D)
 	$(Q)clang $(filter-out -MMD -MP,$(base)) -Iports -Itest/pc104 -DFUZZ_NO_MAIN $(san) -fsanitize=fuzzer -o $@ $(filter %.c,$^)
 
-## Hostile packets and frames, under sanitizers (FUZZ_SECONDS=30 FUZZ_SEED=1 FUZZER=plain or libfuzzer)
+# Requests for the Modbus slave.
+$(B)/fuzz/modbus: $(B)/test/san/test/fuzz/modbus_fuzz.o $(lib_src:%.c=$(B)/test/san/%.o)
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(san) -o $@ $^
+$(B)/fuzz/modbus-libfuzzer: test/fuzz/modbus_fuzz.c $(lib_src) $(wildcard lib/include/exhand/*.h) $(stamp)
+	@mkdir -p $(@D)
+	$(Q)clang $(filter-out -MMD -MP,$(base)) -DFUZZ_NO_MAIN $(san) -fsanitize=fuzzer -o $@ $(filter %.c,$^)
+
+## Hostile packets, frames and requests, under sanitizers (FUZZ_SECONDS=30 FUZZ_SEED=1 FUZZER=plain or libfuzzer)
 .PHONY: fuzz
 fuzz:
-	@$(MAKE) --no-print-directory $(if $(V),,-s) $(B)/fuzz/plain $(B)/fuzz/$(FUZZER) $(B)/fuzz/net$(if $(filter libfuzzer,$(FUZZER)),-libfuzzer)
+	@$(MAKE) --no-print-directory $(if $(V),,-s) $(B)/fuzz/plain $(B)/fuzz/$(FUZZER) $(addsuffix $(if $(filter libfuzzer,$(FUZZER)),-libfuzzer),$(B)/fuzz/net $(B)/fuzz/modbus)
 	@$(B)/fuzz/plain --check test/fuzz/corpus
 ifeq ($(FUZZER),plain)
-	@cd $(B)/fuzz && { ./net $(FUZZ_SECONDS) $(FUZZ_SEED) & } && \
-	    ./plain $(FUZZ_SECONDS) $(FUZZ_SEED) $(CURDIR)/test/fuzz/corpus; packets=$$?; wait $$! && exit $$packets
+	@cd $(B)/fuzz && { ./net $(FUZZ_SECONDS) $(FUZZ_SEED) & net=$$!; ./modbus $(FUZZ_SECONDS) $(FUZZ_SEED) & modbus=$$!; } && \
+	    ./plain $(FUZZ_SECONDS) $(FUZZ_SEED) $(CURDIR)/test/fuzz/corpus; packets=$$?; wait $$net && wait $$modbus && exit $$packets
 else
 	@mkdir -p $(B)/fuzz/found && cd $(B)/fuzz && ./libfuzzer -max_total_time=$(FUZZ_SECONDS) -max_len=1024 \
 	    -print_final_stats=1 found $(CURDIR)/test/fuzz/corpus
 	@mkdir -p $(B)/fuzz/net-found && cd $(B)/fuzz && ./net-libfuzzer -max_total_time=$(FUZZ_SECONDS) -max_len=6000 \
 	    -print_final_stats=1 net-found
+	@mkdir -p $(B)/fuzz/modbus-found && cd $(B)/fuzz && ./modbus-libfuzzer -max_total_time=$(FUZZ_SECONDS) -max_len=2048 \
+	    -print_final_stats=1 modbus-found
 endif
 
 .PHONY: fuzz-corpus
