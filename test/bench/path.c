@@ -13,6 +13,7 @@ void path_setup(void)
     path_par.contact.k_Npm_q10 = EXH_Q(19973, 10, EXH_Q_K);
     path_par.contact.b_Nspm_q20 = EXH_Q(617, 100, EXH_Q_B);
     path_par.own.q_lim_m_q30 = EXH_Q(62413, 1000000, EXH_Q_POS);
+    path_par.calib.uncalibrated = 1;
     EXH_ASSERT(drop_setup(&path_cfg, &path_par, board, NULL) == 0);
     bench_seed();
 }
