@@ -645,11 +645,12 @@ nic-run:
 
 # --- figures ------------------------------------------------------------------------
 
-## What the library needs from outside; and it holds no float or divide instruction
+## What the library needs from outside; no float or divide instruction, recursion or memory of its own
 .PHONY: undef
 undef: $(lib)
 	$(Q)test/size/undef.sh $(lib) $(CROSS)nm $(PORT_HELPERS)
 	$(Q)test/size/banned.sh $(lib) $(CROSS)objdump
+	$(Q)test/size/habits.sh $(lib) $(CROSS)objdump
 
 # The emulated cards, as they go into an image.
 $(out)/libemu.a: $(emu_src:%.c=$(out)/%.o)
