@@ -30,7 +30,7 @@ MAKEFLAGS += $(if $(filter 0,$(MAKELEVEL)),-j$(or $(shell nproc 2>/dev/null),1),
 jobs       = $(or $(patsubst -j%,%,$(filter -j%,$(MAKEFLAGS))),1)
 
 # These call make for what they need, or take it away: two at a time would write the same files.
-callers := all test demo run image coverage stress test-i686 mutants fuzz hil hil-built strangers linux-program boot boot-built \
+callers := all test demo run image coverage stress test-i686 mutants fuzz hil hil-built strangers gpio linux-program boot boot-built \
            contract contract-built nic nic-built world two-computers bench-world bench size cards install diagrams clean check
 ifneq ($(and $(filter $(callers),$(MAKECMDGOALS)),$(word 2,$(MAKECMDGOALS))),)
 .NOTPARALLEL:
@@ -302,9 +302,9 @@ $(B)/test/gpio/take_test: $(B)/test/san/test/gpio/take_test.o $(B)/test/san/port
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(san) -o $@ $^ -lcmocka
 $(B)/test/gpio/v%_test: $(B)/posix/test/gpio/v%_test.o $(B)/test/gpio/v%.o $(B)/test/gpio/v%_fake.o $(B)/posix/test/gpio/chip.o \
-                        $(B)/posix/test/support.o $(filter-out %/loop.o,$(dev_obj)) $(B)/test/loop.o $(B)/posix/examples/drop/drop.o $(B)/posix/libexhand.a
+                        $(B)/posix/test/support.o $(filter-out %/main.o %/loop.o,$(cli_obj) $(dev_obj)) $(B)/test/loop.o $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
-	$(Q)$(CC) -o $@ $^ -lcmocka -lm
+	$(Q)$(CC) -o $@ $^ -lcmocka $(cli_libs)
 gpio_fake = $(Q)mkdir -p $(@D) && $(CC) $(base) $(PORT_HOSTFLAGS) $(CFLAGS) -Itest/gpio/v$* -Itest/gpio -c $< -o $@
 $(B)/test/gpio/v%.o: ports/posix/gpio_v%.c $(stamp)
 	$(gpio_fake)
@@ -515,6 +515,22 @@ strangers:
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(exhand)
 	@$(MAKE) --no-print-directory $(if $(V),,-s) linux-program
 	@B=$(B) ARGS="$(ARGS)" test/strangers/strangers.sh
+
+# The host program for an emulated Linux, with either libgpiod in it.
+gpio_all := $(cli_src:%.c=$(B)/posix/%.o) $(world_core:%.c=$(B)/posix/%.o) $(B)/posix/examples/world/mesh_none.o $(dev_obj)
+$(B)/gpio/gpio_v%.o: ports/posix/gpio_v%.c $(stamp)
+	$(Q)$(CC) $(base) $(PORT_HOSTFLAGS) -isystem $(B)/gpio/v$* -c $< -o $@
+$(B)/gpio/exhand-v%: $(gpio_all) $(B)/gpio/gpio_v%.o $(B)/posix/libexhand.a
+	$(Q)$(CC) -static -o $@ $^ $(B)/gpio/v$*/libgpiod.a -lpthread -lm && strip $@
+
+## Contacts and outputs on the kernel's simulated GPIO chip in an emulated Linux, by both libgpiod (fetches 220 MB; nightly)
+.PHONY: gpio
+gpio: all
+	@.ci/deps "the emulated Linux" "command -v qemu-system-x86_64 && command -v gcc-12 && command -v xz && ls /usr/lib/x86_64-linux-gnu/libelf.so.1" \
+	    qemu-system-x86 gcc-12 xz-utils libelf1 || exit 3
+	@test/gpio/fetch.sh $(B)/gpio
+	@$(MAKE) --no-print-directory $(if $(V),,-s) $(B)/gpio/exhand-v1 $(B)/gpio/exhand-v2
+	@B=$(B) test/gpio/gpio.sh
 
 # --- the same bits everywhere -----------------------------------------------------------
 

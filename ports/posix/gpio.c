@@ -19,11 +19,11 @@ static struct {
     uint32_t differ_max; /* ticks that contacts of a channel may disagree           */
     struct {
         uint32_t differ; /* ticks they have, counted to one beyond                  */
-        int stuck;       /* for longer: one may not open any more                   */
+        int stuck; /* for longer: one may not open any more                   */
     } channel[GPIO_CHANNELS];
     int enable, beat; /* levels                                                     */
-    uint8_t alive;    /* of the last frame                                          */
-    int failed;       /* and said                                                   */
+    uint8_t alive; /* of the last frame                                          */
+    int failed; /* and said                                                   */
 } gpio;
 
 /* Handlers of signals read and write these. */
@@ -69,15 +69,16 @@ static void say_no_chip(char *said, int error)
     char chips[64];
     if (error == ENOENT) {
         list_chips(chips, sizeof chips);
-        snprintf(said, GPIO_SAID_B, "%s: there is no such chip (%s%s): take one that gpiodetect lists",
-                 path, chips[0] ? "there are: " : "there is none", chips);
+        snprintf(said, GPIO_SAID_B,
+                 "%s: there is no such chip (%s%s): take one that gpiodetect lists", path,
+                 chips[0] ? "there are: " : "there is none", chips);
     } else if (error == EACCES || error == EPERM) {
         snprintf(said, GPIO_SAID_B,
                  "%s: not allowed (%s): join the group that `ls -l %s` shows, or add a udev rule",
                  path, strerror(error), path);
     } else {
-        snprintf(said, GPIO_SAID_B, "%s: not a GPIO chip (%s): take one that gpiodetect lists", path,
-                 strerror(error));
+        snprintf(said, GPIO_SAID_B, "%s: not a GPIO chip (%s): take one that gpiodetect lists",
+                 path, strerror(error));
     }
 }
 
@@ -87,25 +88,27 @@ static void say_problem(char *said, const struct gpio_problem *p)
     const char *name = name_of(p->line);
     switch (p->why) {
     case GPIO_NO_LIBRARY:
-        snprintf(said, GPIO_SAID_B,
-                 "this program was built without libgpiod: install libgpiod-dev and build it again");
+        snprintf(
+            said, GPIO_SAID_B,
+            "this program was built without libgpiod: install libgpiod-dev and build it again");
         break;
     case GPIO_NO_CHIP: say_no_chip(said, p->error); break;
     case GPIO_NO_LINE:
-        snprintf(said, GPIO_SAID_B, "%s=%u: %s has lines 0..%u: choose one of them", name, p->line, path,
-                 p->lines - 1);
+        snprintf(said, GPIO_SAID_B, "%s=%u: %s has lines 0..%u: choose one of them", name, p->line,
+                 path, p->lines - 1);
         break;
     case GPIO_BUSY:
         snprintf(said, GPIO_SAID_B,
-                 "%s=%u: line %u of %s is held by \"%s\": end that program, or take another line", name,
-                 p->line, p->line, path, p->who);
+                 "%s=%u: line %u of %s is held by \"%s\": end that program, or take another line",
+                 name, p->line, p->line, path, p->who);
         break;
     case GPIO_FINE:
     case GPIO_REFUSED:
     default:
-        snprintf(said, GPIO_SAID_B,
-                 "%s: the kernel does not give these lines (%s): see `gpioinfo` and the kernel's log",
-                 path, strerror(p->error));
+        snprintf(
+            said, GPIO_SAID_B,
+            "%s: the kernel does not give these lines (%s): see `gpioinfo` and the kernel's log",
+            path, strerror(p->error));
         break;
     }
 }
@@ -138,8 +141,9 @@ static void on_signal(int sig)
 /* Those that end or stop a program, unless somebody has plans for them. */
 static void guard_signals(void)
 {
-    static const int list[] = {SIGHUP,  SIGINT,  SIGTERM, SIGQUIT, SIGTSTP, SIGTTIN, SIGTTOU, SIGPIPE,
-                               SIGALRM, SIGUSR1, SIGUSR2, SIGABRT, SIGSEGV, SIGBUS,  SIGFPE,  SIGILL};
+    static const int list[] = {SIGHUP,  SIGINT,  SIGTERM, SIGQUIT, SIGTSTP, SIGTTIN,
+                               SIGTTOU, SIGPIPE, SIGALRM, SIGUSR1, SIGUSR2, SIGABRT,
+                               SIGSEGV, SIGBUS,  SIGFPE,  SIGILL};
     struct sigaction a, was;
     memset(&a, 0, sizeof a);
     a.sa_handler = on_signal;
@@ -222,12 +226,13 @@ static int believe(unsigned i, const int *level)
     if (gpio.channel[i].differ <= gpio.differ_max) { gpio.channel[i].differ++; }
     if (gpio.channel[i].differ > gpio.differ_max && !gpio.channel[i].stuck) {
         gpio.channel[i].stuck = 1;
-        fprintf(stderr,
-                "exhand: %s: its contacts disagree for more than %lu ticks (line %u closed, line %u "
-                "open): it is taken for open until both have been: look for a welded contact, a broken "
-                "or a shorted wire\n",
-                channel_name[i], (unsigned long)gpio.differ_max, line[level[0] ? 0 : 1],
-                line[level[0] ? 1 : 0]);
+        fprintf(
+            stderr,
+            "exhand: %s: its contacts disagree for more than %lu ticks (line %u closed, line %u "
+            "open): it is taken for open until both have been: look for a welded contact, a broken "
+            "or a shorted wire\n",
+            channel_name[i], (unsigned long)gpio.differ_max, line[level[0] ? 0 : 1],
+            line[level[0] ? 1 : 0]);
     }
     return 0;
 }

@@ -14,10 +14,10 @@ enum gpio_output { GPIO_ENABLE, GPIO_ALIVE, GPIO_OUTPUTS };
 #define GPIO_PATH_B   64
 #define GPIO_SAID_B   256
 #define GPIO_LINE_TOP 1023 /* the highest number taken for a line's               */
-#define GPIO_DIFFER_S 0.5  /* two contacts of a channel may disagree for so long   */
+#define GPIO_DIFFER_S 0.5 /* two contacts of a channel may disagree for so long   */
 
 struct gpio_spec {
-    char path[GPIO_PATH_B];           /* /dev/gpiochip0                        */
+    char path[GPIO_PATH_B]; /* /dev/gpiochip0                        */
     unsigned contacts[GPIO_CHANNELS]; /* 0: not wired, closed as simulated; 1; 2 */
     unsigned contact[GPIO_CHANNELS][2];
     int wired[GPIO_OUTPUTS];

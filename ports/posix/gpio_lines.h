@@ -11,8 +11,8 @@ enum gpio_why {
     GPIO_NO_LIBRARY,
     GPIO_NO_CHIP, /* not there, not ours to open, or none: error                    */
     GPIO_NO_LINE, /* line >= lines                                                 */
-    GPIO_BUSY,    /* line is somebody's: who                                       */
-    GPIO_REFUSED  /* the kernel does not give the lines: error                      */
+    GPIO_BUSY, /* line is somebody's: who                                       */
+    GPIO_REFUSED /* the kernel does not give the lines: error                      */
 };
 
 struct gpio_problem {

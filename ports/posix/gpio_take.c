@@ -18,7 +18,9 @@ static int bad(char *said, const char *what, size_t len, const char *why)
 static int take_chip(struct gpio_spec *s, const char *text, size_t len, char *said)
 {
     const char *dir = memchr(text, '/', len) ? "" : "/dev/";
-    if (len == 0) { return bad(said, text, strlen(text), "which chip? its name and a colon first"); }
+    if (len == 0) {
+        return bad(said, text, strlen(text), "which chip? its name and a colon first");
+    }
     if (strlen(dir) + len >= GPIO_PATH_B) {
         return bad(said, text, len, "a chip's name is shorter than that");
     }
@@ -106,7 +108,8 @@ static int take_field(struct gpio_spec *s, const char *text, size_t len, char *s
         }
         return take_lines(s, i, is + 1, len - name - 1, text, len, said);
     }
-    return bad(said, text, len, len ? "there are estop, deadman, enable and alive" : "an empty field");
+    return bad(said, text, len,
+               len ? "there are estop, deadman, enable and alive" : "an empty field");
 }
 
 int gpio_take(struct gpio_spec *s, const char *text, char said[GPIO_SAID_B])
@@ -115,7 +118,9 @@ int gpio_take(struct gpio_spec *s, const char *text, char said[GPIO_SAID_B])
     const char *at = colon ? colon + 1 : "";
     memset(s, 0, sizeof *s);
     if (take_chip(s, text, colon ? (size_t)(colon - text) : strlen(text), said) < 0) { return -1; }
-    if (*at == '\0') { return bad(said, text, strlen(text), "no line: a colon and fields behind it"); }
+    if (*at == '\0') {
+        return bad(said, text, strlen(text), "no line: a colon and fields behind it");
+    }
     for (;;) {
         const size_t len = strcspn(at, ",");
         if (take_field(s, at, len, said) < 0) { return -1; }

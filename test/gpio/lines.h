@@ -22,7 +22,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
+#define LEN(a)  (sizeof(a) / sizeof((a)[0]))
 #define ESTOP   4
 #define SECOND  8
 #define DEADMAN 5
@@ -114,7 +114,9 @@ TEST(requested_low_and_pulled_down)
     }
     CHECK(chip.line[ENABLE].level == 0 && chip.line[ALIVE].level == 0, "not low");
     gpio_close();
-    for (unsigned i = 0; i < CHIP_LINES; i++) { CHECK(!chip.line[i].held, "line %u is held on", i); }
+    for (unsigned i = 0; i < CHIP_LINES; i++) {
+        CHECK(!chip.line[i].held, "line %u is held on", i);
+    }
     CHECK_EQ_I64(chip.opened, 0);
 }
 
@@ -149,7 +151,8 @@ TEST(what_can_be_wrong)
         {ALL, ENOTTY, 0, -1, "/dev/gpiochip0: not a GPIO chip"},
         {"gpiochip0:estop=4+12", 0, 0, -1, "estop=12: /dev/gpiochip0 has lines 0..11: choose one"},
         {"gpiochip0:estop=4,alive=99", 0, 0, -1, "alive=99: /dev/gpiochip0 has lines 0..11"},
-        {ALL, 0, 0, ESTOP, "estop=4: line 4 of /dev/gpiochip0 is held by \"thief\": end that program"},
+        {ALL, 0, 0, ESTOP,
+         "estop=4: line 4 of /dev/gpiochip0 is held by \"thief\": end that program"},
         {PAIR, 0, 0, SECOND, "estop=8: line 8 of /dev/gpiochip0 is held by \"thief\""},
         {ALL, 0, 0, ALIVE, "alive=7: line 7 of /dev/gpiochip0 is held by \"thief\""},
         {ALL, 0, EIO, -1, "does not give these lines (Input/output error)"},
@@ -232,8 +235,10 @@ TEST(two_contacts_that_disagree)
     for (int i = 0; i < 2000; i++) { CHECK_EQ_I64(din(), EXH_DIN_DEADMAN); }
     text = listen_end();
     CHECK(times(text, "disagree") == 1, "%s", text);
-    CHECK(strstr(text, "estop: its contacts disagree for more than 500 ticks (line 4 closed, line 8 "
-                       "open)") != NULL, "%s", text);
+    CHECK(strstr(text,
+                 "estop: its contacts disagree for more than 500 ticks (line 4 closed, line 8 "
+                 "open)") != NULL,
+          "%s", text);
     chip.line[SECOND].level = 1;
     for (int i = 0; i < 2000; i++) { CHECK_EQ_I64(din(), EXH_DIN_DEADMAN); }
     chip.line[ESTOP].level = chip.line[SECOND].level = 0;
@@ -280,7 +285,8 @@ TEST(lines_that_cannot_be_read)
     CHECK_EQ_I64(gpio_read(&d), -EXH_E_IO);
     CHECK_EQ_I64(d, 0);
     text = listen_end();
-    CHECK(times(text, "/dev/gpiochip0: the contacts can't be read (No such device)") == 1, "%s", text);
+    CHECK(times(text, "/dev/gpiochip0: the contacts can't be read (No such device)") == 1, "%s",
+          text);
     gpio_close();
 }
 
@@ -330,7 +336,8 @@ TEST(lines_that_cannot_be_set)
     CHECK_EQ_I64(gpio_write(&out), -EXH_E_IO);
     CHECK_EQ_I64(gpio_write(&out), -EXH_E_IO);
     text = listen_end();
-    CHECK(times(text, "/dev/gpiochip0: the outputs can't be set (Input/output error)") == 1, "%s", text);
+    CHECK(times(text, "/dev/gpiochip0: the outputs can't be set (Input/output error)") == 1, "%s",
+          text);
     gpio_close();
 }
 
@@ -379,7 +386,8 @@ TEST(low_when_the_program_ends)
                               SIGUSR2, SIGABRT, SIGSEGV, SIGBUS,  SIGFPE,  SIGILL};
     for (size_t i = 0; i < LEN(sig); i++) {
         const int status = ends_low(BY_SIGNAL, sig[i]);
-        CHECK(WIFSIGNALED(status) && WTERMSIG(status) == sig[i], "signal %d: status %x", sig[i], status);
+        CHECK(WIFSIGNALED(status) && WTERMSIG(status) == sig[i], "signal %d: status %x", sig[i],
+              status);
     }
     CHECK_EQ_I64(WEXITSTATUS(ends_low(BY_EXIT, 0)), 7);
 }
@@ -419,7 +427,8 @@ static void open_it(void)
     }
 }
 
-static void fall_after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
+static void fall_after(uint32_t tick, const struct exh_scene_in *in,
+                       const struct exh_drive_out *out)
 {
     const uint32_t at = fall.opened ? tick - fall.opened : 0;
     (void)in;
@@ -494,7 +503,8 @@ TEST(deadman_lets_go)
     CHECK(fall.enable[14] == 1 && fall.enable[17] == 0, "enable");
     for (int i = 1; i <= PAST; i++) {
         CHECK(fall.out[i].dac_raw[0] <= fall.out[i - 1].dac_raw[0], "tick %d: more", i);
-        CHECK(i < 16 || fall.out[i].dac_raw[0] == ZERO, "tick %d: code %u", i, fall.out[i].dac_raw[0]);
+        CHECK(i < 16 || fall.out[i].dac_raw[0] == ZERO, "tick %d: code %u", i,
+              fall.out[i].dac_raw[0]);
     }
 }
 
@@ -520,6 +530,7 @@ TEST(a_chip_that_is_gone)
         a_contact_closes_nothing, two_contacts, two_contacts_that_disagree, disagreement_in_ticks, \
         lines_that_cannot_be_read, enable_and_beat, safe_is_low, lines_that_cannot_be_set, \
         low_when_the_program_ends, low_when_it_is_stopped, closed_contacts_change_nothing, \
-        estop_cuts_in_its_tick, deadman_lets_go, no_start_with_an_open_contact, a_chip_that_is_gone
+        estop_cuts_in_its_tick, deadman_lets_go, no_start_with_an_open_contact, \
+        a_chip_that_is_gone
 
 #endif

@@ -10,8 +10,8 @@ static struct said s;
 static void refused(int status, const char *says, const char *const *word)
 {
     said(&s, dir, cli_drop, word);
-    CHECK(s.status == status && strstr(s.err, says) != NULL, "status %d, want %d and %s: %s", s.status,
-          status, says, s.err);
+    CHECK(s.status == status && strstr(s.err, says) != NULL, "status %d, want %d and %s: %s",
+          s.status, status, says, s.err);
     CHECK(s.out[0] == '\0', "it ran: %s", s.out);
 }
 
@@ -26,7 +26,8 @@ TEST(refusals)
             WORDS("drop", "--rate", "200", "--pace", "--sweep", "--gpio", LINES));
     refused(2, "--gpio: given twice",
             WORDS("drop", "--rate", "200", "--pace", "--gpio", LINES, "--gpio", LINES));
-    refused(2, "--gpio: estopp=4: there are", WORDS("drop", "--pace", "--gpio", "gpiochip0:estopp=4"));
+    refused(2, "--gpio: estopp=4: there are",
+            WORDS("drop", "--pace", "--gpio", "gpiochip0:estopp=4"));
     refused(3, "--gpio: this program was built without libgpiod: install libgpiod-dev",
             WORDS("drop", "--rate", "200", "--pace", "--gpio", LINES));
     said_clean(dir);

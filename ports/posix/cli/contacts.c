@@ -2,6 +2,11 @@
 
 #include "option.h"
 
+#include <time.h>
+
+/* Pull-downs that were just switched on, and a cable's capacitance: what is read before is anything. */
+#define SETTLE_MS 50
+
 int contacts_take(void *ctx, const char *text)
 {
     struct contacts *c = ctx;
@@ -21,19 +26,22 @@ int contacts_take(void *ctx, const char *text)
 int contacts_check(const struct contacts *c, int pace)
 {
     if (!c->given || pace) { return 0; }
-    cli_complain("--gpio: without --pace a run goes as fast as it can, and nobody's hand on a contact "
-                 "keeps up with that: give --pace, too");
+    cli_complain(
+        "--gpio: without --pace a run goes as fast as it can, and nobody's hand on a contact "
+        "keeps up with that: give --pace, too");
     return 2;
 }
 
 int contacts_begin(const struct contacts *c)
 {
+    struct timespec left = {0, SETTLE_MS * 1000000L};
     char said[GPIO_SAID_B];
     if (!c->given) { return 0; }
     if (gpio_open(&c->spec, said) < 0) {
         cli_complain("--gpio: %s", said);
         return 3;
     }
+    while (nanosleep(&left, &left) != 0) {}
     return 0;
 }
 

@@ -17,8 +17,9 @@ struct contacts {
     struct gpio_spec spec;
 };
 
-#define CONTACTS_ARG  "CHIP:LINES"
-#define CONTACTS_HELP "gpiochip0:estop=4,deadman=5,enable=6,alive=7: real lines, with --pace (docs/GPIO.md)"
+#define CONTACTS_ARG "CHIP:LINES"
+#define CONTACTS_HELP \
+    "gpiochip0:estop=4,deadman=5,enable=6,alive=7: real lines, with --pace (docs/GPIO.md)"
 
 /* Of a cli_call; ctx: struct contacts. */
 int contacts_take(void *ctx, const char *text);

@@ -72,8 +72,8 @@ static unsigned offsets(const struct gpiod_line_bulk *bulk, unsigned line[GPIO_L
     return bulk->num_lines;
 }
 
-int gpiod_line_request_bulk(struct gpiod_line_bulk *bulk,
-                            const struct gpiod_line_request_config *c, const int *default_vals)
+int gpiod_line_request_bulk(struct gpiod_line_bulk *bulk, const struct gpiod_line_request_config *c,
+                            const int *default_vals)
 {
     unsigned line[GPIO_LINES_MAX];
     const unsigned n = offsets(bulk, line);

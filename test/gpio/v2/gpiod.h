@@ -48,7 +48,8 @@ struct gpiod_line_request *gpiod_chip_request_lines(struct gpiod_chip *chip,
                                                     struct gpiod_request_config *req_cfg,
                                                     struct gpiod_line_config *line_cfg);
 void gpiod_line_request_release(struct gpiod_line_request *request);
-int gpiod_line_request_get_values(struct gpiod_line_request *request, enum gpiod_line_value *values);
+int gpiod_line_request_get_values(struct gpiod_line_request *request,
+                                  enum gpiod_line_value *values);
 int gpiod_line_request_set_values(struct gpiod_line_request *request,
                                   const enum gpiod_line_value *values);
 
