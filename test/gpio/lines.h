@@ -9,6 +9,7 @@
 #include "gpio.h"
 #include "posix.h"
 
+#include "cli/images.h"
 #include "drop/drop.h"
 #include "loop.h"
 
@@ -458,6 +459,7 @@ static int falls(int how)
     if (how == OPEN_BEFORE) { open_it(); }
     posix_configure(&c);
     exh_scene_drop.defaults();
+    CHECK_EQ_I64(images_give(NULL, &exh_scene_drop), 0);
     err = exh_loop(&exh_scene_drop, 1000, &hooks);
     CHECK(chip.line[ENABLE].level == 0 || how == CHIP_GONE, "enabled at the end");
     CHECK(chip.line[ALIVE].level == 0 || how == CHIP_GONE, "alive at the end");
