@@ -174,7 +174,7 @@ static void go_on_image(uint32_t values)
 {
     for (; values > 0 && image.at < image.n; values--) {
         struct exh_bytes c = exh_bytes_writer(value_at(image.at), 4);
-        int32_t v = scene->params->active[image.at];
+        int32_t v = scene->params->staged[image.at];
         exh_bytes_i32(&c, &v);
         image.crc = exh_crc32(image.crc, value_at(image.at), 4);
         image.at++;

@@ -157,27 +157,9 @@ void exh_log_frame_bytes(struct exh_bytes *c, const struct exh_scene *sc, struct
     for (uint32_t i = 0; i < n; i++) { exh_bytes_i32(c, &signal[i]); }
 }
 
-static int stages(struct exh_params *p, uint32_t i, int32_t value)
-{
-    uint16_t instance;
-    const struct exh_signal *row = exh_signal_at(p->table, i, &instance);
-    return exh_params_stage(p, row->id, instance, value) >= 0;
-}
-
 void exh_log_keyframe_bytes(struct exh_bytes *c, const struct exh_scene *sc)
 {
-    const uint32_t n = sc->params ? exh_signal_count(sc->params->table) : 0;
-    for (uint32_t i = 0; i < n; i++) {
-        int32_t v = sc->params->active[i];
-        exh_bytes_i32(c, &v);
-        if (c->mode == EXH_BYTES_READ && !stages(sc->params, i, v)) { exh_bytes_fail(c); }
-    }
-    if (c->mode == EXH_BYTES_READ && n > 0) {
-        for (uint32_t i = 0; !exh_bytes_ok(c) && i < n; i++) {
-            sc->params->staged[i] = sc->params->active[i];
-        }
-        exh_params_apply(sc->params);
-    }
+    if (sc->params) { exh_params_bytes(c, sc->params); }
     if (c->mode != EXH_BYTES_READ || exh_bytes_ok(c)) { sc->state(c); }
 }
 
@@ -186,7 +168,8 @@ void exh_log_mark(uint32_t tick, int32_t value)
     event(tick, (struct exh_event){EXH_EVENT_MARK, 0, 0, value});
 }
 
-/* Staged parameters become events at the tick they will first act in. */
+/* Staged parameters become events at the tick they will first act in; one on its way still may
+ * come again, and is staged anew with the value it has. */
 static void log_params(uint32_t tick, const struct exh_params *p)
 {
     const uint32_t n = exh_signal_count(p->table);

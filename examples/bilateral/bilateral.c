@@ -269,6 +269,7 @@ static int setup(struct exh_scene_board board)
     }
     err = calib_take(&calib, &params, &active.calib, (1u << BILATERAL_FINGERS) - 1u);
     if (err == 0) { err = bilateral_setup(&cfg, &state, &active, board, &calib); }
+    exh_params_slew(&params, &active.tune, board.T);
     exh_guard_seal(&guard, &cfg, sizeof cfg, &params);
     return err;
 }

@@ -43,6 +43,7 @@ struct bilateral_par {
     struct calib_par calib;
     struct glove_own_par glove_own;
     struct glove_sensor_par sensor[EXH_GLOVE_SENSORS];
+    struct exh_tune_par tune;
 };
 
 /* The paper's nine are these and time. */

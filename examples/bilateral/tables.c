@@ -98,6 +98,7 @@ static const struct exh_signal_group param_groups[] = {
     {calib_rows, CALIB_ROWS, 1},
     {glove_own_rows, GLOVE_OWN_ROWS, 1},
     {glove_cal_rows, GLOVE_CAL_ROWS, EXH_GLOVE_SENSORS},
+    {exh_tune_rows, EXH_TUNE_ROWS, 1},
 };
 const struct exh_signal_table bilateral_params = {param_groups, LEN(param_groups)};
 
@@ -119,7 +120,7 @@ EXH_STATIC_ASSERT(bilateral_par_matches_rows,
                            BILATERAL_MATERIALS * EXH_MATERIAL_ROWS + EXH_SAFETY_ROWS +
                            EXH_SUPPLY_ROWS +
                            EXH_GLOVE_ROWS + LEN(own_rows) + CALIB_ROWS + GLOVE_OWN_ROWS +
-                           GLOVE_CAL_ROWS * EXH_GLOVE_SENSORS));
+                           GLOVE_CAL_ROWS * EXH_GLOVE_SENSORS + EXH_TUNE_ROWS));
 EXH_STATIC_ASSERT(bilateral_signals_match_rows,
                   sizeof(struct bilateral_signals) ==
                       sizeof(int32_t) * (BILATERAL_FINGERS * (LEN(paper_rows) + LEN(more_rows)) +

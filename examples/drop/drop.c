@@ -1,7 +1,7 @@
 #include "drop.h"
 
 const struct exh_signal drop_own_rows[DROP_OWN_ROWS] = {
-    {0x8001, EXH_Q_POS, EXH_WHEN_ANY, -EXH_Q(1, 1, EXH_Q_POS), EXH_Q(1, 1, EXH_Q_POS),
+    {0x8001, EXH_Q_POS, EXH_WHEN_SLEWED, -EXH_Q(1, 1, EXH_Q_POS), EXH_Q(1, 1, EXH_Q_POS),
      EXH_Q(7, 100, EXH_Q_POS), "q_lim", "m", "virtual contact, from where the string starts"},
     {0x8002, EXH_Q_FORCE, EXH_WHEN_SETUP, EXH_Q(1, 10, EXH_Q_FORCE), EXH_Q(100, 1, EXH_Q_FORCE),
      EXH_Q(3339, 1000, EXH_Q_FORCE), "kf", "n_per_a", "string force per motor current, without a calibration"},
@@ -36,7 +36,7 @@ static const struct exh_signal_table signal_table = {signal_groups, DROP_SIGNAL_
 EXH_STATIC_ASSERT(drop_par_matches_rows,
                   PARAMS == EXH_QUAD_ROWS + EXH_VELOCITY_ROWS + EXH_CONTACT_ROWS +
                                 EXH_DRIVE_ROWS + EXH_TRACK_ROWS + EXH_WATCH_ROWS +
-                                EXH_SAFETY_ROWS + DROP_OWN_ROWS + CALIB_ROWS);
+                                EXH_SAFETY_ROWS + DROP_OWN_ROWS + CALIB_ROWS + EXH_TUNE_ROWS);
 
 int drop_setup(struct drop_cfg *cfg, const struct drop_par *par, struct exh_scene_board board,
                struct exh_scene_calib *calib)
@@ -153,6 +153,7 @@ static int setup(struct exh_scene_board board)
     state = power_on;
     err = calib_take(&calib, &params, &active.calib, 1u);
     if (err == 0) { err = drop_setup(&cfg, &active, board, &calib); }
+    exh_params_slew(&params, &active.tune, board.T);
     exh_guard_seal(&guard, &cfg, sizeof cfg, &params);
     return err;
 }

@@ -27,7 +27,7 @@ extern const struct exh_signal drop_more_rows[DROP_MORE_ROWS];
         {exh_contact_rows, EXH_CONTACT_ROWS, 1}, {exh_drive_rows, EXH_DRIVE_ROWS, 1}, \
         {exh_track_rows, EXH_TRACK_ROWS, 1}, {exh_watch_rows, EXH_WATCH_ROWS, 1}, \
         {exh_safety_rows, EXH_SAFETY_ROWS, 1}, {drop_own_rows, DROP_OWN_ROWS, 1}, \
-        {calib_rows, CALIB_ROWS, 1}
+        {calib_rows, CALIB_ROWS, 1}, {exh_tune_rows, EXH_TUNE_ROWS, 1}
 /* The first is the paper's, in its order: what a CSV holds. */
 #define DROP_SIGNAL_N 2
 #define DROP_SIGNAL_GROUPS {drop_paper_rows, DROP_PAPER_ROWS, 1}, {drop_more_rows, DROP_MORE_ROWS, 1}
@@ -43,6 +43,7 @@ struct drop_par {
     struct exh_safety_par safety;
     struct drop_own_par own;
     struct calib_par calib;
+    struct exh_tune_par tune;
 };
 
 /* The paper's signals, then ours, in the order of the table. */

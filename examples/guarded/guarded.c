@@ -88,6 +88,7 @@ static int setup(struct exh_scene_board board)
     static const struct guarded power_on;
     int err;
     state = power_on;
+    exh_params_slew(&params, &active.drop.tune, board.T);
     err = calib_take(&calib, &params, &active.drop.calib, 1u);
     return err == 0 ? guarded_setup(&cfg, &active, board, &calib) : err;
 }

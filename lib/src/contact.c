@@ -4,11 +4,11 @@
 #include "exhand/units.h"
 
 const struct exh_signal exh_contact_rows[EXH_CONTACT_ROWS] = {
-    {0x0401, EXH_Q_K, EXH_WHEN_ANY, 0, EXH_Q(1000000, 1, EXH_Q_K), EXH_Q(1500, 1, EXH_Q_K), "k",
+    {0x0401, EXH_Q_K, EXH_WHEN_SLEWED, 0, EXH_Q(1000000, 1, EXH_Q_K), EXH_Q(1500, 1, EXH_Q_K), "k",
      "n_per_m", "stiffness of the virtual wall"},
-    {0x0402, EXH_Q_B, EXH_WHEN_ANY, 0, EXH_Q(1000, 1, EXH_Q_B), 0, "b", "ns_per_m",
+    {0x0402, EXH_Q_B, EXH_WHEN_SLEWED, 0, EXH_Q(1000, 1, EXH_Q_B), 0, "b", "ns_per_m",
      "damping of the virtual wall"},
-    {0x0403, EXH_Q_FORCE, EXH_WHEN_ANY, 0, EXH_Q(20, 1, EXH_Q_FORCE),
+    {0x0403, EXH_Q_FORCE, EXH_WHEN_SLEWED, 0, EXH_Q(20, 1, EXH_Q_FORCE),
      EXH_Q(107, 1000, EXH_Q_FORCE), "f0", "n", "pull-back force while the string runs in"},
     {0x0404, EXH_Q_POS, EXH_WHEN_ANY, 0, EXH_Q(1, 100, EXH_Q_POS), EXH_Q(2, 10000, EXH_Q_POS),
      "f0_band", "m", "movement that reverses the pull-back force"},

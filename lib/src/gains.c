@@ -99,7 +99,7 @@ int exh_gains_stage(struct exh_params *p, const struct exh_gains_par *rule, uint
     const uint8_t pending = p->pending;
     const int err = exh_params_stage(p, id, instance, raw);
     if (err < 0 || (id != K_ID && id != B_ID) || pair_ok(p, rule, instance)) { return err; }
-    p->staged[i] = was;
+    (void)exh_params_stage(p, id, instance, was);
     p->pending = pending;
     return -EXH_E_GAINS;
 }
@@ -118,7 +118,5 @@ int exh_gains_staged(const struct exh_params *p, const struct exh_gains_par *rul
 
 void exh_gains_drop(struct exh_params *p)
 {
-    const uint32_t n = exh_signal_count(p->table);
-    for (uint32_t i = 0; i < n; i++) { p->staged[i] = p->active[i]; }
-    p->pending = 0;
+    exh_params_drop(p);
 }

@@ -161,7 +161,7 @@ static void other_version(uint8_t *buf, uint32_t size)
 {
     struct exh_bytes c = exh_bytes_writer(buf + size - 4, 4);
     uint32_t crc;
-    buf[3] = 2;
+    buf[3] = EXH_RECORD_VERSION + 1;
     crc = exh_crc32(0, buf, size - 4);
     exh_bytes_u32(&c, &crc);
 }

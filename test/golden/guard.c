@@ -48,6 +48,7 @@ static void any_change(struct still *s, struct golden_rng *r)
     }
     if (how == 2) { s->params.pending = 1; }
     if (how == 5 || how == 6) { s->params.pending ^= 1; }
+    if (how == 6 || how == 7) { s->params.moving ^= 1; }
 }
 
 void golden_guard(struct golden *g, uint32_t rate_Hz)
@@ -64,10 +65,11 @@ void golden_guard(struct golden *g, uint32_t rate_Hz)
         golden_put(g, s.flip);
         golden_put(g, s.off);
         golden_put(g, s.params.pending);
+        golden_put(g, s.params.moving);
         golden_put(g, exh_guard_step(&s.guard));
         golden_put(g, s.guard.at);
         golden_put(g, s.guard.crc);
-        golden_put(g, s.guard.word);
+        golden_put(g, s.params.at);
         golden_tick(g);
     }
 }

@@ -1,17 +1,17 @@
-/* signal: a table's CRC, and parameters staged, applied, saved and loaded. */
+/* signal: a table's CRC, and parameters staged, applied at once or little by little, saved and loaded. */
 #include "modules.h"
 
 #include "exhand/error.h"
 #include "exhand/signal.h"
 
 static const struct exh_signal some_rows[] = {
-    {0x7001, 10, EXH_WHEN_ANY, 0, 1024000000, 7, "some", "", ""},
+    {0x7001, 10, EXH_WHEN_SLEWED, 0, 1024000000, 7, "some", "", ""},
     {0x7002, 20, EXH_WHEN_SETUP, INT32_MIN, INT32_MAX, -1, "wide", "", ""},
     {0x7003, 0, EXH_WHEN_ANY, -5, 5, 0, "five", "", ""},
 };
 static const struct exh_signal more_rows[] = {
     {0x7101, 0, EXH_WHEN_SETUP, 1, 2, 1, "narrow", "", ""},
-    {0x7102, 30, EXH_WHEN_ANY, -1000, 1000, 0, "free", "", ""},
+    {0x7102, 30, EXH_WHEN_SLEWED, INT32_MIN, INT32_MAX, 0, "free", "", ""},
 };
 static const struct exh_signal_group groups[] = {{some_rows, 3, 2}, {more_rows, 2, 1}};
 const struct exh_signal_table golden_signals = {groups, 2};
@@ -40,6 +40,14 @@ static void change(uint8_t *image, struct golden_rng *r)
     exh_bytes_u32(&c, &crc);
 }
 
+static uint32_t keyframe_crc(struct exh_params *p)
+{
+    uint8_t b[8 * VALUES];
+    struct exh_bytes c = exh_bytes_writer(b, sizeof b);
+    exh_params_bytes(&c, p);
+    return exh_crc32(0, b, c.at);
+}
+
 static void one(struct golden *g, struct golden_rng *r, struct exh_params *p)
 {
     uint8_t image[IMAGE_B];
@@ -56,7 +64,7 @@ static void one(struct golden *g, struct golden_rng *r, struct exh_params *p)
     if (golden_draw(r, 0, 15) == 0) { instance++; }
     raw = raw_of(r, row);
     err = exh_params_stage(p, id, instance, (int32_t)raw);
-    done = golden_draw(r, 0, 3) == 0 ? exh_params_apply(p) : -1;
+    done = golden_draw(r, 0, 3) ? exh_params_apply(p) : -1;
     CHECK_EQ_I64(exh_params_save(p, image, sizeof image), IMAGE_B);
     golden_put(g, id);
     golden_put(g, instance);
@@ -71,6 +79,9 @@ static void one(struct golden *g, struct golden_rng *r, struct exh_params *p)
     golden_put(g, load);
     golden_put(g, load == 0 ? 0 : bad);
     golden_put(g, p->pending);
+    golden_put(g, p->moving);
+    golden_put(g, keyframe_crc(p));
+    golden_put(g, exh_params_look(p));
 }
 
 void golden_signal(struct golden *g, uint32_t rate_Hz)
@@ -84,7 +95,13 @@ void golden_signal(struct golden *g, uint32_t rate_Hz)
         if (g->tick == 0 || g->tick == GOLDEN_AGAIN) {
             exh_params_init(&p, &golden_signals, active, staged);
         }
-        p.locked = g->tick >> 2 & 1;
+        if (g->tick % 64 == 0) {
+            const struct exh_tune_par par = {(int32_t)golden_draw(&r, 0, 1000) >>
+                                             golden_draw(&r, 0, 10)};
+            exh_params_slew(&p, &par, golden_period(rate_Hz, g->tick));
+        }
+        p.locked = g->tick >> 3 & 1;
+        golden_put(g, p.shift);
         one(g, &r, &p);
         for (unsigned i = 0; i < VALUES; i++) { golden_put(g, active[i]); }
         golden_tick(g);

@@ -43,6 +43,7 @@ void late_assert_failed(const char *file, int line);
 #define ID_STEP  0x0201
 #define ID_Q_LIM 0x8001
 #define ID_ARM   0x0603
+#define ID_TUNE  0x1301
 #define ID_RAMP  0x0604
 #define ID_UNCALIBRATED 0x8903
 #define AWAY     EXH_Q(70, 1000, EXH_Q_POS)
@@ -173,6 +174,7 @@ static void run_until(const struct act *act, unsigned acts, uint32_t ticks, cons
     CHECK_EQ_I64(exh_params_stage(exh_scene_drop.params, ID_ARM, 0, 1), 0);
     CHECK_EQ_I64(exh_params_stage(exh_scene_drop.params, ID_RAMP, 0, 1), 0);
     CHECK_EQ_I64(exh_params_stage(exh_scene_drop.params, ID_UNCALIBRATED, 0, 1), 0);
+    CHECK_EQ_I64(exh_params_stage(exh_scene_drop.params, ID_TUNE, 0, 0), 0); /* all at once */
     CHECK_EQ_I64(late_loop(&exh_scene_drop, 1000, &hooks), want);
     CHECK_EQ_I64(exh_log_end(script.ticks), 0);
     CHECK_EQ_I64(fclose(c.log), 0);

@@ -189,10 +189,10 @@ static void saved(uint8_t *image)
     (void)exh_params_stage(&f.p, 0x7101, 0, -7);
     (void)exh_params_stage(&f.p, 0x7203, 0, 99);
     (void)exh_params_apply(&f.p);
-    (void)exh_params_stage(&f.p, 0x7101, 0, 1); /* staged only: not in the image */
+    (void)exh_params_stage(&f.p, 0x7101, 0, 1); /* not yet in effect, but wanted */
     CHECK_EQ_I64(exh_params_save(&f.p, image, IMAGE_B), IMAGE_B);
 }
-static const int32_t saved_values[VALUES] = {-7, 500, -1, 5, 99, -1, 5, 0};
+static const int32_t saved_values[VALUES] = {1, 500, -1, 5, 99, -1, 5, 0};
 
 TEST(image_layout)
 {
@@ -209,7 +209,7 @@ TEST(image_layout)
     exh_bytes_u32(&c, &crc);
     exh_bytes_i32(&c, &first);
     CHECK(version == EXH_PARAMS_VERSION && count == VALUES, "head");
-    CHECK(crc == exh_signal_crc(&table) && first == -7, "table CRC, first value");
+    CHECK(crc == exh_signal_crc(&table) && first == 1, "table CRC, first value");
     c.at = IMAGE_B - 4;
     exh_bytes_u32(&c, &crc);
     CHECK(crc == exh_crc32(0, image, IMAGE_B - 4), "CRC");
@@ -326,8 +326,9 @@ static const struct exh_signal_group lib_groups[] = {
     {exh_quad_rows, EXH_QUAD_ROWS, 1},         {exh_velocity_rows, EXH_VELOCITY_ROWS, 1},
     {exh_contact_rows, EXH_CONTACT_ROWS, 1},   {exh_drive_rows, EXH_DRIVE_ROWS, 1},
     {exh_safety_rows, EXH_SAFETY_ROWS, 1},     {exh_track_rows, EXH_TRACK_ROWS, 1},
+    {exh_tune_rows, EXH_TUNE_ROWS, 1},
 };
-static const struct exh_signal_table lib_table = {lib_groups, 6};
+static const struct exh_signal_table lib_table = {lib_groups, 7};
 
 static int is_name(const char *s)
 {
@@ -356,7 +357,7 @@ TEST(library_rows_are_well_formed)
               r->name);
         CHECK(r->min <= r->dflt, "%s: default below its range", r->name);
         CHECK(r->dflt <= r->max, "%s: default above its range", r->name);
-        CHECK(r->frac < 64 && r->when <= EXH_WHEN_ANY, "%s", r->name);
+        CHECK(r->frac < 64 && r->when <= EXH_WHEN_SLEWED, "%s", r->name);
         for (uint32_t k = 0; k < i; k++) {
             const struct exh_signal *o = exh_signal_at(&lib_table, k, NULL);
             CHECK(o->id != r->id, "%s and %s share id %04x", r->name, o->name, r->id);
@@ -374,6 +375,7 @@ TEST(library_rows_match_their_structs)
     CHECK_EQ_I64(sizeof(struct exh_drive_par), 4 * EXH_DRIVE_ROWS);
     CHECK_EQ_I64(sizeof(struct exh_safety_par), 4 * EXH_SAFETY_ROWS);
     CHECK_EQ_I64(sizeof(struct exh_track_par), 4 * EXH_TRACK_ROWS);
+    CHECK_EQ_I64(sizeof(struct exh_tune_par), 4 * EXH_TUNE_ROWS);
     CHECK_EQ_I64(exh_contact_rows[0].max, EXH_Q(1000000, 1, EXH_Q_K));
     CHECK_EQ_I64(exh_contact_rows[1].max, EXH_Q(1000, 1, EXH_Q_B));
     CHECK_EQ_I64(exh_contact_rows[2].max, EXH_Q(20, 1, EXH_Q_FORCE));

@@ -82,7 +82,7 @@ static struct exh_wire_rx met(uint32_t session, uint32_t seq)
 
 TEST(bytes_are_those_of_the_document)
 {
-    static const uint8_t param[] = {0x58, 0x57, 1, 4, 8,    0,    0x0D, 0xF0, 0xAD,
+    static const uint8_t param[] = {0x58, 0x57, 2, 4, 8,    0,    0x0D, 0xF0, 0xAD,
                                     0xBA, 2,    0, 0, 0,    0xE8, 3,    0,    0,
                                     0x01, 0x04, 3, 0, 0xF7, 0xFF, 0xFF, 0xFF};
     static const uint32_t sizes[] = {31, 236, 231, 30, 36};
@@ -149,7 +149,7 @@ TEST(values_that_cannot_be)
         {EXH_WIRE_PLANES, 18 + 8, 35, -EXH_E_CRC},
         {EXH_WIRE_PLANES, 18 + 9, 3, -EXH_E_CRC}, /* kind */
         {EXH_WIRE_PLANES, 18 + 9 + 2 * 40, 1, -EXH_E_CRC}, /* told of a finger not in the mask */
-        {EXH_WIRE_PARAM, 2, 2, -EXH_E_VERSION},
+        {EXH_WIRE_PARAM, 2, 1, -EXH_E_VERSION},
         {EXH_WIRE_PARAM, 3, 0, -EXH_E_UNKNOWN},
         {EXH_WIRE_PARAM, 3, 6, -EXH_E_UNKNOWN},
         {EXH_WIRE_PARAM, 3, 5, -EXH_E_CRC}, /* another type of another length */

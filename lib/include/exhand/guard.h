@@ -23,19 +23,18 @@ struct exh_guard {
     const uint8_t *area; /* the caller's: configuration made at set-up          */
     uint32_t len_B, at;  /* its bytes; those looked at in this round            */
     uint32_t want, crc;  /* CRC-32 when it was sealed; of this round so far     */
-    const struct exh_params *params; /* or NULL                                 */
-    uint32_t words, word; /* of them; the next to be looked at                  */
-    uint8_t broken;       /* 1: something differed; stays until sealed anew     */
+    struct exh_params *params; /* or NULL: it keeps its place in them itself    */
+    uint8_t broken;      /* 1: something differed; stays until sealed anew      */
 };
 
 /* At the end of set-up: the area as it is now, none of which changes until it is sealed anew, and the
  * parameters (NULL: none, as where they are constants in ROM, or within the area). */
-void exh_guard_seal(struct exh_guard *g, const void *area, size_t len_B,
-                    const struct exh_params *params);
+void exh_guard_seal(struct exh_guard *g, const void *area, size_t len_B, struct exh_params *params);
 
 /* Once a tick, at constant cost: the next EXH_GUARD_B bytes of the area, the CRC at the end of a round,
- * and the next EXH_GUARD_WORDS active parameters against the staged ones, while nothing is pending. So a change
- * of one byte is told within len_B / 8 ticks, twice that if it was just passed by. 1: something differs, or did. */
+ * and exh_params_look() at the next EXH_GUARD_WORDS parameters. So a change of one byte is told within
+ * len_B / 8 ticks, twice that if it was just passed by; one of a parameter within count / 2, twice that in
+ * mid-slew. 1: something differs, or did. */
 int exh_guard_step(struct exh_guard *g);
 
 /* --- self-test: known answers, at set-up; what is reckoned depends on nothing --- */

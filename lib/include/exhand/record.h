@@ -20,7 +20,7 @@
 extern "C" {
 #endif
 
-#define EXH_RECORD_VERSION 1
+#define EXH_RECORD_VERSION 2
 #define EXH_RECORD_SYNC 0x5845u
 #define EXH_RECORD_HEAD_B 14   /* bytes before a payload                         */
 #define EXH_RECORD_OVERHEAD 18 /* bytes around a payload                         */

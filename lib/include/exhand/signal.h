@@ -12,6 +12,9 @@
 #ifndef EXHAND_SIGNAL_H
 #define EXHAND_SIGNAL_H
 
+#include "exhand/bytes.h"
+#include "exhand/units.h"
+
 #include <stddef.h>
 #include <stdint.h>
 
@@ -22,7 +25,8 @@ extern "C" {
 enum exh_signal_when {
     EXH_WHEN_OUTPUT, /* not a parameter: read only                            */
     EXH_WHEN_SETUP,  /* before the loop starts; refused once locked           */
-    EXH_WHEN_ANY     /* between any two ticks                                 */
+    EXH_WHEN_ANY,    /* between any two ticks, at once                        */
+    EXH_WHEN_SLEWED  /* likewise, but little by little: force hangs on it     */
 };
 
 struct exh_signal {
@@ -64,21 +68,39 @@ int32_t exh_signal_find(const struct exh_signal_table *t, uint16_t id, uint16_t 
  * give the same meaning to the same value array. */
 uint32_t exh_signal_crc(const struct exh_signal_table *t);
 
-/* A scene's parameters. The caller owns both arrays, exh_signal_count() long;
- * the active one is the scene's parameter struct. */
+/* A scene's parameters. The caller owns both arrays, exh_signal_count() long; the active one is the
+ * scene's parameter struct, the staged one what is wanted. Zero, or as exh_params_init() leaves it; both
+ * arrays are written by the functions below only, or before exh_params_seal(). */
 struct exh_params {
     const struct exh_signal_table *table;
     int32_t *active;
     int32_t *staged;
     uint8_t locked;  /* set-up values are refused from now on                 */
-    uint8_t pending; /* something is staged and not yet applied               */
+    uint8_t pending; /* something was staged since the last apply             */
+    uint8_t moving;  /* a slewed value is not yet where it is wanted          */
+    uint8_t shift;   /* a slewed value goes by 2^-shift of what is left       */
+    uint32_t count;  /* exh_signal_count()                                    */
+    uint32_t sum, passed, at; /* exh_params_look(): of all, of those looked at, the next */
 };
 
 #define EXH_PARAMS_VERSION 1
 
-/* Defaults into both arrays, unlocked. */
-void exh_params_init(struct exh_params *p, const struct exh_signal_table *table,
-                     int32_t *active, int32_t *staged);
+/* How fast slewed values go. Set-up only. */
+struct exh_tune_par {
+    int32_t time_ms; /* 0..1000 ms; 0: at once                                 */
+};
+#define EXH_TUNE_ROWS 1
+extern const struct exh_signal exh_tune_rows[EXH_TUNE_ROWS];
+#define EXH_TUNE_SHIFT_MAX 15
+
+/* Defaults into both arrays, unlocked, shift 0. */
+void exh_params_init(struct exh_params *p, const struct exh_signal_table *table, int32_t *active,
+                     int32_t *staged);
+
+/* At the end of set-up, in scenes that want it: the least shift with 2^shift * T >= par->time_ms, at most
+ * EXH_TUNE_SHIFT_MAX. So in a tick a value goes by no more than T/time of what is left (and 1 LSB), and
+ * 63 % of the way takes time to 2 * time. A scene that never calls it changes at once. */
+void exh_params_slew(struct exh_params *p, const struct exh_tune_par *par, struct exh_period T);
 
 /* Stages one raw value. -EXH_E_UNKNOWN, -EXH_E_RANGE (outside min..max), or
  * -EXH_E_STATE (an output; another set-up value while locked, the same is
@@ -89,11 +111,33 @@ int exh_params_stage(struct exh_params *p, uint16_t id, uint16_t instance, int32
 int exh_params_stage_at(struct exh_params *p, uint32_t i, int32_t raw);
 int exh_params_may(const struct exh_params *p, uint32_t i, int32_t raw);
 
-/* Copies what is staged; call between ticks only. 1 if anything was pending. */
+/* One step from `now` towards `goal`: by 2^-shift of what is left, rounded up to whole LSB. shift 0..31.
+ * Never beyond; at the goal after at most 2^shift * (1 + 0.7 * (32 - shift)) + 1 steps, from anywhere;
+ * from d LSB away, d > 2^shift, after at most 2^shift * (1 + ln(d / 2^shift)) + 1. */
+int32_t exh_params_toward(int32_t now, int32_t goal, unsigned shift);
+
+/* Makes active what is staged; call between ticks only, once. Slewed values go one step while locked, and
+ * at once before. 1 if there was anything to do: while 1 comes back its cost is one of two constants of the
+ * table, that of what is just staged (all values), and that of what is on its way (slewed rows). */
 int exh_params_apply(struct exh_params *p);
 
+/* Wanted becomes what is active now: what was staged, or is on its way, stops here. */
+void exh_params_drop(struct exh_params *p);
+
+/* Both arrays through a cursor, as a keyframe has them: every value as it is active, a slewed one followed by
+ * what is wanted. Read: all of them are checked as exh_params_stage() does, and taken whole; else the
+ * cursor is not ok and nothing is. */
+void exh_params_bytes(struct exh_bytes *c, struct exh_params *p);
+
+/* Redundancy, for a guard (exhand/guard.h): seal takes both arrays as they are now; look then looks at the
+ * next value, in turn. 1: it is another one than was staged or applied (while nothing is on its way), or at
+ * the end of a round, the sum over both arrays is not what the changes made of it. A change of one
+ * bit in either array is told within two rounds, in mid-slew too; no change through these functions is. */
+void exh_params_seal(struct exh_params *p);
+int exh_params_look(struct exh_params *p);
+
 /* Image: "EXHP", version u16, count u16, table CRC u32, values i32…, CRC u32,
- * little-endian. Saves the active values. Bytes written, or -EXH_E_SHORT. */
+ * little-endian. Saves what is wanted: the staged values. Bytes written, or -EXH_E_SHORT. */
 int32_t exh_params_save(const struct exh_params *p, void *buf, size_t cap_B);
 
 /* Stages a whole image or nothing. -EXH_E_SHORT, -EXH_E_VERSION (other version or

@@ -224,7 +224,7 @@ static void place_guard(const struct faults_memory *m, const struct faults_what 
     if (w->place == FAULTS_ANYWHERE) { return; }
     for (uint32_t k = 0; k < 2 * (m->area_B + m->pars); k++) {
         if (w->source == FAULTS_CAL ? m->guard->at == part * EXH_GUARD_B % m->area_B
-                                    : m->guard->word == to * EXH_GUARD_WORDS) {
+                                    : m->guard->params->at == to * EXH_GUARD_WORDS) {
             return;
         }
         (void)exh_guard_step(m->guard);

@@ -12,7 +12,9 @@ AREA = 40
 class Guard:
     def __init__(self, area, params):
         self.area, self.params, self.want = area, params, zlib.crc32(bytes(area))
-        self.at = self.crc = self.word = self.broken = 0
+        self.at = self.crc = self.broken = 0
+        if params:
+            params.at, params.passed, self.sum = 0, 0, params.sum(len(params.active))
 
     def step(self):
         if self.area:
@@ -24,8 +26,12 @@ class Guard:
         if self.params:
             p = self.params
             for _ in range(2):
-                self.broken |= p.active[self.word] != p.staged[self.word] and not p.pending
-                self.word = (self.word + 1) % len(p.active)
+                i, p.at = p.at, p.at + 1
+                self.broken |= p.active[i] != p.staged[i] and not p.pending and not p.moving
+                p.passed += (4 * i + 1) * p.active[i] + (4 * i + 3) * p.staged[i]
+                if p.at == len(p.active):
+                    self.broken |= p.passed & M32 != self.sum
+                    p.at = p.passed = 0
         return int(self.broken)
 
 
@@ -59,7 +65,9 @@ def guard(rate):
             params.pending = 1
         if how in (5, 6):
             params.pending ^= 1
-        yield (len(g.area), flip, off, params.pending, g.step(), g.at, g.crc, g.word), b""
+        if how in (6, 7):
+            params.moving ^= 1
+        yield (len(g.area), flip, off, params.pending, params.moving, g.step(), g.at, g.crc, params.at), b""
 
 
 # --- supply ---
@@ -133,5 +141,5 @@ def supply(rate):
         yield (raw, missed, err, *s.within, s.ticks, s.step(raw, missed)), s.state()
 
 
-MODULES = {"guard": ("len flip off pending | broken at crc word", guard),
+MODULES = {"guard": ("len flip off pending moving | broken at crc word", guard),
            "supply": ("raw missed err | min_raw max_raw ticks fault", supply)}

@@ -1,17 +1,17 @@
-"""signal: a table's CRC, and parameters staged, applied, saved and loaded."""
+"""signal: a table's CRC, and parameters staged, applied at once or little by little, saved and loaded."""
 
 import zlib
 from struct import pack
 
-from .num import AGAIN, RANGE, STATE, TICKS, UNKNOWN, Rng
+from .num import AGAIN, RANGE, STATE, TICKS, UNKNOWN, Rng, period
 
-SETUP, ANY = 1, 2
+SETUP, ANY, SLEWED = 1, 2, 3
 
 # (id, frac, when, min, max, default) of each row, and how many instances of them.
 GROUPS = (
-    (((0x7001, 10, ANY, 0, 1024000000, 7), (0x7002, 20, SETUP, -(1 << 31), (1 << 31) - 1, -1),
+    (((0x7001, 10, SLEWED, 0, 1024000000, 7), (0x7002, 20, SETUP, -(1 << 31), (1 << 31) - 1, -1),
       (0x7003, 0, ANY, -5, 5, 0)), 2),
-    (((0x7101, 0, SETUP, 1, 2, 1), (0x7102, 30, ANY, -1000, 1000, 0)), 1),
+    (((0x7101, 0, SETUP, 1, 2, 1), (0x7102, 30, SLEWED, -(1 << 31), (1 << 31) - 1, 0)), 1),
 )
 
 
@@ -30,7 +30,12 @@ TABLE_CRC = table_crc()
 class Params:
     def __init__(self):
         self.active = [row[5] for row, _ in VALUES]
-        self.staged, self.locked, self.pending = self.active[:], 0, 0
+        self.staged, self.locked, self.pending, self.moving = self.active[:], 0, 0, 0
+        self.shift = self.at = 0
+
+    def slew(self, ms, T):
+        """The first power of two of ticks that takes no less than so long."""
+        self.shift = next(s for s in range(16) if 1000 * T[0] << s >= ms * T[1] or s == 15)
 
     def may(self, i, raw):
         """0 or the error of value i becoming raw."""
@@ -51,13 +56,26 @@ class Params:
         return -UNKNOWN
 
     def apply(self):
-        if self.pending:
-            self.active = self.staged[:]
-        done, self.pending = self.pending, 0
+        done = self.pending | self.moving
+        if done:
+            for i, (row, _) in enumerate(VALUES):
+                left = self.staged[i] - self.active[i]
+                if row[2] == SLEWED and self.locked:
+                    part = -(-abs(left) // (1 << self.shift))
+                    left = part if left > 0 else -part
+                self.active[i] += left
+            self.pending, self.moving = 0, int(self.active != self.staged)
         return done
 
+    def keyframe(self):
+        return b"".join(pack("<i", self.active[i]) + (pack("<i", self.staged[i]) if row[2] == SLEWED else b"")
+                        for i, (row, _) in enumerate(VALUES))
+
+    def sum(self, n):
+        return sum((4 * i + 1) * self.active[i] + (4 * i + 3) * self.staged[i] for i in range(n)) & 0xFFFFFFFF
+
     def save(self):
-        b = b"EXHP" + pack("<HHI", 1, len(VALUES), TABLE_CRC) + pack("<%di" % len(VALUES), *self.active)
+        b = b"EXHP" + pack("<HHI", 1, len(VALUES), TABLE_CRC) + pack("<%di" % len(VALUES), *self.staged)
         return b + pack("<I", zlib.crc32(b))
 
     def load(self, values):
@@ -75,7 +93,10 @@ def signal(rate):
     for k in range(TICKS):
         if k in (0, AGAIN):
             p = Params()
-        p.locked = k >> 2 & 1
+        if k % 64 == 0:
+            ms = rng.draw(0, 1000)
+            p.slew(ms >> rng.draw(0, 10), period(rate, k))
+        p.locked = k >> 3 & 1
         row, instance = VALUES[rng.draw(0, len(VALUES) - 1)]
         ident = row[0] + (1 if rng.draw(0, 15) == 0 else 0)
         instance += 1 if rng.draw(0, 15) == 0 else 0
@@ -83,18 +104,19 @@ def signal(rate):
         if how > 0:
             raw = (row[3], row[4], row[5])[how - 1]
         err = p.stage(ident, instance, raw)
-        done = p.apply() if rng.draw(0, 3) == 0 else -1
+        done = p.apply() if rng.draw(0, 3) else -1
         saved = p.save()
         load = bad = 0
         if rng.draw(0, 3) == 0:  # its own image, one value changed
-            values = p.active[:]
+            values = p.staged[:]
             i = rng.draw(0, len(VALUES) - 1)
             values[i] = rng.draw(-2000, 2000)
             load, bad = p.load(values)
-        yield (ident, instance, raw, err, done, zlib.crc32(saved[:-1]), load, bad, p.pending, *p.active), b""
+        yield (p.shift, ident, instance, raw, err, done, zlib.crc32(saved[:-1]), load, bad, p.pending, p.moving,
+               zlib.crc32(p.keyframe()), 0, *p.active), b""
 
 
-COLUMNS = "id instance raw | stage apply image_crc load load_at pending " + " ".join(
+COLUMNS = "shift id instance raw | stage apply image_crc load load_at pending moving keyframe_crc look " + " ".join(
     "v%d" % i for i in range(len(VALUES)))
 
 MODULES = {"signal": (COLUMNS, signal)}

@@ -1,0 +1,259 @@
+#include "exhand/signal.h"
+
+#include "exhand/error.h"
+#include "exhand/fix.h"
+
+#define IMAGE_MAGIC  0x50485845u /* "EXHP" */
+#define IMAGE_HEAD_B 12u
+#define IMAGE_CRC_B  4u
+#define TIME_MAX_MS  1000
+
+const struct exh_signal exh_tune_rows[EXH_TUNE_ROWS] = {
+    {0x1301, 0, EXH_WHEN_SETUP, 0, TIME_MAX_MS, 20, "tune_time", "ms",
+     "least time a slewed parameter takes for 63 % of its way; 0: at once"},
+};
+
+/* --- the two arrays, and the sum over both --- */
+
+/* Odd and each another, so that no one bit of either array leaves the sum as it is. */
+static uint32_t term(const struct exh_params *p, const int32_t *array, uint32_t i, uint32_t value)
+{
+    return (4 * i + (array == p->active ? 1 : 3)) * value;
+}
+
+/* By difference, so a value damaged before is not forgiven. */
+static void put(struct exh_params *p, int32_t *array, uint32_t i, int32_t v)
+{
+    const uint32_t more = term(p, array, i, (uint32_t)v - (uint32_t)array[i]);
+    p->sum += more;
+    p->passed += i < p->at ? more : 0;
+    array[i] = v;
+}
+
+static uint32_t both(const struct exh_params *p, uint32_t i)
+{
+    return term(p, p->active, i, (uint32_t)p->active[i]) +
+           term(p, p->staged, i, (uint32_t)p->staged[i]);
+}
+
+void exh_params_seal(struct exh_params *p)
+{
+    p->sum = p->passed = p->at = 0;
+    for (uint32_t i = 0; i < p->count; i++) { p->sum += both(p, i); }
+}
+
+int exh_params_look(struct exh_params *p)
+{
+    const uint32_t i = p->at < p->count ? p->at : 0;
+    int bad = p->active[i] != p->staged[i] && !p->pending && !p->moving;
+    p->passed += both(p, i);
+    p->at = i + 1;
+    if (p->at == p->count) {
+        bad |= p->passed != p->sum;
+        p->at = p->passed = 0;
+    }
+    return bad;
+}
+
+void exh_params_init(struct exh_params *p, const struct exh_signal_table *table, int32_t *active,
+                     int32_t *staged)
+{
+    const struct exh_params none = {0};
+    *p = none;
+    p->table = table;
+    p->active = active;
+    p->staged = staged;
+    p->count = exh_signal_count(table);
+    for (uint32_t i = 0; i < p->count; i++) {
+        active[i] = exh_signal_at(table, i, NULL)->dflt;
+        staged[i] = active[i];
+    }
+    exh_params_seal(p);
+}
+
+/* --- staged and applied --- */
+
+void exh_params_slew(struct exh_params *p, const struct exh_tune_par *par, struct exh_period T)
+{
+    const int64_t time = (int64_t)exh_clamp(par->time_ms, 0, TIME_MAX_MS) * T.den;
+    int64_t taken = (int64_t)T.num * 1000; /* ms, times den: below 2^42 */
+    p->shift = 0;
+    for (; taken < time && p->shift < EXH_TUNE_SHIFT_MAX; taken *= 2) { p->shift++; }
+}
+
+int exh_params_may(const struct exh_params *p, uint32_t i, int32_t raw)
+{
+    const struct exh_signal *row = exh_signal_at(p->table, i, NULL);
+    if (row == NULL) { return -EXH_E_UNKNOWN; }
+    if (row->when == EXH_WHEN_OUTPUT) { return -EXH_E_STATE; }
+    if (raw < row->min || raw > row->max) { return -EXH_E_RANGE; }
+    if (p->locked && row->when == EXH_WHEN_SETUP && raw != p->staged[i]) { return -EXH_E_STATE; }
+    return 0;
+}
+
+int exh_params_stage(struct exh_params *p, uint16_t id, uint16_t instance, int32_t raw)
+{
+    const int32_t i = exh_signal_find(p->table, id, instance);
+    return i < 0 ? (int)i : exh_params_stage_at(p, (uint32_t)i, raw);
+}
+
+int exh_params_stage_at(struct exh_params *p, uint32_t i, int32_t raw)
+{
+    const int err = exh_params_may(p, i, raw);
+    if (err < 0) { return err; }
+    put(p, p->staged, i, raw);
+    p->pending = 1;
+    return 0;
+}
+
+int32_t exh_params_toward(int32_t now, int32_t goal, unsigned shift)
+{
+    const uint32_t up = (uint32_t)goal - (uint32_t)now;
+    const uint32_t left = goal < now ? 0u - up : up;
+    const uint32_t part = (left >> shift) + ((left & ((UINT32_C(1) << shift) - 1)) != 0);
+    return exh_from_u32((uint32_t)now + (goal < now ? 0u - part : part));
+}
+
+/* The values of one row, the first of which is at i. */
+static void apply_row(struct exh_params *p, const struct exh_signal_group *g, uint32_t i,
+                      unsigned shift)
+{
+    for (uint16_t k = 0; k < g->instances; k++, i += g->rows) {
+        const int32_t next = exh_params_toward(p->active[i], p->staged[i], shift);
+        put(p, p->active, i, next);
+        p->moving |= next != p->staged[i];
+    }
+}
+
+int exh_params_apply(struct exh_params *p)
+{
+    const int all = p->pending;
+    uint32_t first = 0; /* value of this group */
+    if (!p->pending && !p->moving) { return 0; }
+    p->pending = p->moving = 0;
+    for (uint16_t n = 0; n < p->table->groups; n++) {
+        const struct exh_signal_group *g = &p->table->group[n];
+        for (uint16_t r = 0; r < g->rows; r++) {
+            const int slewed = g->row[r].when == EXH_WHEN_SLEWED;
+            if (!all && !slewed) { continue; }
+            apply_row(p, g, first + r, slewed && p->locked ? p->shift & 31u : 0);
+        }
+        first += (uint32_t)g->rows * g->instances;
+    }
+    return 1;
+}
+
+void exh_params_drop(struct exh_params *p)
+{
+    for (uint32_t i = 0; i < p->count; i++) { put(p, p->staged, i, p->active[i]); }
+    p->pending = p->moving = 0;
+}
+
+/* --- keyframe --- */
+
+/* 1: what is read may be; it is taken only if `take`. */
+static int value_bytes(struct exh_bytes *c, struct exh_params *p, uint32_t i, int take)
+{
+    const int slewed = exh_signal_at(p->table, i, NULL)->when == EXH_WHEN_SLEWED;
+    int32_t is = p->active[i], wanted = p->staged[i];
+    exh_bytes_i32(c, &is);
+    if (slewed) { exh_bytes_i32(c, &wanted); }
+    if (c->mode != EXH_BYTES_READ) { return 1; }
+    if (!slewed) { wanted = is; }
+    if (take) {
+        put(p, p->active, i, is);
+        put(p, p->staged, i, wanted);
+        p->moving |= is != wanted;
+    }
+    return exh_params_may(p, i, is) == 0 && exh_params_may(p, i, wanted) == 0;
+}
+
+void exh_params_bytes(struct exh_bytes *c, struct exh_params *p)
+{
+    struct exh_bytes ahead = *c;
+    int ok = 1;
+    for (uint32_t i = 0; i < p->count; i++) { ok &= value_bytes(&ahead, p, i, 0); }
+    if (c->mode == EXH_BYTES_READ && (!ok || !exh_bytes_ok(&ahead))) {
+        exh_bytes_fail(c);
+        return;
+    }
+    if (c->mode == EXH_BYTES_READ) {
+        p->pending = p->moving = 0;
+        for (uint32_t i = 0; i < p->count; i++) { (void)value_bytes(c, p, i, 1); }
+    }
+    *c = ahead;
+}
+
+/* --- image --- */
+
+/* The fixed head of an image. */
+struct head {
+    uint32_t magic, table_crc;
+    uint16_t version, count;
+};
+
+static void head_bytes(struct exh_bytes *c, struct head *h)
+{
+    exh_bytes_u32(c, &h->magic);
+    exh_bytes_u16(c, &h->version);
+    exh_bytes_u16(c, &h->count);
+    exh_bytes_u32(c, &h->table_crc);
+}
+
+int32_t exh_params_save(const struct exh_params *p, void *buf, size_t cap_B)
+{
+    struct head h = {IMAGE_MAGIC, exh_signal_crc(p->table), EXH_PARAMS_VERSION, 0};
+    struct exh_bytes c = exh_bytes_writer(buf, cap_B);
+    uint32_t crc;
+    EXH_ASSERT(exh_signal_count(p->table) <= UINT16_MAX);
+    h.count = (uint16_t)exh_signal_count(p->table);
+    head_bytes(&c, &h);
+    for (uint32_t i = 0; i < h.count; i++) {
+        int32_t v = p->staged[i];
+        exh_bytes_i32(&c, &v);
+    }
+    crc = exh_bytes_ok(&c) ? exh_crc32(0, buf, c.at) : 0;
+    exh_bytes_u32(&c, &crc);
+    return exh_bytes_ok(&c) ? (int32_t)c.at : -EXH_E_SHORT;
+}
+
+int exh_params_load(struct exh_params *p, const void *buf, size_t len_B, uint32_t *bad)
+{
+    const uint32_t n = exh_signal_count(p->table);
+    const size_t body_B = IMAGE_HEAD_B + 4 * (size_t)n;
+    struct exh_bytes c = exh_bytes_reader(buf, len_B);
+    struct exh_bytes tail;
+    struct head h;
+    uint32_t crc = 0;
+
+    if (len_B < IMAGE_HEAD_B) { return -EXH_E_SHORT; }
+    head_bytes(&c, &h);
+    if (h.magic != IMAGE_MAGIC || h.version != EXH_PARAMS_VERSION || h.count != n ||
+        h.table_crc != exh_signal_crc(p->table)) {
+        return -EXH_E_VERSION;
+    }
+    if (len_B < body_B + IMAGE_CRC_B) { return -EXH_E_SHORT; }
+    tail = exh_bytes_reader((const uint8_t *)buf + body_B, IMAGE_CRC_B);
+    exh_bytes_u32(&tail, &crc);
+    if (crc != exh_crc32(0, buf, body_B)) { return -EXH_E_CRC; }
+
+    /* Two passes: an image is taken whole or not at all. */
+    for (int pass = 0; pass < 2; pass++) {
+        c = exh_bytes_reader((const uint8_t *)buf + IMAGE_HEAD_B, 4 * (size_t)n);
+        for (uint32_t i = 0; i < n; i++) {
+            int32_t v = 0;
+            exh_bytes_i32(&c, &v);
+            if (pass == 0) {
+                const int err = exh_params_may(p, i, v);
+                if (err < 0) {
+                    if (bad != NULL) { *bad = i; }
+                    return err;
+                }
+            } else {
+                put(p, p->staged, i, v);
+            }
+        }
+    }
+    p->pending = 1;
+    return 0;
+}

@@ -1,0 +1,212 @@
+/* Parameters that go little by little (signal.h): where they are in each tick, that they end where they are
+ * wanted, in mid-way saved, restored and guarded. */
+#include "exhand/error.h"
+#include "exhand/fix.h"
+#include "exhand/guard.h"
+#include "exhand/signal.h"
+
+#include "check.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+#define LEN(a) (sizeof(a) / sizeof((a)[0]))
+
+static const struct exh_signal rows[] = {
+    {0x7101, 0, EXH_WHEN_SLEWED, INT32_MIN, INT32_MAX, 0, "force", "n", "little by little"},
+    {0x7102, 0, EXH_WHEN_ANY, -10, 10, 3, "bit", "", "at once"},
+    {0x7103, 0, EXH_WHEN_SETUP, 0, 9, 5, "fixed", "", "before the loop"},
+};
+static const struct exh_signal other[] = {
+    {0x7201, 0, EXH_WHEN_SLEWED, -1000, 1000, 100, "gain", "", "little by little"},
+};
+static const struct exh_signal_group groups[] = {{rows, LEN(rows), 2}, {other, 1, 1}};
+static const struct exh_signal_table table = {groups, 2};
+#define VALUES 7
+#define GAIN   6
+
+static struct exh_params p;
+static int32_t active[VALUES], staged[VALUES];
+
+static void start(unsigned shift)
+{
+    exh_params_init(&p, &table, active, staged);
+    p.shift = (uint8_t)shift;
+    p.locked = 1;
+}
+
+TEST(steps_worked_out)
+{
+    static const struct {
+        unsigned shift;
+        int32_t now, goal, next;
+    } row[] = {
+        {0, 3, 100, 100},   {0, INT32_MIN, INT32_MAX, INT32_MAX},
+        {3, 0, 80, 10},     {3, 0, 81, 11},
+        {3, 0, -80, -10},   {3, 0, -81, -11}, /* away from zero, both ways */
+        {3, 0, 1, 1},       {3, 0, -1, -1},
+        {15, 7, 7, 7},      {31, INT32_MIN, INT32_MAX, INT32_MIN + 2},
+        {1, INT32_MIN, INT32_MAX, 0}, {1, INT32_MAX, INT32_MIN, -1},
+        {31, INT32_MAX, INT32_MIN, INT32_MAX - 2},
+    };
+    for (size_t i = 0; i < LEN(row); i++) {
+        const int32_t next = exh_params_toward(row[i].now, row[i].goal, row[i].shift);
+        CHECK(next == row[i].next, "row %zu: %" PRId32, i, next);
+    }
+}
+
+/* A force goes on its way, a bit is there at once. */
+TEST(slewed_and_not)
+{
+    start(2);
+    CHECK_EQ_I64(exh_params_stage(&p, 0x7201, 0, 200), 0);
+    CHECK_EQ_I64(exh_params_stage(&p, 0x7102, 1, 7), 0);
+    CHECK_EQ_I64(exh_params_apply(&p), 1);
+    CHECK_EQ_I64(active[4], 7);
+    CHECK_EQ_I64(active[GAIN], 125);
+    CHECK_EQ_I64(p.moving, 1);
+    CHECK_EQ_I64(exh_params_apply(&p), 1);
+    CHECK_EQ_I64(active[GAIN], 144); /* 18.75 of 75 */
+    CHECK_EQ_I64(exh_params_stage(&p, 0x7201, 0, -100), 0); /* back again, from where it is */
+    CHECK_EQ_I64(exh_params_apply(&p), 1);
+    CHECK_EQ_I64(active[GAIN], 83);
+    CHECK_EQ_I64(staged[GAIN], -100);
+    exh_params_drop(&p);
+    CHECK_EQ_I64(staged[GAIN], 83);
+    CHECK_EQ_I64(exh_params_apply(&p), 0);
+}
+
+TEST(before_the_loop_at_once)
+{
+    start(5);
+    p.locked = 0;
+    CHECK_EQ_I64(exh_params_stage(&p, 0x7201, 0, 200), 0);
+    CHECK_EQ_I64(exh_params_apply(&p), 1);
+    CHECK_EQ_I64(active[GAIN], 200);
+    CHECK_EQ_I64(exh_params_apply(&p), 0);
+}
+
+TEST(shift_of_a_time)
+{
+    static const struct {
+        int32_t ms;
+        struct exh_period T;
+        unsigned shift;
+    } row[] = {
+        {20, {1, 2000}, 6}, /* 64 ticks are 32 ms */
+        {16, {1, 2000}, 5},   {20, {1, 90}, 1},     {11, {1, 90}, 0},        {12, {1, 90}, 1},
+        {0, {1, 20000}, 0},   {1, {1, 1000}, 0},    {1000, {1, 20000}, 15},  {1000, {1, 20020}, 15},
+        {1000, {1, 1}, 0},    {-5, {1, 2000}, 0},   {INT32_MAX, {1, 20000}, 15},
+        {1000, {1, 4294967295u}, 15}, {1000, {4294967295u, 1}, 0}, {20, {596, 1193182}, 6},
+        {512, {1, 2000}, 10}, {513, {1, 2000}, 11},
+    };
+    for (size_t i = 0; i < LEN(row); i++) {
+        const struct exh_tune_par par = {row[i].ms};
+        exh_params_slew(&p, &par, row[i].T);
+        CHECK(p.shift == row[i].shift, "row %zu: %u", i, p.shift);
+    }
+}
+
+/* What is wanted, not what is passed on the way. */
+TEST(image_in_mid_way)
+{
+    uint8_t image[16 + 4 * VALUES];
+    start(3);
+    CHECK_EQ_I64(exh_params_stage(&p, 0x7201, 0, 900), 0);
+    (void)exh_params_apply(&p);
+    CHECK_EQ_I64(active[GAIN], 200);
+    CHECK_EQ_I64(exh_params_save(&p, image, sizeof image), sizeof image);
+    start(3);
+    CHECK_EQ_I64(exh_params_load(&p, image, sizeof image, NULL), 0);
+    (void)exh_params_apply(&p);
+    CHECK_EQ_I64(active[GAIN], 200);
+    CHECK_EQ_I64(staged[GAIN], 900);
+}
+
+/* From a keyframe in mid-way it goes on with the same values. */
+TEST(keyframe_in_mid_way)
+{
+    for (int at = 0; at < 40; at++) {
+        uint8_t b[8 * VALUES];
+        int32_t then[60], k;
+        struct exh_bytes c = exh_bytes_writer(b, sizeof b);
+        start(2);
+        CHECK_EQ_I64(exh_params_stage(&p, 0x7101, 1, -1000000), 0);
+        CHECK_EQ_I64(exh_params_stage(&p, 0x7201, 0, 900), 0);
+        for (k = 0; k < at; k++) { (void)exh_params_apply(&p); }
+        exh_params_bytes(&c, &p);
+        CHECK(exh_bytes_ok(&c) && c.at == 4 * (VALUES + 3), "%u bytes", (unsigned)c.at);
+        for (k = 0; k < 60; k++) {
+            (void)exh_params_apply(&p);
+            then[k] = active[3] ^ active[GAIN];
+        }
+        start(2);
+        c = exh_bytes_reader(b, 4 * (VALUES + 3));
+        exh_params_bytes(&c, &p);
+        CHECK(exh_bytes_ok(&c) && c.at == 4 * (VALUES + 3), "read");
+        for (k = 0; k < 60; k++) {
+            (void)exh_params_apply(&p);
+            CHECK((active[3] ^ active[GAIN]) == then[k], "from %d on, tick %" PRId32, at, k);
+        }
+        CHECK(active[3] == -1000000 && active[GAIN] == 900 && !p.moving, "end");
+    }
+}
+
+/* All or nothing: shorter, or with one value that its row forbids. */
+TEST(bad_keyframes)
+{
+    static const struct {
+        unsigned word;
+        int32_t value;
+    } bad[] = {{2, 11}, {3, 6}, {6, -11}, {8, 1001}, {8, -1001}, {9, 1001}, {9, INT32_MIN}};
+    uint8_t b[8 * VALUES], whole[8 * VALUES];
+    const uint32_t len_B = 4 * (VALUES + 3);
+    struct exh_bytes c = exh_bytes_writer(whole, sizeof whole);
+    start(2);
+    exh_params_bytes(&c, &p);
+    for (unsigned i = 0; i < LEN(bad) + len_B; i++) {
+        const uint32_t n = i < len_B ? i : len_B;
+        memcpy(b, whole, sizeof b);
+        c = exh_bytes_writer(b, sizeof b);
+        if (i >= len_B) {
+            int32_t v = bad[i - len_B].value;
+            c.at = 4 * bad[i - len_B].word;
+            exh_bytes_i32(&c, &v);
+        }
+        start(2);
+        active[0] = staged[0] = 4711;
+        c = exh_bytes_reader(b, n);
+        exh_params_bytes(&c, &p);
+        CHECK(!exh_bytes_ok(&c) && active[0] == 4711 && staged[0] == 4711 && !p.moving && !p.pending,
+              "case %u", i);
+    }
+}
+
+/* Every tick anything is staged: the guard says nothing. One bit turned over, in either array, in mid-way,
+ * is told within two rounds, though all goes on. */
+TEST(guard_in_mid_way)
+{
+    for (unsigned bit = 0; bit < 2 * 32 * VALUES; bit++) {
+        int32_t *at = bit < 32 * VALUES ? &active[bit / 32] : &staged[bit / 32 - VALUES];
+        struct exh_guard g;
+        unsigned n = 0;
+        start(bit % 9);
+        exh_guard_seal(&g, NULL, 0, &p);
+        for (unsigned k = 0; k < 100 + bit; k++) {
+            if (k % 3) { CHECK_EQ_I64(exh_params_stage(&p, 0x7201, 0, (int32_t)(k * 7919 % 2001) - 1000), 0); }
+            if (k % 7 == 0) { CHECK_EQ_I64(exh_params_stage(&p, 0x7101, 1, exh_from_u32(k * 0x9E3779B9u)), 0); }
+            if (k % 5) { (void)exh_params_apply(&p); }
+            CHECK(!exh_guard_step(&g), "bit %u: told in tick %u", bit, k);
+        }
+        *at = exh_from_u32((uint32_t)*at ^ UINT32_C(1) << bit % 32);
+        while (!exh_guard_step(&g) && n < 100) {
+            CHECK_EQ_I64(exh_params_stage(&p, 0x7201, 0, (int32_t)(n * 71) % 1000), 0);
+            (void)exh_params_apply(&p);
+            n++;
+        }
+        CHECK(n < VALUES + 1, "bit %u: %u ticks", bit, n);
+    }
+}
+
+TEST_MAIN("unit/params", steps_worked_out, slewed_and_not, before_the_loop_at_once, shift_of_a_time,
+          image_in_mid_way, keyframe_in_mid_way, bad_keyframes, guard_in_mid_way);
