@@ -21,7 +21,7 @@ extern const struct exh_signal drop_paper_rows[DROP_PAPER_ROWS];
 extern const struct exh_signal drop_more_rows[DROP_MORE_ROWS];
 
 /* Groups of its tables, for scenes that are this one and something more. */
-#define DROP_PARAM_N 9
+#define DROP_PARAM_N 10
 #define DROP_PARAM_GROUPS \
     {exh_quad_rows, EXH_QUAD_ROWS, 1}, {exh_velocity_rows, EXH_VELOCITY_ROWS, 1}, \
         {exh_contact_rows, EXH_CONTACT_ROWS, 1}, {exh_drive_rows, EXH_DRIVE_ROWS, 1}, \
