@@ -189,6 +189,11 @@ void gpio_close(void)
     gpio_lines_close();
 }
 
+int gpio_has(enum gpio_channel channel)
+{
+    return is_open && gpio.spec.contacts[channel] != 0;
+}
+
 /* --- a tick --- */
 
 void gpio_start(struct exh_period T)

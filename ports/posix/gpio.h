@@ -33,6 +33,9 @@ int gpio_take(struct gpio_spec *s, const char *text, char said[GPIO_SAID_B]);
 int gpio_open(const struct gpio_spec *s, char said[GPIO_SAID_B]);
 void gpio_close(void);
 
+/* 1: a chip is open, and this contact is a real one. */
+int gpio_has(enum gpio_channel channel);
+
 /* The board's: nothing without an open chip. A loop of this period begins, outputs low. */
 void gpio_start(struct exh_period T);
 

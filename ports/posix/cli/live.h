@@ -7,7 +7,7 @@
 #include "exhand/drive.h"
 
 /* live_person.c. Who holds the dead-man switch of the simulated box: takes hold of it a tenth of a
- * second after the start, and lets go when asked. */
+ * second after the start, and lets go when asked; nobody, where --gpio has a real one. */
 struct live_person {
     int again; /* lets go and takes hold anew while the box is in OFF or FAULT; else once */
     double let_go_s; /* 0: never                                                */

@@ -1,6 +1,7 @@
 /* exhand run: a person at the simulated box. Holds the dead-man switch and looks at the values. */
 #include "live.h"
 
+#include "gpio.h"
 #include "names.h"
 #include "param.h"
 #include "posix.h"
@@ -54,6 +55,7 @@ void live_wires(struct exh_drive_in *in)
     const int goes = me.held && !me.gone && me.is.let_go_s > 0 && now_s >= me.is.let_go_s;
     const int gives_up = me.is.again && stopped() && for_s >= THINKS_S;
     const int grips = for_s >= OPEN_S && (!me.gone || me.is.again);
+    if (gpio_has(GPIO_DEADMAN)) { return; } /* a real hand's, and nobody else's */
     me.gone |= goes;
     if (goes || (me.held ? gives_up : grips)) {
         me.held = !me.held;
