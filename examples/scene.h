@@ -75,7 +75,6 @@ struct exh_scene {
     int (*read_glove)(struct exh_glove_in *in);
     const int32_t *glove_every; /* asks for a frame every so many ticks; NULL: every tick */
     const struct exh_scene_link *link; /* or NULL                             */
-    struct exh_scene_calib *calib;     /* or NULL: takes none                 */
 
     /* Parameters to their defaults and unlocked; NULL without parameters. Before
      * staging any and before the loop. */
@@ -91,6 +90,8 @@ struct exh_scene {
     void (*state)(struct exh_bytes *c);
     /* The state of the box, for whoever commands it; or NULL. */
     const struct exh_safety *safety;
+    /* Where calibrations are put before set-up; or NULL: it takes none. */
+    struct exh_scene_calib *calib;
 };
 
 #endif
