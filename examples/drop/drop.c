@@ -36,7 +36,8 @@ static const struct exh_signal_table signal_table = {signal_groups, DROP_SIGNAL_
 EXH_STATIC_ASSERT(drop_par_matches_rows,
                   PARAMS == EXH_QUAD_ROWS + EXH_VELOCITY_ROWS + EXH_CONTACT_ROWS +
                                 EXH_DRIVE_ROWS + EXH_TRACK_ROWS + EXH_WATCH_ROWS +
-                                EXH_SAFETY_ROWS + DROP_OWN_ROWS + CALIB_ROWS + EXH_TUNE_ROWS);
+                                EXH_SAFETY_ROWS + EXH_SUPPLY_ROWS + DROP_OWN_ROWS + CALIB_ROWS +
+                                EXH_TUNE_ROWS);
 
 int drop_setup(struct drop_cfg *cfg, const struct drop_par *par, struct exh_scene_board board,
                struct exh_scene_calib *calib)
@@ -57,6 +58,7 @@ int drop_setup(struct drop_cfg *cfg, const struct drop_par *par, struct exh_scen
     if (err == 0) { err = exh_track_setup(&cfg->track, &par->track, board.T); }
     if (err == 0) { err = exh_watch_setup(&cfg->watch, &par->watch, board.T); }
     if (err == 0) { err = exh_safety_setup(&cfg->safety, &par->safety, board.T); }
+    if (err == 0) { err = exh_supply_setup(&cfg->supply, &par->supply, board.T); }
     return err;
 }
 
@@ -77,9 +79,12 @@ void drop_law(struct drop *s, const struct drop_cfg *cfg, const struct exh_scene
         exh_velocity_window_mps_q27(&s->velocity, &cfg->velocity, cnt), par->own.q_lim_m_q30};
     const int32_t mon_A_q26 = exh_drive_monitor_A_q26(&cfg->drive, in->drive.mon_raw[0]);
     const int astray = exh_track_step(&s->track, &cfg->track, mon_A_q26);
+    const int starved =
+        exh_supply_step(&s->supply, &cfg->supply, in->drive.supply_raw, in->missed);
     uint32_t limits = 0;
     const uint32_t raised = (s->quad.lost ? EXH_FAULT_ENCODER : 0u) |
                             (astray ? EXH_FAULT_TRACKING : 0u) |
+                            (starved ? EXH_FAULT_SUPPLY : 0u) |
                             (s->broken ? EXH_FAULT_CONFIG : 0u) |
                             exh_watch_step(&s->watch, &cfg->watch, &q.vel_mps_q27, &limits);
     const struct exh_safety_in box = {in->drive.din, raised, in->missed, in->command, 1,
@@ -129,6 +134,7 @@ void drop_bytes(struct exh_bytes *c, struct drop *s)
     exh_track_bytes(c, &s->track);
     exh_watch_bytes(c, &s->watch);
     exh_safety_bytes(c, &s->safety);
+    exh_supply_bytes(c, &s->supply);
 }
 
 /* --- the one instance of this image --- */

@@ -21,13 +21,14 @@ extern const struct exh_signal drop_paper_rows[DROP_PAPER_ROWS];
 extern const struct exh_signal drop_more_rows[DROP_MORE_ROWS];
 
 /* Groups of its tables, for scenes that are this one and something more. */
-#define DROP_PARAM_N 10
+#define DROP_PARAM_N 11
 #define DROP_PARAM_GROUPS \
     {exh_quad_rows, EXH_QUAD_ROWS, 1}, {exh_velocity_rows, EXH_VELOCITY_ROWS, 1}, \
         {exh_contact_rows, EXH_CONTACT_ROWS, 1}, {exh_drive_rows, EXH_DRIVE_ROWS, 1}, \
         {exh_track_rows, EXH_TRACK_ROWS, 1}, {exh_watch_rows, EXH_WATCH_ROWS, 1}, \
-        {exh_safety_rows, EXH_SAFETY_ROWS, 1}, {drop_own_rows, DROP_OWN_ROWS, 1}, \
-        {calib_rows, CALIB_ROWS, 1}, {exh_tune_rows, EXH_TUNE_ROWS, 1}
+        {exh_safety_rows, EXH_SAFETY_ROWS, 1}, {exh_supply_rows, EXH_SUPPLY_ROWS, 1}, \
+        {drop_own_rows, DROP_OWN_ROWS, 1}, {calib_rows, CALIB_ROWS, 1}, \
+        {exh_tune_rows, EXH_TUNE_ROWS, 1}
 /* The first is the paper's, in its order: what a CSV holds. */
 #define DROP_SIGNAL_N 2
 #define DROP_SIGNAL_GROUPS {drop_paper_rows, DROP_PAPER_ROWS, 1}, {drop_more_rows, DROP_MORE_ROWS, 1}
@@ -41,6 +42,7 @@ struct drop_par {
     struct exh_track_par track;
     struct exh_watch_par watch;
     struct exh_safety_par safety;
+    struct exh_supply_par supply;
     struct drop_own_par own;
     struct calib_par calib;
     struct exh_tune_par tune;
@@ -69,6 +71,7 @@ struct drop_cfg {
     struct exh_track_cfg track;
     struct exh_watch_cfg watch;
     struct exh_safety_cfg safety;
+    struct exh_supply_cfg supply;
     uint8_t tested; /* 1: the self-test passed                                 */
     struct calib_tables calib;
 };
@@ -81,6 +84,7 @@ struct drop {
     struct exh_track track;
     struct exh_watch watch;
     struct exh_safety safety;
+    struct exh_supply supply;
     uint8_t broken; /* 1: the guard found a change in configuration; not saved */
 };
 

@@ -77,6 +77,7 @@ static struct guarded_signals signals;
 static struct guarded_cfg cfg;
 static struct guarded state;
 static struct exh_scene_calib calib;
+static struct exh_guard guard;
 
 static void defaults(void)
 {
@@ -90,7 +91,9 @@ static int setup(struct exh_scene_board board)
     state = power_on;
     exh_params_slew(&params, &active.drop.tune, board.T);
     err = calib_take(&calib, &params, &active.drop.calib, 1u);
-    return err == 0 ? guarded_setup(&cfg, &active, board, &calib) : err;
+    if (err == 0) { err = guarded_setup(&cfg, &active, board, &calib); }
+    exh_guard_seal(&guard, &cfg, sizeof cfg, &params);
+    return err;
 }
 
 int guarded_stage(uint16_t id, uint16_t instance, int32_t raw)
@@ -101,12 +104,19 @@ int guarded_stage(uint16_t id, uint16_t instance, int32_t raw)
 
 static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
 {
+    state.drop.broken = (uint8_t)exh_guard_step(&guard);
     guarded_tick(&state, &cfg, in, out, &signals);
 }
 
 static void state_bytes(struct exh_bytes *c)
 {
     guarded_bytes(c, &state);
+}
+
+struct guarded *guarded_memory(struct guarded_cfg **c)
+{
+    *c = &cfg;
+    return &state;
 }
 
 const struct exh_scene exh_scene_guarded = {

@@ -49,6 +49,9 @@ void guarded_tick(struct guarded *s, const struct guarded_cfg *cfg, const struct
 /* State through a cursor. */
 void guarded_bytes(struct exh_bytes *c, struct guarded *s);
 
+/* The memory of the one instance, for who damages it to see what happens. */
+struct guarded *guarded_memory(struct guarded_cfg **cfg);
+
 extern const struct exh_scene exh_scene_guarded;
 
 #endif

@@ -140,6 +140,7 @@ static void any_par(struct golden_rng *r, uint32_t rate_Hz, uint32_t k)
 {
     struct bilateral_par *p = &rig.par;
     struct exh_period T = golden_period(rate_Hz, k);
+    struct golden_rail rail;
     p->own.fingers = (int32_t)golden_draw(r, 1, 31);
     p->own.state_every = (int32_t)golden_draw(r, 1, 12);
     p->own.session = (int32_t)golden_draw(r, 1, INT32_MAX);
@@ -157,7 +158,8 @@ static void any_par(struct golden_rng *r, uint32_t rate_Hz, uint32_t k)
         p->material[i].f_max_N_q20 = any_size(r, 104857600);
     }
     golden_safety_par(&p->safety, r, rate_Hz);
-    golden_supply_par(&p->supply, &rig.good_raw, r, rate_Hz);
+    golden_supply_par(&p->supply, &rail, r, rate_Hz, 3);
+    rig.good_raw = rail.good_raw;
     T.num *= (uint32_t)p->glove_own.every;
     p->glove = golden_glove_par(r, T);
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) { any_sensor(&p->sensor[i], i, r); }

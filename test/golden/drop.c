@@ -12,6 +12,7 @@ struct scene {
     struct guarded_par par;
     struct guarded_cfg cfg;
     struct guarded s;
+    struct golden_rail rail;
 };
 
 static int32_t any_size(struct golden_rng *r, int32_t most)
@@ -20,7 +21,8 @@ static int32_t any_size(struct golden_rng *r, int32_t most)
     return (int32_t)(any >> golden_draw(r, 0, 12));
 }
 
-static void any_par(struct drop_par *p, struct golden_rng *r, uint32_t rate_Hz)
+static void any_par(struct drop_par *p, struct golden_rail *rail, struct golden_rng *r,
+                    uint32_t rate_Hz)
 {
     p->quad.step_m_q42 = golden_step(r);
     p->quad.speed_max_mps_q27 = (int32_t)golden_draw(r, 13421773, INT32_MAX);
@@ -34,6 +36,7 @@ static void any_par(struct drop_par *p, struct golden_rng *r, uint32_t rate_Hz)
     golden_track_par(&p->track, r, rate_Hz);
     golden_watch_par(&p->watch, r, rate_Hz);
     golden_safety_par(&p->safety, r, rate_Hz);
+    golden_supply_par(&p->supply, rail, r, rate_Hz, 31);
     p->own.q_lim_m_q30 = (int32_t)golden_draw(r, -(1 << 26), 1 << 26);
     p->own.kf_NpA_q20 = (int32_t)golden_draw(r, 104858, 104857600);
     p->calib.uncalibrated = 1;
@@ -52,10 +55,11 @@ static void scene_setup(struct scene *d, struct golden_rng *r, uint32_t rate_Hz,
     const int guarded = d->guarded;
     (void)memset(d, 0, sizeof *d);
     d->guarded = guarded;
-    any_par(&d->par.drop, r, rate_Hz);
-    /* Quiet enough to run, and to and fro through the wall. */
+    any_par(&d->par.drop, &d->rail, r, rate_Hz);
+    /* Quiet enough to run, not touching at first, and to and fro through the wall. */
     d->par.drop.drive.slew_down_Nps = 10000000;
     d->par.drop.own.q_lim_m_q30 >>= 8;
+    if (d->par.drop.own.q_lim_m_q30 < 0) { d->par.drop.own.q_lim_m_q30 *= -1; }
     if (guarded) { d->par.passivity.on = (int32_t)golden_draw(r, 0, 2); }
     while ((err = scene_try(d, board)) != 0 && board.enc_bits < 32) {
         board.enc_bits = (uint8_t)(board.enc_bits + 4);
@@ -63,7 +67,7 @@ static void scene_setup(struct scene *d, struct golden_rng *r, uint32_t rate_Hz,
     CHECK_EQ_I64(err, 0);
 }
 
-static void any_in(struct exh_scene_in *in, struct golden_rng *r, uint32_t k, const struct scene *d)
+static void any_in(struct exh_scene_in *in, struct golden_rng *r, uint32_t k, struct scene *d)
 {
     const uint8_t state = d->s.drop.safety.state;
     if (golden_draw(r, 0, 191) == 0) {
@@ -73,8 +77,11 @@ static void any_in(struct exh_scene_in *in, struct golden_rng *r, uint32_t k, co
     }
     if (state == EXH_STATE_FAULT && golden_draw(r, 0, 3) == 0) { in->drive.din ^= 2; }
     in->missed = golden_draw(r, 0, 127) == 0 ? 1 : 0;
-    in->command = k % 8 == 2 ? EXH_CMD_RUN : k % 8 == 5 ? EXH_CMD_CLEAR : EXH_CMD_NONE;
+    in->command = k % 4 == 2 || k % GOLDEN_AGAIN == 0 ? EXH_CMD_RUN
+                  : k % 8 == 5                        ? EXH_CMD_CLEAR
+                                                      : EXH_CMD_NONE;
     if (golden_draw(r, 0, 255) == 0) { in->command = EXH_CMD_OFF; }
+    in->drive.supply_raw = golden_rail(&d->rail, r, k);
 }
 
 static void put_out(struct golden *g, const struct guarded_signals *all, int guarded,
@@ -110,6 +117,7 @@ static void put_state(struct golden *g, struct drop *s)
     GOLDEN_STATE(g, exh_track_bytes, &s->track);
     GOLDEN_STATE(g, exh_watch_bytes, &s->watch);
     GOLDEN_STATE(g, exh_safety_bytes, &s->safety);
+    GOLDEN_STATE(g, exh_supply_bytes, &s->supply);
 }
 
 /* What the string moves in a tick at most. */
@@ -151,6 +159,7 @@ static void play(struct golden *g, uint32_t rate_Hz, const char *name, int guard
         golden_put(g, raw);
         golden_put(g, in.drive.mon_raw[0]);
         golden_put(g, in.drive.din);
+        golden_put(g, in.drive.supply_raw);
         golden_put(g, in.missed);
         golden_put(g, in.command);
         if (guarded) {

@@ -92,9 +92,19 @@ void golden_track_par(struct exh_track_par *p, struct golden_rng *r, uint32_t ra
 void golden_safety_par(struct exh_safety_par *p, struct golden_rng *r, uint32_t rate_Hz);
 void golden_watch_par(struct exh_watch_par *p, struct golden_rng *r, uint32_t rate_Hz);
 
-/* Limits that are two codes, the upper as it may fall, mostly; a code between them. */
-void golden_supply_par(struct exh_supply_par *p, int16_t *good_raw, struct golden_rng *r,
-                       uint32_t rate_Hz);
+/* The drives' supply: a code between the limits, and while it is off what it is then. */
+struct golden_rail {
+    int16_t good_raw, off_raw;
+    int off;
+};
+
+/* Limits that are two codes, the upper as it may fall; once in seldom + 1 none. The supply is good. */
+void golden_supply_par(struct exh_supply_par *p, struct golden_rail *rail, struct golden_rng *r,
+                       uint32_t rate_Hz, int64_t seldom);
+
+/* Tick k's code: now and then for some ticks none, too high, or any; twice a run too high for longer
+ * than it may be. */
+int16_t golden_rail(struct golden_rail *rail, struct golden_rng *r, uint32_t k);
 
 /* A scene's monitor: mostly the code of what was coded, now and then for a while any. */
 int16_t golden_monitor(unsigned *astray, const struct exh_drive_par *p, struct golden_rng *r,

@@ -76,26 +76,38 @@ void golden_guard(struct golden *g, uint32_t rate_Hz)
 
 /* --- supply --- */
 
-void golden_supply_par(struct exh_supply_par *p, int16_t *good_raw, struct golden_rng *r,
-                       uint32_t rate_Hz)
+void golden_supply_par(struct exh_supply_par *p, struct golden_rail *rail, struct golden_rng *r,
+                       uint32_t rate_Hz, int64_t seldom)
 {
     const int64_t scale = golden_draw(r, 100000, 1500000);
     const int64_t low = golden_draw(r, 1, 20000), high = golden_draw(r, low + 1, 32000);
     p->scale_V_q30 = (int32_t)scale;
-    p->min_V_q20 = golden_draw(r, 0, 3) ? (int32_t)(low * scale >> 10) : 0;
+    p->min_V_q20 = golden_draw(r, 0, seldom) ? (int32_t)(low * scale >> 10) : 0;
     p->max_V_q20 = (int32_t)(high * scale >> 10);
     p->time_ms = (int32_t)exh_clamp(golden_draw(r, 1, 12) * 1000 / rate_Hz, 1, 1000);
-    *good_raw = (int16_t)((low + high) >> 1);
+    rail->good_raw = (int16_t)((low + high) >> 1);
+    rail->off = 0;
+}
+
+int16_t golden_rail(struct golden_rail *rail, struct golden_rng *r, uint32_t k)
+{
+    if (golden_draw(r, 0, rail->off ? 15 : 95) == 0) {
+        const int64_t how = golden_draw(r, 0, 2);
+        const int64_t any = golden_draw(r, -32768, 32767);
+        rail->off = !rail->off;
+        rail->off_raw = (int16_t)(how == 0 ? 0 : how == 1 ? 32766 : any);
+    }
+    return k % 96 >= 72 && k % 96 < 88 ? 32766 : rail->off ? rail->off_raw : rail->good_raw;
 }
 
 /* Limits that may be none, and what set-up says of them. */
-static int any_limits(struct exh_supply_cfg *cfg, int16_t *good_raw, struct golden_rng *r,
+static int any_limits(struct exh_supply_cfg *cfg, struct golden_rail *rail, struct golden_rng *r,
                       uint32_t rate_Hz, uint32_t k)
 {
     struct exh_supply_par p;
     int err;
     do {
-        golden_supply_par(&p, good_raw, r, rate_Hz);
+        golden_supply_par(&p, rail, r, rate_Hz, 31);
         if (p.min_V_q20 == 0) { p.min_V_q20 = 1; }
         if (golden_draw(r, 0, 3) == 0) {
             p.max_V_q20 = p.min_V_q20 + (int32_t)golden_draw(r, 0, 2000);
@@ -111,7 +123,7 @@ void golden_supply(struct golden *g, uint32_t rate_Hz)
     struct golden_rng r = golden_rng("supply", rate_Hz, 0);
     struct exh_supply_cfg cfg = {0, 0, 1};
     struct exh_supply s = {0};
-    int16_t good_raw = 0;
+    struct golden_rail rail = {0, 0, 0};
     int bad = 0;
     while (g->tick < GOLDEN_TICKS) {
         const uint32_t k = g->tick;
@@ -119,14 +131,14 @@ void golden_supply(struct golden *g, uint32_t rate_Hz)
         uint32_t missed;
         int err = 0;
         if (k % 16 == 0) {
-            err = any_limits(&cfg, &good_raw, &r, rate_Hz, k);
+            err = any_limits(&cfg, &rail, &r, rate_Hz, k);
             s.off_ticks = 0;
         }
         if (golden_draw(&r, 0, 7) == 0) { bad = (int)golden_draw(&r, 0, 3); }
         raw = golden_draw(&r, -32768, 32767);
         if (bad == 1) { raw = cfg.min_raw + golden_draw(&r, -1, 0); }
         if (bad == 2) { raw = cfg.max_raw + golden_draw(&r, 0, 1); }
-        if (bad == 0 || raw < INT16_MIN || raw > INT16_MAX) { raw = good_raw; }
+        if (bad == 0 || raw < INT16_MIN || raw > INT16_MAX) { raw = rail.good_raw; }
         missed = golden_draw(&r, 0, 15) == 0
                      ? (uint32_t)(golden_u64(&r) & UINT32_MAX) >> golden_draw(&r, 0, 31)
                      : 0;

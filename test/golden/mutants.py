@@ -236,19 +236,19 @@ MUTANTS = (
     ("bilateral", "lib/src/supply.c", "raw <= cfg->max_raw", "raw < INT16_MAX"),
     ("guarded", "examples/guarded/guarded.c", "now.cnt, sig->drop.c, &now.f", "now.cnt, !sig->drop.c, &now.f"),
     ("guarded", "examples/guarded/guarded.c", "par->drop.watch.speed_mps_q27);", "EXH_Q(3, 1, EXH_Q_VEL));"),
-    # Without exh_track_coded(): told at 94.8 % of rates, since 256 ticks at the lowest end before its time;
-    # sim/track tells it. Likewise the tick in which glove_time ends: sim/causes.
     ("drop", X + "drop.c", "s->quad.lost ? EXH_FAULT_ENCODER : 0u", "0u"),
+    ("drop", X + "drop.c", "(starved ? EXH_FAULT_SUPPLY : 0u)", "0u"),
+    ("drop", X + "drop.c", "    exh_track_coded(&s->track, now->i.coded_A_q26);", ""),
     ("drop", X + "drop.c", "limits |= exh_drive_current", "limits = exh_drive_current"),
     ("drop", X + "drop.c", "exh_velocity_window_mps_q27(&s->velocity, &cfg->velocity, cnt)",
      "exh_velocity_window_mps_q27(&s->velocity, &cfg->velocity, cnt + 1)"),
 )
-# Rows that 256 ticks, of bilateral above all, show at fewer rates, since arming takes many of them: what they must be seen at
-# all the same, and what tells them besides. Open: stimuli that come to it at every rate.
+# What 256 ticks show at fewer rates, as the fingers of one box hinder each other at arming: what it must be seen at all
+# the same, and what tells it besides. Open: stimuli that come to these at every rate.
 THIN = {
     "if (p->phase == EXH_PRECONTACT_FROZEN &&": 0.70,  # sim/bilateral_tick
     "s->wire.age_ticks >= cfg->link_ticks": 0.04,      # sim/causes
-    "raw <= cfg->max_raw": 0.70,                       # unit/supply
+    "raw <= cfg->max_raw": 0.70,                       # unit/supply, golden supply
     "s->present == EXH_FAULT_DEADMAN && !": 0.93,      # unit/safety
 }
 

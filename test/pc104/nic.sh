@@ -170,7 +170,7 @@ one_speed() # SPEED
 bilateral()
 {
     check "the host's experiment" "$exhand" bilateral --scene examples/world/scenes/collision.world --speed "$speeds" \
-        --approaches "${APPROACHES:-1}" --set ramp_time=200 --out "$dir/host" >"$dir/said" 2>"$dir/err"
+        --approaches "${APPROACHES:-1}" --out "$dir/host" >"$dir/said" 2>"$dir/err"
     for speed in ${speeds//,/ }; do one_speed "$speed"; done
 }
 

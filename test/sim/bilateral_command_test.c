@@ -146,7 +146,7 @@ TEST(a_world_that_dies_or_never_comes_is_told_beside_a_perfect_link)
     const char *dir = said_dir();
     static struct said s;
     said(&s, dir, cli_bilateral,
-         WORDS("bilateral", "--speed", "natural", "--approaches", "1", "--world-until", "0.56"));
+         WORDS("bilateral", "--speed", "natural", "--approaches", "1", "--world-until", "0.76"));
     CHECK(s.status == 0 && strstr(s.out, "index the same bits from the first freeze on"), "%d: %s%s", s.status, s.out,
           s.err);
     said(&s, dir, cli_bilateral, WORDS("bilateral", "--speed", "natural", "--approaches", "1", "--world-from", "9"));

@@ -1,8 +1,10 @@
-/* Causes of faults that are the full box's: supply, glove, link; each told when it should be, not before,
- * and not at all where nobody asked. */
+/* Causes of faults that are the box's: supply, glove, link; each told when it should be, not before,
+ * and not at all where nobody asked. Of one finger's scenes: supply, and memory that changed. */
 #include "check.h"
 
 #include "cli/bilateral_run.h"
+
+#include "guarded/guarded.h"
 
 #include <string.h>
 
@@ -156,7 +158,71 @@ TEST(a_silent_link_is_a_fault_where_it_is_asked_for)
     told_at(10, 1.49, 1.51);
 }
 
+/* --- scenes of one finger, tick by tick --- */
+
+static void power_on(const struct exh_scene *sc, int32_t least_V_q20)
+{
+    const struct exh_scene_board board = {{1, 1000}, 24};
+    sc->defaults();
+    CHECK_EQ_I64(exh_params_stage(sc->params, exh_supply_rows[0].id, 0, least_V_q20), 0);
+    CHECK_EQ_I64(exh_params_stage(sc->params, calib_rows[2].id, 0, 1), 0); /* uncalibrated */
+    CHECK_EQ_I64(exh_params_apply(sc->params), 1);
+    CHECK_EQ_I64(sc->setup(board), 0);
+}
+
+static void ticks(const struct exh_scene *sc, uint32_t n, int16_t supply_raw, enum exh_command command)
+{
+    struct exh_scene_in in = {.command = (uint8_t)command};
+    struct exh_drive_out out;
+    in.drive.din = 0x1F0F;
+    in.drive.supply_raw = supply_raw;
+    for (uint32_t k = 0; k < n; k++) { sc->tick(&in, &out); }
+}
+
+/* 24 V through 1:4 is 19661. */
+TEST(one_finger_judges_its_supply_likewise)
+{
+    static const struct exh_scene *const scene[] = {&exh_scene_drop, &exh_scene_guarded};
+    for (size_t i = 0; i < LEN(scene); i++) {
+        const struct exh_scene *sc = scene[i];
+        power_on(sc, 20 << EXH_Q_SUPPLY);
+        ticks(sc, 1, 19661, EXH_CMD_RUN);
+        ticks(sc, 1000, 19661, EXH_CMD_NONE);
+        CHECK(sc->safety->state == EXH_STATE_RUN, "%s: state %d", sc->name, sc->safety->state);
+        ticks(sc, 10, 14745, EXH_CMD_NONE);
+        CHECK_EQ_I64(sc->safety->faults, 0);
+        ticks(sc, 1, 14745, EXH_CMD_NONE);
+        CHECK_EQ_I64(sc->safety->faults, EXH_FAULT_SUPPLY);
+        power_on(sc, 0);
+        ticks(sc, 1, 0, EXH_CMD_RUN);
+        ticks(sc, 1000, 0, EXH_CMD_NONE);
+        CHECK(sc->safety->state == EXH_STATE_RUN, "%s: state %d", sc->name, sc->safety->state);
+    }
+}
+
+/* Any byte of passivity's table, in the round in which it changed or the next. */
+TEST(memory_of_guarded_that_changes_is_told)
+{
+    struct guarded_cfg *cfg;
+    const struct guarded *s = guarded_memory(&cfg);
+    const uint32_t round = (sizeof *cfg + EXH_GUARD_B - 1) / EXH_GUARD_B;
+    uint8_t *byte = (uint8_t *)cfg->held;
+    for (size_t at = 0; at < sizeof cfg->held; at++) {
+        power_on(&exh_scene_guarded, 0);
+        ticks(&exh_scene_guarded, (uint32_t)at % round, 0, EXH_CMD_NONE);
+        CHECK_EQ_I64(s->drop.safety.present, 0);
+        byte[at] ^= (uint8_t)(1u << at % 8);
+        ticks(&exh_scene_guarded, 1, 0, EXH_CMD_RUN);
+        ticks(&exh_scene_guarded, 2 * round, 0, EXH_CMD_NONE);
+        CHECK(s->drop.safety.present == EXH_FAULT_CONFIG, "byte %zu: %x", at,
+              (unsigned)s->drop.safety.present);
+        CHECK(s->drop.safety.state == EXH_STATE_OFF || s->drop.safety.state == EXH_STATE_FAULT,
+              "byte %zu: state %d", at, s->drop.safety.state);
+    }
+}
+
 TEST_MAIN("causes", a_supply_outside_its_limits_is_a_fault_where_it_is_judged,
           a_sensor_that_is_not_believed_is_a_fault_after_its_time,
           a_glove_that_is_silent_for_longer_than_an_age_can_tell,
-          a_silent_link_is_a_fault_where_it_is_asked_for);
+          a_silent_link_is_a_fault_where_it_is_asked_for, one_finger_judges_its_supply_likewise,
+          memory_of_guarded_that_changes_is_told);

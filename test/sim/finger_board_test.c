@@ -168,7 +168,7 @@ TEST(the_run_ends_with_the_last_script)
     c.exo.path[3].approaches = 2;
     start(&c, 1000);
     while (n < 20000 && exh_board_wait() >= 0) { n++; }
-    CHECK(n > 4600 && n < 4700, "%d ms", n);
+    CHECK(n > 4800 && n < 4900, "%d ms", n);
     CHECK(posix_finger(1)->path.number == 1 && posix_finger(3)->path.number == 2, "approaches");
 }
 
@@ -181,7 +181,10 @@ TEST(a_run_has_the_committed_digits)
     uint64_t h = UINT64_C(14695981039346656037);
     c.glove = 1;
     c.exo.apart_s = 0.03;
-    for (unsigned i = 0; i < FINGERS; i++) { c.exo.path[i].vary = 0.1; }
+    for (unsigned i = 0; i < FINGERS; i++) {
+        c.exo.path[i].vary = 0.1;
+        c.exo.path[i].first_s = 0.5;
+    }
     start(&c, 2000);
     for (int n = 0; n < 8000; n++) {
         const int32_t code[FINGERS] = {400, n % 5000, 5000 - n % 5000, n % 1000 < 500 ? 3000 : 0,

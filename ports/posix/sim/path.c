@@ -16,7 +16,7 @@ const struct sim_device_row sim_path_row[] = {
     {"push", "m", 0.015, 0.001, 0.08, "ours", "it aims so far beyond: times K, the pressing force"},
     {"speed", "m_per_s", 0.87, 0.001, 3, "paper",
      "where the object is believed to be, if it is not there"},
-    {"first", "s", 0.5, 0.01, 100, "ours", "rest before the first approach"},
+    {"first", "s", 0.7, 0.01, 100, "ours", "rest before the first approach: armed by then"},
     {"hold", "s", 1, 0, 100, "ours", "pressed for so long"},
     {"back", "s", 0.5, 0.02, 10, "ours", "the withdrawal takes"},
     {"rest", "s", 1, 0.01, 100, "ours", "rest between two approaches"},

@@ -72,11 +72,11 @@ def guard(rate):
 
 # --- supply ---
 
-def any_supply(rng, rate):
+def any_supply(rng, rate, seldom=3):
     """least, most, scale, time; and a code between the limits"""
     scale_, low = rng.draw(100000, 1500000), rng.draw(1, 20000)
     high = rng.draw(low + 1, 32000)
-    least = low * scale_ >> 10 if rng.draw(0, 3) else 0
+    least = low * scale_ >> 10 if rng.draw(0, seldom) else 0
     return least, high * scale_ >> 10, scale_, clamp(rng.draw(1, 12) * 1000 // rate, 1, 1000), low + high >> 1
 
 
@@ -102,10 +102,24 @@ class Supply:
         return pack("<I", self.off)
 
 
+class Rail:
+    """The supply's codes: now and then for some ticks none, too high, or any."""
+
+    def __init__(self, good):
+        self.good, self.off = good, None
+
+    def draw(self, rng, k):
+        if rng.draw(0, 95 if self.off is None else 15) == 0:
+            code = (0, 32766, None)[rng.draw(0, 2)]
+            any_ = rng.draw(-32768, 32767)
+            self.off = (any_ if code is None else code) if self.off is None else None
+        return 32766 if 72 <= k % 96 < 88 else self.good if self.off is None else self.off
+
+
 def any_limits(rng, rate, k):
     """(error, ticks, limits, good code)"""
     while True:
-        least, most, scale_, ms, good = any_supply(rng, rate)
+        least, most, scale_, ms, good = any_supply(rng, rate, 31)
         least = least or 1
         if rng.draw(0, 3) == 0:
             most = least + rng.draw(0, 2000)
