@@ -374,6 +374,11 @@ golden:
 mutants: $(B)/test/golden/golden_test
 	$(Q)CC="$(CC)" B=$(B) test/golden/mutants.py $(ARGS)
 
+## Errors planted in the library's safety: exhand faults must tell each (ARGS="--some 8": every eighth)
+.PHONY: faults-mutants
+faults-mutants: $(exhand)
+	$(Q)CC="$(CC)" test/sim/faults_mutants.py $(ARGS) $(cli_obj) $(dev_obj) $(gpio_obj) $(B)/posix/libexhand.a $(cli_libs) $(gpio_libs)
+
 # The library's tests again for a 32-bit CPU, where there is no CMocka: own printer. What overflows
 # there and not in 64 bits traps.
 trap := -fsanitize=undefined -fsanitize-undefined-trap-on-error
