@@ -118,8 +118,12 @@ sees        = $(if $(call have,$(1)),$(shell $(CC) $(filter -m% --target%,$(CFLA
 world_rays := $(if $(filter -static,$(LDFLAGS)),,$(if $(call sees,embree3/rtcore.h),3,$(if $(call sees,embree4/rtcore.h),4)))
 world_mesh := $(B)/posix/examples/world/$(if $(world_rays),mesh_embree,mesh_none).o
 
-cli_obj := $(cli_src:%.c=$(B)/posix/%.o) $(world_core:%.c=$(B)/posix/%.o) $(world_mesh)
-cli_libs := $(if $(world_rays),-ldl) -lm
+# Modbus by libmodbus where the package is, for this compiler and this way to link.
+modbus   := $(or $(if $(call have,modbus/modbus.h),$(shell echo 'int main(void){return !modbus_reply;}' | $(CC) $(CFLAGS) $(LDFLAGS) \
+              -include modbus/modbus.h -xc - -o /dev/null -lmodbus 2>/dev/null && echo libmodbus)),none)
+cli_src  := $(filter-out ports/posix/cli/modbus_%.c,$(cli_src)) ports/posix/cli/modbus_mail.c $(wildcard ports/posix/cli/modbus_$(modbus)*.c)
+cli_obj  := $(cli_src:%.c=$(B)/posix/%.o) $(world_core:%.c=$(B)/posix/%.o) $(world_mesh)
+cli_libs := $(if $(world_rays),-ldl) $(if $(filter libmodbus,$(modbus)),-lmodbus) -pthread -lm
 # Lines of a GPIO chip, if the package is here, for this compiler and this way to link, by its version. The program alone has
 # them: tests and benches must be the same on every machine.
 gives     = $(if $(call have,gpiod.h),$(shell echo 'int main(void){return !$(1);}' | \
@@ -289,6 +293,7 @@ $(B)/test/sim/%_test: $(B)/posix/test/sim/%_test.o $(B)/posix/test/support.o \
                       $(filter-out %/main.o %/loop.o,$(cli_obj) $(sim_obj)) $(B)/test/loop.o $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) -o $@ $^ -lcmocka $(cli_libs)
+$(if $(filter libmodbus,$(modbus)),$(B)/posix/test/sim/modbus%.o: PORT_HOSTFLAGS += -DEXH_MODBUS)
 $(B)/posix/test/%.o: test/%.c $(stamp)
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(base) $(PORT_HOSTFLAGS) $(CFLAGS) -Itest -c $< -o $@
@@ -335,6 +340,7 @@ $(B)/test/golden/golden_test: $(golden_src:%.c=$(B)/posix/%.o) $(B)/posix/test/s
 .PHONY: test
 test:
 	@.ci/deps "the tests" "$(CC) $(foreach h,stdarg stddef setjmp stdint cmocka,-include $h.h) -fsyntax-only -xc /dev/null" libcmocka-dev || exit 3
+	@.ci/deps "the tests of Modbus" "test -f /usr/include/modbus/modbus.h" libmodbus-dev || true
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(test_bin)
 	@JOBS=$(jobs) test/run.sh $(test_bin)
 
@@ -482,7 +488,7 @@ hil_obj := $(patsubst %.c,$(B)/posix/%.o,$(wildcard test/hil/*.c) examples/deadm
 $(filter $(B)/posix/test/hil/%,$(hil_obj)): PORT_HOSTFLAGS += -isystem $(unicorn)/include
 $(B)/test/hil: $(hil_obj) $(filter-out %/main.o,$(cli_obj)) $(sim_obj) $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
-	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(unicorn)/lib/libunicorn.so.2 -Wl,-rpath,$(unicorn)/lib -lm
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(unicorn)/lib/libunicorn.so.2 -Wl,-rpath,$(unicorn)/lib $(cli_libs)
 
 # An image with the emulated cards in the place of port instructions.
 hil_inside := PORT=pc104 CARDS=inside cards_inside="$(wildcard ports/cards/*.c) $(emu_src) test/hil/inside/inside.c"

@@ -3,7 +3,9 @@
 
 #include "assign.h"
 #include "bilateral.h"
+#include "contacts.h"
 #include "live.h"
+#include "modbus.h"
 #include "option.h"
 #include "outfile.h"
 #include "param.h"
@@ -21,10 +23,11 @@
 #define IMAGE_B      65536
 
 struct live_options {
-    const char *scene, *params, *log, *blackbox;
+    const char *scene, *params, *log, *blackbox, *modbus, *save;
     double rate_Hz, seconds, let_go_s;
     int64_t seed;
-    int pace, grip, list;
+    int pace, grip, list, remote;
+    struct contacts gpio;
     const char *set[SETTINGS_MAX];
     int sets;
     struct run_setting setting[SETTINGS_MAX];
@@ -35,18 +38,27 @@ struct live_options {
 
 /* --- who is told what happens --- */
 
+static struct {
+    int on, status;
+} clients; /* of Modbus */
+
 static void start(const struct exh_scene *sc, struct exh_scene_board board)
 {
     live_person_start(sc, board);
+    if (!clients.on) { return; }
+    clients.status = mail_start(sc, board) < 0 ? 1 : live_modbus_serve();
+    if (clients.status) { posix_stop(); }
 }
 
 static void before(uint32_t tick, struct exh_scene_in *in)
 {
     live_person_before(tick, in);
+    if (clients.on) { mail_before(in); }
 }
 
 static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
 {
+    if (clients.on) { mail_after(in); }
     live_person_after(tick, in, out);
 }
 
@@ -65,6 +77,13 @@ static void catch_signals(void)
     on.sa_handler = interrupted;
     (void)sigaction(SIGINT, &on, NULL);
     (void)sigaction(SIGTERM, &on, NULL);
+}
+
+/* Stiffness and damping are judged together, where the scene has a rule for them. */
+static int gains_allowed(const struct exh_params *p)
+{
+    const struct guarded_par *g = (const void *)p->active;
+    return g->own.rule_on ? exh_gains_staged(p, &g->gains, NULL) : 0;
 }
 
 /* --- options --- */
@@ -156,6 +175,7 @@ static void board(const struct live_options *o, struct posix_config *b)
 {
     b->seed = (uint64_t)o->seed;
     b->pace = o->pace;
+    b->gpio = o->gpio.given;
     b->log = o->file;
     b->wires_in = live_wires;
     b->max_ticks = (uint32_t)(o->seconds * o->rate_Hz + 0.5);
@@ -221,27 +241,60 @@ static int run_hand(struct live_options *o, uint32_t *lost)
     return err;
 }
 
-static int go(struct live_options *o)
+static int open_modbus(const struct live_options *o, const struct exh_scene *sc)
 {
-    const struct exh_scene *sc = scene_of(o);
-    uint32_t lost = 0;
-    int err = sc ? settle_all(o, sc) : 2;
+    const struct mail_cfg mail = {o->save, o->remote,
+                                  sc == &exh_scene_guarded ? gains_allowed : NULL};
+    if (o->modbus == NULL) { return 0; }
+    mail_open(&mail);
+    clients.on = 1;
+    return live_modbus_open(o->modbus);
+}
+
+/* Everything that can be refused before the loop. */
+static int prepare(struct live_options *o, const struct exh_scene *sc)
+{
+    int err = settle_all(o, sc);
     if (err == 0 && o->seconds * o->rate_Hz >= 4294967295.0) {
         cli_complain("--seconds: %.6g: at %.6g Hz %.0f at most, or leave it out", o->seconds,
                      o->rate_Hz, 4294967294.0 / o->rate_Hz);
         err = 2;
     }
+    if (err == 0 && o->modbus == NULL && (o->save || o->remote)) {
+        cli_complain("--save and --remote: what clients may do: only with --modbus");
+        err = 2;
+    }
+    if (err == 0) { err = contacts_check(&o->gpio, o->pace); }
     if (err == 0) { err = read_params(o); }
     if (err == 0) { err = open_log(o); }
-    if (err) { return err; }
-    catch_signals();
-    err = sc == &exh_scene_bilateral ? run_hand(o, &lost) : run_mass(o, sc, &lost);
-    live_person_end();
-    if (o->file && (fclose(o->file) != 0 || lost)) {
-        cli_complain("%s: can't be written: %lu records lost", o->log, (unsigned long)lost);
-        return 1;
+    if (err == 0) { err = contacts_begin(&o->gpio); }
+    if (err == 0) { err = open_modbus(o, sc); }
+    return err;
+}
+
+static int close_log(const struct live_options *o, uint32_t lost)
+{
+    if (o->file == NULL || (fclose(o->file) == 0 && lost == 0)) { return 0; }
+    cli_complain("%s: can't be written: %lu records lost", o->log, (unsigned long)lost);
+    return 1;
+}
+
+static int go(struct live_options *o)
+{
+    const struct exh_scene *sc = scene_of(o);
+    uint32_t lost = 0;
+    int err = sc ? prepare(o, sc) : 2;
+    if (err == 0) {
+        catch_signals();
+        err =
+            (sc == &exh_scene_bilateral ? run_hand(o, &lost) : run_mass(o, sc, &lost)) < 0 ? 2 : 0;
+        live_person_end();
     }
-    return err < 0 ? 2 : posix_interrupted() ? 130 : 0;
+    if (clients.on) { live_modbus_close(); }
+    contacts_end();
+    if (close_log(o, lost) && err == 0) { err = 1; }
+    if (err == 0) { err = clients.status; }
+    return err ? err : posix_interrupted() ? 130 : 0;
 }
 
 int cli_run(int argc, char **argv)
@@ -249,10 +302,11 @@ int cli_run(int argc, char **argv)
     static struct live_options o;
     const struct cli_call set = {take_set, &o}, fingers = {take_fingers, &o},
                           speed = {take_speed, &o};
+    const struct cli_call gpio = {contacts_take, &o.gpio};
     union {
         const struct cli_call *view;
         void *to;
-    } u[3] = {{&set}, {&fingers}, {&speed}};
+    } u[4] = {{&set}, {&fingers}, {&speed}, {&gpio}};
     const struct cli_option option[] = {
         {"scene", CLI_TEXT, &o.scene, 0, 0, "NAME", "drop, guarded or bilateral (drop)"},
         {"rate", CLI_REAL, &o.rate_Hz, 1, 20000, "HZ", "of the loop (2000)"},
@@ -269,6 +323,13 @@ int cli_run(int argc, char **argv)
          "the dead-man is gripped anew after a stop or fault"},
         {"let-go", CLI_REAL, &o.let_go_s, 0, 1e9, "S",
          "it is let go then: a fault; without --grip for good (never)"},
+        {"modbus", CLI_TEXT, &o.modbus, 0, 0, "WHERE",
+         "serve the registers at tcp:ADDRESS:PORT or rtu:DEVICE:BAUD"},
+        {"save", CLI_TEXT, &o.save, 0, 0, "FILE",
+         "clients may save the parameters there, for --params"},
+        {"remote", CLI_FLAG, &o.remote, 0, 0, NULL,
+         "clients may command RUN and CLEAR; the dead-man holds all the same"},
+        {"gpio", CLI_CALL, u[3].to, 0, 0, CONTACTS_ARG, CONTACTS_HELP},
         {"log", CLI_TEXT, &o.log, 0, 0, "FILE", "for `exhand replay` and `exhand csv`"},
         {"blackbox", CLI_TEXT, &o.blackbox, 0, 0, "FILE", "the last seconds before a fault, a log"},
         {"seed", CLI_INT, &o.seed, 0, 1e9, "N", "of all chance in the simulation (1)"},

@@ -1,0 +1,45 @@
+/* exhand run --modbus: the registers of the running box (exhand/modbus.h) for clients, over TCP or a
+ * serial line. A thread of its own answers them; between it and the loop is a mailbox:
+ *
+ *   loop, behind a tick:  what the registers show is copied, all of it of this tick
+ *   clients:              read the copy, stage and command in it
+ *   loop, before a tick:  what was commanded is carried out
+ *
+ * The loop never waits for the mailbox: is it in use, the copy stays that of a tick before, and
+ * commands wait for the next. So a client can delay an answer, and no tick.
+ */
+#ifndef CLI_MODBUS_H
+#define CLI_MODBUS_H
+
+#include "scene.h"
+
+#include "exhand/modbus.h"
+
+struct mail_cfg {
+    const char *save; /* SAVE writes the parameters there; NULL: refused        */
+    int remote; /* RUN and CLEAR may be commanded                         */
+    /* What is staged is to be applied: 0, or -EXH_E… if the scene has a rule against it. */
+    int (*allow)(const struct exh_params *p);
+};
+
+/* modbus_mail.c. start, before and after: as hooks of the loop, before those that log. */
+void mail_open(const struct mail_cfg *cfg);
+int mail_start(const struct exh_scene *sc, struct exh_scene_board board); /* 0 or -EXH_E… */
+void mail_before(struct exh_scene_in *in);
+void mail_after(const struct exh_scene_in *in);
+
+/* The registers, for one request; nobody else has them until they are given back. */
+struct exh_regs *mail_take(void);
+void mail_give(void);
+
+/* Between requests: writes what SAVE asked for. */
+void mail_save(void);
+
+/* modbus_libmodbus.c, or modbus_none.c without that package. where: "tcp:HOST:PORT",
+ * "rtu:DEVICE:BAUD". 0, or 2 or 3 after a line on stderr. */
+int live_modbus_open(const char *where);
+/* Answers from now on: behind mail_start(). 0, or 3 after a line on stderr. */
+int live_modbus_serve(void);
+void live_modbus_close(void);
+
+#endif

@@ -1,0 +1,29 @@
+/* What the two files of the libmodbus server share. */
+#ifndef CLI_MODBUS_LIBMODBUS_H
+#define CLI_MODBUS_LIBMODBUS_H
+
+#include <modbus/modbus.h>
+
+#include <stdint.h>
+
+struct request {
+    modbus_t *ctx;
+    uint8_t *adu; /* MODBUS_MAX_ADU_LENGTH bytes                                */
+    int head_B; /* in front of its PDU                                        */
+    int len_B; /* of both, */
+    int tail_B; /* and behind them                                            */
+    int silent; /* to all: carried out, not answered                          */
+};
+
+int request_open(void); /* 0, or -1: no memory                                  */
+void request_close(void);
+
+/* Function, length, counts of len bytes: 0 or an exception. What passes, libmodbus measures right. */
+int request_shape(const uint8_t *pdu, unsigned len);
+
+/* Carries it out and answers. 0, or -1: the answer could not be sent. */
+int request_answer(struct request *q);
+
+unsigned request_be16(const uint8_t *p);
+
+#endif

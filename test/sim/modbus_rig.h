@@ -1,0 +1,98 @@
+/* `exhand run --modbus` in a process of its own, and libmodbus clients of it. */
+#ifndef TEST_SIM_MODBUS_RIG_H
+#define TEST_SIM_MODBUS_RIG_H
+
+#include "said.h"
+
+#include "exhand/modbus.h"
+
+#include <errno.h>
+#include <modbus/modbus.h>
+#include <time.h>
+
+struct rig {
+    const char *dir;
+    pid_t pid;
+    int port;
+    modbus_t *c;
+    struct said said;
+};
+
+static inline void rig_sleep(double s)
+{
+    const struct timespec t = {(time_t)s, (long)((s - (double)(time_t)s) * 1e9)};
+    nanosleep(&t, NULL);
+}
+
+static inline modbus_t *rig_client(int port)
+{
+    modbus_t *c = modbus_new_tcp("127.0.0.1", port);
+    CHECK(c != NULL && modbus_connect(c) == 0, "no connection: %s", modbus_strerror(errno));
+    modbus_set_response_timeout(c, 5, 0);
+    return c;
+}
+
+/* word: the command line, its place to serve at being tcp:127.0.0.1:0. */
+static inline void rig_start(struct rig *r, const char *const *word)
+{
+    char said[SAID_B];
+    memset(r, 0, sizeof *r);
+    r->dir = said_dir();
+    r->pid = said_start(r->dir, cli_run, word);
+    for (int i = 0; i < 500 && r->port == 0; i++) {
+        const char *at;
+        said_read(said, said_path(r->dir, "said.out"));
+        at = strstr(said, "tcp:127.0.0.1:");
+        if (at != NULL && strchr(at, '\n')) { r->port = atoi(at + 14); }
+        rig_sleep(0.01);
+    }
+    CHECK(r->port > 0, "it does not serve");
+    r->c = rig_client(r->port);
+}
+
+/* As by Ctrl-C, unless it has ended by itself. */
+static inline void rig_end(struct rig *r, int status)
+{
+    modbus_close(r->c);
+    modbus_free(r->c);
+    if (status == 130) { kill(r->pid, SIGINT); }
+    said_end(&r->said, r->dir, r->pid);
+    CHECK(r->said.status == status, "%d: %s", r->said.status, r->said.err);
+}
+
+/* Value i behind the address, as raw. */
+static inline int32_t rig_value(const uint16_t *word, unsigned i)
+{
+    return (int32_t)((uint32_t)word[2 * i] << 16 | word[2 * i + 1]);
+}
+
+static inline int32_t rig_input(struct rig *r, unsigned at)
+{
+    uint16_t word[2] = {0, 0};
+    CHECK(modbus_read_input_registers(r->c, (int)at, 2, word) == 2, "%#x: %s", at,
+          modbus_strerror(errno));
+    return rig_value(word, 0);
+}
+
+static inline int rig_write(struct rig *r, unsigned at, uint32_t v)
+{
+    const uint16_t word[2] = {(uint16_t)(v >> 16), (uint16_t)(v & 0xFFFF)};
+    return modbus_write_registers(r->c, (int)at, 2, word) == 2 ? 0 : errno;
+}
+
+static inline int rig_coil(struct rig *r, int coil)
+{
+    return modbus_write_bit(r->c, coil, 1) == 1 ? 0 : errno;
+}
+
+/* Until input value `at` is v; 0 if it was within two seconds. */
+static inline int rig_wait(struct rig *r, unsigned at, int32_t v)
+{
+    for (int i = 0; i < 200; i++) {
+        if (rig_input(r, at) == v) { return 0; }
+        rig_sleep(0.01);
+    }
+    return -1;
+}
+
+#endif
