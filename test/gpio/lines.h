@@ -10,6 +10,7 @@
 #include "posix.h"
 
 #include "cli/images.h"
+#include "cli/live.h"
 #include "drop/drop.h"
 #include "loop.h"
 
@@ -527,12 +528,85 @@ TEST(a_chip_that_is_gone)
     CHECK_EQ_I64(fall.sig[1].faults & EXH_FAULT_CARD, EXH_FAULT_CARD);
 }
 
+/* ---- `exhand run`: whose hand it is ----------------------------------------------------------- */
+
+static struct {
+    uint8_t state[2000]; /* of the box, by tick                                  */
+    int held; /* 1: the real switch is closed from the start and never moved     */
+} hand;
+
+/* Gripped at tick 300, let go at 1000, gripped at 1200, let go at 1400, gripped at 1600. */
+static void hand_before(uint32_t tick, struct exh_scene_in *in)
+{
+    if (!hand.held) {
+        chip.line[DEADMAN].level =
+            (tick >= 300 && tick < 1000) || (tick >= 1200 && tick < 1400) || tick >= 1600;
+    }
+    live_person_before(tick, in);
+}
+
+static void hand_after(uint32_t tick, const struct exh_scene_in *in,
+                       const struct exh_drive_out *out)
+{
+    hand.state[tick] = exh_scene_drop.safety->state;
+    live_person_after(tick, in, out);
+}
+
+static void hand_runs(int held)
+{
+    static const struct exh_loop_hooks hooks = {live_person_start, hand_before, hand_after};
+    const struct live_person person = {1, 0.5, 0}; /* --grip --let-go 0.5 */
+    struct posix_config c = posix_config_default();
+    c.gpio = 1;
+    c.wait = 1;
+    c.max_ticks = LEN(hand.state);
+    c.wires_in = live_wires;
+    memset(&hand, 0, sizeof hand);
+    hand.held = held;
+    start(ALL);
+    if (!held) { chip.line[DEADMAN].level = 0; }
+    posix_configure(&c);
+    live_person(&person);
+    exh_scene_drop.defaults();
+    CHECK_EQ_I64(images_give(NULL, &exh_scene_drop), 0);
+    CHECK_EQ_I64(exh_loop(&exh_scene_drop, 1000, &hooks), 0);
+    gpio_close();
+}
+
+/* Only the real switch commands: a grip runs the box, letting go is a fault, the next grip clears it and the one after
+ * runs it. The simulated person, who would have gripped at 0.1 s and let go at 0.5 s, is not there. */
+TEST(a_real_hand)
+{
+    static const struct {
+        uint32_t tick;
+        uint8_t state;
+    } row[] = {{299, EXH_STATE_OFF},    {345, EXH_STATE_OFF},      {360, EXH_STATE_ARM},
+               {999, EXH_STATE_RUN},    {1001, EXH_STATE_RELEASE}, {1030, EXH_STATE_FAULT},
+               {1245, EXH_STATE_FAULT}, {1260, EXH_STATE_OFF},     {1599, EXH_STATE_OFF},
+               {1660, EXH_STATE_ARM}};
+    hand_runs(0);
+    for (size_t i = 0; i < LEN(row); i++) {
+        CHECK(hand.state[row[i].tick] == row[i].state, "tick %u: state %u, want %u", row[i].tick,
+              hand.state[row[i].tick], row[i].state);
+    }
+}
+
+/* One that was never seen open may be stuck. */
+TEST(a_switch_that_is_closed_from_the_start)
+{
+    hand_runs(1);
+    for (size_t i = 0; i < LEN(hand.state); i++) {
+        CHECK(hand.state[i] == EXH_STATE_OFF, "tick %u: state %u", (unsigned)i, hand.state[i]);
+    }
+}
+
 #define LINES_TESTS \
     requested_low_and_pulled_down, a_field_alone, what_can_be_wrong, closed_if_both_reads_are, \
         a_contact_closes_nothing, two_contacts, two_contacts_that_disagree, disagreement_in_ticks, \
         lines_that_cannot_be_read, enable_and_beat, safe_is_low, lines_that_cannot_be_set, \
         low_when_the_program_ends, low_when_it_is_stopped, closed_contacts_change_nothing, \
         estop_cuts_in_its_tick, deadman_lets_go, no_start_with_an_open_contact, \
-        a_chip_that_is_gone
+        a_chip_that_is_gone, a_real_hand, \
+        a_switch_that_is_closed_from_the_start
 
 #endif
