@@ -31,7 +31,7 @@ jobs       = $(or $(patsubst -j%,%,$(filter -j%,$(MAKEFLAGS))),1)
 
 # These call make for what they need, or take it away: two at a time would write the same files.
 callers := all test demo run image coverage stress test-i686 mutants fuzz hil hil-built strangers gpio linux-program boot boot-built \
-           contract contract-built nic nic-built world two-computers bench-world bench size cards install diagrams clean check
+           contract contract-built nic nic-built modbus-image world two-computers bench-world bench size cards install diagrams clean check
 ifneq ($(and $(filter $(callers),$(MAKECMDGOALS)),$(word 2,$(MAKECMDGOALS))),)
 .NOTPARALLEL:
 endif
@@ -670,6 +670,13 @@ nic-built: all
 nic_run = B=$(B) FRAMES=$(NIC_FRAMES) SPEEDS=$(NIC_SPEEDS) APPROACHES=$(NIC_APPROACHES) test/pc104/nic.sh $(or $(ARGS),ways bilateral flood dump)
 nic-run:
 	@$(nic_run)
+
+## The pc104 image's Modbus slave under QEMU: a master of its own, options, no tick missed
+.PHONY: modbus-image
+modbus-image: all
+	@for t in i686-linux-gnu-gcc qemu-system-i386 python3; do .ci/deps "the pc104 image's Modbus slave" $$t gcc-i686-linux-gnu qemu-system-x86 python3 || exit 3; done
+	@$(MAKE) --no-print-directory $(if $(V),,-s) PORT=pc104 SCENE=drop CARDS=none all
+	@B=$(B) test/pc104/modbus.sh $(ARGS)
 
 # --- figures ------------------------------------------------------------------------
 

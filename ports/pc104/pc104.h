@@ -204,6 +204,15 @@ int pc104_link_up(void); /* 1: there is a card                                  
 unsigned pc104_link_log(const uint8_t *byte, unsigned n, int now);
 void pc104_link_log_new(void); /* what comes now is another stream                  */
 
+/* --- modbus.c: the scene's registers on COM2, where asked for --- */
+int pc104_modbus_option(const char *name, const char *value); /* 0: not its; halts on bad ones */
+void pc104_modbus_open(const struct exh_scene *sc); /* finds the UART; says so */
+void pc104_modbus_start(struct exh_scene_board board); /* halts where the rate does not hold it */
+void pc104_modbus_poll(const struct exh_scene_in *in); /* behind a tick's outputs: bounded work */
+uint8_t pc104_modbus_command(void); /* enum exh_command asked for since the last call */
+void pc104_modbus_dry(void); /* the work of the worst tick, to be timed */
+void pc104_modbus_report(void);
+
 /* --- trap.c: interrupts, and processor exceptions that say their name. Opened, as
  * the UART, before main() --- */
 void pc104_trap_open(void);

@@ -87,7 +87,7 @@ int pc104_idle(void)
 int pc104_scene_option(const struct exh_scene *sc, const char *name, const char *value)
 {
     const struct exh_signal_table *t = sc->params->table;
-    int found = 0;
+    int found = pc104_modbus_option(name, value);
     for (uint32_t i = 0; i < exh_signal_count(t); i++) {
         uint16_t instance;
         const struct exh_signal *row = exh_signal_at(t, i, &instance);
@@ -106,6 +106,7 @@ void pc104_scene_ready(const struct exh_scene *sc)
     scene = sc;
     exh_params_apply(sc->params);
     pc104_modules(sc);
+    pc104_modbus_open(sc);
 }
 
 /* The log's hooks, or the black box's, which calls them. */
@@ -124,6 +125,7 @@ void pc104_scene_dry(const struct exh_scene *sc, uint32_t tick, const struct exh
 {
     const uint32_t every = EXH_LOG_KEYFRAME_TICKS / 64u;
     if (tick == 0) { boxed = (uint8_t)pc104_dump_open(); }
+    pc104_modbus_dry();
     if (pc104_par.log == PC104_LOG_OFF && !boxed) { return; }
     dry = 1;
     if (tick == 0) {
@@ -139,11 +141,14 @@ void pc104_scene_start(const struct exh_scene *sc, struct exh_scene_board board)
 {
     boxed = (uint8_t)pc104_dump_open();
     started = pc104_par.log != PC104_LOG_OFF;
+    pc104_modbus_start(board);
     start_records(sc, board);
 }
 
 void pc104_scene_before(uint32_t tick, struct exh_scene_in *in)
 {
+    const uint8_t command = pc104_modbus_command();
+    if (command != EXH_CMD_NONE) { in->command = command; }
     if (boxed) {
         pc104_dump_before(tick, in);
     } else if (started) {
@@ -160,6 +165,7 @@ void pc104_scene_after(uint32_t tick, const struct exh_scene_in *in,
     } else if (started) {
         exh_log_after(tick, in, out);
     }
+    pc104_modbus_poll(in);
 }
 
 void pc104_log_flush(void)
@@ -186,6 +192,7 @@ void pc104_scene_end(void)
 {
     uint32_t lost;
     if (scene && scene->safety) { say_refusal(scene->safety); }
+    pc104_modbus_report();
     pc104_log_flush();
     if (!started) { return; }
     lost = exh_log_end(last_tick + 1);

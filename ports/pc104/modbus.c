@@ -1,0 +1,293 @@
+/* The scene's registers on COM2, by the library's slave: modbus=com2,ADDRESS,BAUD[,remote]. Polled once a tick, behind the
+ * outputs, a bounded number of characters at a time; nothing waits. Without the option the UART is not touched.
+ *
+ * The FIFO of 16 must not overflow between two ticks, nor the answer's run dry, for a gap would end its frame: a baud rate
+ * of which a tick has more than 14 characters is refused. How full the transmitter is stands nowhere: it is counted, a
+ * little too full. */
+#include "pc104.h"
+
+#include "io.h"
+#include "uart.h"
+
+#include "exhand/error.h"
+#include "exhand/fix.h"
+#include "exhand/modbus.h"
+
+#include <string.h>
+
+#define VALUES     1024u /* parameters of a scene                              */
+#define TICK_B     14u /* characters in a tick, at most                      */
+#define REMOTE     (1u << EXH_COIL_RUN | 1u << EXH_COIL_CLEAR)
+#define COM2(what) ((uint16_t)(UART_COM2 + (what)))
+
+static struct {
+    int32_t address, baud;
+    uint8_t asked_for, remote;
+} par;
+
+static struct exh_regs regs;
+static struct exh_modbus_rtu line;
+static struct exh_params *params;
+static const struct exh_safety *safety;
+static int32_t staged[VALUES];
+static uint32_t touched[EXH_REGS_WORDS(VALUES)];
+
+static uint8_t open;
+static uint32_t tick_us, most; /* characters moved a tick, at most */
+static uint32_t tick_B_q16; /* characters that go out in a tick, a little too few */
+
+static uint8_t answer[EXH_MODBUS_ADU_B];
+static uint32_t answer_B, sent_B; /* sent_B < answer_B: there is more to send */
+static uint32_t in_fifo_q16;
+static uint8_t sending; /* until the last character is out */
+static uint8_t command;
+static uint32_t answers;
+
+/* --- option --- */
+
+static void refuse(const char *value, const char *why)
+{
+    pc104_say("option modbus=");
+    pc104_say(value);
+    pc104_say(": ");
+    pc104_say(why);
+    pc104_say("\n");
+    pc104_halt(PC104_EXIT_OPTION, "option refused: nothing was started");
+}
+
+/* The text up to the next comma into word; what is behind it, or NULL. */
+static const char *word_of(const char *text, char word[12])
+{
+    unsigned n = 0;
+    while (*text != '\0' && *text != ',') {
+        if (n < 11) { word[n++] = *text; }
+        text++;
+    }
+    word[n] = '\0';
+    return *text == ',' ? text + 1 : NULL;
+}
+
+int pc104_modbus_option(const char *name, const char *value)
+{
+    char word[12];
+    const char *rest;
+    if (!pc104_same_text(name, "modbus")) { return 0; }
+    rest = word_of(value, word);
+    if (!pc104_same_text(word, "com2") || rest == NULL) {
+        refuse(value, "com2,ADDRESS,BAUD[,remote]");
+    }
+    rest = word_of(rest, word);
+    if (pc104_number(word, 0, &par.address) < 0 || par.address < 1 || par.address > 247) {
+        refuse(value, "address 1..247");
+    }
+    if (rest == NULL) { refuse(value, "com2,ADDRESS,BAUD[,remote]"); }
+    rest = word_of(rest, word);
+    if (pc104_number(word, 0, &par.baud) < 0 || par.baud < 1200 || par.baud > 115200 ||
+        exh_udiv64(UART_BASE_BAUD, (uint32_t)par.baud, NULL) * (uint32_t)par.baud !=
+            UART_BASE_BAUD) {
+        refuse(value, "baud: 115200 and whole parts of it, down to 1200");
+    }
+    par.remote = rest != NULL;
+    if (rest != NULL && !pc104_same_text(rest, "remote")) {
+        refuse(value, "com2,ADDRESS,BAUD[,remote]");
+    }
+    par.asked_for = 1;
+    return 1;
+}
+
+/* --- start --- */
+
+static int is_there(void)
+{
+    static const uint8_t pattern[] = {0x5A, 0xA5};
+    for (unsigned i = 0; i < sizeof pattern; i++) {
+        pc104_out8(COM2(UART_SCRATCH), pattern[i]);
+        if (pc104_in8(COM2(UART_SCRATCH)) != pattern[i]) { return 0; }
+    }
+    return 1;
+}
+
+static void map(const struct exh_scene *sc)
+{
+    memset(&regs, 0, sizeof regs);
+    regs.name = sc->name;
+    regs.signals = sc->signal ? sc->signals : NULL;
+    regs.signal = sc->signal;
+    regs.fingers = sc->fingers;
+    regs.may = EXH_REGS_MAY | (par.remote ? REMOTE : 0u);
+    params = sc->params;
+    safety = sc->safety;
+    if (params == NULL) { return; }
+    regs.params = params->table;
+    regs.active = params->active;
+    regs.wanted = params->staged;
+    regs.staged = staged;
+    regs.touched = touched;
+}
+
+/* As many characters as come in a tick at this rate, and two: what is moved in one. */
+static uint32_t most_of(uint32_t num, uint32_t den)
+{
+    const uint32_t n =
+        (uint32_t)exh_udiv64((uint64_t)(uint32_t)par.baud * num, UINT64_C(10) * den, NULL) + 2;
+    return n < UART_FIFO_B ? n : UART_FIFO_B;
+}
+
+void pc104_modbus_open(const struct exh_scene *sc)
+{
+    const uint32_t rate_Hz = pc104_par.rate_Hz ? (uint32_t)pc104_par.rate_Hz : sc->rate_Hz;
+    if (!par.asked_for) { return; }
+    map(sc);
+    if ((params && exh_signal_count(params->table) > VALUES) || exh_regs_setup(&regs) < 0) {
+        pc104_halt(PC104_EXIT_OPTION,
+                   "option modbus: the scene's tables are larger than this port's map");
+    }
+    (void)exh_modbus_rtu_setup(&line, (uint32_t)par.address, (uint32_t)par.baud);
+    most = most_of(1, rate_Hz);
+    if (!is_there() || !pc104_uart_set(UART_COM2, (uint16_t)exh_udiv64(UART_BASE_BAUD,
+                                                                       (uint32_t)par.baud, NULL))) {
+        pc104_say("modbus: no 16550 with a FIFO at COM2: goes on without\n");
+        return;
+    }
+    open = 1;
+    pc104_say("modbus: COM2, 8N1, address ");
+    pc104_say_u32((uint32_t)par.address);
+    pc104_say(", baud ");
+    pc104_say_u32((uint32_t)par.baud);
+    pc104_say("\n");
+}
+
+/* A tick must be no longer than TICK_B characters. Says what would do. */
+static void check_rate(struct exh_period T)
+{
+    const uint64_t allowed = exh_udiv64(UINT64_C(10) * TICK_B * T.den, T.num, NULL);
+    uint32_t divisor = 1;
+    if ((uint32_t)par.baud <= allowed) { return; }
+    while (UART_BASE_BAUD > allowed * divisor && divisor < 96) { divisor *= 2; }
+    pc104_say("option modbus: baud ");
+    pc104_say_u32((uint32_t)par.baud);
+    pc104_say(": its FIFO overflows in a tick of this rate: take at most ");
+    pc104_say_u32((uint32_t)exh_udiv64(UART_BASE_BAUD, divisor, NULL));
+    pc104_say(", or a rate of at least ");
+    pc104_say_u32((uint32_t)exh_udiv64((uint32_t)par.baud + 10 * TICK_B - 1, 10 * TICK_B, NULL));
+    pc104_say(" Hz\n");
+    pc104_halt(PC104_EXIT_OPTION, "option refused: nothing was started");
+}
+
+void pc104_modbus_start(struct exh_scene_board board)
+{
+    if (!par.asked_for) { return; }
+    check_rate(board.T); /* also where there is no UART: it may be found tomorrow */
+    if (!open) { return; }
+    regs.T = board.T;
+    most = most_of(board.T.num, board.T.den);
+    tick_us = (uint32_t)exh_udiv64(UINT64_C(1000000) * board.T.num, board.T.den, NULL);
+    /* 99 % of what the line takes */
+    tick_B_q16 = (uint32_t)exh_udiv64((UINT64_C(99) << 16) * (uint32_t)par.baud * board.T.num,
+                                      UINT64_C(1000) * board.T.den, NULL);
+    pc104_out8(COM2(UART_FIFO), UART_FIFO_EMPTY); /* what came before is no request */
+}
+
+/* --- ticks --- */
+
+uint8_t pc104_modbus_command(void)
+{
+    const uint8_t now = command;
+    command = EXH_CMD_NONE;
+    return now;
+}
+
+/* All that a request has asked for, between two ticks. */
+static void carry_out(void)
+{
+    const uint32_t asked = exh_regs_take(&regs);
+    const uint8_t wanted = exh_regs_command(asked);
+    if (asked >> EXH_COIL_APPLY & 1u) {
+        exh_regs_did(&regs, params ? exh_regs_apply(&regs, params) : 0);
+    }
+    if (wanted == EXH_CMD_NONE) { return; }
+    command = wanted;
+    exh_regs_did(&regs, 0);
+}
+
+/* Nothing is taken meanwhile: who asked waits for this, and what follows it waits in the FIFO. */
+static void send(void)
+{
+    const uint8_t status = pc104_in8(COM2(UART_STATUS));
+    if (sent_B == answer_B) {
+        sending = !(status & UART_STATUS_SILENT);
+        return;
+    }
+    in_fifo_q16 =
+        (status & UART_STATUS_EMPTY) || in_fifo_q16 < tick_B_q16 ? 0 : in_fifo_q16 - tick_B_q16;
+    for (uint32_t i = 0; i < most && sent_B < answer_B && in_fifo_q16 <= (UART_FIFO_B - 1) << 16;
+         i++) {
+        pc104_out8(COM2(UART_DATA), answer[sent_B++]);
+        in_fifo_q16 += 1u << 16;
+    }
+}
+
+static uint32_t hear(void)
+{
+    uint32_t n = 0;
+    for (; n < most; n++) {
+        const uint8_t status = pc104_in8(COM2(UART_STATUS));
+        if (!(status & UART_STATUS_READY)) { break; }
+        if (status & UART_STATUS_BAD) { exh_modbus_rtu_bad(&line); }
+        exh_modbus_rtu_byte(&line, pc104_in8(COM2(UART_DATA)));
+    }
+    return n;
+}
+
+void pc104_modbus_poll(const struct exh_scene_in *in)
+{
+    if (!open) { return; }
+    if (sending) {
+        send();
+        return;
+    }
+    if (hear() > 0 || !exh_modbus_rtu_pass(&line, tick_us * (1u + in->missed))) { return; }
+    if (safety) { exh_regs_see(&regs, safety, in->drive.din); }
+    regs.locked = params ? params->locked : 0;
+    answer_B = (uint32_t)exh_modbus_rtu_answer(&line, &regs, answer, sizeof answer);
+    sent_B = 0;
+    in_fifo_q16 = 0;
+    sending = answer_B > 0;
+    answers += sending;
+    carry_out();
+}
+
+/* --- what it costs --- */
+
+/* The longest answer, and as many accesses as a tick may have, for the clock. */
+void pc104_modbus_dry(void)
+{
+    static struct exh_modbus_rtu twin;
+    static uint8_t to[EXH_MODBUS_ADU_B];
+    uint8_t ask[8] = {1, 3, EXH_REGS_PARAM_FLOAT_AT >> 8, 0, 0, 0, 0, 0};
+    uint32_t n = 2 * regs.params_n;
+    uint16_t crc;
+    if (!open) { return; }
+    n = n < 124 ? n : 124;
+    ask[5] = (uint8_t)n;
+    crc = exh_crc16(ask, 6);
+    ask[6] = (uint8_t)(crc & 0xFFu);
+    ask[7] = (uint8_t)(crc >> 8);
+    (void)exh_modbus_rtu_setup(&twin, 1, (uint32_t)par.baud);
+    for (unsigned i = 0; i < sizeof ask; i++) { exh_modbus_rtu_byte(&twin, ask[i]); }
+    (void)exh_modbus_rtu_pass(&twin, UINT32_MAX);
+    (void)exh_modbus_rtu_answer(&twin, &regs, to, sizeof to);
+    for (uint32_t i = 0; i < 2 * most + 1; i++) { (void)pc104_in8(COM2(UART_STATUS)); }
+}
+
+void pc104_modbus_report(void)
+{
+    if (!open) { return; }
+    pc104_say("modbus answers ");
+    pc104_say_u32(answers);
+    pc104_say(", damaged ");
+    pc104_say_u32(line.damaged);
+    pc104_say(", for others ");
+    pc104_say_u32(line.others);
+    pc104_say("\n");
+}
