@@ -28,19 +28,23 @@ static void stage_all(int when)
     }
 }
 
-static void parameters_every_tick(void)
+static void parameters_every_tick(int32_t tune_ms)
 {
+    const struct exh_period T = {1, 2000};
+    const struct exh_tune_par tune = {tune_ms};
     struct exh_drive_out out;
     fresh();
     rig.blind = 1;
-    start((struct exh_period){1, 2000});
+    start(T);
+    exh_params_slew(&rig.params, &tune, T);
     for (uint64_t n = 0; n < 1000000; n++) {
         const struct exh_scene_in in = wild_in(n);
         stage_all(EXH_WHEN_ANY);
+        stage_all(EXH_WHEN_SLEWED);
         exh_params_apply(&rig.params);
         tick(&in, &out);
     }
-    report("parameters at random every tick", "");
+    report("parameters at random every tick", tune_ms ? "little by little" : "at once");
 }
 
 /* Any set-up the tables allow is either refused or keeps the rules. */
@@ -67,6 +71,7 @@ static void random_setups(void)
         rig.enc_bits = (uint8_t)(15 + any(18)); /* 15: refused */
         stage_all(EXH_WHEN_SETUP);
         if (any(2)) { stage_all(EXH_WHEN_ANY); }
+        if (any(2)) { stage_all(EXH_WHEN_SLEWED); }
         if (any(4)) { /* most of all i_peak and i_cont in the order the scene asks for */
             struct exh_drive_par *d = &rig.staged.drive;
             const int32_t swap = d->i_peak_A_q26;
@@ -91,6 +96,7 @@ static void random_setups(void)
 
 void random_parameters(void)
 {
-    parameters_every_tick();
+    parameters_every_tick(0);
+    parameters_every_tick(20);
     random_setups();
 }
