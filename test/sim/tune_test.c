@@ -14,9 +14,9 @@
 #define LEN(a) (sizeof(a) / sizeof((a)[0]))
 
 enum how {
-    ONE,  /* k from 500 to 5000 N/m, in equal parts                              */
+    ONE, /* k from 500 to 5000 N/m, in equal parts                              */
     FORCE, /* every slewed row at random, in every tick                         */
-    ALL,  /* every row that may change, in every tick                           */
+    ALL, /* every row that may change, in every tick                           */
     SELDOM /* the slewed ones every 10 ticks                                    */
 };
 
@@ -82,7 +82,8 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
     const struct drop_par *par = (const void *)exh_scene_drop.params->active;
     const int open = s->state == EXH_STATE_RUN || s->state == EXH_STATE_LIMIT;
     const int64_t step = (int64_t)s->f_des_N_q20 - see.last_N_q20;
-    const int64_t most = allowed_N_q20(step < 0 ? par->drive.slew_down_Nps : par->drive.slew_up_Nps);
+    const int64_t most =
+        allowed_N_q20(step < 0 ? par->drive.slew_down_Nps : par->drive.slew_up_Nps);
     (void)in;
     (void)out;
     const int64_t tuned = s->c * exh_mul_shr(par->contact.k_Npm_q10 - see.k_Npm_q10,
@@ -111,7 +112,8 @@ static void begin(const struct exh_scene *sc, struct exh_scene_board board)
 }
 
 /* A finger goes to the wall at 30 mm and presses 15 mm beyond for so long. */
-static struct run_cfg pressing(uint32_t rate_Hz, double seconds, const struct run_setting *set, int n)
+static struct run_cfg pressing(uint32_t rate_Hz, double seconds, const struct run_setting *set,
+                               int n)
 {
     static const struct exh_loop_hooks hooks = {begin, before, after};
     struct run_cfg c;
@@ -164,21 +166,26 @@ TEST(what_a_finger_feels)
         const uint32_t at = row[i].rate_Hz * 2;
         int64_t tuned[3];
         for (int k = 0; k < 3; k++) {
-            const struct run_setting set[] = {{"q_lim", 0.03}, {"arm_time", 1}, {"ramp_time", 1},
+            const struct run_setting set[] = {{"q_lim", 0.03},
+                                              {"arm_time", 1},
+                                              {"ramp_time", 1},
                                               {"tune_time", row[i].tune_ms[k]}};
             const struct run_cfg c = pressing(row[i].rate_Hz, 2.5, set, LEN(set));
             press(&c, ONE, at, row[i].parts[k]);
             tuned[k] = see.tuned_N_q20;
-            check_note("%" PRIu32 " Hz, k 500 -> 5000 N/m, %s: %.3f N a tick by k, %.3f N in all; there in %"
-                       PRIu32 " ticks", row[i].rate_Hz, name[k], newton(tuned[k]), newton(see.most_N_q20),
-                       k == 1 ? see.settled + 2 - at : row[i].parts[k]);
+            check_note(
+                "%" PRIu32
+                " Hz, k 500 -> 5000 N/m, %s: %.3f N a tick by k, %.3f N in all; there in %" PRIu32
+                " ticks",
+                row[i].rate_Hz, name[k], newton(tuned[k]), newton(see.most_N_q20),
+                k == 1 ? see.settled + 2 - at : row[i].parts[k]);
             if (k == 1) {
-                CHECK(see.settled > at && see.settled < at + row[i].rate_Hz, "there at tick %" PRIu32,
-                      see.settled);
+                CHECK(see.settled > at && see.settled < at + row[i].rate_Hz,
+                      "there at tick %" PRIu32, see.settled);
             }
         }
-        CHECK(tuned[1] * (row[i].rate_Hz == 90 ? 3 : 20) < tuned[0] * 2, "%.3f N of %.3f", newton(tuned[1]),
-              newton(tuned[0]));
+        CHECK(tuned[1] * (row[i].rate_Hz == 90 ? 3 : 20) < tuned[0] * 2, "%.3f N of %.3f",
+              newton(tuned[1]), newton(tuned[0]));
     }
 }
 
@@ -191,24 +198,28 @@ TEST(no_step_beyond_the_slew_limit)
         for (size_t h = 0; h < LEN(hows); h++) {
             for (int tune = 0; tune < 2; tune++) {
                 const struct run_setting set[] = {
-                    {"q_lim", 0.03},    {"arm_time", 1},     {"ramp_time", 1},     {"tune_time", 20 * tune},
-                    {"slew_up", 1000},  {"slew_down", 1000}, {"speed_limit", 10},  {"speed_time", 1000},
-                    {"arm_force", 10},
+                    {"q_lim", 0.03},          {"arm_time", 1},      {"ramp_time", 1},
+                    {"tune_time", 20 * tune}, {"slew_up", 1000},    {"slew_down", 1000},
+                    {"speed_limit", 10},      {"speed_time", 1000}, {"arm_force", 10},
                 };
                 const struct run_cfg c = pressing(rates[i], 3, set, LEN(set));
                 press(&c, hows[h], 0, 0);
-                CHECK(see.open_ticks > rates[i] / 2, "%" PRIu32 " Hz: open for %" PRIu32 " ticks", rates[i],
-                      see.open_ticks);
-                CHECK(see.contact_ticks > rates[i] / 8, "%" PRIu32 " Hz: %" PRIu32 " ticks of contact", rates[i],
-                      see.contact_ticks);
+                CHECK(see.open_ticks > rates[i] / 2, "%" PRIu32 " Hz: open for %" PRIu32 " ticks",
+                      rates[i], see.open_ticks);
+                CHECK(see.contact_ticks > rates[i] / 8,
+                      "%" PRIu32 " Hz: %" PRIu32 " ticks of contact", rates[i], see.contact_ticks);
                 if (hows[h] == FORCE) {
-                    CHECK(see.most_part > 1000, "%" PRIu32 " Hz: never near the limit: %ld/1024", rates[i],
-                          (long)see.most_part);
+                    CHECK(see.most_part > 1000, "%" PRIu32 " Hz: never near the limit: %ld/1024",
+                          rates[i], (long)see.most_part);
                 }
                 if (tune) {
-                    check_note("%" PRIu32 " Hz, %s: %" PRIu32 " ticks of %" PRIu32 " in contact, largest step %.3f N,"
-                               " %.4f of what is allowed", rates[i],
-                               hows[h] == ALL ? "all rows" : hows[h] == FORCE ? "force rows" : "every 10 ticks",
+                    check_note("%" PRIu32 " Hz, %s: %" PRIu32 " ticks of %" PRIu32
+                               " in contact, largest step %.3f N,"
+                               " %.4f of what is allowed",
+                               rates[i],
+                               hows[h] == ALL     ? "all rows"
+                               : hows[h] == FORCE ? "force rows"
+                                                  : "every 10 ticks",
                                see.contact_ticks, see.open_ticks, newton(see.most_N_q20),
                                (double)see.most_part / 1024);
                 }

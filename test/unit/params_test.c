@@ -41,12 +41,18 @@ TEST(steps_worked_out)
         unsigned shift;
         int32_t now, goal, next;
     } row[] = {
-        {0, 3, 100, 100},   {0, INT32_MIN, INT32_MAX, INT32_MAX},
-        {3, 0, 80, 10},     {3, 0, 81, 11},
-        {3, 0, -80, -10},   {3, 0, -81, -11}, /* away from zero, both ways */
-        {3, 0, 1, 1},       {3, 0, -1, -1},
-        {15, 7, 7, 7},      {31, INT32_MIN, INT32_MAX, INT32_MIN + 2},
-        {1, INT32_MIN, INT32_MAX, 0}, {1, INT32_MAX, INT32_MIN, -1},
+        {0, 3, 100, 100},
+        {0, INT32_MIN, INT32_MAX, INT32_MAX},
+        {3, 0, 80, 10},
+        {3, 0, 81, 11},
+        {3, 0, -80, -10},
+        {3, 0, -81, -11}, /* away from zero, both ways */
+        {3, 0, 1, 1},
+        {3, 0, -1, -1},
+        {15, 7, 7, 7},
+        {31, INT32_MIN, INT32_MAX, INT32_MIN + 2},
+        {1, INT32_MIN, INT32_MAX, 0},
+        {1, INT32_MAX, INT32_MIN, -1},
         {31, INT32_MAX, INT32_MIN, INT32_MAX - 2},
     };
     for (size_t i = 0; i < LEN(row); i++) {
@@ -94,11 +100,22 @@ TEST(shift_of_a_time)
         unsigned shift;
     } row[] = {
         {20, {1, 2000}, 6}, /* 64 ticks are 32 ms */
-        {16, {1, 2000}, 5},   {20, {1, 90}, 1},     {11, {1, 90}, 0},        {12, {1, 90}, 1},
-        {0, {1, 20000}, 0},   {1, {1, 1000}, 0},    {1000, {1, 20000}, 15},  {1000, {1, 20020}, 15},
-        {1000, {1, 1}, 0},    {-5, {1, 2000}, 0},   {INT32_MAX, {1, 20000}, 15},
-        {1000, {1, 4294967295u}, 15}, {1000, {4294967295u, 1}, 0}, {20, {596, 1193182}, 6},
-        {512, {1, 2000}, 10}, {513, {1, 2000}, 11},
+        {16, {1, 2000}, 5},
+        {20, {1, 90}, 1},
+        {11, {1, 90}, 0},
+        {12, {1, 90}, 1},
+        {0, {1, 20000}, 0},
+        {1, {1, 1000}, 0},
+        {1000, {1, 20000}, 15},
+        {1000, {1, 20020}, 15},
+        {1000, {1, 1}, 0},
+        {-5, {1, 2000}, 0},
+        {INT32_MAX, {1, 20000}, 15},
+        {1000, {1, 4294967295u}, 15},
+        {1000, {4294967295u, 1}, 0},
+        {20, {596, 1193182}, 6},
+        {512, {1, 2000}, 10},
+        {513, {1, 2000}, 11},
     };
     for (size_t i = 0; i < LEN(row); i++) {
         const struct exh_tune_par par = {row[i].ms};
@@ -177,7 +194,8 @@ TEST(bad_keyframes)
         active[0] = staged[0] = 4711;
         c = exh_bytes_reader(b, n);
         exh_params_bytes(&c, &p);
-        CHECK(!exh_bytes_ok(&c) && active[0] == 4711 && staged[0] == 4711 && !p.moving && !p.pending,
+        CHECK(!exh_bytes_ok(&c) && active[0] == 4711 && staged[0] == 4711 && !p.moving &&
+                  !p.pending,
               "case %u", i);
     }
 }
@@ -193,8 +211,12 @@ TEST(guard_in_mid_way)
         start(bit % 9);
         exh_guard_seal(&g, NULL, 0, &p);
         for (unsigned k = 0; k < 100 + bit; k++) {
-            if (k % 3) { CHECK_EQ_I64(exh_params_stage(&p, 0x7201, 0, (int32_t)(k * 7919 % 2001) - 1000), 0); }
-            if (k % 7 == 0) { CHECK_EQ_I64(exh_params_stage(&p, 0x7101, 1, exh_from_u32(k * 0x9E3779B9u)), 0); }
+            if (k % 3) {
+                CHECK_EQ_I64(exh_params_stage(&p, 0x7201, 0, (int32_t)(k * 7919 % 2001) - 1000), 0);
+            }
+            if (k % 7 == 0) {
+                CHECK_EQ_I64(exh_params_stage(&p, 0x7101, 1, exh_from_u32(k * 0x9E3779B9u)), 0);
+            }
             if (k % 5) { (void)exh_params_apply(&p); }
             CHECK(!exh_guard_step(&g), "bit %u: told in tick %u", bit, k);
         }

@@ -3,6 +3,7 @@
 
 #include "cli.h"
 #include "option.h"
+#include "param.h"
 
 #include "world/world.h"
 
@@ -58,7 +59,50 @@ static int probe(const struct bilateral_options *o)
     c.blackbox = NULL;
     err = bilateral_run(&c, &r);
     bilateral_run_free(&r);
+    if (err == 0 && o->params.save) { return params_save_file(o->params.save, exh_scene_bilateral.params); }
     return err < 0 ? 2 : 0;
+}
+
+/* Those of the first material, which is that of walls: what is said of the run. */
+static int take_gains(struct bilateral_options *o)
+{
+    struct exh_params *p = exh_scene_bilateral.params;
+    uint32_t k, b;
+    exh_scene_bilateral.defaults();
+    if (params_take(o->params.load, p, o->params.image, o->params.len_B) < 0) { return 2; }
+    if (o->scene || !cli_signal_find(p->table, "mat_k", &k) || !cli_signal_find(p->table, "mat_b", &b)) {
+        return 0;
+    }
+    o->run.k_Npm = cli_signal_value(&exh_material_rows[0], p->staged[k]);
+    o->run.b_Nspm = cli_signal_value(&exh_material_rows[1], p->staged[b]);
+    return 0;
+}
+
+static int load_params(struct bilateral_options *o)
+{
+    const int several = o->sweep || o->check || o->hands || o->crisp;
+    int err;
+    if ((o->params.load || o->params.save) && several) {
+        cli_complain("--load-params, --save-params: leave out --sweep, --check, --hands, --crisp");
+        return 2;
+    }
+    if (o->params.save && o->udp) {
+        cli_complain("--save-params: leave out --udp");
+        return 2;
+    }
+    if (o->params.load && (o->run.k_Npm >= 0 || o->run.b_Nspm >= 0)) {
+        cli_complain("--load-params: the image has stiffness and damping: leave out --k and --b; --set mat_k=... "
+                     "comes behind it");
+        return 2;
+    }
+    if (o->params.load) {
+        o->own_scale = 1; /* it was fitted, when that was saved */
+        o->run.live.image = o->params.image;
+        o->run.live.name = o->params.load;
+    }
+    err = params_file_read(&o->params);
+    o->run.live.image_B = o->params.len_B;
+    return err == 0 && o->params.load ? take_gains(o) : err;
 }
 
 /* One run, as it was recorded, instead of approaches. */
@@ -82,6 +126,7 @@ static int go(struct bilateral_options *o, double rate_Hz)
 {
     int err = load_scene(o);
     if (err == 0) { err = load_record(o); }
+    if (err == 0) { err = load_params(o); }
     if (err) { return err; }
     o->run.rate_Hz = (uint32_t)(rate_Hz + 0.5);
     if (o->scene == NULL && o->run.k_Npm < 0) { o->run.k_Npm = 20000; }
@@ -152,6 +197,7 @@ int cli_bilateral(int argc, char **argv)
         {"let-go", CLI_REAL, &o.run.board.let_go_s, 0, 1e9, "S", "the dead-man switch opens then: a fault (never)"},
         {"set", CLI_CALL, u[3].to, 0, 0, "NAME=VALUE", "a parameter of the scene, of all fingers"},
         {"device", CLI_CALL, u[4].to, 0, 0, "NAME=VALUE", "a value of the simulated hand, glove or motors"},
+        PARAMS_FILE_OPTIONS(o.params),
         {"calibration", CLI_CALL, u[6].to, 0, 0, "FILE[,FILE...]", "of the fingers, or a directory of them (none: the simulated device as it is, uncalibrated=1)"},
         {"sweep", CLI_FLAG, &o.sweep, 0, 0, NULL, "stiffness and missed contacts over delay, jitter and loss"},
         {"check", CLI_INT, &o.check, 1, 1e6, "N", "random approaches: none may be felt before its freeze"},

@@ -5,6 +5,7 @@
 #include "bilateral_judge.h"
 #include "hand_record.h"
 #include "jobs.h"
+#include "params_file.h"
 
 #include <stdio.h>
 
@@ -30,6 +31,7 @@ struct bilateral_options {
     struct sim_trace trace;
     struct hand_record hand;
     struct images images;
+    struct params_file params;
 };
 
 extern const char *const bilateral_finger_name[BILATERAL_FINGERS];

@@ -203,6 +203,10 @@ static int set_parameters(const struct bilateral_run_cfg *c)
     if (err == 0 && c->k_Npm >= 0) { err = cli_param_set(p, "mat_k", c->k_Npm); }
     if (err == 0 && c->b_Nspm >= 0) { err = cli_param_set(p, "mat_b", c->b_Nspm); }
     if (err == 0) { err = run_image(&c->live, p); }
+    /* Who is there now, whatever was there when that was saved. */
+    for (size_t i = sizeof known / sizeof known[0] - 2; err == 0 && i < sizeof known / sizeof known[0]; i++) {
+        err = cli_param_set(p, known[i].name, known[i].value);
+    }
     for (int i = 0; err == 0 && i < c->settings; i++) {
         err = cli_param_set(p, c->setting[i].name, c->setting[i].value);
     }

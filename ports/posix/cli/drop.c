@@ -12,6 +12,7 @@
 #include "option.h"
 #include "outdir.h"
 #include "param.h"
+#include "params_file.h"
 #include "sweep.h"
 
 #include "drop/drop.h"
@@ -27,6 +28,7 @@
 #define SETTINGS_MAX 64
 
 struct drop_options {
+    struct params_file params;
     double rate_Hz[RATES_MAX];
     int rates, rates_given;
     double k_Npm, b_Nspm, scale; /* < 0: the paper's at that rate                 */
@@ -158,6 +160,12 @@ static struct run_cfg job_cfg(const struct drop_options *o, int rate_i, double s
     c.setting = o->setting;
     c.settings = o->settings;
     c.images = &o->images;
+    if (o->params.load) {
+        c.live.image = o->params.image;
+        c.live.image_B = o->params.len_B;
+        c.live.name = o->params.load;
+        c.live.gains = 1;
+    }
     c.board = posix_config_default();
     c.board.device = o->device;
     c.board.seed = seed;
@@ -359,9 +367,28 @@ static int can_write(const char *path)
     return f != NULL;
 }
 
+/* The image's k and b are those of the table's rows, unless they are given. */
+static int load_params(struct drop_options *o)
+{
+    const struct exh_scene *sc = o->guarded ? &exh_scene_guarded : &exh_scene_drop;
+    const int err = params_file_read(&o->params);
+    uint32_t k, b;
+    if (err || o->params.load == NULL) { return err; }
+    sc->defaults();
+    if (params_take(o->params.load, sc->params, o->params.image, o->params.len_B) < 0) { return 2; }
+    if (o->k_Npm < 0 && cli_signal_find(sc->params->table, "k", &k)) {
+        o->k_Npm = cli_signal_value(&exh_contact_rows[0], sc->params->staged[k]);
+    }
+    if (o->b_Nspm < 0 && cli_signal_find(sc->params->table, "b", &b)) {
+        o->b_Nspm = cli_signal_value(&exh_contact_rows[1], sc->params->staged[b]);
+    }
+    return 0;
+}
+
 /* Whether what was asked for can be run at all: 0, or 2 after a line on stderr. */
 static int refuse(struct drop_options *o)
 {
+    int err;
     if (o->T.num != 0 && o->rates_given) {
         cli_complain("--period and --rate: a period is a rate: give one of them");
         return 2;
@@ -386,12 +413,23 @@ static int refuse(struct drop_options *o)
         cli_complain("--grid and --shard: only with --sweep, --grid with --border-check too");
         return 2;
     }
-    for (int i = 0; i < o->rates; i++) {
+    if (o->params.load && in_plane(o)) {
+        cli_complain("--load-params: no plane of gains, which chooses k and b itself: leave out one of them");
+        return 2;
+    }
+    if (o->params.save && (o->rates != 1 || in_plane(o))) {
+        cli_complain("--save-params: one rate, and no plane of gains: give --rate");
+        return 2;
+    }
+    err = load_params(o);
+    for (int i = 0; err == 0 && i < o->rates; i++) {
         struct run_cfg c = job_cfg(o, i, 1, 1);
         if (run_check(&c) < 0) { return 2; }
+        if (o->params.save) { err = params_save_file(o->params.save, c.scene->params); }
         c = job_cfg(o, i, 1.5, 1);
         if (o->spread > 0 && run_check(&c) < 0) { return 2; }
     }
+    if (err) { return err; }
     return o->out && !in_plane(o) ? outdir_open(o->out) : 0;
 }
 
@@ -450,6 +488,7 @@ int cli_drop(int argc, char **argv)
         {"gpio", CLI_CALL, u[4].to, 0, 0, CONTACTS_ARG, CONTACTS_HELP},
         {"set", CLI_CALL, u[2].to, 0, 0, "NAME=VALUE", "a parameter of the scene"},
         {"device", CLI_CALL, u[3].to, 0, 0, "NAME=VALUE", "a value of the simulated device"},
+        PARAMS_FILE_OPTIONS(o.params),
         {"calibration", CLI_CALL, u[5].to, 0, 0, "FILE", "of finger 0, by `exhand calibrate` (none: the simulated device as it is, uncalibrated=1)"},
         {"sweep", CLI_FLAG, &o.sweep, 0, 0, NULL, "the stability border in the k-b plane, in DIR/stability.csv"},
         {"grid", CLI_TEXT, &o.grid, 0, 0, "KxB", "cells at each rate of --sweep (20x16), --border-check (16x16)"},

@@ -4,6 +4,7 @@
 #include "dumpfile.h"
 #include "option.h"
 #include "param.h"
+#include "params_file.h"
 
 #include "drop/drop.h"
 #include "log.h"
@@ -124,16 +125,7 @@ static const struct exh_scene *scene_of(const struct run_cfg *c)
 
 int run_image(const struct run_live *l, struct exh_params *p)
 {
-    uint32_t bad = 0;
-    const int err = l->image ? exh_params_load(p, l->image, l->image_B, &bad) : 0;
-    if (err == -EXH_E_RANGE || err == -EXH_E_STATE) {
-        cli_complain("--params: its value of %s may not be: save it anew",
-                     exh_signal_at(p->table, bad, NULL)->name);
-    } else if (err < 0) {
-        cli_complain("--params: %s: give an image that this scene, of this version, saved",
-                     exh_error_text(err));
-    }
-    return err;
+    return l->image ? params_take(l->name ? l->name : "--params", p, l->image, l->image_B) : 0;
 }
 
 static int set_parameters(const struct run_cfg *c)
@@ -153,6 +145,10 @@ static int set_parameters(const struct run_cfg *c)
         err = cli_param_set(p, calibrated[i].name, calibrated[i].value);
     }
     if (err == 0) { err = run_image(&c->live, p); }
+    if (err == 0 && c->live.gains) {
+        err = cli_param_set(p, "k", c->k_Npm);
+        if (err == 0) { err = cli_param_set(p, "b", c->b_Nspm); }
+    }
     for (int i = 0; err == 0 && i < c->settings; i++) {
         err = cli_param_set(p, c->setting[i].name, c->setting[i].value);
     }

@@ -22,6 +22,8 @@ struct run_live {
     int on;
     const void *image; /* of parameters, staged before the settings; NULL: none */
     size_t image_B;
+    const char *name; /* of it, in messages; NULL: --params                     */
+    int gains; /* 1: k and b of the run are behind it                          */
 };
 
 struct run_cfg {
