@@ -207,6 +207,45 @@ static void beats_and_holds(void)
     tell(status == 130, "interrupted: status %d", status);
 }
 
+/* `exhand run`: only the real switch commands. */
+static void a_hand(void)
+{
+    static char program[32], spec[128], log[32];
+    const pid_t pid = fork();
+    int first, low, cleared, again;
+    snprintf(program, sizeof program, "/exhand-%s", version);
+    snprintf(log, sizeof log, "/out/%s_run.exh", version);
+    snprintf(spec, sizeof spec, "%s:" PAIR, sim_chip());
+    if (pid == 0) {
+        if (!freopen("/said.err", "w", stderr) || !freopen("/said.out", "w", stdout)) { _exit(99); }
+        execl(program, "exhand", "run", "--pace", "--rate", "100", "--gpio", spec, "--log", log,
+              (char *)NULL);
+        _exit(98);
+    }
+    while (!sim_held(ALIVE)) { wait_s(0.001); }
+    sim_pull(ESTOP, 1);
+    sim_pull(SECOND, 1);
+    tell(!until_level(ENABLE, 1, 1), "run: nobody grips, nothing is enabled");
+    sim_pull(DEADMAN, 1);
+    first = until_level(ENABLE, 1, 1);
+    wait_s(0.2); /* the mass is held yet */
+    sim_pull(DEADMAN, 0);
+    low = until_level(ENABLE, 0, 0.2);
+    wait_s(0.3);
+    sim_pull(DEADMAN, 1);
+    cleared = !until_level(ENABLE, 1, 0.5);
+    sim_pull(DEADMAN, 0);
+    wait_s(0.3);
+    sim_pull(DEADMAN, 1);
+    again = until_level(ENABLE, 1, 1);
+    tell(first && low && cleared && again,
+         "run: a grip enables %d, letting go disables %d, a grip clears %d, another enables %d",
+         first, low, cleared, again);
+    kill(pid, SIGINT);
+    first = ended(pid, 10);
+    tell(first == 130, "run: status %d", first);
+}
+
 static void chip_goes(void)
 {
     const pid_t pid = armed("gone");
@@ -229,6 +268,7 @@ static void all(void)
     opens("estop", ESTOP, 2);
     opens("pair", SECOND, 2);
     opens("deadman", DEADMAN, 7);
+    a_hand();
     chip_goes();
 }
 
