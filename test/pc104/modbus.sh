@@ -8,7 +8,7 @@
 set -u
 
 b=${B:-build}
-image=$b/pc104/drop-none.elf run=ports/pc104/run.sh reads=${1:-100}
+image=$b/pc104/drop-none.elf run=ports/pc104/run.sh reads=${1:-60}
 dir=$(mktemp -d) || exit 3
 pid=
 clean()
@@ -92,8 +92,8 @@ master()
     port=$((port + 1))
 }
 
-master 6000 500 57600
-master 24000 2000 115200 remote
+master 15000 500 57600
+master 50000 2000 115200 remote
 
 echo "modbus: $checks checks, $failed failed"
 [ "$failed" = 0 ]
