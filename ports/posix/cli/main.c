@@ -26,6 +26,7 @@ static const struct {
     {"listen", "the log of a box that sends it over the network, as a file", cli_listen},
     {"run", "a box that goes on: live values and parameters, over Modbus too", cli_run},
     {"regs", "the Modbus registers of a scene: address, name, unit, range", cli_regs},
+    {"watch", "live values, state and faults of a running box, and a picture of them", cli_watch},
     {"replay", "the recorded inputs again, every output compared bit for bit", cli_replay},
     {"diagram", "a block diagram made from the signal and device tables", cli_diagram},
     {"quad", "samples of an encoder's two lines: count, edges, illegal steps", cli_quad},

@@ -1,0 +1,91 @@
+/* exhand watch --modbus of a box that `exhand run --modbus` is. */
+#include "said.h"
+
+#ifndef EXH_MODBUS
+TEST(not_here)
+{
+    check_note("watch over Modbus: not tested: no libmodbus when this was built");
+}
+TEST_MAIN("modbus_watch", not_here);
+#else
+#include "modbus_rig.h"
+
+static struct said s;
+static char where[64];
+
+static void serve(struct rig *r, const char *const *word)
+{
+    rig_start(r, word);
+    snprintf(where, sizeof where, "tcp:127.0.0.1:%d", r->port);
+}
+
+/* Lines of a CSV, and whether its ticks rise. */
+static int lines_of(const char *path)
+{
+    FILE *f = fopen(path, "r");
+    char line[512];
+    double was = -1;
+    int n = 0;
+    CHECK(f != NULL && fgets(line, sizeof line, f), "no table");
+    for (; fgets(line, sizeof line, f); n++) {
+        const double t = strtod(line, NULL);
+        CHECK(t > was, "%s does not rise", line);
+        was = t;
+    }
+    fclose(f);
+    return n;
+}
+
+TEST(a_running_box_is_watched)
+{
+    struct rig r;
+    int n;
+    serve(&r, WORDS("run", "--pace", "--modbus", "tcp:127.0.0.1:0"));
+    said(&s, r.dir, cli_watch, WORDS("watch", "--modbus", where, "--seconds", "2", "--hz", "20", "--csv",
+                                     said_path(r.dir, "w.csv"), "--signals", "q,f_des"));
+    CHECK(s.status == 0, "%d %s", s.status, s.err);
+    n = lines_of(said_path(r.dir, "w.csv"));
+    CHECK(n >= 10 && n <= 41, "%d samples of 40", n);
+    CHECK(strstr(s.out, "faults none") && strstr(s.out, "  q ") && !strstr(s.out, "  qd "), "%s", s.out);
+    rig_end(&r, 130);
+    said_clean(r.dir);
+}
+
+/* The watcher's own files, as both say something. */
+TEST(a_box_that_falls_silent_and_comes_back)
+{
+    char *dir = said_dir(), own[64];
+    struct rig r;
+    pid_t watcher;
+    strcpy(own, dir);
+    serve(&r, WORDS("run", "--pace", "--modbus", "tcp:127.0.0.1:0"));
+    watcher = said_start(own, cli_watch, WORDS("watch", "--modbus", where));
+    rig_sleep(0.7);
+    kill(r.pid, SIGSTOP);
+    rig_sleep(3);
+    kill(r.pid, SIGCONT);
+    rig_sleep(2);
+    kill(watcher, SIGINT);
+    said_end(&s, own, watcher);
+    CHECK(s.status == 130, "%d %s", s.status, s.err);
+    CHECK(strstr(s.out, "silent for 1.") || strstr(s.out, "silent for 2."), "%s", s.out);
+    CHECK(strstr(strstr(s.out, "silent for"), "faults none"), "it does not come back: %s", s.out);
+    rig_end(&r, 130);
+    said_clean(r.dir);
+    said_clean(own);
+}
+
+TEST(nobody_there)
+{
+    char *dir = said_dir();
+    said(&s, dir, cli_watch, WORDS("watch", "--modbus", "tcp:127.0.0.1:1"));
+    CHECK(s.status == 3 && strstr(s.err, "is the box there"), "%d %s", s.status, s.err);
+    said(&s, dir, cli_watch, WORDS("watch", "--modbus", "udp:127.0.0.1:1"));
+    CHECK(s.status == 2 && strstr(s.err, "give tcp:ADDRESS:PORT"), "%d %s", s.status, s.err);
+    said(&s, dir, cli_watch, WORDS("watch", "--modbus", "rtu:/dev/nowhere:9600"));
+    CHECK(s.status == 3, "%d %s", s.status, s.err);
+    said_clean(dir);
+}
+
+TEST_MAIN("modbus_watch", a_running_box_is_watched, a_box_that_falls_silent_and_comes_back, nobody_there);
+#endif
