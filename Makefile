@@ -701,7 +701,7 @@ size:
 
 # Objects as they are shipped: no sanitizer, no audit hook. Linked without debug information,
 # which not every valgrind reads of every compiler; its profile needs the symbols alone.
-bench_obj := $(patsubst %,$(B)/posix/test/bench/%.o,kernels measure number estimate force path law filter glove hand precontact passivity scene minimal modbus)
+bench_obj := $(patsubst %,$(B)/posix/test/bench/%.o,kernels measure number estimate force path law filter glove hand precontact passivity scene minimal modbus params)
 bench_bin := $(B)/bench/kernels $(B)/bench/velocity $(B)/bench/speed
 $(B)/posix/test/bench/kernels.o: PORT_HOSTFLAGS += -DBENCH_FLAGS='"-std=c99 -O$(O)$(if $(CFLAGS), $(CFLAGS))"'
 $(B)/bench/kernels: $(bench_obj) $(B)/posix/examples/drop/drop.o $(B)/posix/examples/calib.o
