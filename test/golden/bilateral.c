@@ -32,8 +32,7 @@ static struct rig {
     struct exh_scene_in in;
     struct exh_scene_mail mail_in, mail_out;
     uint32_t raw[FINGERS], wrong;
-    int16_t good_raw; /* the supply's, while it is not dim                        */
-    int dim;
+    struct golden_rail rail;
     unsigned astray[FINGERS]; /* monitors */
     /* the world's end */
     struct exh_wire_tx tx;
@@ -95,7 +94,7 @@ static void any_finger(unsigned f, struct golden_rng *r, uint32_t rate_Hz)
     p->quad[f].step_m_q42 = golden_step(r);
     p->quad[f].speed_max_mps_q27 = (int32_t)golden_draw(r, 13421773, INT32_MAX);
     p->velocity[f].p = (int32_t)golden_draw(r, 0, 4);
-    p->contact[f].f0_N_q20 = (int32_t)golden_draw(r, 0, 20971520);
+    p->contact[f].f0_N_q20 = any_size(r, 20971520);
     p->contact[f].f0_band_m_q30 = any_size(r, 10737418);
     p->contact[f].hyst_m_q30 = any_size(r, 10737418);
     golden_drive_par(&p->drive[f], r, rate_Hz);
@@ -140,14 +139,13 @@ static void any_par(struct golden_rng *r, uint32_t rate_Hz, uint32_t k)
 {
     struct bilateral_par *p = &rig.par;
     struct exh_period T = golden_period(rate_Hz, k);
-    struct golden_rail rail;
     p->own.fingers = (int32_t)golden_draw(r, 1, 31);
     p->own.state_every = (int32_t)golden_draw(r, 1, 12);
     p->own.session = (int32_t)golden_draw(r, 1, INT32_MAX);
     p->own.quiet_ms = (int32_t)golden_draw(r, 100, 2000);
     p->own.f0_rest_ms = any_ms(r, 1, 12, rate_Hz);
-    p->own.glove_ms = golden_draw(r, 0, 3) ? any_ms(r, 1, 40, rate_Hz) : 0;
-    p->own.link_ms = golden_draw(r, 0, 1) ? any_ms(r, 20, 120, rate_Hz) : 0;
+    p->own.glove_ms = golden_draw(r, 0, 15) ? any_ms(r, 4, 10, rate_Hz) : 0;
+    p->own.link_ms = golden_draw(r, 0, 15) ? any_ms(r, 10, 14, rate_Hz) : 0;
     p->calib.uncalibrated = 1;
     p->glove_own.every = (int32_t)golden_draw(r, 1, 4);
     p->glove_own.present = (1 << EXH_GLOVE_SENSORS) - 1;
@@ -158,8 +156,8 @@ static void any_par(struct golden_rng *r, uint32_t rate_Hz, uint32_t k)
         p->material[i].f_max_N_q20 = any_size(r, 104857600);
     }
     golden_safety_par(&p->safety, r, rate_Hz);
-    golden_supply_par(&p->supply, &rail, r, rate_Hz, 3);
-    rig.good_raw = rail.good_raw;
+    if (golden_draw(r, 0, 3)) { p->safety.arm_force_N_q20 = 10485760; } /* most arm */
+    golden_supply_par(&p->supply, &rig.rail, r, rate_Hz, 31);
     T.num *= (uint32_t)p->glove_own.every;
     p->glove = golden_glove_par(r, T);
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) { any_sensor(&p->sensor[i], i, r); }
@@ -186,6 +184,12 @@ static void set_up(struct golden_rng *r, uint32_t rate_Hz, uint32_t k)
 }
 
 /* --- the world --- */
+
+/* Twice a run no planes come, and no sensor is believed. */
+static int away(uint32_t k)
+{
+    return k % 128 >= 104 && k % 128 < 124;
+}
 
 static void arrive(const struct datagram *d)
 {
@@ -306,7 +310,7 @@ static void send_param(struct golden_rng *r)
     send(&p, r);
 }
 
-static void any_mail(struct golden_rng *r, uint32_t rate_Hz)
+static void any_mail(struct golden_rng *r, uint32_t rate_Hz, uint32_t k)
 {
     const unsigned lates = rig.lates;
     rig.mail_in.packets = 0;
@@ -322,7 +326,7 @@ static void any_mail(struct golden_rng *r, uint32_t rate_Hz)
         rig.begun = 1;
         send(&p, r);
     }
-    if (golden_draw(r, 0, 1) != 0) { send_planes(r, rate_Hz); }
+    if (golden_draw(r, 0, 1) != 0 && !away(k)) { send_planes(r, rate_Hz); }
     if (golden_draw(r, 0, 7) == 0) { send_param(r); }
     for (unsigned i = 0; i < lates; i++) { arrive(&rig.late[i]); }
     for (unsigned i = lates; i < rig.lates; i++) { rig.late[i - lates] = rig.late[i]; }
@@ -341,6 +345,7 @@ static void any_frame(struct golden_rng *r, const struct golden_wave *w, uint32_
     } else if (golden_draw(r, 0, 7) == 0) {
         rig.wrong = 0;
     }
+    if (away(k)) { rig.wrong = (1u << EXH_GLOVE_SENSORS) - 1; }
     if (k % (uint32_t)rig.par.glove_own.every != 0 || golden_draw(r, 0, 31) == 0) { return; }
     rig.in.glove_new = 1;
     g->age_ticks = 0;
@@ -366,16 +371,15 @@ static void any_in(struct golden_rng *r, struct golden_wave moves[FINGERS], uint
         in->drive.mon_raw[f] =
             golden_monitor(&rig.astray[f], &rig.par.drive[f], r, rig.sig.paper[f].i_des_A_q26);
     }
-    if (golden_draw(r, 0, 47) == 0) {
+    if (golden_draw(r, 0, 127) == 0) {
         in->drive.din ^= 1u << golden_draw(r, 0, 12);
     } else if (golden_draw(r, 0, 3) == 0) {
         in->drive.din = HEALTHY;
     }
-    if (rig.s.safety.state == EXH_STATE_FAULT && golden_draw(r, 0, 3) == 0) { in->drive.din ^= 2; }
-    if (golden_draw(r, 0, rig.dim ? 7 : 63) == 0) { rig.dim ^= 1; }
-    in->drive.supply_raw = rig.dim ? (int16_t)golden_draw(r, -32768, 32767) : rig.good_raw;
+    if (rig.s.safety.state == EXH_STATE_FAULT && golden_draw(r, 0, 1) == 0) { in->drive.din ^= 2; }
+    in->drive.supply_raw = golden_rail(&rig.rail, r, k);
     in->missed = golden_draw(r, 0, 127) == 0 ? 1 : 0;
-    in->command = k % 8 == 2 ? EXH_CMD_RUN : k % 8 == 5 ? EXH_CMD_CLEAR : EXH_CMD_NONE;
+    in->command = k % 4 == 2 || k % GOLDEN_AGAIN == 0 ? EXH_CMD_RUN : k % 4 == 1 ? EXH_CMD_CLEAR : EXH_CMD_NONE;
 }
 
 static uint32_t signals_crc(void)
@@ -454,7 +458,7 @@ void golden_bilateral(struct golden *g, uint32_t rate_Hz)
                             jump < 1024 ? 1 : jump >> 10);
             }
         }
-        any_mail(&r, rate_Hz);
+        any_mail(&r, rate_Hz, k);
         any_frame(&r, codes, k);
         any_in(&r, moves, k);
         bilateral_tick(&rig.s, &rig.cfg, &rig.in, &rig.mail_in, &rig.params, &out, &rig.sig);

@@ -232,6 +232,7 @@ MUTANTS = (
     ("bilateral", Y + "wire.c", "w->set += ack.result == 0;", "w->set++;"),
     ("bilateral", Y + "wire.c", "s->age_ticks = UINT32_MAX;", "s->age_ticks = 0;"),
     ("bilateral", Y + "bilateral.c", "raised |= EXH_FAULT_TRACKING;", ""),
+    ("bilateral", Y + "cause.c", "s->unsure_ticks >= cfg->glove_ticks", "s->unsure_ticks > cfg->glove_ticks"),
     ("bilateral", Y + "cause.c", "s->wire.age_ticks >= cfg->link_ticks", "s->wire.age_ticks == UINT32_MAX"),
     ("bilateral", "lib/src/supply.c", "raw <= cfg->max_raw", "raw < INT16_MAX"),
     ("guarded", "examples/guarded/guarded.c", "now.cnt, sig->drop.c, &now.f", "now.cnt, !sig->drop.c, &now.f"),
@@ -246,9 +247,7 @@ MUTANTS = (
 # What 256 ticks show at fewer rates, as the fingers of one box hinder each other at arming: what it must be seen at all
 # the same, and what tells it besides. Open: stimuli that come to these at every rate.
 THIN = {
-    "if (p->phase == EXH_PRECONTACT_FROZEN &&": 0.70,  # sim/bilateral_tick
-    "s->wire.age_ticks >= cfg->link_ticks": 0.04,      # sim/causes
-    "raw <= cfg->max_raw": 0.70,                       # unit/supply, golden supply
+    "if (p->phase == EXH_PRECONTACT_FROZEN &&": 0.90,  # sim/bilateral_tick
     "s->present == EXH_FAULT_DEADMAN && !": 0.93,      # unit/safety
 }
 

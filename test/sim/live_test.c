@@ -85,7 +85,8 @@ TEST(what_it_cannot_do_is_named)
                {{"run", "--seconds", "1e9"}, "or leave it out", 2},
                {{"run", "--params", "/nowhere/at.all"}, "image that a run saved", 3},
                {{"run", "--params", "/dev/null"}, "--params: ", 2},
-               {{"run", "--log", "/nowhere/at.all"}, "give a file that can be written", 2}};
+               {{"run", "--seconds", "1", "--log", "/nowhere/at.all"}, "give a file that can be written", 2},
+               {{"run", "--log", "/nowhere/at.all"}, "give --seconds, or --pace", 2}};
     char *dir = said_dir();
     for (size_t i = 0; i < sizeof row / sizeof row[0]; i++) {
         struct said s;

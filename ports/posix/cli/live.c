@@ -161,6 +161,10 @@ static int read_params(struct live_options *o)
 static int open_log(struct live_options *o)
 {
     if (o->log == NULL) { return 0; }
+    if (!o->pace && o->seconds == 0) { /* gigabytes a minute */
+        cli_complain("--log: without an end it fills the disk as fast as it goes: give --seconds, or --pace");
+        return 2;
+    }
     o->file = fopen(o->log, "wb");
     if (o->file == NULL) {
         cli_complain("--log: %s: %s: give a file that can be written", o->log, strerror(errno));

@@ -8,7 +8,7 @@ from .contact import Contact
 from .drive import Drive, Table, any_par as any_drive
 from .filter import Channel
 from .glove import NONE as NO_SENSOR, SENSORS, Glove, any_par as any_glove
-from .guard import Supply, any_supply
+from .guard import Rail, Supply, any_supply
 from .hand import any_turn, joints
 from .hit2 import BENT, MAP, bones, sensors_of
 from .num import (AGAIN, M32, M64, MAX32, RANGE, STATE, TICKS, UNKNOWN, Rng, clamp, div, period, sat32, shr,
@@ -38,7 +38,7 @@ class FingerPar:
 
     def __init__(self, rng, rate):
         self.step, self.speed, self.p = scale(rng), rng.draw(13421773, MAX32), rng.draw(0, 4)
-        self.f0 = rng.draw(0, 20971520), any_size(rng, 10737418), any_size(rng, 10737418)
+        self.f0 = any_size(rng, 20971520), any_size(rng, 10737418), any_size(rng, 10737418)
         self.drive, self.track, self.watch = any_drive(rng, rate), any_track(rng, rate), any_watch(rng, rate)
         self.kf = rng.draw(104858, 104857600)
         self.arms = rng.draw(4294968, 53687091), rng.draw(0, 53687091), rng.draw(0, 53687091)
@@ -65,12 +65,15 @@ class Par:
         self.fingers, self.state_every = rng.draw(1, 31), rng.draw(1, 12)
         self.session, self.quiet = rng.draw(1, MAX32), rng.draw(100, 2000)
         self.f0_rest = any_ms(rng, 1, 12, rate)
-        self.glove_time = any_ms(rng, 1, 40, rate) if rng.draw(0, 3) else 0
-        self.link_time = any_ms(rng, 20, 120, rate) if rng.draw(0, 1) else 0
+        self.glove_time = any_ms(rng, 4, 10, rate) if rng.draw(0, 15) else 0
+        self.link_time = any_ms(rng, 10, 14, rate) if rng.draw(0, 15) else 0
         self.every = rng.draw(1, 4)
         self.finger = [FingerPar(rng, rate) for _ in range(FINGERS)]
         self.material = [[any_size(rng, m) for m in (1024000000, 1048576000, 104857600)] for _ in range(MATERIALS)]
-        self.safety, self.supply = any_safety(rng, rate), any_supply(rng, rate)
+        self.safety = any_safety(rng, rate)
+        if rng.draw(0, 3):  # most arm
+            self.safety = (self.safety[0], 10485760, *self.safety[2:])
+        self.supply = any_supply(rng, rate, 31)
         self.glove = any_glove(rng, (T[0] * self.every, T[1]))
         self.sensor = [any_sensor(rng, i) for i in range(SENSORS)]
 
@@ -345,6 +348,11 @@ ASK = ((0x0B01, MATERIALS, 0, 1024000000, 1024000001), (0x0B02, MATERIALS, 0, 10
        (0x0501, FINGERS, 0, 1000, -1), (0x7FFF, 1, 0, 1, 2))
 
 
+def away(k):
+    """Twice a run no planes come, and no sensor is believed."""
+    return 104 <= k % 128 < 124
+
+
 class World:
     def __init__(self, rng, scene):
         self.scene, self.object, self.late, self.begun = scene, [None] * FINGERS, [], 0
@@ -415,7 +423,7 @@ class World:
             value = bad
         self.send(rng, PARAM, pack("<HHi", ident, n, value))
 
-    def frame(self, rng, rate):
+    def frame(self, rng, rate, k):
         """The packets of a tick."""
         before, self.mail = len(self.late), []
         if rng.draw(0, 127) == 0:
@@ -423,7 +431,7 @@ class World:
         if not self.begun and rng.draw(0, 1):
             self.begun = 1
             self.send(rng, HELLO, pack("<BII", rng.draw(0, 1), VERSION + rng.draw(0, 1), TABLE * rng.draw(0, 2) & M32))
-        if rng.draw(0, 1):
+        if rng.draw(0, 1) and not away(k):
             self.planes(rng, rate)
         if rng.draw(0, 7) == 0:
             self.param(rng)
@@ -450,6 +458,8 @@ class Hand:
             self.wrong ^= 1 << rng.draw(0, 21)
         elif rng.draw(0, 7) == 0:
             self.wrong = 0
+        if away(k):
+            self.wrong = (1 << SENSORS) - 1
         if k % self.par.every or rng.draw(0, 31) == 0:
             return None
         self.age = 0
@@ -466,11 +476,11 @@ def bilateral(rate):
             par = Par(rng, rate, T)
             s = Bilateral(par, T)
             world, hand = World(rng, s), Hand(par, codes)
-            raw, din, dim = [rng.u64() & M32 for _ in range(FINGERS)], HEALTHY, 0
+            raw, din, rail = [rng.u64() & M32 for _ in range(FINGERS)], HEALTHY, Rail(par.supply[4])
             jump = [s.finger[f].quad.jump if f in s.at else 0 for f in range(FINGERS)]
             moves = [wave("bilateral", rate, 1 + f + (8 if k else 0), -j, j, max(1, j >> 10))
                      for f, j in enumerate(jump)]
-        mail = world.frame(rng, rate)
+        mail = world.frame(rng, rate, k)
         glove = hand.frame(rng, k)
         mon = []
         for f in range(FINGERS):
@@ -479,17 +489,15 @@ def bilateral(rate):
                 raw[f] += rng.draw(-2 * jump[f], 2 * jump[f])
             raw[f] &= M32
             mon.append(s.finger[f].monitor.draw(rng, par.finger[f].drive, s.finger[f].last))
-        if rng.draw(0, 47) == 0:
+        if rng.draw(0, 127) == 0:
             din ^= 1 << rng.draw(0, 12)
         elif rng.draw(0, 3) == 0:
             din = HEALTHY
-        if s.safety.state_ == FAULT and rng.draw(0, 3) == 0:
+        if s.safety.state_ == FAULT and rng.draw(0, 1) == 0:
             din ^= 2
-        if rng.draw(0, 7 if dim else 63) == 0:
-            dim ^= 1
-        supply = rng.draw(-32768, 32767) if dim else par.supply[4]
+        supply = rail.draw(rng, k)
         missed = 1 if rng.draw(0, 127) == 0 else 0
-        command = 1 if k % 8 == 2 else 3 if k % 8 == 5 else 0
+        command = 1 if k % 4 == 2 or k % AGAIN == 0 else 3 if k % 4 == 1 else 0
         for f in s.finger:
             f.pre.resumed = k == pre.RESTORED
         paper, more, box, (dac, enable, alive) = s.tick(raw, mon, supply, din, missed, command, glove, hand.age,
