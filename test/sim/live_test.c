@@ -77,7 +77,7 @@ TEST(an_interrupt_leaves_a_complete_log)
 TEST(what_it_cannot_do_is_named)
 {
     static const struct {
-        const char *word[4], *said;
+        const char *word[6], *said;
         int status;
     } row[] = {{{"run", "--scene", "minimal"}, "give drop, guarded or bilateral", 2},
                {{"run", "--set", "nobody=1"}, "nobody: no such parameter", 2},
