@@ -31,7 +31,7 @@ jobs       = $(or $(patsubst -j%,%,$(filter -j%,$(MAKEFLAGS))),1)
 
 # These call make for what they need, or take it away: two at a time would write the same files.
 callers := all test demo run image coverage stress test-i686 mutants fuzz hil hil-built strangers gpio linux-program boot boot-built \
-           contract contract-built nic nic-built modbus-image world two-computers bench-world bench size cards install diagrams clean check
+           contract contract-built nic nic-built modbus-image modbus world two-computers bench-world bench size cards install diagrams clean check
 ifneq ($(and $(filter $(callers),$(MAKECMDGOALS)),$(word 2,$(MAKECMDGOALS))),)
 .NOTPARALLEL:
 endif
@@ -526,6 +526,13 @@ strangers:
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(exhand)
 	@$(MAKE) --no-print-directory $(if $(V),,-s) linux-program
 	@B=$(B) ARGS="$(ARGS)" test/strangers/strangers.sh
+
+## Registers of the running box: mbpoll and pymodbus, 10^6 reads none torn, 10^6 requests as the library's slave
+.PHONY: modbus
+modbus:
+	@.ci/deps "Modbus" "test -f /usr/include/modbus/modbus.h && command -v mbpoll && command -v python3" libmodbus-dev mbpoll python3 python3-pip || exit 3
+	@$(MAKE) --no-print-directory $(if $(V),,-s) $(exhand) $(B)/test/sim/modbus_test $(B)/test/sim/modbus_fuzz_test
+	@B=$(B) test/modbus/modbus.sh
 
 # The host program for an emulated Linux, with either libgpiod in it.
 gpio_src := $(filter-out ports/posix/cli/modbus_%.c,$(cli_src)) $(wildcard ports/posix/cli/modbus_mail.c ports/posix/cli/modbus_none*.c)

@@ -83,8 +83,8 @@ TEST(what_it_cannot_do_is_named)
                {{"run", "--set", "nobody=1"}, "nobody: no such parameter", 2},
                {{"run", "--set", "k=1e9"}, "allowed 0..", 2},
                {{"run", "--seconds", "1e9"}, "or leave it out", 2},
-               {{"run", "--params", "/nowhere/at.all"}, "image that a run saved", 3},
-               {{"run", "--params", "/dev/null"}, "--params: ", 2},
+               {{"run", "--load-params", "/nowhere/at.all"}, "image that a run saved", 3},
+               {{"run", "--load-params", "/dev/null"}, "/dev/null: ", 2},
                {{"run", "--seconds", "1", "--log", "/nowhere/at.all"}, "give a file that can be written", 2},
                {{"run", "--log", "/nowhere/at.all"}, "give --seconds, or --pace", 2}};
     char *dir = said_dir();

@@ -506,7 +506,7 @@ TEST(saved_parameters_come_back)
     CHECK_EQ_I64(rig_input(&r, HEAD(EXH_HEAD_RESULT)), 0);
     rig_end(&r, 130);
     said_clean(r.dir);
-    rig_start(&r, WORDS("run", "--pace", "--params", image, "--modbus", "tcp:127.0.0.1:0"));
+    rig_start(&r, WORDS("run", "--pace", "--load-params", image, "--modbus", "tcp:127.0.0.1:0"));
     CHECK_EQ_I64((uint32_t)rig_input(&r, FLOAT + 2 * k), float_bits(4321.5));
     rig_end(&r, 130);
     said_clean(r.dir);

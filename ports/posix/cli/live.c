@@ -149,12 +149,13 @@ static int settle_all(struct live_options *o, const struct exh_scene *sc)
 static int read_params(struct live_options *o)
 {
     static unsigned char image[IMAGE_B];
-    const long len =
-        o->params ? outfile_read("params", o->params, "image that a run saved", image, sizeof image)
-                  : 0;
+    const long len = o->params ? outfile_read("load-params", o->params, "image that a run saved",
+                                              image, sizeof image)
+                               : 0;
     if (len < 0) { return (int)-len; }
     o->live.image = o->params ? image : NULL;
     o->live.image_B = (size_t)len;
+    o->live.name = o->params;
     return 0;
 }
 
@@ -321,7 +322,7 @@ int cli_run(int argc, char **argv)
         {"speed", CLI_CALL, u[2].to, 0, 0, "V",
          "of bilateral: slow, natural, fast or m/s (natural)"},
         {"set", CLI_CALL, u[0].to, 0, 0, "NAME=VALUE", "a parameter of the scene"},
-        {"params", CLI_TEXT, &o.params, 0, 0, "FILE",
+        {"load-params", CLI_TEXT, &o.params, 0, 0, "FILE",
          "an image of parameters, restored before --set"},
         {"grip", CLI_FLAG, &o.grip, 0, 0, NULL,
          "the dead-man is gripped anew after a stop or fault"},
@@ -337,7 +338,7 @@ int cli_run(int argc, char **argv)
         {"log", CLI_TEXT, &o.log, 0, 0, "FILE", "for `exhand replay` and `exhand csv`"},
         {"blackbox", CLI_TEXT, &o.blackbox, 0, 0, "FILE", "the last seconds before a fault, a log"},
         {"seed", CLI_INT, &o.seed, 0, 1e9, "N", "of all chance in the simulation (1)"},
-        {"list", CLI_FLAG, &o.list, 0, 0, NULL, "list the scene's parameters"},
+        {"params", CLI_FLAG, &o.list, 0, 0, NULL, "list the scene's parameters"},
     };
     const struct cli_command c = {
         "run",

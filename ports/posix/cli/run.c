@@ -125,7 +125,7 @@ static const struct exh_scene *scene_of(const struct run_cfg *c)
 
 int run_image(const struct run_live *l, struct exh_params *p)
 {
-    return l->image ? params_take(l->name ? l->name : "--params", p, l->image, l->image_B) : 0;
+    return l->image ? params_take(l->name, p, l->image, l->image_B) : 0;
 }
 
 static int set_parameters(const struct run_cfg *c)

@@ -22,7 +22,7 @@ struct run_live {
     int on;
     const void *image; /* of parameters, staged before the settings; NULL: none */
     size_t image_B;
-    const char *name; /* of it, in messages; NULL: --params                     */
+    const char *name; /* of it, in messages                                     */
     int gains; /* 1: k and b of the run are behind it                          */
 };
 
