@@ -125,6 +125,9 @@ int exh_regs_locate(const struct exh_regs *r, enum exh_regs_kind kind, uint16_t 
 {
     const uint32_t which = ((uint32_t)at - EXH_REGS_SIGNAL_AT) >> 13;
     uint32_t values;
+    if (at >= EXH_REGS_TRACE_AT && at < EXH_REGS_SIGNAL_AT) {
+        return exh_regs_trace_locate(r, kind, at, n, s);
+    }
     s->is_float = (int)(which & 1u);
     s->from = ((uint32_t)at - EXH_REGS_SIGNAL_AT) & (2 * EXH_REGS_VALUES - 1);
     if (kind == EXH_REGS_INPUT && at < EXH_REGS_TRACE_AT) {
@@ -150,6 +153,13 @@ static int32_t raw_of(const struct exh_regs *r, enum exh_regs_source source, uin
     return source == EXH_REGS_SIGNAL   ? r->signal[i]
            : source == EXH_REGS_ACTIVE ? r->active[i]
                                        : exh_regs_held(r, i);
+}
+
+static uint32_t word_of(const struct exh_regs *r, enum exh_regs_source source, uint32_t i)
+{
+    if (source == EXH_REGS_HEAD) { return head_of(r, (enum exh_regs_head)i); }
+    if (source >= EXH_REGS_TRACE) { return exh_regs_trace_value(r, source, i); }
+    return (uint32_t)raw_of(r, source, i);
 }
 
 /* Big-endian registers of value i, as far as they are in the span. */
@@ -187,9 +197,7 @@ int exh_regs_read(const struct exh_regs *r, enum exh_regs_kind kind, uint16_t at
         return 0;
     }
     for (uint32_t i = s.from >> 1; 2 * i < s.end; i++) {
-        to = put(to, &s, i,
-                 s.source == EXH_REGS_HEAD ? head_of(r, (enum exh_regs_head)i)
-                                           : (uint32_t)raw_of(r, s.source, i));
+        to = put(to, &s, i, word_of(r, s.source, i));
     }
     return 0;
 }

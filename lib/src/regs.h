@@ -56,7 +56,15 @@ static inline int32_t exh_regs_held(const struct exh_regs *r, uint32_t i)
 
 /* --- blocks --- */
 
-enum exh_regs_source { EXH_REGS_HEAD, EXH_REGS_SIGNAL, EXH_REGS_ACTIVE, EXH_REGS_HELD };
+enum exh_regs_source {
+    EXH_REGS_HEAD,
+    EXH_REGS_SIGNAL,
+    EXH_REGS_ACTIVE,
+    EXH_REGS_HELD,
+    EXH_REGS_TRACE,
+    EXH_REGS_FRAMES,
+    EXH_REGS_SET
+};
 
 /* Where a request lies: registers from..end-1 of a block. */
 struct exh_regs_span {
@@ -68,6 +76,14 @@ struct exh_regs_span {
 /* 0 or exception 2. */
 int exh_regs_locate(const struct exh_regs *r, enum exh_regs_kind kind, uint16_t at, uint16_t n,
                     struct exh_regs_span *s);
+
+/* The same below EXH_REGS_SIGNAL_AT, behind the head; and what is there, and written there (0 or
+ * exception 3; do: 0 only judges). */
+int exh_regs_trace_locate(const struct exh_regs *r, enum exh_regs_kind kind, uint16_t at,
+                          uint16_t n, struct exh_regs_span *s);
+uint32_t exh_regs_trace_value(const struct exh_regs *r, enum exh_regs_source source, uint32_t i);
+int exh_regs_trace_write(const struct exh_regs *r, const struct exh_regs_span *s,
+                         const uint8_t *from, int carry_out);
 
 /* Nothing is staged any more. */
 void exh_regs_forget(struct exh_regs *r);

@@ -53,11 +53,27 @@ const struct exh_regs_row exh_regs_coil_row[EXH_COILS] = {
     {"CLEAR", "", "FAULT to OFF; likewise"},
 };
 
+const struct exh_regs_row exh_regs_trace_row[EXH_TRACE_HEADS] = {
+    {"trace.frames", "u32", "held at most, a power of two"},
+    {"trace.next", "u32", "number of the next frame, modulo 2^32"},
+    {"trace.oldest", "u32", "number of the oldest frame held; that of the next: there is none"},
+    {"trace.run", "u32", "traces started, modulo 2^32"},
+    {"trace.every", "u32", "ticks from frame to frame; 0: none"},
+    {"trace.signal_0", "u32", "index in the table of outputs"},
+    {"trace.signal_1", "u32", ""},
+    {"trace.signal_2", "u32", ""},
+    {"trace.signal_3", "u32", ""},
+};
+
 const struct exh_regs_block exh_regs_blocks[EXH_REGS_BLOCKS] = {
     {EXH_REGS_COIL, 0, "commands",
      "a 1 commands, a 0 does nothing; reads as 1 while it is pending"},
     {EXH_REGS_DISCRETE, 0, "bits", "state of the box, 32 bits each"},
     {EXH_REGS_INPUT, EXH_REGS_HEAD_AT, "head", "what this is, state, time"},
+    {EXH_REGS_INPUT, EXH_REGS_TRACE_AT, "trace", "signals of every n-th tick, kept until they are read"},
+    {EXH_REGS_INPUT, EXH_REGS_FRAMES_AT, "frames",
+     "of the trace: frame k from + 12 (k mod frames) on"},
+    {EXH_REGS_HOLDING, EXH_REGS_TRACE_AT, "trace", "which, and how often; a write starts another"},
     {EXH_REGS_INPUT, EXH_REGS_SIGNAL_AT, "outputs", "of the tick, raw: value times 2^fraction"},
     {EXH_REGS_INPUT, EXH_REGS_SIGNAL_FLOAT_AT, "outputs, float",
      "the same as binary32, in the row's unit"},

@@ -27,6 +27,8 @@ static struct {
 
 static struct exh_regs regs;
 static struct exh_modbus_rtu line;
+static struct exh_trace trace;
+static struct exh_trace_frame frame[EXH_TRACE_FRAMES];
 static struct exh_params *params;
 static const struct exh_safety *safety;
 static int32_t staged[VALUES];
@@ -142,6 +144,9 @@ void pc104_modbus_open(const struct exh_scene *sc)
         pc104_halt(PC104_EXIT_OPTION,
                    "option modbus: the scene's tables are larger than this port's map");
     }
+    if (safety && exh_trace_setup(&trace, frame, EXH_TRACE_FRAMES, regs.signals_n) == 0) {
+        regs.trace = &trace;
+    }
     (void)exh_modbus_rtu_setup(&line, (uint32_t)par.address, (uint32_t)par.baud);
     most = most_of(1, rate_Hz);
     if (!is_there() || !pc104_uart_set(UART_COM2, (uint16_t)exh_udiv64(UART_BASE_BAUD,
@@ -242,6 +247,7 @@ static uint32_t hear(void)
 void pc104_modbus_poll(const struct exh_scene_in *in)
 {
     if (!open) { return; }
+    if (regs.trace) { exh_trace_tick(&trace, safety->tick, regs.signal); }
     if (sending) {
         send();
         return;

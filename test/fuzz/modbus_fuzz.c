@@ -73,6 +73,8 @@ struct box {
     struct exh_modbus_rtu u;
     int32_t active[PARAMS], wanted[PARAMS], staged[PARAMS + 1], signal[SIGNALS];
     uint32_t touched[EXH_REGS_WORDS(PARAMS) + 1];
+    struct exh_trace trace;
+    struct exh_trace_frame frame[16];
 };
 static struct box b;
 
@@ -95,6 +97,8 @@ static void start(void)
     b.staged[PARAMS] = 0x5A5A;
     b.touched[EXH_REGS_WORDS(PARAMS)] = 0x5A5A;
     MUST(exh_regs_setup(&b.r) == 0);
+    MUST(exh_trace_setup(&b.trace, b.frame, 16, SIGNALS) == 0);
+    b.r.trace = &b.trace;
     MUST(exh_modbus_rtu_setup(&b.u, 17, 115200) == 0);
 }
 
@@ -106,6 +110,8 @@ static void must_be_sound(void)
         MUST(row != NULL && b.staged[i] >= row->min && b.staged[i] <= row->max);
         MUST(row->when == EXH_WHEN_ANY && b.staged[i] != b.wanted[i]);
     }
+    for (unsigned i = 0; i < EXH_TRACE_SIGNALS; i++) { MUST(b.trace.what.index[i] < SIGNALS); }
+    exh_trace_tick(&b.trace, 1, b.signal);
     MUST(b.staged[PARAMS] == 0x5A5A && b.touched[EXH_REGS_WORDS(PARAMS)] == 0x5A5A);
     MUST((b.r.asked & ~(1u << EXH_COIL_APPLY | 1u << EXH_COIL_OFF)) == 0);
 }
@@ -115,7 +121,7 @@ static void must_be_sound(void)
 static void put_right(unsigned right, uint8_t *q, uint32_t *len_B)
 {
     static const uint8_t function[] = {1, 2, 3, 4, 5, 6, 15, 16, 22, 23, 43};
-    static const uint8_t block[] = {0x00, 0x10, 0x30, 0x50, 0x70, 0x50, 0x70, 0x50};
+    static const uint8_t block[] = {0x00, 0x10, 0x30, 0x50, 0x70, 0x50, 0x70, 0x04};
     int is_bits;
     if (right & FIX_FUNCTION) { q[0] = function[q[0] % sizeof function]; }
     is_bits = q[0] == 15 || q[0] == 1 || q[0] == 2 || q[0] == 5;

@@ -75,6 +75,48 @@ TEST(a_box_that_falls_silent_and_comes_back)
     said_clean(own);
 }
 
+/* Ticks of a trace: how many frames are missing between its first and last. */
+static int missing_of(const char *path, int every, int *lines)
+{
+    FILE *f = fopen(path, "r");
+    char line[512];
+    long was = -1;
+    int missing = 0;
+    CHECK(f != NULL && fgets(line, sizeof line, f), "no table");
+    for (*lines = 0; fgets(line, sizeof line, f); ++*lines) {
+        const long tick = strtol(strchr(line, ',') + 1, NULL, 10);
+        CHECK(was < 0 || ((tick - was) % every == 0 && tick > was), "%ld behind %ld", tick, was);
+        missing += was >= 0 ? (int)(tick - was) / every - 1 : 0;
+        was = tick;
+    }
+    fclose(f);
+    return missing;
+}
+
+TEST(a_trace_has_every_frame_or_says_what_it_lost)
+{
+    struct rig r;
+    int lines, missing, lost;
+    const char *said_lost;
+    serve(&r, WORDS("run", "--pace", "--modbus", "tcp:127.0.0.1:0"));
+    said(&s, r.dir, cli_watch, WORDS("watch", "--modbus", where, "--seconds", "2", "--trace", "20", "--csv",
+                                     said_path(r.dir, "w.csv"), "--signals", "q,f_des,state"));
+    missing = missing_of(said_path(r.dir, "w.csv"), 20, &lines);
+    CHECK(s.status == 0 && missing == 0 && !strstr(s.err, "lost"), "%d, missing %d %s", s.status, missing, s.err);
+    CHECK(lines >= 100 && lines <= 210, "%d frames of 200", lines);
+    said(&s, r.dir, cli_watch, WORDS("watch", "--modbus", where, "--seconds", "3", "--trace", "1", "--hz", "2",
+                                     "--csv", said_path(r.dir, "w.csv")));
+    missing = missing_of(said_path(r.dir, "w.csv"), 1, &lines);
+    said_lost = strstr(s.err, "exhand watch: ");
+    lost = said_lost ? atoi(said_lost + 14) : 0;
+    CHECK(s.status == 0 && strstr(s.err, "frames were lost"), "%d %s", s.status, s.err);
+    /* told as lost are those before the first that was read, too: of half a second */
+    CHECK(lost >= missing && missing > 1000 && lost - missing < 2000, "%d missing, %d told as lost", missing, lost);
+    check_note("looked at twice a second: %d frames of 2000 a second read, %d told as lost", lines, lost);
+    rig_end(&r, 130);
+    said_clean(r.dir);
+}
+
 TEST(nobody_there)
 {
     char *dir = said_dir();
@@ -87,5 +129,6 @@ TEST(nobody_there)
     said_clean(dir);
 }
 
-TEST_MAIN("modbus_watch", a_running_box_is_watched, a_box_that_falls_silent_and_comes_back, nobody_there);
+TEST_MAIN("modbus_watch", a_running_box_is_watched, a_box_that_falls_silent_and_comes_back,
+          a_trace_has_every_frame_or_says_what_it_lost, nobody_there);
 #endif

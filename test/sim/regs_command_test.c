@@ -33,6 +33,8 @@ static struct exh_regs regs_of(const struct exh_scene *sc)
 {
     static int32_t staged[VALUES];
     static uint32_t touched[EXH_REGS_WORDS(VALUES)];
+    static struct exh_trace trace;
+    static struct exh_trace_frame frame[EXH_TRACE_FRAMES];
     struct exh_regs r = {
         .name = sc->name, .signals = sc->signals, .signal = sc->signal, .may = EXH_REGS_MAY};
     if (sc->defaults) { sc->defaults(); }
@@ -46,6 +48,8 @@ static struct exh_regs regs_of(const struct exh_scene *sc)
         r.touched = touched;
     }
     CHECK(exh_regs_setup(&r) == 0, "%s", sc->name);
+    CHECK_EQ_I64(exh_trace_setup(&trace, frame, EXH_TRACE_FRAMES, r.signals_n), 0);
+    r.trace = &trace;
     return r;
 }
 

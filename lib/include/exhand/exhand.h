@@ -52,6 +52,7 @@
 #include "exhand/record.h"
 #include "exhand/safety.h"
 #include "exhand/signal.h"
+#include "exhand/trace.h"
 #include "exhand/units.h"
 #include "exhand/velocity.h"
 #include "exhand/watch.h"

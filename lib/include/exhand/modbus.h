@@ -12,6 +12,7 @@
 
 #include "exhand/safety.h"
 #include "exhand/signal.h"
+#include "exhand/trace.h"
 #include "exhand/units.h"
 
 #include <stddef.h>
@@ -37,7 +38,8 @@ enum exh_regs_kind { /* the function that reads it                             *
 
 /* First registers. Value i of a table is in registers first + 2 i and first + 2 i + 1. */
 #define EXH_REGS_HEAD_AT         0x0000u /* input: enum exh_regs_head          */
-#define EXH_REGS_TRACE_AT        0x0400u /* input: kept for traces             */
+#define EXH_REGS_TRACE_AT        0x0400u /* input: enum exh_regs_trace; holding: from EVERY on */
+#define EXH_REGS_FRAMES_AT       0x0440u /* input: frames of the trace         */
 #define EXH_REGS_SIGNAL_AT       0x1000u /* input: outputs of the tick, raw    */
 #define EXH_REGS_SIGNAL_FLOAT_AT 0x3000u /* input: the same as binary32, in the row's unit */
 #define EXH_REGS_PARAM_AT        0x5000u /* input: parameters in effect; holding: staged; raw */
@@ -100,6 +102,24 @@ enum exh_regs_coil {
     EXH_COILS
 };
 
+/* The trace, two registers each; holding registers begin with EVERY at EXH_REGS_TRACE_AT. Whoever writes
+ * one or more of those starts another trace. */
+enum exh_regs_trace {
+    EXH_TRACE_HEAD_FRAMES, /* that are held at most, a power of two             */
+    EXH_TRACE_HEAD_NEXT, /* number of the next frame, modulo 2^32             */
+    EXH_TRACE_HEAD_OLDEST, /* number of the oldest held; that of the next: none */
+    EXH_TRACE_HEAD_RUN, /* traces started, modulo 2^32                        */
+    EXH_TRACE_HEAD_EVERY, /* ticks from frame to frame; 0: none               */
+    EXH_TRACE_HEAD_SIGNAL_0, /* indices in the table of outputs               */
+    EXH_TRACE_HEAD_SIGNAL_1,
+    EXH_TRACE_HEAD_SIGNAL_2,
+    EXH_TRACE_HEAD_SIGNAL_3,
+    EXH_TRACE_HEADS
+};
+#define EXH_REGS_TRACE_SET    (EXH_TRACE_HEADS - EXH_TRACE_HEAD_EVERY) /* values that can be written */
+/* Frame k is in the values FRAME_VALUES * (k modulo frames) and following: number, tick, four raw. */
+#define EXH_REGS_FRAME_VALUES (2 + EXH_TRACE_SIGNALS)
+
 /* One line of a table for people (regs_names.c): a value of the head, 32 bits, a coil, a block. */
 struct exh_regs_row {
     const char *name, *format, *help;
@@ -107,13 +127,14 @@ struct exh_regs_row {
 extern const struct exh_regs_row exh_regs_head_row[EXH_HEADS];
 extern const struct exh_regs_row exh_regs_bits_row[EXH_BITS];
 extern const struct exh_regs_row exh_regs_coil_row[EXH_COILS];
+extern const struct exh_regs_row exh_regs_trace_row[EXH_TRACE_HEADS];
 
 struct exh_regs_block {
     uint8_t kind; /* enum exh_regs_kind                                        */
     uint16_t at;
     const char *name, *help;
 };
-#define EXH_REGS_BLOCKS 9
+#define EXH_REGS_BLOCKS 12
 extern const struct exh_regs_block exh_regs_blocks[EXH_REGS_BLOCKS];
 
 /* --- registers --- */
@@ -144,6 +165,7 @@ struct exh_regs {
     uint32_t may; /* bit k: coil k can be commanded here              */
     uint8_t locked; /* exh_params.locked: set-up values are refused     */
     uint8_t fingers;
+    struct exh_trace *trace; /* set up; its frames are read and it is started here; or NULL */
     struct exh_regs_box box;
 
     /* Filled by exh_regs_setup() and what follows. */
@@ -173,7 +195,8 @@ int exh_regs_read(const struct exh_regs *r, enum exh_regs_kind kind, uint16_t at
 /* Stages n holding registers, 2 n bytes as above, all or none: a value of which one register alone
  * is written keeps the other as it stands, but not a binary32 (exception 3). Exception 3 too: outside
  * the row's range, a set-up value other than wanted while locked, a binary32 that is no number.
- * Exception 6: APPLY is pending, and what it takes does not change any more.
+ * Exception 6: APPLY is pending, and what it takes does not change any more. Those of the trace start
+ * one; exception 3: a signal that is none.
  * A binary32 goes to the nearest raw value, of two as near to the even one; one that reads as what
  * stands there leaves that as it is, one that reads as min or max is min or max. What is staged as
  * it is wanted anyway counts as not staged. */

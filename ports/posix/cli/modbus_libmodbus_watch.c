@@ -19,6 +19,8 @@ static struct {
     modbus_t *ctx;
     int connected, known; /* known: it was the right box once                   */
     double tried_s;
+    int traces; /* the trace is ours */
+    uint32_t run, next; /* ours, and its frame that is to be read next          */
 } client;
 
 static uint32_t value_of(const uint16_t *word, unsigned i)
@@ -96,8 +98,9 @@ void watch_modbus_close(void)
 static int lose(struct watch_box *b)
 {
     b->trouble = modbus_strerror(errno);
+    b->breaks += b->heard > 0;
     modbus_close(client.ctx);
-    client.connected = client.known = 0;
+    client.connected = client.known = client.traces = 0; /* it may be another box */
     return 0;
 }
 
@@ -143,6 +146,88 @@ static int read_values(struct watch_box *b)
     return 1;
 }
 
+/* --- a trace --- */
+
+#define FRAME_WORDS   (2u * EXH_REGS_FRAME_VALUES)
+#define FRAMES_AT_ONCE (MODBUS_MAX_READ_REGISTERS / FRAME_WORDS)
+
+static int read_trace(uint16_t word[2 * EXH_TRACE_HEADS])
+{
+    return modbus_read_input_registers(client.ctx, (int)EXH_REGS_TRACE_AT, 2 * EXH_TRACE_HEADS, word) ==
+           2 * EXH_TRACE_HEADS;
+}
+
+static int start_trace(struct watch_box *b)
+{
+    uint16_t word[2 * EXH_TRACE_HEADS];
+    for (unsigned i = 0; i < EXH_REGS_TRACE_SET; i++) {
+        const uint32_t v = i ? b->index[i - 1] : b->every;
+        word[2 * i] = (uint16_t)(v >> 16);
+        word[2 * i + 1] = (uint16_t)(v & 0xFFFFu);
+    }
+    if (modbus_write_registers(client.ctx, (int)EXH_REGS_TRACE_AT, 2 * EXH_REGS_TRACE_SET, word) < 0) {
+        if (errno != EMBXILADD) { return lose(b); }
+        cli_complain("--trace: this box has no trace registers: watch it without");
+        return 1;
+    }
+    if (!read_trace(word)) { return lose(b); }
+    client.run = value_of(word, EXH_TRACE_HEAD_RUN);
+    client.next = value_of(word, EXH_TRACE_HEAD_OLDEST);
+    client.traces = 1;
+    return 0;
+}
+
+/* One frame, which may have been overwritten since its number was read. */
+static int on_frame(struct watch_box *b, const uint16_t *word, watch_fresh fresh)
+{
+    const uint32_t number = value_of(word, 0);
+    if (number != client.next) {
+        b->lost++;
+        client.next++;
+        return 0;
+    }
+    client.next++;
+    b->tick = value_of(word, 1);
+    for (unsigned i = 0; i < EXH_TRACE_SIGNALS; i++) {
+        b->value[b->index[i]] = (int32_t)value_of(word, 2 + i);
+    }
+    b->heard++;
+    b->heard_s = watch_now_s();
+    return fresh(b);
+}
+
+/* All frames since the last time, those that are no longer held counted. */
+static int look_at_trace(struct watch_box *b, watch_fresh fresh)
+{
+    uint16_t word[MODBUS_MAX_READ_REGISTERS];
+    uint32_t left, frames;
+    int err = client.traces ? 0 : start_trace(b);
+    if (err || !client.connected) { return err; }
+    if (!read_trace(word)) { return lose(b); }
+    if (value_of(word, EXH_TRACE_HEAD_RUN) != client.run) {
+        cli_complain("--trace: another client has set another trace");
+        return 1;
+    }
+    frames = value_of(word, EXH_TRACE_HEAD_FRAMES);
+    left = value_of(word, EXH_TRACE_HEAD_NEXT) - value_of(word, EXH_TRACE_HEAD_OLDEST);
+    if (value_of(word, EXH_TRACE_HEAD_NEXT) - client.next > left) {
+        b->lost += value_of(word, EXH_TRACE_HEAD_OLDEST) - client.next;
+        client.next = value_of(word, EXH_TRACE_HEAD_OLDEST);
+    }
+    left = value_of(word, EXH_TRACE_HEAD_NEXT) - client.next;
+    while (err == 0 && left > 0) {
+        const uint32_t slot = client.next & (frames - 1), fit = frames - slot < left ? frames - slot : left;
+        const uint32_t n = fit < FRAMES_AT_ONCE ? fit : FRAMES_AT_ONCE;
+        if (modbus_read_input_registers(client.ctx, (int)(EXH_REGS_FRAMES_AT + FRAME_WORDS * slot),
+                                        (int)(FRAME_WORDS * n), word) != (int)(FRAME_WORDS * n)) {
+            return lose(b);
+        }
+        for (uint32_t i = 0; err == 0 && i < n; i++) { err = on_frame(b, word + FRAME_WORDS * i, fresh); }
+        left -= n;
+    }
+    return err;
+}
+
 int watch_modbus_look(struct watch_box *b, watch_fresh fresh)
 {
     uint16_t word[2 * EXH_HEADS];
@@ -156,13 +241,14 @@ int watch_modbus_look(struct watch_box *b, watch_fresh fresh)
         const int err = know(b, word);
         if (err || !client.known) { return err; }
     }
-    if (!read_values(b)) { return lose(b); }
+    if (!b->every && !read_values(b)) { return lose(b); }
     b->trouble = NULL;
     tick = value_of(word, EXH_HEAD_TICK);
     b->state = (uint8_t)value_of(word, EXH_HEAD_STATE);
     b->faults = value_of(word, EXH_HEAD_FAULTS);
     b->present = value_of(word, EXH_HEAD_PRESENT);
     b->limits = value_of(word, EXH_HEAD_LIMITS);
+    if (b->every) { return look_at_trace(b, fresh); }
     if (b->heard > 0 && tick == b->tick) { return 0; } /* it stands: nothing new */
     b->tick = tick;
     b->heard++;

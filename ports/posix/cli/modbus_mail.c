@@ -21,6 +21,8 @@ static struct {
     int32_t signal[EXH_REGS_VALUES], active[EXH_REGS_VALUES], wanted[EXH_REGS_VALUES];
     int32_t staged[EXH_REGS_VALUES];
     uint32_t touched[EXH_REGS_WORDS(EXH_REGS_VALUES)];
+    struct exh_trace own, shown; /* own: the loop's, of every tick */
+    struct exh_trace_frame own_frame[EXH_TRACE_FRAMES], shown_frame[EXH_TRACE_FRAMES];
     int save; /* asked for; the image is made behind the next tick */
     int32_t made_B; /* bytes of image to be written; 0: none, or -EXH_E… */
     uint8_t image[IMAGE_B];
@@ -74,6 +76,11 @@ int mail_start(const struct exh_scene *sc, struct exh_scene_board board)
     if (mail.cfg.save) { r->may |= 1u << EXH_COIL_SAVE; }
     if (mail.cfg.remote) { r->may |= 1u << EXH_COIL_RUN | 1u << EXH_COIL_CLEAR; }
     err = exh_regs_setup(r);
+    if (err == 0) {
+        r->trace = &mail.shown;
+        err = exh_trace_setup(&mail.shown, mail.shown_frame, EXH_TRACE_FRAMES, r->signals_n);
+    }
+    if (err == 0) { err = exh_trace_setup(&mail.own, mail.own_frame, EXH_TRACE_FRAMES, r->signals_n); }
     if (err == 0) { copy_values(); }
     return err;
 }
@@ -118,7 +125,9 @@ void mail_before(struct exh_scene_in *in)
 
 void mail_after(const struct exh_scene_in *in)
 {
+    exh_trace_tick(&mail.own, mail.sc->safety->tick, mail.sc->signal);
     if (pthread_mutex_trylock(&lock) != 0) { return; }
+    exh_trace_pass(&mail.own, &mail.shown);
     copy_values();
     exh_regs_see(&mail.regs, mail.sc->safety, in->drive.din);
     if (mail.save && mail.made_B == 0) {

@@ -167,6 +167,13 @@ static void put_fixed(enum style style, unsigned columns)
     for (unsigned i = 0; i < EXH_HEADS; i++) {
         fixed_row(style, columns, EXH_REGS_INPUT, EXH_REGS_HEAD_AT + 2 * i, &exh_regs_head_row[i]);
     }
+    for (unsigned i = 0; i < EXH_TRACE_HEADS; i++) {
+        fixed_row(style, columns, EXH_REGS_INPUT, EXH_REGS_TRACE_AT + 2 * i, &exh_regs_trace_row[i]);
+    }
+    for (unsigned i = 0; i < EXH_REGS_TRACE_SET; i++) {
+        fixed_row(style, columns, EXH_REGS_HOLDING, EXH_REGS_TRACE_AT + 2 * i,
+                  &exh_regs_trace_row[EXH_TRACE_HEAD_EVERY + i]);
+    }
 }
 
 static void put_blocks(enum style style)

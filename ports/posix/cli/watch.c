@@ -30,6 +30,7 @@ static const struct exh_scene *const scenes[] = {&exh_scene_drop,      &exh_scen
 static struct {
     const char *modbus, *listen, *names, *finger, *csv, *plot;
     double hz, seconds, last_s;
+    int64_t trace; /* ticks from frame to frame; 0: none                        */
     struct watch_box box;
     struct watch_pick pick;
     const struct exh_scene *picked; /* of this scene */
@@ -182,6 +183,15 @@ static int pick(struct watch_box *b)
         if (w.pick.index[i] < b->from) { b->from = w.pick.index[i]; }
         if (w.pick.index[i] > b->to) { b->to = w.pick.index[i]; }
     }
+    if (w.trace && w.names && w.pick.n > EXH_TRACE_SIGNALS) {
+        cli_complain("--trace: of %d signals at most: give fewer --signals", EXH_TRACE_SIGNALS);
+        return 2;
+    }
+    if (w.trace && w.pick.n > EXH_TRACE_SIGNALS) { w.pick.n = EXH_TRACE_SIGNALS; }
+    for (uint32_t i = 0; i < EXH_TRACE_SIGNALS; i++) {
+        b->index[i] = w.pick.index[i < w.pick.n ? i : 0];
+    }
+    b->every = (uint32_t)w.trace;
     w.picked = b->scene;
     return 0;
 }
@@ -303,7 +313,14 @@ static int finish(int err)
                      w.box.trouble ? ": " : "", w.box.trouble ? w.box.trouble : "");
         return stopped ? 130 : 1;
     }
-    if (w.box.lost) { cli_complain("%llu ticks were lost on the way", (unsigned long long)w.box.lost); }
+    if (w.box.breaks) {
+        cli_complain("the link was lost %lu times: nothing is known of what was between",
+                     (unsigned long)w.box.breaks);
+    }
+    if (w.box.lost) {
+        cli_complain("%llu %s were lost on the way", (unsigned long long)w.box.lost,
+                     w.trace ? "frames" : "ticks");
+    }
     if (!w.box.ended && !stopped && watch_age_s(&w.box) > 1) {
         cli_complain("silent for %.1f s at the end", watch_age_s(&w.box));
         return 1;
@@ -318,6 +335,10 @@ static int prepare(void)
     int err = 0;
     if ((w.modbus != NULL) + (w.listen != NULL) != 1) {
         cli_complain("--modbus or --listen: where the box is heard: give one of them");
+        return 2;
+    }
+    if (w.trace && w.listen) {
+        cli_complain("--trace: a log has every tick: only with --modbus");
         return 2;
     }
     if (names_find(&names_finger, w.finger) < 0) {
@@ -343,10 +364,12 @@ int cli_watch(int argc, char **argv)
          "a box that serves its registers: tcp:ADDRESS:PORT or rtu:DEVICE:BAUD"},
         {"listen", CLI_TEXT, &w.listen, 0, 0, "ADDRESS:PORT",
          "a box that sends its log there (pc104: log=udp)"},
+        {"trace", CLI_INT, &w.trace, 0, 1e6, "N",
+         "of Modbus: every N-th tick, four signals, what is lost is told"},
         {"signals", CLI_TEXT, &w.names, 0, 0, "A[,B[I]...]",
          "which, of one finger with its number (the paper's)"},
         {"finger", CLI_TEXT, &w.finger, 0, 0, "F", "whose, without a number (index)"},
-        {"hz", CLI_REAL, &w.hz, 0.1, 1000, "HZ", "samples a second (10)"},
+        {"hz", CLI_REAL, &w.hz, 0.1, 1000, "HZ", "samples a second, of a trace looks (10, 50)"},
         {"seconds", CLI_REAL, &w.seconds, 0, 1e9, "S", "then it ends (never)"},
         {"csv", CLI_TEXT, &w.csv, 0, 0, "FILE", "every sample"},
         {"plot", CLI_TEXT, &w.plot, 0, 0, "FILE.png", "the last seconds, drawn at the end by gnuplot"},
@@ -363,11 +386,12 @@ int cli_watch(int argc, char **argv)
     int err;
     memset(&w, 0, sizeof w);
     w.finger = "index";
-    w.hz = 10;
     w.last_s = 10;
     err = cli_parse(&c, argc, argv, NULL);
     if (err) { return err == 1 ? 0 : err; }
     w.tty = isatty(STDOUT_FILENO);
+    if (w.trace && w.hz == 0) { w.hz = 50; }
+    if (w.hz == 0) { w.hz = 10; }
     err = prepare();
     if (err) { return err; }
     catch_signals();

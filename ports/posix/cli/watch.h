@@ -20,13 +20,16 @@ struct watch_box {
     uint8_t state;
     uint32_t faults, present, limits;
     uint64_t lost; /* samples that were not heard, where they are numbered      */
+    uint32_t breaks; /* of the link, since something was heard                   */
     uint64_t heard; /* samples                                                  */
     double heard_s; /* when the tick was last another one, by watch_now_s()     */
     double since_s; /* when watching began                                      */
     const char *trouble; /* of the link at present; NULL                        */
     int ended; /* the box has said so                                           */
-    int all_values; /* else those from..to alone are asked for                  */
+    int all_values; /* else those from..to alone are asked for, of Modbus       */
     uint32_t from, to;
+    uint32_t every; /* of Modbus: a trace of every so many ticks; 0: none       */
+    uint32_t index[EXH_TRACE_SIGNALS]; /* and of what                           */
 };
 
 double watch_now_s(void);
@@ -45,7 +48,8 @@ int watch_stream_open(const char *at);
 int watch_stream_look(struct watch_box *b, double until_s, watch_fresh fresh);
 void watch_stream_close(void);
 
-/* Registers at tcp:ADDRESS:PORT or rtu:DEVICE:BAUD, read once. */
+/* Registers at tcp:ADDRESS:PORT or rtu:DEVICE:BAUD, looked at once. What is wanted of them stands in *b after the
+ * first sample. */
 int watch_modbus_open(const char *where);
 int watch_modbus_look(struct watch_box *b, watch_fresh fresh);
 void watch_modbus_close(void);

@@ -1,0 +1,67 @@
+/* Trace: a few signals of every n-th tick, in memory of the caller's, until somebody fetches them.
+ *
+ * A monitor, no part of a scene: it reads what a tick has made and changes nothing, and is in no
+ * keyframe and no log. Each frame has a number, one more than the frame before it; numbers go on
+ * when another trace is started, so that whoever reads sees each frame that he did not get.
+ */
+#ifndef EXHAND_TRACE_H
+#define EXHAND_TRACE_H
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define EXH_TRACE_SIGNALS 4
+#define EXH_TRACE_FRAMES  128u /* in memory, at most                            */
+
+struct exh_trace_frame {
+    uint32_t number; /* modulo 2^32                                            */
+    uint32_t tick;
+    int32_t raw[EXH_TRACE_SIGNALS];
+};
+
+struct exh_trace_what {
+    uint32_t every; /* ticks from frame to frame; 0: none                      */
+    uint32_t index[EXH_TRACE_SIGNALS]; /* of values in the scene's table of outputs */
+};
+
+struct exh_trace {
+    struct exh_trace_frame *frame; /* the caller's; number k is in frame[k & mask] */
+    uint32_t mask; /* frames - 1                                               */
+    uint32_t signals; /* values in the table                                   */
+    struct exh_trace_what what;
+    uint32_t first; /* number of this trace's first frame                      */
+    uint32_t head; /* number of the next frame, modulo 2^32                    */
+    uint32_t run; /* traces started, modulo 2^32                               */
+    uint32_t left; /* ticks without a frame until the next                     */
+};
+
+/* Nothing is traced, nothing is held. -EXH_E_RANGE: frames is no power of two from 2 to
+ * EXH_TRACE_FRAMES, or there are no signals. */
+int exh_trace_setup(struct exh_trace *t, struct exh_trace_frame *frame, uint32_t frames,
+                    uint32_t signals);
+
+/* Another trace, from the next tick on; frames of the one before are not held any more.
+ * -EXH_E_RANGE: an index of none of the signals; nothing changes. */
+int exh_trace_start(struct exh_trace *t, const struct exh_trace_what *what);
+
+/* Behind each tick, with the values of the table. */
+void exh_trace_tick(struct exh_trace *t, uint32_t tick, const int32_t *signal);
+
+/* Number of the oldest frame held; `head` if there is none. */
+static inline uint32_t exh_trace_oldest(const struct exh_trace *t)
+{
+    return t->head - t->first > t->mask ? t->head - t->mask - 1u : t->first;
+}
+
+/* Where who reads must not touch what the loop writes: `shown` is his, of as many frames, and this
+ * is called while he does not use it. A trace that was started on `shown` is started on `own`; else
+ * the frames that `shown` has not yet are copied, at most all that `own` holds. */
+void exh_trace_pass(struct exh_trace *own, struct exh_trace *shown);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
