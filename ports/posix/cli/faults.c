@@ -155,5 +155,6 @@ int cli_faults(int argc, char **argv)
         return faults_random(stdout, (int)times, (uint64_t)seed, (int)run, (int)parallel);
     }
     if (out) { return faults_pictures(out); }
-    return faults_matrix(stdout, (uint32_t)rate_Hz, (int)parallel);
+    err = faults_matrix(stdout, (uint32_t)rate_Hz, (int)parallel);
+    return err > 1 ? err : err | faults_refusals(stdout, (uint32_t)rate_Hz, (int)parallel);
 }

@@ -115,6 +115,8 @@ struct faults_base {
     uint32_t seed;
     uint32_t stuck_ms; /* 0: the scene's own                                        */
     uint32_t wait_ms; /* so much longer before the finger moves                  */
+    uint8_t not_run; /* 1: nobody commands RUN                                  */
+    uint8_t not_waived; /* 1: nor a calibration, of which there is none           */
 };
 
 /* What the box says of a tick. */
@@ -151,6 +153,9 @@ struct faults_memory {
 };
 struct faults_memory faults_memory(uint8_t scene);
 
+/* Steps of arming, enum exh_arm, that do not hold from now on: as if set-up had found it so. */
+void faults_lose(uint8_t scene, uint32_t steps);
+
 /* The scene's state through its own bytes, and back. */
 void faults_through_bytes(uint8_t scene);
 
@@ -161,6 +166,7 @@ struct faults_case {
     uint32_t follow_ticks; /* so long                                              */
     uint32_t run_tick; /* RUN is commanded in this one; 0: in none               */
     uint8_t whole; /* 1: its state does not go through bytes                */
+    uint8_t loses; /* steps of arming, enum exh_arm, that do not hold any more   */
     uint8_t eager; /* somebody commands RUN and CLEAR all the time           */
     FILE *trace; /* force, tick by tick; NULL: none                       */
 };
@@ -183,6 +189,8 @@ struct faults_seen {
     struct faults_view from; /* at the end of the tick of the branch                 */
     uint32_t bad; /* enum faults_bad                                    */
     uint8_t ended; /* the run has, by a card's error                          */
+    uint8_t opened; /* the gate was, in some tick of the branch                */
+    uint8_t released; /* the state was, in some tick                             */
     uint32_t present; /* causes, in the ticks that saw them                   */
     uint32_t digest; /* CRC-32 of all that came out                          */
     int32_t seen_ticks[2]; /* from when it began to the tick that says so; -1: none  */

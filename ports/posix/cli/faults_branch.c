@@ -12,6 +12,8 @@
 #define SMALL_A  0.02 /* in the motor: none                                           */
 #define AFTER_S  2e-3 /* and so much after the code, besides two ticks: delay, servo, current loop */
 #define BACK_S   0.05
+#define ASTRAY_A 0.26 /* more than tracking tolerates, and its noise                   */
+#define ASTRAY_S 20e-3 /* and that for so long, and some ticks                       */
 #define DAC_ZERO 32768
 #define DAC_SPAN 12184
 
@@ -29,6 +31,7 @@ static struct { /* of the child */
     uint32_t steps, came; /* since then, missed ones too; and without               */
     int zero, cut;
     double from_s, close_s, zero_s; /* the branch, the tick that saw it, no code         */
+    double cut_s; /* the drives were disabled                                   */
     double v_mps, a_mps2;
     int known; /* how many of these two                                               */
 } in;
@@ -45,10 +48,27 @@ static const struct plant *device(void)
     return in.base->scene == FAULTS_DROP ? posix_plant() : &posix_finger(FAULTS_FINGER)->plant;
 }
 
-static int current_flows(void)
+static int flows(double more_A)
 {
     const double cur_A = device()->cur_A;
-    return cur_A > SMALL_A || cur_A < -SMALL_A;
+    return cur_A > more_A || cur_A < -more_A;
+}
+
+static int current_flows(void)
+{
+    return flows(SMALL_A);
+}
+
+/* A zero of the D/A that is damaged is believed: a drive that codes nothing pulls by it until it is
+ * disabled, by the guard. What tracking does not tolerate it must have told before. */
+static double believed_s(double due_s)
+{
+    const struct exh_signal *row = faults_source_row();
+    const double astray_s = due_s + ASTRAY_S + 6.0 / in.base->rate_Hz;
+    double until_s = in.cut ? in.cut_s : posix_time_s();
+    if (row == NULL || strcmp(row->name, "dac_zero") != 0) { return due_s; }
+    if (flows(ASTRAY_A) && until_s > astray_s) { until_s = astray_s; }
+    return until_s > due_s ? until_s : due_s;
 }
 
 static double more(double a, double b)
@@ -78,7 +98,8 @@ static void watch_current(void)
     /* A D/A that stands is off when the release has ended and the drive with it. */
     const int stands = has(FAULTS_DA);
     const double end_s = in.close_s + T_s * faults_zero_ticks(in.base->rate_Hz);
-    const double due_s = stands && end_s > in.zero_s ? end_s : in.zero_s;
+    const double none_s = stands && end_s > in.zero_s ? end_s : in.zero_s;
+    const double due_s = believed_s(none_s);
     if (current_flows()) {
         if (in.closing) { in.seen->zero_s = posix_time_s() - in.close_s; }
         if (in.zero && posix_time_s() > due_s + 2 * T_s + AFTER_S) {
@@ -158,6 +179,7 @@ static void check_box(const struct faults_view *v, const struct exh_drive_out *o
         all_of(v->coded_A_q26) > all_of(in.last.coded_A_q26)) {
         in.seen->bad |= in.zero ? FAULTS_BAD_OPEN : FAULTS_BAD_RISE;
     }
+    if (!in.cut) { in.cut_s = posix_time_s(); }
     in.cut |= (told & FAULTS_CUTS) != 0;
     if (in.cut) {
         if (!none || out->enable) { in.seen->bad |= FAULTS_BAD_CUT; }
@@ -226,6 +248,8 @@ int faults_after(uint32_t tick, const struct faults_view *v, const struct exh_dr
         in.seen->force_N = (double)all_of(in.last.force_N_q20) / (1 << EXH_Q_FORCE);
     }
     if (in.closing) { check_box(v, out); }
+    in.seen->opened |= v->open != 0;
+    in.seen->released |= v->state == EXH_STATE_RELEASE;
     check_codes(v, out);
     in.seen->digest = exh_crc32(in.seen->digest, out->dac_raw, sizeof out->dac_raw);
     in.seen->digest = exh_crc32(in.seen->digest, &out->enable, 1);
@@ -280,6 +304,7 @@ static void become(const struct faults_base *b, const struct faults_case *c, uin
     in.zero = in.closing && !v->open;
     in.zero_s = in.from_s;
     if (!c->whole) { faults_through_bytes(b->scene); }
+    if (c->loses) { faults_lose(b->scene, c->loses); }
     faults_source_start(b, c->what, tick);
 }
 

@@ -239,7 +239,7 @@ static void work(const void *ctx, int i, void *result)
     memset(&p, 0, sizeof p);
     memset(result, 0, sizeof *p.row);
     p.row = result;
-    p.base = (struct faults_base){FAULTS_BILATERAL, 1, 1, rate_Hz[i % (int)rates], 7, 0, 0};
+    p.base = (struct faults_base){FAULTS_BILATERAL, 1, 1, rate_Hz[i % (int)rates], 7, 0, 0, 0, 0};
     p.source = (uint8_t)(1 + i / (int)rates);
     if (p.source == FAULTS_STILL) {
         p.base.stuck_ms = 100;

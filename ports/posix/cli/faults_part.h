@@ -39,6 +39,7 @@ int faults_random(FILE *f, int total, uint64_t seed, int run, int parallel);
 int faults_print_random(FILE *f, const struct faults_random *r, int n);
 void faults_print_wrong(FILE *f, const struct faults_random *r, int n);
 int faults_matrix(FILE *f, uint32_t at_Hz, int parallel); /* at_Hz 0: at three rates   */
+int faults_refusals(FILE *f, uint32_t at_Hz, int parallel);
 int faults_pictures(const char *dir);
 int faults_states(FILE *f); /* of the box, and every name */
 

@@ -98,6 +98,25 @@ struct faults_memory faults_memory(uint8_t scene)
     return m;
 }
 
+/* The guard is told anew, or it were its fault before anybody arms. */
+void faults_lose(uint8_t scene, uint32_t steps)
+{
+    const struct faults_memory m = faults_memory(scene);
+    const uint8_t left = (uint8_t)~steps;
+    if (scene == FAULTS_DROP) {
+        struct drop_cfg *cfg;
+        (void)drop_memory(&cfg);
+        cfg->calib.vouches &= left;
+        if (steps & EXH_ARM_SELFTEST) { cfg->tested = 0; }
+    } else {
+        struct bilateral_cfg *cfg;
+        (void)bilateral_memory(&cfg);
+        cfg->vouches &= left;
+        if (steps & EXH_ARM_SELFTEST) { cfg->tested = 0; }
+    }
+    exh_guard_seal(m.guard, m.area, m.area_B, m.guard->params);
+}
+
 void faults_through_bytes(uint8_t scene)
 {
     static uint8_t bytes[16384];
@@ -124,7 +143,8 @@ void faults_through_bytes(uint8_t scene)
 static void start(const struct exh_scene *sc, struct exh_scene_board board)
 {
     (void)sc;
-    own.run_tick = (uint32_t)(RUN_AT_S * board.T.den / board.T.num) + 2;
+    own.run_tick =
+        own.base->not_run ? UINT32_MAX : (uint32_t)(RUN_AT_S * board.T.den / board.T.num) + 2;
 }
 
 static void before(uint32_t tick, struct exh_scene_in *in)
@@ -175,6 +195,7 @@ static int run_finger(const struct faults_base *b)
                                       {"glove_time", 150},
                                       {"link_time", 200},
                                       {"supply_min", 18},
+                                      {"uncalibrated", !b->not_waived},
                                       {"glove_fc", b->rate_Hz < 500 ? 0.2 * b->rate_Hz : 200}};
     struct bilateral_run_cfg c;
     struct bilateral_run r;
@@ -210,7 +231,8 @@ static int run_finger(const struct faults_base *b)
 
 static int run_mass(const struct faults_base *b)
 {
-    const struct run_setting set[] = {{"f_max", b->gentle ? 40 : 6}};
+    const struct run_setting set[] = {{"f_max", b->gentle ? 40 : 6},
+                                      {"uncalibrated", !b->not_waived}};
     struct run_cfg c;
     struct run r;
     int err;
