@@ -249,6 +249,7 @@ MUTANTS = (
 THIN = {
     "if (p->phase == EXH_PRECONTACT_FROZEN &&": 0.90,  # sim/bilateral_tick
     "s->present == EXH_FAULT_DEADMAN && !": 0.93,      # unit/safety
+    "falls ? s->off_raw[k] : UINT16_MAX": 0.84,        # unit/gate, proof
 }
 
 # Where the inline functions of a header are called for a module.

@@ -112,11 +112,16 @@ void golden_safety(struct golden *g, uint32_t rate_Hz)
         struct exh_permit permit;
         struct exh_drive_out out;
         uint32_t limits[EXH_FINGERS] = {0};
+        uint8_t before;
         if (g->tick == 0 || g->tick == GOLDEN_AGAIN) { box_setup(&b, &r, rate_Hz, g->tick); }
+        before = b.s.state;
         any_in(&b, &r, g->tick);
         (void)memset(i, 0, sizeof i);
         for (unsigned f = 0; f < EXH_FINGERS; f++) {
             i[f].table_A_q26 = f < b.in.fingers ? cur[f].at[g->tick] : 0;
+            if (f < b.in.fingers && before == EXH_STATE_RELEASE) { /* what should fall does not */
+                i[f].table_A_q26 = (int32_t)golden_draw(&r, -end, end);
+            }
             if (f < b.in.fingers && golden_draw(&r, 0, 15) == 0) {
                 limits[f] = 1u << golden_draw(&r, 0, 10);
             }

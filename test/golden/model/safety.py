@@ -183,13 +183,15 @@ def safety(rate):
         if rng.draw(0, 63) == 0:
             command = 2
         ready = rng.draw(0, 15) if rng.draw(0, 7 if s.state_ == OFF else 63) == 0 else 15
-        told = []
+        told, cur = [], [w[k] for w in waves[:n]]
         for f in range(n):
+            if s.state_ == RELEASE:  # what should fall does not
+                cur[f] = rng.draw(-end, end)
             told.append(1 << rng.draw(0, 10) if rng.draw(0, 15) == 0 else 0)
             if f == 0 and rng.draw(0, 3) == 0:
                 told[0] |= PULL
         permit = s.step(din, raised, missed, command, n, ready)
-        out, enable = s.gate(pars, [w[k] for w in waves[:n]], told)
+        out, enable = s.gate(pars, cur, told)
         row = [din, raised, missed, command, ready, *permit[:4], *permit[4], enable, s.alive]
         for i in range(FINGERS):
             row += out[i] if i < n else (0, 0, 0, 0, pars[0][6])
