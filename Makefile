@@ -118,17 +118,17 @@ sees        = $(if $(call have,$(1)),$(shell $(CC) $(filter -m% --target%,$(CFLA
 world_rays := $(if $(filter -static,$(LDFLAGS)),,$(if $(call sees,embree3/rtcore.h),3,$(if $(call sees,embree4/rtcore.h),4)))
 world_mesh := $(B)/posix/examples/world/$(if $(world_rays),mesh_embree,mesh_none).o
 
-# Modbus by libmodbus where the package is, for this compiler and this way to link.
-modbus   := $(or $(if $(call have,modbus/modbus.h),$(shell echo 'int main(void){return !modbus_reply;}' | $(CC) $(CFLAGS) $(LDFLAGS) \
-              -include modbus/modbus.h -xc - -o /dev/null -lmodbus 2>/dev/null && echo libmodbus)),none)
+# 1: header, 2: library, 3: what of it: "yes" where the package has it, for this compiler and this way to link.
+gives     = $(if $(call have,$(1)),$(shell echo 'int main(void){return !$(3);}' | $(CC) \
+              $(filter -m% --target% -static,$(CFLAGS) $(LDFLAGS)) -include $(1) -xc - -o /dev/null -l$(2) 2>/dev/null && echo yes))
+
+modbus   := $(if $(call gives,modbus/modbus.h,modbus,modbus_reply),libmodbus,none)
 cli_src  := $(filter-out ports/posix/cli/modbus_%.c,$(cli_src)) ports/posix/cli/modbus_mail.c $(wildcard ports/posix/cli/modbus_$(modbus)*.c)
 cli_obj  := $(cli_src:%.c=$(B)/posix/%.o) $(world_core:%.c=$(B)/posix/%.o) $(world_mesh)
 cli_libs := $(if $(world_rays),-ldl) $(if $(filter libmodbus,$(modbus)),-lmodbus) -pthread -lm
-# Lines of a GPIO chip, if the package is here, for this compiler and this way to link, by its version. The program alone has
-# them: tests and benches must be the same on every machine.
-gives     = $(if $(call have,gpiod.h),$(shell echo 'int main(void){return !$(1);}' | \
-              $(CC) $(CFLAGS) $(LDFLAGS) -include gpiod.h -xc - -o /dev/null -lgpiod 2>/dev/null && echo yes))
-gpio     := $(if $(call gives,gpiod_line_request_bulk),v1,$(if $(call gives,gpiod_chip_request_lines),v2,none))
+# Lines of a GPIO chip, by the package's version. The program alone has them: tests and benches must be the same on every machine.
+gives_gpio = $(call gives,gpiod.h,gpiod,$(1))
+gpio     := $(if $(call gives_gpio,gpiod_line_request_bulk),v1,$(if $(call gives_gpio,gpiod_chip_request_lines),v2,none))
 gpio_none := $(B)/posix/ports/posix/gpio_none.o
 gpio_obj := $(B)/posix/ports/posix/gpio_$(gpio).o
 gpio_libs := $(if $(filter none,$(gpio)),,-lgpiod)
