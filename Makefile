@@ -341,6 +341,7 @@ $(B)/test/golden/golden_test: $(golden_src:%.c=$(B)/posix/%.o) $(B)/posix/test/s
 test:
 	@.ci/deps "the tests" "$(CC) $(foreach h,stdarg stddef setjmp stdint cmocka,-include $h.h) -fsyntax-only -xc /dev/null" libcmocka-dev || exit 3
 	@.ci/deps "the tests of Modbus" "test -f /usr/include/modbus/modbus.h" libmodbus-dev || true
+	@.ci/deps "lines of a GPIO chip" "test -f /usr/include/gpiod.h" libgpiod-dev || true
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(test_bin)
 	@JOBS=$(jobs) test/run.sh $(test_bin)
 
