@@ -92,12 +92,12 @@ static void images(struct seen *e, uint32_t a, struct circle want)
     }
 }
 
-static struct seen part_of_all(uint32_t part)
+static struct seen part_of_all(uint32_t part, uint32_t thin)
 {
     static struct circle step[STRETCH];
     struct seen e = {0, 0, 0, 0, 0, 0};
     for (uint32_t k = 0; k < STRETCH; k++) { step[k] = series(LSB_RAD * (long double)k); }
-    for (uint32_t at = part * STRETCH; at < EIGHTH; at += PROCESSES * STRETCH) {
+    for (uint32_t at = part * STRETCH; at < EIGHTH; at += PROCESSES * STRETCH * thin) {
         const struct circle start = series(LSB_RAD * (long double)at);
         for (uint32_t k = 0; k < STRETCH; k++) { images(&e, at + k, sum_of(start, step[k])); }
     }
@@ -119,8 +119,19 @@ static void add(struct seen *all, const struct seen *e)
     }
 }
 
+/* How many those are: eight images of each, and four of 0 and of the eighth. */
+static uint64_t angles_of(uint32_t thin)
+{
+    const uint64_t stretches = EIGHTH / STRETCH, stride = (uint64_t)PROCESSES * thin;
+    uint64_t n = 0;
+    for (uint64_t part = 0; part < PROCESSES; part++) {
+        n += (stretches - part + stride - 1) / stride;
+    }
+    return 8 * STRETCH * n;
+}
+
 /* Each part in a process of its own; one that dies leaves angles out, which is seen. */
-int every_angle(void)
+int every_angle(uint32_t thin)
 {
     struct seen all = {0, 0, 0, 0, 0, 0}, e;
     int end[2], good;
@@ -128,7 +139,7 @@ int every_angle(void)
     fflush(stdout);
     for (uint32_t part = 0; part < PROCESSES; part++) {
         if (fork() == 0) {
-            e = part_of_all(part);
+            e = part_of_all(part, thin);
             _exit(write(end[1], &e, sizeof e) != (ssize_t)sizeof e);
         }
     }
@@ -136,7 +147,7 @@ int every_angle(void)
     while (read(end[0], &e, sizeof e) == (ssize_t)sizeof e) { add(&all, &e); }
     close(end[0]);
     while (wait(NULL) > 0) {}
-    good = all.angles == UINT64_C(1) << 32 && all.beyond == 0 && all.sin_lsb <= BOUND_LSB &&
+    good = all.angles == angles_of(thin) && all.beyond == 0 && all.sin_lsb <= BOUND_LSB &&
            all.cos_lsb <= BOUND_LSB;
     printf("%" PRIu64 " angles: sine within %.4f LSB of q30 (at %#" PRIx32 "), cosine within %.4f "
            "(at %#" PRIx32 "), %" PRIu64 " beyond 1 | at most %.2f | %s\n",

@@ -26,6 +26,7 @@ static void start_hot(const struct hot *c)
     set(ID_K, EXH_Q(1000000, 1, EXH_Q_K));
     set(ID_PEAK_TIME, c->peak_ms);
     start(c->T);
+    arm();
 }
 
 /* All the force there is, for a minute: the peak for its time, then i_cont for ever. */
@@ -36,10 +37,9 @@ static void full_force(const struct hot *c)
     char besides[64];
     double peak_s = 0, last_A = 0;
     fresh();
-    set(ID_Q_LIM, -EXH_Q(1, 10, EXH_Q_POS));
     start_hot(c);
     for (double t = 0; t < 60; t += T_s) {
-        const struct exh_scene_in in = idle_in(rig.w.ticks, 0);
+        const struct exh_scene_in in = idle_in(1, 5000);
         tick(&in, &out);
         last_A = rig.sig.i_des_A_q26 / 67108864.0;
         if (last_A > 6.59) { peak_s += T_s; }
@@ -64,7 +64,7 @@ static void pulsed_force(const struct hot *c)
     fresh();
     start_hot(c);
     for (uint32_t n = 0; n < 10000; n++) {
-        const struct exh_scene_in in = idle_in(n, n % 2 ? 5000 : 0);
+        const struct exh_scene_in in = idle_in(1, n % 2 ? 5000 : 0);
         tick(&in, &out);
         sum += rig.sig.i_des_A_q26 / 67108864.0 * (rig.sig.i_des_A_q26 / 67108864.0);
     }

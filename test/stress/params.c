@@ -22,7 +22,9 @@ static void stage_all(int when)
         uint16_t instance;
         const struct exh_signal *row = exh_signal_at(rig.params.table, i, &instance);
         if (row->when != when) { continue; }
-        if (row->id == calib_rows[CALIB_ROWS - 1].id) { continue; } /* uncalibrated: it would not arm */
+        if (row->id == calib_rows[CALIB_ROWS - 1].id) {
+            continue;
+        } /* uncalibrated: it would not arm */
         must(exh_params_stage(&rig.params, row->id, instance, any_value(row)) == 0, "setting", "%s",
              row->name);
     }
@@ -30,21 +32,48 @@ static void stage_all(int when)
 
 static void parameters_every_tick(int32_t tune_ms)
 {
-    const struct exh_period T = {1, 2000};
-    const struct exh_tune_par tune = {tune_ms};
     struct exh_drive_out out;
     fresh();
     rig.blind = 1;
-    start(T);
-    exh_params_slew(&rig.params, &tune, T);
-    for (uint64_t n = 0; n < 1000000; n++) {
-        const struct exh_scene_in in = wild_in(n);
+    set(ID_TUNE_TIME, tune_ms);
+    set(ID_ARM_TIME, 1);
+    set(ID_RAMP_TIME, 5);
+    start((struct exh_period){1, 2000});
+    for (uint64_t n = 0; n < cases; n++) {
+        const struct exh_scene_in in = handled_in(n);
         stage_all(EXH_WHEN_ANY);
-        stage_all(EXH_WHEN_SLEWED);
-        exh_params_apply(&rig.params);
+        /* Held for a while, too, or none would ever come near its ends. */
+        if (any(n / 4096 % 2 ? 1 : 256) == 0) { stage_all(EXH_WHEN_SLEWED); }
+        if (!exh_safety_runs(&rig.state.safety)) {
+            set(ID_F0, 0);
+        } /* more than arm_force: it would not arm */
+        apply();
         tick(&in, &out);
     }
-    report("parameters at random every tick", tune_ms ? "little by little" : "at once");
+    must(rig.w.in[EXH_STATE_RUN] + rig.w.in[EXH_STATE_LIMIT] > cases / 10, "power",
+         "seldom in RUN");
+    report("parameters at random every tick",
+           tune_ms ? "little by little, as each may" : "at once");
+}
+
+/* Random set-ups; of most, so that they arm: no supply judged, no pull-back force. */
+static void stage_setup(void)
+{
+    stage_all(EXH_WHEN_SETUP);
+    if (any(8)) { set(ID_SUPPLY_MIN, 0); }
+    if (any(2)) {
+        stage_all(EXH_WHEN_ANY);
+        stage_all(EXH_WHEN_SLEWED);
+        if (any(4)) { set(ID_F0, 0); }
+    }
+    if (any(2)) { set(ID_ARM_TIME, 1); }
+    if (any(2)) { set(ID_RAMP_TIME, 1 + (int32_t)any(20)); }
+    if (any(4)) { /* most of all i_peak and i_cont in the order the scene asks for */
+        struct exh_drive_par *d = &rig.staged.drive;
+        const int32_t swap = d->i_peak_A_q26;
+        d->i_peak_A_q26 = swap < d->i_cont_A_q26 ? d->i_cont_A_q26 : swap;
+        d->i_cont_A_q26 = swap < d->i_cont_A_q26 ? swap : d->i_cont_A_q26;
+    }
 }
 
 /* Any set-up the tables allow is either refused or keeps the rules. */
@@ -61,36 +90,32 @@ static void random_setups(void)
                                           {214748, 4294967295u}};
     struct watch sum;
     char besides[64];
-    unsigned refused = 0, ran = 0;
+    unsigned refused = 0, ran = 0, runs = 0;
+    const unsigned setups = (unsigned)(cases / 250);
     memset(&sum, 0, sizeof sum);
-    for (unsigned i = 0; i < 4000 && sum.broken == 0; i++) {
+    for (unsigned i = 0; i < setups && sum.broken == 0; i++) {
         struct exh_drive_out out;
         int err;
         fresh();
         rig.blind = any(2) == 0;
         rig.enc_bits = (uint8_t)(15 + any(18)); /* 15: refused */
-        stage_all(EXH_WHEN_SETUP);
-        if (any(2)) { stage_all(EXH_WHEN_ANY); }
-        if (any(2)) { stage_all(EXH_WHEN_SLEWED); }
-        if (any(4)) { /* most of all i_peak and i_cont in the order the scene asks for */
-            struct exh_drive_par *d = &rig.staged.drive;
-            const int32_t swap = d->i_peak_A_q26;
-            d->i_peak_A_q26 = swap < d->i_cont_A_q26 ? d->i_cont_A_q26 : swap;
-            d->i_cont_A_q26 = swap < d->i_cont_A_q26 ? swap : d->i_cont_A_q26;
-        }
+        stage_setup();
         err = ready(T[any(LEN(T))]);
         must(err <= 0 && err > -EXH_E_COUNT, "set-up", "returned %d", err);
         refused += err != 0;
         ran += err == 0;
         for (uint64_t n = 0; err == 0 && n < 250; n++) {
-            const struct exh_scene_in in = wild_in(n);
+            const struct exh_scene_in in = handled_in(n);
             tick(&in, &out);
         }
+        runs += rig.w.in[EXH_STATE_RUN] + rig.w.in[EXH_STATE_LIMIT] > 0;
         rig.w.ticks += sum.ticks;
         sum = rig.w;
     }
-    must(ran > 1000 && refused > 100, "power", "%u ran, %u refused", ran, refused);
-    snprintf(besides, sizeof besides, "refused (%u) or within the rules (%u)", refused, ran);
+    must(ran > setups / 4 && refused > setups / 40 && runs > ran / 8, "power",
+         "%u ran, %u of them armed, %u refused", ran, runs, refused);
+    snprintf(besides, sizeof besides, "refused (%u) or within the rules (%u, %u in RUN)", refused,
+             ran, runs);
     report("set-ups at random, last one shown", besides);
 }
 

@@ -8,7 +8,8 @@
 #include <stdarg.h>
 #include <stdlib.h>
 
-#define HEALTHY (EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG | EXH_DIN_CARDS | EXH_DIN_DRIVE0)
+#define HEALTHY \
+    (EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG | EXH_DIN_CARDS | EXH_DIN_DRIVE0)
 
 struct rig rig;
 static struct sim_random rng = {1};
@@ -73,13 +74,61 @@ int ready(struct exh_period T)
     rig.params.locked = 1;
     rig.T = T;
     err = drop_setup(&rig.cfg, &rig.active, (struct exh_scene_board){T, rig.enc_bits}, NULL);
-    if (rig.blind) { rig.cfg.quad.jump_cnt = INT32_MAX; }
-    return err;
+    exh_params_slew(&rig.params, &rig.active.tune, T);
+    if (err != 0) { return err; }
+    rig.times = box_times(&rig.active.safety, &rig.active.watch, T);
+    rig.box.calm = 1; /* before the first tick no law has asked for anything */
+    if (rig.blind) {
+        rig.cfg.quad.jump_cnt = INT32_MAX;
+        rig.cfg.watch.speed_ticks = UINT32_MAX;
+        rig.times.fast = UINT32_MAX;
+    }
+    return 0;
 }
 
 void start(struct exh_period T)
 {
-    must(ready(T) == 0, "set-up", "refused");
+    const int err = ready(T);
+    if (err == 0) { return; }
+    printf("set-up refused: %d\n", err); /* and nothing there to go on with */
+    exit(1);
+}
+
+void arm(void)
+{
+    struct exh_drive_out out;
+    const uint64_t most = rig.times.arm + rig.times.ramp + 2;
+    for (uint64_t n = 0; n < most && rig.sig.state != EXH_STATE_RUN; n++) {
+        const struct exh_scene_in in = idle_in(n, 0);
+        tick(&in, &out);
+    }
+    must(rig.sig.state == EXH_STATE_RUN, "arming", "state %ld", (long)rig.sig.state);
+}
+
+/* What a value that goes little by little is next. 2^s ticks are the first power of two no shorter than tune_time. */
+static int64_t next_of(int64_t now, int64_t goal, int slewed)
+{
+    const double T_ms = 1000.0 * rig.T.num / rig.T.den;
+    int64_t ticks = 1, left = goal < now ? now - goal : goal - now;
+    while (slewed && (double)ticks * T_ms < rig.active.tune.time_ms && ticks < 32768) {
+        ticks *= 2;
+    }
+    left = (left + ticks - 1) / ticks;
+    return goal < now ? now - left : now + left;
+}
+
+void apply(void)
+{
+    const struct drop_par before = rig.active;
+    const int32_t *was = (const int32_t *)&before, *is = (const int32_t *)&rig.active;
+    const int32_t *goal = (const int32_t *)&rig.staged;
+    exh_params_apply(&rig.params);
+    for (uint32_t i = 0; i < exh_signal_count(rig.params.table); i++) {
+        const struct exh_signal *row = exh_signal_at(rig.params.table, i, NULL);
+        const int64_t next = next_of(was[i], goal[i], row->when == EXH_WHEN_SLEWED);
+        must(is[i] == next, "slewed", "%s: %ld, from %ld to %ld is %" PRId64, row->name,
+             (long)is[i], (long)was[i], (long)goal[i], next);
+    }
 }
 
 /* --- inputs --- */
@@ -128,6 +177,42 @@ struct exh_scene_in wild_in(uint64_t n)
         in.drive.mon_raw[0] = n % 3 ? mon_extreme[n / 4 % 4] : (int16_t)((int)any(65536) - 32768);
     }
     in.drive.supply_raw = mon_extreme[n % 4];
+    return in;
+}
+
+/* The string a piece in or out; no jump where those are told. */
+static uint32_t drawn(int in)
+{
+    const uint32_t quarter = UINT32_C(1) << (rig.enc_bits - 2);
+    const uint32_t legal = (uint32_t)rig.cfg.quad.jump_cnt / 8;
+    const uint32_t piece = legal < quarter ? legal : quarter;
+    return rig.state.quad.raw + (in ? 0u - piece : piece);
+}
+
+/* Far in, where no wall can be behind it. */
+static uint32_t far_in(void)
+{
+    return rig.sig.q_m_q30 < -EXH_Q(101, 100, EXH_Q_POS) ? rig.state.quad.raw : drawn(1);
+}
+
+struct exh_scene_in handled_in(uint64_t n)
+{
+    const int shut = rig.box.state == EXH_STATE_OFF || rig.box.state == EXH_STATE_FAULT ||
+                     (rig.box.state == EXH_STATE_ARM && rig.box.ramped == 0);
+    struct exh_scene_in in = wild_in(n);
+    in.command = EXH_CMD_NONE;
+    if (!shut && any(4) == 0) {
+        in.drive.enc_raw[0] = drawn(rig.sig.q_m_q30 > rig.active.own.q_lim_m_q30);
+    }
+    if (!shut || any(64) == 0) { return in; }
+    in = idle_in(1, far_in());
+    in.drive.supply_raw = rig.cfg.supply.max_raw;
+    if (rig.box.state == EXH_STATE_OFF) { in.command = EXH_CMD_RUN; }
+    if (rig.box.state == EXH_STATE_FAULT) {
+        in.command = EXH_CMD_CLEAR;
+        /* Now and then no hand is seen open before: that may not clear. */
+        if (!rig.box.opened && any(2)) { in.drive.din &= ~(uint32_t)EXH_DIN_DEADMAN; }
+    }
     return in;
 }
 

@@ -1,17 +1,38 @@
 /* The rules that must hold in every tick, listed in stress.c. */
 #include "stress.h"
 
-#define LIMITS_ALL 0x7F
-#define FAULTS_ALL 0x3F
+#define LIMITS_ALL 0x3FF /* PASSIVITY is not in this scene                        */
 
 struct hidden { /* what the scene does not show */
     struct exh_force_ledger f;
     struct exh_current_ledger i;
-    int32_t force_before;
+    enum box_gate gate;
+    int32_t vel, cnt; /* as measured                                           */
     uint32_t limits;
-    int touching, run;
+    int touching;
     struct exh_drive_out out;
 };
+
+/* Beyond the speed limit, or pulled without a count, for too long. */
+static uint32_t movement_faults(const struct hidden *h)
+{
+    struct box *b = &rig.box;
+    const int64_t v = h->vel < 0 ? -(int64_t)h->vel : h->vel;
+    b->fast = v > rig.active.watch.speed_mps_q27 ? b->fast + 1 : 0;
+    return (b->fast >= rig.times.fast ? (uint32_t)EXH_FAULT_SPEED : 0u) |
+           (rig.times.still > 0 && b->still >= rig.times.still ? (uint32_t)EXH_FAULT_STUCK : 0u);
+}
+
+/* What the box must come to, from causes told apart. */
+static void box_tick(struct exh_safety_in in, struct hidden *h)
+{
+    const uint32_t moved = movement_faults(h);
+    const uint32_t told = in.raised & (EXH_FAULT_SPEED | EXH_FAULT_STUCK);
+    must(told == moved, "speed", "faults %#lx, want %#lx", (unsigned long)told,
+         (unsigned long)moved);
+    in.raised = (in.raised & ~told) | moved;
+    h->gate = box_step(&rig.box, &rig.times, &in);
+}
 
 /* The scene's tick, from the modules, in their documented order. */
 static void shadow_tick(struct drop *s, const struct exh_scene_in *in, struct hidden *h)
@@ -19,45 +40,102 @@ static void shadow_tick(struct drop *s, const struct exh_scene_in *in, struct hi
     const struct drop_par *par = &rig.active;
     const int32_t cnt = exh_quad_extend(&s->quad, &rig.cfg.quad, in->drive.enc_raw[0]);
     const int32_t pos = exh_quad_pos_m_q30(&par->quad, cnt);
-    const int32_t vel = exh_velocity_window_mps_q27(&s->velocity, &rig.cfg.velocity, cnt);
-    const struct exh_contact_in q = {pos, vel, par->own.q_lim_m_q30};
+    struct exh_contact_in q = {pos,
+                               exh_velocity_window_mps_q27(&s->velocity, &rig.cfg.velocity, cnt),
+                               par->own.q_lim_m_q30};
     const int32_t mon = exh_drive_monitor_A_q26(&rig.cfg.drive, in->drive.mon_raw[0]);
-    const uint32_t lost = s->quad.lost ? EXH_FAULT_ENCODER : 0u;
-    const uint32_t astray =
-        exh_track_step(&s->track, &rig.cfg.track, mon) ? EXH_FAULT_TRACKING : 0u;
-    const uint32_t raised = lost | astray;
-    const struct exh_safety_in box = {in->drive.din, raised, in->missed, in->command, 1, 15};
-    const struct exh_permit permit = exh_safety_step(&s->safety, &rig.cfg.safety, box);
-    const int run = permit.mode != EXH_PERMIT_CLOSED;
-    h->run = run;
-    h->force_before = run ? s->drive.force_N_q20 : 0;
+    struct exh_safety_in box = {in->drive.din, 0, in->missed, in->command, 1, 15};
+    struct exh_permit permit;
+    h->vel = q.vel_mps_q27;
+    h->cnt = cnt;
+    if (exh_track_step(&s->track, &rig.cfg.track, mon)) { box.raised |= EXH_FAULT_TRACKING; }
+    if (exh_supply_step(&s->supply, &rig.cfg.supply, in->drive.supply_raw, in->missed)) {
+        box.raised |= EXH_FAULT_SUPPLY;
+    }
+    if (s->quad.lost) {
+        box.raised |= EXH_FAULT_ENCODER;
+        box.ready &= (uint8_t)~EXH_ARM_ENCODER;
+    }
+    box.raised |= exh_watch_step(&s->watch, &rig.cfg.watch, &q.vel_mps_q27, &h->limits);
+    box_tick(box, h);
+    permit = exh_safety_step(&s->safety, &rig.cfg.safety, box);
     h->touching = exh_contact_law(&s->contact, &par->contact, q, &h->f);
-    h->limits = exh_drive_force(&s->drive, &rig.cfg.drive, &permit, &h->f);
+    h->limits |= exh_drive_force(&s->drive, &rig.cfg.drive, &permit, &h->f);
     h->limits |= exh_drive_current(&s->drive, &rig.cfg.drive, &h->f, &h->i);
     exh_gate(&s->safety, &rig.cfg.drive, 1, &h->i, &h->limits, &h->out);
     exh_track_coded(&s->track, h->i.coded_A_q26);
+    exh_watch_coded(&s->watch, &rig.cfg.watch, cnt, h->i.coded_A_q26);
+}
+
+static int64_t asked_of(const struct exh_force_ledger *f)
+{
+    return f->spring_N_q20 + f->damper_N_q20 + f->pullback_N_q20 + f->passivity_N_q20;
+}
+
+/* Open: what is asked for, within what is allowed by now, or as near as slew lets it. */
+static void check_open(const struct exh_force_ledger *f)
+{
+    const struct exh_drive_par *par = &rig.active.drive;
+    const int32_t top = rig.cfg.drive.f_top_N_q20;
+    const int32_t most = par->f_max_N_q20 < top ? par->f_max_N_q20 : top;
+    const int64_t may =
+        (int64_t)((double)most * (double)box_share(&rig.box, &rig.times) / 1073741824.0);
+    const int64_t asked = asked_of(f);
+    const int64_t want = asked < 0 ? 0 : asked > may ? may : asked;
+    const int64_t change = (int64_t)f->force_N_q20 - rig.box.held;
+    const int32_t slew = change > 0 ? par->slew_up_Nps : par->slew_down_Nps;
+    const double step = (double)slew * 1048576.0 * rig.T.num / rig.T.den;
+    const double moved = (double)(change < 0 ? -change : change);
+    const int there = f->force_N_q20 >= want - 1 && f->force_N_q20 <= want + 1;
+    const int on_the_way =
+        (change > 0 ? f->force_N_q20 < want : f->force_N_q20 > want) && moved >= step - 2;
+    must(there || on_the_way, "force", "%ld, not %" PRId64 " of %" PRId64 ", change %" PRId64,
+         (long)f->force_N_q20, want, may, change);
+    must(moved <= step + 1.0001, "slew", "%.0f LSB, may %.3f", moved, step);
+    if (step >= 1 && moved / step > rig.w.slew_share) { rig.w.slew_share = moved / step; }
+}
+
+/* In equal steps from where it began, each of them rounded up by 1 LSB at most. */
+static void check_falling(const struct exh_force_ledger *f)
+{
+    const int64_t R = (int64_t)rig.times.release, from = rig.box.from;
+    const int64_t gone = rig.box.gone < (uint64_t)R ? (int64_t)rig.box.gone : R;
+    const int64_t most = from * (R - gone) / R;
+    must(f->force_N_q20 <= most && f->force_N_q20 >= most - gone - 1, "release",
+         "%ld, %" PRId64 " of %" PRId64 " ticks from %" PRId64, (long)f->force_N_q20, gone, R,
+         from);
+    must(f->force_N_q20 <= rig.box.held, "release", "%ld, was %ld", (long)f->force_N_q20,
+         (long)rig.box.held);
+    must(f->clamp_N_q20 == 0 && f->slew_N_q20 == 0, "release", "clamp %" PRId64 ", slew %" PRId64,
+         f->clamp_N_q20, f->slew_N_q20);
 }
 
 static void check_force(const struct hidden *h)
 {
     const struct exh_force_ledger *f = &h->f;
-    const struct exh_drive_par *par = &rig.active.drive;
-    const int64_t sum = f->spring_N_q20 + f->damper_N_q20 + f->pullback_N_q20 + f->passivity_N_q20 +
-                        f->clamp_N_q20 + f->slew_N_q20;
-    const int32_t top = rig.cfg.drive.f_top_N_q20;
-    const int32_t most = par->f_max_N_q20 < top ? par->f_max_N_q20 : top;
-    const int64_t change = (int64_t)f->force_N_q20 - h->force_before;
-    const int32_t slew = change > 0 ? par->slew_up_Nps : par->slew_down_Nps;
-    const double step = (double)slew * 1048576.0 * rig.T.num / rig.T.den;
-    const double moved = (double)(change < 0 ? -change : change);
+    const int64_t sum = asked_of(f) + f->clamp_N_q20 + f->slew_N_q20 + f->release_N_q20;
     must(sum == f->force_N_q20, "force ledger", "%" PRId64 " != %ld", sum, (long)f->force_N_q20);
     must(f->force_N_q20 >= 0, "force", "%ld", (long)f->force_N_q20);
-    must(h->run || f->force_N_q20 == 0, "force", "%ld outside RUN", (long)f->force_N_q20);
-    must(f->force_N_q20 <= most || (change < 0 && moved >= step - 2), "force",
-         "%ld above %ld, change %" PRId64, (long)f->force_N_q20, (long)most, change);
-    must(moved <= step + 1.0001, "slew", "%.0f LSB, may %.3f", moved, step);
-    if (step >= 1 && moved / step > rig.w.slew_share) { rig.w.slew_share = moved / step; }
+    must(h->gate == BOX_FALLS || f->release_N_q20 == 0, "force", "released outside RELEASE");
+    switch (h->gate) {
+    case BOX_OPEN: check_open(f); break;
+    case BOX_FALLS: check_falling(f); break;
+    case BOX_SHUT: must(f->force_N_q20 == 0, "force", "%ld while shut", (long)f->force_N_q20);
+    }
     if (f->force_N_q20 > rig.w.force_max) { rig.w.force_max = f->force_N_q20; }
+}
+
+/* What the next tick goes by. */
+static void keep(const struct hidden *h, const struct exh_drive_out *out)
+{
+    struct box *b = &rig.box;
+    const int pulled = h->i.coded_A_q26 > rig.active.watch.stuck_cur_A_q26;
+    b->held = h->f.force_N_q20;
+    b->calm = asked_of(&h->f) <= rig.times.small_N_q20 ? b->calm + 1 : 0;
+    b->still = pulled && h->cnt == b->cnt ? b->still + 1 : 0;
+    b->cnt = h->cnt;
+    b->off = out->dac_raw[0] - rig.active.drive.dac_zero_raw;
+    b->limited = (h->limits & ~(uint32_t)EXH_LIMIT_PULL) != 0;
 }
 
 static void check_heat(double i_A)
@@ -84,8 +162,10 @@ static void check_current(const struct hidden *h)
         i->table_A_q26 + i->peak_A_q26 + i->i2t_A_q26 + i->gate_A_q26 + i->dac_A_q26;
     const int64_t passed = i->table_A_q26 + i->peak_A_q26 + i->i2t_A_q26 + i->gate_A_q26;
     const double half_code = 67108864.0 * 65536.0 / par->dac_rawpA_q16 / 2;
-    const int at_end =
-        (h->limits & EXH_LIMIT_DAC) != 0 || par->dac_zero_raw + par->dac_span_raw > 65535;
+    const int code = h->out.dac_raw[0] - par->dac_zero_raw;
+    /* Held to less than is asked for: the span's end, the word's, or in a release the last code. */
+    const int at_end = code == par->dac_span_raw || h->out.dac_raw[0] == 65535 ||
+                       (h->gate == BOX_FALLS && code == rig.box.off);
     must(sum == i->coded_A_q26, "current ledger", "%" PRId64 " != %ld", sum, (long)i->coded_A_q26);
     must(passed >= 0 && passed <= par->i_peak_A_q26, "current", "%" PRId64 " of %ld", passed,
          (long)par->i_peak_A_q26);
@@ -98,16 +178,19 @@ static void check_current(const struct hidden *h)
     }
 }
 
-static void check_codes(const struct exh_drive_out *out)
+static void check_codes(const struct hidden *h, const struct exh_drive_out *out)
 {
     const struct exh_drive_par *par = &rig.active.drive;
-    const int open = rig.state.safety.state == EXH_STATE_RUN;
+    const int open = h->gate != BOX_SHUT;
     const int code = out->dac_raw[0] - par->dac_zero_raw;
     must(code >= 0 && code <= par->dac_span_raw, "code", "%d of %ld", code,
          (long)par->dac_span_raw);
     must(out->enable == open && (open || code == 0), "gate", "code %d, enable %u", code,
          (unsigned)out->enable);
-    must(!open || !rig.state.quad.lost, "gate", "open after a jump");
+    must(h->gate != BOX_OPEN || !rig.state.quad.lost, "gate", "open after a jump");
+    must(h->gate != BOX_FALLS || code <= rig.box.off, "release", "code %d, was %d", code,
+         (int)rig.box.off);
+    must(out->alive == (uint8_t)(rig.w.ticks + 1), "alive", "%u", (unsigned)out->alive);
     for (unsigned k = 1; k < EXH_FINGERS; k++) {
         must(out->dac_raw[k] == par->dac_zero_raw, "code", "axis %u not in use: %u", k,
              (unsigned)out->dac_raw[k]);
@@ -127,11 +210,16 @@ static void check_signals(const struct hidden *h)
     must(s->c == 0 || s->c == 1, "signals", "c = %ld", (long)s->c);
     must(s->c ? past >= -(int64_t)par->contact.hyst_m_q30 : past < 0, "signals",
          "c = %ld at %" PRId64 " past q_lim", (long)s->c, past);
-    must((s->limits & ~LIMITS_ALL) == 0 && (s->faults & ~FAULTS_ALL) == 0, "signals",
-         "limits %#lx, faults %#lx", (unsigned long)s->limits, (unsigned long)s->faults);
-    must(s->state >= EXH_STATE_OFF && s->state <= EXH_STATE_FAULT &&
-             (s->faults != 0) == (s->state == EXH_STATE_FAULT),
-         "signals", "state %ld, faults %#lx", (long)s->state, (unsigned long)s->faults);
+    must((s->limits & ~LIMITS_ALL) == 0, "signals", "limits %#lx", (unsigned long)s->limits);
+    must(((s->limits & EXH_LIMIT_SPEED) != 0) == (rig.box.fast > 0) &&
+             s->qd_mps_q27 ==
+                 exh_clamp(h->vel, -par->watch.speed_mps_q27, par->watch.speed_mps_q27),
+         "speed", "%ld into the law, %ld measured", (long)s->qd_mps_q27, (long)h->vel);
+    must(s->state == rig.box.state && (uint32_t)s->faults == rig.box.faults &&
+             (uint32_t)s->present == rig.box.present,
+         "state", "%ld, faults %#lx, present %#lx, want %d, %#lx, %#lx", (long)s->state,
+         (unsigned long)s->faults, (unsigned long)s->present, rig.box.state,
+         (unsigned long)rig.box.faults, (unsigned long)rig.box.present);
     must(s->f_mon_N_q20 >= -end && s->f_mon_N_q20 <= end, "signals", "f_mon %ld of %ld",
          (long)s->f_mon_N_q20, (long)end);
     if (s->q_m_q30 < rig.w.q_min) { rig.w.q_min = s->q_m_q30; }
@@ -151,8 +239,10 @@ void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
          (unsigned)h.out.dac_raw[0]);
     check_force(&h);
     check_current(&h);
-    check_codes(out);
+    check_codes(&h, out);
     check_signals(&h);
+    keep(&h, out);
+    rig.w.in[rig.box.state]++;
     rig.w.crc = exh_crc32(rig.w.crc, out->dac_raw, sizeof out->dac_raw);
     rig.w.crc = exh_crc32(rig.w.crc, &rig.sig, sizeof rig.sig);
     rig.w.ticks++;

@@ -3,6 +3,7 @@
 #ifndef STRESS_H
 #define STRESS_H
 
+#include "box.h"
 #include "drop/drop.h"
 
 #include "exhand/exhand.h"
@@ -21,6 +22,10 @@ enum { /* parameters that cases set, by id */
        ID_SLEW_UP = 0x0502,
        ID_SLEW_DOWN = 0x0503,
        ID_PEAK_TIME = 0x0506,
+       ID_ARM_TIME = 0x0603,
+       ID_RAMP_TIME = 0x0604,
+       ID_SUPPLY_MIN = 0x0D11,
+       ID_TUNE_TIME = 0x1301,
        ID_Q_LIM = 0x8001
 };
 
@@ -31,6 +36,7 @@ struct watch {
     int code_max; /* from dac_zero                                            */
     double slew_share, cur_max_A, heat_share;
     uint32_t crc; /* of all outputs and signals                               */
+    uint64_t in[EXH_STATES]; /* ticks in each state of the box                */
 };
 
 struct rig {
@@ -43,6 +49,8 @@ struct rig {
     uint8_t enc_bits; /* of the board's counter, 24 unless a case says so       */
     int blind;        /* 1: no movement is a fault, so that wild inputs act      */
     double heat; /* A^2 s above continuous, in doubles                       */
+    struct box box;
+    struct box_times times;
     struct watch w;
 };
 
@@ -58,6 +66,12 @@ void set_gains(double k_Npm, double b_Nspm);
 int ready(struct exh_period T);
 /* ready(), which must not refuse. */
 void start(struct exh_period T);
+/* Ticks at rest, at 0, until the box is in RUN; it must come there, and when it must. */
+void arm(void);
+/* Parameters one tick on: what is staged acts, each as it may. */
+void apply(void);
+/* Ticks of each of the long cases. */
+extern uint64_t cases;
 
 #ifdef __GNUC__
 __attribute__((format(printf, 3, 4)))
@@ -80,6 +94,8 @@ uint32_t any(uint32_t n);
 struct exh_scene_in idle_in(uint64_t n, uint32_t enc_raw);
 /* The same with encoder and monitor at their ends or anywhere, turn and turn about. */
 struct exh_scene_in wild_in(uint64_t n);
+/* wild_in() while the gate is open; else mostly a string far in and a person who clears, lets go and arms. */
+struct exh_scene_in handled_in(uint64_t n);
 
 /* --- the cases, a file each --- */
 
@@ -88,7 +104,7 @@ void open_loops(void);
 void random_parameters(void);
 void heats(void);
 void wraps(void);
-/* 1 if any angle is wrong. */
-int every_angle(void);
+/* 1 if any angle is wrong; of the stretches of 1024, one in so many. */
+int every_angle(uint32_t thin);
 
 #endif

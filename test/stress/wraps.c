@@ -50,7 +50,8 @@ static char *write_wrapping_log(uint32_t first, uint32_t ticks, size_t *len_B)
     p.log = open_memstream(&log, len_B);
     posix_configure(&p);
     sc->defaults();
-    must(exh_params_stage(sc->params, calib_rows[CALIB_ROWS - 1].id, 0, 1) == 0 && exh_params_apply(sc->params),
+    must(exh_params_stage(sc->params, calib_rows[CALIB_ROWS - 1].id, 0, 1) == 0 &&
+             exh_params_apply(sc->params),
          "set-up", "uncalibrated");
     must(p.log != NULL && sc->setup(board) == 0, "set-up", "refused");
     exh_log_start(sc, board);
@@ -58,7 +59,7 @@ static char *write_wrapping_log(uint32_t first, uint32_t ticks, size_t *len_B)
         struct exh_scene_in in;
         struct exh_drive_out out;
         memcpy(&rig.sig, sc->signal, sizeof rig.sig); /* for the monitor */
-        in = idle_in(n, n * 7 % 3000);
+        in = idle_in(n, n * 7 % 6000 < 3000 ? n * 7 % 6000 : 6000 - n * 7 % 6000);
         exh_log_before(first + n, &in);
         sc->tick(&in, &out);
         exh_log_after(first + n, &in, &out);
@@ -126,8 +127,9 @@ static void count_wraps(int32_t step)
     fresh();
     rig.blind = 1;
     start((struct exh_period){1, 2000});
+    arm();
     for (uint32_t n = 0; n < 2000; n++) {
-        const struct exh_scene_in in = idle_in(n, raw & 0xFFFFFF);
+        const struct exh_scene_in in = idle_in(1, raw & 0xFFFFFF);
         tick(&in, &out);
         must(rig.state.quad.cnt == cnt, "count", "%ld, want %ld", (long)rig.state.quad.cnt,
              (long)cnt);
