@@ -108,7 +108,7 @@ def pymodbus_writes(seen):
     """Both ends of each range, and beyond; a set-up value does not change. As it was in the end."""
     live = 0
     for (table, at), r in row_of.items():
-        if table != "holding" or r["format"] == "f32":
+        if table != "holding" or r["format"] == "f32" or not r["min"]:  # the trace has no range
             continue
         now = [seen[table, at], seen[table, at + 1]]
         ends = [round(float(r[e]) * 2.0 ** frac_of(r)) for e in ("min", "max")]
@@ -132,7 +132,7 @@ def pymodbus_writes(seen):
 
 
 def pymodbus_refused():
-    exception(box.read_input_registers(0x0400, count=1), 2, "the gap behind the head")
+    exception(box.read_input_registers(0x0430, count=1), 2, "the gap behind the trace")
     exception(box.read_input_registers(0x0FFF, count=2), 2, "into a block")
     exception(box.read_holding_registers(0, count=1), 2, "no holding registers here")
     exception(box.read_coils(6, count=1), 2, "no coil")
@@ -192,7 +192,7 @@ def mbpoll_reads(seen):
 def mbpoll_writes(seen):
     live = 0
     for (table, at), r in row_of.items():
-        if table != "holding" or r["format"] == "f32":
+        if table != "holding" or r["format"] == "f32" or not r["min"]:  # the trace has no range
             continue
         now = [seen[table, at], seen[table, at + 1]]
         low = round(float(r["min"]) * 2.0 ** frac_of(r))
