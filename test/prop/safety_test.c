@@ -15,6 +15,7 @@ struct box {
     struct exh_drive_cfg cfg[EXH_FINGERS];
     struct exh_current_ledger i[EXH_FINGERS];
     uint32_t limits[EXH_FINGERS];
+    int32_t most[EXH_FINGERS]; /* codes from zero: in a release those of the last tick */
     struct exh_drive_out out;
 };
 
@@ -53,12 +54,11 @@ static int stands_for(const struct exh_drive_par *par, int32_t codes, int32_t co
 }
 
 /* The code nearest to the current asked, unless an end is in the way. */
-static int nearest_code(const struct exh_drive_par *par, int64_t asked, int32_t codes)
+static int nearest_code(const struct exh_drive_par *par, int32_t most, int64_t asked, int32_t codes)
 {
-    const int64_t lo = -(int64_t)par->dac_span_raw < -(int64_t)par->dac_zero_raw
-                           ? -(int64_t)par->dac_zero_raw : -(int64_t)par->dac_span_raw;
-    const int64_t hi = par->dac_span_raw < 65535 - par->dac_zero_raw ? par->dac_span_raw
-                                                                     : 65535 - par->dac_zero_raw;
+    const int32_t span = par->dac_span_raw < most ? par->dac_span_raw : most;
+    const int64_t lo = span < par->dac_zero_raw ? -span : -par->dac_zero_raw;
+    const int64_t hi = span < 65535 - par->dac_zero_raw ? span : 65535 - par->dac_zero_raw;
     const int32_t in = wide_sat32(wide_of(asked));
     const int64_t want = wide_sat64(
         wide_shr_half_up(wide_mul(in, par->dac_rawpA_q16), EXH_Q_CUR + EXH_Q_DAC));
@@ -76,7 +76,7 @@ static void check_finger(const struct box *b, unsigned k, int open, int64_t aske
     CHECK(stands_for(par, codes, i->coded_A_q26), "finger %u: %" PRId32 " codes are not %" PRId32,
           k, codes, i->coded_A_q26);
     if (open) {
-        CHECK(nearest_code(par, asked, codes), "finger %u: %" PRId64 " A q26 became %" PRId32, k,
+        CHECK(nearest_code(par, b->most[k], asked, codes), "finger %u: %" PRId64 " A q26 became %" PRId32, k,
               asked, codes);
         CHECK(i->gate_A_q26 == 0 || asked > INT32_MAX || asked < INT32_MIN, "finger %u: gate", k);
     } else {
@@ -106,6 +106,10 @@ TEST(gate_holds_with_any_input)
         s.state = (uint8_t)(check_u64() % 7);
         s.share_q30 = check_u64() % 2 ? 0 : 1;
         s.alive = (uint8_t)(check_u64() & 0xFF);
+        for (unsigned k = 0; k < EXH_FINGERS; k++) {
+            s.off_raw[k] = (uint16_t)(check_u64() >> (check_u64() % 17));
+            b.most[k] = s.state == EXH_STATE_RELEASE ? s.off_raw[k] : UINT16_MAX;
+        }
         open = (s.state > EXH_STATE_ARM && s.state < EXH_STATE_FAULT) ||
                (s.state == EXH_STATE_ARM && s.share_q30 == 1);
         b.out.alive = before = s.alive;
