@@ -18,6 +18,15 @@ static void place_fingers(struct bilateral_cfg *cfg, uint32_t mask)
     }
 }
 
+/* Nobody uses these, but damaged memory that says so: they are no null pointers then. */
+static void like_the_first(struct bilateral_cfg *cfg)
+{
+    for (unsigned k = cfg->n; k < BILATERAL_FINGERS; k++) {
+        cfg->drive[k] = cfg->drive[0];
+        cfg->finger[cfg->at[k]] = cfg->finger[cfg->at[0]];
+    }
+}
+
 int bilateral_setup(struct bilateral_cfg *cfg, struct bilateral *s, const struct bilateral_par *par,
                     struct exh_scene_board board, struct exh_scene_calib *calib)
 {
@@ -39,6 +48,7 @@ int bilateral_setup(struct bilateral_cfg *cfg, struct bilateral *s, const struct
         err = bilateral_finger_setup(cfg, s, k, board, calib);
         cfg->vouches &= cfg->finger[cfg->at[k]].calib.vouches;
     }
+    like_the_first(cfg);
     bilateral_wire_setup(&cfg->wire, &s->wire, (uint32_t)par->own.session, board.T);
     if (err == 0) { err = exh_safety_setup(&cfg->safety, &par->safety, board.T); }
     if (err == 0) { err = bilateral_cause_setup(cfg, board.T); }
@@ -60,8 +70,8 @@ static void see(struct bilateral *s, const struct bilateral_cfg *cfg, const stru
     s->worn = 1;
     age_glove(s, in);
     s->glove_faults = exh_glove_step(&s->glove, &cfg->glove, &in->glove, angle_turn_q32);
-    for (unsigned k = 0; k < cfg->n; k++) {
-        bilateral_finger_see(&s->finger[cfg->at[k]], cfg, cfg->at[k], angle_turn_q32);
+    for (unsigned k = 0; k < bilateral_n(cfg); k++) {
+        bilateral_finger_see(&s->finger[bilateral_at(cfg, k)], cfg, bilateral_at(cfg, k), angle_turn_q32);
     }
 }
 
@@ -72,8 +82,8 @@ static uint32_t sense(struct bilateral *s, const struct bilateral_cfg *cfg,
                       uint32_t *limits)
 {
     uint32_t raised = 0;
-    for (unsigned k = 0; k < cfg->n; k++) {
-        const unsigned f = cfg->at[k];
+    for (unsigned k = 0; k < bilateral_n(cfg); k++) {
+        const unsigned f = bilateral_at(cfg, k);
         struct bilateral_finger *now = &s->finger[f];
         const struct bilateral_finger_cfg *c = &cfg->finger[f];
         cnt[k] = exh_quad_extend(&now->quad, &c->quad, in->enc_raw[f]);
@@ -96,8 +106,8 @@ static uint32_t sense(struct bilateral *s, const struct bilateral_cfg *cfg,
 static uint32_t din_by_place(const struct bilateral_cfg *cfg, uint32_t din)
 {
     uint32_t placed = din & (EXH_DIN_DRIVE0 - 1u);
-    for (unsigned k = 0; k < cfg->n; k++) {
-        if (din & (uint32_t)EXH_DIN_DRIVE0 << cfg->at[k]) { placed |= (uint32_t)EXH_DIN_DRIVE0 << k; }
+    for (unsigned k = 0; k < bilateral_n(cfg); k++) {
+        if (din & (uint32_t)EXH_DIN_DRIVE0 << bilateral_at(cfg, k)) { placed |= (uint32_t)EXH_DIN_DRIVE0 << k; }
     }
     return placed;
 }
@@ -109,8 +119,8 @@ static void out_by_finger(const struct bilateral_cfg *cfg, const struct exh_driv
     out->enable = 0;
     out->alive = placed->alive;
     for (unsigned k = 0; k < BILATERAL_FINGERS; k++) {
-        out->dac_raw[cfg->at[k]] = placed->dac_raw[k];
-        out->enable = (uint8_t)(out->enable | (placed->enable >> k & 1u) << cfg->at[k]);
+        out->dac_raw[bilateral_at(cfg, k)] = placed->dac_raw[k];
+        out->enable = (uint8_t)(out->enable | (placed->enable >> k & 1u) << bilateral_at(cfg, k));
     }
 }
 
@@ -178,28 +188,28 @@ void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,
     uint32_t limits[BILATERAL_FINGERS];
     const uint32_t fingers = sense(s, cfg, &in->drive, sig->paper, cnt, limits);
     struct exh_safety_in box = {din_by_place(cfg, in->drive.din), fingers, in->missed,
-                                in->command, cfg->n, steps_held(cfg, fingers)};
+                                in->command, (uint8_t)bilateral_n(cfg), steps_held(cfg, fingers)};
     struct exh_permit permit;
     struct exh_current_ledger i[BILATERAL_FINGERS];
     struct exh_drive_out placed;
 
     age_glove(s, in);
-    for (unsigned k = 0; k < cfg->n; k++) {
-        exh_precontact_skip(&s->finger[cfg->at[k]].precontact, in->missed);
+    for (unsigned k = 0; k < bilateral_n(cfg); k++) {
+        exh_precontact_skip(&s->finger[bilateral_at(cfg, k)].precontact, in->missed);
     }
     bilateral_wire_take(s, cfg, mail, in->missed, params);
     see(s, cfg, in);
     box.raised |= bilateral_causes(s, cfg, in);
     permit = exh_safety_step(&s->safety, &cfg->safety, box);
-    for (unsigned k = 0; k < cfg->n; k++) {
-        const unsigned f = cfg->at[k];
+    for (unsigned k = 0; k < bilateral_n(cfg); k++) {
+        const unsigned f = bilateral_at(cfg, k);
         limits[k] |=
             bilateral_finger_feel(s, cfg, k, &permit, &i[k], &sig->paper[f], &sig->more[f].bits);
     }
-    exh_gate(&s->safety, cfg->drive, cfg->n, i, limits, &placed);
+    exh_gate(&s->safety, cfg->drive, bilateral_n(cfg), i, limits, &placed);
     out_by_finger(cfg, &placed, out);
-    for (unsigned k = 0; k < cfg->n; k++) {
-        const unsigned f = cfg->at[k];
+    for (unsigned k = 0; k < bilateral_n(cfg); k++) {
+        const unsigned f = bilateral_at(cfg, k);
         sig->paper[f].i_des_A_q26 = i[k].coded_A_q26;
         exh_track_coded(&s->finger[f].track, i[k].coded_A_q26);
         exh_watch_coded(&s->finger[f].watch, &cfg->finger[f].watch, cnt[k], i[k].coded_A_q26);

@@ -196,6 +196,18 @@ void bilateral_write(struct bilateral *s, const struct bilateral_cfg *cfg,
 
 void bilateral_bytes(struct exh_bytes *c, struct bilateral *s);
 
+/* How many fingers are in use, and which is at a place k < 5. Of damaged memory they are wrong, until the
+ * guard tells, but no index beyond an array. */
+static inline unsigned bilateral_n(const struct bilateral_cfg *cfg)
+{
+    const unsigned n = cfg->n < BILATERAL_FINGERS ? cfg->n : BILATERAL_FINGERS;
+    return n > 0 ? n : 1;
+}
+static inline unsigned bilateral_at(const struct bilateral_cfg *cfg, unsigned k)
+{
+    return cfg->at[k] < BILATERAL_FINGERS ? cfg->at[k] : 0;
+}
+
 /* --- parts (finger.c, wire.c) --- */
 
 int bilateral_finger_setup(struct bilateral_cfg *cfg, struct bilateral *s, unsigned place,

@@ -27,8 +27,8 @@ static int glove_lost(struct bilateral *s, const struct bilateral_cfg *cfg, uint
 {
     uint32_t oldest = 0;
     int unsure = 0;
-    for (unsigned k = 0; k < cfg->n; k++) {
-        const uint32_t age_ticks = bilateral_finger_age(s, cfg, cfg->at[k]);
+    for (unsigned k = 0; k < bilateral_n(cfg); k++) {
+        const uint32_t age_ticks = bilateral_finger_age(s, cfg, bilateral_at(cfg, k));
         if (age_ticks == UINT32_MAX) {
             unsure = 1;
         } else if (age_ticks > oldest) {

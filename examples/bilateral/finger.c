@@ -101,7 +101,7 @@ uint32_t bilateral_finger_feel(struct bilateral *s, const struct bilateral_cfg *
                                struct exh_current_ledger *i,
                                struct bilateral_paper *p, int32_t *bits)
 {
-    const unsigned f = cfg->at[place];
+    const unsigned f = bilateral_at(cfg, place);
     struct bilateral_finger *now = &s->finger[f];
     const struct exh_precontact_in where = {now->tip_m_q30, now->slope_q24, p->q_m_q30,
                                             bilateral_finger_age(s, cfg, f), now->contact.touching};

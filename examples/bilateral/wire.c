@@ -38,8 +38,8 @@ static void take_planes(struct bilateral *s, const struct bilateral_cfg *cfg,
     w->trip_us = exh_wire_trip_us(now_us(w), planes);
     w->age_ticks = 0;
     age_ticks = (uint32_t)((uint64_t)w->trip_us * cfg->wire.ticks_per_us_q32 >> 32);
-    for (unsigned k = 0; k < cfg->n; k++) {
-        const unsigned f = cfg->at[k];
+    for (unsigned k = 0; k < bilateral_n(cfg); k++) {
+        const unsigned f = bilateral_at(cfg, k);
         const struct exh_plane plane = exh_wire_plane_of(planes, f);
         if (bilateral_finger_age(s, cfg, f) == UINT32_MAX) { continue; }
         (void)exh_precontact_tell(&s->finger[f].precontact, &cfg->finger[f].precontact, &plane,
@@ -144,8 +144,8 @@ static void put_state(struct bilateral *s, const struct bilateral_cfg *cfg,
     p.u.state.state = s->safety.state;
     p.u.state.faults = s->safety.faults;
     p.u.state.age_ms = age_ms(&s->wire, &cfg->wire);
-    for (unsigned k = 0; k < cfg->n; k++) {
-        finger_of(&p.u.state, s, &sig->paper[cfg->at[k]], cfg->at[k]);
+    for (unsigned k = 0; k < bilateral_n(cfg); k++) {
+        finger_of(&p.u.state, s, &sig->paper[bilateral_at(cfg, k)], bilateral_at(cfg, k));
     }
     put(&s->wire, out, &p);
 }

@@ -87,12 +87,12 @@ int exh_table_invert(struct exh_knot *dst, const struct exh_knot *src, unsigned 
 
 int32_t exh_table_at(struct exh_table t, int32_t x)
 {
-    const unsigned last = t.n - 1u;
+    const unsigned last = (uint8_t)(t.n - 1u); /* an n of damaged memory ends somewhere */
     const int32_t in = exh_clamp(x, t.knot[0].x, t.knot[last].x);
     unsigned i = 0;
     /* Every knot is looked at: the cost must not depend on the force. */
     for (unsigned k = 1; k <= last; k++) { i += in >= t.knot[k].x; }
-    return exh_clamp(t.knot[i].y + exh_gain_mul(t.knot[i].slope, in - t.knot[i].x), t.knot[i].y,
+    return exh_clamp(t.knot[i].y + exh_gain_mul(t.knot[i].slope, exh_wrap_diff(in, t.knot[i].x)), t.knot[i].y,
                      t.knot[i < last ? i + 1 : last].y);
 }
 
@@ -239,7 +239,7 @@ uint32_t exh_drive_force(struct exh_drive *s, const struct exh_drive_cfg *cfg,
 static int32_t i2t_limit(const struct exh_drive *s, const struct exh_drive_cfg *cfg)
 {
     const int32_t span = cfg->par->i_peak_A_q26 - cfg->par->i_cont_A_q26;
-    const int64_t left = (cfg->i2t_budget_q32 - s->i2t_q32) >> cfg->i2t_shift;
+    const int64_t left = exh_wrap_diff64(cfg->i2t_budget_q32, s->i2t_q32) >> (cfg->i2t_shift & 63);
     const int64_t extra = exh_gain_mul(cfg->i2t_fold, exh_clamp(left, 0, INT32_MAX));
     return cfg->par->i_cont_A_q26 + exh_clamp(extra, 0, span);
 }
@@ -254,9 +254,10 @@ uint32_t exh_drive_current(struct exh_drive *s, const struct exh_drive_cfg *cfg,
     const int64_t now_A_q16 = now >> (EXH_Q_CUR - 16);
     const int64_t cont_A_q16 = cfg->par->i_cont_A_q26 >> (EXH_Q_CUR - 16);
     const int64_t heat = s->i2t_q32 + now_A_q16 * now_A_q16 - cont_A_q16 * cont_A_q16;
+    const int64_t most = exh_wrap_add64(cfg->i2t_budget_q32, cfg->i2t_budget_q32);
 
     /* One tick may overshoot the budget, by no more than that again; it is not forgotten. */
-    s->i2t_q32 = heat < 0 ? 0 : heat > 2 * cfg->i2t_budget_q32 ? 2 * cfg->i2t_budget_q32 : heat;
+    s->i2t_q32 = heat < 0 ? 0 : heat > most ? most : heat;
     i->table_A_q26 = table;
     i->peak_A_q26 = (int64_t)peak - table;
     i->i2t_A_q26 = (int64_t)now - peak;

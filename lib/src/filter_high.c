@@ -25,6 +25,7 @@ static void widen(struct exh_filter *s)
     }
 }
 
+/* Coefficients of damaged memory may wrap here. */
 EXH_FILTER_STEP(exh_filter_high2)
 {
     for (; n > 0; n--, s++, x++, y++) {
@@ -33,11 +34,11 @@ EXH_FILTER_STEP(exh_filter_high2)
         pos = bounded(s->pos);
         vel = bounded(s->vel);
         e = (int64_t)*x * (1 << Q) + HALF - pos;
-        mid = exh_mul64_q31(vel, cfg->a) + exh_mul64_q31(e, cfg->b);
-        move = exh_mul64_q31(vel, cfg->c) + exh_mul64_q31(e, cfg->d);
-        low = pos + move;
-        s->vel = 2 * mid - vel;
-        s->pos = low + move;
+        mid = exh_wrap_add64(exh_mul64_q31(vel, cfg->a), exh_mul64_q31(e, cfg->b));
+        move = exh_wrap_add64(exh_mul64_q31(vel, cfg->c), exh_mul64_q31(e, cfg->d));
+        low = exh_wrap_add64(pos, move);
+        s->vel = exh_wrap_diff64(exh_wrap_add64(mid, mid), vel);
+        s->pos = exh_wrap_add64(low, move);
         *y = exh_sat32(low >> Q);
     }
 }
@@ -49,8 +50,8 @@ EXH_FILTER_STEP(exh_filter_high1)
         widen(s);
         pos = bounded(s->pos);
         move = exh_mul64_q31((int64_t)*x * (1 << Q) + HALF - pos, cfg->a);
-        low = pos + move;
-        s->pos = low + move;
+        low = exh_wrap_add64(pos, move);
+        s->pos = exh_wrap_add64(low, move);
         *y = exh_sat32(low >> Q);
     }
 }

@@ -39,7 +39,7 @@ static inline uint64_t drive(int64_t pos, int32_t x, int32_t a)
     return (uint64_t)(x - (pos >> POS_Q)) * (uint64_t)a;
 #else
     const int64_t odd = (uint32_t)a & (uint32_t)((int32_t)pos >> 31);
-    return (uint64_t)((int64_t)x * a - (int64_t)high_word(pos) * (2 * a) - odd);
+    return (uint64_t)((int64_t)x * a - (int64_t)high_word(pos) * exh_from_u32(2 * (uint32_t)a) - odd);
 #endif
 }
 

@@ -72,7 +72,7 @@ static void observe(struct exh_passivity *s, int32_t moved_cnt, int touching)
 /* owed / way, rounded up and by less than 3 LSB more; never less. */
 static int64_t owed_over_way(const struct exh_passivity_cfg *cfg, int64_t owed_Ncnt_q20)
 {
-    const int32_t x = exh_clamp((owed_Ncnt_q20 >> cfg->shift) + 1, 0, INT32_MAX);
+    const int32_t x = exh_clamp((owed_Ncnt_q20 >> (cfg->shift & 63)) + 1, 0, INT32_MAX);
     return exh_gain_mul(cfg->share, x) + 1;
 }
 

@@ -112,7 +112,8 @@ int exh_precontact_tell(struct exh_precontact *s, const struct exh_precontact_cf
             return -EXH_E_RANGE;
         }
         now.normal_q30 = plane->normal_q30;
-        now.offset_m_q60 = dot(&plane->normal_q30, &plane->point_m_q30) + cfg->pad_m_q60 + HALF_Q60;
+        now.offset_m_q60 = exh_wrap_add64(dot(&plane->normal_q30, &plane->point_m_q30) + HALF_Q60,
+                                          cfg->pad_m_q60);
         now.object = plane->object;
         now.material = plane->material;
         left = age_ticks < cfg->age_ticks ? cfg->age_ticks - age_ticks : 0;
@@ -131,7 +132,7 @@ int exh_precontact_tell(struct exh_precontact *s, const struct exh_precontact_cf
 
 static int32_t distance_m_q30(const struct exh_precontact_plane *p, const struct exh_vec3 *tip)
 {
-    return exh_sat32((p->offset_m_q60 - dot(&p->normal_q30, tip)) >> EXH_Q_POS);
+    return exh_sat32(exh_wrap_diff64(p->offset_m_q60, dot(&p->normal_q30, tip)) >> EXH_Q_POS);
 }
 
 /* s with the string's own slope: as q goes on by 1, d does by -(n.slope), and d has to go

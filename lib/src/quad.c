@@ -126,7 +126,7 @@ int exh_quad_setup(struct exh_quad_cfg *cfg, const struct exh_quad_par *par, str
 int32_t exh_quad_extend(struct exh_quad *s, const struct exh_quad_cfg *cfg, uint32_t raw)
 {
     /* At the top of the word the counter's own wrap is the word's. */
-    const int32_t moved = exh_from_u32((raw - s->raw) << cfg->unused) >> cfg->unused;
+    const int32_t moved = exh_from_u32((raw - s->raw) << (cfg->unused & 31)) >> (cfg->unused & 31);
 
     const int jump = moved > cfg->jump_cnt || moved < -cfg->jump_cnt;
 

@@ -24,7 +24,7 @@ int exh_quantizer_setup(struct exh_quantizer_cfg *cfg, const struct exh_quantize
 int32_t exh_quantizer_step(struct exh_quantizer *s, const struct exh_quantizer_cfg *cfg, int32_t x)
 {
     /* Beyond most there is no code to round to. */
-    const int32_t most = INT32_MAX - (int32_t)cfg->half;
+    const int32_t most = exh_from_u32((uint32_t)INT32_MAX - cfg->half);
     const uint32_t up = (uint32_t)(x < most ? x : most) + cfg->half;
     const int32_t near = exh_from_u32(up & (0u - 2 * cfg->half));
     const uint32_t off =

@@ -47,7 +47,7 @@ int32_t exh_velocity_window_mps_q27(struct exh_velocity_window *s,
     }
     moved = exh_wrap_diff(cnt, s->cnt[s->at]);
     s->cnt[s->at] = cnt;
-    s->at = (uint8_t)((s->at + 1u) & (cfg->n - 1u));
+    s->at = (uint8_t)((s->at + 1u) & (cfg->n - 1u) & (EXH_VELOCITY_N - 1u)); /* n: damaged, perhaps */
     return exh_sat32(exh_gain_mul(cfg->gain, moved));
 }
 
@@ -76,7 +76,9 @@ int32_t exh_velocity_pole_mps_q27(struct exh_velocity_pole *s,
     const int64_t diff_q55 = (int64_t)exh_sat32(exh_gain_mul(cfg->gain, moved)) * (INT32_C(1) << 28);
     s->cnt = cnt;
     s->started = 1;
-    s->v_mps_q55 += exh_mul64_q31(diff_q55 - s->v_mps_q55, cfg->a_q31);
+    /* Modulo 2^64: a share of damaged memory may be none. */
+    s->v_mps_q55 = exh_wrap_add64(
+        s->v_mps_q55, exh_mul64_q31(exh_wrap_diff64(diff_q55, s->v_mps_q55), cfg->a_q31));
     return exh_sat32(exh_shr_round(s->v_mps_q55, 28));
 }
 
@@ -127,13 +129,14 @@ static int32_t wide_gain(struct exh_gain g, int64_t m)
     if (g.shift < 31) { return exh_sat32(m); }
     if (g.shift == 31) { return exh_sat32(exh_mul64_q31(m, g.mant)); }
     return exh_sat32(exh_shr_round((m >> 31) * g.mant + ((m & INT32_MAX) * g.mant >> 31),
-                                   g.shift - 31u));
+                                   ((g.shift - 32u) & 31u) + 1u));
 }
 
 int32_t exh_velocity_foaw_mps_q27(struct exh_velocity_foaw *s,
                                   const struct exh_velocity_foaw_cfg *cfg, int32_t cnt)
 {
     int32_t d[EXH_VELOCITY_N + 1] = {0};
+    const int32_t most = cfg->n < EXH_VELOCITY_N ? cfg->n : EXH_VELOCITY_N;
     int64_t sum = 0, weighted = 0, best = 0;
     int32_t best_n = 1;
     unsigned at;
@@ -143,7 +146,7 @@ int32_t exh_velocity_foaw_mps_q27(struct exh_velocity_foaw *s,
     s->cnt[s->at] = cnt;
     if (s->have <= EXH_VELOCITY_N) { s->have++; }
     at = s->at;
-    for (int32_t n = 1; n <= cfg->n; n++) {
+    for (int32_t n = 1; n <= most; n++) {
         int64_t m;
         int fits;
         at = at > 0 ? at - 1 : EXH_VELOCITY_N;
@@ -193,7 +196,7 @@ int32_t exh_velocity_track_mps_q27(struct exh_velocity_track *s,
     s->err_cnt_q32 = off - exh_mul64_q31(off, cfg->alpha_q31);
     s->vel_cnt_q32 = limit(s->vel_cnt_q32 - exh_mul64_q31(off, cfg->beta_q31), TRACK_MAX_CNT_Q32);
     return exh_sat32(exh_shr_round(exh_mul64_q31(s->vel_cnt_q32, cfg->gain.mant),
-                                   cfg->gain.shift + 1u));
+                                   (cfg->gain.shift < 62u ? cfg->gain.shift : 62u) + 1u));
 }
 
 void exh_velocity_track_bytes(struct exh_bytes *c, struct exh_velocity_track *s)

@@ -129,16 +129,18 @@ struct exh_gain {
 };
 
 /* x times the gain, rounded half up. Relative error of the gain <= 2^-31 (and
- * half an LSB of the result); never overflows, the caller saturates. */
+ * half an LSB of the result); never overflows, the caller saturates. The mask: a gain whose memory was
+ * damaged is a wrong one, and no more. */
 static inline int64_t exh_gain_mul(struct exh_gain g, int32_t x)
 {
-    return ((int64_t)x * g.mant + ((INT64_C(1) << g.shift) >> 1)) >> g.shift;
+    const unsigned n = g.shift & 63u;
+    return ((int64_t)x * g.mant + (int64_t)((UINT64_C(1) << n) >> 1)) >> n;
 }
 
 /* x times the gain, rounded down. */
 static inline int64_t exh_gain_floor(struct exh_gain g, int32_t x)
 {
-    return (int64_t)x * g.mant >> g.shift;
+    return (int64_t)x * g.mant >> (g.shift & 63u);
 }
 
 /* 1/x without a division, x within 1/8 .. 8, both q24: within 2^-25 + 2^-28/x of exact.
