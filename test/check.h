@@ -39,11 +39,12 @@ int memcmp(const void *a, const void *b, size_t n);
 
 #define TEST(name) static void name(void)
 
+#define CHECK_NAMES(...) #__VA_ARGS__ /* a list that is a macro is told by its names */
 #define TEST_MAIN(group, ...) \
     int main(void) \
     { \
         static const check_fn list[] = {__VA_ARGS__}; \
-        return check_main(group, #__VA_ARGS__, list, sizeof list / sizeof list[0]); \
+        return check_main(group, CHECK_NAMES(__VA_ARGS__), list, sizeof list / sizeof list[0]); \
     } \
     typedef int check_main_defined
 

@@ -350,6 +350,7 @@ enum ending { BY_EXIT, BY_SIGNAL, BY_STOP };
 static void child(enum ending how, int sig, int to)
 {
     if (sig) { signal(sig, SIG_DFL); }
+    (void)setpgid(0, 0); /* nobody stops a group whose parents have gone, as a service's have */
     start(ALL);
     chip.put_fd = to;
     tick(1, 1);

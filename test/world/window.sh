@@ -4,6 +4,7 @@
 world=$1 dir=$2
 shift 2
 command -v Xvfb >/dev/null && command -v xdotool >/dev/null || exit 77
+rm -f "$dir/display" # of a screen before
 Xvfb -displayfd 3 -screen 0 1024x700x24 3>"$dir/display" >/dev/null 2>&1 &
 screen=$!
 trap 'kill $screen 2>/dev/null; wait $screen 2>/dev/null' EXIT
