@@ -92,6 +92,9 @@ struct exh_scene {
     const struct exh_safety *safety;
     /* Where calibrations are put before set-up; or NULL: it takes none. */
     struct exh_scene_calib *calib;
+    /* May all that is staged be applied together: 0, or -EXH_E… by a rule of the scene, and whoever staged it takes it
+     * back. NULL: the rows' ranges are enough. */
+    int (*allowed)(void);
 };
 
 #endif

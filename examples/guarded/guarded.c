@@ -102,6 +102,11 @@ int guarded_stage(uint16_t id, uint16_t instance, int32_t raw)
                               : exh_params_stage(&params, id, instance, raw);
 }
 
+static int allowed(void)
+{
+    return active.own.rule_on ? exh_gains_staged(&params, &active.gains, NULL) : 0;
+}
+
 static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
 {
     state.drop.broken = (uint8_t)exh_guard_step(&guard);
@@ -132,4 +137,5 @@ const struct exh_scene exh_scene_guarded = {
     .setup = setup,
     .tick = tick,
     .state = state_bytes,
+    .allowed = allowed,
 };

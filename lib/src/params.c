@@ -45,7 +45,9 @@ void exh_params_seal(struct exh_params *p)
 int exh_params_look(struct exh_params *p)
 {
     const uint32_t i = p->at < p->count ? p->at : 0;
-    int bad = p->active[i] != p->staged[i] && !p->pending && !p->moving;
+    int bad;
+    if (p->count == 0) { return 0; } /* a table of none, or a struct of zeros */
+    bad = p->active[i] != p->staged[i] && !p->pending && !p->moving;
     p->passed += both(p, i);
     p->at = i + 1;
     if (p->at == p->count) {
@@ -147,6 +149,12 @@ void exh_params_drop(struct exh_params *p)
 {
     for (uint32_t i = 0; i < p->count; i++) { put(p, p->staged, i, p->active[i]); }
     p->pending = p->moving = 0;
+}
+
+void exh_params_unstage(struct exh_params *p, const int32_t *was, uint8_t pending)
+{
+    for (uint32_t i = 0; i < p->count; i++) { put(p, p->staged, i, was[i]); }
+    p->pending = pending;
 }
 
 /* --- keyframe --- */

@@ -30,6 +30,7 @@ static struct exh_modbus_rtu line;
 static struct exh_trace trace;
 static struct exh_trace_frame frame[EXH_TRACE_FRAMES];
 static struct exh_params *params;
+static int (*scene_allows)(void);
 static const struct exh_safety *safety;
 static int32_t staged[VALUES];
 static uint32_t touched[EXH_REGS_WORDS(VALUES)];
@@ -118,6 +119,7 @@ static void map(const struct exh_scene *sc)
     regs.fingers = sc->fingers;
     regs.may = EXH_REGS_MAY | (par.remote ? REMOTE : 0u);
     params = sc->params;
+    scene_allows = sc->allowed;
     safety = sc->safety;
     if (params == NULL) { return; }
     regs.params = params->table;
@@ -202,13 +204,28 @@ uint8_t pc104_modbus_command(void)
     return now;
 }
 
+/* All that is staged or nothing: a scene's rule judges the values together. */
+static int apply(void)
+{
+    static int32_t was[VALUES];
+    uint8_t pending;
+    int err;
+    if (params == NULL) { return 0; }
+    pending = params->pending;
+    memcpy(was, params->staged, 4 * (size_t)params->count);
+    err = exh_regs_apply(&regs, params);
+    if (err == 0 && scene_allows) { err = scene_allows(); }
+    if (err < 0) { exh_params_unstage(params, was, pending); }
+    return err;
+}
+
 /* All that a request has asked for, between two ticks. */
 static void carry_out(void)
 {
     const uint32_t asked = exh_regs_take(&regs);
     const uint8_t wanted = exh_regs_command(asked);
     if (asked >> EXH_COIL_APPLY & 1u) {
-        exh_regs_did(&regs, params ? exh_regs_apply(&regs, params) : 0);
+        exh_regs_did(&regs, apply());
     }
     if (wanted == EXH_CMD_NONE) { return; }
     command = wanted;

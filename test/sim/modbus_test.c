@@ -562,6 +562,8 @@ TEST(the_rule_of_gains_holds_here_too)
     CHECK(rig_wait(&r, HEAD(EXH_HEAD_DONE), 1) == 0, "nothing came of it");
     CHECK_EQ_I64(rig_input(&r, HEAD(EXH_HEAD_RESULT)), -EXH_E_GAINS);
     CHECK_EQ_I64(rig_input(&r, RAW + 2 * k), was);
+    rig_sleep(1); /* the guard has been round: what was taken back is no damage */
+    CHECK_EQ_I64(rig_input(&r, HEAD(EXH_HEAD_PRESENT)) & EXH_FAULT_CONFIG, 0);
     rig_end(&r, 130);
     said_clean(r.dir);
 }

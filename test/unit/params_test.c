@@ -230,5 +230,36 @@ TEST(guard_in_mid_way)
     }
 }
 
+/* What a rule refuses is taken back: the value that is on its way goes on, and the guard has nothing to tell. */
+TEST(taken_back)
+{
+    int32_t was[VALUES];
+    struct exh_guard g;
+    start(3);
+    exh_guard_seal(&g, NULL, 0, &p);
+    CHECK_EQ_I64(exh_params_stage(&p, 0x7201, 0, 900), 0);
+    (void)exh_params_apply(&p);
+    memcpy(was, staged, sizeof was);
+    CHECK_EQ_I64(exh_params_stage(&p, 0x7101, 0, 4711), 0);
+    CHECK_EQ_I64(exh_params_stage(&p, 0x7201, 0, -900), 0);
+    exh_params_unstage(&p, was, 0);
+    CHECK(staged[0] == 0 && staged[GAIN] == 900 && !p.pending && p.moving, "%d", (int)staged[GAIN]);
+    for (int k = 0; k < 100; k++) {
+        (void)exh_params_apply(&p);
+        CHECK(!exh_guard_step(&g), "tick %d", k);
+    }
+    CHECK(active[0] == 0 && active[GAIN] == 900 && !p.moving, "%d", (int)active[GAIN]);
+}
+
+TEST(a_table_of_none)
+{
+    static const struct exh_signal_table none = {groups, 0};
+    struct exh_guard g;
+    exh_params_init(&p, &none, NULL, NULL);
+    exh_guard_seal(&g, NULL, 0, &p);
+    for (int k = 0; k < 5; k++) { CHECK_EQ_I64(exh_guard_step(&g), 0); }
+}
+
 TEST_MAIN("unit/params", steps_worked_out, slewed_and_not, before_the_loop_at_once, shift_of_a_time,
-          image_in_mid_way, keyframe_in_mid_way, bad_keyframes, guard_in_mid_way);
+          image_in_mid_way, keyframe_in_mid_way, bad_keyframes, guard_in_mid_way, taken_back,
+          a_table_of_none);

@@ -124,6 +124,10 @@ int exh_params_apply(struct exh_params *p);
 /* Wanted becomes what is active now: what was staged, or is on its way, stops here. */
 void exh_params_drop(struct exh_params *p);
 
+/* Takes back what was staged since the caller copied all of `staged` and `pending`: what is on its way goes on. In
+ * the place of a copy back, which the guard would tell as damage. */
+void exh_params_unstage(struct exh_params *p, const int32_t *was, uint8_t pending);
+
 /* Both arrays through a cursor, as a keyframe has them: every value as it is active, a slewed one followed by
  * what is wanted. Read: all of them are checked as exh_params_stage() does, and taken whole; else the
  * cursor is not ok and nothing is. */

@@ -79,13 +79,6 @@ static void catch_signals(void)
     (void)sigaction(SIGTERM, &on, NULL);
 }
 
-/* Stiffness and damping are judged together, where the scene has a rule for them. */
-static int gains_allowed(const struct exh_params *p)
-{
-    const struct guarded_par *g = (const void *)p->active;
-    return g->own.rule_on ? exh_gains_staged(p, &g->gains, NULL) : 0;
-}
-
 /* --- options --- */
 
 static const struct exh_scene *scene_of(const struct live_options *o)
@@ -246,10 +239,9 @@ static int run_hand(struct live_options *o, uint32_t *lost)
     return err;
 }
 
-static int open_modbus(const struct live_options *o, const struct exh_scene *sc)
+static int open_modbus(const struct live_options *o)
 {
-    const struct mail_cfg mail = {o->save, o->remote,
-                                  sc == &exh_scene_guarded ? gains_allowed : NULL};
+    const struct mail_cfg mail = {o->save, o->remote};
     if (o->modbus == NULL) { return 0; }
     mail_open(&mail);
     clients.on = 1;
@@ -273,7 +265,7 @@ static int prepare(struct live_options *o, const struct exh_scene *sc)
     if (err == 0) { err = read_params(o); }
     if (err == 0) { err = open_log(o); }
     if (err == 0) { err = contacts_begin(&o->gpio); }
-    if (err == 0) { err = open_modbus(o, sc); }
+    if (err == 0) { err = open_modbus(o); }
     return err;
 }
 

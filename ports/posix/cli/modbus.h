@@ -18,8 +18,6 @@
 struct mail_cfg {
     const char *save; /* SAVE writes the parameters there; NULL: refused        */
     int remote; /* RUN and CLEAR may be commanded                         */
-    /* What is staged is to be applied: 0, or -EXH_E… if the scene has a rule against it. */
-    int (*allow)(const struct exh_params *p);
 };
 
 /* modbus_mail.c. start, before and after: as hooks of the loop, before those that log. */

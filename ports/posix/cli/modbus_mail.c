@@ -90,16 +90,12 @@ static int apply(void)
 {
     static int32_t was[EXH_REGS_VALUES];
     struct exh_params *p = mail.sc->params;
-    const size_t len_B = 4 * (size_t)mail.regs.params_n;
     const uint8_t pending = p->pending;
     int err;
-    memcpy(was, p->staged, len_B);
+    memcpy(was, p->staged, 4 * (size_t)mail.regs.params_n);
     err = exh_regs_apply(&mail.regs, p);
-    if (err == 0 && mail.cfg.allow) { err = mail.cfg.allow(p); }
-    if (err < 0) {
-        memcpy(p->staged, was, len_B);
-        p->pending = pending;
-    }
+    if (err == 0 && mail.sc->allowed) { err = mail.sc->allowed(); }
+    if (err < 0) { exh_params_unstage(p, was, pending); }
     return err;
 }
 
