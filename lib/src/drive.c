@@ -14,7 +14,7 @@
 #define PEAK_MAX_MS       2700
 
 const struct exh_signal exh_drive_rows[EXH_DRIVE_ROWS] = {
-    {0x0501, EXH_Q_FORCE, EXH_WHEN_SLEWED, 0, F_MAX_N_Q20, EXH_Q(40, 1, EXH_Q_FORCE), "f_max", "n",
+    {0x0501, EXH_Q_FORCE, EXH_WHEN_LIMIT, 0, F_MAX_N_Q20, EXH_Q(40, 1, EXH_Q_FORCE), "f_max", "n",
      "force limit"},
     {0x0502, 0, EXH_WHEN_ANY, 1, SLEW_MAX_NPS, 200000, "slew_up", "n_per_s",
      "fastest rise of force"},

@@ -116,12 +116,21 @@ int32_t exh_params_toward(int32_t now, int32_t goal, unsigned shift)
     return exh_from_u32((uint32_t)now + (goal < now ? 0u - part : part));
 }
 
-/* The values of one row, the first of which is at i. */
-static void apply_row(struct exh_params *p, const struct exh_signal_group *g, uint32_t i,
-                      unsigned shift)
+static int is_slewed(const struct exh_signal *row)
 {
+    return row->when == EXH_WHEN_SLEWED || row->when == EXH_WHEN_LIMIT;
+}
+
+/* The values of one row, the first of which is at i. */
+static void apply_row(struct exh_params *p, const struct exh_signal_group *g,
+                      const struct exh_signal *row, uint32_t i)
+{
+    const unsigned shift = is_slewed(row) && p->locked ? p->shift & 31u : 0;
+    const int limit = row->when == EXH_WHEN_LIMIT;
     for (uint16_t k = 0; k < g->instances; k++, i += g->rows) {
-        const int32_t next = exh_params_toward(p->active[i], p->staged[i], shift);
+        const int falls = limit && p->staged[i] < p->active[i];
+        const int32_t next =
+            exh_params_toward(p->active[i], p->staged[i], falls ? 0 : shift);
         put(p, p->active, i, next);
         p->moving |= next != p->staged[i];
     }
@@ -136,9 +145,7 @@ int exh_params_apply(struct exh_params *p)
     for (uint16_t n = 0; n < p->table->groups; n++) {
         const struct exh_signal_group *g = &p->table->group[n];
         for (uint16_t r = 0; r < g->rows; r++) {
-            const int slewed = g->row[r].when == EXH_WHEN_SLEWED;
-            if (!all && !slewed) { continue; }
-            apply_row(p, g, first + r, slewed && p->locked ? p->shift & 31u : 0);
+            if (all || is_slewed(&g->row[r])) { apply_row(p, g, &g->row[r], first + r); }
         }
         first += (uint32_t)g->rows * g->instances;
     }
@@ -162,7 +169,7 @@ void exh_params_unstage(struct exh_params *p, const int32_t *was, uint8_t pendin
 /* 1: what is read may be; it is taken only if `take`. */
 static int value_bytes(struct exh_bytes *c, struct exh_params *p, uint32_t i, int take)
 {
-    const int slewed = exh_signal_at(p->table, i, NULL)->when == EXH_WHEN_SLEWED;
+    const int slewed = is_slewed(exh_signal_at(p->table, i, NULL));
     int32_t is = p->active[i], wanted = p->staged[i];
     exh_bytes_i32(c, &is);
     if (slewed) { exh_bytes_i32(c, &wanted); }

@@ -10,11 +10,11 @@
 #define SCALE_MAX_Q24 (INT32_C(1) << 27)
 
 const struct exh_signal exh_material_rows[EXH_MATERIAL_ROWS] = {
-    {0x0B01, EXH_Q_K, EXH_WHEN_SLEWED, 0, EXH_Q(1000000, 1, EXH_Q_K), EXH_Q(20000, 1, EXH_Q_K),
+    {0x0B01, EXH_Q_K, EXH_WHEN_ANY, 0, EXH_Q(1000000, 1, EXH_Q_K), EXH_Q(20000, 1, EXH_Q_K),
      "mat_k", "n_per_m", "stiffness of the material"},
-    {0x0B02, EXH_Q_B, EXH_WHEN_SLEWED, 0, EXH_Q(1000, 1, EXH_Q_B), EXH_Q(60, 1, EXH_Q_B), "mat_b",
+    {0x0B02, EXH_Q_B, EXH_WHEN_ANY, 0, EXH_Q(1000, 1, EXH_Q_B), EXH_Q(60, 1, EXH_Q_B), "mat_b",
      "ns_per_m", "damping of the material"},
-    {0x0B03, EXH_Q_FORCE, EXH_WHEN_SLEWED, 0, EXH_Q(100, 1, EXH_Q_FORCE), EXH_Q(12, 1, EXH_Q_FORCE),
+    {0x0B03, EXH_Q_FORCE, EXH_WHEN_ANY, 0, EXH_Q(100, 1, EXH_Q_FORCE), EXH_Q(12, 1, EXH_Q_FORCE),
      "mat_f_max", "n", "force limit of the material"},
 };
 

@@ -62,7 +62,9 @@ MUTANTS = (
     ("signal", L + "params.c", "raw < row->min ||", "raw <= row->min ||"),
     ("signal", L + "params.c", "(left >> shift) + ((", "(left >> shift) + (0 * ("),
     # taken <= time: the two are the same at few rates; unit/params tells it.
-    ("signal", L + "params.c", "slewed && p->locked ? p->shift", "slewed ? p->shift"),
+    ("signal", L + "params.c", "is_slewed(row) && p->locked ? p->shift", "is_slewed(row) ? p->shift"),
+    ("signal", L + "params.c", "falls ? 0 : shift", "shift"),
+    ("signal", L + "params.c", "p->staged[i] < p->active[i];", "p->staged[i] > p->active[i];"),
     ("signal", L + "params.c", "p->moving |= next != p->staged[i];", "p->moving |= next > p->staged[i];"),
     ("signal", L + "params.c", "p->passed += i < p->at ? more : 0;", "p->passed += i <= p->at ? more : 0;"),
     ("signal", L + "params.c", "    p->sum += more;", ""),

@@ -17,7 +17,8 @@ enum how {
     ONE, /* k from 500 to 5000 N/m, in equal parts                              */
     FORCE, /* every slewed row at random, in every tick                         */
     ALL, /* every row that may change, in every tick                           */
-    SELDOM /* the slewed ones every 10 ticks                                    */
+    SELDOM, /* the slewed ones every 10 ticks                                    */
+    LOWER /* f_max to 0.5 N, with a tune_time of a second                        */
 };
 
 static struct {
@@ -41,6 +42,11 @@ static uint64_t any(void)
     return z ^ z >> 31;
 }
 
+static double newton(int64_t q20)
+{
+    return (double)q20 / (1 << EXH_Q_FORCE);
+}
+
 static void stage_any(int all)
 {
     struct exh_params *p = exh_scene_drop.params;
@@ -48,7 +54,7 @@ static void stage_any(int all)
         const struct exh_signal *row = exh_signal_at(p->table, i, NULL);
         const uint64_t span = (uint64_t)((int64_t)row->max - row->min) + 1, u = any();
         int64_t v = row->min + (int64_t)(u % span);
-        if (row->when != EXH_WHEN_SLEWED && !(all && row->when == EXH_WHEN_ANY)) { continue; }
+        if (row->when < EXH_WHEN_SLEWED && !(all && row->when == EXH_WHEN_ANY)) { continue; }
         if (u >> 60 < 4) { v = u >> 60 & 1 ? row->max : row->min; }
         if (u >> 60 == 4) { v = row->dflt; }
         CHECK_EQ_I64(exh_params_stage(p, row->id, 0, (int32_t)v), 0);
@@ -64,6 +70,10 @@ static void before(uint32_t tick, struct exh_scene_in *in)
     if (tick > 0 && s->state == EXH_STATE_OFF) { in->command = EXH_CMD_RUN; }
     if (see.how == FORCE || see.how == ALL) { stage_any(see.how == ALL); }
     if (see.how == SELDOM && tick % 10 == 0) { stage_any(0); }
+    if (see.how == LOWER && tick == see.at) {
+        CHECK(s->f_des_N_q20 > EXH_Q(1, 1, EXH_Q_FORCE), "%.3f N to be lowered", newton(s->f_des_N_q20));
+        CHECK_EQ_I64(exh_params_stage(p, 0x0501, 0, EXH_Q(1, 2, EXH_Q_FORCE)), 0);
+    }
     if (see.how == ONE && tick >= see.at && n < see.parts) {
         const int64_t part = (int64_t)EXH_Q(4500, 1, EXH_Q_K) * (n + 1) / see.parts;
         CHECK_EQ_I64(exh_params_stage(p, 0x0401, 0, EXH_Q(500, 1, EXH_Q_K) + (int32_t)part), 0);
@@ -89,6 +99,10 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
     const int64_t tuned = s->c * exh_mul_shr(par->contact.k_Npm_q10 - see.k_Npm_q10,
                                              exh_sat32((int64_t)s->q_m_q30 - par->own.q_lim_m_q30),
                                              EXH_Q_K + EXH_Q_POS - EXH_Q_FORCE);
+    if (see.how == LOWER && tick >= see.at) {
+        CHECK(s->f_des_N_q20 <= EXH_Q(1, 2, EXH_Q_FORCE), "tick %" PRIu32 ": %.3f N", tick,
+              newton(s->f_des_N_q20));
+    }
     if (exh_scene_drop.params->moving) { see.settled = tick; }
     if (open && see.was_open && tick >= see.at) {
         const int64_t size = step < 0 ? -step : step;
@@ -145,11 +159,6 @@ static void press(const struct run_cfg *c, enum how how, uint32_t at, uint32_t p
     see.seed = c->rate_Hz + (uint64_t)how;
     CHECK_EQ_I64(run_drop(c, &r), 0);
     run_free(&r);
-}
-
-static double newton(int64_t q20)
-{
-    return (double)q20 / (1 << EXH_Q_FORCE);
 }
 
 /* k from 500 to 5000 N/m under a finger that presses: the largest step of force in a tick that k makes where
@@ -228,6 +237,16 @@ TEST(no_step_beyond_the_slew_limit)
     }
 }
 
+/* Lowered under a finger that presses, the limit holds in the same tick: slew_down is 100 N a tick here. */
+TEST(a_lowered_limit_is_never_late)
+{
+    static const struct run_setting set[] = {
+        {"q_lim", 0.03}, {"arm_time", 1}, {"ramp_time", 1}, {"tune_time", 1000}};
+    const struct run_cfg c = pressing(2000, 2.5, set, LEN(set));
+    press(&c, LOWER, 4000, 0);
+    CHECK(see.contact_ticks > 100, "%" PRIu32 " ticks of contact", see.contact_ticks);
+}
+
 /* A keyframe is due at tick 1024, some values on their way. */
 TEST(replay_from_mid_way)
 {
@@ -248,4 +267,5 @@ TEST(replay_from_mid_way)
     }
 }
 
-TEST_MAIN("sim/tune", what_a_finger_feels, no_step_beyond_the_slew_limit, replay_from_mid_way);
+TEST_MAIN("sim/tune", what_a_finger_feels, no_step_beyond_the_slew_limit,
+          a_lowered_limit_is_never_late, replay_from_mid_way);

@@ -30,6 +30,12 @@ static void stage_all(int when)
     }
 }
 
+static void stage_force(void)
+{
+    stage_all(EXH_WHEN_SLEWED);
+    stage_all(EXH_WHEN_LIMIT);
+}
+
 static void parameters_every_tick(int32_t tune_ms)
 {
     struct exh_drive_out out;
@@ -43,7 +49,7 @@ static void parameters_every_tick(int32_t tune_ms)
         const struct exh_scene_in in = handled_in(n);
         stage_all(EXH_WHEN_ANY);
         /* Held for a while, too, or none would ever come near its ends. */
-        if (any(n / 4096 % 2 ? 1 : 256) == 0) { stage_all(EXH_WHEN_SLEWED); }
+        if (any(n / 4096 % 2 ? 1 : 256) == 0) { stage_force(); }
         if (!exh_safety_runs(&rig.state.safety)) {
             set(ID_F0, 0);
         } /* more than arm_force: it would not arm */
@@ -63,7 +69,7 @@ static void stage_setup(void)
     if (any(8)) { set(ID_SUPPLY_MIN, 0); }
     if (any(2)) {
         stage_all(EXH_WHEN_ANY);
-        stage_all(EXH_WHEN_SLEWED);
+        stage_force();
         if (any(4)) { set(ID_F0, 0); }
     }
     if (any(2)) { set(ID_ARM_TIME, 1); }

@@ -260,6 +260,30 @@ TEST(a_table_of_none)
     for (int k = 0; k < 5; k++) { CHECK_EQ_I64(exh_guard_step(&g), 0); }
 }
 
+/* A limit of force rises little by little and has fallen in the next tick, wherever it was on its way to; in a keyframe as
+ * a slewed one. */
+TEST(a_limit_falls_at_once)
+{
+    static const struct exh_signal row[] = {
+        {0x7301, 0, EXH_WHEN_LIMIT, 0, 100, 40, "most", "n", "of force"}};
+    static const struct exh_signal_group group[] = {{row, 1, 2}};
+    static const struct exh_signal_table limits = {group, 1};
+    uint8_t b[16];
+    struct exh_bytes c = exh_bytes_writer(b, sizeof b);
+    exh_params_init(&p, &limits, active, staged);
+    p.shift = 2;
+    p.locked = 1;
+    CHECK_EQ_I64(exh_params_stage(&p, 0x7301, 0, 80), 0);
+    CHECK_EQ_I64(exh_params_stage(&p, 0x7301, 1, 1), 0);
+    (void)exh_params_apply(&p);
+    CHECK(active[0] == 50 && active[1] == 1 && p.moving, "%d, %d", (int)active[0], (int)active[1]);
+    exh_params_bytes(&c, &p);
+    CHECK(exh_bytes_ok(&c) && c.at == 16, "%u bytes", (unsigned)c.at);
+    CHECK_EQ_I64(exh_params_stage(&p, 0x7301, 0, 49), 0);
+    (void)exh_params_apply(&p);
+    CHECK(active[0] == 49 && !p.moving, "%d", (int)active[0]);
+}
+
 TEST_MAIN("unit/params", steps_worked_out, slewed_and_not, before_the_loop_at_once, shift_of_a_time,
           image_in_mid_way, keyframe_in_mid_way, bad_keyframes, guard_in_mid_way, taken_back,
-          a_table_of_none);
+          a_table_of_none, a_limit_falls_at_once);

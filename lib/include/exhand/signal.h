@@ -26,7 +26,8 @@ enum exh_signal_when {
     EXH_WHEN_OUTPUT, /* not a parameter: read only                            */
     EXH_WHEN_SETUP,  /* before the loop starts; refused once locked           */
     EXH_WHEN_ANY,    /* between any two ticks, at once                        */
-    EXH_WHEN_SLEWED  /* likewise, but little by little: force hangs on it     */
+    EXH_WHEN_SLEWED, /* likewise, but little by little: force hangs on it     */
+    EXH_WHEN_LIMIT   /* likewise, a limit of force: it rises little by little and falls at once */
 };
 
 struct exh_signal {

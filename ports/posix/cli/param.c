@@ -62,7 +62,7 @@ int cli_param_set(struct exh_params *p, const char *name, double value)
 
 void cli_signal_print(FILE *f, const struct exh_signal_table *t)
 {
-    static const char *const when[] = {"output", "set-up", "any time", "slewed"};
+    static const char *const when[] = {"output", "set-up", "any time", "slewed", "limit"};
     const uint32_t n = exh_signal_count(t);
     for (uint32_t i = 0; i < n; i++) {
         uint16_t instance;

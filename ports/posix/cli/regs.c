@@ -192,7 +192,7 @@ static void put_blocks(enum style style)
 static void name_cells(struct line *l, const struct exh_signal *row, unsigned instance, unsigned of,
                        int is_float)
 {
-    static const char *const when[] = {"output", "set-up", "any time", "slewed"};
+    static const char *const when[] = {"output", "set-up", "any time", "slewed", "limit"};
     if (of > 1) {
         snprintf(l->cell[NAME], CELL_B, "%s[%u]", row->name, instance);
     } else {

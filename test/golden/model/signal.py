@@ -5,11 +5,11 @@ from struct import pack
 
 from .num import AGAIN, RANGE, STATE, TICKS, UNKNOWN, Rng, period
 
-SETUP, ANY, SLEWED = 1, 2, 3
+SETUP, ANY, SLEWED, LIMIT = 1, 2, 3, 4
 
 # (id, frac, when, min, max, default) of each row, and how many instances of them.
 GROUPS = (
-    (((0x7001, 10, SLEWED, 0, 1024000000, 7), (0x7002, 20, SETUP, -(1 << 31), (1 << 31) - 1, -1),
+    (((0x7001, 10, LIMIT, 0, 1024000000, 7), (0x7002, 20, SETUP, -(1 << 31), (1 << 31) - 1, -1),
       (0x7003, 0, ANY, -5, 5, 0)), 2),
     (((0x7101, 0, SETUP, 1, 2, 1), (0x7102, 30, SLEWED, -(1 << 31), (1 << 31) - 1, 0)), 1),
 )
@@ -60,7 +60,7 @@ class Params:
         if done:
             for i, (row, _) in enumerate(VALUES):
                 left = self.staged[i] - self.active[i]
-                if row[2] == SLEWED and self.locked:
+                if self.locked and (row[2] == SLEWED or (row[2] == LIMIT and left > 0)):
                     part = -(-abs(left) // (1 << self.shift))
                     left = part if left > 0 else -part
                 self.active[i] += left
@@ -68,7 +68,7 @@ class Params:
         return done
 
     def keyframe(self):
-        return b"".join(pack("<i", self.active[i]) + (pack("<i", self.staged[i]) if row[2] == SLEWED else b"")
+        return b"".join(pack("<i", self.active[i]) + (pack("<i", self.staged[i]) if row[2] in (SLEWED, LIMIT) else b"")
                         for i, (row, _) in enumerate(VALUES))
 
     def sum(self, n):
