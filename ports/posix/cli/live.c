@@ -323,7 +323,7 @@ int cli_run(int argc, char **argv)
         {"modbus", CLI_TEXT, &o.modbus, 0, 0, "WHERE",
          "serve the registers at tcp:ADDRESS:PORT or rtu:DEVICE:BAUD"},
         {"save", CLI_TEXT, &o.save, 0, 0, "FILE",
-         "clients may save the parameters there, for --params"},
+         "clients may save the parameters there, for --load-params"},
         {"remote", CLI_FLAG, &o.remote, 0, 0, NULL,
          "clients may command RUN and CLEAR; the dead-man holds all the same"},
         {"gpio", CLI_CALL, u[3].to, 0, 0, CONTACTS_ARG, CONTACTS_HELP},

@@ -14,6 +14,7 @@
 
 #include <arpa/inet.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
@@ -39,6 +40,7 @@
 struct client {
     int fd;
     int waits; /* rounds for the rest of a request                              */
+    unsigned long heard; /* the round of its last request, or of its coming      */
 };
 
 static struct {
@@ -47,6 +49,7 @@ static struct {
     int stop[2]; /* a pipe: closed, it ends the thread                           */
     struct client client[CLIENTS];
     int clients;
+    unsigned long round;
     pthread_t thread;
     int serves;
 } server = {.listener = -1, .stop = {-1, -1}};
@@ -73,6 +76,7 @@ static int one_request(int i)
     if (request_be16(req + 2) != 0 || len < MBAP_B + 1 || len > MBAP_B + PDU_MAX_B) { return -1; }
     if (got < len) { return 0; }
     c->waits = 0;
+    c->heard = server.round;
     modbus_set_socket(server.ctx, c->fd);
     if (request_shape(req + MBAP_B, (unsigned)(len - MBAP_B)) !=
         0) { /* nothing that libmodbus could measure */
@@ -85,17 +89,29 @@ static int one_request(int i)
     return request_answer(&q) < 0 ? -1 : 1;
 }
 
+/* Whoever vanished without a word holds his place else for ever. */
+static void drop_longest_silent(void)
+{
+    int which = 0;
+    for (int i = 1; i < server.clients; i++) {
+        if (server.client[i].heard < server.client[which].heard) { which = i; }
+    }
+    drop(which);
+}
+
+/* Never blocking: an answer that a client does not fetch would hold up all others, and the end of the program. */
 static void accept_one(void)
 {
     const int on = 1;
     int fd = accept(server.listener, NULL, NULL);
     if (fd < 0) { return; }
-    if (fd >= FD_SETSIZE || server.clients == CLIENTS) { /* libmodbus would write beyond its set */
+    if (fd >= FD_SETSIZE || fcntl(fd, F_SETFL, O_NONBLOCK) < 0) { /* libmodbus would write beyond its set */
         close(fd);
         return;
     }
     (void)setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-    server.client[server.clients++] = (struct client){fd, 0};
+    if (server.clients == CLIENTS) { drop_longest_silent(); }
+    server.client[server.clients++] = (struct client){fd, 0, server.round};
 }
 
 /* In turn, one request each, so that none keeps the others waiting. */
@@ -115,6 +131,7 @@ static void *serve_tcp(void *unused)
     (void)unused;
     for (;;) {
         int partial = 0, n = server.clients;
+        server.round++;
         for (int i = 0; i < n; i++) {
             f[i] = (struct pollfd){server.client[i].fd, POLLIN, 0};
             partial |= server.client[i].waits > 0;
@@ -259,11 +276,14 @@ int live_modbus_open(const char *where)
     return err;
 }
 
-/* Signals are the loop's. */
+/* Signals are the loop's. But those of a crash come to the thread that crashes: blocked, they would end the program
+ * without their handler, and so without its outputs low. */
 int live_modbus_serve(void)
 {
+    static const int crash[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP, SIGSYS};
     sigset_t all, was;
     sigfillset(&all);
+    for (size_t i = 0; i < sizeof crash / sizeof crash[0]; i++) { sigdelset(&all, crash[i]); }
     pthread_sigmask(SIG_SETMASK, &all, &was);
     server.serves =
         pthread_create(&server.thread, NULL, server.rtu ? serve_rtu : serve_tcp, NULL) == 0;
