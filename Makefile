@@ -693,6 +693,7 @@ nic-run:
 modbus-image: all
 	@for t in i686-linux-gnu-gcc qemu-system-i386 python3; do .ci/deps "the pc104 image's Modbus slave" $$t gcc-i686-linux-gnu qemu-system-x86 python3 || exit 3; done
 	@$(MAKE) --no-print-directory $(if $(V),,-s) PORT=pc104 SCENE=drop CARDS=none all
+	@$(MAKE) --no-print-directory $(if $(V),,-s) PORT=pc104 SCENE=guarded CARDS=none all
 	@B=$(B) test/pc104/modbus.sh $(ARGS)
 
 # --- figures ------------------------------------------------------------------------

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A Modbus master on the image's COM2, which QEMU has as a TCP socket: modbus.py PORT READS.
+"""A Modbus master on the image's COM2, which QEMU has as a TCP socket: modbus.py PORT READS|rule [remote].
 
 Requests are at most 14 bytes, what QEMU's UART takes at once: how QEMU hands over more has no timing of a line.
 Prints what failed; exit status 0 all as told, 1 not, 3 no image.
@@ -97,7 +97,26 @@ def wait_for(line, wanted):
     return False
 
 
+def rule(line):
+    """Scene guarded with its rule of gains on: a pair outside is refused, and neither taken nor held for damage."""
+    for _ in range(20):  # it boots
+        if read(line, 4, 0, 2) is not None:
+            break
+    check("k", read(line, 4, K, 2), f32(5000))
+    check("k staged", line.ask(struct.pack(">BHHB", 16, K, 2, 4) + f32(1e6)), struct.pack(">BHH", 16, K, 2))
+    check("APPLY", coil(line, APPLY), struct.pack(">BHH", 5, APPLY, 0xFF00))
+    check("refused", read(line, 4, 48, 4), struct.pack(">Ii", 1, -13))
+    time.sleep(0.5)  # a round of the guard
+    check("k wanted as before", read(line, 3, K, 2), f32(5000))
+    check("k in effect as before", read(line, 4, K, 2), f32(5000))
+    check("no damage told", struct.unpack(">I", read(line, 4, 18, 2))[0] & 0x2000, 0)
+    print("answers fine" if not failed else "%d failed" % failed)
+    sys.exit(1 if failed else 0)
+
+
 def main():
+    if sys.argv[2] == "rule":
+        rule(Line(int(sys.argv[1])))
     line, reads = Line(int(sys.argv[1])), int(sys.argv[2])
     for _ in range(20):  # it boots
         if read(line, 4, 0, 2) is not None:

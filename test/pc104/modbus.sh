@@ -95,5 +95,20 @@ master()
 master 15000 500 57600
 master 50000 2000 115200 remote
 
+# The rule of gains holds against a client, too.
+gains='rule_on=1 rule_rate=500 rule_b1=30 rule_k0=9000 rule_k1=2000 k=5000 b=15'
+# shellcheck disable=SC2086 # one option a word
+QEMU_FLAGS="-icount shift=3,sleep=on -serial tcp:127.0.0.1:$port,server=on,wait=on" TIMEOUT_s=120 \
+    $run "$b/pc104/guarded-none.elf" ticks=10000 rate=500 idle=spin uncalibrated=1 modbus=com2,1,57600 $gains \
+    >"$dir/said" 2>"$dir/err" &
+pid=$!
+python3 test/pc104/modbus.py "$port" rule >"$dir/client" 2>&1
+status=$?
+check "rule of gains: client: $(cat "$dir/client")" [ $status = 0 ]
+wait $pid
+status=$?
+pid=
+check "rule of gains: the image ends with $status" [ $status = 0 ]
+
 echo "modbus: $checks checks, $failed failed"
 [ "$failed" = 0 ]

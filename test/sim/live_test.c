@@ -35,6 +35,16 @@ TEST(each_scene_goes_on_until_its_time_is_over)
     }
 }
 
+/* Less than a tick is one, not for ever. */
+TEST(the_shortest_time_ends)
+{
+    char *dir = said_dir();
+    struct said s;
+    said(&s, dir, cli_run, WORDS("run", "--seconds", "1e-9"));
+    CHECK(s.status == 0 && strncmp(s.out, "1 ticks", 7) == 0, "%d %s", s.status, s.out);
+    said_clean(dir);
+}
+
 /* The grip is the person's: a fault is cleared, and the box run, by two new ones, and by none unasked. */
 TEST(after_a_fault_it_runs_again_by_the_grip_alone)
 {
@@ -97,6 +107,6 @@ TEST(what_it_cannot_do_is_named)
     said_clean(dir);
 }
 
-TEST_MAIN("live", each_scene_goes_on_until_its_time_is_over,
+TEST_MAIN("live", each_scene_goes_on_until_its_time_is_over, the_shortest_time_ends,
           after_a_fault_it_runs_again_by_the_grip_alone, an_interrupt_leaves_a_complete_log,
           what_it_cannot_do_is_named);

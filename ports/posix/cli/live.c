@@ -13,6 +13,8 @@
 
 #include "guarded/guarded.h"
 
+#include "exhand/error.h"
+
 #include <errno.h>
 #include <limits.h>
 #include <signal.h>
@@ -177,6 +179,7 @@ static void board(const struct live_options *o, struct posix_config *b)
     b->log = o->file;
     b->wires_in = live_wires;
     b->max_ticks = (uint32_t)(o->seconds * o->rate_Hz + 0.5);
+    if (o->seconds > 0 && b->max_ticks == 0) { b->max_ticks = 1; } /* 0: never */
 }
 
 /* A mass that is let fall again and again. */
@@ -283,8 +286,8 @@ static int go(struct live_options *o)
     int err = sc ? prepare(o, sc) : 2;
     if (err == 0) {
         catch_signals();
-        err =
-            (sc == &exh_scene_bilateral ? run_hand(o, &lost) : run_mass(o, sc, &lost)) < 0 ? 2 : 0;
+        err = sc == &exh_scene_bilateral ? run_hand(o, &lost) : run_mass(o, sc, &lost);
+        err = err == -EXH_E_IO ? 1 : err < 0 ? 2 : 0; /* the board failed; it could not be set up */
         live_person_end();
     }
     if (clients.on) { live_modbus_close(); }
