@@ -12,6 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define PUTS 3 /* tries to set the outputs low                               */
+
 static struct {
     struct gpio_spec spec;
     unsigned ins, outs;
@@ -115,15 +117,18 @@ static void say_problem(char *said, const struct gpio_problem *p)
 
 /* --- open, close, and what comes between them unasked --- */
 
-static void put_low(void)
+/* 0, or -1: they may be high still. An expander on a bus may fail once: that is no reason to leave a motor on. */
+static int put_low(void)
 {
     static const int low[GPIO_LINES_MAX];
-    if (is_open) { (void)gpio_lines_put(low); }
+    int err = is_open ? -1 : 0;
+    for (int i = 0; err != 0 && i < PUTS; i++) { err = gpio_lines_put(low); }
+    return err;
 }
 
 void gpio_safe(void)
 {
-    put_low();
+    (void)put_low();
     gpio.enable = gpio.beat = 0;
 }
 
@@ -133,25 +138,23 @@ static void on_signal(int sig)
 {
     const int before = errno;
     dropped = 1;
-    put_low();
+    (void)put_low();
     raise(sig); /* blocked until the handler returns, which is reset already */
     errno = before;
 }
 
-/* Those that end or stop a program, unless somebody has plans for them. */
+/* All that end or stop a program, unless somebody has plans for them; nobody can have any for SIGKILL and SIGSTOP. */
 static void guard_signals(void)
 {
-    static const int list[] = {SIGHUP,  SIGINT,  SIGTERM, SIGQUIT, SIGTSTP, SIGTTIN,
-                               SIGTTOU, SIGPIPE, SIGALRM, SIGUSR1, SIGUSR2, SIGABRT,
-                               SIGSEGV, SIGBUS,  SIGFPE,  SIGILL};
     struct sigaction a, was;
     memset(&a, 0, sizeof a);
     a.sa_handler = on_signal;
     a.sa_flags = (int)SA_RESETHAND;
     sigfillset(&a.sa_mask);
-    for (size_t i = 0; i < sizeof list / sizeof list[0]; i++) {
-        if (sigaction(list[i], NULL, &was) == 0 && was.sa_handler == SIG_DFL) {
-            (void)sigaction(list[i], &a, NULL);
+    for (int sig = 1; sig <= SIGRTMAX; sig++) {
+        if (sig == SIGCHLD || sig == SIGURG || sig == SIGCONT || sig == SIGWINCH) { continue; }
+        if (sigaction(sig, NULL, &was) == 0 && was.sa_handler == SIG_DFL) {
+            (void)sigaction(sig, &a, NULL);
         }
     }
 }
@@ -210,9 +213,10 @@ void gpio_start(struct exh_period T)
 
 static int fail(const char *what)
 {
+    const char *why = strerror(errno);
     if (!gpio.failed) {
-        fprintf(stderr, "exhand: %s: %s (%s): outputs go low, the run ends\n", gpio.spec.path, what,
-                strerror(errno));
+        fprintf(stderr, "exhand: %s: %s (%s): %s, the run ends\n", gpio.spec.path, what, why,
+                put_low() == 0 ? "outputs go low" : "outputs CAN'T BE SET LOW, switch them off by hand");
     }
     gpio.failed = 1;
     return -EXH_E_IO;
@@ -271,6 +275,6 @@ int gpio_write(const struct exh_drive_out *out)
     if (gpio.spec.wired[GPIO_ENABLE]) { level[n++] = gpio.enable; }
     if (gpio.spec.wired[GPIO_ALIVE]) { level[n++] = gpio.beat; }
     if (!dropped && gpio_lines_put(level) < 0) { return fail("the outputs can't be set"); }
-    if (dropped) { put_low(); } /* a handler may have come in between */
+    if (dropped) { (void)put_low(); } /* a handler may have come in between */
     return 0;
 }

@@ -29,7 +29,7 @@ struct gpio_spec {
 int gpio_take(struct gpio_spec *s, const char *text, char said[GPIO_SAID_B]);
 
 /* Requests the lines, outputs low. 0, or -1 with what is wrong and what to do in said. From here on
- * outputs go low when the process ends, also by a signal; only SIGKILL leaves that to the kernel. */
+ * outputs go low when the process ends or stops, also by a signal; but SIGKILL and SIGSTOP. */
 int gpio_open(const struct gpio_spec *s, char said[GPIO_SAID_B]);
 void gpio_close(void);
 

@@ -72,6 +72,10 @@ int chip_put(const unsigned *line, unsigned n, const int *level)
 {
     chip.puts++;
     if (chip.put_error) { return fails(chip.put_error); }
+    if (chip.puts_fail > 0) {
+        chip.puts_fail--;
+        return fails(EIO);
+    }
     for (unsigned i = 0; i < n; i++) {
         const char told = (char)('0' + level[i]);
         chip.line[line[i]].level = level[i];

@@ -20,6 +20,7 @@ extern struct chip {
     int request_error; /* of any request                                         */
     int no_bias; /* a kernel before 5.5: EINVAL for a request with bias      */
     int get_error, put_error;
+    int puts_fail; /* so many more, by EIO                                     */
     int opened; /* and not closed yet                                           */
     long gets, puts;
     int flips; /* this line reads 1 at the first and 0 at the second of two reads, */

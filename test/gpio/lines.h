@@ -338,8 +338,30 @@ TEST(lines_that_cannot_be_set)
     CHECK_EQ_I64(gpio_write(&out), -EXH_E_IO);
     CHECK_EQ_I64(gpio_write(&out), -EXH_E_IO);
     text = listen_end();
-    CHECK(times(text, "/dev/gpiochip0: the outputs can't be set (Input/output error)") == 1, "%s",
-          text);
+    CHECK(times(text, "/dev/gpiochip0: the outputs can't be set (Input/output error): outputs CAN'T "
+                      "BE SET LOW") == 1,
+          "%s", text);
+    gpio_close();
+}
+
+/* A line that fails once or twice is set low all the same. */
+TEST(low_at_the_third_try)
+{
+    const struct exh_drive_out out = {.enable = 1, .alive = 2};
+    const char *text;
+    start(ALL);
+    tick(1, 1);
+    chip.puts_fail = 2;
+    gpio_safe();
+    CHECK(chip.line[ENABLE].level == 0 && chip.line[ALIVE].level == 0, "not low");
+    tick(1, 1);
+    CHECK_EQ_I64(chip.line[ENABLE].level, 1);
+    chip.puts_fail = 1;
+    listen_begin();
+    CHECK_EQ_I64(gpio_write(&out), -EXH_E_IO);
+    text = listen_end();
+    CHECK(strstr(text, "outputs go low, the run ends") != NULL, "%s", text);
+    CHECK_EQ_I64(chip.line[ENABLE].level, 0);
     gpio_close();
 }
 
@@ -385,8 +407,10 @@ static int ends_low(enum ending how, int sig)
 
 TEST(low_when_the_program_ends)
 {
-    static const int sig[] = {SIGHUP,  SIGINT,  SIGTERM, SIGQUIT, SIGPIPE, SIGALRM, SIGUSR1,
-                              SIGUSR2, SIGABRT, SIGSEGV, SIGBUS,  SIGFPE,  SIGILL};
+    const int sig[] = {SIGHUP,  SIGINT,    SIGTERM,  SIGQUIT,      SIGPIPE, SIGALRM,
+                       SIGUSR1, SIGUSR2,   SIGABRT,  SIGSEGV,      SIGBUS,  SIGFPE,
+                       SIGILL,  SIGTRAP,   SIGSYS,   SIGXCPU,      SIGXFSZ, SIGPROF,
+                       SIGPOLL, SIGVTALRM, SIGRTMIN, SIGRTMIN + 5, SIGRTMAX};
     for (size_t i = 0; i < LEN(sig); i++) {
         const int status = ends_low(BY_SIGNAL, sig[i]);
         CHECK(WIFSIGNALED(status) && WTERMSIG(status) == sig[i], "signal %d: status %x", sig[i],
@@ -605,6 +629,7 @@ TEST(a_switch_that_is_closed_from_the_start)
     requested_low_and_pulled_down, a_field_alone, what_can_be_wrong, closed_if_both_reads_are, \
         a_contact_closes_nothing, two_contacts, two_contacts_that_disagree, disagreement_in_ticks, \
         lines_that_cannot_be_read, enable_and_beat, safe_is_low, lines_that_cannot_be_set, \
+        low_at_the_third_try, \
         low_when_the_program_ends, low_when_it_is_stopped, closed_contacts_change_nothing, \
         estop_cuts_in_its_tick, deadman_lets_go, no_start_with_an_open_contact, \
         a_chip_that_is_gone, a_real_hand, \
