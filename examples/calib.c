@@ -36,6 +36,10 @@ static int load(struct loaded *to, struct exh_scene_calib *k, unsigned i)
     to->c.point = to->point;
     to->c.cap = EXH_CALIB_POINTS_MAX;
     err = exh_calib_load(&to->c, k->image[i].byte, k->image[i].len_B, &bad);
+    /* Bytes behind it would stand in a log's header as the next image, and no replay take it. */
+    if (err == 0 && k->image[i].len_B != EXH_CALIB_IMAGE_B - 16u * (EXH_CALIB_POINTS_MAX - (uint32_t)to->c.points)) {
+        err = -EXH_E_RANGE;
+    }
     return err < 0 ? refuse(k, i, bad, err) : 0;
 }
 

@@ -8,6 +8,7 @@
 #include "guarded/guarded.h"
 
 #include "exhand/error.h"
+#include "exhand/record.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -204,6 +205,9 @@ TEST(every_damaged_bit_and_every_end_is_refused)
         check_refused(&exh_scene_drop, -EXH_E_SHORT, "image", "cut off");
     }
     give(&exh_scene_drop, 0, 1);
+    exh_scene_drop.calib->image[0].len_B++;
+    check_refused(&exh_scene_drop, -EXH_E_RANGE, "image", "a byte behind it");
+    give(&exh_scene_drop, 0, 1);
     CHECK_EQ_I64(set_up(&exh_scene_drop), 0);
 }
 
@@ -351,7 +355,50 @@ TEST(the_command_names_file_and_field)
     said_clean(dir);
 }
 
+/* An image of parameters has the day on which it was saved, the device, and what was waived: it is not asked whether a
+ * calibration holds today. */
+TEST(loaded_parameters_do_not_vouch)
+{
+    static struct said s;
+    const char *dir = said_dir();
+    char path[512], par[512];
+    snprintf(path, sizeof path, "%s/calibration.bin", dir);
+    snprintf(par, sizeof par, "%s/p.exhp", dir);
+    said(&s, dir, cli_calibrate, WORDS("calibrate", "--day", "10000", "--out", dir)); /* 1997 */
+    said(&s, dir, cli_drop, WORDS("drop", "--rate", "500", "--falls", "1", "--calibration", path, "--set", "day=10000",
+                                  "--save-params", par));
+    CHECK(s.status == 0, "%d: %s", s.status, s.err);
+    said(&s, dir, cli_drop, WORDS("drop", "--rate", "500", "--falls", "1", "--calibration", path, "--load-params", par));
+    CHECK(s.status == 2 && strstr(s.err, "age: "), "%d: %s", s.status, s.err);
+    said_clean(dir);
+}
+
+/* A log of another record version is named as that. */
+TEST(an_old_log_is_named)
+{
+    static struct said s;
+    const char *dir = said_dir();
+    static uint8_t b[64];
+    struct exh_bytes c = exh_bytes_writer(b, sizeof b);
+    char path[512];
+    uint32_t n, crc;
+    FILE *f;
+    exh_record_begin(&c, EXH_RECORD_HEADER, 0, 0);
+    n = exh_record_end(&c);
+    b[3] = 1;
+    crc = exh_crc32(0, b, n - 4);
+    c = exh_bytes_writer(b + n - 4, 4);
+    exh_bytes_u32(&c, &crc);
+    snprintf(path, sizeof path, "%s/old.exh", dir);
+    f = fopen(path, "wb");
+    CHECK(f != NULL && fwrite(b, 1, n, f) == n && fclose(f) == 0, "%s", path);
+    said(&s, dir, cli_replay, WORDS("replay", path));
+    CHECK(s.status == 2 && strstr(s.err, "record version 1"), "%d: %s", s.status, s.err);
+    said_clean(dir);
+}
+
 TEST_MAIN("calib", nothing_arms_without_unless_waived, a_good_one_arms_and_forces_go_by_its_points,
           what_does_not_hold_is_refused_by_name, every_damaged_bit_and_every_end_is_refused,
           the_full_box_needs_one_for_every_finger_in_use, one_of_five_that_is_refused_refuses_all,
-          a_log_has_them_and_replays, a_dump_of_the_black_box_has_them, the_command_names_file_and_field);
+          a_log_has_them_and_replays, a_dump_of_the_black_box_has_them, the_command_names_file_and_field,
+          loaded_parameters_do_not_vouch, an_old_log_is_named);

@@ -88,6 +88,7 @@ int images_give(const struct images *im, const struct exh_scene *sc)
         k->image[i].len_B = im->at[i].len_B;
     }
     err = cli_param_set(sc->params, "device_id", 1);
+    if (err == 0) { err = cli_param_set(sc->params, "uncalibrated", 0); }
     return err < 0 ? err : cli_param_set(sc->params, "day", (double)(time(NULL) / DAY_S));
 }
 

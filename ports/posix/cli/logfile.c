@@ -53,6 +53,11 @@ static int read_header(struct logfile *l)
 {
     struct exh_record r;
     struct exh_bytes c;
+    if (exh_record_read(l->bytes, l->len, &r) == -EXH_E_VERSION) {
+        cli_complain("%s: a log of record version %u, this program's is %d: read it with the program that made it",
+                     l->path, r.version, EXH_RECORD_VERSION);
+        return 2;
+    }
     if (!logfile_next(l, &r) || r.type != EXH_RECORD_HEADER) {
         return complain(l, "not a log: it does not start with a header: give a file made by "
                            "`exhand drop --out DIR` or `exhand glove --record FILE`");

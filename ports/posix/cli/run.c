@@ -145,6 +145,8 @@ static int set_parameters(const struct run_cfg *c)
         err = cli_param_set(p, calibrated[i].name, calibrated[i].value);
     }
     if (err == 0) { err = run_image(&c->live, p); }
+    /* Today is not the day on which that was saved, and what was waived then is not now. */
+    if (err == 0 && c->images && c->images->n) { err = images_give(c->images, scene_of(c)); }
     if (err == 0 && c->live.gains) {
         err = cli_param_set(p, "k", c->k_Npm);
         if (err == 0) { err = cli_param_set(p, "b", c->b_Nspm); }
