@@ -62,6 +62,6 @@ static const struct kernel kernels[] = {
     {"params_apply_staged", "", 1, 0, 1, start, staged_op, no_error,
      "a tick in which something is new; 208 values", 0, NULL},
     {"params_apply_moving", "", 1, 0, 1, start_moving, apply_op, no_error,
-     "a tick in which one is on its way; 68 slewed values", 0, NULL},
+     "a tick in which one is on its way; 20 slewed values", 0, NULL},
 };
 const struct kernel_group params_group = {kernels, sizeof kernels / sizeof kernels[0]};
