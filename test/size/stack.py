@@ -7,7 +7,7 @@ function pointers of this project stand in constant tables (struct exh_scene, st
 exh_loop_hooks), so an indirect call is taken to reach any function whose address is in the data
 of any object; but one in the log (exh_log_*, examples/log.c) only what a scene's own table or a tap's
 (struct exh_log_tap tap) points to: it calls the scene's state() and the tap, while the loop's hooks
-call the log. A function whose address is taken only by code is not seen: give it a table.
+call the log; and likewise one in pc104's modbus, which asks the scene what is allowed. A function whose address is taken only by code is not seen: give it a table.
 Functions without a graph (assembler, the C library) count as nothing and are named.
 
 Exit status: 0 bounded, 1 not (recursion, a frame of unknown size), 2 bad usage, 3 no objdump.
@@ -23,7 +23,7 @@ BYTES = re.compile(r'(\d+) bytes \(([^)]*)\)')
 SECTION = re.compile(r'RELOCATION RECORDS FOR \[([^]]*)\]')
 RELOCATION = re.compile(r'^[0-9a-f]+ +R_\S+ +(\S+)')
 INDIRECT = '__indirect_call'
-LOG = re.compile(r'(^|:)exh_log_|(^|/)log\.c:')
+LOG = re.compile(r'(^|:)(exh_log_|pc104_modbus_)|(^|/)(log|pc104/modbus)\.c:')
 FOR_LOG = re.compile(r'exh_scene_|\.tap(\.\d+)?$')
 
 
