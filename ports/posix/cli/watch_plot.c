@@ -94,13 +94,20 @@ static void put_name(FILE *g)
     fputs("'\n", g);
 }
 
-/* Top and bottom of panel i of n and the state's strip below them, on the screen. */
+/* Of the picture, from the top: title, n panels, the state's strip, the axis' numbers and name. In pixels. */
+enum { TITLE_PX = 50, PANEL_PX = 170, GAP_PX = 20, STRIP_PX = 75, AXIS_PX = 75 };
+
+static unsigned height_px(unsigned n)
+{
+    return TITLE_PX + PANEL_PX * n + STRIP_PX + AXIS_PX;
+}
+
+/* Top and bottom of panel i of n, or of the strip below them, on the screen. */
 static void put_place(FILE *g, unsigned i, unsigned n)
 {
-    const double top = 0.93, strip = 0.12, each = (top - 0.075 - strip) / n;
-    const double from = i < n ? top - each * (i + 1) + 0.012 : 0.075;
-    const double to = i < n ? top - each * i - 0.012 : 0.075 + strip - 0.03;
-    fprintf(g, "set tmargin at screen %.4f; set bmargin at screen %.4f\n", to, from);
+    const double h = height_px(n), top = h - TITLE_PX - PANEL_PX * (double)i;
+    const double from = i < n ? top - PANEL_PX + GAP_PX : AXIS_PX;
+    fprintf(g, "set tmargin at screen %.4f; set bmargin at screen %.4f\n", top / h, from / h);
 }
 
 static void put_panels(FILE *g, const struct watch_box *b, const struct watch_pick *p, unsigned n)
@@ -116,7 +123,7 @@ static void put_panels(FILE *g, const struct watch_box *b, const struct watch_pi
         if (i == 0) { fprintf(g, "unset label 1\n"); }
     }
     put_place(g, n, n);
-    fprintf(g, "set yrange [-0.5:5.5]; set ytics ('off' 0, 'run' 2, 'release' 4, 'fault' 5)\n"
+    fprintf(g, "set yrange [-0.5:5.5]; set ytics ('off' 0, 'run' 2, 'fault' 5)\n"
                "set format x '%%g'; set xlabel 'time of the box (s)'; set ylabel 'state'\n"
                "plot $d using 1:2 with steps lc rgb '#333333' lw 1.8 notitle\n");
 }
@@ -128,7 +135,7 @@ static int put_script(FILE *g, const struct watch_box *b, const struct watch_pic
     const double first_s = plot.row[0] > end_s - plot.last_s ? plot.row[0] : end_s - plot.last_s;
     put_data(g);
     fprintf(g, "set terminal pngcairo size 1400,%u font 'DejaVu Sans,15' linewidth 1.4 background '#ffffff'\n",
-            170 * n + 240);
+            height_px(n));
     put_name(g);
     fprintf(g, "set border 3 lc rgb '#333333' lw 0.8\nset tics nomirror out scale 0.5 font ',12' textcolor rgb '#333333'\n"
                "set grid lc rgb '#dddddd' lw 0.6 lt 1\nset lmargin at screen 0.1; set rmargin at screen 0.985\n"
