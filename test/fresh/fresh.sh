@@ -24,7 +24,7 @@ ours "$root" || {
 
 mkdir -p "$root"
 root=$(cd "$root" && pwd -P)
-release() { umount "$root/proc" "$root/dev" 2>/dev/null || true; }
+release() { umount "$root/proc" "$root/dev/pts" "$root/dev" 2>/dev/null || true; }
 release
 grep -q " $root/" /proc/mounts && { echo "fresh: $root: something is still mounted in it" >&2; exit 2; }
 rm -rf --one-file-system "$root"
@@ -35,6 +35,7 @@ debootstrap --variant=minbase --include=git,make,gcc,libc6-dev bookworm "$root" 
 trap release EXIT
 mount --bind /proc "$root/proc"
 mount --bind /dev "$root/dev"
+mount --bind /dev/pts "$root/dev/pts"
 cp /etc/resolv.conf "$root/etc/resolv.conf"
 [ -f /etc/hosts ] && cp /etc/hosts "$root/etc/hosts"
 git clone -q . "$root/exhand"

@@ -677,7 +677,13 @@ TEST(over_a_serial_line)
     uint16_t word[6] = {0};
     struct said s;
     pid_t pid;
-    CHECK(fd >= 0 && grantpt(fd) == 0 && unlockpt(fd) == 0, "no pseudo-terminal");
+    if (fd < 0 || grantpt(fd) != 0 || unlockpt(fd) != 0) {
+        check_note("no pseudo-terminal here (%s): not tried over a serial line", strerror(errno));
+        if (fd >= 0) { close(fd); }
+        modbus_free(c);
+        said_clean(dir);
+        return;
+    }
     snprintf(where, sizeof where, "rtu:%s:115200", ptsname(fd));
     pid = said_start(dir, cli_run, WORDS("run", "--pace", "--modbus", where));
     for (int i = 0; i < 200 && said_size(said_path(dir, "said.out")) <= 0; i++) { rig_sleep(0.01); }
