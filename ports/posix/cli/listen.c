@@ -3,16 +3,15 @@
 
 #include "option.h"
 #include "udp.h"
+#include "until.h"
 
 #include "../../pc104/stream.h"
 
 #include <errno.h>
 #include <inttypes.h>
 #include <poll.h>
-#include <signal.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 
 #define BACK 64u /* pieces that may still come, late */
 
@@ -27,34 +26,10 @@ struct listen {
     int begun, ended, gap;
 };
 
-static volatile sig_atomic_t stopped;
-
-static void stop(int signal)
-{
-    (void)signal;
-    stopped = 1;
-}
-
-static void catch_signals(void)
-{
-    struct sigaction on;
-    memset(&on, 0, sizeof on);
-    on.sa_handler = stop; /* without SA_RESTART: poll() comes back */
-    (void)sigaction(SIGINT, &on, NULL);
-    (void)sigaction(SIGTERM, &on, NULL);
-}
-
 static int complain(const struct listen *l)
 {
     cli_complain("%s: %s", l->out, strerror(errno));
     return 2;
-}
-
-static double now_s(void)
-{
-    struct timespec t;
-    (void)clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
 /* 1: came for the first time. */
@@ -99,7 +74,7 @@ static int take(struct listen *l, const uint8_t *datagram, size_t n)
         l->other++;
         return 0;
     }
-    l->heard_s = now_s();
+    l->heard_s = until_now_s();
     if (!l->begun) {
         l->begun = 1;
         l->session = p.session;
@@ -115,7 +90,7 @@ static int take(struct listen *l, const uint8_t *datagram, size_t n)
 static int wait_ms(const struct listen *l)
 {
     const double most_s = l->ended ? 0.2 : l->begun ? l->silence_s : l->wait_s;
-    const double left_s = most_s - (now_s() - l->heard_s);
+    const double left_s = most_s - (until_now_s() - l->heard_s);
     if (!l->begun && l->wait_s <= 0) { return 1000; }
     return left_s <= 0 ? 0 : left_s >= 1 ? 1000 : 1 + (int)(1000 * left_s);
 }
@@ -125,7 +100,7 @@ static int go(struct listen *l, struct udp *u)
     uint8_t datagram[STREAM_PIECE_B];
     struct pollfd f = {u->fd, POLLIN, 0};
     int err = 0;
-    while (err == 0 && !stopped && !(l->ended && l->missing == 0)) {
+    while (err == 0 && !until_stopped() && !(l->ended && l->missing == 0)) {
         const int ms = wait_ms(l);
         int n;
         if (ms == 0) { break; }
@@ -141,7 +116,7 @@ static int report(const struct listen *l)
 {
     if (!l->begun) {
         cli_complain("--at: %s: nothing of a log came%s: is it the box's log_port=, and this machine its peer=?", l->at,
-                     stopped ? "" : " in time");
+                     until_stopped() ? "" : " in time");
         return 1;
     }
     printf("%s: %" PRIu64 " bytes in %" PRIu64 " pieces; missing %" PRIu64 ", late %" PRIu64 ", twice %" PRIu64
@@ -178,15 +153,15 @@ int cli_listen(int argc, char **argv)
     if (l.file == NULL) {
         err = complain(&l);
     } else {
-        catch_signals();
+        until_catch();
         cli_complain("waits at %s for a log to begin (the box: log=udp or dump=udp)%s", l.at,
                      l.wait_s > 0 ? "" : "; Ctrl-C or --wait ends it");
-        l.heard_s = now_s();
+        l.heard_s = until_now_s();
         err = go(&l, &u);
         if (fclose(l.file) != 0 && err == 0) { err = complain(&l); }
     }
     udp_close(&u);
     if (err) { return err; }
     err = report(&l);
-    return stopped ? 130 : err;
+    return until_stopped() ? 130 : err;
 }

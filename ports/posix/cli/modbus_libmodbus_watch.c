@@ -2,6 +2,7 @@
 #include "watch.h"
 
 #include "option.h"
+#include "until.h"
 
 #include <arpa/inet.h>
 #include <errno.h>
@@ -68,7 +69,7 @@ static modbus_t *context_of(const char *where)
 
 static int link_up(void)
 {
-    client.tried_s = watch_now_s();
+    client.tried_s = until_now_s();
     client.connected = modbus_connect(client.ctx) == 0;
     return client.connected;
 }
@@ -192,7 +193,7 @@ static int on_frame(struct watch_box *b, const uint16_t *word, watch_fresh fresh
         b->value[b->index[i]] = (int32_t)value_of(word, 2 + i);
     }
     b->heard++;
-    b->heard_s = watch_now_s();
+    b->heard_s = until_now_s();
     return fresh(b);
 }
 
@@ -232,7 +233,7 @@ int watch_modbus_look(struct watch_box *b, watch_fresh fresh)
 {
     uint16_t word[2 * EXH_HEADS];
     uint32_t tick;
-    if (!client.connected && (watch_now_s() - client.tried_s < AGAIN_S || !link_up())) { return 0; }
+    if (!client.connected && (until_now_s() - client.tried_s < AGAIN_S || !link_up())) { return 0; }
     if (modbus_read_input_registers(client.ctx, (int)EXH_REGS_HEAD_AT, 2 * EXH_HEADS, word) !=
         2 * EXH_HEADS) {
         return lose(b);
@@ -252,6 +253,6 @@ int watch_modbus_look(struct watch_box *b, watch_fresh fresh)
     if (b->heard > 0 && tick == b->tick) { return 0; } /* it stands: nothing new */
     b->tick = tick;
     b->heard++;
-    b->heard_s = watch_now_s();
+    b->heard_s = until_now_s();
     return fresh(b);
 }

@@ -5,6 +5,7 @@
 #include "names.h"
 #include "option.h"
 #include "param.h"
+#include "until.h"
 
 #include "bilateral/bilateral.h"
 #include "bringup/bringup.h"
@@ -40,35 +41,9 @@ static struct {
     double shown_s;
 } w;
 
-static volatile sig_atomic_t stopped;
-
-static void stop(int sig)
-{
-    (void)sig;
-    stopped = 1;
-}
-
-static void catch_signals(void)
-{
-    struct sigaction on;
-    memset(&on, 0, sizeof on);
-    on.sa_handler = stop; /* without SA_RESTART: poll() comes back */
-    (void)sigaction(SIGINT, &on, NULL);
-    (void)sigaction(SIGTERM, &on, NULL);
-    on.sa_handler = SIG_IGN;
-    (void)sigaction(SIGPIPE, &on, NULL);
-}
-
-double watch_now_s(void)
-{
-    struct timespec t;
-    (void)clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 double watch_age_s(const struct watch_box *b)
 {
-    return watch_now_s() - (b->heard ? b->heard_s : b->since_s);
+    return until_now_s() - (b->heard ? b->heard_s : b->since_s);
 }
 
 /* --- what is watched --- */
@@ -257,7 +232,7 @@ static int fresh(struct watch_box *b)
 
 static void show(void)
 {
-    const double now_s = watch_now_s();
+    const double now_s = until_now_s();
     const int silent = watch_age_s(&w.box) > 1;
     if (now_s - w.shown_s < (w.tty ? 1 / DRAWN_HZ : 1)) { return; }
     if (w.tty) {
@@ -272,19 +247,19 @@ static void show(void)
 
 static void sleep_until(double s)
 {
-    const double left_s = s - watch_now_s();
+    const double left_s = s - until_now_s();
     const struct timespec t = {0, (long)(left_s * 1e9)};
     if (left_s > 0 && left_s < 1) { (void)nanosleep(&t, NULL); }
 }
 
 static int go(void)
 {
-    const double end_s = w.seconds > 0 ? watch_now_s() + w.seconds : 1e300;
-    double next_s = watch_now_s();
+    const double end_s = w.seconds > 0 ? until_now_s() + w.seconds : 1e300;
+    double next_s = until_now_s();
     int err = 0;
     w.box.since_s = w.shown_s = next_s;
-    while (err == 0 && !stopped && !w.box.ended && watch_now_s() < end_s) {
-        const double now_s = watch_now_s();
+    while (err == 0 && !until_stopped() && !w.box.ended && until_now_s() < end_s) {
+        const double now_s = until_now_s();
         const double wake_s = next_s < now_s + LATE_S ? next_s : now_s + LATE_S;
         if (w.listen) {
             err = watch_stream_look(&w.box, now_s + LATE_S, fresh);
@@ -311,7 +286,7 @@ static int finish(int err)
     if (!w.taken) {
         cli_complain("%s: nothing was heard%s%s", w.modbus ? w.modbus : w.listen,
                      w.box.trouble ? ": " : "", w.box.trouble ? w.box.trouble : "");
-        return stopped ? 130 : 1;
+        return until_stopped() ? 130 : 1;
     }
     if (w.box.breaks) {
         cli_complain("the link was lost %lu times: nothing is known of what was between",
@@ -321,11 +296,11 @@ static int finish(int err)
         cli_complain("%llu %s were lost on the way", (unsigned long long)w.box.lost,
                      w.trace ? "frames" : "ticks");
     }
-    if (!w.box.ended && !stopped && watch_age_s(&w.box) > 1) {
+    if (!w.box.ended && !until_stopped() && watch_age_s(&w.box) > 1) {
         cli_complain("silent for %.1f s at the end", watch_age_s(&w.box));
         return 1;
     }
-    return stopped ? 130 : 0;
+    return until_stopped() ? 130 : 0;
 }
 
 /* --- command --- */
@@ -394,7 +369,8 @@ int cli_watch(int argc, char **argv)
     if (w.hz == 0) { w.hz = 10; }
     err = prepare();
     if (err) { return err; }
-    catch_signals();
+    until_catch();
+    (void)signal(SIGPIPE, SIG_IGN);
     err = finish(go());
     if (w.modbus) {
         watch_modbus_close();

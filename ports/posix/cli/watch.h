@@ -22,7 +22,7 @@ struct watch_box {
     uint64_t lost; /* samples that were not heard, where they are numbered      */
     uint32_t breaks; /* of the link, since something was heard                   */
     uint64_t heard; /* samples                                                  */
-    double heard_s; /* when the tick was last another one, by watch_now_s()     */
+    double heard_s; /* when the tick was last another one, by until_now_s()     */
     double since_s; /* when watching began                                      */
     const char *trouble; /* of the link at present; NULL                        */
     int ended; /* the box has said so                                           */
@@ -31,8 +31,6 @@ struct watch_box {
     uint32_t every; /* of Modbus: a trace of every so many ticks; 0: none       */
     uint32_t index[EXH_TRACE_SIGNALS]; /* and of what                           */
 };
-
-double watch_now_s(void);
 
 /* Something was heard: the values are of b->tick. 0, or a status after a line on stderr. */
 typedef int (*watch_fresh)(struct watch_box *b);

@@ -3,6 +3,7 @@
 
 #include "option.h"
 #include "udp.h"
+#include "until.h"
 
 #include "log.h"
 
@@ -82,7 +83,7 @@ static int on_frame(struct watch_box *b, const struct exh_record *r, watch_fresh
     b->present = bits_of(b, "present");
     b->limits = bits_of(b, "limits");
     b->heard++;
-    b->heard_s = watch_now_s();
+    b->heard_s = until_now_s();
     return fresh(b);
 }
 
@@ -111,7 +112,7 @@ static int records(struct watch_box *b, watch_fresh fresh)
 /* In their order; what comes late is not waited for. */
 static int piece(struct watch_box *b, const struct stream_piece *p, watch_fresh fresh)
 {
-    const double now_s = watch_now_s();
+    const double now_s = until_now_s();
     if (in.begun && p->session != in.session && now_s - in.heard_s < NEW_S) { return 0; }
     if (!in.begun || p->session != in.session) {
         in.session = p->session;
@@ -134,13 +135,13 @@ int watch_stream_look(struct watch_box *b, double until_s, watch_fresh fresh)
 {
     uint8_t datagram[STREAM_PIECE_B];
     struct pollfd f = {in.udp.fd, POLLIN, 0};
-    const double left_s = until_s - watch_now_s();
+    const double left_s = until_s - until_now_s();
     int err = 0, n;
     (void)poll(&f, 1, left_s > 0 ? 1 + (int)(1000 * left_s) : 0);
     while (err == 0 && (n = udp_recv(&in.udp, datagram, sizeof datagram)) > 0) {
         struct stream_piece p;
         if (stream_read(&p, datagram, (size_t)n)) { err = piece(b, &p, fresh); }
-        if (watch_now_s() > until_s + 0.2) { break; } /* the picture, too, wants to be drawn */
+        if (until_now_s() > until_s + 0.2) { break; } /* the picture, too, wants to be drawn */
     }
     return err;
 }

@@ -3,6 +3,7 @@
 
 #include "names.h"
 #include "param.h"
+#include "until.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -30,7 +31,7 @@ void watch_view_sample(const struct watch_box *b, const struct watch_pick *p)
 
 static void rates(const struct watch_box *b)
 {
-    const double now_s = watch_now_s(), passed_s = now_s - view.at_s;
+    const double now_s = until_now_s(), passed_s = now_s - view.at_s;
     if (view.at_s > 0 && passed_s < RATE_S) { return; }
     view.ticks_ps = view.at_s > 0 ? (double)(b->tick - view.tick) / passed_s : 0;
     view.heard_ps = view.at_s > 0 ? (double)(b->heard - view.heard) / passed_s : 0;
