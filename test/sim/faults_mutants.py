@@ -53,7 +53,7 @@ MUTANTS = (
     ("watch", "return (s->fast_ticks >= cfg->speed_ticks ?", "return (s->fast_ticks > cfg->speed_ticks ?", TABLE,
      "a string that runs is told"),
     ("watch", "s->stuck_ticks >= cfg->stuck_ticks ?", "s->stuck_ticks > cfg->stuck_ticks ?", TABLE, "an encoder that stands is told"),
-    ("guard", "if (differ && !g->params->pending) { g->broken = 1; }", "", TABLE, "a parameter that changed is told"),
+    ("guard", "if (exh_params_look(g->params)) { g->broken = 1; }", "", TABLE, "a parameter that changed is told"),
     ("guard", "if (g->crc != g->want) { g->broken = 1; }", "", TABLE, "a table that changed is told"),
     ("supply", "return s->off_ticks >= cfg->ticks;", "return 0;", TABLE, "a supply outside its limits is told"),
     ("supply", "raw <= cfg->max_raw", "1", TABLE, "above them, too"),
