@@ -119,8 +119,8 @@ world_rays := $(if $(filter -static,$(LDFLAGS)),,$(if $(call sees,embree3/rtcore
 world_mesh := $(B)/posix/examples/world/$(if $(world_rays),mesh_embree,mesh_none).o
 
 # 1: header, 2: library, 3: what of it: "yes" where the package has it, for this compiler and this way to link.
-gives     = $(if $(call have,$(1)),$(shell echo 'int main(void){return !$(3);}' | $(CC) \
-              $(filter -m% --target% -static,$(CFLAGS) $(LDFLAGS)) -include $(1) -xc - -o /dev/null -l$(2) 2>/dev/null && echo yes))
+gives     = $(if $(call have,$(1)),$(shell t=$$(mktemp) && echo 'int main(void){return !$(3);}' | $(CC) \
+              $(filter -m% --target% -static,$(CFLAGS) $(LDFLAGS)) -include $(1) -xc - -o $$t -l$(2) 2>/dev/null && echo yes; rm -f $$t))
 
 modbus   := $(if $(call gives,modbus/modbus.h,modbus,modbus_reply),libmodbus,none)
 cli_src  := $(filter-out ports/posix/cli/modbus_%.c,$(cli_src)) ports/posix/cli/modbus_mail.c $(wildcard ports/posix/cli/modbus_$(modbus)*.c)
