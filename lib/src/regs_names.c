@@ -47,7 +47,7 @@ const struct exh_regs_row exh_regs_bits_row[EXH_BITS] = {
 const struct exh_regs_row exh_regs_coil_row[EXH_COILS] = {
     {"APPLY", "", "all that is staged, at once, between two ticks"},
     {"DISCARD", "", "nothing is staged any more"},
-    {"SAVE", "", "keeps the parameters in effect, where the port has a place for them"},
+    {"SAVE", "", "keeps the parameters as they are wanted, where the port has a place for them"},
     {"OFF", "", "to OFF, by way of RELEASE where there may be a force"},
     {"RUN", "", "arms; where it has been allowed on the spot"},
     {"CLEAR", "", "FAULT to OFF; likewise"},

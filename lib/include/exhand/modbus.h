@@ -95,7 +95,7 @@ enum exh_regs_bits {
 enum exh_regs_coil {
     EXH_COIL_APPLY, /* all that is staged, at once, between two ticks        */
     EXH_COIL_DISCARD, /* nothing is staged any more                            */
-    EXH_COIL_SAVE, /* the parameters in effect, to where the port keeps them */
+    EXH_COIL_SAVE, /* the parameters as they are wanted, to where the port keeps them */
     EXH_COIL_OFF,
     EXH_COIL_RUN,
     EXH_COIL_CLEAR,

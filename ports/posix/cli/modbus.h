@@ -33,6 +33,10 @@ void mail_give(void);
 /* Between requests: writes what SAVE asked for. */
 void mail_save(void);
 
+/* Behind the last tick, when nobody answers any more: what clients were told would be done, and found no tick
+ * that did it, is. */
+void mail_end(void);
+
 /* modbus_libmodbus.c, or modbus_none.c without that package. where: "tcp:HOST:PORT",
  * "rtu:DEVICE:BAUD". 0, or 2 or 3 after a line on stderr. */
 int live_modbus_open(const char *where);

@@ -296,7 +296,7 @@ void live_modbus_close(void)
     if (server.serves) {
         close(server.stop[1]);
         pthread_join(server.thread, NULL);
-        mail_save();
+        mail_end();
         close(server.stop[0]);
     }
     server.serves = 0;

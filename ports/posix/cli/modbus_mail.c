@@ -2,16 +2,14 @@
 #include "modbus.h"
 
 #include "option.h"
+#include "params_file.h"
 
 #include "exhand/error.h"
 
 #include <errno.h>
 #include <pthread.h>
-#include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
-#define PATH_B  1024
 #define IMAGE_B (16u + 4u * EXH_REGS_VALUES)
 
 static struct {
@@ -119,6 +117,14 @@ void mail_before(struct exh_scene_in *in)
     mail_give();
 }
 
+/* One at a time: a second SAVE waits until the first is written. */
+static void make_image(void)
+{
+    if (!mail.save || mail.made_B != 0) { return; }
+    mail.made_B = exh_params_save(mail.sc->params, mail.image, sizeof mail.image);
+    mail.save = 0;
+}
+
 void mail_after(const struct exh_scene_in *in)
 {
     exh_trace_tick(&mail.own, mail.sc->safety->tick, mail.sc->signal);
@@ -126,47 +132,33 @@ void mail_after(const struct exh_scene_in *in)
     exh_trace_pass(&mail.own, &mail.shown);
     copy_values();
     exh_regs_see(&mail.regs, mail.sc->safety, in->drive.din);
-    if (mail.save && mail.made_B == 0) {
-        mail.made_B = exh_params_save(mail.sc->params, mail.image, sizeof mail.image);
-        mail.save = 0;
-    }
+    make_image();
     mail_give();
-}
-
-/* Whoever reads the file finds the old one or the new one, whatever happens in between. */
-static int write_file(const char *path, const void *bytes, size_t len_B)
-{
-    char new[PATH_B];
-    FILE *f;
-    int good;
-    if (snprintf(new, sizeof new, "%s.new", path) >= (int)sizeof new) { return -EXH_E_SHORT; }
-    f = fopen(new, "wb");
-    if (f == NULL) { return -EXH_E_IO; }
-    good = fwrite(bytes, 1, len_B, f) == len_B;
-    good &= fflush(f) == 0;
-    good &= fsync(fileno(f)) == 0;
-    good &= fclose(f) == 0;
-    if (good && rename(new, path) == 0) { return 0; }
-    (void)remove(new);
-    return -EXH_E_IO;
 }
 
 void mail_save(void)
 {
     static uint8_t image[IMAGE_B];
     int32_t len_B;
-    int err;
+    int why;
     pthread_mutex_lock(&lock);
     len_B = mail.made_B;
     if (len_B > 0) { memcpy(image, mail.image, (size_t)len_B); }
     mail_give();
     if (len_B == 0) { return; }
-    err = len_B < 0 ? (int)len_B : write_file(mail.cfg.save, image, (size_t)len_B);
+    why = len_B < 0 ? EFBIG : params_write(mail.cfg.save, image, (size_t)len_B);
     pthread_mutex_lock(&lock);
     mail.made_B = 0;
-    exh_regs_did(&mail.regs, err);
+    exh_regs_did(&mail.regs, why == 0 ? 0 : len_B < 0 ? (int)len_B : -EXH_E_IO);
     mail_give();
-    if (err < 0) {
-        cli_complain("--save: %s: can't be written: %s", mail.cfg.save, strerror(errno));
-    }
+    if (why) { cli_complain("--save: %s: can't be written: %s", mail.cfg.save, strerror(why)); }
+}
+
+void mail_end(void)
+{
+    struct exh_scene_in in = {0};
+    mail_save();
+    mail_before(&in); /* an APPLY that came with it is staged first, as before any tick */
+    make_image();
+    mail_save();
 }

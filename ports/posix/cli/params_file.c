@@ -20,23 +20,17 @@
 
 /* --- out --- */
 
-static int cannot(const char *path, int why)
-{
-    cli_complain("%s: can't be written: %s: make room, or give another file", path,
-                 strerror(why ? why : EIO));
-    return 1;
-}
-
+/* 0 or an errno. */
 static int put(int fd, const unsigned char *b, size_t n)
 {
     while (n > 0) {
         const ssize_t done = write(fd, b, n);
         if (done < 0 && errno == EINTR) { continue; }
-        if (done <= 0) { return -1; }
+        if (done <= 0) { return done < 0 ? errno : EIO; }
         b += done;
         n -= (size_t)done;
     }
-    return fsync(fd);
+    return fsync(fd) != 0 ? errno : 0;
 }
 
 /* The name is on disk when its directory is. Not everywhere can one be synchronised. */
@@ -55,25 +49,33 @@ static void sync_dir(const char *path)
     }
 }
 
-int params_save_file(const char *path, const struct exh_params *p)
+int params_write(const char *path, const void *image, size_t len_B)
 {
-    unsigned char image[PARAMS_FILE_B];
     char beside[PATH_B];
-    const int32_t n = exh_params_save(p, image, sizeof image);
     const int len = snprintf(beside, sizeof beside, "%s.%ld", path, (long)getpid());
     int fd, failed;
-    if (n < 0 || len < 0 || len >= PATH_B) { return cannot(path, n < 0 ? EFBIG : ENAMETOOLONG); }
+    if (len < 0 || len >= PATH_B) { return ENAMETOOLONG; }
     fd = open(beside, O_WRONLY | O_CREAT | O_TRUNC, 0666);
-    if (fd < 0) { return cannot(path, errno); }
-    failed = put(fd, image, (size_t)n) < 0 ? errno : 0;
+    if (fd < 0) { return errno; }
+    failed = put(fd, image, len_B);
     if (close(fd) != 0 && !failed) { failed = errno; }
     if (!failed && rename(beside, path) != 0) { failed = errno; }
     if (failed) {
         (void)remove(beside);
-        return cannot(path, failed);
+        return failed;
     }
     sync_dir(path);
     return 0;
+}
+
+int params_save_file(const char *path, const struct exh_params *p)
+{
+    unsigned char image[PARAMS_FILE_B];
+    const int32_t n = exh_params_save(p, image, sizeof image);
+    const int why = n < 0 ? EFBIG : params_write(path, image, (size_t)n);
+    if (why == 0) { return 0; }
+    cli_complain("%s: can't be written: %s: make room, or give another file", path, strerror(why));
+    return 1;
 }
 
 /* --- in --- */

@@ -19,6 +19,7 @@ struct params_file {
 
 /* Whole or not at all: a file beside it, on disk, then by that name. 0, or 1 after a line on stderr: what was
  * there before is there still. */
+int params_write(const char *path, const void *image, size_t len_B); /* 0 or an errno, and no line */
 int params_save_file(const char *path, const struct exh_params *p);
 
 /* Stages an image whole or nothing of it. 0, or -EXH_E_… after a line on stderr that begins with `name` and says

@@ -1,0 +1,173 @@
+/* SAVE is done if it was answered, whichever tick was the last; and what it keeps is what is wanted. */
+#include "said.h"
+
+#include "cli/modbus.h"
+#include "cli/params_file.h"
+
+#include "drop/drop.h"
+
+#include "exhand/error.h"
+
+static const struct exh_scene *const sc = &exh_scene_drop;
+static uint32_t k; /* index of a slewed value */
+
+static void begin(const char *path)
+{
+    const struct mail_cfg cfg = {path, 0};
+    const struct exh_scene_board board = {{1, 2000}, 24};
+    const int32_t i = (sc->defaults(), exh_signal_find(sc->params->table, 0x0401, 0));
+    CHECK(i >= 0, "no k");
+    k = (uint32_t)i;
+    sc->params->locked = 1;
+    sc->params->shift = 5;
+    mail_open(&cfg);
+    CHECK_EQ_I64(mail_start(sc, board), 0);
+}
+
+static void end(void)
+{
+    sc->params->locked = sc->params->shift = 0;
+}
+
+static void ask(unsigned coils)
+{
+    const uint8_t bits = (uint8_t)coils;
+    CHECK_EQ_I64(exh_regs_write_bits(mail_take(), 0, EXH_COILS, &bits), 0);
+    mail_give();
+}
+
+static void stage(int32_t raw)
+{
+    const uint32_t v = (uint32_t)raw;
+    const uint8_t words[4] = {(uint8_t)(v >> 24), (uint8_t)(v >> 16 & 255), (uint8_t)(v >> 8 & 255),
+                              (uint8_t)(v & 255)};
+    CHECK_EQ_I64(exh_regs_write(mail_take(), (uint16_t)(EXH_REGS_PARAM_AT + 2 * k), 2, words), 0);
+    mail_give();
+}
+
+static void tick(void)
+{
+    struct exh_scene_in in = {0};
+    mail_before(&in);
+    (void)exh_params_apply(sc->params);
+    mail_after(&in);
+}
+
+/* k of the file, by a box that starts with it; INT32_MIN: no file. */
+static int32_t kept(const char *path)
+{
+    FILE *f = fopen(path, "rb");
+    if (f == NULL) { return INT32_MIN; }
+    fclose(f);
+    end();
+    sc->defaults();
+    CHECK_EQ_I64(params_load_file(path, sc->params), 0);
+    return sc->params->staged[k];
+}
+
+#define APPLY (1u << EXH_COIL_APPLY)
+#define SAVE  (1u << EXH_COIL_SAVE)
+
+TEST(behind_the_last_tick_too)
+{
+    char *dir = said_dir();
+    const char *path = said_path(dir, "p.img");
+    int32_t was;
+    begin(path);
+    was = sc->params->staged[k];
+    tick();
+    ask(SAVE);
+    CHECK_EQ_I64(kept(path), INT32_MIN);
+    mail_end();
+    CHECK_EQ_I64(kept(path), was);
+    said_clean(dir);
+}
+
+/* The registers are in use at the last tick's end: nothing is copied there. */
+TEST(in_a_last_tick_that_found_the_registers_in_use)
+{
+    char *dir = said_dir();
+    const char *path = said_path(dir, "p.img");
+    struct exh_scene_in in = {0};
+    int32_t was;
+    begin(path);
+    was = sc->params->staged[k];
+    ask(SAVE);
+    mail_before(&in);
+    (void)mail_take();
+    mail_after(&in);
+    mail_give();
+    mail_end();
+    CHECK_EQ_I64(kept(path), was);
+    said_clean(dir);
+}
+
+/* The first is made and not yet written when the second is asked for: the second is what stays. */
+TEST(of_two_the_later_stays)
+{
+    char *dir = said_dir();
+    const char *path = said_path(dir, "p.img");
+    int32_t goal;
+    begin(path);
+    ask(SAVE);
+    tick();
+    goal = sc->params->staged[k] + 4096;
+    stage(goal);
+    ask(APPLY | SAVE);
+    tick();
+    mail_end();
+    CHECK_EQ_I64(kept(path), goal);
+    said_clean(dir);
+}
+
+TEST(what_was_applied_with_it_is_in_it)
+{
+    char *dir = said_dir();
+    const char *path = said_path(dir, "p.img");
+    int32_t goal;
+    begin(path);
+    tick();
+    goal = sc->params->staged[k] + 4096;
+    stage(goal);
+    ask(APPLY | SAVE);
+    mail_end();
+    CHECK_EQ_I64(kept(path), goal);
+    said_clean(dir);
+}
+
+TEST(it_keeps_what_is_wanted)
+{
+    char *dir = said_dir();
+    const char *path = said_path(dir, "p.img");
+    int32_t goal;
+    begin(path);
+    tick();
+    goal = sc->params->staged[k] + 4096;
+    stage(goal);
+    ask(APPLY | SAVE);
+    tick();
+    CHECK(sc->params->active[k] < goal && sc->params->moving, "it is there already");
+    stage(goal + 4096); /* not applied: not wanted */
+    mail_save();
+    mail_end();
+    CHECK_EQ_I64(kept(path), goal);
+    said_clean(dir);
+}
+
+TEST(what_cannot_be_written_leaves_what_was)
+{
+    char *dir = said_dir();
+    const char *path = said_path(dir, "no/p.img");
+    begin(path);
+    ask(SAVE);
+    tick();
+    mail_save();
+    CHECK_EQ_I64(mail_take()->result, -EXH_E_IO);
+    mail_give();
+    end();
+    said_clean(dir);
+}
+
+TEST_MAIN("save", behind_the_last_tick_too, in_a_last_tick_that_found_the_registers_in_use,
+          of_two_the_later_stays, what_was_applied_with_it_is_in_it, it_keeps_what_is_wanted,
+          what_cannot_be_written_leaves_what_was);
