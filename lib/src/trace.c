@@ -65,3 +65,27 @@ void exh_trace_pass(struct exh_trace *own, struct exh_trace *shown)
     for (; n != own->head; n++) { shown->frame[n & shown->mask] = own->frame[n & own->mask]; }
     shown->head = own->head;
 }
+
+/* --- state --- */
+
+static void frame_bytes(struct exh_bytes *c, struct exh_trace_frame *f)
+{
+    exh_bytes_u32(c, &f->number);
+    exh_bytes_u32(c, &f->tick);
+    for (unsigned i = 0; i < EXH_TRACE_SIGNALS; i++) { exh_bytes_i32(c, &f->raw[i]); }
+}
+
+void exh_trace_bytes(struct exh_bytes *c, struct exh_trace *t)
+{
+    exh_bytes_u32(c, &t->what.every);
+    for (unsigned i = 0; i < EXH_TRACE_SIGNALS; i++) {
+        exh_bytes_u32(c, &t->what.index[i]);
+        if (t->what.index[i] >= t->signals) { t->what.index[i] = 0; }
+    }
+    exh_bytes_u32(c, &t->first);
+    exh_bytes_u32(c, &t->head);
+    exh_bytes_u32(c, &t->run);
+    exh_bytes_u32(c, &t->left);
+    if (t->left >= t->what.every) { t->left = t->what.every > 0 ? t->what.every - 1 : 0; }
+    for (uint32_t i = 0; i <= t->mask; i++) { frame_bytes(c, &t->frame[i]); }
+}

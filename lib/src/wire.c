@@ -98,6 +98,25 @@ static void param_bytes(struct exh_bytes *c, struct exh_wire_param *p)
     exh_bytes_i32(c, &p->value);
 }
 
+static void trace_ask_bytes(struct exh_bytes *c, struct exh_wire_trace_ask *a)
+{
+    exh_bytes_u32(c, &a->every);
+    for (unsigned i = 0; i < EXH_TRACE_SIGNALS; i++) { exh_bytes_u16(c, &a->index[i]); }
+}
+
+static void trace_bytes(struct exh_bytes *c, struct exh_wire_trace *t)
+{
+    exh_bytes_u32(c, &t->request_seq);
+    exh_bytes_u32(c, &t->first);
+    exh_bytes_i16(c, &t->result);
+    exh_bytes_u8(c, &t->frames);
+    demand(c, t->frames <= EXH_WIRE_FRAMES && t->result <= 0 && (t->result == 0 || t->frames == 0));
+    for (unsigned i = 0; i < t->frames && i < EXH_WIRE_FRAMES; i++) {
+        exh_bytes_u32(c, &t->frame[i].tick);
+        i32s_bytes(c, t->frame[i].raw, EXH_TRACE_SIGNALS);
+    }
+}
+
 /* The payload of p->type; no such type: 0. */
 static int payload_bytes(struct exh_bytes *c, struct exh_wire_packet *p)
 {
@@ -111,6 +130,8 @@ static int payload_bytes(struct exh_bytes *c, struct exh_wire_packet *p)
         exh_bytes_i16(c, &p->u.ack.result);
         exh_bytes_u32(c, &p->u.ack.request_seq);
         return 1;
+    case EXH_WIRE_TRACE_ASK: trace_ask_bytes(c, &p->u.trace_ask); return 1;
+    case EXH_WIRE_TRACE: trace_bytes(c, &p->u.trace); return 1;
     default: return 0;
     }
 }

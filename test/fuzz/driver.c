@@ -63,6 +63,11 @@ static struct exh_wire_packet packet_of(uint8_t type)
             EXH_PLANE_HIT, 1, 7, {0, 0, 1 << 30}, {0, 0, 1 << 26}, {0, 0, 1 << 28}};
     } else if (type == EXH_WIRE_PARAM) {
         p.u.param = (struct exh_wire_param){0x0B01, 0, 5};
+    } else if (type == EXH_WIRE_TRACE_ASK) {
+        p.u.trace_ask = (struct exh_wire_trace_ask){4, {0, 1, 2, 300}};
+    } else if (type == EXH_WIRE_TRACE) {
+        p.u.trace.first = 0xFFFFFFFDu;
+        p.u.trace.frames = EXH_WIRE_FRAMES;
     }
     return p;
 }
@@ -70,8 +75,8 @@ static struct exh_wire_packet packet_of(uint8_t type)
 /* One per type behind a HELLO, and what a link does: twice, late, anew, short, nothing. */
 static void make_files(void)
 {
-    static const char *const name[] = {"hello", "state", "planes", "param", "ack"};
-    for (uint8_t t = EXH_WIRE_HELLO; t <= EXH_WIRE_ACK; t++) {
+    static const char *const name[] = {"hello", "state", "planes", "param", "ack", "trace-ask", "trace"};
+    for (uint8_t t = EXH_WIRE_HELLO; t <= EXH_WIRE_TRACE; t++) {
         for (unsigned right = 0; right < 2; right++) {
             struct input *in = &files[files_n++];
             struct exh_wire_tx tx = {9, 1};

@@ -178,6 +178,28 @@ static void must_hear(struct exh_wire_rx *rx, uint32_t session)
     MUST(exh_wire_take(rx, &p, buf, (size_t)n) == EXH_WIRE_PARAM);
 }
 
+/* Whatever is asked for is traced or refused; a trace of any values is read back as one in range. */
+static void asked(const struct exh_wire_trace_ask *a)
+{
+    struct exh_trace t;
+    struct exh_trace_frame frame[4];
+    const int32_t signal[300] = {0};
+    struct exh_trace_what what = {a->every, {0}};
+    struct exh_bytes c = exh_bytes_reader(a, sizeof *a);
+    int bad = 0, r;
+    for (unsigned i = 0; i < EXH_TRACE_SIGNALS; i++) {
+        what.index[i] = a->index[i];
+        bad |= a->index[i] >= 300;
+    }
+    MUST(exh_trace_setup(&t, frame, 4, 300) == 0);
+    r = exh_trace_start(&t, &what);
+    MUST((r < 0) == bad);
+    exh_trace_tick(&t, 1, signal);
+    MUST(t.head == (r == 0 && a->every > 0));
+    exh_trace_bytes(&c, &t);
+    for (int k = 0; k < 9; k++) { exh_trace_tick(&t, 2, signal); }
+}
+
 static void datagram(struct box *b, const struct exh_precontact_cfg *cfg, struct exh_params *params,
                      const uint8_t *packet, size_t len)
 {
@@ -200,6 +222,12 @@ static void datagram(struct box *b, const struct exh_precontact_cfg *cfg, struct
     } else if (r == EXH_WIRE_PARAM) {
         const struct exh_wire_ack ack = exh_wire_stage(params, &b->last);
         MUST(ack.result == 0 || memcmp(was.staged, b->staged, sizeof b->staged) == 0);
+    } else if (r == EXH_WIRE_TRACE) {
+        const struct exh_wire_trace *t = &b->last.u.trace;
+        MUST(t->frames <= EXH_WIRE_FRAMES && t->result <= 0 && (t->result == 0 || t->frames == 0));
+        MUST(exh_wire_trace_missed(t->first, t) == 0);
+    } else if (r == EXH_WIRE_TRACE_ASK) {
+        asked(&b->last.u.trace_ask);
     }
 }
 

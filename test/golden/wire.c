@@ -49,7 +49,7 @@ static void forge(struct golden_rng *r, struct datagram *d)
 {
     const int64_t how = golden_draw(r, 0, 6);
     if (how == 0) { d->b[2] = (uint8_t)golden_draw(r, 2, 255); }
-    if (how == 1) { d->b[3] = (uint8_t)golden_draw(r, 6, 255); }
+    if (how == 1) { d->b[3] = (uint8_t)golden_draw(r, 8, 255); }
     if (how == 2) { (void)memset(d->b + 6, 0, 4); }
     if (how == 3) { golden_body_spoil(r, d->b[3], d->b + 18); }
     if (how == 4) { d->b[0] ^= (uint8_t)(1 << golden_draw(r, 0, 7)); }
@@ -82,7 +82,7 @@ static void number(struct golden_rng *r, struct datagram *d)
 static uint8_t any_type(struct golden_rng *r)
 {
     const int usual = golden_draw(r, 0, 31) != 0;
-    uint8_t type = (uint8_t)(usual ? golden_draw(r, 1, 5) : golden_draw(r, 6, 255) % 255);
+    uint8_t type = (uint8_t)(usual ? golden_draw(r, 1, 7) : golden_draw(r, 8, 255) % 255);
     if (!world.begun && golden_draw(r, 0, 1) != 0) {
         type = EXH_WIRE_HELLO;
         world.begun = 1;

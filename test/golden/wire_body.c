@@ -48,6 +48,18 @@ static void param_list(struct exh_bytes *c, struct exh_wire_param *s)
     exh_bytes_i32(c, &s->value);
 }
 
+static void trace_list(struct exh_bytes *c, struct exh_wire_trace *s)
+{
+    exh_bytes_u32(c, &s->request_seq);
+    exh_bytes_u32(c, &s->first);
+    exh_bytes_i16(c, &s->result);
+    exh_bytes_u8(c, &s->frames);
+    for (int f = 0; f < s->frames && f < 11; f++) {
+        exh_bytes_u32(c, &s->frame[f].tick);
+        i32s(c, s->frame[f].raw, 4);
+    }
+}
+
 void golden_body_list(struct exh_bytes *c, struct exh_wire_packet *p)
 {
     switch (p->type) {
@@ -64,14 +76,20 @@ void golden_body_list(struct exh_bytes *c, struct exh_wire_packet *p)
         exh_bytes_i16(c, &p->u.ack.result);
         exh_bytes_u32(c, &p->u.ack.request_seq);
         break;
+    case EXH_WIRE_TRACE_ASK:
+        exh_bytes_u32(c, &p->u.trace_ask.every);
+        for (int i = 0; i < 4; i++) { exh_bytes_u16(c, &p->u.trace_ask.index[i]); }
+        break;
+    case EXH_WIRE_TRACE: trace_list(c, &p->u.trace); break;
     default: break;
     }
 }
 
+/* Of TRACE: the longest. */
 static uint32_t length_of(int64_t type)
 {
-    static const uint8_t length[] = {0, 9, 214, 209, 8, 14};
-    return type <= 5 ? length[type] : 0;
+    static const uint8_t length[] = {0, 9, 214, 209, 8, 14, 12, 231};
+    return type <= 7 ? length[type] : 0;
 }
 
 static void any_param(struct golden_rng *r, uint8_t *b)
@@ -104,6 +122,11 @@ void golden_body_any(struct golden_rng *r, int64_t type, uint8_t *b)
         b[5] %= 3;
         b[6] &= 31;
         b[7] &= 31;
+    }
+    if (type == EXH_WIRE_TRACE) {
+        b[8] = b[9] = 0;
+        b[10] = (uint8_t)golden_draw(r, 0, 11);
+        if (b[10] == 0) { b[9] = (uint8_t)golden_draw(r, 128, 255); }
     }
     if (type != EXH_WIRE_PLANES) { return; }
     b[8] &= 31;
@@ -142,4 +165,10 @@ void golden_body_spoil(struct golden_rng *r, int64_t type, uint8_t *b)
         }
     }
     if (type == EXH_WIRE_PLANES) { spoil_planes(r, b); }
+    if (type != EXH_WIRE_TRACE) { return; }
+    switch (golden_draw(r, 0, 2)) {
+    case 0: b[10] = (uint8_t)golden_draw(r, 12, 255); break; /* more than fit */
+    case 1: b[9] = 1; break;                                 /* a positive result */
+    default: b[9] = 255, b[10] = (uint8_t)(b[10] | 1);       /* refused, and frames */
+    }
 }

@@ -31,6 +31,13 @@ static struct exh_wire_packet any_packet(uint8_t type)
         }
     } else if (type == EXH_WIRE_PARAM) {
         p.u.param = (struct exh_wire_param){(uint16_t)check_u64(), 1, check_i32()};
+    } else if (type == EXH_WIRE_TRACE_ASK) {
+        p.u.trace_ask.every = (uint32_t)check_u64();
+        p.u.trace_ask.index[check_u64() & 3] = (uint16_t)check_u64();
+    } else if (type == EXH_WIRE_TRACE) {
+        p.u.trace.first = (uint32_t)check_u64();
+        p.u.trace.frames = (uint8_t)(check_u64() % (EXH_WIRE_FRAMES + 1));
+        for (unsigned i = 0; i < p.u.trace.frames; i++) { p.u.trace.frame[i].raw[i & 3] = check_i32(); }
     } else {
         p.u.ack.result = (int16_t)check_i32_in(-12, 0);
     }
@@ -51,7 +58,7 @@ TEST(there_and_back)
         struct exh_wire_packet p = any_packet(EXH_WIRE_HELLO), back;
         uint8_t a[EXH_WIRE_MAX_B], b[EXH_WIRE_MAX_B];
         const int32_t hello_B = exh_wire_write(&tx, &p, 0, a, sizeof a);
-        const uint8_t type = (uint8_t)(1 + check_u64() % 5);
+        const uint8_t type = (uint8_t)(1 + check_u64() % EXH_WIRE_TRACE);
         int32_t n, m;
         CHECK(exh_wire_take(&rx, &back, a, (size_t)hello_B) == EXH_WIRE_HELLO, "hello");
         p = any_packet(type);
@@ -173,7 +180,7 @@ TEST(a_good_peer_is_heard_after_a_silence)
         for (int k = 0; k < 100; k++) {
             struct exh_wire_tx any = {3 + (uint32_t)(check_u64() % 4), (uint32_t)check_u64()};
             if (check_u64() & 1) { any.seq = rx.seq + (uint32_t)check_i32_in(-70, 70000); }
-            p = any_packet((uint8_t)(check_u64() % 3 ? 1 : 1 + check_u64() % 5));
+            p = any_packet((uint8_t)(check_u64() % 3 ? 1 : 1 + check_u64() % EXH_WIRE_TRACE));
             n = exh_wire_write(&any, &p, 0, b, sizeof b);
             (void)exh_wire_take(&rx, &p, b, (size_t)n);
             (void)exh_wire_pass(&rx, (uint32_t)(check_u64() % limit_us), limit_us);

@@ -226,6 +226,33 @@ TEST(halves_and_edges_of_its_registers)
     CHECK_EQ_I64(writes(&r, EXH_REGS_TRACE_AT, 1, high), EXH_MODBUS_ADDRESS);
 }
 
+TEST(state_there_and_back_and_brought_into_range)
+{
+    uint8_t b[36 + 24 * FRAMES], hostile[sizeof b];
+    struct exh_bytes c = exh_bytes_writer(b, sizeof b);
+    begin(FRAMES);
+    t.head = UINT32_MAX - 2;
+    trace(&t, 3, 2);
+    ticks(7, 20);
+    exh_trace_bytes(&c, &t);
+    CHECK(exh_bytes_ok(&c) && c.at == sizeof b, "%lu B", (unsigned long)c.at);
+    c = exh_bytes_reader(b, sizeof b);
+    exh_trace_bytes(&c, &shown);
+    CHECK(memcmp(frame, shown_frame, FRAMES * sizeof frame[0]) == 0 && shown.head == t.head && shown.first == t.first &&
+              shown.left == t.left && shown.run == t.run && memcmp(&shown.what, &t.what, sizeof t.what) == 0,
+          "not what was written");
+    memset(hostile, 0xFF, sizeof hostile);
+    c = exh_bytes_reader(hostile, sizeof hostile);
+    exh_trace_bytes(&c, &t);
+    CHECK(t.mask == FRAMES - 1 && t.signals == SIGNALS && t.frame == frame, "what is set up is no state");
+    for (unsigned i = 0; i < EXH_TRACE_SIGNALS; i++) { CHECK_EQ_I64(t.what.index[i], 0); }
+    CHECK_EQ_I64(t.left, UINT32_MAX - 1);
+    memset(hostile, 0, 4); /* none is traced */
+    c = exh_bytes_reader(hostile, sizeof hostile);
+    exh_trace_bytes(&c, &t);
+    CHECK_EQ_I64(t.left, 0);
+}
+
 TEST_MAIN("trace", what_cannot_be_is_refused, every_nth_tick_from_the_next_on, the_newest_are_held,
           numbers_go_on_and_wrap, a_frame_that_never_was_has_another_number, passed_on_whole,
-          set_and_read_by_registers, halves_and_edges_of_its_registers);
+          state_there_and_back_and_brought_into_range, set_and_read_by_registers, halves_and_edges_of_its_registers);

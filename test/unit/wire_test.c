@@ -45,6 +45,20 @@ static struct exh_wire_packet sample(uint8_t type)
                                                       {0, 0, 1 << 30}, {0, 0, 100}, {5, -6, 100}};
         break;
     case EXH_WIRE_PARAM: p.u.param = (struct exh_wire_param){0x0401, 3, -9}; break;
+    case EXH_WIRE_TRACE_ASK:
+        p.u.trace_ask = (struct exh_wire_trace_ask){20, {1, 0xFFFF, 3, 0x0102}};
+        break;
+    case EXH_WIRE_TRACE:
+        p.u.trace.request_seq = 6;
+        p.u.trace.first = 0xFFFFFFFEu;
+        p.u.trace.frames = 3;
+        for (unsigned i = 0; i < 3; i++) {
+            p.u.trace.frame[i].tick = 100 + i;
+            for (unsigned k = 0; k < EXH_TRACE_SIGNALS; k++) {
+                p.u.trace.frame[i].raw[k] = -(v += 0x01010101);
+            }
+        }
+        break;
     default: p.u.ack = (struct exh_wire_ack){{0x0401, 3, -9}, -EXH_E_RANGE, 6}; break;
     }
     return p;
@@ -85,16 +99,16 @@ TEST(bytes_are_those_of_the_document)
     static const uint8_t param[] = {0x58, 0x57, 2, 4, 8,    0,    0x0D, 0xF0, 0xAD,
                                     0xBA, 2,    0, 0, 0,    0xE8, 3,    0,    0,
                                     0x01, 0x04, 3, 0, 0xF7, 0xFF, 0xFF, 0xFF};
-    static const uint32_t sizes[] = {31, 236, 231, 30, 36};
+    static const uint32_t sizes[] = {31, 236, 231, 30, 36, 34, 93};
     CHECK_EQ_I64(write_as(EXH_WIRE_PARAM, 0xBAADF00Du, 2), sizeof param + 4);
     CHECK(memcmp(buf, param, sizeof param) == 0, "head and payload");
     CHECK(buf[26] == (exh_crc32(0, param, sizeof param) & 0xFF), "CRC");
-    for (uint8_t t = 1; t <= 5; t++) { CHECK_EQ_I64(write_as(t, 1, 0), sizes[t - 1]); }
+    for (uint8_t t = 1; t <= EXH_WIRE_TRACE; t++) { CHECK_EQ_I64(write_as(t, 1, 0), sizes[t - 1]); }
 }
 
 TEST(there_and_back)
 {
-    for (uint8_t t = 1; t <= 5; t++) {
+    for (uint8_t t = 1; t <= EXH_WIRE_TRACE; t++) {
         struct exh_wire_rx rx = met(9, 0);
         struct exh_wire_tx tx = {9, 1};
         struct exh_wire_packet p = sample(t), back = {.type = 0};
@@ -111,7 +125,7 @@ TEST(there_and_back)
 
 TEST(every_bit_flipped_and_every_byte_cut_off)
 {
-    for (uint8_t t = 1; t <= 5; t++) {
+    for (uint8_t t = 1; t <= EXH_WIRE_TRACE; t++) {
         const struct exh_wire_rx start = met(9, 0);
         const uint32_t n = write_as(t, 9, 1);
         const struct exh_wire_packet before = sample(5);
@@ -151,7 +165,14 @@ TEST(values_that_cannot_be)
         {EXH_WIRE_PLANES, 18 + 9 + 2 * 40, 1, -EXH_E_CRC}, /* told of a finger not in the mask */
         {EXH_WIRE_PARAM, 2, 1, -EXH_E_VERSION},
         {EXH_WIRE_PARAM, 3, 0, -EXH_E_UNKNOWN},
-        {EXH_WIRE_PARAM, 3, 6, -EXH_E_UNKNOWN},
+        {EXH_WIRE_TRACE, 18 + 8, 1, -EXH_E_CRC}, /* no result is positive */
+        {EXH_WIRE_TRACE, 18 + 9, 0xFF, -EXH_E_CRC}, /* refused, and frames */
+        {EXH_WIRE_TRACE, 18 + 10, 2, -EXH_E_CRC}, /* fewer frames than there are */
+        {EXH_WIRE_TRACE, 18 + 10, 4, -EXH_E_CRC}, /* more */
+        {EXH_WIRE_TRACE, 18 + 10, EXH_WIRE_FRAMES + 1, -EXH_E_CRC},
+        {EXH_WIRE_TRACE, 18 + 10, 255, -EXH_E_CRC},
+        {EXH_WIRE_TRACE_ASK, 3, EXH_WIRE_PARAM, -EXH_E_CRC}, /* longer than that one */
+        {EXH_WIRE_PARAM, 3, 8, -EXH_E_UNKNOWN},
         {EXH_WIRE_PARAM, 3, 5, -EXH_E_CRC}, /* another type of another length */
         {EXH_WIRE_PARAM, 0, 0, -EXH_E_CRC},
         {EXH_WIRE_PARAM, 4, 9, -EXH_E_SHORT},
@@ -166,6 +187,34 @@ TEST(values_that_cannot_be)
         CHECK(take(&rx, n) == bad[i].want, "case %d", (int)i);
         CHECK(rx.corrupt + rx.version + rx.unknown == 1 && rx.seq == start.seq, "case %d", (int)i);
     }
+}
+
+TEST(a_trace_fits_a_packet_whole_and_no_frame_is_missed_unseen)
+{
+    struct exh_wire_rx rx = met(9, 0);
+    struct exh_wire_packet p = sample(EXH_WIRE_TRACE), back;
+    struct exh_wire_tx tx = {9, 1};
+    uint32_t next = p.u.trace.first;
+    for (uint8_t n = 0; n <= EXH_WIRE_FRAMES; n++) {
+        p.u.trace.frames = n;
+        CHECK_EQ_I64(exh_wire_write(&tx, &p, 0, buf, sizeof buf), 33 + 20 * n);
+        CHECK_EQ_I64(take(&rx, 33 + 20u * n), EXH_WIRE_TRACE);
+    }
+    p.u.trace.frames = EXH_WIRE_FRAMES + 1;
+    CHECK_EQ_I64(exh_wire_write(&tx, &p, 0, buf, sizeof buf), -EXH_E_RANGE);
+    p.u.trace.frames = 1;
+    p.u.trace.result = -EXH_E_RANGE;
+    CHECK_EQ_I64(exh_wire_write(&tx, &p, 0, buf, sizeof buf), -EXH_E_RANGE);
+    p = sample(EXH_WIRE_TRACE);
+    for (int k = 0; k < 5; k++) { /* the third does not come: numbers wrap in it */
+        const int32_t n = exh_wire_write(&tx, &p, 0, buf, sizeof buf);
+        p.u.trace.first += 3;
+        if (k == 2) { continue; }
+        CHECK_EQ_I64(exh_wire_take(&rx, &back, buf, (size_t)n), EXH_WIRE_TRACE);
+        CHECK_EQ_I64(exh_wire_trace_missed(next, &back.u.trace), k == 3 ? 3 : 0);
+        next = back.u.trace.first + back.u.trace.frames;
+    }
+    CHECK_EQ_I64(next, 13);
 }
 
 TEST(only_what_is_newer)
@@ -212,7 +261,7 @@ TEST(far_ahead_is_not_believed)
 {
     static const uint32_t ahead[] = {EXH_WIRE_AHEAD + 1, 0x12345678u, 0x7FFFFFFFu};
     struct exh_wire_rx rx = met(9, 0xFFFFFFF0u);
-    for (uint8_t type = 1; type <= 5; type++) {
+    for (uint8_t type = 1; type <= EXH_WIRE_TRACE; type++) {
         for (size_t i = 0; i < LEN(ahead); i++) {
             struct exh_wire_rx was = rx;
             CHECK_EQ_I64(take(&rx, write_as(type, 9, rx.seq + ahead[i])), -EXH_E_RANGE);
@@ -402,7 +451,8 @@ TEST(state_round_trip)
 }
 
 TEST_MAIN("unit/wire", bytes_are_those_of_the_document, there_and_back,
-          every_bit_flipped_and_every_byte_cut_off, values_that_cannot_be, only_what_is_newer,
+          every_bit_flipped_and_every_byte_cut_off, values_that_cannot_be,
+          a_trace_fits_a_packet_whole_and_no_frame_is_missed_unseen, only_what_is_newer,
           sequence_numbers_wrap, far_ahead_is_not_believed, no_packet_makes_it_deaf_for_good,
           silence_is_only_what_is_heard_of_nobody, what_differs_is_said_by_name, a_restart_is_seen_by_its_hello, writing_refuses,
           planes_and_round_trip, parameters_are_staged_and_answered, state_round_trip);

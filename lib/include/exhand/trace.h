@@ -1,11 +1,13 @@
 /* Trace: a few signals of every n-th tick, in memory of the caller's, until somebody fetches them.
  *
- * A monitor, no part of a scene: it reads what a tick has made and changes nothing, and is in no
- * keyframe and no log. Each frame has a number, one more than the frame before it; numbers go on
+ * It reads what a tick has made and changes nothing. Modbus keeps one that is no part of a scene, in
+ * no keyframe and no log; one whose frames go out over the wire is its scene's state. Each frame has a number, one more than the frame before it; numbers go on
  * when another trace is started, so that whoever reads sees each frame that he did not get.
  */
 #ifndef EXHAND_TRACE_H
 #define EXHAND_TRACE_H
+
+#include "exhand/bytes.h"
 
 #include <stdint.h>
 
@@ -60,6 +62,11 @@ static inline uint32_t exh_trace_oldest(const struct exh_trace *t)
  * is called while he does not use it. A trace that was started on `shown` is started on `own`; else
  * the frames that `shown` has not yet are copied, at most all that `own` holds. */
 void exh_trace_pass(struct exh_trace *own, struct exh_trace *shown);
+
+/* State through a cursor, the frames in memory with it; t is set up, for as many frames and signals.
+ * What is read is brought back into range: an index of none of the signals is 0, no wait is longer
+ * than the trace has. 36 bytes and 24 more a frame. */
+void exh_trace_bytes(struct exh_bytes *c, struct exh_trace *t);
 
 #ifdef __cplusplus
 }

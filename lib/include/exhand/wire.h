@@ -14,6 +14,7 @@
 #include "exhand/bytes.h"
 #include "exhand/precontact.h"
 #include "exhand/signal.h"
+#include "exhand/trace.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -28,6 +29,7 @@ extern "C" {
 #define EXH_WIRE_OVERHEAD 22  /* bytes around a payload                          */
 #define EXH_WIRE_MAX_B    256 /* no packet is longer                             */
 #define EXH_WIRE_NEVER_MS 65535u
+#define EXH_WIRE_FRAMES   11 /* of a trace in a packet, at most                   */
 #define EXH_WIRE_AHEAD    65536u /* sequence numbers that may be skipped at once, and one */
 
 enum exh_wire_type {
@@ -35,7 +37,9 @@ enum exh_wire_type {
     EXH_WIRE_STATE = 2, /* controller -> world, one an exchange                */
     EXH_WIRE_PLANES = 3, /* world -> controller, answers it                    */
     EXH_WIRE_PARAM = 4, /* world -> controller: set a parameter                */
-    EXH_WIRE_ACK = 5    /* controller -> world: it was, or why not             */
+    EXH_WIRE_ACK = 5,   /* controller -> world: it was, or why not             */
+    EXH_WIRE_TRACE_ASK = 6, /* world -> controller: trace these                */
+    EXH_WIRE_TRACE = 7  /* controller -> world: frames of it                   */
 };
 
 enum exh_wire_role { EXH_WIRE_CONTROLLER, EXH_WIRE_WORLD };
@@ -97,6 +101,22 @@ struct exh_wire_ack {
     uint32_t request_seq;
 };
 
+struct exh_wire_trace_ask {
+    uint32_t every;                    /* ticks from frame to frame; 0: none  */
+    uint16_t index[EXH_TRACE_SIGNALS]; /* of values in the table of outputs   */
+};
+struct exh_wire_frame {
+    uint32_t tick;
+    int32_t raw[EXH_TRACE_SIGNALS];
+};
+struct exh_wire_trace {
+    uint32_t request_seq; /* of the newest TRACE_ASK                           */
+    uint32_t first;       /* number of frame[0], or of the next one if there is none */
+    int16_t result;       /* 0; or -EXH_E_...: refused, nothing is traced      */
+    uint8_t frames;       /* told of                                           */
+    struct exh_wire_frame frame[EXH_WIRE_FRAMES];
+};
+
 struct exh_wire_packet {
     uint8_t type;
     uint32_t seq, stamp_us;
@@ -106,6 +126,8 @@ struct exh_wire_packet {
         struct exh_wire_planes planes;
         struct exh_wire_param param;
         struct exh_wire_ack ack;
+        struct exh_wire_trace_ask trace_ask;
+        struct exh_wire_trace trace;
     } u;
 };
 
@@ -118,8 +140,8 @@ struct exh_wire_tx {
 };
 
 /* Writes p (type and payload; seq and stamp_us are set here and left in p). Bytes written, or, in
- * this order, -EXH_E_UNKNOWN (no such type), -EXH_E_RANGE (session 0, or a role, kind or mask
- * that no receiver would take), -EXH_E_SHORT (cap_B too small; EXH_WIRE_MAX_B never is); then
+ * this order, -EXH_E_UNKNOWN (no such type), -EXH_E_RANGE (session 0, or a role, kind, mask,
+ * result or number of frames that no receiver would take), -EXH_E_SHORT (cap_B too small; EXH_WIRE_MAX_B never is); then
  * nothing is used up but what buf held. */
 int32_t exh_wire_write(struct exh_wire_tx *tx, struct exh_wire_packet *p, uint32_t stamp_us,
                        void *buf, size_t cap_B);
@@ -173,6 +195,13 @@ struct exh_wire_ack exh_wire_stage(struct exh_params *params, const struct exh_w
 static inline uint32_t exh_wire_trip_us(uint32_t now_us, const struct exh_wire_planes *planes)
 {
     return now_us - planes->echo_stamp_us;
+}
+
+/* Frames that never came, modulo 2^32, to one who has all before number `next`; his next is then
+ * t->first + t->frames. */
+static inline uint32_t exh_wire_trace_missed(uint32_t next, const struct exh_wire_trace *t)
+{
+    return t->first - next;
 }
 
 /* State through a cursor: what a controller keeps of its link. */

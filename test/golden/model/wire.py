@@ -6,8 +6,8 @@ from struct import Struct, pack, unpack_from
 from .num import AGAIN, CRC, M32, RANGE, SHORT, STALE, STATE, TICKS, UNKNOWN, VERSION, Rng
 from .signal import VALUES, Params
 
-HELLO, TELL, PLANES, PARAM, ACK = range(1, 6)
-LENGTH = {HELLO: 9, TELL: 214, PLANES: 209, PARAM: 8, ACK: 14}
+HELLO, TELL, PLANES, PARAM, ACK, TRACE_ASK, TRACE = range(1, 8)
+LENGTH = {HELLO: 9, TELL: 214, PLANES: 209, PARAM: 8, ACK: 14, TRACE_ASK: 12, TRACE: 231}  # of TRACE: the longest
 MASKS = {TELL: (4, 6, 7), PLANES: (8,)}
 COUNTS = "accepted missing duplicate reordered old stranger corrupt version unknown far silences".split()
 AHEAD, QUIET = 1 << 16, 1000000
@@ -17,6 +17,11 @@ def sealed(head):
     return head + pack("<I", zlib.crc32(head))
 
 
+def length(kind, body):
+    """A payload's, by what it says."""
+    return 11 + 20 * body[10] if kind == TRACE and len(body) > 10 else 11 if kind == TRACE else LENGTH[kind]
+
+
 def may_be(kind, body):
     """1 if the payload's values can be."""
     if kind == HELLO and body[0] > 1 or kind == TELL and body[5] > 5 or any(body[i] > 31 for i in MASKS.get(kind, ())):
@@ -24,6 +29,9 @@ def may_be(kind, body):
     if kind == PLANES:
         told = [body[9 + 40 * f] for f in range(5)]
         return int(max(told) <= 2 and all(body[8] >> f & 1 for f in range(5) if told[f]))
+    if kind == TRACE:
+        result, frames = unpack_from("<hB", body, 8)
+        return int(frames <= 11 and result <= 0 and (result == 0 or frames == 0))
     return 1
 
 
@@ -66,7 +74,7 @@ class Receiver:
             return self.wrong("version", VERSION)
         if kind not in LENGTH:
             return self.wrong("unknown", UNKNOWN)
-        if n != LENGTH[kind] or not may_be(kind, p[18:-4]):
+        if n != length(kind, p[18:-4]) or not may_be(kind, p[18:-4]):
             return self.wrong("corrupt", CRC)
         ahead, same = seq - self.seq & M32, session == self.session
         if same and 1 <= ahead <= AHEAD:
@@ -133,6 +141,11 @@ def any_body(rng, kind):
         body[i] &= 31
     if kind == TELL:
         body[5] %= 3
+    if kind == TRACE:
+        body[8:10] = bytes(2)
+        body[10] = rng.draw(0, 11)
+        if body[10] == 0:
+            body[9] = rng.draw(128, 255)
     if kind == PLANES:
         for f in range(5):
             told = rng.draw(0, 2)
@@ -160,6 +173,14 @@ def spoil(rng, kind, body):
         else:
             body[8] &= ~(1 << f)
             body[9 + 40 * f] = rng.draw(1, 2)
+    elif kind == TRACE:
+        how = rng.draw(0, 2)
+        if how == 0:
+            body[10] = rng.draw(12, 255)
+        elif how == 1:
+            body[9] = 1
+        else:
+            body[9], body[10] = 255, body[10] | 1
 
 
 def forged(rng, p):
@@ -168,7 +189,7 @@ def forged(rng, p):
     if how == 0:
         head[2] = rng.draw(2, 255)
     elif how == 1:
-        head[3] = rng.draw(6, 255)
+        head[3] = rng.draw(8, 255)
     elif how == 2:
         head[6:10] = bytes(4)
     elif how == 3:
@@ -197,7 +218,7 @@ class World:
             self.tx, self.begun = Sender(rng.u64() & M32 | 1, self.tx.seq), 0
         if rng.draw(0, 31) == 0:
             self.tx.seq = self.tx.seq + rng.draw(1, 200) & M32
-        kind = rng.draw(1, 5) if rng.draw(0, 31) else rng.draw(6, 255) % 255
+        kind = rng.draw(1, 7) if rng.draw(0, 31) else rng.draw(8, 255) % 255
         if not self.begun and rng.draw(0, 1):
             kind, self.begun = HELLO, 1
         if self.rx.open and rng.draw(0, 1):
@@ -205,6 +226,8 @@ class World:
         body = any_body(rng, kind)
         if rng.draw(0, 3) == 0:
             spoil(rng, kind, body)
+        if kind == TRACE:
+            body = body[:11 + 20 * body[10]]
         stamp = rng.u64() & M32
         cap = 256 if rng.draw(0, 7) else rng.draw(0, 255)
         tx = self.tx if rng.draw(0, 63) else Sender(0, 0)
