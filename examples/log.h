@@ -10,7 +10,7 @@
 /* Ticks between keyframes: a replay may start at each. */
 #define EXH_LOG_KEYFRAME_TICKS 1024u
 /* The largest record: header or keyframe with all parameters of a scene. */
-#define EXH_LOG_RECORD_B 4096u
+#define EXH_LOG_RECORD_B 5120u
 
 void exh_log_start(const struct exh_scene *sc, struct exh_scene_board board);
 void exh_log_before(uint32_t tick, struct exh_scene_in *in);

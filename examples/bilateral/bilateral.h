@@ -128,6 +128,19 @@ struct bilateral_wire_cfg {
     struct exh_wire_hello hello; /* ours                                       */
 };
 
+#define BILATERAL_FRAMES 16 /* of a trace, in memory: more than a packet holds */
+
+/* Signals of every n-th tick, as the world asks for them, behind all else that goes out. */
+struct bilateral_trace {
+    struct exh_trace of;
+    struct exh_trace_frame frame[BILATERAL_FRAMES];
+    uint32_t request_seq; /* of the newest packet that asked                    */
+    uint32_t next;        /* number of the first frame that has not gone out    */
+    uint32_t wait_ticks;  /* since then there have been such                    */
+    int16_t result;       /* of what was asked                                  */
+    uint8_t answer;       /* 1: it is still to be told                          */
+};
+
 struct bilateral_wire {
     struct exh_wire_tx tx;
     struct exh_wire_rx rx;
@@ -141,6 +154,7 @@ struct bilateral_wire {
     uint32_t odd;        /* HELLOs that differed                               */
     uint8_t acks;        /* answers to be given at the end of this tick          */
     struct exh_wire_ack ack[EXH_SCENE_PACKETS];
+    struct bilateral_trace trace;
 };
 
 /* --- all --- */
@@ -208,7 +222,7 @@ static inline unsigned bilateral_at(const struct bilateral_cfg *cfg, unsigned k)
     return cfg->at[k] < BILATERAL_FINGERS ? cfg->at[k] : 0;
 }
 
-/* --- parts (finger.c, wire.c) --- */
+/* --- parts (finger.c, wire.c, trace.c) --- */
 
 int bilateral_finger_setup(struct bilateral_cfg *cfg, struct bilateral *s, unsigned place,
                            struct exh_scene_board board, struct exh_scene_calib *calib);
@@ -218,6 +232,15 @@ void bilateral_wire_take(struct bilateral *s, const struct bilateral_cfg *cfg,
                          const struct exh_scene_mail *in, uint32_t missed,
                          struct exh_params *params);
 void bilateral_wire_bytes(struct exh_bytes *c, struct bilateral_wire *s);
+/* One packet, if there is room. */
+void bilateral_wire_put(struct bilateral_wire *w, struct exh_scene_mail *out, struct exh_wire_packet *p);
+/* Nobody has asked, or who did has gone. */
+void bilateral_trace_stop(struct bilateral_trace *t);
+void bilateral_trace_ask(struct bilateral_trace *t, const struct exh_wire_packet *p);
+/* Behind a tick: its frame, and one packet at most. */
+void bilateral_trace_write(struct bilateral *s, const struct bilateral_signals *sig,
+                           struct exh_scene_mail *out);
+void bilateral_trace_bytes(struct exh_bytes *c, struct bilateral_trace *t);
 void bilateral_finger_bytes(struct exh_bytes *c, struct bilateral_finger *s);
 
 /* The age of what is known of where it is; UINT32_MAX: nothing, as one of its sensors is not

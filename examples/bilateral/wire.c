@@ -77,7 +77,10 @@ void bilateral_wire_take(struct bilateral *s, const struct bilateral_cfg *cfg,
         struct exh_wire_packet p;
         const uint32_t session = w->rx.session;
         const int type = exh_wire_take(&w->rx, &p, in->byte[i], in->len_B[i]);
-        if (w->rx.session != session) { w->exchanges = 0; } /* a world that does not know us yet */
+        if (w->rx.session != session) { /* a world that does not know us yet, and has asked for nothing */
+            w->exchanges = 0;
+            bilateral_trace_stop(&w->trace);
+        }
         if (type == EXH_WIRE_HELLO) {
             w->differs = exh_wire_differs(&cfg->wire.hello, &p.u.hello);
             w->odd += w->differs != 0;
@@ -87,13 +90,15 @@ void bilateral_wire_take(struct bilateral *s, const struct bilateral_cfg *cfg,
             const struct exh_wire_ack ack = stage(params, &p);
             w->set += ack.result == 0;
             w->ack[w->acks++] = ack;
+        } else if (type == EXH_WIRE_TRACE_ASK) {
+            bilateral_trace_ask(&w->trace, &p);
         }
     }
 }
 
 /* --- out --- */
 
-static void put(struct bilateral_wire *w, struct exh_scene_mail *out, struct exh_wire_packet *p)
+void bilateral_wire_put(struct bilateral_wire *w, struct exh_scene_mail *out, struct exh_wire_packet *p)
 {
     int32_t n;
     if (out->packets == EXH_SCENE_PACKETS) { return; }
@@ -106,7 +111,7 @@ static void put_hello(struct bilateral_wire *w, const struct bilateral_wire_cfg 
 {
     struct exh_wire_packet p = {.type = EXH_WIRE_HELLO};
     p.u.hello = cfg->hello;
-    put(w, out, &p);
+    bilateral_wire_put(w, out, &p);
 }
 
 static void finger_of(struct exh_wire_state *to, const struct bilateral *s,
@@ -147,7 +152,7 @@ static void put_state(struct bilateral *s, const struct bilateral_cfg *cfg,
     for (unsigned k = 0; k < bilateral_n(cfg); k++) {
         finger_of(&p.u.state, s, &sig->paper[bilateral_at(cfg, k)], bilateral_at(cfg, k));
     }
-    put(&s->wire, out, &p);
+    bilateral_wire_put(&s->wire, out, &p);
 }
 
 void bilateral_write(struct bilateral *s, const struct bilateral_cfg *cfg,
@@ -167,9 +172,10 @@ void bilateral_write(struct bilateral *s, const struct bilateral_cfg *cfg,
     for (unsigned i = 0; i < w->acks; i++) { /* what has no room is asked for again */
         struct exh_wire_packet p = {.type = EXH_WIRE_ACK};
         p.u.ack = w->ack[i];
-        put(w, out, &p);
+        bilateral_wire_put(w, out, &p);
     }
     w->acks = 0;
+    bilateral_trace_write(s, sig, out);
 }
 
 /* --- state --- */
@@ -190,4 +196,5 @@ void bilateral_wire_bytes(struct exh_bytes *c, struct bilateral_wire *s)
     s->differs &= EXH_WIRE_ROLE | EXH_WIRE_LIB | EXH_WIRE_TABLE;
     exh_bytes_u32(c, &s->odd);
     s->acks = 0; /* none between two ticks */
+    bilateral_trace_bytes(c, &s->trace);
 }

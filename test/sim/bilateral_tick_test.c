@@ -413,10 +413,163 @@ TEST(no_packet_sets_what_is_the_boxs_own)
     CHECK_EQ_I64(box.wire.set, 1);
 }
 
+/* ---- Traces ------------------------------------------------------------------------------------ */
+
+#define TICK_SIGNAL 0u /* q of the thumb: any will do                              */
+
+static struct exh_wire_rx far_end;
+
+static void ask_trace(uint32_t every, uint16_t last)
+{
+    struct exh_wire_packet p = {.type = EXH_WIRE_TRACE_ASK};
+    p.u.trace_ask = (struct exh_wire_trace_ask){every, {TICK_SIGNAL, 8, 16, last}};
+    post(&p);
+}
+
+static uint16_t signals(void)
+{
+    return (uint16_t)exh_signal_count(&bilateral_outputs);
+}
+
+/* A tick, seen from the world's end; the trace in what went out, of which there is one at most. */
+static int traced(struct exh_wire_trace *t)
+{
+    struct exh_wire_packet p;
+    int n = 0;
+    (void)tick(1, 0);
+    for (unsigned i = 0; i < out.packets; i++) {
+        const int type = exh_wire_take(&far_end, &p, out.byte[i], out.len_B[i]);
+        CHECK(type > 0, "%d", type);
+        if (type != EXH_WIRE_TRACE) { continue; }
+        CHECK(++n == 1 && i == out.packets - 1u, "not one, or not behind all else");
+        *t = p.u.trace;
+    }
+    return n;
+}
+
+static void meet_world(void)
+{
+    start();
+    far_end = (struct exh_wire_rx){0};
+    hello();
+    (void)tick(1, 0);
+    for (unsigned i = 0; i < out.packets; i++) {
+        struct exh_wire_packet p;
+        (void)exh_wire_take(&far_end, &p, out.byte[i], out.len_B[i]);
+    }
+}
+
+/* Every frame of 500 ticks has come, once, each with its tick's values. */
+static void gapless(uint32_t every)
+{
+    static int32_t was[600][EXH_TRACE_SIGNALS];
+    struct exh_wire_trace t;
+    const int32_t *value = (const int32_t *)(const void *)&sig;
+    uint32_t next = 0, frames = 0, from = 0;
+    meet_world();
+    ask_trace(every, (uint16_t)(signals() - 1));
+    for (uint32_t k = 0; k < 500; k++) {
+        const int n = traced(&t);
+        const uint32_t now = box.safety.tick;
+        if (k == 0) {
+            CHECK(n == 1 && t.result == 0 && t.request_seq == world.seq - 1, "no answer at once");
+            next = t.first;
+            from = now;
+        }
+        was[k][0] = value[TICK_SIGNAL], was[k][1] = value[8], was[k][2] = value[16];
+        was[k][3] = value[signals() - 1];
+        if (n == 0) { continue; }
+        CHECK_EQ_I64(exh_wire_trace_missed(next, &t), 0);
+        for (unsigned i = 0; i < t.frames; i++, frames++) {
+            CHECK_EQ_I64(t.frame[i].tick, from + frames * every);
+            CHECK(t.frame[i].tick - from <= k && memcmp(t.frame[i].raw, was[t.frame[i].tick - from], sizeof was[0]) == 0,
+                  "every %d: other values", (int)every);
+        }
+        next = t.first + t.frames;
+        CHECK(now - t.frame[0].tick < 100, "a frame has waited for %d ticks", (int)(now - t.frame[0].tick));
+    }
+    CHECK(frames * every + 100 > 500 - every, "every %d: %d frames", (int)every, (int)frames);
+}
+
+TEST(a_trace_that_is_asked_for_comes_whole)
+{
+    static const uint32_t every[] = {1, 2, 7, 20, 99, 100, 250};
+    for (size_t i = 0; i < sizeof every / sizeof every[0]; i++) { gapless(every[i]); }
+}
+
+TEST(a_trace_asked_for_again_goes_on_and_ends_as_asked)
+{
+    struct exh_wire_trace t;
+    uint32_t next, runs;
+    meet_world();
+    ask_trace(5, signals()); /* one beyond the last */
+    CHECK(traced(&t) == 1 && t.result == -EXH_E_RANGE && t.frames == 0, "%d", t.result);
+    for (int k = 0; k < 300; k++) { CHECK_EQ_I64(traced(&t), 0); }
+    ask_trace(5, 0);
+    CHECK(traced(&t) == 1 && t.result == 0 && t.frames == 1 && t.request_seq == world.seq - 1, "%d", t.result);
+    next = t.first + 1;
+    runs = box.wire.trace.of.run;
+    for (int k = 0; k < 7; k++) { CHECK_EQ_I64(traced(&t), 0); }
+    ask_trace(5, 0); /* it did not hear the answer */
+    CHECK(traced(&t) == 1 && t.first == next && t.frames == 1 && t.request_seq == world.seq - 1, "begun anew");
+    CHECK_EQ_I64(box.wire.trace.of.run, runs);
+    next = t.first + t.frames;
+    for (int k = 0; k < 11; k++) { CHECK_EQ_I64(traced(&t), 0); }
+    ask_trace(3, 0); /* another: the two frames that waited do not come, and that is seen */
+    CHECK(traced(&t) == 1 && exh_wire_trace_missed(next, &t) == 2 && t.frames == 1, "%d missed",
+          (int)exh_wire_trace_missed(next, &t));
+    ask_trace(0, 0);
+    CHECK(traced(&t) == 1 && t.result == 0 && t.frames == 0, "not ended");
+    for (int k = 0; k < 300; k++) { CHECK_EQ_I64(traced(&t), 0); }
+    ask_trace(3, 0);
+    (void)traced(&t);
+    world = (struct exh_wire_tx){4, 0}; /* another world has asked for nothing */
+    hello();
+    for (int k = 0; k < 300; k++) { CHECK_EQ_I64(traced(&t), 0); }
+}
+
+/* From the bytes of its state it goes on as it would have, to the bit; and of any bytes, and of memory
+ * that says anything, without harm. */
+TEST(a_trace_goes_on_from_bytes)
+{
+    static uint8_t b[8192], again[8192];
+    static struct exh_scene_mail sent;
+    struct exh_wire_trace t;
+    struct exh_bytes c = exh_bytes_writer(b, sizeof b);
+    meet_world();
+    ask_trace(3, 0);
+    for (int k = 0; k < 20; k++) { (void)traced(&t); }
+    bilateral_bytes(&c, &box);
+    CHECK(exh_bytes_ok(&c), "longer");
+    for (int k = 0; k < 40 && !traced(&t); k++) {}
+    sent = out;
+    memset(&box.wire.trace, 0xFF, sizeof box.wire.trace);
+    c = exh_bytes_reader(b, sizeof b);
+    bilateral_bytes(&c, &box);
+    c = exh_bytes_writer(again, sizeof again);
+    bilateral_bytes(&c, &box);
+    CHECK(memcmp(b, again, c.at) == 0, "other bytes");
+    far_end = (struct exh_wire_rx){0};
+    hello();
+    world.seq--;
+    in.packets = 0;
+    for (int k = 0; k < 40; k++) {
+        (void)tick(1, 0);
+        if (out.packets && out.byte[out.packets - 1][3] == EXH_WIRE_TRACE) { break; }
+    }
+    CHECK(out.packets > 0 && out.len_B[out.packets - 1] == sent.len_B[sent.packets - 1] &&
+              memcmp(out.byte[out.packets - 1], sent.byte[sent.packets - 1], out.len_B[out.packets - 1]) == 0,
+          "another packet");
+    memset(&box.wire.trace, 0xFF, sizeof box.wire.trace);
+    for (int k = 0; k < 300; k++) { (void)tick(1, 0); }
+}
+
 TEST_MAIN("bilateral, tick by tick", a_plane_told_before_the_first_glove_frame_is_not_kept,
           a_finger_whose_sensor_is_not_believed_has_no_contact, a_frozen_contact_outlives_a_sensor,
           a_wall_that_the_glove_denies_does_not_pull_for_ever, an_old_glove_frame,
           missed_ticks_make_planes_older,
           a_world_that_has_started_anew_is_greeted_at_once,
           no_packet_makes_the_box_deaf_for_good, a_world_that_differs_is_told_by_bits,
-          a_shorter_time_between_states_acts_at_once, no_packet_sets_what_is_the_boxs_own);
+          a_shorter_time_between_states_acts_at_once, no_packet_sets_what_is_the_boxs_own,
+          a_trace_that_is_asked_for_comes_whole, a_trace_asked_for_again_goes_on_and_ends_as_asked,
+          a_trace_goes_on_from_bytes);

@@ -174,7 +174,7 @@ class Wire:
         self.ms_per_tick, self.ticks_per_us = self.tick_us // 1000, (T[1] << 32) // (1000000 * T[0])
         self.tx, self.rx = Sender(session, 0), Receiver()
         self.now = self.trip = self.exchanges = self.set = self.wait = self.differs = self.odd = 0
-        self.age, self.acks = M32, []
+        self.age, self.acks, self.runs = M32, [], 0
 
     def us(self):
         return self.now >> 20 & M32
@@ -182,7 +182,8 @@ class Wire:
     def state(self):
         now = self.now - (1 << 64) if self.now >> 63 else self.now
         return (pack("<II", self.tx.session, self.tx.seq) + self.rx.state() +
-                self.pack(now, self.age, self.trip, self.exchanges, self.set, self.wait, self.differs, self.odd))
+                self.pack(now, self.age, self.trip, self.exchanges, self.set, self.wait, self.differs, self.odd) +
+                pack("<9I384x15x", 0, 0, 0, 0, 0, 0, 0, self.runs, 0))  # nobody asks for a trace
 
 
 class Bilateral:
@@ -221,6 +222,7 @@ class Bilateral:
             got = w.rx.take(p)
             if w.rx.session != session:
                 w.exchanges = 0
+                w.runs = w.runs + 1 & M32
             if got == HELLO:
                 role, version, table = unpack_from("<BII", p, 18)
                 w.differs = (role == 0) | (version != VERSION) << 1 | (table not in (0, TABLE)) << 2
