@@ -7,6 +7,31 @@
 
 /* ---- Logs ---------------------------------------------------------------------------------- */
 
+/* What the world asks for and what it gets of it, over a link that loses: the log sends the same again, from its
+ * keyframes, too. */
+TEST(a_log_with_a_trace_over_the_link_replays)
+{
+    const char *dir = said_dir();
+    static struct said s;
+    char log[512];
+    unsigned long frames = 0, every = 0, missed = 0;
+    const char *line;
+    snprintf(log, sizeof log, "%s/bilateral_natural.exh", dir);
+    said(&s, dir, cli_bilateral,
+         WORDS("bilateral", "--speed", "natural", "--approaches", "2", "--trace", "3", "--link",
+               "delay=0.02,jitter=0.02,loss=0.2,duplicate=0.1", "--out", dir));
+    CHECK(s.status == 0, "%d: %s", s.status, s.err);
+    line = strstr(s.out, "  trace: ");
+    CHECK(line && sscanf(line, "  trace: %lu frames of every %lu", &frames, &every) == 2, "%s", s.out);
+    CHECK(line && sscanf(strstr(line, "; ") ? strstr(line, "; ") : "", "; %lu missed", &missed) == 1, "%s", s.out);
+    CHECK(every == 3 && frames > 500 && missed > 50, "%lu frames of every %lu, %lu missed", frames, every, missed);
+    said(&s, dir, cli_replay, WORDS("replay", log));
+    CHECK(s.status == 0 && strstr(s.out, "identical"), "%d: %s%s", s.status, s.out, s.err);
+    said(&s, dir, cli_replay, WORDS("replay", log, "--from", "2000"));
+    CHECK(s.status == 0 && strstr(s.out, "from tick 1024"), "%d: %s%s", s.status, s.out, s.err);
+    said_clean(dir);
+}
+
 TEST(a_log_replays_bit_for_bit_without_a_world)
 {
     const char *dir = said_dir();
@@ -323,7 +348,7 @@ TEST(bad_usage_is_refused_by_name)
     said_clean(dir);
 }
 
-TEST_MAIN("bilateral_command", a_log_replays_bit_for_bit_without_a_world,
+TEST_MAIN("bilateral_command", a_log_with_a_trace_over_the_link_replays, a_log_replays_bit_for_bit_without_a_world,
           a_log_of_a_session_that_was_made_up_replays,
           a_log_without_a_packet_does_not_replay, no_random_approach_is_felt_before_its_freeze,
           a_d_lim_that_is_too_small_is_told_with_the_one_wanted, files_and_tables_are_left_behind,

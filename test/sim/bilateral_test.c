@@ -97,6 +97,28 @@ TEST(the_force_is_the_same_to_the_bit_over_every_link)
     }
 }
 
+/* A trace over the link changes nothing that is felt, and none of its frames is missed unseen. */
+TEST(a_trace_over_the_link_is_felt_by_nobody)
+{
+    static const int every[] = {1, 4, 300};
+    struct bilateral_run_cfg c = plain(1u << EXH_INDEX, 0.87, 2);
+    perfect = run(&c);
+    for (size_t i = 0; i < 2 * LEN(every); i++) {
+        struct bilateral_run r;
+        const struct peer_trace *t = &r.trace;
+        c.trace_every = every[i % LEN(every)];
+        for (int w = 0; w < SIM_LINK_WAYS; w++) { c.board.line.way[w].loss = i < LEN(every) ? 0 : 0.2; }
+        r = run(&c);
+        check_same(&perfect, &r, EXH_INDEX, "with a trace");
+        CHECK(t->frames > 0 && t->unruly == 0, "every %d: %u frames, %u unruly", c.trace_every, t->frames, t->unruly);
+        CHECK((i < LEN(every)) == (t->missed == 0), "every %d: %u missed", c.trace_every, t->missed);
+        check_note("trace of every %d: %u frames, %u missed, of %u ticks", c.trace_every, (unsigned)t->frames,
+                   (unsigned)t->missed, (unsigned)r.ticks);
+        bilateral_run_free(&r);
+    }
+    bilateral_run_free(&perfect);
+}
+
 /* The other way round: were a plane told later, or another, the trace would differ. */
 TEST(another_plane_makes_another_force)
 {
@@ -384,7 +406,7 @@ TEST(a_material_that_changes_in_contact_acts_from_the_next_freeze_on)
     bilateral_run_free(&b);
 }
 
-TEST_MAIN("bilateral", the_force_is_the_same_to_the_bit_over_every_link,
+TEST_MAIN("bilateral", a_trace_over_the_link_is_felt_by_nobody, the_force_is_the_same_to_the_bit_over_every_link,
           another_plane_makes_another_force, s_of_the_slope_finds_the_wall_with_every_finger, what_moves_while_it_is_touched_is_not_felt,
           a_world_that_dies_in_contact_leaves_loop_and_force_as_they_were,
           a_world_may_start_anew_in_contact, hostile_packets_change_nothing,

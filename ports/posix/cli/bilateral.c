@@ -137,6 +137,10 @@ static int go(struct bilateral_options *o, double rate_Hz)
         o->run.board.line.udp_peer = o->udp;
         o->run.board.pace = 1;
     }
+    if (o->run.trace_every && o->udp) {
+        cli_complain("--trace: leave out --udp: a world elsewhere asks for its own");
+        return 2;
+    }
     if (o->sweep + (o->check > 0) + o->hands + o->crisp > 1) {
         cli_complain("--sweep, --check, --hands, --crisp: one at a time");
         return 2;
@@ -186,6 +190,7 @@ int cli_bilateral(int argc, char **argv)
         {"b", CLI_REAL, &o.run.b_Nspm, 0, 1e3, "NS/M", "damping (60; with --scene its materials')"},
         {"link", CLI_CALL, u[2].to, 0, 0, "SPEC", "none, trace=FILE (round trips), delay=S,jitter=S,loss=SHARE,... (none)"},
         {"fps", CLI_REAL, &o.run.fps, 1, 2000, "N", "frames of the world a second (400)"},
+        {"trace", CLI_INT, &o.run.trace_every, 1, 1e6, "N", "the world asks for a trace of every N-th tick, over the link (none)"},
         {"ray", CLI_REAL, &o.run.ray_m, 0, 1, "M", "a wall is not seen from farther off (no limit)"},
         {"world-from", CLI_REAL, &o.run.from_s, 0, 1e9, "S", "the world is not there before (0)"},
         {"world-until", CLI_REAL, &o.run.until_s, 0, 1e30, "S", "it dies then (never)"},

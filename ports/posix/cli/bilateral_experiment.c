@@ -141,6 +141,11 @@ static int one_speed(const struct bilateral_options *o, int i, struct bilateral_
                "%.1f ms\n", r.box.accepted, r.box.missing, r.box.reordered, r.box.duplicate, r.box.old,
                r.box.corrupt + r.box.version + r.box.unknown + r.box.stranger, r.box.trip_us / 1e3);
     }
+    if (err == 0 && c.trace_every) {
+        printf("  trace: %lu frames of every %d ticks, ticks %lu to %lu; %lu missed\n", (unsigned long)r.trace.frames,
+               c.trace_every, (unsigned long)r.trace.first_tick, (unsigned long)r.trace.last_tick,
+               (unsigned long)r.trace.missed);
+    }
     if (err == 0 && (o->scene || o->record || o->udp)) {
         bilateral_print_session(stdout, &r, c.board.exo.fingers);
     }

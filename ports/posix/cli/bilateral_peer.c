@@ -9,6 +9,7 @@
 
 #define HELLO_EVERY_S 0.5
 #define PARAM_EVERY_S 0.05
+#define TRACE_EVERY_S 0.5  /* longer than the way there and back: an answer is of the newest request */
 #define QUIET_US      1000000 /* nothing heard for so long: any HELLO begins anew */
 
 double peer_gap_m(const struct exh_wire_plane *p, const int32_t tip_m_q30[3])
@@ -47,7 +48,27 @@ void peer_start(struct peer *p, const struct peer_cfg *cfg, uint32_t session)
     memset(p, 0, sizeof *p);
     p->cfg = *cfg;
     p->tx.session = session;
-    p->hello_s = p->param_s = -1;
+    p->hello_s = p->param_s = p->trace_s = -1;
+}
+
+/* Frames of another request than ours are of a world before. */
+static void take_trace(struct peer *p, const struct exh_wire_trace *t)
+{
+    struct peer_trace *s = &p->trace;
+    if (p->trace_s < 0 || t->result < 0) { return; }
+    if (!s->answered && t->request_seq != s->request_seq) { return; }
+    if (!s->answered) { s->next = t->first; }
+    s->answered = 1;
+    s->missed += exh_wire_trace_missed(s->next, t);
+    for (unsigned i = 0; i < t->frames; i++) {
+        const uint32_t ahead = t->first + i - s->next + 1; /* frames on from the last */
+        if (s->frames == 0) { s->first_tick = t->frame[i].tick; }
+        s->unruly += s->frames > 0 && t->frame[i].tick - s->last_tick != ahead * p->cfg.trace.every;
+        s->last_tick = t->frame[i].tick;
+        s->next = t->first + i + 1;
+        s->frames++;
+    }
+    s->next = t->first + t->frames;
 }
 
 static void take(struct peer *p, const void *buf, size_t len_B)
@@ -55,6 +76,7 @@ static void take(struct peer *p, const void *buf, size_t len_B)
     struct exh_wire_packet in;
     const int type = exh_wire_take(&p->rx, &in, buf, len_B);
     if (type == EXH_WIRE_HELLO) { p->hello_s = -1; } /* it is new here: answer at once */
+    if (type == EXH_WIRE_TRACE) { take_trace(p, &in.u.trace); }
     if (type == EXH_WIRE_STATE) {
         p->state = in.u.state;
         p->echo_seq = in.seq;
@@ -117,6 +139,15 @@ static void put_params(struct peer *p, struct sim_link *link, double t_s)
     }
 }
 
+static void put_trace_ask(struct peer *p, struct sim_link *link, double t_s)
+{
+    struct exh_wire_packet out = {.type = EXH_WIRE_TRACE_ASK};
+    out.u.trace_ask = p->cfg.trace;
+    put(p, link, &out, t_s);
+    p->trace.request_seq = out.seq;
+    p->trace_s = t_s;
+}
+
 static void answer(struct peer *p, struct sim_link *link, double t_s)
 {
     struct exh_wire_packet out = {.type = EXH_WIRE_PLANES};
@@ -154,5 +185,8 @@ void peer_frame(void *ctx, struct sim_link *link, double t_s)
     if (p->hello_s < 0 || t_s - p->hello_s >= HELLO_EVERY_S) { put_hello(p, link, t_s); }
     if (p->rx.session == 0) { return; }
     if (t_s >= p->cfg.param_from_s && (p->param_s < 0 || t_s - p->param_s >= PARAM_EVERY_S)) { put_params(p, link, t_s); }
+    if (p->cfg.trace.every && !p->trace.answered && (p->trace_s < 0 || t_s - p->trace_s >= TRACE_EVERY_S)) {
+        put_trace_ask(p, link, t_s);
+    }
     if (p->told) { answer(p, link, t_s); }
 }

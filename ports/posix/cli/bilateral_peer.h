@@ -37,6 +37,16 @@ struct peer_cfg {
     int hostile;         /* each packet comes again so often: a bit flipped, cut short, too long */
     struct exh_wire_param param[PEER_PARAMS];
     int params;
+    struct exh_wire_trace_ask trace; /* it asks for this until it is answered; every 0: for none */
+};
+
+/* Of a trace, as it came. */
+struct peer_trace {
+    int answered;
+    uint32_t request_seq, next;
+    uint32_t frames, missed;       /* that came; that never will: by their numbers */
+    uint32_t first_tick, last_tick;
+    uint32_t unruly;               /* frames not `every` ticks behind the one before */
 };
 
 struct peer {
@@ -51,6 +61,8 @@ struct peer {
     uint64_t frames, answers;
     int told;                      /* a state has come                          */
     int born_again;
+    struct peer_trace trace;
+    double trace_s;                /* when it last asked                        */
     uint32_t spoiled;              /* packets                                   */
 };
 

@@ -13,6 +13,7 @@
 #include "exhand/board.h"
 #include "exhand/error.h"
 
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -233,6 +234,19 @@ static void want_materials(const struct bilateral_run_cfg *c, struct peer_cfg *p
     }
 }
 
+/* The table of outputs is struct bilateral_signals. */
+static void want_trace(const struct bilateral_run_cfg *c, struct peer_cfg *p)
+{
+    static const size_t at[] = {offsetof(struct bilateral_paper, q_m_q30), offsetof(struct bilateral_paper, f_des_N_q20),
+                                offsetof(struct bilateral_paper, i_des_A_q26), offsetof(struct bilateral_paper, c)};
+    unsigned f = 0;
+    while (f + 1 < BILATERAL_FINGERS && !(c->board.exo.fingers >> f & 1)) { f++; }
+    p->trace.every = (uint32_t)c->trace_every;
+    for (unsigned i = 0; i < EXH_TRACE_SIGNALS; i++) {
+        p->trace.index[i] = (uint16_t)((f * sizeof(struct bilateral_paper) + at[i]) / sizeof(int32_t));
+    }
+}
+
 static void put_up(const struct bilateral_run_cfg *c)
 {
     run.world.scene = c->scene;
@@ -255,6 +269,7 @@ static struct posix_config board_of(const struct bilateral_run_cfg *c)
     struct peer_cfg p = {.world = &run.world, .from_s = c->from_s, .until_s = c->until_s,
                          .again_s = c->again_s, .param_from_s = c->param_from_s, .hostile = c->hostile};
     want_materials(c, &p);
+    want_trace(c, &p);
     for (int i = 0; i < c->wants && p.params < PEER_PARAMS; i++) { p.param[p.params++] = c->want[i]; }
     peer_start(&run.peer, &p, 1 + (uint32_t)(b.seed % 1000000));
     b.glove = 1;
@@ -308,6 +323,7 @@ int bilateral_run(const struct bilateral_run_cfg *c, struct bilateral_run *r)
         for (int w = 0; w < SIM_LINK_WAYS; w++) { r->way[w] = posix_link()->way[w].counts; }
         r->frames = run.peer.frames;
         r->answers = run.peer.answers;
+        r->trace = run.peer.trace;
         r->params = run.peer.cfg.params;
         for (int i = 0; i < r->params; i++) {
             r->acked += (int)(run.peer.acked >> i & 1);

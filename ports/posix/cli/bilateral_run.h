@@ -20,6 +20,7 @@ struct bilateral_run_cfg {
     int wants;
     double param_from_s; /* not before                                          */
     int hostile;
+    int trace_every; /* ticks: the world asks for q, F_des, i, c of the lowest finger; 0: not */
     double jump_s, jump_m; /* of walls (peer_world)                             */
     struct world *scene;       /* NULL: a wall in front of each finger           */
     double at_m;               /* where, as string                              */
@@ -71,6 +72,7 @@ struct bilateral_run {
     int dumps; /* of the black box; -1: one could not be written                  */
     struct sim_link_counts way[SIM_LINK_WAYS];
     uint64_t frames, answers;
+    struct peer_trace trace;
     int params, acked, refused; /* over the link                                */
 };
 
