@@ -528,6 +528,28 @@ TEST(a_trace_asked_for_again_goes_on_and_ends_as_asked)
     for (int k = 0; k < 300; k++) { CHECK_EQ_I64(traced(&t), 0); }
 }
 
+/* No room for 40 ticks: the newest 16 frames are held, the 25 before them are seen to be missing. */
+TEST(frames_that_had_no_room_are_missed_by_number)
+{
+    struct exh_wire_trace t;
+    uint32_t next;
+    meet_world();
+    ask_trace(1, 0);
+    CHECK_EQ_I64(traced(&t), 1);
+    next = t.first + t.frames;
+    for (int k = 0; k < 40; k++) {
+        out.packets = EXH_SCENE_PACKETS;
+        bilateral_trace_write(&box, &sig, &out);
+    }
+    CHECK_EQ_I64(traced(&t), 1);
+    CHECK_EQ_I64(exh_wire_trace_missed(next, &t), 25);
+    CHECK_EQ_I64(t.frames, EXH_WIRE_FRAMES);
+    next = t.first + t.frames;
+    for (int k = 0; k < 5; k++) { CHECK_EQ_I64(traced(&t), 0); }
+    CHECK_EQ_I64(traced(&t), 1);
+    CHECK_EQ_I64(exh_wire_trace_missed(next, &t), 0);
+}
+
 /* From the bytes of its state it goes on as it would have, to the bit; and of any bytes, and of memory
  * that says anything, without harm. */
 TEST(a_trace_goes_on_from_bytes)
@@ -572,4 +594,4 @@ TEST_MAIN("bilateral, tick by tick", a_plane_told_before_the_first_glove_frame_i
           no_packet_makes_the_box_deaf_for_good, a_world_that_differs_is_told_by_bits,
           a_shorter_time_between_states_acts_at_once, no_packet_sets_what_is_the_boxs_own,
           a_trace_that_is_asked_for_comes_whole, a_trace_asked_for_again_goes_on_and_ends_as_asked,
-          a_trace_goes_on_from_bytes);
+          frames_that_had_no_room_are_missed_by_number, a_trace_goes_on_from_bytes);
