@@ -9,7 +9,7 @@
 #include "exhand/exhand.h"
 
 #define DEBUG_PORT  0xE9u
-#define RING_B      32768u /* a power of two: seven of the largest records, 200 ms of frames */
+#define RING_B      32768u /* a power of two: six of the largest records, 200 ms of frames */
 #define STUCK_READS 100000u /* 0.07 s and more on ISA; 16 characters take 1.4 ms */
 #define BURST_B     16u /* what the UART's FIFO takes at once                             */
 

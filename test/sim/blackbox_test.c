@@ -110,7 +110,7 @@ TEST(a_dump_that_begins_in_a_contact_replays_from_its_first_keyframe)
 {
     const char *path = log_path();
     unsigned in_contact = 0, at_once = 0;
-    for (size_t memory_B = 24000; memory_B < 52000; memory_B += 977) {
+    for (size_t memory_B = 25024; memory_B < 53024; memory_B += 977) {
         const struct run_cfg c = three_falls(2000, path, memory_B, 2.2);
         const struct held h = run_and_read(&c);
         CHECK(h.first > 0 && h.frames == h.last - h.first + 1, "%lu frames from tick %lu to %lu",

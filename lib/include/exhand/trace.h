@@ -1,8 +1,9 @@
 /* Trace: a few signals of every n-th tick, in memory of the caller's, until somebody fetches them.
  *
  * It reads what a tick has made and changes nothing. Modbus keeps one that is no part of a scene, in
- * no keyframe and no log; one whose frames go out over the wire is its scene's state. Each frame has a number, one more than the frame before it; numbers go on
- * when another trace is started, so that whoever reads sees each frame that he did not get.
+ * no keyframe and no log; one whose frames go out over the wire is its scene's state. Each frame has
+ * a number, one more than the frame before it; numbers go on when another trace is started, so that
+ * whoever reads sees each frame that he did not get.
  */
 #ifndef EXHAND_TRACE_H
 #define EXHAND_TRACE_H

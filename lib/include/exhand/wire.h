@@ -141,8 +141,8 @@ struct exh_wire_tx {
 
 /* Writes p (type and payload; seq and stamp_us are set here and left in p). Bytes written, or, in
  * this order, -EXH_E_UNKNOWN (no such type), -EXH_E_RANGE (session 0, or a role, kind, mask,
- * result or number of frames that no receiver would take), -EXH_E_SHORT (cap_B too small; EXH_WIRE_MAX_B never is); then
- * nothing is used up but what buf held. */
+ * result or number of frames that no receiver would take), -EXH_E_SHORT (cap_B too small;
+ * EXH_WIRE_MAX_B never is); then nothing is used up but what buf held. */
 int32_t exh_wire_write(struct exh_wire_tx *tx, struct exh_wire_packet *p, uint32_t stamp_us,
                        void *buf, size_t cap_B);
 
