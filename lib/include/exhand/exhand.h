@@ -16,6 +16,7 @@
  *   wire                         packets between controller and world
  *   calibrate, probe             tables of the box, and the motions that measure them
  *   record                       log and replay
+ *   slots                        images in flash that outlive a power cut
  *   modbus                       the box as registers; a Modbus slave
  *   board                        what a port provides; only the loop calls it
  *
@@ -52,6 +53,7 @@
 #include "exhand/record.h"
 #include "exhand/safety.h"
 #include "exhand/signal.h"
+#include "exhand/slots.h"
 #include "exhand/trace.h"
 #include "exhand/units.h"
 #include "exhand/velocity.h"
