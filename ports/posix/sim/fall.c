@@ -4,6 +4,7 @@
 #define LIFT_S 0.5
 #define HOLD_S 0.1
 #define GIVE_UP_S 3.0  /* a mass that has not reached the contact by then        */
+#define CATCH_S   0.2  /* until somebody who sees a light go out has the mass   */
 #define MARGIN_S 0.15  /* or two ticks: by so much may the log's contact be later */
 
 static double start_height(const struct sim_device *d, struct sim_random *r)
@@ -40,6 +41,14 @@ void fall_start(struct fall *f, struct plant *p, const struct sim_device *d,
 static int waits(const struct fall *f)
 {
     return f->waits && f->phase == FALL_HOLD;
+}
+
+/* Nothing else ends a fall in which there is no force: it would be metres deep, and the lift out of
+ * it faster than an encoder can be. */
+void fall_catch(struct fall *f, double t_s)
+{
+    f->waits = 1;
+    if (f->phase == FALL_FREE && t_s + CATCH_S < f->until_s) { f->until_s = t_s + CATCH_S; }
 }
 
 void fall_ready(struct fall *f, double t_s)
@@ -88,7 +97,7 @@ int fall_step(struct fall *f, struct plant *p, const struct sim_device *d, struc
               double t_s)
 {
     const enum fall_phase before = f->phase;
-    if (f->phase == FALL_FREE && f->contact_s < 0 && p->q_m >= 0) {
+    if (f->phase == FALL_FREE && f->contact_s < 0 && p->q_m >= 0 && !f->waits) {
         f->contact_s = t_s;
         f->until_s = t_s + d->observe_s + longer(MARGIN_S, 2 * f->T_s);
     }

@@ -27,6 +27,9 @@ struct fall {
 void fall_start(struct fall *f, struct plant *p, const struct sim_device *d,
                 struct sim_random *r, int falls, double T_s);
 
+/* The box does not run any more: a hand catches the mass soon, lifts it, and holds it until fall_ready(). */
+void fall_catch(struct fall *f, double t_s);
+
 /* The box runs: what is held longer for its sake is let go as if it had begun now. */
 void fall_ready(struct fall *f, double t_s);
 
