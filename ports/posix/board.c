@@ -6,6 +6,7 @@
 #include "cards.h"
 #include "gpio.h"
 #include "line.h"
+#include "pace.h"
 #include "sim/codes.h"
 #include "sim/exo.h"
 #include "sim/mass.h"
@@ -182,6 +183,7 @@ int exh_board_init(uint32_t rate_Hz, struct exh_period *achieved)
     }
     if (line_start(&sim.cfg.line, sim.cfg.seed) < 0) { return -EXH_E_IO; }
     if (sim.cfg.gpio) { gpio_start(sim.T); }
+    pace_start(sim.T, sim.cfg.slack_s);
     stop = 0;
     *achieved = sim.T;
     if (sim.cfg.cards.how) { err = start_cards(); }
@@ -195,7 +197,7 @@ void posix_ready(void)
 
 void posix_hold(void)
 {
-    sim.mass.fall.waits = 1;
+    fall_catch(&sim.mass.fall, sim.now_s);
 }
 
 void posix_bench(enum bench_place place, double mass_kg)
@@ -236,36 +238,38 @@ static void advance_to(double end_s)
     sim.now_s = end_s;
 }
 
-static void follow_wall_clock(double t_s)
-{
-    static struct timespec start;
-    struct timespec at;
-    if (sim.tick == 0) { clock_gettime(CLOCK_MONOTONIC, &start); }
-    at.tv_sec = start.tv_sec + (time_t)t_s;
-    at.tv_nsec = start.tv_nsec + (long)((t_s - (double)(time_t)t_s) * 1e9);
-    if (at.tv_nsec >= 1000000000L) {
-        at.tv_nsec -= 1000000000L;
-        at.tv_sec++;
-    }
-    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &at, NULL) != 0 && !interrupted) {}
-}
-
 /* The falls, or the fingers' scripts. */
 static int done(void)
 {
     return sim.exo.fingers ? sim_exo_done(&sim.exo) : sim.mass.fall.phase == FALL_DONE;
 }
 
+static int time_is_up(void)
+{
+    return sim.cfg.max_ticks && sim.tick >= sim.cfg.max_ticks;
+}
+
+/* Ticks that go by unseen; the outputs stay as they are. */
+static uint32_t pass(uint32_t ticks)
+{
+    uint32_t n = 0;
+    while (n < ticks && !interrupted && !time_is_up()) {
+        advance_to(tick_time_s(++sim.tick));
+        n++;
+    }
+    return n;
+}
+
 int exh_board_wait(void)
 {
-    const uint32_t missed = sim.cfg.late ? sim.cfg.late(sim.tick) : 0;
-    const double at_s = tick_time_s(sim.tick += missed);
-    advance_to(at_s);
-    if (sim.cfg.pace) { follow_wall_clock(at_s); }
-    line_advance(at_s);
-    if (sim.cfg.cards.how) { cards_at(at_s); }
+    uint32_t missed = sim.cfg.late ? sim.cfg.late(sim.tick) : 0;
+    sim.tick += missed;
+    advance_to(tick_time_s(sim.tick));
+    if (sim.cfg.pace) { missed += pass(pace_wait(sim.tick, &interrupted)); }
+    line_advance(sim.now_s);
+    if (sim.cfg.cards.how) { cards_at(sim.now_s); }
+    if (time_is_up()) { return -1; }
     sim.tick++;
-    if (sim.cfg.max_ticks && sim.tick > sim.cfg.max_ticks) { return -1; }
     return stop || interrupted || done() ? -1 : (int)missed;
 }
 
@@ -433,6 +437,7 @@ uint32_t exh_board_cycles(void)
 
 int exh_board_log(const void *rec, size_t len_B)
 {
+    if (sim.cfg.log_put) { return sim.cfg.log_put(rec, len_B) ? (int)len_B : 0; }
     if (sim.cfg.log == NULL) { return (int)len_B; }
     return fwrite(rec, 1, len_B, sim.cfg.log) == len_B ? (int)len_B : 0;
 }

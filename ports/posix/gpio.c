@@ -20,7 +20,8 @@ static struct {
     struct exh_period T;
     uint32_t differ_max; /* ticks that contacts of a channel may disagree           */
     struct {
-        uint32_t differ; /* ticks they have, counted to one beyond                  */
+        uint32_t differ; /* ticks they have, saturating                             */
+        uint32_t longest, times; /* of them, saturating                               */
         int stuck; /* for longer: one may not open any more                   */
     } channel[GPIO_CHANNELS];
     int enable, beat; /* levels                                                     */
@@ -31,7 +32,7 @@ static struct {
 /* Handlers of signals read and write these. */
 static volatile sig_atomic_t is_open, dropped;
 
-static const char *const channel_name[GPIO_CHANNELS] = {"estop", "deadman"};
+const char *const gpio_channel_name[GPIO_CHANNELS] = {"estop", "deadman"};
 static const char *const output_name[GPIO_OUTPUTS] = {"enable", "alive"};
 static const uint32_t channel_bit[GPIO_CHANNELS] = {EXH_DIN_ESTOP, EXH_DIN_DEADMAN};
 
@@ -41,7 +42,7 @@ static const char *name_of(unsigned line)
 {
     for (unsigned i = 0; i < GPIO_CHANNELS; i++) {
         for (unsigned c = 0; c < gpio.spec.contacts[i]; c++) {
-            if (gpio.spec.contact[i][c] == line) { return channel_name[i]; }
+            if (gpio.spec.contact[i][c] == line) { return gpio_channel_name[i]; }
         }
     }
     for (unsigned i = 0; i < GPIO_OUTPUTS; i++) {
@@ -222,6 +223,31 @@ static int fail(const char *what)
     return -EXH_E_IO;
 }
 
+static uint32_t one_more(uint32_t n)
+{
+    return n < UINT32_MAX ? n + 1 : n;
+}
+
+static void count_differ(unsigned i)
+{
+    if (gpio.channel[i].differ == 0) { gpio.channel[i].times = one_more(gpio.channel[i].times); }
+    gpio.channel[i].differ = one_more(gpio.channel[i].differ);
+    if (gpio.channel[i].differ > gpio.channel[i].longest) { gpio.channel[i].longest = gpio.channel[i].differ; }
+}
+
+uint32_t gpio_differed(void)
+{
+    uint32_t n = 0;
+    for (unsigned i = 0; i < GPIO_CHANNELS; i++) { n += gpio.channel[i].times; }
+    return n;
+}
+
+double gpio_differed_s(enum gpio_channel channel, uint32_t *times)
+{
+    *times = gpio.channel[channel].times;
+    return gpio.T.den ? (double)gpio.channel[channel].longest * gpio.T.num / gpio.T.den : 0;
+}
+
 /* Contacts at such levels, for one tick more: 1 if the channel is closed. */
 static int believe(unsigned i, const int *level)
 {
@@ -232,7 +258,7 @@ static int believe(unsigned i, const int *level)
         if (!level[0]) { gpio.channel[i].stuck = 0; }
         return level[0] && !gpio.channel[i].stuck;
     }
-    if (gpio.channel[i].differ <= gpio.differ_max) { gpio.channel[i].differ++; }
+    count_differ(i);
     if (gpio.channel[i].differ > gpio.differ_max && !gpio.channel[i].stuck) {
         gpio.channel[i].stuck = 1;
         fprintf(
@@ -240,7 +266,7 @@ static int believe(unsigned i, const int *level)
             "exhand: %s: its contacts disagree for more than %lu ticks (line %u closed, line %u "
             "open): it is taken for open until both have been: look for a welded contact, a broken "
             "or a shorted wire\n",
-            channel_name[i], (unsigned long)gpio.differ_max, line[level[0] ? 0 : 1],
+            gpio_channel_name[i], (unsigned long)gpio.differ_max, line[level[0] ? 0 : 1],
             line[level[0] ? 1 : 0]);
     }
     return 0;

@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 enum gpio_channel { GPIO_ESTOP, GPIO_DEADMAN, GPIO_CHANNELS };
+extern const char *const gpio_channel_name[GPIO_CHANNELS];
 enum gpio_output { GPIO_ENABLE, GPIO_ALIVE, GPIO_OUTPUTS };
 
 #define GPIO_PATH_B   64
@@ -35,6 +36,11 @@ void gpio_close(void);
 
 /* 1: a chip is open, and this contact is a real one. */
 int gpio_has(enum gpio_channel channel);
+
+/* How often two contacts of a channel began to disagree since gpio_start(), and the longest in s;
+ * of all channels. */
+uint32_t gpio_differed(void);
+double gpio_differed_s(enum gpio_channel channel, uint32_t *times);
 
 /* The board's: nothing without an open chip. A loop of this period begins, outputs low. */
 void gpio_start(struct exh_period T);

@@ -13,6 +13,7 @@
 
 #include "exhand/units.h"
 
+#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 
@@ -22,7 +23,9 @@ struct posix_config {
     int falls;               /* then the board says stop                        */
     struct exh_period T;     /* num 0: 1 / rate                                 */
     FILE *log;               /* records go here; NULL: taken and forgotten      */
-    int pace;                /* 1: follow the wall clock                        */
+    int (*log_put)(const void *rec, size_t len_B); /* not NULL: takes them instead, 1, or loses one, 0 */
+    int pace;                /* 1: follow the wall clock; ticks that go by are missed */
+    double slack_s;          /* but a tick so late is made up for               */
     uint32_t max_ticks;      /* 0: no limit                                     */
     int bench;               /* 1: a bench for calibration instead of falls; it goes
                               * on until posix_stop()                          */
@@ -68,7 +71,7 @@ const struct sim_finger *posix_finger(unsigned i);
 
 /* The box runs: whoever holds the mass counts from here. */
 void posix_ready(void);
-/* It does not any more: the next hold goes on until it does. */
+/* It does not any more: they catch it, and the next hold goes on until it does. */
 void posix_hold(void);
 
 /* The person at the bench prepares a place; ready some time later. */

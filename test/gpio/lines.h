@@ -208,10 +208,12 @@ TEST(a_contact_closes_nothing)
     gpio_close();
 }
 
-/* Either opens the channel at once; they may differ for 500 ticks. */
+/* Either opens the channel at once; they may differ for 500 ticks, which is counted. */
 TEST(two_contacts)
 {
+    uint32_t times_differed;
     start(PAIR);
+    CHECK_EQ_I64(gpio_differed(), 0);
     listen_begin();
     for (int k = 0; k < 2; k++) {
         const int line = k ? SECOND : ESTOP;
@@ -222,7 +224,13 @@ TEST(two_contacts)
     }
     CHECK_EQ_I64(din(), BOTH);
     CHECK(times(listen_end(), "disagree") == 0, "said too early");
+    CHECK_EQ_I64(gpio_differed(), 2);
+    CHECK_EQ_I64((int64_t)(gpio_differed_s(GPIO_ESTOP, &times_differed) * 1000 + 0.5), 500);
+    CHECK_EQ_I64(times_differed, 2);
+    (void)gpio_differed_s(GPIO_DEADMAN, &times_differed);
+    CHECK_EQ_I64(times_differed, 0);
     gpio_close();
+    CHECK_EQ_I64(gpio_differed(), 2); /* to be told at the end */
 }
 
 /* A tick more, and it is told, once, and stays open until both have been: a welded contact shows
@@ -573,14 +581,15 @@ static void hand_before(uint32_t tick, struct exh_scene_in *in)
 static void hand_after(uint32_t tick, const struct exh_scene_in *in,
                        const struct exh_drive_out *out)
 {
+    (void)in;
+    (void)out;
     hand.state[tick] = exh_scene_drop.safety->state;
-    live_person_after(tick, in, out);
 }
 
 static void hand_runs(int held)
 {
     static const struct exh_loop_hooks hooks = {live_person_start, hand_before, hand_after};
-    const struct live_person person = {1, 0.5, 0}; /* --grip --let-go 0.5 */
+    const struct live_person person = {1, 0.5}; /* --grip --let-go 0.5 */
     struct posix_config c = posix_config_default();
     c.gpio = 1;
     c.wait = 1;

@@ -28,7 +28,7 @@ for scene in drop guarded bilateral; do
     rm -f "$work/saved" "$work/log"
     : > "$work/said"
     # gripped and let go at once: it stays OFF; what the device does goes on
-    "$B/posix/exhand" run --scene $scene --pace --rate $rate --seconds 600 --let-go 0.001 --save "$work/saved" \
+    "$B/posix/exhand" run --scene $scene --pace --slack 1 --rate $rate --seconds 600 --let-go 0.001 --save "$work/saved" \
         --log "$work/log" --modbus tcp:127.0.0.1:0 > "$work/said" 2>&1 & box=$!
     trap 'kill $box 2>/dev/null || true' EXIT
     port=$(port_of $box)

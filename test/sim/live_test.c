@@ -84,6 +84,136 @@ TEST(an_interrupt_leaves_a_complete_log)
     said_clean(dir);
 }
 
+/* Ends by itself within so many seconds; else it is ended and -1. */
+static int ends_within(pid_t pid, double limit_s)
+{
+    const struct timespec a_while = {0, 10000000};
+    siginfo_t is = {0};
+    for (double s = 0; s < limit_s; s += 0.01) {
+        if (waitid(P_PID, (id_t)pid, &is, WEXITED | WNOHANG | WNOWAIT) == 0 && is.si_pid == pid) {
+            return 0;
+        }
+        (void)nanosleep(&a_while, NULL);
+    }
+    kill(pid, SIGKILL);
+    return -1;
+}
+
+/* The first number before such words; -1: there is none. */
+static long number_before(const char *text, const char *words)
+{
+    const char *at = strstr(text, words);
+    if (at == NULL || at == text) { return -1; }
+    while (at > text && at[-1] == ' ') { at--; }
+    while (at > text && at[-1] >= '0' && at[-1] <= '9') { at--; }
+    return strtol(at, NULL, 10);
+}
+
+/* A stopped program misses the ticks of that time: they are counted, the box lets go, none is made up for. */
+TEST(what_goes_by_while_it_is_stopped_is_missed)
+{
+    char *dir = said_dir();
+    const char *log = said_path(dir, "a.exh");
+    const struct timespec runs = {1, 500000000}, stands = {0, 700000000};
+    long ticks, missed;
+    struct said s;
+    const pid_t pid = said_start(
+        dir, cli_run, WORDS("run", "--pace", "--rate", "100", "--seconds", "4", "--log", log));
+    nanosleep(&runs, NULL);
+    kill(pid, SIGSTOP);
+    nanosleep(&stands, NULL);
+    kill(pid, SIGCONT);
+    CHECK(ends_within(pid, 30) == 0, "it does not end");
+    said_end(&s, dir, pid);
+    CHECK(s.status == 0 && strstr(s.out, ", 4 s, faults overrun"), "%d %s%s", s.status, s.out,
+          s.err);
+    ticks = number_before(s.out, "ticks");
+    missed = number_before(s.out, "missed");
+    CHECK(missed >= 69 && ticks + missed == 400, "%s", s.out);
+    replay(dir, log, &s);
+    CHECK(strstr(s.out, "run -> release") && strstr(s.out, "missed"), "%s", s.out);
+    said_clean(dir);
+}
+
+/* A pipe that nobody reads is full soon: the box goes on by its clock, and what is lost is said. */
+TEST(a_log_that_nobody_takes_stalls_nobody)
+{
+    char *dir = said_dir();
+    const char *log = said_path(dir, "pipe");
+    struct said s;
+    int fd;
+    pid_t pid;
+    CHECK_EQ_I64(mkfifo(log, 0600), 0);
+    fd = open(log, O_RDONLY | O_NONBLOCK);
+    CHECK(fd >= 0, "no pipe");
+    pid = said_start(dir, cli_run,
+                     WORDS("run", "--scene", "bilateral", "--fingers", "all", "--pace", "--slack",
+                           "0.1", "--rate", "500", "--seconds", "2", "--log", log));
+    CHECK(ends_within(pid, 60) == 0, "it stands still");
+    said_end(&s, dir, pid);
+    CHECK(s.status == 1 && strstr(s.err, "pipe: takes nothing for 2 s"), "%d %s", s.status, s.err);
+    CHECK(strstr(s.out, " s, faults "), "%s", s.out);
+    close(fd);
+    said_clean(dir);
+}
+
+/* In virtual time it waits for the slowest. */
+TEST(a_slow_log_is_complete_in_virtual_time)
+{
+    char *dir = said_dir();
+    const char *log = said_path(dir, "pipe"), *copy = said_path(dir, "copy.exh");
+    const struct timespec a_while = {0, 300000000};
+    char cat[700];
+    struct said s;
+    pid_t pid;
+    int fd;
+    CHECK_EQ_I64(mkfifo(log, 0600), 0);
+    fd = open(log, O_RDONLY | O_NONBLOCK);
+    CHECK(fd >= 0, "no pipe");
+    pid = said_start(dir, cli_run,
+                     WORDS("run", "--scene", "bilateral", "--fingers", "all", "--rate", "1000",
+                           "--seconds", "20", "--log", log));
+    nanosleep(&a_while, NULL);
+    snprintf(cat, sizeof cat, "cat '%s' > '%s'", log, copy);
+    {
+        const pid_t reader = fork();
+        int status;
+        if (reader == 0) { _exit(system(cat) != 0); }
+        close(fd);
+        CHECK(ends_within(pid, 300) == 0, "it stands still");
+        said_end(&s, dir, pid);
+        CHECK(waitpid(reader, &status, 0) == reader && status == 0, "no copy");
+    }
+    CHECK(s.status == 0, "%d %s", s.status, s.err);
+    CHECK(said_size(copy) > 5 << 20, "%ld bytes: the ring was never full", said_size(copy));
+    said(&s, dir, cli_replay, WORDS("replay", copy));
+    CHECK(s.status == 0 && strstr(s.out, ": 20000 ticks from tick 0 "), "%s%s", s.out, s.err);
+    said_clean(dir);
+}
+
+/* Whoever holds the mass catches it: else it is metres deep when somebody grips again. */
+TEST(it_runs_again_wherever_the_fault_found_the_mass)
+{
+    static const char *const at[] = {"0.9", "1.05", "2", "4", "7"}, *const rate[] = {"50", "100",
+                                                                                     "500"};
+    for (size_t i = 0; i < 15; i++) {
+        char *dir = said_dir();
+        const char *log = said_path(dir, "a.exh");
+        struct said s;
+        said(&s, dir, cli_run,
+             WORDS("run", "--rate", rate[i / 5], "--seconds", "14", "--let-go", at[i % 5], "--grip",
+                   "--log", log));
+        CHECK(s.status == 0 && strstr(s.out, "faults deadman\n"), "%d %s%s", s.status, s.out,
+              s.err);
+        replay(dir, log, &s);
+        CHECK(times(s.out, "arm -> run") == 2, "%s Hz, let go at %s s: %d", rate[i / 5], at[i % 5],
+              times(s.out, "arm -> run"));
+        CHECK(times(s.out, "arming is refused") == 0, "%s Hz, let go at %s s: refused", rate[i / 5],
+              at[i % 5]);
+        said_clean(dir);
+    }
+}
+
 TEST(what_it_cannot_do_is_named)
 {
     static const struct {
@@ -95,8 +225,15 @@ TEST(what_it_cannot_do_is_named)
                {{"run", "--seconds", "1e9"}, "or leave it out", 2},
                {{"run", "--load-params", "/nowhere/at.all"}, "image that a run saved", 3},
                {{"run", "--load-params", "/dev/null"}, "/dev/null: ", 2},
-               {{"run", "--seconds", "1", "--log", "/nowhere/at.all"}, "give a file that can be written", 2},
-               {{"run", "--log", "/nowhere/at.all"}, "give --seconds, or --pace", 2}};
+               {{"run", "--seconds", "1", "--log", "/nowhere/at.all"},
+                "give a file that can be written",
+                2},
+               {{"run", "--log", "/nowhere/at.all"}, "give --seconds, or --pace", 2},
+               {{"run", "--slack", "0.1"}, "only with --pace", 2},
+               {{"run", "--pace", "--slack", "1.1"}, "--slack", 2},
+               {{"run", "--seconds", "1", "--log", "/dev/full"},
+                "/dev/full: can't be written: No space",
+                1}};
     char *dir = said_dir();
     for (size_t i = 0; i < sizeof row / sizeof row[0]; i++) {
         struct said s;
@@ -109,4 +246,6 @@ TEST(what_it_cannot_do_is_named)
 
 TEST_MAIN("live", each_scene_goes_on_until_its_time_is_over, the_shortest_time_ends,
           after_a_fault_it_runs_again_by_the_grip_alone, an_interrupt_leaves_a_complete_log,
+          what_goes_by_while_it_is_stopped_is_missed, a_log_that_nobody_takes_stalls_nobody,
+          a_slow_log_is_complete_in_virtual_time, it_runs_again_wherever_the_fault_found_the_mass,
           what_it_cannot_do_is_named);

@@ -32,13 +32,22 @@ static inline modbus_t *rig_client(int port)
     return c;
 }
 
-/* word: the command line, its place to serve at being tcp:127.0.0.1:0. */
+/* word: the command line, its place to serve at being tcp:127.0.0.1:0. A paced one makes up for what is
+ * late: these tests are of registers, on machines with other work. */
 static inline void rig_start(struct rig *r, const char *const *word)
 {
+    const char *more[32] = {NULL};
     char said[SAID_B];
+    int n = 0;
+    for (int i = 0; word[i] != NULL && n < 28; i++) {
+        more[n++] = word[i];
+        if (strcmp(word[i], "--pace") != 0) { continue; }
+        more[n++] = "--slack";
+        more[n++] = "1";
+    }
     memset(r, 0, sizeof *r);
     r->dir = said_dir();
-    r->pid = said_start(r->dir, cli_run, word);
+    r->pid = said_start(r->dir, cli_run, more);
     for (int i = 0; i < 500 && r->port == 0; i++) {
         const char *at;
         said_read(said, said_path(r->dir, "said.out"));

@@ -45,7 +45,21 @@ int contacts_begin(const struct contacts *c)
     return 0;
 }
 
+/* Each is a hand's movement, or the first of a wire that breaks. */
+static void say_differed(void)
+{
+    for (unsigned i = 0; i < GPIO_CHANNELS; i++) {
+        uint32_t times;
+        const double longest_s = gpio_differed_s((enum gpio_channel)i, &times);
+        if (times) {
+            cli_complain("--gpio: %s: its two contacts disagreed %lu times, at most for %.3g s", gpio_channel_name[i],
+                         (unsigned long)times, longest_s);
+        }
+    }
+}
+
 void contacts_end(void)
 {
+    say_differed();
     gpio_close();
 }

@@ -2,69 +2,21 @@
 #include "cli.h"
 
 #include "assign.h"
-#include "bilateral.h"
-#include "contacts.h"
 #include "live.h"
 #include "modbus.h"
 #include "option.h"
 #include "outfile.h"
 #include "param.h"
-#include "table2.h"
 
 #include "guarded/guarded.h"
 
 #include "exhand/error.h"
 
-#include <errno.h>
-#include <limits.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
 
-#define SETTINGS_MAX 64
-#define IMAGE_B      65536
-
-struct live_options {
-    const char *scene, *params, *log, *blackbox, *modbus, *save;
-    double rate_Hz, seconds, let_go_s;
-    int64_t seed;
-    int pace, grip, list, remote;
-    struct contacts gpio;
-    const char *set[SETTINGS_MAX];
-    int sets;
-    struct run_setting setting[SETTINGS_MAX];
-    struct bilateral_options hand;
-    struct run_live live;
-    FILE *file;
-};
-
-/* --- who is told what happens --- */
-
-static struct {
-    int on, status;
-} clients; /* of Modbus */
-
-static void start(const struct exh_scene *sc, struct exh_scene_board board)
-{
-    live_person_start(sc, board);
-    if (!clients.on) { return; }
-    clients.status = mail_start(sc, board) < 0 ? 1 : live_modbus_serve();
-    if (clients.status) { posix_stop(); }
-}
-
-static void before(uint32_t tick, struct exh_scene_in *in)
-{
-    live_person_before(tick, in);
-    if (clients.on) { mail_before(in); }
-}
-
-static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
-{
-    if (clients.on) { mail_after(in); }
-    live_person_after(tick, in, out);
-}
-
-static const struct exh_loop_hooks hooks = {start, before, after};
+#define IMAGE_B 65536
 
 static void interrupted(int sig)
 {
@@ -98,8 +50,8 @@ static const struct exh_scene *scene_of(const struct live_options *o)
 static int take_set(void *ctx, const char *text)
 {
     struct live_options *o = ctx;
-    if (o->sets == SETTINGS_MAX) {
-        cli_complain("--set: at most %d", SETTINGS_MAX);
+    if (o->sets == LIVE_SETTINGS_MAX) {
+        cli_complain("--set: at most %d", LIVE_SETTINGS_MAX);
         return 2;
     }
     o->set[o->sets++] = text;
@@ -154,100 +106,11 @@ static int read_params(struct live_options *o)
     return 0;
 }
 
-static int open_log(struct live_options *o)
-{
-    if (o->log == NULL) { return 0; }
-    if (!o->pace && o->seconds == 0) { /* gigabytes a minute */
-        cli_complain("--log: without an end it fills the disk as fast as it goes: give --seconds, or --pace");
-        return 2;
-    }
-    o->file = fopen(o->log, "wb");
-    if (o->file == NULL) {
-        cli_complain("--log: %s: %s: give a file that can be written", o->log, strerror(errno));
-        return 2;
-    }
-    return 0;
-}
-
-/* --- the two kinds of box --- */
-
-static void board(const struct live_options *o, struct posix_config *b)
-{
-    b->seed = (uint64_t)o->seed;
-    b->pace = o->pace;
-    b->gpio = o->gpio.given;
-    b->log = o->file;
-    b->wires_in = live_wires;
-    b->max_ticks = (uint32_t)(o->seconds * o->rate_Hz + 0.5);
-    if (o->seconds > 0 && b->max_ticks == 0) { b->max_ticks = 1; } /* 0: never */
-}
-
-/* A mass that is let fall again and again. */
-static int run_mass(const struct live_options *o, const struct exh_scene *sc, uint32_t *lost)
-{
-    const struct table2_row *g = table2_gains(o->rate_Hz);
-    struct run_cfg c = {.scene = sc,
-                        .rate_Hz = (uint32_t)(o->rate_Hz + 0.5),
-                        .k_Npm = g->k_Npm,
-                        .b_Nspm = g->b_Nspm,
-                        .setting = o->setting,
-                        .settings = o->sets,
-                        .more = &hooks,
-                        .blackbox = o->blackbox,
-                        .live = o->live};
-    struct run r;
-    int err;
-    c.board = posix_config_default();
-    c.board.falls = INT_MAX;
-    board(o, &c.board);
-    live_person(&(struct live_person){o->grip, o->let_go_s, 0});
-    err = run_drop(&c, &r);
-    *lost = r.lost;
-    run_free(&r);
-    return err;
-}
-
-static unsigned lowest(unsigned mask)
-{
-    unsigned i = 0;
-    while (mask > 1 && !(mask & 1)) {
-        mask >>= 1;
-        i++;
-    }
-    return i;
-}
-
-/* Fingers that approach a wall again and again. */
-static int run_hand(struct live_options *o, uint32_t *lost)
-{
-    const struct table2_row *g = table2_gains(o->rate_Hz);
-    struct bilateral_run_cfg c;
-    struct bilateral_run r;
-    int err;
-    o->hand.seed = o->seed;
-    o->hand.approaches = 0; /* for ever */
-    c = bilateral_at_speed(&o->hand, o->hand.speed[0].mps);
-    c.rate_Hz = (uint32_t)(o->rate_Hz + 0.5);
-    c.k_Npm = g->k_Npm;
-    c.b_Nspm = g->b_Nspm;
-    c.live = o->live;
-    c.more = &hooks;
-    c.blackbox = o->blackbox;
-    if (o->live.image) { c.fit_scale = 0; } /* it was, when that was saved */
-    board(o, &c.board);
-    live_person(&(struct live_person){o->grip, o->let_go_s, lowest(c.board.exo.fingers)});
-    err = bilateral_run(&c, &r);
-    *lost = r.lost;
-    bilateral_run_free(&r);
-    return err;
-}
-
 static int open_modbus(const struct live_options *o)
 {
     const struct mail_cfg mail = {o->save, o->remote};
     if (o->modbus == NULL) { return 0; }
     mail_open(&mail);
-    clients.on = 1;
     return live_modbus_open(o->modbus);
 }
 
@@ -264,36 +127,32 @@ static int prepare(struct live_options *o, const struct exh_scene *sc)
         cli_complain("--save and --remote: what clients may do: only with --modbus");
         err = 2;
     }
+    if (err == 0 && o->slack_s > 0 && !o->pace) {
+        cli_complain("--slack: nothing is late in virtual time: only with --pace");
+        err = 2;
+    }
     if (err == 0) { err = contacts_check(&o->gpio, o->pace); }
     if (err == 0) { err = read_params(o); }
-    if (err == 0) { err = open_log(o); }
+    if (err == 0) { err = live_log_open(o->log, o->pace, o->seconds > 0); }
     if (err == 0) { err = contacts_begin(&o->gpio); }
     if (err == 0) { err = open_modbus(o); }
     return err;
 }
 
-static int close_log(const struct live_options *o, uint32_t lost)
-{
-    if (o->file == NULL || (fclose(o->file) == 0 && lost == 0)) { return 0; }
-    cli_complain("%s: can't be written: %lu records lost", o->log, (unsigned long)lost);
-    return 1;
-}
-
 static int go(struct live_options *o)
 {
     const struct exh_scene *sc = scene_of(o);
-    uint32_t lost = 0;
     int err = sc ? prepare(o, sc) : 2;
     if (err == 0) {
         catch_signals();
-        err = sc == &exh_scene_bilateral ? run_hand(o, &lost) : run_mass(o, sc, &lost);
+        err = live_box(o, sc);
         err = err == -EXH_E_IO ? 1 : err < 0 ? 2 : 0; /* the board failed; it could not be set up */
-        live_person_end();
+        live_status_end();
     }
-    if (clients.on) { live_modbus_close(); }
+    if (o->modbus) { live_modbus_close(); }
     contacts_end();
-    if (close_log(o, lost) && err == 0) { err = 1; }
-    if (err == 0) { err = clients.status; }
+    if (live_log_close() && err == 0) { err = 1; }
+    if (err == 0) { err = live_box_clients(); }
     return err ? err : posix_interrupted() ? 130 : 0;
 }
 
@@ -310,7 +169,10 @@ int cli_run(int argc, char **argv)
     const struct cli_option option[] = {
         {"scene", CLI_TEXT, &o.scene, 0, 0, "NAME", "drop, guarded or bilateral (drop)"},
         {"rate", CLI_REAL, &o.rate_Hz, 1, 20000, "HZ", "of the loop (2000)"},
-        {"pace", CLI_FLAG, &o.pace, 0, 0, NULL, "follow the wall clock; else as fast as it goes"},
+        {"pace", CLI_FLAG, &o.pace, 0, 0, NULL,
+         "follow the wall clock, by which ticks may be missed; else as fast as it goes"},
+        {"slack", CLI_REAL, &o.slack_s, 0, 1, "S",
+         "with --pace: a tick so late is made up for, else it is missed (0)"},
         {"seconds", CLI_REAL, &o.seconds, 0, 1e9, "S", "the box's time, then it ends (never)"},
         {"fingers", CLI_CALL, u[1].to, 0, 0, "F[,F...]",
          "of bilateral: thumb, index, ... or all (index)"},

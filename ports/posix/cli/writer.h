@@ -1,0 +1,32 @@
+/* A file that is written by a thread of its own, so that who has something to write need not wait
+ * for a disk, a pipe or a terminal. */
+#ifndef CLI_WRITER_H
+#define CLI_WRITER_H
+
+#include <pthread.h>
+#include <stddef.h>
+#include <stdint.h>
+
+struct writer {
+    int fd;
+    uint8_t *ring; /* cap_B of it, the caller's, as is the writer: for ever      */
+    size_t cap_B;
+    size_t head, held; /* where the thread reads, and how much of it is its       */
+    int error; /* errno of what ended it: nothing is taken any more               */
+    int ends, over; /* asked to, has                                               */
+    pthread_mutex_t lock;
+    pthread_cond_t moved;
+};
+
+/* 0, or the errno of a thread that could not be made. */
+int writer_start(struct writer *w, int fd, void *ring, size_t cap_B);
+
+/* One caller, in its order: 1: all of it will be written, unless the file fails; 0: none, there was no
+ * room, and nothing moved for so long; -1: the file failed. */
+int writer_put(struct writer *w, const void *bytes, size_t n, double patience_s);
+
+/* Until all is written, the file fails, or nothing moves for so long. 0; errno of the file; or
+ * -1: it does not move, and the thread keeps what it has. */
+int writer_end(struct writer *w, double patience_s);
+
+#endif
