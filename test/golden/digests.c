@@ -16,6 +16,9 @@ const uint32_t digest_ring[GOLDEN_RATES] = {
 const uint32_t digest_signal[GOLDEN_RATES] = {
 #include "digest/signal.inc"
 };
+const uint32_t digest_slots[GOLDEN_RATES] = {
+#include "digest/slots.inc"
+};
 const uint32_t digest_quad[GOLDEN_RATES] = {
 #include "digest/quad.inc"
 };

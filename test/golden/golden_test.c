@@ -93,6 +93,7 @@ MODULE(bytes);
 MODULE(record);
 MODULE(ring);
 MODULE(signal);
+MODULE(slots);
 MODULE(quad);
 MODULE(quad_ab);
 MODULE(velocity_window);
@@ -125,7 +126,7 @@ MODULE(drop);
 MODULE(guarded);
 MODULE(bilateral);
 
-TEST_MAIN("golden", first_tick_that_differs_is_told, fix, bytes, record, ring, signal, quad, quad_ab,
+TEST_MAIN("golden", first_tick_that_differs_is_told, fix, bytes, record, ring, signal, slots, quad, quad_ab,
           velocity_window, velocity_pole, velocity_foaw, velocity_track, contact, table, drive,
           track, watch, guard, supply, passivity, safety, calibrate, probe, home, weigh, filter, quantizer,
           gains, glove, glove_cal, angle, hand, precontact, wire, drop, guarded, bilateral);

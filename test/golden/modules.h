@@ -14,6 +14,7 @@ GOLDEN_MODULE(bytes);
 GOLDEN_MODULE(record);
 GOLDEN_MODULE(ring);
 GOLDEN_MODULE(signal);
+GOLDEN_MODULE(slots);
 GOLDEN_MODULE(quad);
 GOLDEN_MODULE(quad_ab);
 GOLDEN_MODULE(velocity_window);
