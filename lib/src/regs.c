@@ -56,11 +56,15 @@ void exh_regs_see(struct exh_regs *r, const struct exh_safety *s, uint32_t din)
 
 /* --- values --- */
 
+/* What is wanted may have become what is staged. */
 static uint32_t staged_count(const struct exh_regs *r)
 {
     uint32_t n = 0;
     for (uint32_t w = 0; w < EXH_REGS_WORDS(r->params_n); w++) {
-        for (uint32_t rest = r->touched[w]; rest != 0; rest &= rest - 1) { n++; }
+        uint32_t i = 32 * w;
+        for (uint32_t rest = r->touched[w]; rest != 0; rest >>= 1, i++) {
+            n += (rest & 1u) && r->staged[i] != r->wanted[i];
+        }
     }
     return n;
 }

@@ -493,6 +493,10 @@ TEST(what_is_staged_reads_back_and_is_counted)
     g.wanted[2] = 5; /* somebody else's: seen where nothing is staged */
     ASK(3, 0x50, 4, 0, 2);
     GIVES(3, 4, 0, 0, 0, 5);
+    ASK(16, 0x50, 4, 0, 2, 4, 0, 0, 0x11, 0x22);
+    g.wanted[2] = 0x1122; /* somebody else's, too: nothing staged differs any more */
+    ASK(4, 0, 2 * EXH_HEAD_STAGED, 0, 2);
+    GIVES(4, 4, 0, 0, 0, 0);
 }
 
 TEST(while_apply_is_pending_nothing_changes)
