@@ -19,7 +19,7 @@
  *     if (n > 0) {
  *         board_erase(slot[to], SLOT_B);
  *         board_program(slot[to], buf, n);
- *         if (exh_slot_read(&is, slot[to], SLOT_B) < 0) { ... worn: tell; the old one still counts ... }
+ *         if (exh_slots_pick(&is, slot[0], slot[1], SLOT_B) != (int)to) { ... worn or protected: tell; the old one counts ... }
  *     }
  *
  *     at start: if (exh_slots_pick(&is, slot[0], slot[1], SLOT_B) >= 0) { exh_params_load(&params, is.image, is.len_B, NULL); }
