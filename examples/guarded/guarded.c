@@ -90,6 +90,7 @@ static int setup(struct exh_scene_board board)
     int err;
     state = power_on;
     exh_params_slew(&params, &active.drop.tune, board.T);
+    exh_gains_lead(&params, active.own.rule_on);
     err = calib_take(&calib, &params, &active.drop.calib, 1u);
     if (err == 0) { err = guarded_setup(&cfg, &active, board, &calib); }
     exh_guard_seal(&guard, &cfg, sizeof cfg, &params);
@@ -109,6 +110,7 @@ static int allowed(void)
 
 static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
 {
+    if (active.own.rule_on) { exh_gains_step(&params, &active.gains); }
     state.drop.broken = (uint8_t)exh_guard_step(&guard);
     guarded_tick(&state, &cfg, in, out, &signals);
 }

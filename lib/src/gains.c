@@ -54,6 +54,17 @@ static int same_rate(int32_t rate_Hz_q8, struct exh_period T)
     return (off < 0 ? -off : off) * 100 <= want;
 }
 
+/* What is inside is one piece, but for no wall: k_min is not above an inner knot alone. */
+static int hangs_together(const struct exh_gains_par *rule)
+{
+    int ends = 0; /* of rows of knots at k_min or above */
+    for (int32_t i = 1; i <= rule->knots; i++) {
+        const int last = i == rule->knots || rule->k_Npm_q10[i] < rule->k_min_Npm_q10;
+        ends += last && rule->k_Npm_q10[i - 1] >= rule->k_min_Npm_q10;
+    }
+    return ends <= 1;
+}
+
 int exh_gains_setup(const struct exh_gains_par *rule, struct exh_period T)
 {
     if (!exh_inside(rule->rate_Hz_q8, 1 << 8, 20000 << 8) ||
@@ -68,20 +79,40 @@ int exh_gains_setup(const struct exh_gains_par *rule, struct exh_period T)
         }
         if (i > 0 && rule->b_Nspm_q20[i] <= rule->b_Nspm_q20[i - 1]) { return -EXH_E_MONOTONE; }
     }
+    if (!hangs_together(rule)) { return -EXH_E_RANGE; }
     return exh_period_ok(T) && same_rate(rule->rate_Hz_q8, T) ? 0 : -EXH_E_RATE;
+}
+
+/* --- inside --- */
+
+struct pair {
+    int32_t k, b; /* N/m q10, Ns/m q20 */
+};
+
+static int is_none(struct pair at)
+{
+    return at.k == 0 && at.b == 0;
+}
+
+/* Under the pieces, no wall only if it is there too. */
+static int is_under(const struct exh_gains_par *rule, struct pair at)
+{
+    int under = 0;
+    for (int32_t i = 1; i < rule->knots; i++) {
+        const int64_t b0 = rule->b_Nspm_q20[i - 1], b1 = rule->b_Nspm_q20[i];
+        const int64_t k0 = rule->k_Npm_q10[i - 1], k1 = rule->k_Npm_q10[i];
+        under |= at.b >= b0 && at.b <= b1 && (at.k - k0) * (b1 - b0) <= (k1 - k0) * (at.b - b0);
+    }
+    return under && at.k >= rule->k_min_Npm_q10;
 }
 
 int exh_gains_ok(const struct exh_gains_par *rule, int32_t k_Npm_q10, int32_t b_Nspm_q20)
 {
-    int ok = 0;
-    for (int32_t i = 1; i < rule->knots; i++) {
-        const int64_t b0 = rule->b_Nspm_q20[i - 1], b1 = rule->b_Nspm_q20[i];
-        const int64_t k0 = rule->k_Npm_q10[i - 1], k1 = rule->k_Npm_q10[i];
-        ok |= b_Nspm_q20 >= b0 && b_Nspm_q20 <= b1 &&
-              (k_Npm_q10 - k0) * (b1 - b0) <= (k1 - k0) * (b_Nspm_q20 - b0);
-    }
-    return (ok && k_Npm_q10 >= rule->k_min_Npm_q10) || (k_Npm_q10 == 0 && b_Nspm_q20 == 0);
+    const struct pair at = {k_Npm_q10, b_Nspm_q20};
+    return is_under(rule, at) || is_none(at);
 }
+
+/* --- staged --- */
 
 /* Both of an instance, or it has no wall. */
 static int pair_ok(const struct exh_params *p, const struct exh_gains_par *rule, uint16_t instance)
@@ -119,4 +150,79 @@ int exh_gains_staged(const struct exh_params *p, const struct exh_gains_par *rul
 void exh_gains_drop(struct exh_params *p)
 {
     exh_params_drop(p);
+}
+
+/* --- one step of the way --- */
+
+void exh_gains_lead(struct exh_params *p, int on)
+{
+    p->led[0] = on ? K_ID : 0;
+    p->led[1] = on ? B_ID : 0;
+}
+
+/* The k to go for: the goal's if no knot between is below the straight line there; else what passes below all
+ * of them. Both pairs are under the pieces; products below 2^61. */
+static int32_t aim(const struct exh_gains_par *rule, struct pair at, struct pair goal)
+{
+    const int64_t db = (int64_t)goal.b - at.b, dk = (int64_t)goal.k - at.k;
+    int32_t low = at.k;
+    int straight = 1;
+    for (int32_t i = 0; i < rule->knots; i++) {
+        const int64_t b = (int64_t)rule->b_Nspm_q20[i] - at.b, k = rule->k_Npm_q10[i];
+        const int64_t over = (at.k - k) * db + dk * b; /* line above knot, times db */
+        if (db > 0 ? b <= 0 || b >= db : b >= 0 || b <= db) { continue; }
+        straight &= db > 0 ? over <= 0 : over >= 0;
+        low = k < low ? (int32_t)k : low;
+    }
+    return straight ? goal.k : low;
+}
+
+/* From under the pieces to under the pieces. One of the two may have to wait for the other: k falls alone, since
+ * less stiff is inside too; b goes alone where k rises, since then the line there is above k. */
+static struct pair slewed(const struct exh_gains_par *rule, struct pair at, struct pair goal,
+                          unsigned shift)
+{
+    struct pair next;
+    next.k = exh_params_toward(at.k, aim(rule, at, goal), shift);
+    next.b = exh_params_toward(at.b, goal.b, shift);
+    if (is_under(rule, next)) { return next; }
+    if (next.k < at.k) {
+        next.b = at.b;
+    } else {
+        next.k = at.k;
+    }
+    return next;
+}
+
+static struct pair stepped(const struct exh_gains_par *rule, struct pair at, struct pair goal,
+                           unsigned shift)
+{
+    static const struct pair none = {0, 0};
+    const int under = is_under(rule, at), goal_under = is_under(rule, goal);
+    if (!goal_under && !is_none(goal)) { return under ? at : none; }
+    if (shift == 0) { return goal; }
+    if (under && goal_under) { return slewed(rule, at, goal, shift); }
+    if (under) { /* no wall lies apart */
+        if (at.k <= rule->k_min_Npm_q10) { return none; }
+        at.k = exh_params_toward(at.k, rule->k_min_Npm_q10, shift);
+        return at;
+    }
+    if (!goal_under || !is_none(at)) { return none; }
+    goal.k = rule->k_min_Npm_q10;
+    return goal;
+}
+
+void exh_gains_step(struct exh_params *p, const struct exh_gains_par *rule)
+{
+    int32_t k;
+    for (uint16_t n = 0; (k = exh_signal_find(p->table, K_ID, n)) >= 0; n++) {
+        const int32_t b = exh_signal_find(p->table, B_ID, n);
+        struct pair at, goal;
+        if (b < 0) { continue; }
+        at = (struct pair){p->active[k], p->active[b]};
+        goal = (struct pair){p->staged[k], p->staged[b]};
+        at = stepped(rule, at, goal, p->shift & 31u);
+        exh_params_put(p, (uint32_t)k, at.k);
+        exh_params_put(p, (uint32_t)b, at.b);
+    }
 }

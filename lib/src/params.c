@@ -121,19 +121,39 @@ static int is_slewed(const struct exh_signal *row)
     return row->when == EXH_WHEN_SLEWED || row->when == EXH_WHEN_LIMIT;
 }
 
-/* The values of one row, the first of which is at i. */
-static void apply_row(struct exh_params *p, const struct exh_signal_group *g,
-                      const struct exh_signal *row, uint32_t i)
+/* The values of one row go all the way; the first of them is at i. As put(), but in one go: it is most of the
+ * dearest tick. */
+static void copy_row(struct exh_params *p, const struct exh_signal_group *g, uint32_t i)
 {
-    const unsigned shift = is_slewed(row) && p->locked ? p->shift & 31u : 0;
+    uint32_t sum = 0, passed = 0, odd = 4 * i + 1;
+    for (uint16_t k = 0; k < g->instances; k++, i += g->rows, odd += 4u * g->rows) {
+        const uint32_t more = odd * ((uint32_t)p->staged[i] - (uint32_t)p->active[i]);
+        sum += more;
+        passed += i < p->at ? more : 0;
+        p->active[i] = p->staged[i];
+    }
+    p->sum += sum;
+    p->passed += passed;
+}
+
+/* They go a step, or stand where somebody else moves them. */
+static void slew_row(struct exh_params *p, const struct exh_signal_group *g,
+                     const struct exh_signal *row, uint32_t i)
+{
     const int limit = row->when == EXH_WHEN_LIMIT;
+    const int led = row->id == p->led[0] || row->id == p->led[1];
     for (uint16_t k = 0; k < g->instances; k++, i += g->rows) {
         const int falls = limit && p->staged[i] < p->active[i];
-        const int32_t next =
-            exh_params_toward(p->active[i], p->staged[i], falls ? 0 : shift);
-        put(p, p->active, i, next);
-        p->moving |= next != p->staged[i];
+        const unsigned shift = falls ? 0 : p->shift & 31u;
+        if (!led) { put(p, p->active, i, exh_params_toward(p->active[i], p->staged[i], shift)); }
+        p->moving |= p->active[i] != p->staged[i];
     }
+}
+
+void exh_params_put(struct exh_params *p, uint32_t i, int32_t raw)
+{
+    put(p, p->active, i, raw);
+    p->moving |= raw != p->staged[i];
 }
 
 int exh_params_apply(struct exh_params *p)
@@ -145,7 +165,12 @@ int exh_params_apply(struct exh_params *p)
     for (uint16_t n = 0; n < p->table->groups; n++) {
         const struct exh_signal_group *g = &p->table->group[n];
         for (uint16_t r = 0; r < g->rows; r++) {
-            if (all || is_slewed(&g->row[r])) { apply_row(p, g, &g->row[r], first + r); }
+            const struct exh_signal *row = &g->row[r];
+            if (p->locked && is_slewed(row)) {
+                slew_row(p, g, row, first + r);
+            } else if (all || is_slewed(row)) {
+                copy_row(p, g, first + r);
+            }
         }
         first += (uint32_t)g->rows * g->instances;
     }

@@ -1,4 +1,4 @@
-/* gains: rules set up and refused, pairs asked, values staged under a rule. */
+/* gains: rules set up and refused, pairs asked, values staged under a rule and moved under it. */
 #include "modules.h"
 
 #include "exhand/contact.h"
@@ -19,12 +19,14 @@ static struct exh_gains_par any_rule(struct golden_rng *r, struct exh_period T)
 {
     struct exh_gains_par p;
     int64_t b = golden_draw(r, 0, 1 << 24);
+    const int line = golden_draw(r, 0, 2) == 0; /* knots that are none: the way grazes them */
     p.rate_Hz_q8 = (int32_t)((256 * (int64_t)T.den + T.num / 2) / T.num);
     p.knots = (int32_t)golden_draw(r, 2, 8);
     p.k_min_Npm_q10 = (int32_t)(golden_draw(r, 0, 1) * golden_draw(r, 0, 1 << 24));
     for (int i = 0; i < EXH_GAINS_KNOTS; i++) {
         p.b_Nspm_q20[i] = (int32_t)b;
         p.k_Npm_q10[i] = (int32_t)golden_draw(r, 0, K_MAX);
+        if (line) { p.k_Npm_q10[i] = (int32_t)b; }
         b += golden_draw(r, 1, 1 << 26);
     }
     return p;
@@ -46,18 +48,27 @@ static void spoil(struct exh_gains_par *p, int64_t how)
     case 13: p->rate_Hz_q8 += p->rate_Hz_q8 / 50; break;
     case 10: p->k_Npm_q10[7] = K_MAX + 1; break;
     case 11: p->rate_Hz_q8 -= p->rate_Hz_q8 / 120; break;
+    case 14:
+    case 15: /* between two or at the end */
+        p->k_min_Npm_q10 |= 1;
+        p->k_Npm_q10[1] = p->k_min_Npm_q10 - 1;
+        break;
     default: break;
     }
 }
 
-static int set_up(struct golden_rng *r, struct exh_period T, int must)
+/* Taken only every 16th tick, so that there is a way to go under it. */
+static int set_up(struct golden_rng *r, struct exh_period T, int must, int take)
 {
     struct exh_gains_par p = any_rule(r, T);
     int err;
     const int64_t how = golden_draw(r, 0, 15);
     if (!must) { spoil(&p, how); }
+    for (int i = 0; must && i < EXH_GAINS_KNOTS; i++) { /* in one piece, all of them */
+        if (p.k_Npm_q10[i] < p.k_min_Npm_q10) { p.k_Npm_q10[i] = p.k_min_Npm_q10; }
+    }
     err = exh_gains_setup(&p, T);
-    if (err == 0) { rule = p; }
+    if (err == 0 && take) { rule = p; }
     return err;
 }
 
@@ -77,6 +88,30 @@ static void any_pair(struct golden_rng *r, int32_t *k, int32_t *b)
     *k = (int32_t)(k1 >= k0 ? k0 + (k1 - k0) * (*b - b0) / (b1 - b0)
                             : k1 + (k0 - k1) * (b1 - *b) / (b1 - b0));
     *k += (int32_t)golden_draw(r, -2, 2);
+}
+
+/* What golden_put() has of it is what the loop has: one step behind what is applied. */
+static int32_t move(void)
+{
+    const int done = exh_params_apply(&params);
+    exh_gains_step(&params, &rule);
+    return done;
+}
+
+/* Both at once, no wall and knots among them: somewhere to go. */
+static void wish(struct golden_rng *r, int32_t k, int32_t b)
+{
+    const int64_t how = golden_draw(r, 0, 15);
+    const uint16_t instance = (uint16_t)golden_draw(r, 0, 1);
+    const int64_t knot = golden_draw(r, 0, rule.knots - 1);
+    if (how < 3) { k = b = 0; }
+    if (how >= 3 && how < 8) {
+        k = rule.k_Npm_q10[knot];
+        b = rule.b_Nspm_q20[knot];
+    }
+    if (how > 9 || !exh_gains_ok(&rule, k, b)) { return; }
+    (void)exh_params_stage(&params, 0x0401, instance, k);
+    (void)exh_params_stage(&params, 0x0402, instance, b);
 }
 
 static void stage(struct golden *g, struct golden_rng *r, int32_t k, int32_t b)
@@ -99,12 +134,25 @@ static void stage(struct golden *g, struct golden_rng *r, int32_t k, int32_t b)
     if (err < 0) { exh_gains_drop(&params); }
     golden_put(g, err);
     golden_put(g, at);
-    golden_put(g, golden_draw(r, 0, 3) == 0 ? exh_params_apply(&params) : -1);
+    golden_put(g, golden_draw(r, 0, 3) ? move() : -1);
     golden_put(g, params.pending);
+    golden_put(g, params.moving);
     for (int i = 0; i < 2; i++) {
         golden_put(g, staged[i].k_Npm_q10);
         golden_put(g, staged[i].b_Nspm_q20);
+        golden_put(g, active[i].k_Npm_q10);
+        golden_put(g, active[i].b_Nspm_q20);
     }
+}
+
+/* Two walls at power on: none, and the least at the first knot. */
+static void start(void)
+{
+    exh_params_init(&params, &table, (int32_t *)active, (int32_t *)staged);
+    active[0].k_Npm_q10 = staged[0].k_Npm_q10 = 0; /* no wall: b first is outside */
+    active[1].k_Npm_q10 = staged[1].k_Npm_q10 = rule.k_min_Npm_q10;
+    active[1].b_Nspm_q20 = staged[1].b_Nspm_q20 = rule.b_Nspm_q20[0];
+    exh_gains_lead(&params, 1);
 }
 
 void golden_gains(struct golden *g, uint32_t rate_Hz)
@@ -116,19 +164,18 @@ void golden_gains(struct golden *g, uint32_t rate_Hz)
         int32_t b;
         int err = 1;
         if (anew || g->tick % 8 == 0) {
-            err = set_up(&r, golden_period(rate_Hz, g->tick), anew);
-            if (err == 0) {
-                exh_params_init(&params, &table, (int32_t *)active, (int32_t *)staged);
-                active[0].k_Npm_q10 = staged[0].k_Npm_q10 = 0; /* no wall: b first is outside */
-                active[1].k_Npm_q10 = staged[1].k_Npm_q10 = rule.k_min_Npm_q10;
-                active[1].b_Nspm_q20 = staged[1].b_Nspm_q20 = rule.b_Nspm_q20[0];
-            }
+            const int take = anew || g->tick % 16 == 0;
+            err = set_up(&r, golden_period(rate_Hz, g->tick), anew, take);
+            if (err == 0 && take) { start(); }
+            params.shift = (uint8_t)golden_draw(&r, 0, 4);
         }
+        params.locked = g->tick % 16 > 1;
         any_pair(&r, &k, &b);
         golden_put(g, err);
         golden_put(g, k);
         golden_put(g, b);
         golden_put(g, exh_gains_ok(&rule, k, b));
+        wish(&r, k, b);
         stage(g, &r, k, b);
         golden_tick(g);
     }

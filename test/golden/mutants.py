@@ -68,10 +68,10 @@ MUTANTS = (
     ("signal", L + "params.c", "raw < row->min ||", "raw <= row->min ||"),
     ("signal", L + "params.c", "(left >> shift) + ((", "(left >> shift) + (0 * ("),
     # taken <= time: the two are the same at few rates; unit/params tells it.
-    ("signal", L + "params.c", "is_slewed(row) && p->locked ? p->shift", "is_slewed(row) ? p->shift"),
-    ("signal", L + "params.c", "falls ? 0 : shift", "shift"),
+    ("signal", L + "params.c", "if (p->locked && is_slewed(row)) {", "if (is_slewed(row)) {"),
+    ("signal", L + "params.c", "falls ? 0 : p->shift & 31u", "p->shift & 31u"),
     ("signal", L + "params.c", "p->staged[i] < p->active[i];", "p->staged[i] > p->active[i];"),
-    ("signal", L + "params.c", "p->moving |= next != p->staged[i];", "p->moving |= next > p->staged[i];"),
+    ("signal", L + "params.c", "p->moving |= p->active[i] != p->staged[i];", "p->moving |= p->active[i] > p->staged[i];"),
     ("signal", L + "params.c", "p->passed += i < p->at ? more : 0;", "p->passed += i <= p->at ? more : 0;"),
     ("signal", L + "params.c", "    p->sum += more;", ""),
     ("signal", L + "params.c", "int32_t v = p->staged[i];", "int32_t v = p->active[i];"),
@@ -127,11 +127,19 @@ MUTANTS = (
     ("passivity", PASSIVITY, "f->force_N_q20 > f->pullback_N_q20;", "1;"),
     ("passivity", PASSIVITY, "coded_A_q26) - f->pullback_N_q20;", "coded_A_q26);"),
     ("passivity", PASSIVITY, "par->on == LATE ? before", "par->on >= 1 ? before"),
-    ("gains", GAINS, "(k_Npm_q10 - k0) * (b1 - b0) <=", "(k_Npm_q10 - k0) * (b1 - b0) <"),
-    ("gains", GAINS, "k_Npm_q10 >= rule->k_min_Npm_q10)", "k_Npm_q10 > rule->k_min_Npm_q10)"),
+    ("gains", GAINS, "(at.k - k0) * (b1 - b0) <=", "(at.k - k0) * (b1 - b0) <"),
+    ("gains", GAINS, "return under && at.k >= rule", "return under && at.k > rule"),
     ("gains", GAINS, "(off < 0 ? -off : off) * 100", "off * 100"),
     ("gains", GAINS, "    (void)exh_params_stage(p, id, instance, was);", ""),
     ("gains", GAINS, "    p->pending = pending;", ""),
+    ("gains", GAINS, "straight &= db > 0 ? over <= 0 : over >= 0", "straight &= db > 0 ? over < 0 : over > 0"),
+    ("gains", GAINS, "return straight ? goal.k : low", "return goal.k"),
+    ("gains", GAINS, "    if (is_under(rule, next)) { return next; }", "    return next;"),
+    ("gains", GAINS, "    if (next.k < at.k) {", "    if (next.k > at.k) {"),
+    ("gains", GAINS, "at.k <= rule->k_min_Npm_q10", "at.k < rule->k_min_Npm_q10"),
+    ("gains", GAINS, "    goal.k = rule->k_min_Npm_q10;", ""),
+    ("gains", GAINS, "return ends <= 1", "return ends <= 2"),
+    ("gains", GAINS, "    if (shift == 0) { return goal; }", ""),
     ("track", TRACK, "1 + LATE_TICKS;", "LATE_TICKS;"),
     ("track", TRACK, "mon_A_q26 >= lowest", "mon_A_q26 > lowest"),
     ("track", TRACK, "mon_A_q26 <= highest", "mon_A_q26 < highest"),
@@ -259,6 +267,11 @@ THIN = {
     "raw != p->staged[i]": 0.15,                       # a set-up value that is staged when it is locked
     "!p->pending && !p->moving;": 0.50,                # unit/params
     "falls ? s->off_raw[k] : UINT16_MAX": 0.84,        # unit/gate, proof
+    "straight &= db > 0 ? over <= 0 : over >= 0": 0.45,  # slower where the way grazes a knot
+    "return straight ? goal.k : low": 0.85,            # the next three: prop/gains
+    "    if (is_under(rule, next)) { return next; }": 0.85,
+    "    if (next.k < at.k) {": 0.85,
+    "at.k <= rule->k_min_Npm_q10": 0.85,               # a tick later
 }
 
 # Where the inline functions of a header are called for a module.

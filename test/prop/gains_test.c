@@ -1,6 +1,8 @@
-/* gains.h: inside or not against exact wider arithmetic, for every rule, gain and rate. */
+/* gains.h: inside or not against exact wider arithmetic, for every rule, gain and rate; and on the way from any pair
+ * to any other inside in every tick. */
 #include "exhand/gains.h"
 
+#include "exhand/contact.h"
 #include "exhand/error.h"
 
 #include "check.h"
@@ -104,5 +106,136 @@ TEST(every_rate_has_its_rule)
     }
 }
 
-TEST_MAIN("gains", inside_as_in_exact_arithmetic, less_stiff_is_inside_too,
-          every_rate_has_its_rule);
+/* --- on the way --- */
+
+#define WALLS 2
+
+static const struct exh_signal_group group[] = {{exh_contact_rows, EXH_CONTACT_ROWS, WALLS}};
+static const struct exh_signal_table table = {group, 1};
+static struct exh_contact_par active[WALLS], staged[WALLS];
+static struct exh_params params;
+
+/* One that set-up takes: as any, in half of the cases with its knots no lower than k_min. */
+static struct exh_gains_par taken_rule(void)
+{
+    for (;;) {
+        struct exh_gains_par r = any_rule();
+        const int lift = check_i32_in(0, 1);
+        for (int i = 0; lift && i < r.knots; i++) {
+            if (r.k_Npm_q10[i] < r.k_min_Npm_q10) { r.k_Npm_q10[i] = r.k_min_Npm_q10; }
+        }
+        r.rate_Hz_q8 = 1000 * 256;
+        if (exh_gains_setup(&r, (struct exh_period){1, 1000}) == 0) { return r; }
+    }
+}
+
+static void inside_gains(const struct exh_gains_par *r, int32_t *k, int32_t *b)
+{
+    *k = *b = 0;
+    if (check_i32_in(0, 7) == 0) { return; }
+    for (int n = 0; n < 50; n++) {
+        any_gains(r, k, b);
+        if (want(r, *k, *b)) { return; }
+        if (*b >= 0 && want(r, r->k_min_Npm_q10, *b)) {
+            *k = r->k_min_Npm_q10;
+            return;
+        }
+    }
+    *k = *b = 0;
+}
+
+static void start_at(unsigned shift)
+{
+    exh_params_init(&params, &table, (int32_t *)active, (int32_t *)staged);
+    exh_gains_lead(&params, 1);
+    params.locked = 1;
+    params.shift = (uint8_t)shift;
+    for (int w = 0; w < WALLS; w++) { /* of another wall than those a test is about: none */
+        active[w].k_Npm_q10 = staged[w].k_Npm_q10 = 0;
+    }
+}
+
+/* Staged anew in every so many ticks, dropped now and then: inside in every tick, and never told by the guard. */
+TEST(inside_in_every_tick)
+{
+    uint64_t ticks = 0;
+    while (check_case(500)) {
+        const struct exh_gains_par r = taken_rule();
+        const int anew = check_i32_in(1, 150);
+        start_at((unsigned)check_i32_in(0, 7));
+        for (int w = 0; w < WALLS; w++) {
+            inside_gains(&r, &active[w].k_Npm_q10, &active[w].b_Nspm_q20);
+            staged[w] = active[w];
+        }
+        exh_params_seal(&params);
+        for (int t = 0; t < 400; t++, ticks++) {
+            for (uint16_t w = 0; w < WALLS && t % anew == 0; w++) {
+                int32_t k, b;
+                inside_gains(&r, &k, &b);
+                CHECK_EQ_I64(exh_params_stage(&params, 0x0401, w, k), 0);
+                CHECK_EQ_I64(exh_params_stage(&params, 0x0402, w, b), 0);
+            }
+            if (check_i32_in(0, 99) == 0) { exh_gains_drop(&params); }
+            (void)exh_params_apply(&params);
+            exh_gains_step(&params, &r);
+            CHECK(!exh_params_look(&params), "told in tick %d", t);
+            for (int w = 0; w < WALLS; w++) {
+                CHECK(want(&r, active[w].k_Npm_q10, active[w].b_Nspm_q20),
+                      "tick %d k %" PRId32 " b %" PRId32, t, active[w].k_Npm_q10,
+                      active[w].b_Nspm_q20);
+            }
+        }
+    }
+    check_note("%" PRIu64 " ticks of two walls, every one inside", ticks);
+}
+
+/* To the end, in time; k falls first and rises behind, but for a jump from no wall. */
+TEST(the_way_ends)
+{
+    while (check_case(500)) {
+        const struct exh_gains_par r = taken_rule();
+        const unsigned shift = (unsigned)check_i32_in(0, 7);
+        const int64_t one = ((INT64_C(1) << shift) * (10 + 7 * (32 - (int64_t)shift)) + 10) / 10;
+        int64_t n = 0;
+        int rising = 0;
+        start_at(shift);
+        inside_gains(&r, &active[0].k_Npm_q10, &active[0].b_Nspm_q20);
+        inside_gains(&r, &staged[0].k_Npm_q10, &staged[0].b_Nspm_q20);
+        exh_params_seal(&params);
+        for (params.pending = 1; exh_params_apply(&params) && n <= 3 * one + 2; n++) {
+            const int32_t k = active[0].k_Npm_q10;
+            const int was = want(&r, k, active[0].b_Nspm_q20);
+            exh_gains_step(&params, &r);
+            CHECK(was, "tick %d", (int)n);
+            CHECK(!rising || active[0].k_Npm_q10 >= k || staged[0].k_Npm_q10 <= k,
+                  "shift %u tick %d: k %" PRId32 " to %" PRId32 ", wanted %" PRId32, shift, (int)n,
+                  k, active[0].k_Npm_q10, staged[0].k_Npm_q10);
+            rising = active[0].k_Npm_q10 > k;
+        }
+        CHECK(active[0].k_Npm_q10 == staged[0].k_Npm_q10 &&
+                  active[0].b_Nspm_q20 == staged[0].b_Nspm_q20 && n <= 3 * one + 2,
+              "shift %u: %" PRId64 " ticks, at most %" PRId64, shift, n, 3 * one + 2);
+    }
+}
+
+/* Whatever stands in both arrays, as a damaged keyframe may have it: inside after one step, and from then on. */
+TEST(inside_from_anywhere)
+{
+    while (check_case(20)) {
+        const struct exh_gains_par r = taken_rule();
+        start_at((unsigned)check_i32_in(0, 15));
+        any_gains(&r, &active[0].k_Npm_q10, &active[0].b_Nspm_q20);
+        any_gains(&r, &staged[0].k_Npm_q10, &staged[0].b_Nspm_q20);
+        exh_params_seal(&params);
+        params.pending = 1;
+        for (int t = 0; t < 20; t++) {
+            (void)exh_params_apply(&params);
+            exh_gains_step(&params, &r);
+            CHECK(want(&r, active[0].k_Npm_q10, active[0].b_Nspm_q20),
+                  "tick %d k %" PRId32 " b %" PRId32, t, active[0].k_Npm_q10, active[0].b_Nspm_q20);
+        }
+    }
+}
+
+TEST_MAIN("gains", inside_as_in_exact_arithmetic, less_stiff_is_inside_too, every_rate_has_its_rule,
+          inside_in_every_tick, the_way_ends, inside_from_anywhere);

@@ -91,6 +91,23 @@ TEST(setup_refuses)
     }
 }
 
+/* What is inside hangs together: below k_min at the ends, not between. */
+TEST(setup_refuses_two_halves)
+{
+    struct exh_gains_par r = rule;
+    r.k_Npm_q10[0] = 0;
+    CHECK_EQ_I64(exh_gains_setup(&r, T), 0);
+    r.k_Npm_q10[0] = K(500);
+    r.k_Npm_q10[1] = K(500);
+    CHECK_EQ_I64(exh_gains_setup(&r, T), 0);
+    r.k_Npm_q10[1]--;
+    CHECK_EQ_I64(exh_gains_setup(&r, T), -EXH_E_RANGE);
+    r.k_Npm_q10[0]--;
+    CHECK_EQ_I64(exh_gains_setup(&r, T), 0);
+    r.k_Npm_q10[2] = K(499);
+    CHECK_EQ_I64(exh_gains_setup(&r, T), 0); /* nothing but no wall is inside */
+}
+
 TEST(setup_asks_for_its_rate)
 {
     static const struct {
@@ -168,6 +185,62 @@ TEST(a_whole_image_is_asked_and_dropped)
     CHECK_EQ_I64(exh_gains_staged(&params, &rule, &instance), 0);
 }
 
+/* From (10000, 0) over the valley to the same k at b = 40: k down to the valley's, through, up again; never up and
+ * down by turns. What is dropped half way stands inside. */
+TEST(through_a_valley)
+{
+    static const struct exh_gains_par valley = {
+        2000 << 8, 3, K(500), {0, B(20), B(40)}, {K(10000), K(2000), K(10000)}};
+    struct exh_contact_par *now = &active.contact[0];
+    int32_t was = K(10000), low = was;
+    start();
+    exh_gains_lead(&params, 1);
+    CHECK_EQ_I64(exh_params_stage(&params, 0x0401, 0, K(10000)), 0);
+    CHECK_EQ_I64(exh_params_apply(&params), 1); /* not locked: at once */
+    CHECK_EQ_I64(now->k_Npm_q10, K(10000));
+    params.locked = 1;
+    params.shift = 3;
+    CHECK_EQ_I64(exh_gains_stage(&params, &valley, 0x0402, 0, B(40)), 0);
+    for (int n = 0; exh_params_apply(&params); n++) {
+        const int beyond = now->b_Nspm_q20 >= B(20);
+        exh_gains_step(&params, &valley);
+        CHECK(exh_gains_ok(&valley, now->k_Npm_q10, now->b_Nspm_q20), "tick %d outside", n);
+        CHECK(beyond ? now->k_Npm_q10 >= was : now->k_Npm_q10 <= was, "tick %d", n);
+        was = now->k_Npm_q10;
+        low = was < low ? was : low;
+        if (n == 20) {
+            exh_gains_drop(&params);
+            CHECK(exh_gains_ok(&valley, now->k_Npm_q10, now->b_Nspm_q20), "dropped outside");
+            CHECK_EQ_I64(exh_params_stage(&params, 0x0401, 0, K(10000)), 0);
+            CHECK_EQ_I64(exh_params_stage(&params, 0x0402, 0, B(40)), 0);
+        }
+        CHECK(n < 1000, "no end");
+    }
+    CHECK(low < K(2500) && was == K(10000) && now->b_Nspm_q20 == B(40), "low %d", (int)low);
+}
+
+/* Nothing lies between no wall and the rule's least k. */
+TEST(no_wall_is_a_jump_away)
+{
+    struct exh_contact_par *now = &active.contact[0];
+    start();
+    exh_gains_lead(&params, 1);
+    params.locked = 1;
+    params.shift = 3;
+    CHECK_EQ_I64(exh_params_stage(&params, 0x0401, 0, 0), 0);
+    while (exh_params_apply(&params)) {
+        exh_gains_step(&params, &rule);
+        CHECK(now->k_Npm_q10 == 0 || now->k_Npm_q10 >= K(500), "between");
+    }
+    CHECK_EQ_I64(now->k_Npm_q10, 0);
+    CHECK_EQ_I64(exh_params_stage(&params, 0x0401, 0, K(8000)), 0);
+    CHECK_EQ_I64(exh_params_stage(&params, 0x0402, 0, B(10)), 0);
+    CHECK_EQ_I64(exh_params_apply(&params), 1);
+    CHECK_EQ_I64(now->k_Npm_q10, 0); /* stands still in apply */
+    exh_gains_step(&params, &rule);
+    CHECK(now->k_Npm_q10 == K(500) && now->b_Nspm_q20 == B(10), "k %d", (int)now->k_Npm_q10);
+}
+
 TEST(rows_are_of_the_struct)
 {
     struct exh_signal_group g = {exh_gains_rows, EXH_GAINS_ROWS, 1};
@@ -184,6 +257,6 @@ TEST(rows_are_of_the_struct)
     }
 }
 
-TEST_MAIN("gains", pieces_and_ends, setup_refuses, setup_asks_for_its_rate,
-          staging_refuses_what_is_outside, a_whole_image_is_asked_and_dropped,
-          rows_are_of_the_struct);
+TEST_MAIN("gains", pieces_and_ends, setup_refuses, setup_refuses_two_halves, setup_asks_for_its_rate,
+          staging_refuses_what_is_outside, a_whole_image_is_asked_and_dropped, through_a_valley,
+          no_wall_is_a_jump_away, rows_are_of_the_struct);

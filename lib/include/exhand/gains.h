@@ -32,8 +32,9 @@ struct exh_gains_par {
 #define EXH_GAINS_ROWS (3 + 2 * EXH_GAINS_KNOTS)
 extern const struct exh_signal exh_gains_rows[EXH_GAINS_ROWS];
 
-/* Whether the rule can be asked at this period. -EXH_E_RANGE: a value outside its row; -EXH_E_MONOTONE:
- * b does not rise; -EXH_E_RATE: the period's rate is more than 1 % off the rule's. */
+/* Whether the rule can be asked at this period. -EXH_E_RANGE: a value outside its row, or a knot below k_min
+ * between two that are not: what is inside must hang together; -EXH_E_MONOTONE: b does not rise;
+ * -EXH_E_RATE: the period's rate is more than 1 % off the rule's. */
 int exh_gains_setup(const struct exh_gains_par *rule, struct exh_period T);
 
 /* 1 if the rule allows k and b, else 0; any int32_t. k = b = 0, no wall, is always allowed. Inside
@@ -51,10 +52,25 @@ int exh_gains_stage(struct exh_params *p, const struct exh_gains_par *rule, uint
 
 /* Of a whole image, behind exh_params_load() and before exh_params_apply(): 0, or -EXH_E_GAINS with
  * *instance (may be NULL) the first whose staged k and b are outside. Then what is staged must not
- * be applied: exh_gains_drop() puts the active values back in its place. */
+ * be applied: exh_gains_drop() puts the active values back in its place. They are inside, in mid-way too,
+ * where exh_gains_step() moves them. */
 int exh_gains_staged(const struct exh_params *p, const struct exh_gains_par *rule,
                      uint16_t *instance);
 void exh_gains_drop(struct exh_params *p);
+
+/* At set-up of a scene with a rule: on 1, k and b stand still in exh_params_apply() while locked and are
+ * moved by exh_gains_step() alone; 0: as all slewed values. Who forgets the step stays where it is. */
+void exh_gains_lead(struct exh_params *p, int on);
+
+/* Behind exh_params_apply(), before the tick: k and b of every instance go one step of 2^-shift towards what is
+ * staged, so that the active pair is inside in every tick, whatever rule set-up took and whenever something else is
+ * staged. Straight there where the rule allows all of the line between; else k falls first, to the lowest knot between
+ * the two b, b follows as soon as it may, and k rises behind that knot: it never goes up and down by turns. Each takes
+ * at most the ticks of exh_params_toward() for falling, for b and for rising, one behind the other.
+ * To and from k = b = 0 where that lies apart from the rest of the rule (k_min > 0, or the first knot's b > 0): one
+ * jump between it and k_min. shift 0: at once. Staged pairs outside, which exh_gains_stage() refuses, are not
+ * gone to; an active pair outside, from a damaged keyframe, becomes 0 at once. Costs the same in every tick. */
+void exh_gains_step(struct exh_params *p, const struct exh_gains_par *rule);
 
 #ifdef __cplusplus
 }

@@ -80,6 +80,7 @@ struct exh_params {
     uint8_t pending; /* something was staged since the last apply             */
     uint8_t moving;  /* a slewed value is not yet where it is wanted          */
     uint8_t shift;   /* a slewed value goes by 2^-shift of what is left       */
+    uint16_t led[2]; /* ids of slewed rows that somebody else moves while locked (gains.h); 0: none */
     uint32_t count;  /* exh_signal_count()                                    */
     uint32_t sum, passed, at; /* exh_params_look(): of all, of those looked at, the next */
 };
@@ -121,6 +122,10 @@ int32_t exh_params_toward(int32_t now, int32_t goal, unsigned shift);
  * at once before. 1 if there was anything to do: while 1 comes back its cost is one of two constants of the
  * table, that of what is just staged (all values), and that of what is on its way (slewed rows). */
 int exh_params_apply(struct exh_params *p);
+
+/* Between apply and tick, for who moves rows in `led`: value i is active as raw, and on its way if that is not what is
+ * wanted. i below count. */
+void exh_params_put(struct exh_params *p, uint32_t i, int32_t raw);
 
 /* Wanted becomes what is active now: what was staged, or is on its way, stops here. */
 void exh_params_drop(struct exh_params *p);

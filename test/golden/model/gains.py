@@ -1,4 +1,6 @@
-"""gains: rules set up and refused, pairs asked, values staged under a rule."""
+"""gains: rules set up and refused, pairs asked, values staged under a rule and moved under it."""
+
+from fractions import Fraction
 
 from .num import AGAIN, MAX32, MIN32, MONOTONE, RANGE, TICKS, UNKNOWN, Rng, period
 
@@ -10,16 +12,23 @@ CONTACT = ((0x0401, K_MAX, 1536000), (0x0402, B_MAX, 0), (0x0403, 20971520, 1121
            (0x0405, 10737418, 0))
 
 
+def toward(now, goal, shift):
+    part = -(-abs(goal - now) // (1 << shift))
+    return now + part if goal > now else now - part
+
+
 class Rule:
     def __init__(self, rng, T):
         b = rng.draw(0, 1 << 24)
+        line = rng.draw(0, 2) == 0
         self.rate = (256 * T[1] + T[0] // 2) // T[0]
         self.n = rng.draw(2, 8)
         self.least = rng.draw(0, 1) * rng.draw(0, 1 << 24)
         self.b, self.k = [], []
         for _ in range(8):
             self.b.append(b)
-            self.k.append(rng.draw(0, K_MAX))
+            k = rng.draw(0, K_MAX)
+            self.k.append(b if line else k)
             b += rng.draw(1, 1 << 26)
 
     def spoil(self, how):
@@ -45,6 +54,9 @@ class Rule:
             self.k[7] = K_MAX + 1
         elif how == 11:
             self.rate -= self.rate // 120
+        elif how in (14, 15):
+            self.least |= 1
+            self.k[1] = self.least - 1
 
     def setup(self, T):
         if not (256 <= self.rate <= 20000 << 8 and 2 <= self.n <= 8 and 0 <= self.least <= K_MAX):
@@ -54,14 +66,42 @@ class Rule:
                 return -RANGE
             if i > 0 and self.b[i] <= self.b[i - 1]:
                 return -MONOTONE
+        above = "".join("x" if k >= self.least else " " for k in self.k[:self.n])
+        if len(above.split()) > 1:
+            return -RANGE
         return -RATE if abs(256 * T[1] - T[0] * self.rate) * 100 > T[0] * self.rate else 0
 
     def allows(self, k, b):
-        if k == 0 and b == 0:
-            return 1
-        return int(k >= self.least and any(
+        return int((k, b) == (0, 0) or self.under(k, b))
+
+    def under(self, k, b):
+        return k >= self.least and any(
             b0 <= b <= b1 and (k - k0) * (b1 - b0) <= (k1 - k0) * (b - b0)
-            for b0, b1, k0, k1 in zip(self.b, self.b[1:self.n], self.k, self.k[1:])))
+            for b0, b1, k0, k1 in zip(self.b, self.b[1:self.n], self.k, self.k[1:]))
+
+    def aim(self, at, goal):
+        """The goal's k if the straight line there is above no knot on its way, else the lowest of all."""
+        (k, b), (gk, gb) = at, goal
+        between = [(kn, bn) for kn, bn in zip(self.k[:self.n], self.b) if min(b, gb) < bn < max(b, gb)]
+        if all(k + Fraction(gk - k, gb - b) * (bn - b) <= kn for kn, bn in between):
+            return gk
+        return min([k] + [kn for kn, _ in between])
+
+    def step(self, at, goal, shift):
+        if not self.allows(*goal):
+            return at if self.under(*at) else (0, 0)
+        if shift == 0:
+            return goal
+        if not self.under(*goal):  # no wall, apart
+            if self.under(*at) and at[0] > self.least:
+                return toward(at[0], self.least, shift), at[1]
+            return 0, 0
+        if not self.under(*at):
+            return (self.least, goal[1]) if at == (0, 0) else (0, 0)
+        k, b = toward(at[0], self.aim(at, goal), shift), toward(at[1], goal[1], shift)
+        if self.under(k, b):
+            return k, b
+        return (k, at[1]) if k < at[0] else (at[0], b)
 
     def pair(self, rng):
         how, i = rng.draw(0, 3), rng.draw(0, self.n - 2)
@@ -83,11 +123,11 @@ class Params:
         self.active = [{row[0]: row[2] for row in CONTACT} for _ in range(2)]
         self.active[0][K] = 0
         self.active[1][K], self.active[1][B] = rule.least, rule.b[0]
-        self.pending = 0
+        self.locked = 0
         self.drop()
 
     def drop(self):
-        self.staged, self.pending = [dict(v) for v in self.active], 0
+        self.staged, self.pending, self.moving = [dict(v) for v in self.active], 0, 0
 
     def stage(self, rule, ident, instance, raw):
         most = {row[0]: row[1] for row in CONTACT}
@@ -102,11 +142,25 @@ class Params:
         self.staged[instance], self.pending = now, 1
         return 0
 
-    def apply(self):
-        done, self.pending = self.pending, 0
+    def apply(self, shift):
+        """k and b stand while locked, the others go."""
+        done = self.pending | self.moving
         if done:
-            self.active = [dict(v) for v in self.staged]
+            for is_, wanted in zip(self.active, self.staged):
+                for ident, _, _ in CONTACT:
+                    if not self.locked:
+                        is_[ident] = wanted[ident]
+                    elif ident == 0x0403:
+                        is_[ident] = toward(is_[ident], wanted[ident], shift)
+                    elif ident > 0x0403 and self.pending:
+                        is_[ident] = wanted[ident]
+            self.pending, self.moving = 0, int(self.active != self.staged)
         return done
+
+    def step(self, rule, shift):
+        for is_, wanted in zip(self.active, self.staged):
+            is_[K], is_[B] = rule.step((is_[K], is_[B]), (wanted[K], wanted[B]), shift)
+            self.moving |= int((is_[K], is_[B]) != (wanted[K], wanted[B]))
 
 
 def gains(rate):
@@ -119,11 +173,20 @@ def gains(rate):
             how = rng.draw(0, 15)
             if tick not in (0, AGAIN):
                 new.spoil(how)
+            else:
+                new.k = [max(k, new.least) for k in new.k]
             err = new.setup(T)
-            if err == 0:
+            if err == 0 and (tick == AGAIN or tick % 16 == 0):
                 rule, params = new, Params(new)
+            shift = rng.draw(0, 4)
+        params.locked = int(tick % 16 > 1)
         k, b = rule.pair(rng)
         inside = rule.allows(k, b)
+        how, instance, knot = rng.draw(0, 15), rng.draw(0, 1), rng.draw(0, rule.n - 1)
+        wish = (0, 0) if how < 3 else (rule.k[knot], rule.b[knot]) if how < 8 else (k, b)
+        if how <= 9 and rule.allows(*wish):
+            params.staged[instance][K], params.staged[instance][B] = wish
+            params.pending = 1
         instance, ident = rng.draw(0, 8) // 4, 0x0401 + rng.draw(0, 5)
         how, raw = rng.draw(0, 3), rng.draw(MIN32, MAX32)
         if how > 0:
@@ -134,11 +197,14 @@ def gains(rate):
         bad = -GAINS if at < 99 else 0
         if bad:
             params.drop()
-        done = params.apply() if rng.draw(0, 3) == 0 else -1
-        yield (err, k, b, inside, put, ident, instance, raw, bad, at, done, params.pending,
-               *(v for s in params.staged for v in (s[K], s[B]))), b""
+        done = -1
+        if rng.draw(0, 3):
+            done = params.apply(shift)
+            params.step(rule, shift)
+        yield (err, k, b, inside, put, ident, instance, raw, bad, at, done, params.pending, params.moving,
+               *(v for s, a in zip(params.staged, params.active) for v in (s[K], s[B], a[K], a[B]))), b""
 
 
-COLUMNS = "setup k_Npm_q10 b_Nspm_q20 | inside stage id instance raw staged at apply pending k0 b0 k1 b1"
+COLUMNS = "setup k_Npm_q10 b_Nspm_q20 | inside stage id instance raw staged at apply pending moving k0 b0 k0_is b0_is k1 b1 k1_is b1_is"
 
 MODULES = {"gains": (COLUMNS, gains)}
