@@ -109,7 +109,7 @@ cli_src := $(wildcard ports/posix/cli/*.c ports/posix/fit/*.c) examples/log.c ex
            examples/calibrate/calibrate.c examples/glove/glove.c examples/glove/cal.c \
            $(wildcard examples/bilateral/*.c examples/bringup/*.c) ports/pc104/stream.c
 # The world's core, without its pictures, answers in the same process.
-world_opt  := main live alone bench solo link link_param view gl gl_form gl_batch gl_solid gl_layer gl_text picture_none mesh_embree mesh_none
+world_opt  := main live alone bench solo link link_param link_trace view gl gl_form gl_batch gl_solid gl_layer gl_text picture_none mesh_embree mesh_none
 world_core := $(filter-out $(world_opt:%=examples/world/%.c),$(wildcard examples/world/*.c))
 
 # Rays into meshes where the package is, this compiler sees it, and what is linked can load it when it runs.
@@ -197,7 +197,7 @@ world_gl   := $(and $(call have,SDL2/SDL_ttf.h),$(call have,GL/gl.h),$(call have
 world_pkgs := libsdl2-dev libsdl2-ttf-dev libgl-dev libegl-dev libgl1-mesa-dri libpng-dev fonts-dejavu-core
 world      := $(B)/posix/world
 
-world_part := main live alone bench solo link link_param view $(if $(world_gl),gl gl_form gl_batch gl_solid gl_layer gl_text,picture_none)
+world_part := main live alone bench solo link link_param link_trace view $(if $(world_gl),gl gl_form gl_batch gl_solid gl_layer gl_text,picture_none)
 world_core_obj := $(patsubst %.c,$(B)/posix/%.o,$(world_core) ports/posix/sim/lag.c ports/posix/sim/plant.c)
 world_obj  := $(world_core_obj) $(world_mesh) $(world_part:%=$(B)/posix/examples/world/%.o) \
               $(B)/posix/ports/posix/cli/option.o $(B)/posix/examples/bilateral/tables.o $(B)/posix/examples/glove/cal.o \
@@ -318,7 +318,7 @@ $(B)/test/gpio/v%_fake.o: test/gpio/v%/fake.c $(stamp)
 # The virtual world; rays into meshes where their package is.
 $(B)/test/world/%_test: $(B)/posix/test/world/%_test.o $(B)/posix/test/support.o $(world_core_obj) $(world_mesh) \
                         $(B)/posix/examples/world/solo.o $(B)/posix/examples/world/link.o \
-                        $(B)/posix/examples/world/link_param.o $(B)/posix/libexhand.a
+                        $(B)/posix/examples/world/link_param.o $(B)/posix/examples/world/link_trace.o $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) -o $@ $^ -lcmocka $(if $(world_rays),-ldl) -lm
 $(B)/test/world/window_test: | $(world)

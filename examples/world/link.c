@@ -164,8 +164,10 @@ int link_receive(struct link *l, struct exh_wire_state *state, int64_t now_us)
         if (l->rx.session != session || (p.type == EXH_WIRE_HELLO && was_open)) {
             say_what_differs(l);
             link_params_anew(l, now_us);
+            link_trace_anew(l, now_us);
         }
         if (p.type == EXH_WIRE_ACK) { link_params_answered(l, &p.u.ack); }
+        if (p.type == EXH_WIRE_TRACE) { link_trace_take(l, &p.u.trace); }
         if (p.type != EXH_WIRE_STATE) { continue; }
         *state = p.u.state;
         l->echo_seq = p.seq;
@@ -198,6 +200,7 @@ void link_answer(struct link *l, const struct exh_wire_planes *planes, int64_t n
     }
     if (l->rx.session == 0) { return; }
     link_params_ask(l, now_us);
+    link_trace_ask(l, now_us);
     if (planes == NULL || link_params_hold(l, now_us)) { return; }
     p.type = EXH_WIRE_PLANES;
     p.u.planes = *planes;

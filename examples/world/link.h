@@ -10,6 +10,7 @@
 
 #include <netinet/in.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <sys/socket.h>
 
 #define LINK_PORT  "5758"
@@ -22,6 +23,26 @@ struct link_want {
     char name[SCENE_NAME_B]; /* of the material                                 */
     int answered;
     int64_t asked_us;
+};
+
+/* What it is to trace: signals "q[1],f_des[1]", four at most, of the controller's table of outputs. */
+struct link_trace_want {
+    const struct exh_signal_table *table;
+    const char *path, *signals;
+    uint32_t every; /* ticks from frame to frame                                */
+};
+
+struct link_trace {
+    const struct exh_signal_table *table;
+    const char *path;
+    FILE *file;                     /* NULL: none                                */
+    struct exh_wire_trace_ask ask;  /* every 0: none                             */
+    unsigned signals;               /* of the four that it asks for              */
+    int asked, answered;            /* of this controller; by it                 */
+    uint32_t first_seq, last_seq;   /* of the packets that asked                 */
+    int64_t asked_us;
+    uint32_t next;                  /* number of the frame that comes next       */
+    unsigned long frames, missed;
 };
 
 struct link {
@@ -45,6 +66,7 @@ struct link {
     int impatient;      /* some got none for long: planes go out without           */
     int64_t anew_us;    /* since when it is this controller                        */
     unsigned long refused;
+    struct link_trace trace;
     void (*say)(const char *text); /* a line about what is wrong; or NULL           */
 };
 
@@ -60,6 +82,13 @@ void link_materials(struct link *l, const struct scene *s);
 
 /* One value of one material; 1: refused. */
 int link_want(struct link *l, const char *name, const struct exh_signal *row, unsigned instance, double value);
+
+/* Asks for a trace when the controller has said HELLO and till it answers, and again of one that has started anew; its
+ * frames are lines of a CSV. 0, 1 (no file) or 2 (no such signal) with the reason. */
+int link_trace_open(struct link *l, const struct link_trace_want *want, char *error, size_t error_B);
+
+/* Says what was missed. 1: the file could not be written. */
+int link_trace_close(struct link *l);
 
 /* Takes what has come till now. 1 if a newer state is in *state. */
 int link_receive(struct link *l, struct exh_wire_state *state, int64_t now_us);

@@ -329,6 +329,18 @@ static void complain(const char *text)
     cli_complain("%s", text);
 }
 
+static int open_trace(const struct run *r, struct link *l)
+{
+    const struct link_trace_want want = {&bilateral_outputs, r->trace, r->trace_signals, (uint32_t)r->trace_every};
+    char why[300];
+    const int bad = r->trace ? link_trace_open(l, &want, why, sizeof why) : 0;
+    if (bad) {
+        cli_complain("%s", why);
+        link_close(l);
+    }
+    return bad;
+}
+
 int run_live(struct run *r)
 {
     static struct live l;
@@ -350,9 +362,12 @@ int run_live(struct run *r)
         l.link.say = complain;
         l.link.table_crc = exh_signal_crc(&bilateral_params);
         link_materials(&l.link, world_scene(r->world));
+        status = open_trace(r, &l.link);
+        if (status) { return status; }
     }
     pthread_mutex_init(&l.lock, NULL);
     status = go(&l);
+    if (link_trace_close(&l.link) && status == 0) { status = 1; }
     pthread_mutex_destroy(&l.lock);
     if (l.has_link) { link_close(&l.link); }
     return status == 0 && stopped ? 130 : status;

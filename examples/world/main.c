@@ -17,6 +17,9 @@
     {"seconds", CLI_REAL, &(r).seconds, 0, 1e9, "S", "end after so long"}, \
     {"headless", CLI_FLAG, &(r).headless, 0, 0, NULL, "no window; without a link: as fast as it goes"}, \
     {"script", CLI_FLAG, &(r).script, 0, 0, NULL, "without a controller, fingers close and open by themselves"}, \
+    {"trace", CLI_TEXT, &(r).trace, 0, 0, "FILE", "outputs of the controller, as it sends them, as CSV (a link)"}, \
+    {"trace-every", CLI_INT, &(r).trace_every, 1, 1e6, "N", "of every N-th tick; 1"}, \
+    {"trace-signals", CLI_TEXT, &(r).trace_signals, 0, 0, "NAMES", "up to four; q[1],f_des[1],d[1],c[1]: of the index finger"}, \
     {"png", CLI_TEXT, &(r).png, 0, 0, "FILE", "leave the last picture there"}, \
     {"list", CLI_TEXT, &(r).list, 0, 0, "FILE", "leave there what the window showed last, as words and numbers"}, \
     {"video", CLI_TEXT, &(r).video, 0, 0, "DIR", "leave pictures there (--headless, no link)"}, \
@@ -52,6 +55,10 @@ static int check(struct run *r)
                      "the link away");
         return 2;
     }
+    if (r->trace && !r->listen && !r->peer) {
+        cli_complain("--trace: is a controller's: give --listen or --peer");
+        return 2;
+    }
     if (alone && !r->frames && r->seconds <= 0) {
         cli_complain("--headless: when is it to end? Give --frames or --seconds");
         return 2;
@@ -62,7 +69,7 @@ static int check(struct run *r)
 
 int main(int argc, char **argv)
 {
-    struct run r = {.fps = 400, .video_fps = 25, .width = 960, .height = 600, .samples = -1};
+    struct run r = {.trace_signals = "q[1],f_des[1],d[1],c[1]", .trace_every = 1, .fps = 400, .video_fps = 25, .width = 960, .height = 600, .samples = -1};
     const struct cli_option option[] = {OPTIONS(r)};
     const struct cli_command c = {"world", "--scene FILE [options]",
                                   "The virtual world: answers joints with the planes the fingers are about "

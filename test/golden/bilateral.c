@@ -11,6 +11,7 @@
 #define VERSION 0x00010203u /* of the library, and of the parameters: not these, which may change */
 #define TABLE   0x89ABCDEFu
 #define LATE    4 /* packets held back to the next tick */
+#define SIGNALS (int64_t)(sizeof(struct bilateral_signals) / sizeof(int32_t))
 
 struct datagram {
     uint8_t b[EXH_SCENE_PACKET_B];
@@ -36,6 +37,7 @@ static struct rig {
     unsigned astray[FINGERS]; /* monitors */
     /* the world's end */
     struct exh_wire_tx tx;
+    struct exh_wire_trace_ask trace;
     struct object object[FINGERS];
     struct datagram late[LATE];
     unsigned lates;
@@ -191,6 +193,12 @@ static int away(uint32_t k)
     return k % 128 >= 104 && k % 128 < 124;
 }
 
+/* So seldom that a trace comes to wait for a packet's worth of frames, and no longer. */
+static int asks(uint32_t k)
+{
+    return k % 128 < 24;
+}
+
 static void arrive(const struct datagram *d)
 {
     struct exh_scene_mail *m = &rig.mail_in;
@@ -310,6 +318,26 @@ static void send_param(struct golden_rng *r)
     send(&p, r);
 }
 
+/* Now and then the same as before, or what is none of the signals. */
+static void send_trace_ask(struct golden_rng *r)
+{
+    struct exh_wire_packet p = {.type = EXH_WIRE_TRACE_ASK};
+    if (golden_draw(r, 0, 2) != 0) {
+        const int64_t every = golden_draw(r, 0, 24);
+        rig.trace.every = (uint32_t)(every >> golden_draw(r, 0, 4));
+        for (unsigned i = 0; i < EXH_TRACE_SIGNALS; i++) {
+            rig.trace.index[i] = (uint16_t)golden_draw(r, 0, SIGNALS - 1);
+        }
+        if (golden_draw(r, 0, 7) == 0) {
+            const int64_t i = golden_draw(r, 0, EXH_TRACE_SIGNALS - 1);
+            const int64_t beyond = golden_draw(r, 0, UINT16_MAX - SIGNALS);
+            rig.trace.index[i] = (uint16_t)(SIGNALS + (beyond >> golden_draw(r, 0, 16)));
+        }
+    }
+    p.u.trace_ask = rig.trace;
+    send(&p, r);
+}
+
 static void any_mail(struct golden_rng *r, uint32_t rate_Hz, uint32_t k)
 {
     const unsigned lates = rig.lates;
@@ -328,6 +356,7 @@ static void any_mail(struct golden_rng *r, uint32_t rate_Hz, uint32_t k)
     }
     if (golden_draw(r, 0, 1) != 0 && !away(k)) { send_planes(r, rate_Hz); }
     if (golden_draw(r, 0, 7) == 0) { send_param(r); }
+    if (asks(k) && golden_draw(r, 0, 3) == 0) { send_trace_ask(r); }
     for (unsigned i = 0; i < lates; i++) { arrive(&rig.late[i]); }
     for (unsigned i = lates; i < rig.lates; i++) { rig.late[i - lates] = rig.late[i]; }
     rig.lates -= lates;

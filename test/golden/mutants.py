@@ -241,6 +241,13 @@ MUTANTS = (
     ("wire", L + "wire.c", "s->fingers >> f & 1 ||", "1 ||"),
     ("wire", L + "wire.c", "len_B != HEAD_B + h->len_B + CRC_B", "len_B < HEAD_B + h->len_B + CRC_B"),
     ("wire", L + "wire.c", "(int16_t)result, p->seq", "(int16_t)result, p->stamp_us"),
+    ("wire", L + "wire.c", "t->frames <= EXH_WIRE_FRAMES && ", ""),
+    ("wire", L + "wire.c", "(t->result == 0 || t->frames == 0)", "1"),
+    ("bilateral", Y + "trace.c", "if (t->result < 0 || !same(", "if (1 || !same("),
+    ("bilateral", Y + "trace.c", "if (err < 0) { bilateral_trace_stop(t); }", ""),
+    ("bilateral", Y + "trace.c", "!t->answer && n < EXH_WIRE_FRAMES", "!t->answer && n <= EXH_WIRE_FRAMES"),
+    ("bilateral", Y + "wire.c", "bilateral_trace_stop(&w->trace);", ""),
+    ("bilateral", L + "trace.c", "t->left = t->what.every - 1;", "t->left = t->what.every;"),
     ("bilateral", Y + "bilateral.c", "if (now->quad.lost) { raised |= EXH_FAULT_ENCODER; }", ""),
     ("bilateral", Y + "bilateral.c", "out->dac_raw[bilateral_at(cfg, k)] =", "out->dac_raw[k] ="),
     ("bilateral", Y + "finger.c", "if (p->phase == EXH_PRECONTACT_FROZEN &&", "if ("),
@@ -266,6 +273,11 @@ THIN = {
     "s->present == EXH_FAULT_DEADMAN && !": 0.93,      # unit/safety
     "raw != p->staged[i]": 0.15,                       # a set-up value that is staged when it is locked
     "!p->pending && !p->moving;": 0.50,                # unit/params
+    "t->frames <= EXH_WIRE_FRAMES && ": 0.85,          # unit/wire, fuzz
+    "(t->result == 0 || t->frames == 0)": 0.90,        # unit/wire, fuzz
+    "if (t->result < 0 || !same(": 0.80,               # sim/bilateral_tick, as of all below
+    "if (err < 0) { bilateral_trace_stop(t); }": 0.50,
+    "!t->answer && n < EXH_WIRE_FRAMES": 0.50,
     "falls ? s->off_raw[k] : UINT16_MAX": 0.84,        # unit/gate, proof
     "straight &= db > 0 ? over <= 0 : over >= 0": 0.45,  # slower where the way grazes a knot
     "return straight ? goal.k : low": 0.85,            # the next three: prop/gains

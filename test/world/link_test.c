@@ -320,6 +320,143 @@ TEST(noise_changes_nothing)
     close(c.fd), link_close(&world);
 }
 
+/* --- traces --- */
+
+static struct exh_wire_trace_ask asked;
+static uint32_t ask_seq;
+static int asks;
+
+static void hear_asks(struct controller *c)
+{
+    unsigned char buf[2 * EXH_WIRE_MAX_B];
+    struct exh_wire_packet p;
+    ssize_t n;
+    while ((n = recv(c->fd, buf, sizeof buf, MSG_DONTWAIT)) > 0) {
+        if (exh_wire_take(&c->rx, &p, buf, (size_t)n) != EXH_WIRE_TRACE_ASK) { continue; }
+        asked = p.u.trace_ask;
+        ask_seq = p.seq;
+        asks++;
+    }
+}
+
+static void send_trace(struct controller *c, uint32_t request_seq, uint32_t first, uint8_t frames, int16_t result)
+{
+    unsigned char buf[EXH_WIRE_MAX_B];
+    struct exh_wire_packet p;
+    int32_t n;
+    memset(&p, 0, sizeof p);
+    p.type = EXH_WIRE_TRACE;
+    p.u.trace.request_seq = request_seq;
+    p.u.trace.first = first;
+    p.u.trace.frames = frames;
+    p.u.trace.result = result;
+    for (unsigned i = 0; i < frames; i++) {
+        p.u.trace.frame[i].tick = 100 + 3 * (first + i);
+        p.u.trace.frame[i].raw[0] = -3 * (1 << 8);
+        p.u.trace.frame[i].raw[1] = 5;
+    }
+    n = exh_wire_write(&c->tx, &p, 1234, buf, sizeof buf);
+    CHECK(n > 0 && sendto(c->fd, buf, (size_t)n, 0, (struct sockaddr *)&c->to, sizeof c->to) == n, "%d", (int)n);
+}
+
+static const struct exh_signal traced_rows[] = {
+    {1, 10, EXH_WHEN_OUTPUT, INT32_MIN, INT32_MAX, 0, "q", "m", ""},
+    {2, 0, EXH_WHEN_OUTPUT, INT32_MIN, INT32_MAX, 0, "c", "", ""}};
+static const struct exh_signal box_row = {3, 0, EXH_WHEN_OUTPUT, 0, 5, 0, "state", "", ""};
+static const struct exh_signal_group traced_groups[] = {{traced_rows, 2, 3}, {&box_row, 1, 1}};
+static const struct exh_signal_table traced = {traced_groups, 2};
+
+static int open_trace(const char *path, const char *signals, char why[300])
+{
+    const struct link_trace_want want = {&traced, path, signals, 3};
+    return link_trace_open(&world, &want, why, 300);
+}
+
+static void read_all(const char *path, char *to, size_t cap_B)
+{
+    FILE *f = fopen(path, "r");
+    size_t n = 0;
+    if (f) {
+        n = fread(to, 1, cap_B - 1, f);
+        fclose(f);
+    }
+    to[n] = '\0';
+}
+
+/* Asked for until it is answered; what comes is lines, what does not is counted; a controller that has started
+ * anew is asked anew, and frames of what was asked of the one before are nobody's. */
+TEST(a_trace_is_asked_for_and_written)
+{
+    static const char want[] = "number,tick,q[1]_m,state\n7,121,-0.75,5\n8,124,-0.75,5\n10,130,-0.75,5\n0,100,-0.75,5\n";
+    char path[] = "/tmp/exhand-trace-XXXXXX", why[300] = "", text[400];
+    struct exh_wire_state s;
+    struct controller c;
+    const int fd = mkstemp(path);
+    uint32_t before;
+    close(fd);
+    asks = 0;
+    heard[0] = '\0';
+    open_world(1);
+    world.say = listen_to;
+    CHECK(open_trace(path, "q[1],state", why) == 0, "%s", why);
+    open_controller(&c, 2);
+    say(&c, EXH_WIRE_HELLO, 0);
+    for (int64_t t_us = 0; t_us < 250000; t_us += 10000) { (void)frame(&s, t_us); }
+    hear_asks(&c);
+    CHECK(asks == 3 && asked.every == 3 && asked.index[0] == 2 && asked.index[1] == 6, "%d, %d, %d", asks,
+          asked.index[0], asked.index[1]);
+    send_trace(&c, ask_seq + 1, 1, 1, 0);  /* of nothing that was asked */
+    send_trace(&c, ask_seq - 1, 7, 2, 0);
+    send_trace(&c, ask_seq, 10, 1, 0);
+    for (int64_t t_us = 250000; t_us < 900000; t_us += 10000) { (void)frame(&s, t_us); }
+    hear_asks(&c);
+    CHECK(asks == 3 && world.trace.frames == 3 && world.trace.missed == 1, "%d asks, %lu frames, %lu missed", asks,
+          world.trace.frames, world.trace.missed);
+    before = ask_seq;
+    close(c.fd);
+    open_controller(&c, 3);
+    say(&c, EXH_WIRE_HELLO, 0);
+    (void)frame(&s, 910000);
+    hear_asks(&c);
+    CHECK(asks == 4 && ask_seq != before, "another controller is not asked");
+    send_trace(&c, before, 55, 1, 0);
+    send_trace(&c, ask_seq, 0, 1, 0);
+    (void)frame(&s, 920000);
+    CHECK_EQ_I64(link_trace_close(&world), 0);
+    read_all(path, text, sizeof text);
+    CHECK(strcmp(text, want) == 0, "%s", text);
+    CHECK(strstr(heard, "4 frames, 1 missed") != NULL, "%s", heard);
+    close(c.fd), link_close(&world);
+    remove(path);
+}
+
+TEST(a_trace_that_cannot_be_is_refused_in_words)
+{
+    static const char *const bad[] = {"", "w", "q[3]", "q[1", "q[]", "q[1]x", "state[1]", "c,c,c,c,c"};
+    char path[] = "/tmp/exhand-trace-XXXXXX", why[300];
+    struct exh_wire_state s;
+    struct controller c;
+    close(mkstemp(path));
+    open_world(1);
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        CHECK(open_trace(path, bad[i], why) == 2 && strstr(why, "--trace-signals: "), "%s: %s", bad[i], why);
+    }
+    CHECK(open_trace("/nowhere/at/all", "c", why) == 1 && strstr(why, "/nowhere/at/all: "), "%s", why);
+    heard[0] = '\0';
+    world.say = listen_to;
+    CHECK(open_trace(path, "c", why) == 0, "%s", why);
+    open_controller(&c, 2);
+    say(&c, EXH_WIRE_HELLO, 0);
+    (void)frame(&s, 0);
+    hear_asks(&c);
+    send_trace(&c, ask_seq, 0, 0, -EXH_E_RANGE);
+    (void)frame(&s, 1000);
+    CHECK(strstr(heard, "refused by the controller") != NULL, "%s", heard);
+    CHECK_EQ_I64(link_trace_close(&world), 0);
+    close(c.fd), link_close(&world);
+    remove(path);
+}
+
 TEST(a_given_peer_is_the_only_one_listened_to)
 {
     struct exh_wire_state s;
@@ -351,4 +488,5 @@ TEST_MAIN("world: the link", a_state_is_taken_and_answered_with_its_own_number, 
           materials_are_asked_for_until_answered,
           who_answers_nothing_gets_planes_all_the_same, a_peer_that_differs_is_named,
           it_is_not_deaf_for_good,
-          noise_changes_nothing, a_given_peer_is_the_only_one_listened_to, bad_addresses_are_refused_in_words);
+          noise_changes_nothing, a_trace_is_asked_for_and_written, a_trace_that_cannot_be_is_refused_in_words,
+          a_given_peer_is_the_only_one_listened_to, bad_addresses_are_refused_in_words);

@@ -62,7 +62,7 @@ near() # VALUE WANTED: within 4 %, as 0.1 N pulls all the time
 
 start_world() # PREFIX... ; listens at $at
 {
-    "$@" "$world" --headless --listen "$at" --scene "$dir/scene.world" --seconds 60 >"$dir/world.out" 2>"$dir/world.err" &
+    "$@" "$world" --headless --listen "$at" --scene "$dir/scene.world" --seconds 60 --trace "$dir/trace.csv" >"$dir/world.out" 2>"$dir/world.err" &
     pid=$!
     sleep 0.3
 }
@@ -88,6 +88,14 @@ felt() # WHERE LIFE K PREFIX...
     rm -rf "$dir/out"
 }
 
+# Every tick of each controller from its first frame on: "CONTROLLERS THOUSANDS-OF-FRAMES ODD-ONES".
+traced()
+{
+    awk -F, 'NR > 1 { if (n && $1 == 0) { lives++ } else if (n && ($1 != number + 1 || $2 != tick + 1)) { odd++ }
+                      n++; number = $1; tick = $2 }
+             END { print lives + 1, int(n / 1000), odd + 0 }' "$dir/trace.csv"
+}
+
 # shellcheck disable=SC2086 # prefixes are words, or none
 meet() # WHERE WORLD-PREFIX CONTROLLER-PREFIX
 {
@@ -97,6 +105,7 @@ meet() # WHERE WORLD-PREFIX CONTROLLER-PREFIX
     felt "$where" 1 30000 $here
     felt "$where" 2 30000 $here
     end_world
+    check "$where: traces (controllers, thousands of frames, odd): $(traced)" [ "$(traced | sed 's/ [1-9][0-9]* / n /')" = "2 n 0" ]
     check "$where: nothing is said: $(cat "$dir/world.err")" [ ! -s "$dir/world.err" ]
     scene 25000
     start_world $there

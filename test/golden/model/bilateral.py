@@ -15,12 +15,14 @@ from .num import (AGAIN, M32, M64, MAX32, RANGE, STATE, TICKS, UNKNOWN, Rng, cla
                   wave, wrap)
 from .quad import Quad, narrowest, position
 from .safety import ENCODER, FAULT, GLOVE, HEALTHY, LINK, SUPPLY, TRACKING, Safety, any_safety
+from .trace import Trace
 from .track import Monitor, Track, any_par as any_track
 from .velocity import Window, scale
 from .watch import Watch, any_par as any_watch
-from .wire import ACK, HELLO, PARAM, PLANES, TELL, Receiver, Sender
+from .wire import ACK, HELLO, PARAM, PLANES, TELL, TRACE, TRACE_ASK, Receiver, Sender
 
 FINGERS, MATERIALS, ROOM, LATE = 5, 8, 8, 4
+SIGNALS = FINGERS * (8 + 15) + 22
 VERSION, TABLE = 0x00010203, 0x89ABCDEF  # of the library, and of the parameters: not these, which may change
 
 
@@ -174,7 +176,7 @@ class Wire:
         self.ms_per_tick, self.ticks_per_us = self.tick_us // 1000, (T[1] << 32) // (1000000 * T[0])
         self.tx, self.rx = Sender(session, 0), Receiver()
         self.now = self.trip = self.exchanges = self.set = self.wait = self.differs = self.odd = 0
-        self.age, self.acks, self.runs = M32, [], 0
+        self.age, self.acks, self.trace = M32, [], Trace()
 
     def us(self):
         return self.now >> 20 & M32
@@ -183,7 +185,7 @@ class Wire:
         now = self.now - (1 << 64) if self.now >> 63 else self.now
         return (pack("<II", self.tx.session, self.tx.seq) + self.rx.state() +
                 self.pack(now, self.age, self.trip, self.exchanges, self.set, self.wait, self.differs, self.odd) +
-                pack("<9I384x15x", 0, 0, 0, 0, 0, 0, 0, self.runs, 0))  # nobody asks for a trace
+                self.trace.state())
 
 
 class Bilateral:
@@ -222,7 +224,7 @@ class Bilateral:
             got = w.rx.take(p)
             if w.rx.session != session:
                 w.exchanges = 0
-                w.runs = w.runs + 1 & M32
+                w.trace.stop()
             if got == HELLO:
                 role, version, table = unpack_from("<BII", p, 18)
                 w.differs = (role == 0) | (version != VERSION) << 1 | (table not in (0, TABLE)) << 2
@@ -234,6 +236,8 @@ class Bilateral:
                 said = self.params.stage(ident, n, value)
                 w.set += said == 0
                 w.acks.append(pack("<HHihI", ident, n, value, said, unpack_from("<I", p, 10)[0]))
+            elif got == TRACE_ASK:
+                w.trace.ask(unpack_from("<I", p, 10)[0], p[18:-4], SIGNALS)
 
     def planes(self, body):
         w = self.wire
@@ -307,7 +311,7 @@ class Bilateral:
         if len(out) < ROOM:
             out.append(self.wire.tx.write(kind, body, self.wire.us(), 256))
 
-    def write(self, paper):
+    def write(self, paper, signals):
         w, out = self.wire, []
         if w.wait == 0 or w.wait >= self.par.state_every:
             often = 8 if w.age == M32 or w.rx.open else 128
@@ -320,6 +324,9 @@ class Bilateral:
         for ack in w.acks:
             self.put(out, ACK, ack)
         w.acks = []
+        traced = w.trace.tick(self.safety.tick, signals, len(out) < ROOM)
+        if traced is not None:
+            self.put(out, TRACE, traced)
         return out
 
     def told(self, paper):
@@ -355,9 +362,15 @@ def away(k):
     return 104 <= k % 128 < 124
 
 
+def asks(k):
+    """So seldom that a trace comes to wait for a packet's worth of frames, and no longer."""
+    return k % 128 < 24
+
+
 class World:
     def __init__(self, rng, scene):
         self.scene, self.object, self.late, self.begun = scene, [None] * FINGERS, [], 0
+        self.trace = [0] * 5
         self.tx = Sender(rng.u64() & M32 | 1, rng.draw(-40, 40) & M32)
 
     def arrive(self, p):
@@ -425,6 +438,17 @@ class World:
             value = bad
         self.send(rng, PARAM, pack("<HHi", ident, n, value))
 
+    def trace_ask(self, rng):
+        """Now and then the same as before, or what is none of the signals."""
+        if rng.draw(0, 2):
+            every = rng.draw(0, 24)
+            self.trace = [every >> rng.draw(0, 4), *(rng.draw(0, SIGNALS - 1) for _ in range(4))]
+            if rng.draw(0, 7) == 0:
+                i, most = rng.draw(0, 3), 65535 - SIGNALS
+                beyond = rng.draw(0, most)
+                self.trace[1 + i] = SIGNALS + (beyond >> rng.draw(0, 16))
+        self.send(rng, TRACE_ASK, pack("<I4H", *self.trace))
+
     def frame(self, rng, rate, k):
         """The packets of a tick."""
         before, self.mail = len(self.late), []
@@ -437,6 +461,8 @@ class World:
             self.planes(rng, rate)
         if rng.draw(0, 7) == 0:
             self.param(rng)
+        if asks(k) and rng.draw(0, 3) == 0:
+            self.trace_ask(rng)
         for p in self.late[:before]:
             self.arrive(p)
         del self.late[:before]
@@ -504,10 +530,10 @@ def bilateral(rate):
             f.pre.resumed = k == pre.RESTORED
         paper, more, box, (dac, enable, alive) = s.tick(raw, mon, supply, din, missed, command, glove, hand.age,
                                                           mail)
-        out = s.write(paper)
+        flat = [v for row in paper + more for v in row] + box
+        out = s.write(paper, flat)
         if k % 8 == 7:
             s.params.apply()
-        flat = [v for row in paper + more for v in row] + box
         yield ((len(mail), mail_crc(mail), int(glove is not None), din, missed, command,
                 *(v for p, m in zip(paper, more) for v in (m[0], p[6], p[7], p[2])),
                 box[0], box[1], box[3], box[5], box[7], box[8], zlib.crc32(pack("<%di" % len(flat), *flat)),
