@@ -1,6 +1,10 @@
 /* exhand run: goes on, ends when asked, and leaves a log that replays. */
-#include "said.h"
+#define _XOPEN_SOURCE 700 /* pseudo-terminals */
 
+#include "said.h"
+#include "terminal.h"
+
+#include <termios.h>
 #include <time.h>
 
 static void replay(const char *dir, const char *log, struct said *s)
@@ -84,15 +88,18 @@ TEST(an_interrupt_leaves_a_complete_log)
     said_clean(dir);
 }
 
-/* Ends by itself within so many seconds; else it is ended and -1. */
+static int ended(pid_t pid)
+{
+    siginfo_t is = {0};
+    return waitid(P_PID, (id_t)pid, &is, WEXITED | WNOHANG | WNOWAIT) == 0 && is.si_pid == pid;
+}
+
+/* By itself within so many seconds; else it is ended and -1. */
 static int ends_within(pid_t pid, double limit_s)
 {
     const struct timespec a_while = {0, 10000000};
-    siginfo_t is = {0};
     for (double s = 0; s < limit_s; s += 0.01) {
-        if (waitid(P_PID, (id_t)pid, &is, WEXITED | WNOHANG | WNOWAIT) == 0 && is.si_pid == pid) {
-            return 0;
-        }
+        if (ended(pid)) { return 0; }
         (void)nanosleep(&a_while, NULL);
     }
     kill(pid, SIGKILL);
@@ -154,6 +161,58 @@ TEST(a_log_that_nobody_takes_stalls_nobody)
     CHECK(s.status == 1 && strstr(s.err, "pipe: takes nothing for 2 s"), "%d %s", s.status, s.err);
     CHECK(strstr(s.out, " s, faults "), "%s", s.out);
     close(fd);
+    said_clean(dir);
+}
+
+static struct terminal tty;
+
+static int run_on_terminal(int argc, char **argv)
+{
+    return dup2(tty.slave, STDERR_FILENO) < 0 ? 99 : cli_run(argc, argv);
+}
+
+/* One line, drawn over and over. */
+TEST(the_line_of_status)
+{
+    static char text[65536];
+    char *dir = said_dir();
+    struct said s;
+    pid_t pid;
+    if (terminal_open(&tty) < 0) { return; }
+    pid = said_start(dir, run_on_terminal,
+                     WORDS("run", "--pace", "--slack", "1", "--rate", "100", "--seconds", "2"));
+    text[0] = '\0';
+    for (int i = 0; i < 3000 && !ended(pid); i++) {
+        const struct timespec a_while = {0, 10000000};
+        terminal_read(&tty, text, sizeof text);
+        nanosleep(&a_while, NULL);
+    }
+    terminal_read(&tty, text, sizeof text);
+    said_end(&s, dir, pid);
+    CHECK(s.status == 0, "%d %s", s.status, text);
+    CHECK(times(text, "\r") >= 4 && times(text, "\n") == 1, "%s", text);
+    CHECK(strstr(text, " s  run") && strstr(text, "faults none\033[K"), "%s", text);
+    terminal_close(&tty);
+    said_clean(dir);
+}
+
+/* Ctrl-S holds the terminal, and not the box: all its ticks are in the log. */
+TEST(a_terminal_that_was_halted_stalls_nobody)
+{
+    char *dir = said_dir();
+    const char *log = said_path(dir, "a.exh");
+    struct said s;
+    pid_t pid;
+    if (terminal_open(&tty) < 0) { return; }
+    CHECK_EQ_I64(tcflow(tty.slave, TCOOFF), 0);
+    pid = said_start(dir, run_on_terminal,
+                     WORDS("run", "--pace", "--rate", "50", "--seconds", "2", "--log", log));
+    CHECK(ends_within(pid, 30) == 0, "it stands still");
+    said_end(&s, dir, pid);
+    CHECK(s.status == 0 && number_before(s.out, "ticks") >= 50, "%d %s", s.status, s.out);
+    replay(dir, log, &s);
+    CHECK(strstr(s.out, "end of the log, 0 records lost") != NULL, "%s", s.out);
+    terminal_close(&tty);
     said_clean(dir);
 }
 
@@ -247,5 +306,6 @@ TEST(what_it_cannot_do_is_named)
 TEST_MAIN("live", each_scene_goes_on_until_its_time_is_over, the_shortest_time_ends,
           after_a_fault_it_runs_again_by_the_grip_alone, an_interrupt_leaves_a_complete_log,
           what_goes_by_while_it_is_stopped_is_missed, a_log_that_nobody_takes_stalls_nobody,
+          the_line_of_status, a_terminal_that_was_halted_stalls_nobody,
           a_slow_log_is_complete_in_virtual_time, it_runs_again_wherever_the_fault_found_the_mass,
           what_it_cannot_do_is_named);

@@ -1,5 +1,8 @@
 /* exhand watch --listen: a log that comes over the network, sampled. Over Modbus: modbus_watch_test.c. */
+#define _XOPEN_SOURCE 700 /* pseudo-terminals */
+
 #include "said.h"
+#include "terminal.h"
 
 #include "udp.h"
 
@@ -22,6 +25,8 @@ static void pause_ms(long ms)
     (void)nanosleep(&t, NULL);
 }
 
+static int (*watch)(int, char **) = cli_watch;
+
 /* At a port that was free just now. */
 static void start(const char *option, const char *value)
 {
@@ -32,10 +37,18 @@ static void start(const char *option, const char *value)
     (void)snprintf(at, sizeof at, "127.0.0.1:%u", udp_port(&probe));
     udp_close(&probe);
     CHECK_EQ_I64(udp_open(&from, "127.0.0.1:0", at), 0);
-    watcher = said_start(dir, cli_watch, WORDS("watch", "--listen", at, "--seconds", "8", "--csv",
+    watcher = said_start(dir, watch, WORDS("watch", "--listen", at, "--seconds", "8", "--csv",
                                                said_path(dir, "w.csv"), option, value));
     for (int i = 0; i < 400 && said_size(said_path(dir, "w.csv")) < 0; i++) { pause_ms(10); }
     pause_ms(50);
+}
+
+/* --NAME=DIR/FILE */
+static const char *said_path_as_option(const char *name, const char *file)
+{
+    static char option[600];
+    snprintf(option, sizeof option, "--%s=%s", name, said_path(dir, file));
+    return option;
 }
 
 static void piece(const uint8_t *byte, unsigned n, int last, int lose)
@@ -127,6 +140,100 @@ TEST(lost_pieces_are_told)
     said_clean(dir);
 }
 
+/* Width and height of a PNG; 0: it is none. */
+static unsigned png_size(const char *path, unsigned *height)
+{
+    static const uint8_t begins[16] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n', 0, 0, 0, 13, 'I', 'H', 'D', 'R'};
+    uint8_t byte[24] = {0};
+    FILE *f = fopen(path, "rb");
+    size_t n = 0;
+    if (f) {
+        n = fread(byte, 1, sizeof byte, f);
+        fclose(f);
+    }
+    if (n < sizeof byte || memcmp(byte, begins, sizeof begins) != 0) { return 0; }
+    *height = (unsigned)byte[22] << 8 | byte[23];
+    return (unsigned)byte[18] << 8 | byte[19];
+}
+
+/* A panel for each signal, so a picture of two is higher than one of one. */
+TEST(a_picture_is_drawn)
+{
+    const char *const signals[] = {"q", "q,f_des"};
+    unsigned height[2] = {0, 0};
+    if (system("command -v gnuplot >/dev/null 2>&1") != 0) {
+        check_note("no gnuplot here: no picture of a running box");
+        return;
+    }
+    for (size_t i = 0; i < 2; i++) {
+        char option[32];
+        dir = said_dir();
+        snprintf(option, sizeof option, "--signals=%s", signals[i]);
+        start(option, said_path_as_option("plot", "it's.png"));
+        send_file(a_log("4"), 0);
+        end();
+        CHECK(s.status == 0 && strstr(s.err, "picture: ") && strstr(s.err, "it's.png"), "%d %s", s.status, s.err);
+        CHECK_EQ_I64(png_size(said_path(dir, "it's.png"), &height[i]), 1400);
+        said_clean(dir);
+    }
+    CHECK(height[1] > height[0], "%u and %u px", height[0], height[1]);
+}
+
+static struct terminal tty;
+
+static int watch_on_terminal(int argc, char **argv)
+{
+    return dup2(tty.slave, STDOUT_FILENO) < 0 ? 99 : cli_watch(argc, argv);
+}
+
+static int count(const char *text, const char *part)
+{
+    int n = 0;
+    for (const char *p = strstr(text, part); p; p = strstr(p + 1, part)) { n++; }
+    return n;
+}
+
+/* Cleared once, then drawn over from its corner; the cursor is hidden and comes back. */
+TEST(a_terminal_is_drawn_over)
+{
+    static char text[262144];
+    FILE *f;
+    uint8_t byte[STREAM_DATA_B];
+    size_t n;
+    if (terminal_open(&tty) < 0) { return; }
+    dir = said_dir();
+    watch = watch_on_terminal;
+    start("--signals", "q,state");
+    watch = cli_watch;
+    text[0] = '\0';
+    f = fopen(a_log("4"), "rb");
+    CHECK(f != NULL, "no log");
+    while ((n = fread(byte, 1, sizeof byte, f)) == sizeof byte) { /* but its last bytes: it falls silent */
+        piece(byte, (unsigned)n, 0, 0);
+        pause_ms(1); /* some seconds: pictures are four a second */
+        terminal_read(&tty, text, sizeof text);
+    }
+    fclose(f);
+    for (int i = 0; i < 3000 && strstr(text, "SILENT") == NULL; i++) {
+        pause_ms(10);
+        terminal_read(&tty, text, sizeof text);
+    }
+    kill(watcher, SIGINT);
+    pause_ms(200);
+    terminal_read(&tty, text, sizeof text);
+    end();
+    terminal_read(&tty, text, sizeof text);
+    CHECK(s.status == 130, "%d %s", s.status, s.err);
+    CHECK(count(text, "\033[2J") == 1 && count(text, "\033[H") >= 4, "cleared %d times, drawn %d times", count(text, "\033[2J"),
+          count(text, "\033[H"));
+    CHECK(count(text, "\033[?25l") == 1 && count(text, "\033[?25h") == 1, "the cursor");
+    CHECK(strstr(text, "drop, 2000 Hz   ") && strstr(text, "state   run: ") && strstr(text, "faults  none"), "%s", text);
+    CHECK(strstr(text, "SILENT for 1."), "it does not tell of silence");
+    CHECK(strstr(text, "Ctrl-C ends it\033[J"), "what stood below stays");
+    terminal_close(&tty);
+    said_clean(dir);
+}
+
 TEST(silence_is_told_with_its_age)
 {
     dir = said_dir();
@@ -173,5 +280,5 @@ TEST(bad_usage)
     said_clean(dir);
 }
 
-TEST_MAIN("watch", samples_are_the_logs_values, lost_pieces_are_told, silence_is_told_with_its_age,
-          another_table_is_refused_by_name, bad_usage);
+TEST_MAIN("watch", samples_are_the_logs_values, lost_pieces_are_told, a_picture_is_drawn, a_terminal_is_drawn_over,
+          silence_is_told_with_its_age, another_table_is_refused_by_name, bad_usage);
