@@ -38,8 +38,8 @@ int exh_gain_set(struct exh_gain *g, uint64_t num, uint64_t den)
     if (den == 0 || den >> 63) { return -EXH_E_RANGE; }
     if (num == 0) { return 0; }
     mant = exh_udiv64(num, den, &rem);
-    if (mant >> 31) { return -EXH_E_RANGE; }
-    while (mant >> 30 == 0) { /* one more quotient bit at a time */
+    if (mant > INT32_MAX) { return -EXH_E_RANGE; }
+    while (mant < UINT64_C(1) << 30) { /* one more quotient bit at a time */
         rem <<= 1;
         mant <<= 1;
         if (rem >= den) {
@@ -50,7 +50,7 @@ int exh_gain_set(struct exh_gain *g, uint64_t num, uint64_t den)
         if (shift > 62) { return -EXH_E_RANGE; }
     }
     if (rem >= den - rem) { mant++; } /* half up */
-    if (mant >> 31) { /* rounded up to 2^31 */
+    if (mant > INT32_MAX) { /* rounded up to 2^31 */
         if (shift == 0) { return -EXH_E_RANGE; }
         mant >>= 1;
         shift--;
