@@ -1,18 +1,29 @@
 #!/usr/bin/env python3
-"""Proves the output path: the gate, force and current, tracking, the state machine (README.md).
+"""Proves the tick path, unit by unit (README.md).
 
-  proof.py [--root DIR] [--out DIR] [--only UNIT] [--no-mutants] [--update]
+A unit is a file eva/any_UNIT.c, whose first comment says what has to be known of it:
+
+    PROVES: what it is about, a few words
+    EVA: more options for Eva                        (may be missing)
+    PLANT: file: text -> what it becomes             (an error that Eva has to tell; any number)
+
+With eva/UNIT.acsl, annotations are put into the copy of the source for Eva, in the form that the
+files of wp/ have. Units that WP judges, too, stand in UNITS below.
+
+  proof.py [--root DIR] [--out DIR] [--only UNIT,...] [--no-mutants] [--update] [--jobs N]
 
 Exit 0 when every unit proves what counts.txt says and every planted error is told, 1 when not,
 3 when a tool is missing.
 """
 import argparse
+import glob
 import os
 import re
 import shutil
 import subprocess
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 sys.dont_write_bytecode = True
 
@@ -20,41 +31,31 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 COUNTS = os.path.join(HERE, "counts.txt")
 BOTH = ("gcc_x86_64", "gcc_x86_32")
 
-# Unit: what it is about; the functions that WP judges (none: abstract interpretation alone).
-UNITS = {
-    "fix": ("arithmetic", "lib/src/fix.c", ["exh_sat32", "exh_clamp"]),
-    "gate": ("the gate", "lib/src/gate.c", ["any_gate", "code_of", "exh_safety_open"]),
-    "drive": ("force and current", "lib/src/drive.c",
+# Units with functions that WP judges: the source, and which.
+WP = {
+    "fix": ("lib/src/fix.c", ["exh_sat32", "exh_clamp"]),
+    "gate": ("lib/src/gate.c", ["any_gate", "code_of", "exh_safety_open"]),
+    "drive": ("lib/src/drive.c",
               ["no_force", "release", "exh_drive_force", "i2t_limit", "exh_drive_current"]),
-    "track": ("current tracking", "lib/src/track.c", ["exh_track_step", "exh_track_coded"]),
-    "passivity": ("energy", "lib/src/passivity.c", []),
-    "safety": ("state of the box", "lib/src/safety.c", []),
-    "law": ("contact law", None, []),
-    "watch": ("speed, standing", None, []),
+    "track": ("lib/src/track.c", ["exh_track_step", "exh_track_coded"]),
 }
 
-# Planted errors: unit, tool that must tell (WP: in which functions), file, text, what it becomes.
+# Planted errors that WP must tell: unit, in which functions, file, text, what it becomes.
 MUTANTS = [
-    ("gate", "wp code_of", "lib/src/gate.c", "exh_clamp(asked, -span, span)",
+    ("gate", "code_of", "lib/src/gate.c", "exh_clamp(asked, -span, span)",
      "exh_clamp(asked, INT32_MIN, INT32_MAX)"),
-    ("gate", "wp code_of", "lib/src/gate.c", "exh_clamp(asked, -span, span)",
+    ("gate", "code_of", "lib/src/gate.c", "exh_clamp(asked, -span, span)",
      "exh_clamp(asked, -span - 1, span)"),
-    ("gate", "wp code_of", "lib/src/gate.c", "dac_zero_raw + spanned, 0, UINT16_MAX)",
+    ("gate", "code_of", "lib/src/gate.c", "dac_zero_raw + spanned, 0, UINT16_MAX)",
      "dac_zero_raw + spanned, 0, 2 * UINT16_MAX)"),
-    ("gate", "wp any_gate", "lib/src/gate.c", "falls ? s->off_raw[k] : UINT16_MAX", "UINT16_MAX"),
-    ("gate", "wp any_gate", "lib/src/gate.c", "= open ? exh_sat32(asked) : 0;", "= exh_sat32(asked);"),
-    ("gate", "wp any_gate", "lib/src/gate.c", "cfg[k < n ? k : 0].par->dac_zero_raw", "out->dac_raw[k]"),
-    ("gate", "eva", "lib/src/gate.c", "(1u << n) - 1u : 0u", "(1u << n) : 0u"),
-    ("gate", "eva", "lib/src/gate.c", "exh_wrap_diff64(passed, asked)", "passed - asked"),
-    ("drive", "wp exh_drive_force", "lib/src/drive.c", "exh_clamp(asked, 0, most)", "exh_clamp(asked, -most, most)"),
-    ("drive", "wp exh_drive_force", "lib/src/drive.c", "exh_clamp(asked, 0, most)", "exh_clamp(asked, 0, INT32_MAX)"),
-    ("drive", "wp release", "lib/src/drive.c", "rest > 0 ? (int32_t)rest : 0", "(int32_t)rest"),
-    ("drive", "wp exh_drive_current", "lib/src/drive.c", "exh_clamp(peak, -hot, hot)", "exh_clamp(2 * (int64_t)peak, -2 * hot, 2 * hot)"),
-    ("drive", "eva", "lib/src/drive.c", "exh_wrap_add64(f->spring_N_q20, f->damper_N_q20)",
-     "f->spring_N_q20 + f->damper_N_q20"),
-    ("track", "wp exh_track_step", "lib/src/track.c", "s->off_ticks >= cfg->ticks", "s->off_ticks > cfg->ticks"),
-    ("passivity", "eva", "lib/src/passivity.c", "= limited(e);", "= e;"),
-    ("safety", "eva", "lib/src/safety.c", "if (!sane(s)) {", "if (0) {"),
+    ("gate", "any_gate", "lib/src/gate.c", "falls ? s->off_raw[k] : UINT16_MAX", "UINT16_MAX"),
+    ("gate", "any_gate", "lib/src/gate.c", "= open ? exh_sat32(asked) : 0;", "= exh_sat32(asked);"),
+    ("gate", "any_gate", "lib/src/gate.c", "cfg[k < n ? k : 0].par->dac_zero_raw", "out->dac_raw[k]"),
+    ("drive", "exh_drive_force", "lib/src/drive.c", "exh_clamp(asked, 0, most)", "exh_clamp(asked, -most, most)"),
+    ("drive", "exh_drive_force", "lib/src/drive.c", "exh_clamp(asked, 0, most)", "exh_clamp(asked, 0, INT32_MAX)"),
+    ("drive", "release", "lib/src/drive.c", "rest > 0 ? (int32_t)rest : 0", "(int32_t)rest"),
+    ("drive", "exh_drive_current", "lib/src/drive.c", "exh_clamp(peak, -hot, hot)", "exh_clamp(2 * (int64_t)peak, -2 * hot, 2 * hot)"),
+    ("track", "exh_track_step", "lib/src/track.c", "s->off_ticks >= cfg->ticks", "s->off_ticks > cfg->ticks"),
 ]
 
 
@@ -85,6 +86,35 @@ def missing():
     return bool(apt or pip)
 
 
+class Unit:
+    """What the first comment of eva/any_NAME.c says."""
+
+    def __init__(self, name):
+        self.name, self.harness = name, os.path.join(HERE, "eva", "any_" + name + ".c")
+        self.about, self.options, self.plants = "", [], []
+        with open(self.harness) as f:
+            head = f.read().split("*/", 1)[0]
+        for line in head.splitlines():
+            key, _, rest = line.lstrip("/* ").partition(": ")
+            if key == "PROVES":
+                self.about = rest.strip()
+            elif key == "EVA":
+                self.options = rest.split()
+            elif key == "PLANT":
+                path, text = rest.split(": ", 1)
+                old, new = text.split(" -> ", 1)
+                self.plants.append((path, old.strip(), new.strip()))
+        if not self.about:
+            raise SystemExit(self.harness + ": PROVES: is missing")
+        spec = os.path.join(HERE, "eva", name + ".acsl")
+        self.spec = spec if os.path.exists(spec) else None
+
+
+def units(only):
+    names = sorted(os.path.basename(f)[4:-2] for f in glob.glob(os.path.join(HERE, "eva", "any_*.c")))
+    return [Unit(n) for n in names if not only or n in only]
+
+
 class Proof:
     def __init__(self, root, out):
         self.root, self.out, self.logs = root, out, []
@@ -108,27 +138,30 @@ class Proof:
             put(os.path.join(at, path), lambda s: once(path, s, old).replace(old, new))
         return at
 
-    def eva(self, unit, tree, machdep, name):
-        """Alarms, unproved assertions, proved assertions."""
+    def eva(self, unit, machdep, name, change=None):
+        """Alarms, unproved assertions, proved assertions, whether it ran."""
+        tree = self.tree(name + ".tree", change)
+        if unit.spec:
+            annotate(unit.spec, tree)
         flags = "-I%s/lib/src -I%s/lib/include -I%s/eva" % (tree, tree, HERE)
         code, said = run(["frama-c", "-cpp-extra-args=" + flags, "-machdep", machdep, "-eva",
                           "-eva-precision", "6", "-eva-split-return", "auto", "-warn-signed-downcast", "-eva-no-show-progress",
-                          "-eva-msg-key=-initial-state,-final-states", os.path.join(HERE, "eva", "any_" + unit + ".c")],
-                         600, self.env)
-        self.log(name, said)
+                          "-eva-msg-key=-initial-state,-final-states"] + unit.options + [unit.harness], 600, self.env)
+        self.log(name + ".txt", said)
+        shutil.rmtree(tree)
         alarms = re.search(r"(\d+) alarms? generated", said)
         stated = re.search(r"Assertions +(\d+) valid +(\d+) unknown +(\d+) invalid", said)
         needed = re.search(r"Preconditions +(\d+) valid +(\d+) unknown +(\d+) invalid", said)
         # Without the end in reach, nothing would be shown by the rest.
         if code != 0 or "Frama_C_show_each_end" not in said or "ANALYSIS SUMMARY" not in said:
-            return 1, 1, 0
+            return 1, 1, 0, "ANALYSIS SUMMARY" in said
         valid = sum(int(m.group(1)) for m in (stated, needed) if m)
         open_ = sum(int(m.group(2)) + int(m.group(3)) for m in (stated, needed) if m)
-        return int(alarms.group(1)) if alarms else 0, open_, valid
+        return int(alarms.group(1)) if alarms else 0, open_, valid, True
 
     def wp(self, unit, tree, name, seconds, functions=None):
         """Goals, proved, names of the others, provers. Of these functions, or all of the unit."""
-        _, source, every = UNITS[unit]
+        source, every = WP[unit]
         functions = functions or every
         for spec in sorted({"fix", unit}):
             annotate(os.path.join(HERE, "wp", spec + ".acsl"), tree)
@@ -191,63 +224,70 @@ def annotate(spec, tree):
     done()
 
 
-def prove(p, only):
+def timed(f, *args):
+    t = time.time()
+    return f(*args), time.time() - t
+
+
+def prove(p, only, pool):
     """unit.tool -> proved of all; prints the table."""
     import smt
     got, bad = {}, []
-    print("%-8s %-18s %-14s %8s %6s  %s" % ("unit", "about", "tool", "proved", "of", "s"))
+    print("%-10s %-20s %-12s %8s %6s  %s" % ("unit", "about", "tool", "proved", "of", "s"))
 
-    def row(unit, about, tool, key, proved, total, t, names=()):
+    def row(unit, about, tool, key, proved, total, s, names=()):
         got[key] = (proved, total)
-        print("%-8s %-18s %-14s %8d %6d  %.0f" % (unit, about, tool, proved, total, time.time() - t))
+        print("%-10s %-20s %-12s %8d %6d  %.0f" % (unit, about, tool, proved, total, s))
         for n in names:
             print("         not proved: " + n)
             bad.append(n)
         sys.stdout.flush()
 
-    for unit, (about, _, functions) in UNITS.items():
-        if only and unit != only:
+    every = units(only)
+    judged = [(u, m, pool.submit(timed, p.eva, u, m, "%s.%s" % (u.name, m))) for u in every for m in BOTH]
+    for u, m, job in judged:
+        (alarms, open_, valid, _), s = job.result()
+        names = ["%s: %d alarms, %d assertions open: %s.%s.txt" % (u.name, alarms, open_, u.name, m)]
+        row(u.name, u.about, "Eva, %s-bit" % m[-2:], "%s.eva%s" % (u.name, m[-2:]), valid, valid + open_ + alarms, s,
+            names if alarms or open_ else ())
+    for u in every:
+        if u.name not in WP:
             continue
-        for machdep in BOTH:
-            t, tree = time.time(), p.tree(unit)
-            alarms, open_, valid = p.eva(unit, tree, machdep, "%s.%s.txt" % (unit, machdep))
-            bits = "Eva, %s-bit" % machdep[-2:]
-            names = ["%s: %d alarms, %d assertions open: %s.%s.txt" % (unit, alarms, open_, unit, machdep)]
-            row(unit, about, bits, "%s.eva%s" % (unit, machdep[-2:]), valid, valid + open_ + alarms, t,
-                names if alarms or open_ else ())
-        if functions:
-            t = time.time()
-            total, ok, names, by = p.wp(unit, tree, unit + ".wp.txt", 30)
-            row(unit, about, "WP", unit + ".wp", ok, total, t, names)
-            if by:
-                print("         " + ", ".join("%s %s" % kv for kv in by.items()))
-    if not only or only == "smt":
+        (total, ok, names, by), s = timed(p.wp, u.name, p.tree(u.name), u.name + ".wp.txt", 30)
+        row(u.name, u.about, "WP", u.name + ".wp", ok, total, s, names)
+        if by:
+            print("         " + ", ".join("%s %s" % kv for kv in by.items()))
+    if not only or "smt" in only:
         for lemma in smt.LEMMAS:
-            t = time.time()
-            ok = lemma()
-            row("smt", lemma.__name__, "z3", "smt." + lemma.__name__, int(ok), 1, t,
+            ok, s = timed(lemma)
+            row("smt", lemma.__name__, "z3", "smt." + lemma.__name__, int(ok), 1, s,
                 () if ok else (lemma.__name__,))
     return got, bad
 
 
-def plant(p, only):
+def plant(p, only, pool):
     """Each planted error has to be told. How many were not."""
     untold = 0
     print("planted errors:")
-    for k, (unit, tool, path, old, new) in enumerate(MUTANTS):
-        if only and unit != only:
-            continue
-        tree = p.tree("planted", (path, old, new))
-        name = "planted%d.txt" % k
-        if tool == "eva":
-            alarms, open_, _ = p.eva(unit, tree, BOTH[0], name)
-            told = alarms + open_ > 0
-        else:
-            total, ok, _, by = p.wp(unit, tree, name, 4, tool.split()[1:])
-            told = ok < total and bool(by)  # what does not even run is no proof of anything
+
+    def tell(told, unit, tool, old, new):
+        nonlocal untold
         untold += not told
         print("  %-8s %s by %s: %s -> %s" % ("told" if told else "NOT TOLD", unit, tool, old, new))
         sys.stdout.flush()
+
+    planted = [(u, plan, pool.submit(p.eva, u, BOTH[0], "planted.%s%d" % (u.name, k), plan))
+               for u in units(only) for k, plan in enumerate(u.plants)]
+    for u, (_, old, new), job in planted:
+        alarms, open_, _, ran = job.result()
+        # What does not even run is no proof of anything.
+        tell(alarms + open_ > 0 and ran, u.name, "Eva", old, new)
+    for k, (unit, functions, path, old, new) in enumerate(MUTANTS):
+        if only and unit not in only:
+            continue
+        tree = p.tree("planted", (path, old, new))
+        total, ok, _, by = p.wp(unit, tree, "planted%d.txt" % k, 4, functions.split())
+        tell(ok < total and bool(by), unit, "WP " + functions, old, new)
     return untold
 
 
@@ -274,16 +314,19 @@ def main():
     a = argparse.ArgumentParser()
     a.add_argument("--root", default=os.path.dirname(os.path.dirname(HERE)))
     a.add_argument("--out", default="build/proof")
-    a.add_argument("--only")
+    a.add_argument("--only", help="these units alone, with commas between")
+    a.add_argument("--jobs", type=int, default=2, help="Eva runs at a time")
     a.add_argument("--no-mutants", action="store_true")
     a.add_argument("--update", action="store_true")
     a = a.parse_args()
     if missing():
         return 3
     p = Proof(os.path.abspath(a.root), os.path.abspath(a.out))
-    got, bad = prove(p, a.only)
-    ok = held(got, a.update)
-    untold = 0 if a.no_mutants else plant(p, a.only)
+    only = a.only.split(",") if a.only else []
+    with ThreadPoolExecutor(a.jobs) as pool:
+        got, _ = prove(p, only, pool)
+        ok = held(got, a.update)
+        untold = 0 if a.no_mutants else plant(p, only, pool)
     print("%d proved, %d not; %d planted errors not told" %
           (sum(v[0] for v in got.values()), sum(v[1] - v[0] for v in got.values()), untold))
     return 0 if ok and not untold else 1

@@ -1,5 +1,9 @@
-/* Force and current of a finger: any ledger, any permit of exh_safety_step(), any state that
- * exh_drive_bytes() lets pass; a table of three knots with any values that exh_table_set() lets. */
+/* PROVES: force and current
+ * Force and current of a finger: any ledger, any permit of exh_safety_step(), any state that
+ * exh_drive_bytes() lets pass; a table of three knots with any values that exh_table_set() lets.
+ *
+ * PLANT: lib/src/drive.c: exh_wrap_add64(f->spring_N_q20, f->damper_N_q20) -> f->spring_N_q20 + f->damper_N_q20
+ */
 #include "drive.c"
 
 #include "any.h"

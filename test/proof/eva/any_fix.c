@@ -1,4 +1,6 @@
-/* fix.h: the arithmetic that the wp/ proofs take for granted, over its whole documented range. */
+/* PROVES: arithmetic
+ * fix.h: the arithmetic that the wp/ proofs take for granted, over its whole documented range.
+ */
 #include "exhand/fix.h"
 
 #include "any.h"

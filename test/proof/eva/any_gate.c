@@ -1,7 +1,13 @@
-/* The gate: any state of the box, any ledger, any output frame, every number of fingers; of the
- * parameters and constants those that exh_drive_setup() lets pass. */
+/* PROVES: the gate
+ * The gate: any state of the box, any ledger, any output frame, every number of fingers; of the
+ * parameters and constants those that exh_drive_setup() lets pass.
+ *
+ * PLANT: lib/src/gate.c: (1u << n) - 1u : 0u -> (1u << n) : 0u
+ * PLANT: lib/src/gate.c: exh_wrap_diff64(passed, asked) -> passed - asked
+ */
 #include "gate.c"
 
+#define MAY_STOP /* a box whose state says fewer fingers than are asked for */
 #include "any.h"
 
 static struct exh_safety s;

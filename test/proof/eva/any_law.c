@@ -1,4 +1,6 @@
-/* The contact law: any state, position and velocity, parameters in their ranges. */
+/* PROVES: contact law
+ * The contact law: any state, position and velocity, parameters in their ranges.
+ */
 #include "contact.c"
 
 #include "any.h"

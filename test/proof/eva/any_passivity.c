@@ -1,5 +1,9 @@
-/* Passivity of a finger: any state that exh_passivity_bytes() lets pass, any count, any ledger of a law, any
- * current; a table of three knots with any values that exh_table_set() lets. */
+/* PROVES: energy
+ * Passivity of a finger: any state that exh_passivity_bytes() lets pass, any count, any ledger of a law, any
+ * current; a table of three knots with any values that exh_table_set() lets.
+ *
+ * PLANT: lib/src/passivity.c: = limited(e); -> = e;
+ */
 #include "drive.c"
 #include "passivity.c"
 

@@ -1,4 +1,6 @@
-/* Current tracking: any state, any tolerance in range, any monitor, any code. */
+/* PROVES: current tracking
+ * Current tracking: any state, any tolerance in range, any monitor, any code.
+ */
 #include "track.c"
 
 #include "any.h"

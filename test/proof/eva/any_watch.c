@@ -1,4 +1,6 @@
-/* Speed and stand-still of a finger: any state, any constants, any input. */
+/* PROVES: speed, standing
+ * Speed and stand-still of a finger: any state, any constants, any input.
+ */
 #include "watch.c"
 
 #include "any.h"

@@ -1,0 +1,57 @@
+/* PROVES: low-pass
+ * Each kind, with any coefficients and shift (those of damaged memory too), any bits in the states, any input,
+ * up to three channels, which know nothing of each other; reset; from any coefficients to any others.
+ *
+ * PLANT: lib/src/filter_low.c: const int64_t p = exh_wrap_add64(s->vel, v); -> const int64_t p = s->vel + v;
+ * PLANT: lib/src/filter_low.c: (int64_t)high_word(p) * c -> p * c
+ * PLANT: lib/src/filter_high.c: exh_wrap_diff64(exh_wrap_add64(mid, mid), vel) -> exh_wrap_add64(mid, mid) - vel
+ * PLANT: lib/src/filter_high.c: vel = bounded(s->vel); -> vel = 2 * s->vel;
+ * PLANT: lib/src/filter.c: (v > most ? most : v < -most ? -most : v) * (INT64_C(1) << n) -> v * (INT64_C(1) << n)
+ */
+#include "bytes.c"
+#include "filter.c"
+#include "filter_low.c"
+#include "filter_high.c"
+
+#include "any.h"
+
+#define CHANNELS 3
+
+static struct exh_filter s[CHANNELS];
+static struct exh_filter_cfg cfg, other;
+static int32_t x[CHANNELS], y[CHANNELS];
+
+static void any_input(void)
+{
+    for (unsigned i = 0; i < CHANNELS; i++) { x[i] = any32(); }
+}
+
+/* n channels; cfg.a in the k-th eighth of all values, so that it is seen that 2a has the sign that it has. */
+static void each(enum exh_filter_kind kind, unsigned n, int32_t k)
+{
+    const int32_t eighth = INT32_C(1) << 29;
+    ANY(cfg);
+    cfg.a = Frama_C_interval(k * eighth, k * eighth + (eighth - 1));
+    cfg.kind = (uint8_t)kind;
+    any_input();
+    for (unsigned i = 0; i < CHANNELS; i++) { FROM_BYTES(s[i], exh_filter_bytes); }
+    exh_filter_step(s, &cfg, x, y, n);
+    any_input();
+    exh_filter_step(s, &cfg, x, x, n); /* in place, from what the tick left */
+    ANY(other);
+    exh_filter_retune(s, n, &cfg, &other);
+}
+
+int main(void)
+{
+    for (int32_t k = -4; k < 4; k++) {
+        each(EXH_FILTER_LOW1, CHANNELS, k);
+        each(EXH_FILTER_LOW2, CHANNELS, k);
+        each(EXH_FILTER_HIGH1, CHANNELS, k);
+        each(EXH_FILTER_HIGH2, CHANNELS, k);
+    }
+    each(EXH_FILTER_LOW2, 0, 0);
+    exh_filter_reset(s, x, CHANNELS);
+    END();
+    return 0;
+}

@@ -1,0 +1,44 @@
+/* PROVES: velocity, foaw
+ * The adaptive window: any parameters into set-up; any gains that it can make, any longest window and
+ * tolerance (those of damaged memory too), in any state that the bytes leave, of any count.
+ *
+ * EVA: -eva-slevel 20
+ * PLANT: lib/src/velocity.c: if (s->at > EXH_VELOCITY_N) { s->at = EXH_VELOCITY_N; } -> (void)0;
+ * PLANT: lib/src/velocity.c: (int64_t)n * d[n] -> n * d[n]
+ * PLANT: lib/src/velocity.c: const int64_t off = d[j] * den -> const int64_t off = d[j] * (int32_t)den
+ * PLANT: lib/src/velocity.c: at > 0 ? at - 1 : EXH_VELOCITY_N -> at - 1
+ */
+#include "bytes.c"
+#include "fix.c"
+#include "velocity.c"
+
+#include "any.h"
+
+static struct exh_velocity_scale any_scale(void)
+{
+    struct exh_velocity_scale s;
+    s.step_m_q42 = any32();
+    s.T.num = any_u32();
+    s.T.den = any_u32();
+    return s;
+}
+
+static void step(void)
+{
+    static struct exh_velocity_foaw s;
+    static struct exh_velocity_foaw_cfg cfg;
+    if (exh_velocity_foaw_setup(&cfg, any_scale(), any_u32(), any_u32()) < 0) { return; }
+    /*@ assert foaw_n: 1 <= cfg.n <= 16; */
+    ANY(cfg);
+    for (unsigned i = 0; i < EXH_VELOCITY_N; i++) { ANY_GAIN(cfg.gain[i]); }
+    FROM_BYTES(s, exh_velocity_foaw_bytes);
+    (void)exh_velocity_foaw_mps_q27(&s, &cfg, any32());
+    /*@ assert foaw_at: s.at <= 16; */
+}
+
+int main(void)
+{
+    step();
+    END();
+    return 0;
+}

@@ -1,0 +1,42 @@
+/* PROVES: rule of gains
+ * Any rule and any period into set-up. Of a rule that it takes, with any values in the knots that do not
+ * count, any k and b.
+ *
+ * PLANT: lib/src/gains.c: for (int32_t i = 1; i < rule->knots; i++) -> for (int32_t i = 1; i <= rule->knots; i++)
+ * PLANT: lib/src/gains.c: !exh_inside(rule->knots, 2, EXH_GAINS_KNOTS) -> !exh_inside(rule->knots, 2, EXH_GAINS_KNOTS + 1)
+ * PLANT: lib/src/gains.c: (off < 0 ? -off : off) * 100 <= want -> (off < 0 ? -off : off) * 10000000 <= want
+ */
+#include "gains.c"
+
+#include "any.h"
+
+static struct exh_gains_par rule;
+
+static void setup(void)
+{
+    const struct exh_period T = {any_u32(), any_u32()};
+    ANY(rule);
+    (void)exh_gains_setup(&rule, T);
+}
+
+static void ask(int32_t knots)
+{
+    int ok;
+    ANY(rule);
+    rule.knots = knots;
+    rule.k_min_Npm_q10 = Frama_C_interval(0, K_MAX);
+    for (int32_t i = 0; i < knots; i++) {
+        rule.b_Nspm_q20[i] = Frama_C_interval(0, B_MAX);
+        rule.k_Npm_q10[i] = Frama_C_interval(0, K_MAX);
+    }
+    ok = exh_gains_ok(&rule, any32(), any32());
+    /*@ assert says: ok == 0 || ok == 1; */
+}
+
+int main(void)
+{
+    setup();
+    for (int32_t knots = 2; knots <= EXH_GAINS_KNOTS; knots++) { ask(knots); }
+    END();
+    return 0;
+}

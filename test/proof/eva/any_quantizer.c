@@ -1,0 +1,27 @@
+/* PROVES: quantizer
+ * Any parameters into set-up; what it takes, in any state, of any input.
+ *
+ * PLANT: lib/src/quantizer.c: par->bits > 24 -> par->bits > 32
+ * PLANT: lib/src/quantizer.c: (uint32_t)x - (uint32_t)s->value : -> (uint32_t)(x - s->value) :
+ */
+#include "bytes.c"
+#include "quantizer.c"
+
+#include "any.h"
+
+int main(void)
+{
+    static struct exh_quantizer s;
+    static struct exh_quantizer_cfg cfg;
+    struct exh_quantizer_par par;
+    par.bits = any32();
+    par.hyst_raw_q16 = any32();
+    if (exh_quantizer_setup(&cfg, &par) == 0) {
+        /*@ assert half_a_code: 128 / 2 <= cfg.half <= 1 << 30; */
+        /*@ assert kept: cfg.keep <= 1 << 31; */
+        FROM_BYTES(s, exh_quantizer_bytes);
+        (void)exh_quantizer_step(&s, &cfg, any32());
+        END();
+    }
+    return 0;
+}
