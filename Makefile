@@ -536,7 +536,7 @@ strangers:
 	@$(MAKE) --no-print-directory $(if $(V),,-s) linux-program
 	@B=$(B) ARGS="$(ARGS)" test/strangers/strangers.sh
 
-## Registers of the running box: mbpoll and pymodbus, 10^6 reads none torn, 10^6 requests as the library's slave
+## Registers of the running box: mbpoll and pymodbus by TCP and a serial line, 10^6 reads none torn, 10^6 requests as the library's slave
 .PHONY: modbus
 modbus:
 	@.ci/deps "Modbus" "test -f /usr/include/modbus/modbus.h && command -v mbpoll && command -v python3" libmodbus-dev mbpoll python3 python3-pip || exit 3

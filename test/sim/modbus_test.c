@@ -698,6 +698,14 @@ TEST(over_a_serial_line)
           "no exception 2");
     CHECK(modbus_write_register(c, 0x5001, 1) == -1 && errno == EMBXILVAL,
           "no exception 3: step is of the set-up");
+    for (int i = 0; i < 2; i++) { /* functions without data: the shortest requests there are */
+        const uint8_t shortest[2] = {1, i == 0 ? 7 : 17};
+        uint8_t answer[MODBUS_RTU_MAX_ADU_LENGTH] = {0};
+        CHECK(modbus_send_raw_request(c, shortest, 2) == 4, "%s", modbus_strerror(errno));
+        CHECK(modbus_receive_confirmation(c, answer) == 5 && answer[1] == (shortest[1] | 0x80) &&
+                  answer[2] == EXH_MODBUS_FUNCTION,
+              "function %d: %d %d %s", shortest[1], answer[1], answer[2], modbus_strerror(errno));
+    }
     modbus_set_slave(c, 2); /* somebody else */
     modbus_set_response_timeout(c, 0, 100000);
     CHECK(modbus_read_input_registers(c, 0, 6, word) == -1 && errno == ETIMEDOUT,

@@ -161,7 +161,7 @@ static void *serve_rtu(void *unused)
     while (!told_to_stop()) {
         uint8_t req[MODBUS_MAX_ADU_LENGTH] = {0};
         const int len = modbus_receive(server.ctx, req);
-        if (len >= 5) { /* of a broadcast writes are carried out, and nobody answers */
+        if (len >= 2 + CRC_B) { /* of a broadcast writes are carried out, and nobody answers */
             const int all = req[0] == MODBUS_BROADCAST_ADDRESS;
             if (!all ||
                 (req[1] != 1 && req[1] != 2 && req[1] != 3 && req[1] != 4 && req[1] != 23)) {
