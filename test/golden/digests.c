@@ -103,6 +103,15 @@ const uint32_t digest_precontact[GOLDEN_RATES] = {
 const uint32_t digest_wire[GOLDEN_RATES] = {
 #include "digest/wire.inc"
 };
+const uint32_t digest_mirror[GOLDEN_RATES] = {
+#include "digest/mirror.inc"
+};
+const uint32_t digest_modbus[GOLDEN_RATES] = {
+#include "digest/modbus.inc"
+};
+const uint32_t digest_modbus_rtu[GOLDEN_RATES] = {
+#include "digest/modbus_rtu.inc"
+};
 const uint32_t digest_drop[GOLDEN_RATES] = {
 #include "digest/drop.inc"
 };

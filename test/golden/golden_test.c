@@ -122,6 +122,9 @@ MODULE(angle);
 MODULE(hand);
 MODULE(precontact);
 MODULE(wire);
+MODULE(mirror);
+MODULE(modbus);
+MODULE(modbus_rtu);
 MODULE(drop);
 MODULE(guarded);
 MODULE(bilateral);
@@ -129,4 +132,5 @@ MODULE(bilateral);
 TEST_MAIN("golden", first_tick_that_differs_is_told, fix, bytes, record, ring, signal, slots, quad, quad_ab,
           velocity_window, velocity_pole, velocity_foaw, velocity_track, contact, table, drive,
           track, watch, guard, supply, passivity, safety, calibrate, probe, home, weigh, filter, quantizer,
-          gains, glove, glove_cal, angle, hand, precontact, wire, drop, guarded, bilateral);
+          gains, glove, glove_cal, angle, hand, precontact, wire, mirror, modbus, modbus_rtu,
+          drop, guarded, bilateral);

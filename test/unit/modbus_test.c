@@ -14,7 +14,7 @@ static const struct exh_signal par_row[4] = {
     {0x7101, 10, EXH_WHEN_ANY, -1024000, 1024000, 1024, "k", "n_per_m", "may change at any time"},
     {0x7102, 0, EXH_WHEN_SETUP, 0, 1000, 500, "window", "", "before the loop"},
     {0x7103, 20, EXH_WHEN_ANY, INT32_MIN, INT32_MAX, 0, "wide", "n", "any raw value"},
-    {0x7104, 30, EXH_WHEN_ANY, 0, INT32_MAX - 5, 0, "long", "m", "an end between two binary32"},
+    {0x7104, 30, EXH_WHEN_ANY, 5 - INT32_MAX, INT32_MAX - 5, 0, "long", "m", "ends between two binary32"},
 };
 static const struct exh_signal out_row[7] = {
     {0x7201, 30, EXH_WHEN_OUTPUT, INT32_MIN, INT32_MAX, 0, "q", "m", ""},
@@ -447,6 +447,10 @@ TEST(what_reads_the_same_stays)
     untouched(__LINE__);
     ASK(16, 0x70, 6, 0, 2, 4, 0x3E, 0x91, 0xA2, 0xB5);
     CHECK_EQ_I64(g.staged[3], 0x123456A0);
+    ASK(16, 0x70, 6, 0, 2, 4, 0xC0, 0x00, 0x00, 0x00); /* an end reads as -2 m, a little beyond it */
+    CHECK_EQ_I64(g.staged[3], 5 - INT32_MAX);
+    ASK(16, 0x70, 6, 0, 2, 4, 0x40, 0x00, 0x00, 0x00);
+    CHECK_EQ_I64(g.staged[3], INT32_MAX - 5);
 }
 
 /* --- staging and commands --- */
