@@ -119,12 +119,22 @@ static void start_records(const struct exh_scene *sc, struct exh_scene_board boa
     }
 }
 
+/* As when all values were staged just now and the loop runs: none is another, so the scene stays as it is. */
+static void apply_dry(struct exh_params *p)
+{
+    const uint8_t locked = p->locked;
+    p->locked = p->pending = 1;
+    (void)exh_params_apply(p);
+    p->locked = locked;
+}
+
 /* Records of a dry tick, which come to nothing but time; every 64th with a keyframe. */
 void pc104_scene_dry(const struct exh_scene *sc, uint32_t tick, const struct exh_scene_in *in,
                      const struct exh_drive_out *out)
 {
     const uint32_t every = EXH_LOG_KEYFRAME_TICKS / 64u;
     if (tick == 0) { boxed = (uint8_t)pc104_dump_open(); }
+    apply_dry(sc->params);
     pc104_modbus_dry();
     if (pc104_par.log == PC104_LOG_OFF && !boxed) { return; }
     dry = 1;

@@ -257,6 +257,7 @@ TEST(rows_are_of_the_struct)
     }
 }
 
-TEST_MAIN("gains", pieces_and_ends, setup_refuses, setup_refuses_two_halves, setup_asks_for_its_rate,
-          staging_refuses_what_is_outside, a_whole_image_is_asked_and_dropped, through_a_valley,
-          no_wall_is_a_jump_away, rows_are_of_the_struct);
+TEST_MAIN("gains", pieces_and_ends, setup_refuses, setup_refuses_two_halves,
+          setup_asks_for_its_rate, staging_refuses_what_is_outside,
+          a_whole_image_is_asked_and_dropped, through_a_valley, no_wall_is_a_jump_away,
+          rows_are_of_the_struct);
