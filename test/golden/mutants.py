@@ -327,8 +327,7 @@ THIN = {
     "s->present == EXH_FAULT_DEADMAN && !": 0.93,      # unit/safety
     "raw != p->staged[i]": 0.15,                       # a set-up value that is staged when it is locked
     "!p->pending && !p->moving;": 0.50,                # unit/params
-    "t->frames <= EXH_WIRE_FRAMES && ": 0.85,          # unit/wire, fuzz
-    "(t->result == 0 || t->frames == 0)": 0.90,        # unit/wire, fuzz
+    "late > UINT32_C(0x80000000)": 0.93,               # unit/wire
     "if (t->result < 0 || !same(": 0.80,               # sim/bilateral_tick, as of all below
     "if (err < 0) { bilateral_trace_stop(t); }": 0.50,
     "!t->answer && n < EXH_WIRE_FRAMES": 0.50,

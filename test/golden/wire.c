@@ -115,7 +115,7 @@ static void put_send(struct golden *g, struct golden_rng *r, int32_t said[2])
     (void)memset(&p, 0, sizeof p);
     p.type = any_type(r);
     golden_body_any(r, p.type, body);
-    if (golden_draw(r, 0, 3) == 0) { golden_body_spoil(r, p.type, body); }
+    if (golden_draw(r, 0, 7) < 3) { golden_body_spoil(r, p.type, body); }
     golden_body_list(&c, &p);
     stamp_us = any_u32(r);
     if (golden_draw(r, 0, 7) == 0) { cap_B = (uint32_t)golden_draw(r, 0, 255); }

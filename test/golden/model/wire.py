@@ -224,7 +224,7 @@ class World:
         if self.rx.open and rng.draw(0, 1):
             kind = HELLO
         body = any_body(rng, kind)
-        if rng.draw(0, 3) == 0:
+        if rng.draw(0, 7) < 3:
             spoil(rng, kind, body)
         if kind == TRACE:
             body = body[:11 + 20 * body[10]]
