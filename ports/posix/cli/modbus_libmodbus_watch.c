@@ -112,10 +112,11 @@ static int know(struct watch_box *b, const uint16_t *word)
     if (value_of(word, EXH_HEAD_MAGIC) != EXH_REGS_MAGIC ||
         value_of(word, EXH_HEAD_TEST_INT) != 0x12345678u ||
         value_of(word, EXH_HEAD_VERSION) >> 16 != EXH_REGS_VERSION >> 16) {
-        cli_complain("--modbus: what is there is no box of this map: magic %08lx, version %08lx: give "
-                     "another address",
-                     (unsigned long)value_of(word, EXH_HEAD_MAGIC),
-                     (unsigned long)value_of(word, EXH_HEAD_VERSION));
+        cli_complain(
+            "--modbus: what is there is no box of this map: magic %08lx, version %08lx: give "
+            "another address",
+            (unsigned long)value_of(word, EXH_HEAD_MAGIC),
+            (unsigned long)value_of(word, EXH_HEAD_VERSION));
         return 1;
     }
     for (unsigned i = 0; i < 16; i++) {
@@ -129,7 +130,9 @@ static int know(struct watch_box *b, const uint16_t *word)
                        value_of(word, EXH_HEAD_SIGNALS));
 }
 
-/* Values from..to; more than a request holds are of more than one tick. */
+#define TRIES 4 /* to read all of one tick                                   */
+
+/* Values from..to; more than a request holds may be of more than one tick. */
 static int read_values(struct watch_box *b)
 {
     const uint32_t end = b->all_values ? exh_signal_count(b->scene->signals) : b->to + 1;
@@ -149,13 +152,13 @@ static int read_values(struct watch_box *b)
 
 /* --- a trace --- */
 
-#define FRAME_WORDS   (2u * EXH_REGS_FRAME_VALUES)
+#define FRAME_WORDS    (2u * EXH_REGS_FRAME_VALUES)
 #define FRAMES_AT_ONCE (MODBUS_MAX_READ_REGISTERS / FRAME_WORDS)
 
 static int read_trace(uint16_t word[2 * EXH_TRACE_HEADS])
 {
-    return modbus_read_input_registers(client.ctx, (int)EXH_REGS_TRACE_AT, 2 * EXH_TRACE_HEADS, word) ==
-           2 * EXH_TRACE_HEADS;
+    return modbus_read_input_registers(client.ctx, (int)EXH_REGS_TRACE_AT, 2 * EXH_TRACE_HEADS,
+                                       word) == 2 * EXH_TRACE_HEADS;
 }
 
 static int start_trace(struct watch_box *b)
@@ -166,7 +169,8 @@ static int start_trace(struct watch_box *b)
         word[2 * i] = (uint16_t)(v >> 16);
         word[2 * i + 1] = (uint16_t)(v & 0xFFFFu);
     }
-    if (modbus_write_registers(client.ctx, (int)EXH_REGS_TRACE_AT, 2 * EXH_REGS_TRACE_SET, word) < 0) {
+    if (modbus_write_registers(client.ctx, (int)EXH_REGS_TRACE_AT, 2 * EXH_REGS_TRACE_SET, word) <
+        0) {
         if (errno != EMBXILADD) { return lose(b); }
         cli_complain("--trace: this box has no trace registers: watch it without");
         return 1;
@@ -217,16 +221,40 @@ static int look_at_trace(struct watch_box *b, watch_fresh fresh)
     }
     left = value_of(word, EXH_TRACE_HEAD_NEXT) - client.next;
     while (err == 0 && left > 0) {
-        const uint32_t slot = client.next & (frames - 1), fit = frames - slot < left ? frames - slot : left;
+        const uint32_t slot = client.next & (frames - 1),
+                       fit = frames - slot < left ? frames - slot : left;
         const uint32_t n = fit < FRAMES_AT_ONCE ? fit : FRAMES_AT_ONCE;
         if (modbus_read_input_registers(client.ctx, (int)(EXH_REGS_FRAMES_AT + FRAME_WORDS * slot),
                                         (int)(FRAME_WORDS * n), word) != (int)(FRAME_WORDS * n)) {
             return lose(b);
         }
-        for (uint32_t i = 0; err == 0 && i < n; i++) { err = on_frame(b, word + FRAME_WORDS * i, fresh); }
+        for (uint32_t i = 0; err == 0 && i < n; i++) {
+            err = on_frame(b, word + FRAME_WORDS * i, fresh);
+        }
         left -= n;
     }
     return err;
+}
+
+/* The head and the values behind it, read anew while the tick went on in between. After TRIES they
+ * stay as they are, and are counted. 0: the link is gone. */
+static int read_one_tick(struct watch_box *b, uint16_t *word)
+{
+    uint16_t behind[2];
+    for (int i = 0; i < TRIES; i++) {
+        if (i > 0 && modbus_read_input_registers(client.ctx, (int)EXH_REGS_HEAD_AT, 2 * EXH_HEADS,
+                                                 word) != 2 * EXH_HEADS) {
+            return 0;
+        }
+        if (!read_values(b) ||
+            modbus_read_input_registers(client.ctx, (int)EXH_REGS_HEAD_AT + 2 * EXH_HEAD_TICK, 2,
+                                        behind) != 2) {
+            return 0;
+        }
+        if (value_of(behind, 0) == value_of(word, EXH_HEAD_TICK)) { return 1; }
+    }
+    b->mixed++;
+    return 1;
 }
 
 int watch_modbus_look(struct watch_box *b, watch_fresh fresh)
@@ -242,7 +270,7 @@ int watch_modbus_look(struct watch_box *b, watch_fresh fresh)
         const int err = know(b, word);
         if (err || !client.known) { return err; }
     }
-    if (!b->every && !read_values(b)) { return lose(b); }
+    if (!b->every && !read_one_tick(b, word)) { return lose(b); }
     b->trouble = NULL;
     tick = value_of(word, EXH_HEAD_TICK);
     b->state = (uint8_t)value_of(word, EXH_HEAD_STATE);

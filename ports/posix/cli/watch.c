@@ -292,6 +292,10 @@ static int finish(int err)
         cli_complain("the link was lost %lu times: nothing is known of what was between",
                      (unsigned long)w.box.breaks);
     }
+    if (w.box.mixed) {
+        cli_complain("%llu of %llu readings are of more than one tick: --trace has four signals of one",
+                     (unsigned long long)w.box.mixed, (unsigned long long)w.box.heard);
+    }
     if (w.box.lost) {
         cli_complain("%llu %s were lost on the way", (unsigned long long)w.box.lost,
                      w.trace ? "frames" : "ticks");

@@ -20,6 +20,7 @@ struct watch_box {
     uint8_t state;
     uint32_t faults, present, limits;
     uint64_t lost; /* samples that were not heard, where they are numbered      */
+    uint64_t mixed; /* times that what was heard is of more than one tick        */
     uint32_t breaks; /* of the link, since something was heard                   */
     uint64_t heard; /* samples                                                  */
     double heard_s; /* when the tick was last another one, by until_now_s()     */
