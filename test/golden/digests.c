@@ -88,6 +88,9 @@ const uint32_t digest_gains[GOLDEN_RATES] = {
 const uint32_t digest_glove[GOLDEN_RATES] = {
 #include "digest/glove.inc"
 };
+const uint32_t digest_glove_every[GOLDEN_RATES] = {
+#include "digest/glove_every.inc"
+};
 const uint32_t digest_glove_cal[GOLDEN_RATES] = {
 #include "digest/glove_cal.inc"
 };

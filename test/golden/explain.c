@@ -10,19 +10,29 @@
 #define LINE_B 12288 /* the longest state as hex, and its columns */
 #define DIR    "test/golden/"
 
-void golden_rates(uint32_t *lo, uint32_t *hi)
+struct golden_rates golden_rates(void)
 {
+    struct golden_rates r = {1, GOLDEN_RATES, 1};
     const char *text = getenv("EXH_RATES");
-    unsigned a;
-    unsigned b;
+    unsigned lo;
+    unsigned hi;
+    unsigned step = 1;
     int n;
-    if (text == NULL) { return; }
-    n = sscanf(text, "%u..%u", &a, &b);
-    if (n == 1) { b = a; }
-    CHECK(n > 0 && a >= 1 && a <= b && b <= GOLDEN_RATES, "EXH_RATES=%s is no lo..hi of 1..%u",
-          text, GOLDEN_RATES);
-    *lo = a;
-    *hi = b;
+    if (text == NULL) { return r; }
+    n = sscanf(text, "%u..%u:%u", &lo, &hi, &step);
+    if (n == 1) { hi = lo; }
+    CHECK(n > 0 && lo >= 1 && lo <= hi && hi <= GOLDEN_BEYOND && step >= 1,
+          "EXH_RATES=%s is no lo..hi or lo..hi:step of 1..%u", text, GOLDEN_BEYOND);
+    r.lo = lo;
+    r.hi = hi;
+    r.step = step;
+    return r;
+}
+
+int golden_cells(void)
+{
+    const char *asked = getenv("EXH_CELLS");
+    return asked != NULL && check_same_text(asked, "1");
 }
 
 int golden_quiet(void)
@@ -168,6 +178,20 @@ const char *golden_explain(const char *name, golden_run *run, uint32_t rate_Hz)
     return r.said;
 }
 
+int golden_hundreds(const char *name, uint32_t crc[GOLDEN_HUNDREDS])
+{
+    char path[200];
+    FILE *f;
+    unsigned v;
+    uint32_t n = 0;
+    (void)snprintf(path, sizeof path, DIR "beyond/%s.inc", name);
+    f = fopen(path, "r");
+    if (f == NULL) { return 0; }
+    while (n < GOLDEN_HUNDREDS && fscanf(f, "%x,", &v) == 1) { crc[n++] = v; }
+    (void)fclose(f);
+    return n == GOLDEN_HUNDREDS;
+}
+
 const char *golden_trace(const char *name, golden_run *run, uint32_t rate_Hz)
 {
     static struct reader r;
@@ -185,14 +209,25 @@ const char *golden_trace(const char *name, golden_run *run, uint32_t rate_Hz)
 
 #else
 
-void golden_rates(uint32_t *lo, uint32_t *hi)
+struct golden_rates golden_rates(void)
 {
-    (void)lo;
-    (void)hi;
+    return (struct golden_rates){1, GOLDEN_RATES, 1};
+}
+
+int golden_cells(void)
+{
+    return 1;
 }
 
 int golden_quiet(void)
 {
+    return 0;
+}
+
+int golden_hundreds(const char *name, uint32_t crc[GOLDEN_HUNDREDS])
+{
+    (void)name;
+    (void)crc;
     return 0;
 }
 

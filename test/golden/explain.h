@@ -4,8 +4,19 @@
 
 #include "golden.h"
 
-/* The rates that EXH_RATES=lo..hi asks for; as they are without it. */
-void golden_rates(uint32_t *lo, uint32_t *hi);
+/* Every step-th rate from lo to hi. */
+struct golden_rates {
+    uint32_t lo, hi, step;
+};
+
+/* The rates that EXH_RATES=lo..hi:step asks for; all without it. */
+struct golden_rates golden_rates(void);
+
+/* 1 if EXH_CELLS=1: say of each module which rates ran, and the CRC of their digests. */
+int golden_cells(void);
+
+/* The CRC of each hundred rates' digests beyond GOLDEN_RATES, from the generator's file. 1 if it is there. */
+int golden_hundreds(const char *name, uint32_t crc[GOLDEN_HUNDREDS]);
 
 /* 1 if EXH_EXPLAIN=0: count, and tell nothing. */
 int golden_quiet(void);

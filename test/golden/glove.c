@@ -114,19 +114,29 @@ static uint32_t crc_of(int32_t *angle)
     return exh_crc32(0, buf, sizeof buf);
 }
 
-void golden_glove(struct golden *g, uint32_t rate_Hz)
+/* The loop's period times so many ticks a frame, which is a second at most. */
+static struct exh_period frame_period(uint32_t rate_Hz, uint32_t k, uint32_t every)
+{
+    struct exh_period T = golden_period(rate_Hz, k);
+    const uint32_t loop_Hz = (T.den + T.num / 2) / T.num;
+    T.num *= every < loop_Hz ? every : loop_Hz;
+    return T;
+}
+
+/* Frame by frame; `every` loop ticks lie between two. */
+static void frames(struct golden *g, const char *name, uint32_t rate_Hz, uint32_t every)
 {
     static struct golden_wave w[4];
     static struct worn worn;
-    struct golden_rng r = golden_rng("glove", rate_Hz, 0);
+    struct golden_rng r = golden_rng(name, rate_Hz, 0);
     for (uint32_t i = 0; i < 4; i++) {
-        golden_wave(&w[i], "glove", rate_Hz, 1 + i, -32768, 32767, 1 << golden_draw(&r, 0, 11));
+        golden_wave(&w[i], name, rate_Hz, 1 + i, -32768, 32767, 1 << golden_draw(&r, 0, 11));
     }
     while (g->tick < GOLDEN_TICKS) {
         struct exh_glove_in in = {.age_ticks = 0};
         int32_t angle[EXH_GLOVE_SENSORS];
         if (g->tick == 0 || g->tick == GOLDEN_AGAIN) {
-            wear(&worn, &r, golden_period(rate_Hz, g->tick));
+            wear(&worn, &r, frame_period(rate_Hz, g->tick, every));
         }
         worn.wrong ^= 1u << golden_draw(&r, 0, 21);
         any_frame(&worn, w, g->tick, &in);
@@ -140,4 +150,15 @@ void golden_glove(struct golden *g, uint32_t rate_Hz)
         GOLDEN_STATE(g, exh_glove_bytes, &worn.s);
         golden_tick(g);
     }
+}
+
+void golden_glove(struct golden *g, uint32_t rate_Hz)
+{
+    frames(g, "glove", rate_Hz, 1);
+}
+
+/* Every ratio of frames to ticks that a scene's row `every` takes, 1..1000. */
+void golden_glove_every(struct golden *g, uint32_t rate_Hz)
+{
+    frames(g, "glove_every", rate_Hz, 1 + (rate_Hz - 1) % 1000);
 }

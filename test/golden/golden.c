@@ -36,6 +36,13 @@ static uint32_t crc_add(uint32_t crc, const uint8_t *p, uint32_t n)
     return ~crc;
 }
 
+uint32_t golden_crc_u32(uint32_t crc, uint32_t v)
+{
+    uint8_t byte[4];
+    for (unsigned b = 0; b < 4; b++) { byte[b] = (uint8_t)(v >> 8 * b); }
+    return crc_add(crc, byte, 4);
+}
+
 void golden_tick(struct golden *g)
 {
     for (uint32_t i = 0; i < g->columns; i++) {
@@ -131,7 +138,8 @@ void golden_wave(struct golden_wave *w, const char *module, uint32_t rate_Hz, ui
 
 struct exh_period golden_period(uint32_t rate_Hz, uint32_t k)
 {
-    const uint32_t other = 1 + rate_Hz * 797 % 2000;
+    const uint32_t other =
+        1 + rate_Hz * 797 % (rate_Hz <= GOLDEN_RATES ? GOLDEN_RATES : GOLDEN_BEYOND);
     const struct exh_period first = {1, rate_Hz};
     const struct exh_period again = {(1193182 + other / 2) / other, 1193182};
     return k < GOLDEN_AGAIN ? first : again;

@@ -17,12 +17,14 @@
 
 #include "check.h"
 
-#define GOLDEN_TICKS   256u
-#define GOLDEN_AGAIN   192u /* at this tick everything is set up anew, at another rate */
-#define GOLDEN_RESTORE 100u /* the state before this tick is read back from its bytes */
-#define GOLDEN_RATES   2000u
-#define GOLDEN_COLUMNS 40u
-#define GOLDEN_STATE_B 4096u
+#define GOLDEN_TICKS    256u
+#define GOLDEN_AGAIN    192u /* at this tick everything is set up anew, at another rate */
+#define GOLDEN_RESTORE  100u /* the state before this tick is read back from its bytes */
+#define GOLDEN_RATES    2000u /* each of these has a digest                                */
+#define GOLDEN_BEYOND   20000u /* up to here each hundred has one                           */
+#define GOLDEN_HUNDREDS ((GOLDEN_BEYOND - GOLDEN_RATES) / 100u)
+#define GOLDEN_COLUMNS  40u
+#define GOLDEN_STATE_B  4096u
 
 /* One tick's values and state, then what becomes of them. */
 struct golden {
@@ -62,6 +64,9 @@ void golden_state_end(struct golden *g, const struct exh_bytes *c);
 
 /* The tick is complete. */
 void golden_tick(struct golden *g);
+
+/* The CRC-32 of four bytes more: v, little-endian. */
+uint32_t golden_crc_u32(uint32_t crc, uint32_t v);
 
 /* --- stimuli --- */
 

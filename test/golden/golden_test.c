@@ -2,8 +2,8 @@
  * tick by tick at the paper's six rates. Where a digest differs, the generator is
  * called for that module and rate, and the first tick that differs is told.
  *
- * Environment on hosts: EXH_TEST=name takes one module, EXH_RATES=lo..hi these rates
- * alone, EXH_EXPLAIN=0 counts without telling. */
+ * Environment on hosts: EXH_TEST=name takes one module, EXH_RATES=lo..hi:step every
+ * step-th of these rates alone (beyond 2000 hundreds of rates, up to 20000), EXH_EXPLAIN=0 counts without telling, EXH_CELLS=1 says what ran. */
 #include "explain.h"
 #include "modules.h"
 
@@ -17,26 +17,55 @@ static uint32_t digest_of(golden_run *run, uint32_t rate_Hz)
     return g.crc;
 }
 
+/* Every step-th hundred of rates beyond those that have a digest each; whole hundreds alone. */
+static void beyond(const char *name, golden_run *run, struct golden_rates of)
+{
+    static uint32_t want[GOLDEN_HUNDREDS];
+    const int there = golden_hundreds(name, want);
+    uint32_t all = 0;
+    uint32_t ran = 0;
+    for (uint32_t i = 0; i < GOLDEN_HUNDREDS; i += of.step) {
+        const uint32_t lo = GOLDEN_RATES + 100u * i + 1u;
+        uint32_t crc = 0;
+        if (lo < of.lo || lo + 99u > of.hi) { continue; }
+        CHECK(there, "%s: no digests beyond %u Hz", name, GOLDEN_RATES);
+        for (uint32_t k = 0; k < 100; k++) { crc = golden_crc_u32(crc, digest_of(run, lo + k)); }
+        CHECK(crc == want[i], "%s: differs from %" PRIu32 " to %" PRIu32 " Hz", name, lo, lo + 99u);
+        all = golden_crc_u32(all, crc);
+        ran += 100u;
+    }
+    if (ran > 0) { check_note("beyond: %s %" PRIu32 " %08" PRIx32, name, ran, all); }
+}
+
 /* digest[i] is that of i + 1 Hz. */
 static void all_rates(const char *name, golden_run *run, const uint32_t *digest)
 {
-    uint32_t lo = 1;
-    uint32_t hi = GOLDEN_RATES;
+    const struct golden_rates of = golden_rates();
     uint32_t differ = 0;
     uint32_t first = 0;
-    golden_rates(&lo, &hi);
-    for (uint32_t rate = lo; rate <= hi; rate++) {
-        if (digest_of(run, rate) == digest[rate - 1]) { continue; }
+    uint32_t ran = 0;
+    uint32_t crc = 0;
+    const uint32_t hi = of.hi < GOLDEN_RATES ? of.hi : GOLDEN_RATES;
+    for (uint32_t rate = of.lo; rate <= hi; rate += of.step) {
+        const uint32_t got = digest_of(run, rate);
+        crc = golden_crc_u32(crc, got);
+        ran++;
+        if (got == digest[rate - 1]) { continue; }
         if (differ++ == 0) { first = rate; }
+    }
+    if (golden_cells() && ran > 0) {
+        check_note("cells: %s %" PRIu32 "..%" PRIu32 ":%" PRIu32 " %" PRIu32 " %08" PRIx32, name,
+                   of.lo, hi, of.step, ran, crc);
     }
     if (differ > 0 && !golden_quiet()) { check_note("%s", golden_explain(name, run, first)); }
     CHECK(differ == 0, "%s: %" PRIu32 " of %" PRIu32 " rates differ, the first is %" PRIu32 " Hz",
-          name, differ, hi - lo + 1, first);
+          name, differ, ran, first);
     for (size_t i = 0; i < sizeof traced / sizeof traced[0]; i++) {
-        const int in = traced[i] >= lo && traced[i] <= hi;
+        const int in = traced[i] >= of.lo && traced[i] <= of.hi;
         const char *said = in ? golden_trace(name, run, traced[i]) : "";
         CHECK(said[0] == '\0', "%s", said);
     }
+    if (of.hi > GOLDEN_RATES) { beyond(name, run, of); }
 }
 
 /* --- the tale of a run that is wrong in one place --- */
@@ -117,6 +146,7 @@ MODULE(filter);
 MODULE(quantizer);
 MODULE(gains);
 MODULE(glove);
+MODULE(glove_every);
 MODULE(glove_cal);
 MODULE(angle);
 MODULE(hand);
@@ -132,5 +162,5 @@ MODULE(bilateral);
 TEST_MAIN("golden", first_tick_that_differs_is_told, fix, bytes, record, ring, signal, slots, quad, quad_ab,
           velocity_window, velocity_pole, velocity_foaw, velocity_track, contact, table, drive,
           track, watch, guard, supply, passivity, safety, calibrate, probe, home, weigh, filter, quantizer,
-          gains, glove, glove_cal, angle, hand, precontact, wire, mirror, modbus, modbus_rtu,
+          gains, glove, glove_every, glove_cal, angle, hand, precontact, wire, mirror, modbus, modbus_rtu,
           drop, guarded, bilateral);

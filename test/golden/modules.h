@@ -38,6 +38,7 @@ GOLDEN_MODULE(filter);
 GOLDEN_MODULE(quantizer);
 GOLDEN_MODULE(gains);
 GOLDEN_MODULE(glove);
+GOLDEN_MODULE(glove_every);
 GOLDEN_MODULE(glove_cal);
 GOLDEN_MODULE(angle);
 GOLDEN_MODULE(hand);

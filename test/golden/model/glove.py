@@ -108,15 +108,31 @@ def any_par(rng, T):
             rng.draw(31000, 32767), rng.draw(0, 1), rng.draw(1, 6), rng.draw(0, 65536) >> rng.draw(0, 4))
 
 
+def frame_period(rate, k, every):
+    """The loop's period times so many ticks a frame, which is a second at most."""
+    num, den = period(rate, k)
+    return num * min(every, (den + num // 2) // num), den
+
+
 def glove(rate):
-    rng = Rng("glove", rate, 0)
-    w = [wave("glove", rate, 1 + i, -32768, 32767, 1 << rng.draw(0, 11)) for i in range(4)]
+    return frames("glove", rate, 1)
+
+
+def glove_every(rate):
+    """Every ratio of frames to ticks that a scene's row `every` takes, 1..1000."""
+    return frames("glove_every", rate, 1 + (rate - 1) % 1000)
+
+
+def frames(name, rate, every):
+    rng = Rng(name, rate, 0)
+    w = [wave(name, rate, 1 + i, -32768, 32767, 1 << rng.draw(0, 11)) for i in range(4)]
     for k in range(TICKS):
         if k in (0, AGAIN):
-            par = any_par(rng, period(rate, k))
+            T = frame_period(rate, k, every)
+            par = any_par(rng, T)
             present = 0x3FFFFF & ~(1 << (0, 5, 10, 14, 20, 21, 31, 31)[rng.draw(0, 7)])
             sensors = [any_sensor(rng, i, present >> i & 1) for i in range(SENSORS)]
-            s, wrong = Glove(par, sensors, present, period(rate, k)), 0
+            s, wrong = Glove(par, sensors, present, T), 0
         wrong ^= 1 << rng.draw(0, 21)
         raw = []
         for i, (_, _, _, low, high, _) in enumerate(sensors):
@@ -132,4 +148,4 @@ def glove(rate):
 COLUMNS = (" ".join("raw%d" % i for i in range(SENSORS)) +
            " | faulty angle0_turn_q32 angle3_turn_q32 angle10_turn_q32 angle21_turn_q32 crc_of_22")
 
-MODULES = {"glove": (COLUMNS, glove)}
+MODULES = {"glove": (COLUMNS, glove), "glove_every": (COLUMNS, glove_every)}

@@ -141,5 +141,5 @@ def period(rate, k):
     """The loop's period from tick k on: 1/rate, then a divider of a PC's timer."""
     if k < AGAIN:
         return 1, rate
-    other = 1 + rate * 797 % 2000
+    other = 1 + rate * 797 % (2000 if rate <= 2000 else 20000)
     return (1193182 + other // 2) // other, 1193182
