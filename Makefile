@@ -30,7 +30,7 @@ MAKEFLAGS += $(if $(filter 0,$(MAKELEVEL)),-j$(or $(shell nproc 2>/dev/null),1),
 jobs       = $(or $(patsubst -j%,%,$(filter -j%,$(MAKEFLAGS))),1)
 
 # These call make for what they need, or take it away: two at a time would write the same files.
-callers := all test demo run image coverage stress test-i686 mutants fuzz hil hil-built strangers gpio linux-program boot boot-built \
+callers := all test demo run image coverage stress test-i686 matrix matrix-box mutants fuzz hil hil-built strangers gpio linux-program boot boot-built \
            contract contract-built nic nic-built modbus-image modbus world two-computers bench-world bench size cards install diagrams clean check
 ifneq ($(and $(filter $(callers),$(MAKECMDGOALS)),$(word 2,$(MAKECMDGOALS))),)
 .NOTPARALLEL:
@@ -394,41 +394,67 @@ mutants: $(B)/test/golden/golden_test
 faults-mutants: $(exhand)
 	$(Q)CC="$(CC)" test/sim/faults_mutants.py $(ARGS) $(cli_obj) $(dev_obj) $(gpio_obj) $(B)/posix/libexhand.a $(cli_libs) $(gpio_libs)
 
-# The library's tests again for a 32-bit CPU, where there is no CMocka: own printer. What overflows
-# there and not in 64 bits traps.
-trap := -fsanitize=undefined -fsanitize-undefined-trap-on-error
-i686_cc   := i686-linux-gnu-gcc
-i686_base := -D_POSIX_C_SOURCE=200809L -DEXH_CHECK_PLAIN
-i686_dirs := golden prop unit cards emu pc104
-i686_bin  := $(foreach d,$(i686_dirs),$(patsubst test/%_test.c,$(B)/i686/%_test,$(filter test/$(d)/%,$(test_src))))
+# --- the matrix: the same tests on other CPUs, by other compilers (test/matrix/README.md) ---
 
-$(B)/i686/trap/%.o: %.c $(stamp)
-	@mkdir -p $(@D)
-	$(Q)$(i686_cc) $(tflags) $(trap) $(i686_base) -c $< -o $@
-$(B)/i686/test/cards/%.o $(B)/i686/trap/test/cards/%.o $(B)/i686/trap/ports/cards/%.o: tflags += -Iports
-$(B)/i686/trap/test/pc104/%.o $(B)/i686/trap/ports/pc104/%.o: tflags += -Iports -Itest/pc104
-i686_lib   := $(patsubst %.c,$(B)/i686/trap/%.o,$(lib_src) test/support.c)
-i686_cards := $(patsubst %.c,$(B)/i686/trap/%.o,$(cards_src) test/cards/bus.c test/cards/rig.c)
-i686_emu   := $(emu_src:%.c=$(B)/i686/trap/%.o)
-i686_net   := $(patsubst $(B)/test/san/%,$(B)/i686/trap/%,$(filter-out %/stream.o,$(pc104_net)))
-$(filter $(B)/i686/cards/%,$(i686_bin)): $(i686_cards)
-$(filter $(B)/i686/emu/%,$(i686_bin)): $(i686_emu)
-$(filter $(B)/i686/pc104/%,$(i686_bin)): $(i686_net)
-$(filter-out $(B)/i686/golden/%,$(i686_bin)): $(B)/i686/%_test: $(B)/i686/trap/test/%_test.o $(i686_lib)
-	@mkdir -p $(@D)
-	$(Q)$(i686_cc) -static $(trap) -o $@ $^
+# Two programs with a printer of their own, as CMocka is not there: golden vectors over the library as it is shipped, and all other
+# tests that need no machine as one, over a library whose saturations are counted. SUITE_LINK links what CC compiled, SUITE_LTO is
+# none, gcc or clang, SUITE_CFLAGS is for all but the golden vectors.
+suite_def   := -D_POSIX_C_SOURCE=200809L -DEXH_CHECK_PLAIN
+suite_dirs  := unit prop cards emu pc104
+suite_test  := $(filter $(suite_dirs:%=test/%/%),$(test_src))
+suite_src   := $(sort $(lib_src) test/support.c $(cards_src) $(emu_src) test/cards/bus.c test/cards/rig.c test/pc104/frames.c ports/pc104/net.c)
+suite_group  = $(subst /,_,$(1:test/%_test.c=%))
+suite_lto   := $(if $(filter gcc clang,$(SUITE_LTO)),-flto)
+suite_link  := $(or $(SUITE_LINK),$(CC))
 
-# Golden vectors: as they are shipped.
-$(B)/i686/plain/%.o: %.c $(stamp)
+$(B)/suite/plain/%.o: %.c $(stamp)
 	@mkdir -p $(@D)
-	$(Q)$(i686_cc) $(base) $(CFLAGS) -Itest $(i686_base) -c $< -o $@
-$(B)/i686/golden/golden_test: $(patsubst %.c,$(B)/i686/plain/%.o,$(golden_src) test/support.c $(lib_src))
+	$(Q)$(CC) $(base) $(CFLAGS) $(suite_lto) -Itest $(suite_def) -c $< -o $@
+$(B)/suite/audit/%.o: %.c $(stamp)
 	@mkdir -p $(@D)
-	$(Q)$(i686_cc) -static -o $@ $^
+	$(Q)$(CC) $(tflags) $(suite_lto) $(SUITE_CFLAGS) $(suite_def) -c $< -o $@
+$(B)/suite/audit/test/cards/%.o $(B)/suite/audit/ports/cards/%.o: tflags += -Iports
+$(B)/suite/audit/test/pc104/%.o $(B)/suite/audit/ports/pc104/%.o: tflags += -Iports -Itest/pc104
+# Each test's main under its folder and name.
+$(B)/suite/audit/%_test.o: tflags += -Dmain=suite_$(call suite_group,$*.c) -Wno-missing-prototypes
+$(B)/suite/groups.inc: $(suite_test) $(stamp)
+	@mkdir -p $(@D)
+	@printf 'GROUP(%s)\n' $(foreach t,$(suite_test),$(call suite_group,$t)) > $@
+$(B)/suite/audit/test/matrix/suite.o: $(B)/suite/groups.inc
+$(B)/suite/audit/test/matrix/suite.o: tflags += -I$(B)/suite
 
+$(B)/suite/golden: $(patsubst %.c,$(B)/suite/plain/%.o,$(golden_src) test/support.c $(lib_src))
+$(B)/suite/tests: $(patsubst %.c,$(B)/suite/audit/%.o,$(suite_src) $(suite_test) test/matrix/suite.c)
+$(B)/suite/golden $(B)/suite/tests:
+ifeq ($(SUITE_LTO),clang)
+	$(Q)test/matrix/lto.sh $@ "$(CC) -O$(O) $(CFLAGS)" $^
+	$(Q)$(suite_link) $(LDFLAGS) -o $@ $@.lto.o
+else
+	$(Q)$(suite_link) $(if $(suite_lto),-flto=1 -O$(O)) $(if $(filter $(CC),$(suite_link)),$(CFLAGS)) $(SUITE_CFLAGS) $(LDFLAGS) -o $@ $^
+endif
+
+# For a 32-bit CPU; what overflows there and not in 64 bits traps. Every rate.
 .PHONY: test-i686
-test-i686: $(i686_bin)
-	@JOBS=$(jobs) EXH_CASES=100000 test/run.sh $^
+test-i686:
+	$(matrix) --only i686-gcc-O2 --trap --cases 100000
+
+matrix = @MAKE="$(MAKE)" JOBS=$(jobs) test/matrix/matrix.py --dir $(B)/matrix
+
+## Unit tests, laws and golden vectors on eight CPUs, by gcc and clang, -O0 -O2 -O3 -Os, with LTO: docs/MATRIX.md anew (ARGS="--only mips")
+.PHONY: matrix
+matrix:
+	$(matrix) $(ARGS)
+
+## Table II, an experiment of the full box and a run of faults on the eight CPUs: the host's digits and logs (ARGS="--only mips")
+.PHONY: matrix-box
+matrix-box: all
+	@mkdir -p $(B)/box/host
+	@$(exhand) drop --out $(B)/box/host --spread 20 > $(B)/box/host/table2.txt
+	@$(exhand) calibrate --out $(B)/box/host/calibration > $(B)/box/host/calibration.txt
+	@$(exhand) bilateral --out $(B)/box/host/bilateral > $(B)/box/host/bilateral.txt
+	@$(exhand) glove --record $(B)/box/host/glove.exh --does poses --seconds 5 > $(B)/box/host/glove.txt
+	@$(exhand) faults --rate 100 > $(B)/box/host/faults.txt
+	@MAKE="$(MAKE)" JOBS=$(jobs) FAULTS=$(B)/box/host/faults.txt test/matrix/box.py $(B)/box $(ARGS)
 
 # --- anything into the packet parser ------------------------------------------------------
 
@@ -602,7 +628,7 @@ check: export WERROR = 1
 check:
 	@for t in $(check_tools); do .ci/deps "the checks" $$t $(check_pkgs) || exit 3; done
 	@$(timed) all
-	@$(timed) test-i686
+	@$(timed) matrix ARGS=--ci
 	@$(timed) golden ARGS="--check --every 40"
 	@$(timed) mutants ARGS="--some 4"
 	@$(timed) fuzz
@@ -629,7 +655,8 @@ hil-short:
 picture:
 	@$(world) --headless --script --seconds 1 --scene examples/world/scenes/collision.world --png $(B)/world.png || [ $$? = 3 ]
 bits:
-	@JOBS=$(jobs) test/sim/bits.sh $(B)/bits $(B)/demo $(variants:%=$(B)/variant/%/posix/exhand)
+	@$(exhand) faults --rate 100 > $(B)/faults_100Hz.txt
+	@JOBS=$(jobs) FAULTS=$(B)/faults_100Hz.txt test/sim/bits.sh $(B)/bits $(B)/demo $(variants:%=$(B)/variant/%/posix/exhand)
 
 # A make of its own, and what it took.
 timed = +bash -c 'TIMEFORMAT="took: %0R s, %0U + %0S s of a core: $$*"; time "$$@"' make $(MAKE) --no-print-directory -s

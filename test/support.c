@@ -297,6 +297,7 @@ int check_main(const char *group, const char *names, const check_fn *list, size_
 {
     unsigned passed = 0;
     unsigned failed = 0;
+    check_count = 0; /* of another group of this program                           */
     read_env();
     if (n > TESTS_MAX || run.part >= run.parts) { return 2; }
     split_names(names, n);

@@ -212,7 +212,8 @@ TEST(state_machine_under_any_input)
         s.limits = check_u64() % 64 ? 0 : 1u << check_u64() % EXH_LIMITS;
         seen |= 1u << s.state;
     }
-    CHECK(seen == (1u << EXH_STATES) - 1, "states %" PRIx32, seen);
+    /* of few cases not all come */
+    CHECK(check_count < 100000 || seen == (1u << EXH_STATES) - 1, "states %" PRIx32, seen);
 }
 
 TEST_MAIN("prop/safety", gate_holds_with_any_input, state_machine_under_any_input);

@@ -2,7 +2,7 @@
 # bits.sh DIR LOGS EXHAND...: every EXHAND (other compilers, optimisations, CPUs) must
 # make the same tables and logs as those in LOGS, and replay these bit for bit from
 # the start and from keyframes. Works in DIR; ends with `N passed, N failed`.
-# Environment: JOBS (1), of them at a time.
+# Environment: JOBS (1), of them at a time; FAULTS, what `exhand faults --rate 100` says, when it is to be compared, too.
 
 # one EXHAND: what it says, and its `N of N` at the end
 one()
@@ -17,6 +17,16 @@ one()
     "$exe" calibrate --out "$out/calibration" >"$work/calibration.txt" 2>&1 &&
         cmp "$logs/calibration/calibration.csv" "$out/calibration/calibration.csv"
     verdict calibration.csv $?
+    "$exe" bilateral --out "$out/bilateral" >"$work/bilateral.txt" 2>&1
+    verdict bilateral $?
+    for made in "$logs"/bilateral/*.exh "$logs/bilateral/contacts.csv"; do
+        cmp "$made" "$out/bilateral/${made##*/}"
+        verdict "bilateral: ${made##*/}" $?
+    done
+    if [ -n "${FAULTS:-}" ]; then
+        "$exe" faults --rate 100 --jobs 1 >"$work/faults.txt" 2>&1 && cmp "$FAULTS" "$work/faults.txt"
+        verdict faults $?
+    fi
     "$exe" glove --record "$out/glove.exh" --does poses --seconds 5 >"$work/glove.txt" 2>&1
     for log in "$logs"/*.exh; do
         cmp "$log" "$out/${log##*/}"

@@ -265,7 +265,7 @@ TEST(homing_takes_no_longer_than_allowed)
 
 static struct found weigh(struct string *w, struct exh_calib_point *p, int32_t mon_A_q26)
 {
-    static const struct exh_weigh_par wp = {.probe = par, .slack_A_q26 = MA(20), .hold_ms = 100};
+    const struct exh_weigh_par wp = {.probe = par, .slack_A_q26 = MA(20), .hold_ms = 100};
     struct found f = {EXH_PROBE_BUSY, 0, 0, 0};
     struct exh_weigh_cfg cfg;
     struct exh_weigh s;
@@ -335,7 +335,7 @@ struct script {
 
 static void script(struct script *w)
 {
-    static const struct exh_weigh_par wp = {.probe = par, .slack_A_q26 = MA(20), .hold_ms = 100};
+    const struct exh_weigh_par wp = {.probe = par, .slack_A_q26 = MA(20), .hold_ms = 100};
     w->cnt = 0;
     CHECK_EQ_I64(exh_weigh_setup(&w->cfg, &wp, scale), 0);
     exh_weigh_start(&w->s, &w->cfg, 0);

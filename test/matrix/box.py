@@ -1,0 +1,56 @@
+#!/usr/bin/env python3
+"""box.py DIR [--only T,T]: the host program for every target of targets.tsv, by its gcc; test/sim/bits.sh compares what each makes
+with the host's in DIR/host: Table II, logs of it and of the full box, a calibration, replays, faults. `make matrix-box`.
+Writes DIR/box.tsv. Standard library only.
+"""
+
+import argparse
+import os
+import re
+import subprocess
+import sys
+import time
+
+sys.dont_write_bytecode = True
+from matrix import ROOT, commands, targets, there  # noqa: E402
+
+
+def built(t, where):
+    """The host program in where, and what runs it; None if it does not build."""
+    make = [os.environ.get("MAKE", "make"), "--no-print-directory", "-s", "-j" + (os.environ.get("JOBS") or "1"), "B=" + where,
+            "WERROR=1", "PORT=posix"]
+    make += [c for c in commands(t, "gcc-O2") if not c.startswith("SUITE")]
+    if subprocess.run(make + [where + "/posix/exhand"], cwd=ROOT, env=dict(os.environ, MAKEFLAGS="")).returncode != 0:
+        return None
+    script = os.path.join(where, "exhand")
+    with open(script, "w") as f:
+        f.write('#!/bin/sh\nexec %s "${0%%/*}/posix/exhand" "$@"\n' % t["emulator"])
+    os.chmod(script, 0o755)
+    return script
+
+
+def main():
+    p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p.add_argument("dir")
+    p.add_argument("--only", default="")
+    a = p.parse_args()
+    some = [t for n, t in targets().items() if not a.only or n in a.only.split(",")]
+    if not all([there(t) for t in some]):
+        return 3
+    script = {t["name"]: built(t, os.path.join(a.dir, t["name"])) for t in some}
+    start = time.time()
+    run = subprocess.run(["test/sim/bits.sh", a.dir + "/bits", a.dir + "/host"] + [s for s in script.values() if s], cwd=ROOT,
+                         stdout=subprocess.PIPE, text=True)
+    print(run.stdout, end="")
+    with open(os.path.join(a.dir, "box.tsv"), "w") as f:
+        f.write("target\tagree\tof\n")
+        for name, s in script.items():
+            said = re.search("^%s: (\\d+) of (\\d+)$" % re.escape(s or "-"), run.stdout, re.M)
+            f.write("%s\t%s\t%s\n" % ((name,) + (said.groups() if said else ("0", "0"))))
+    bad = [n for n, s in script.items() if s is None]
+    print("%d targets in %.0f s, not built: %s" % (len(script), time.time() - start, " ".join(bad) or "none"))
+    return 1 if bad or run.returncode else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

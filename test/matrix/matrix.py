@@ -1,0 +1,317 @@
+#!/usr/bin/env python3
+"""The matrix: unit tests, laws and golden vectors on every target, by every compiler and option.
+
+    matrix.py                     build and run all (make matrix), docs/MATRIX.md anew
+    matrix.py --only WORD[,WORD]  what has all parts of one of them in its name: mips, clang, mips-gcc-O2, lto
+    matrix.py --resume            without what build/matrix/matrix.tsv has
+    matrix.py --ci                the part of it that CI runs
+    matrix.py --list              names, and what is thinned
+
+A cell is a module at a rate on a target by a compiler with an option; each is compared with the digest of the
+independent generator (test/golden). targets.tsv has the targets, README.md the rest. Standard library only.
+"""
+
+import argparse
+import collections
+import concurrent.futures
+import functools
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+import zlib
+from struct import pack
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+ROOT = os.path.dirname(os.path.dirname(HERE))
+DOC = os.path.join(ROOT, "docs", "MATRIX.md")
+DIGESTS = os.path.join(ROOT, "test", "golden", "digest")
+OPTIONS = ("O0", "O2", "O3", "Os", "O2-lto", "O3-lto", "Os-lto")
+COMPILERS = ("gcc", "clang")
+WHOLE = "gcc-O2"  # by this, every rate
+EVERY = 20        # else every twentieth, from the variant's number on
+CASES = 3000      # random cases of a law on the host; fewer on slower targets
+# What CI runs of it, 32 and 64 bits big-endian, char unsigned, every optimisation: {name: (every, random cases)}.
+CI = {"i686-gcc-O2": (1, 100000), "mips-gcc-O2": (100, 300), "s390x-clang-O3": (100, 300), "armhf-gcc-Os": (100, 300),
+      "x86_64-clang-O0": (100, 300), "x86_64-gcc-O3-lto": (100, 300)}
+TRAPS = ("i686-gcc-O2",)  # in CI: what overflows in 32 bits and not in 64 traps
+TRAP = "-fsanitize=undefined -fsanitize-undefined-trap-on-error"
+
+Job = collections.namedtuple("Job", "name target variant rates cases trap")
+Row = collections.namedtuple("Row", "target variant rates golden cells tests groups seconds failed")
+
+
+def targets():
+    """{name: {column: value}} in the table's order; "-" is empty."""
+    with open(os.path.join(HERE, "targets.tsv")) as f:
+        lines = [line.rstrip("\n").split("\t") for line in f if not line.startswith("#")]
+    head = lines[0]
+    return {w[0]: dict(zip(head, ["" if v == "-" else v for v in w])) for w in lines[1:]}
+
+
+def variants():
+    return ["%s-%s" % (c, o) for c in COMPILERS for o in OPTIONS]
+
+
+def commands(t, variant):
+    """Variables for make: how this variant is compiled and linked for this target."""
+    compiler, option = variant.split("-", 1)
+    level, _, lto = option.partition("-")
+    gcc = t["triple"] + "-gcc" if t["triple"] else "gcc"
+    clang = "clang --target=" + t["clang"] + (" -isystem /usr/%s/include" % t["triple"] if t["triple"] else "")
+    return ["CC=" + (gcc if compiler == "gcc" else clang), "O=" + level[1:], "SUITE_LINK=" + gcc, "LDFLAGS=-static",
+            "CFLAGS=" + t["flags"], "SUITE_LTO=" + (compiler if lto else "none")]
+
+
+@functools.lru_cache(None)
+def expected(lo, hi, step):
+    """{module: CRC of its digests at these rates}, from the generator's files."""
+    crc = {}
+    for name in sorted(os.listdir(DIGESTS)):
+        with open(os.path.join(DIGESTS, name)) as f:
+            word = f.read().split()
+        of = [int(word[r - 1].rstrip(","), 16) for r in range(lo, hi + 1, step)]
+        crc[name[:-4]] = zlib.crc32(b"".join(pack("<I", c) for c in of))
+    return crc
+
+
+def together(crcs):
+    """One digest of all modules', in the order of their names."""
+    return zlib.crc32(b"".join(pack("<I", crcs[m]) for m in sorted(crcs)))
+
+
+def run(command, env, log):
+    """(exit status, what it said); all of it in log, too."""
+    done = subprocess.run(command, cwd=ROOT, env=dict(os.environ, **env), stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, text=True, errors="replace")
+    log.write("$ %s\n%s" % (" ".join(command), done.stdout))
+    log.flush()
+    return done.returncode, done.stdout
+
+
+def cells(said):
+    """{module: (lo, hi, step, rates, crc)} of a golden run's lines."""
+    found = {}
+    for m, lo, hi, step, n, crc in re.findall(r"^  \| cells: (\w+) (\d+)\.\.(\d+):(\d+) (\d+) ([0-9a-f]{8})$", said, re.M):
+        found[m] = (int(lo), int(hi), int(step), int(n), int(crc, 16))
+    return found
+
+
+def judge(said, status, rates):
+    """Of a golden run: (digest, cells that agree, failures)."""
+    want, got = expected(*rates), cells(said)
+    n = len(range(rates[0], rates[1] + 1, rates[2]))
+    wrong = [m for m in want if m not in got or got[m] != rates + (n, want[m])]
+    agree = sum(got[m][3] for m in got if m not in wrong)
+    unknown = [m for m in got if m not in want]
+    failed = ["golden: " + " ".join(wrong + unknown)] if wrong or unknown else []
+    if status != 0:
+        failed.append("golden: exit %d" % status)
+    return together({m: v[4] for m, v in got.items()}), agree, failed
+
+
+def tests(said, status):
+    """Of a run of the other tests: (tests passed, groups, failures)."""
+    passed = sum(int(n) for n in re.findall(r"^(\d+) passed, \d+ failed$", said, re.M))
+    end = re.search(r"^(\d+) groups passed, (\d+) failed$", said, re.M)
+    failed = [] if status == 0 and end else ["tests: exit %d" % status] + re.findall(r"^FAILED .*$", said, re.M)
+    return passed, int(end.group(1)) if end else 0, failed
+
+
+def build_of(job, a):
+    return os.path.join(a.dir, job.name + ("-trap" if job.trap else ""))
+
+
+def made(job, build, log):
+    """Builds both programs; what went wrong."""
+    make = [os.environ.get("MAKE", "make"), "--no-print-directory", "-s", "-j1", "B=" + build, "WERROR=1",
+            "SUITE_CFLAGS=" + (TRAP if job.trap else "")] + commands(job.target, job.variant)
+    status, said = run(make + [build + "/suite/golden", build + "/suite/tests"], {"MAKEFLAGS": ""}, log)
+    if status != 0:
+        print(said)
+    return ["build: exit %d" % status] if status else []
+
+
+def one(job, a):
+    """Builds and runs a target's variant: its Row."""
+    build, start = build_of(job, a), time.time()
+    emulator = job.target["emulator"].split()
+    os.makedirs(build, exist_ok=True)
+    golden = agree = passed = groups = 0
+    with open(os.path.join(build, "log.txt"), "w") as log:
+        failed = made(job, build, log)
+        if not failed:
+            status, said = run(emulator + [build + "/suite/golden"],
+                               {"EXH_CELLS": "1", "EXH_RATES": "%d..%d:%d" % job.rates}, log)
+            golden, agree, failed = judge(said, status, job.rates)
+            status, said = run(emulator + [build + "/suite/tests"], {"EXH_CASES": str(job.cases)}, log)
+            passed, groups, worse = tests(said, status)
+            failed += worse
+    if not a.keep and not failed:
+        shutil.rmtree(os.path.join(build, "suite"))
+    return Row(job.target["name"], job.variant, job.rates, golden, agree, passed, groups, time.time() - start, failed)
+
+
+def there(t, variants=(WHOLE,)):
+    """Are compilers and emulator for these variants of this target here, or can they be had?"""
+    programs = [t["triple"] + "-gcc" if t["triple"] else "gcc", t["emulator"]]
+    packages = t["packages"].split() + (["qemu-user"] if t["emulator"] else [])
+    if any(v.startswith("clang") for v in variants):
+        programs, packages = programs + ["clang"], packages + ["clang"]
+    if any(v.startswith("clang") and v.endswith("lto") for v in variants):
+        programs, packages = programs + ["llvm-link"], packages + ["llvm"]
+    probe = " && ".join("command -v %s" % w for w in programs if w)
+    return subprocess.run([os.path.join(ROOT, ".ci", "deps"), "the matrix: " + t["name"], probe] + packages).returncode == 0
+
+
+def asked_for(name, word):
+    """All parts of the word are target, compiler or option of that name; lto is every option with it."""
+    part = name.split("-", 2)
+    return all(w in part or (w == "lto" and part[2].endswith("-lto")) for w in re.findall(r"O\w-lto|[^-]+", word))
+
+
+def chosen(a):
+    """[Job] of what is asked."""
+    jobs = []
+    for t in targets().values():  # each is one object: jobs of one target share it
+        for k, v in enumerate(variants()):
+            name = t["name"] + "-" + v
+            if (a.ci and name not in CI) or (a.only and not any(asked_for(name, w) for w in a.only.split(","))):
+                continue
+            step, cases = CI[name] if a.ci else (1 if v == WHOLE else EVERY, max(300, CASES // int(t["weight"])))
+            step, cases = a.every or step, a.cases or cases
+            jobs.append(Job(name, t, v, (1 + k % step, 2000, step), cases, a.trap or (a.ci and name in TRAPS)))
+    return jobs
+
+
+def ran(jobs, a, table, path):
+    """Runs them, as many at a time as there are cores, the longest first; (how many failed, cells that agree)."""
+    bad = agree = 0
+    order = sorted(jobs, key=lambda j: -int(j.target["weight"]) / j.rates[2])
+    with concurrent.futures.ThreadPoolExecutor(int(os.environ.get("JOBS", "0")) or os.cpu_count()) as pool:
+        for f in concurrent.futures.as_completed([pool.submit(one, j, a) for j in order]):
+            r = f.result()
+            bad += bool(r.failed)
+            agree += r.cells
+            table[r.target, r.variant] = words(r)
+            put(path, table)
+            print("%-24s %6d cells, digest %08x, %4d tests in %d groups, %4.0f s %s" % (
+                r.target + "-" + r.variant, r.cells, r.golden, r.tests, r.groups, r.seconds, "; ".join(r.failed) or "ok"), flush=True)
+    return bad, agree
+
+
+# --- what is kept of it ---
+
+HEAD = "target variant rates cells digest tests groups seconds failed".split()
+
+
+def words(r):
+    return [r.target, r.variant, "%d..%d:%d" % r.rates, "%d" % r.cells, "%08x" % r.golden, "%d" % r.tests, "%d" % r.groups,
+            "%.0f" % r.seconds, "; ".join(r.failed)]
+
+
+def kept(path):
+    """{(target, variant): words} of a table of before; what is of other bits is left out."""
+    try:
+        with open(path) as f:
+            rows = [line.rstrip("\n").split("\t") for line in f][1:]
+    except OSError:
+        return {}
+    return {(w[0], w[1]): w for w in rows if current(w[2], w[4])}
+
+
+def current(rates, digest):
+    """Is this what the generator's files say of these rates?"""
+    return "%08x" % together(expected(*[int(n) for n in re.split(r"\.\.|:", rates)])) == digest
+
+
+def put(path, table):
+    with open(path + ".new", "w") as f:
+        f.write("\t".join(HEAD) + "\n")
+        for t in targets():
+            for v in variants():
+                if (t, v) in table:
+                    f.write("\t".join(table[t, v]) + "\n")
+    os.replace(path + ".new", path)
+
+
+def commit():
+    said = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True).stdout
+    return said.strip() or "unknown"
+
+
+def document(table):
+    """The generated part of docs/MATRIX.md."""
+    good = [w for w in table.values() if not w[8]]
+    modules = len(os.listdir(DIGESTS))
+    yield "%d of %d variants ran, the last on top of commit %s; **%d cells** (module x rate x target x compiler x option) of %d modules" % (
+        len(table), len(targets()) * len(variants()), commit(), sum(int(w[3]) for w in good), modules)
+    yield "agree with the generator, %d variants do not. Tests passed beside them: %d. All rates of all modules together: `%08x`." % (
+        len(table) - len(good), sum(int(w[5]) for w in good), together(expected(1, 2000, 1)))
+    yield ""
+    yield "| target | bits | compiler and option | rates, Hz | cells | digest | tests | s |"
+    yield "|---|---|---|---|---|---|---|---|"
+    for name, t in targets().items():
+        for v in variants():
+            w = table.get((name, v))
+            if w:
+                yield "| %s | %s %s | %s | %s | %s | `%s` | %s | %s |" % (name, t["bits"], t["endian"], v, w[2], w[3], w[4], w[5], w[8] or w[7])
+
+
+def write_document(table):
+    with open(DOC) as f:
+        text = f.read()
+    begin, end = "<!-- make matrix -->\n", "<!-- end -->\n"
+    head, tail = text[:text.index(begin) + len(begin)], text[text.index(end):]
+    with open(DOC, "w") as f:
+        f.write(head + "\n".join(document(table)) + "\n" + tail)
+
+
+def stale():
+    """Rows of docs/MATRIX.md whose digest is not the generator's any more."""
+    with open(DOC) as f:
+        row = re.findall(r"^\| (\w+) \| [^|]* \| ([\w-]+) \| (\d+\.\.\d+:\d+) \| \d+ \| `([0-9a-f]{8})` ", f.read(), re.M)
+    return ["%s-%s" % (t, v) for t, v, rates, digest in row if not current(rates, digest)], len(row)
+
+
+def main():
+    p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p.add_argument("--dir", default="build/matrix")
+    p.add_argument("--only", default="")
+    p.add_argument("--ci", action="store_true")
+    p.add_argument("--list", action="store_true")
+    p.add_argument("--resume", action="store_true", help="leave out what build/matrix/matrix.tsv has")
+    p.add_argument("--trap", action="store_true", help="what overflows traps")
+    p.add_argument("--cases", type=int, default=0, help="random cases of a law")
+    p.add_argument("--every", type=int, default=0, metavar="N", help="every Nth rate alone")
+    p.add_argument("--keep", action="store_true", help="leave what was built")
+    a = p.parse_args()
+    jobs = chosen(a)
+    if not jobs:
+        p.error("nothing is called " + a.only)
+    if a.list:
+        for j in jobs:
+            print("%s: %d..%d:%d Hz, %d cases%s" % ((j.name,) + j.rates + (j.cases, ", traps" if j.trap else "")))
+        return 0
+    if not all([there(t, [j.variant for j in jobs if j.target is t]) for t in {id(j.target): j.target for j in jobs}.values()]):
+        return 3
+    os.makedirs(a.dir, exist_ok=True)
+    path = os.path.join(a.dir, "ci.tsv" if a.ci or a.trap else "matrix.tsv")
+    table = {} if a.ci or a.trap else kept(path)
+    if a.resume:
+        jobs = [j for j in jobs if table.get((j.target["name"], j.variant), [""] * 9)[2] != "%d..%d:%d" % j.rates
+                or table[j.target["name"], j.variant][8]]
+    bad, agree = ran(jobs, a, table, path)
+    print("%d cells agree" % agree)
+    if not (a.ci or a.trap):
+        write_document(table)
+    old, rows = stale()
+    print("docs/MATRIX.md: %d rows, %d of other bits%s" % (rows, len(old), ": make matrix makes them anew: " + " ".join(old[:3]) if old else ""))
+    print("%d passed, %d failed" % (len(jobs) - bad, bad))
+    return 1 if bad else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,46 @@
+/* Every test that needs no machine, as one program: `tests` runs all groups, `tests FOLDER...` those
+ * of these folders, as unit and prop. Says which begins; the last line is "N groups passed, N failed". */
+#include "check.h"
+
+#include <stdio.h>
+
+#define GROUP(name) int suite_##name(void);
+#include "groups.inc"
+#undef GROUP
+
+static const struct {
+    const char *name; /* folder_module                                             */
+    int (*main)(void);
+} group[] = {
+#define GROUP(name) {#name, suite_##name},
+#include "groups.inc"
+};
+
+static int of_folder(const char *name, const char *folder)
+{
+    while (*folder != '\0' && *name == *folder) {
+        name++;
+        folder++;
+    }
+    return *folder == '\0' && *name == '_';
+}
+
+int main(int argc, char **argv)
+{
+    unsigned passed = 0;
+    unsigned failed = 0;
+    for (size_t i = 0; i < sizeof group / sizeof group[0]; i++) {
+        int wanted = argc == 1;
+        for (int a = 1; a < argc; a++) { wanted |= of_folder(group[i].name, argv[a]); }
+        if (!wanted) { continue; }
+        (void)printf("group: %s\n", group[i].name);
+        (void)fflush(stdout); /* a test that dies has its name before it               */
+        if (group[i].main() == 0) {
+            passed++;
+        } else {
+            failed++;
+        }
+    }
+    (void)printf("%u groups passed, %u failed\n", passed, failed);
+    return failed != 0 || passed == 0;
+}
