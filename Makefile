@@ -30,7 +30,8 @@ MAKEFLAGS += $(if $(filter 0,$(MAKELEVEL)),-j$(or $(shell nproc 2>/dev/null),1),
 jobs       = $(or $(patsubst -j%,%,$(filter -j%,$(MAKEFLAGS))),1)
 
 # These call make for what they need, or take it away: two at a time would write the same files.
-callers := all test demo run image coverage stress test-i686 matrix matrix-box mutants fuzz hil hil-built strangers gpio linux-program boot boot-built \
+callers := all test demo run image coverage stress test-i686 matrix matrix-box mutants mcdc fuzz hil hil-built strangers gpio linux-program \
+           boot boot-built \
            contract contract-built nic nic-built modbus-image modbus world two-computers bench-world bench size cards install diagrams clean check
 ifneq ($(and $(filter $(callers),$(MAKECMDGOALS)),$(word 2,$(MAKECMDGOALS))),)
 .NOTPARALLEL:
@@ -512,6 +513,44 @@ fuzz-corpus: $(B)/fuzz/plain
 proof:
 	@test/proof/proof.py --out $(B)/proof $(ARGS)
 
+# --- every condition of the library and of the drivers of the cards -------------------------
+
+# Both as shared objects with counters, so that what the tests say of them is in one place; the tests too: they call
+# inline functions of the headers.
+mcdc_cc    := clang-19
+mcdc_flags  = $(filter-out -O$(O),$(base)) -O1 $(PORT_HOSTFLAGS) -Itest -Iports -DEXH_FIX_AUDIT -fPIC -fprofile-instr-generate \
+              -fcoverage-mapping -fcoverage-mcdc
+# A decision that this compiler does not count (!(a && b)) is to be written otherwise; in tests it may stand.
+mcdc_never := no such message
+$(B)/mcdc/obj/lib/%.o $(B)/mcdc/obj/ports/%.o: mcdc_never := unsupported MC/DC
+mcdc_bin   := $(patsubst test/%_test.c,$(B)/mcdc/%_test,$(filter test/unit/% test/prop/% test/cards/% test/golden/%,$(test_src)))
+mcdc_fuzz  := $(B)/mcdc/fuzz/wire
+mcdc_probe := for t in clang-19 llvm-cov-19 llvm-profdata-19 python3; do command -v $$t || exit; done; ls /usr/lib/llvm-19/lib/clang/19/lib/linux/libclang_rt.profile*
+mcdc_obj    = $(patsubst %.c,$(B)/mcdc/obj/%.o,$(1))
+$(B)/mcdc/obj/%.o: %.c $(stamp)
+	@mkdir -p $(@D)
+	$(Q)$(mcdc_cc) $(mcdc_flags) -c $< -o $@ 2> $@.said && ! grep -q "$(mcdc_never)" $@.said || { cat $@.said; rm -f $@; exit 1; }
+$(B)/mcdc/libexhand.so: $(call mcdc_obj,$(lib_src))
+$(B)/mcdc/libcards.so: $(call mcdc_obj,$(cards_src))
+$(B)/mcdc/lib%.so:
+	$(Q)$(mcdc_cc) -shared -fprofile-instr-generate -o $@ $^
+$(mcdc_bin): $(B)/mcdc/%_test: $(B)/mcdc/obj/test/%_test.o $(call mcdc_obj,test/support.c) $(B)/mcdc/libexhand.so
+$(filter $(B)/mcdc/cards/%,$(mcdc_bin)): $(call mcdc_obj,test/cards/bus.c test/cards/rig.c) $(B)/mcdc/libcards.so
+$(B)/mcdc/golden/golden_test: $(call mcdc_obj,$(golden_src))
+$(B)/mcdc/fuzz/wire: $(call mcdc_obj,$(fuzz_src))
+$(mcdc_fuzz): $(B)/mcdc/libexhand.so
+$(mcdc_bin) $(mcdc_fuzz):
+	@mkdir -p $(@D)
+	$(Q)$(mcdc_cc) -fprofile-instr-generate -o $@ $(sort $^) -Wl,-rpath,$(abspath $(B)/mcdc) -lcmocka
+
+## Conditions of lib/ and ports/cards that no test decides by (MC/DC), beside test/mcdc/missing.txt
+.PHONY: mcdc mcdc-built
+mcdc:
+	@.ci/deps "MC/DC" "$(mcdc_probe)" clang-19 llvm-19 libclang-rt-19-dev libcmocka-dev python3 || exit 3
+	@$(MAKE) --no-print-directory $(if $(V),,-s) mcdc-built
+	@test/mcdc/mcdc.py --build $(B)/mcdc --jobs $(jobs) $(ARGS)
+mcdc-built: $(mcdc_bin) $(mcdc_fuzz)
+
 # --- the pc104 image in the loop ----------------------------------------------------------
 
 HIL_TICKS ?= 1000000
@@ -631,6 +670,7 @@ check:
 	@$(timed) matrix ARGS=--ci
 	@$(timed) golden ARGS="--check --every 40"
 	@$(timed) mutants ARGS="--some 4"
+	@$(timed) mcdc
 	@$(timed) fuzz
 	@$(timed) demo > $(B)/demo.txt && tail -n 40 $(B)/demo.txt
 	@$(timed) $(variants:%=variant-%)

@@ -65,7 +65,7 @@ static void observe(struct exh_passivity *s, int32_t moved_cnt, int touching)
 
     /* A contact is over with a tick without it and without its force. Energy is not lent to the
      * next one. Debts are forgotten once no output can be on its way. */
-    if (held == 0 && !(touching && s->touching) && (e > 0 || late == 0)) { e = 0; }
+    if (held == 0 && (!touching || !s->touching) && (e > 0 || late == 0)) { e = 0; }
     s->energy_Ncnt_q20 = limited(e);
 }
 

@@ -57,7 +57,7 @@ static int written(const struct exh_regs *r, const struct exh_regs_span *s,
     const uint32_t at_B =
         2 * (2 * i - s->from); /* of the high register; wraps if it is not there */
     uint32_t v = s->is_float ? 0 : (uint32_t)exh_regs_held(r, i);
-    if (s->is_float && !(high && low)) { return EXH_MODBUS_VALUE; }
+    if (s->is_float && (!high || !low)) { return EXH_MODBUS_VALUE; }
     if (high) { v = word(&from[at_B]) << 16 | (v & 0xFFFFu); }
     if (low) { v = (v & 0xFFFF0000u) | word(&from[at_B + 2]); }
     if (s->is_float) {

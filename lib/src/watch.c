@@ -34,7 +34,7 @@ int exh_watch_setup(struct exh_watch_cfg *cfg, const struct exh_watch_par *par, 
 {
     if (!exh_inside(par->speed_mps_q27, SPEED_MIN_MPS_Q27, SPEED_MAX_MPS_Q27) ||
         !exh_inside(par->speed_ms, 1, SPEED_MAX_MS) ||
-        !(par->stuck_ms == 0 || exh_inside(par->stuck_ms, STUCK_MIN_MS, STUCK_MAX_MS)) ||
+        (par->stuck_ms != 0 && !exh_inside(par->stuck_ms, STUCK_MIN_MS, STUCK_MAX_MS)) ||
         !exh_inside(par->stuck_cur_A_q26, CUR_MIN_A_Q26, CUR_MAX_A_Q26)) {
         return -EXH_E_RANGE;
     }
