@@ -99,7 +99,7 @@ static int refuse(struct exh_calib_bad *bad, enum exh_calib_what what, unsigned 
 static int values_ok(const struct exh_calib *c)
 {
     return c->points >= 1 && c->points <= EXH_CALIB_POINTS_MAX && c->finger < EXH_FINGERS &&
-           c->dac_rawpA_q16 > 0 && c->dac_zero_raw >= 0 && c->dac_zero_raw <= UINT16_MAX &&
+           c->dac_rawpA_q16 > 0 && exh_inside(c->dac_zero_raw, 0, UINT16_MAX) &&
            c->mon_A_q40 > 0 && c->mon_zero_raw >= INT16_MIN &&
            c->mon_zero_raw <= INT16_MAX && c->f0_A_q26 >= 0 && c->f0_A_q26 <= CUR_MAX_A_Q26 &&
            c->end_A_q26 >= 0 && c->end_A_q26 <= CUR_MAX_A_Q26;

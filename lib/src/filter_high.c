@@ -20,7 +20,7 @@ static void widen(struct exh_filter *s)
 {
     if (!s->wide) {
         s->pos >>= EXH_FILTER_POS_Q - Q;
-        s->vel = (s->vel >> EXH_FILTER_VEL_Q) * (1 << Q);
+        s->vel = (s->vel >> EXH_FILTER_VEL_Q) * (INT32_C(1) << Q);
         s->wide = 1;
     }
 }
@@ -33,7 +33,7 @@ EXH_FILTER_STEP(exh_filter_high2)
         widen(s);
         pos = bounded(s->pos);
         vel = bounded(s->vel);
-        e = (int64_t)*x * (1 << Q) + HALF - pos;
+        e = (int64_t)*x * (INT32_C(1) << Q) + HALF - pos;
         mid = exh_wrap_add64(exh_mul64_q31(vel, cfg->a), exh_mul64_q31(e, cfg->b));
         move = exh_wrap_add64(exh_mul64_q31(vel, cfg->c), exh_mul64_q31(e, cfg->d));
         low = exh_wrap_add64(pos, move);
@@ -49,7 +49,7 @@ EXH_FILTER_STEP(exh_filter_high1)
         int64_t pos, move, low;
         widen(s);
         pos = bounded(s->pos);
-        move = exh_mul64_q31((int64_t)*x * (1 << Q) + HALF - pos, cfg->a);
+        move = exh_mul64_q31((int64_t)*x * (INT32_C(1) << Q) + HALF - pos, cfg->a);
         low = exh_wrap_add64(pos, move);
         s->pos = exh_wrap_add64(low, move);
         *y = exh_sat32(low >> Q);

@@ -11,6 +11,8 @@
 #define K_ID  0x0401 /* rows of exhand/contact.h */
 #define B_ID  0x0402
 
+#define RATE_Q8(rate_Hz) (INT32_C(1) * (rate_Hz) * 256)
+
 #define KNOT_B(i) \
     { \
         0x1210 + (i), EXH_Q_B, EXH_WHEN_SETUP, 0, B_MAX, 0, "rule_b" #i, "ns_per_m", \
@@ -23,7 +25,7 @@
     }
 
 const struct exh_signal exh_gains_rows[EXH_GAINS_ROWS] = {
-    {0x1201, 8, EXH_WHEN_SETUP, 1 << 8, 20000 << 8, 2000 << 8, "rule_rate", "hz",
+    {0x1201, 8, EXH_WHEN_SETUP, RATE_Q8(1), RATE_Q8(20000), RATE_Q8(2000), "rule_rate", "hz",
      "the loop rate that the rule of gains is for"},
     {0x1202, 0, EXH_WHEN_SETUP, 2, EXH_GAINS_KNOTS, 2, "rule_n", "", "knots of the rule of gains"},
     {0x1203, EXH_Q_K, EXH_WHEN_SETUP, 0, K_MAX, 0, "rule_k_min", "n_per_m",
@@ -67,7 +69,7 @@ static int hangs_together(const struct exh_gains_par *rule)
 
 int exh_gains_setup(const struct exh_gains_par *rule, struct exh_period T)
 {
-    if (!exh_inside(rule->rate_Hz_q8, 1 << 8, 20000 << 8) ||
+    if (!exh_inside(rule->rate_Hz_q8, RATE_Q8(1), RATE_Q8(20000)) ||
         !exh_inside(rule->knots, 2, EXH_GAINS_KNOTS) ||
         !exh_inside(rule->k_min_Npm_q10, 0, K_MAX)) {
         return -EXH_E_RANGE;

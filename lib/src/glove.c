@@ -146,7 +146,7 @@ static void start(struct exh_glove *s, const struct exh_glove_cfg *cfg,
             s->cause[i] == EXH_GLOVE_GOOD
                 ? in->raw[i]
                 : (int16_t)exh_clamp(cal->zero_raw_q15 >> EXH_Q_ZERO, cal->low_raw, cal->high_raw);
-        x_raw_q16[i] = s->good_raw[i] * (1 << EXH_Q_RAW);
+        x_raw_q16[i] = s->good_raw[i] * (INT32_C(1) << EXH_Q_RAW);
     }
     exh_filter_reset(s->filter, x_raw_q16, EXH_GLOVE_SENSORS);
     s->started = 1;
@@ -183,7 +183,7 @@ uint32_t exh_glove_step(struct exh_glove *s, const struct exh_glove_cfg *cfg,
         } else {
             s->good_raw[i] = raw;
         }
-        x[i] = s->good_raw[i] * (1 << EXH_Q_RAW);
+        x[i] = s->good_raw[i] * (INT32_C(1) << EXH_Q_RAW);
     }
     if (cfg->order > 0) { exh_filter_step(s->filter, &cfg->filter, x, x, EXH_GLOVE_SENSORS); }
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++, cal++) {

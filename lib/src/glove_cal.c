@@ -4,7 +4,7 @@
 #include "exhand/error.h"
 
 #define IMAGE_MAGIC           0x47485845u /* "EXHG" */
-#define GAIN_MIN_TURNPRAW_Q38 (1 << 17) /* 2^-21 turn a code: 11 degrees over the card */
+#define GAIN_MIN_TURNPRAW_Q38 (INT32_C(1) << 17) /* 2^-21 turn a code: 11 degrees over the card */
 #define ZERO_END_RAW_Q15      (INT32_C(1) << 30)
 
 /* --- the default --- */
@@ -13,7 +13,8 @@
  * a +-10 V card are 58982.4 codes. All quotients are exact to one LSB. */
 #define CODE(m) ((int16_t)((2 * (m) - 1000) * INT64_C(294912) / 10000))
 #define ZERO_Q15(m0, m1, d0, d1) \
-    ((int32_t)((2 * ((m0) * ((d1) - (d0)) - (d0) * ((m1) - (m0))) - 1000 * ((d1) - (d0))) * \
+    ((int32_t)((2 * ((m0) * INT64_C(1) * ((d1) - (d0)) - (d0) * INT64_C(1) * ((m1) - (m0))) - \
+                1000 * INT64_C(1) * ((d1) - (d0))) * \
                (INT64_C(294912) << 15) / (((d1) - (d0)) * INT64_C(10000))))
 #define GAIN_Q38(m0, m1, d0, d1) \
     ((int32_t)(((d1) - (d0)) * (INT64_C(1) << 38) * 1000 / (((m1) - (m0)) * INT64_C(21233664))))
@@ -25,7 +26,7 @@
 
 const struct exh_glove_cal exh_glove_cal_default = {
     .valid_days = UINT32_MAX,
-    .present = (1u << EXH_GLOVE_SENSORS) - 1u,
+    .present = (UINT32_C(1) << EXH_GLOVE_SENSORS) - 1u,
     .sensor =
     {UP(335, 697, -60, 60), UP(311, 736, -30, 30),  UP(461, 909, 0, 90),   DOWN(791, 350, 0, 50),
      UP(429, 654, 0, 90),   UP(181, 654, 0, 90),    UP(185, 469, 0, 90),   UP(417, 630, 0, 90),
@@ -105,7 +106,9 @@ unsigned exh_glove_sensor_valid(const struct exh_glove_cal *cal, unsigned at)
     if (s->zero_raw_q15 < -ZERO_END_RAW_Q15 || s->zero_raw_q15 >= ZERO_END_RAW_Q15) {
         return EXH_GLOVE_ZERO;
     }
-    if (present && s->high_raw - s->low_raw < EXH_GLOVE_SPAN_MIN_RAW) { return EXH_GLOVE_SPAN; }
+    if (present && (int32_t)s->high_raw - s->low_raw < EXH_GLOVE_SPAN_MIN_RAW) {
+        return EXH_GLOVE_SPAN;
+    }
     return cross_ok(cal, at) ? EXH_GLOVE_WHATS : EXH_GLOVE_CROSS;
 }
 

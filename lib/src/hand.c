@@ -59,7 +59,7 @@ uint32_t exh_hand_joints(const struct exh_hand_map *map, unsigned finger,
     uint32_t limited = 0;
     for (unsigned i = 0; i < EXH_HAND_JOINTS; i++) {
         const struct exh_hand_joint *j = &map->joint[finger][i];
-        int64_t sum_q56 = (int64_t)j->bias_turn_q32 * (1 << 24); /* |sum| < 2^60 */
+        int64_t sum_q56 = (int64_t)j->bias_turn_q32 * (INT32_C(1) << 24); /* |sum| < 2^60 */
         int64_t want;
         for (unsigned t = 0; t < EXH_HAND_TERMS; t++) {
             sum_q56 += (int64_t)j->gain_q24[t] * sensor_turn_q32[j->sensor[t]];
@@ -91,7 +91,7 @@ static int is_rotation(const int32_t rot_q30[3][3])
         for (unsigned k = i; k < 3; k++) {
             int64_t dot_q60 = i == k ? -(INT64_C(1) << 60) : 0;
             for (unsigned c = 0; c < 3; c++) {
-                if (rot_q30[i][c] > 1 << 30 || rot_q30[i][c] < -(1 << 30)) { return 0; }
+                if (!exh_inside(rot_q30[i][c], -(INT32_C(1) << 30), INT32_C(1) << 30)) { return 0; }
                 dot_q60 += (int64_t)rot_q30[i][c] * rot_q30[k][c];
             }
             if (dot_q60 > tol_q60 || dot_q60 < -tol_q60) { return 0; }

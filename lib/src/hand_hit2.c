@@ -14,7 +14,7 @@
         EXH_Q(55, 1000, 34), EXH_Q(25, 1000, 34), EXH_Q(25, 1000, 34) \
     }
 
-#define ONE    (1 << 30)
+#define ONE    (INT32_C(1) << 30)
 #define SIN_5  93582766 /* q30 */
 #define COS_5  1069655912
 #define SIN_10 186453311

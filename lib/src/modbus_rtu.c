@@ -52,7 +52,7 @@ static void ended(struct exh_modbus_rtu *u)
     const uint32_t n = u->len_B;
     const int whole =
         n >= LEAST_B && n <= EXH_MODBUS_ADU_B &&
-        exh_crc16(u->frame, n - 2) == (uint32_t)(u->frame[n - 2] | u->frame[n - 1] << 8);
+        exh_crc16(u->frame, n - 2) == (u->frame[n - 2] | (uint32_t)u->frame[n - 1] << 8);
     if (!whole) {
         u->damaged++;
     } else if (u->frame[0] != u->address && u->frame[0] != 0) {

@@ -126,7 +126,7 @@ static int is_slewed(const struct exh_signal *row)
 static void copy_row(struct exh_params *p, const struct exh_signal_group *g, uint32_t i)
 {
     uint32_t sum = 0, passed = 0, odd = 4 * i + 1;
-    for (uint16_t k = 0; k < g->instances; k++, i += g->rows, odd += 4u * g->rows) {
+    for (uint16_t k = 0; k < g->instances; k++, i += g->rows, odd += UINT32_C(4) * g->rows) {
         const uint32_t more = odd * ((uint32_t)p->staged[i] - (uint32_t)p->active[i]);
         sum += more;
         passed += i < p->at ? more : 0;

@@ -64,14 +64,14 @@ static int sine_fails(void)
 static int filter_fails(void)
 {
     static const int32_t want[] = {2182, 10618, 26639, 49166, 77200, 109819, 146181, 185515};
-    const struct exh_filter_par par = {2, 30 << 16};
+    const struct exh_filter_par par = {2, INT32_C(30) << 16};
     struct exh_filter_cfg cfg;
     struct exh_filter s;
     int32_t x = 0, y;
     if (exh_filter_setup(&cfg, &par, (struct exh_period){1, 2000}) < 0) { return 1; }
     exh_filter_reset(&s, &x, 1);
     for (unsigned k = 0; k < sizeof want / sizeof want[0]; k++) {
-        x = a & 1 << 20; /* 2^20 */
+        x = a & INT32_C(1) << 20; /* 2^20 */
         exh_filter_step(&s, &cfg, &x, &y, 1);
         if (y != want[k]) { return 1; }
     }

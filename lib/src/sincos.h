@@ -22,10 +22,10 @@
 #define C2_Q34  (-272375277) /* -0.0158543277519284   */
 #define C3_Q36  22398564 /*  3.25942008049486e-4  */
 #define C4_Q38  (-970686) /* -3.53133471025078e-6  */
-#define ONE_Q30 (1 << 30)
+#define ONE_Q30 (INT32_C(1) << 30)
 
-#define EIGHTH  (1u << 29)
-#define QUARTER (1u << 30)
+#define EIGHTH  (UINT32_C(1) << 29)
+#define QUARTER (UINT32_C(1) << 30)
 
 /* -1 if the top bit of x is set, else 0. */
 static inline int32_t top_mask(uint32_t x)

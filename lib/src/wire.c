@@ -3,7 +3,7 @@
 #include "exhand/error.h"
 #include "exhand/safety.h"
 
-#define HEAD_B     18u
+#define HEAD_B     UINT32_C(18)
 #define LEN_AT     4u
 #define CRC_B      4u
 #define FINGERS_OF ((1u << EXH_WIRE_FINGERS) - 1u)

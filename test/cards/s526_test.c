@@ -97,7 +97,7 @@ TEST(a_nominal_card_changes_no_code)
     CHECK_EQ_I64(open_it(), 0);
     CHECK_EQ_I64(card.id.nominal, 0);
     CHECK_EQ_I64(card.id.c10_sum, 327670);
-    for (int32_t raw = 0; raw <= UINT16_MAX; raw++) {
+    for (int32_t raw = 0; raw <= (int32_t)UINT16_MAX; raw++) {
         for (unsigned k = 0; k < 4; k++) {
             CHECK_EQ_I64(exh_s526_da_code(&card.id.da[k], (uint16_t)raw), raw);
         }
@@ -159,7 +159,7 @@ TEST(da_codes_are_the_voltage_s)
         bus_double(&bus.s526[0].ee[20], 0, (uint64_t)b[i % 4], 0);
         CHECK_EQ_I64(open_it(), 0);
         CHECK_EQ_I64(bus.s526[0].da_out[2], b[i % 4]); /* 0 V */
-        for (int32_t raw = 0; raw <= UINT16_MAX; raw += 7) {
+        for (int32_t raw = 0; raw <= (int32_t)UINT16_MAX; raw += 7) {
             const int64_t v = b[i % 4] + quotient((int64_t)(raw - 32768) * a[i / 4], 3249);
             const int64_t want = v < 0 ? 0 : v > UINT16_MAX ? UINT16_MAX : v;
             CHECK_EQ_I64(exh_s526_da_code(&card.id.da[2], (uint16_t)raw), want);

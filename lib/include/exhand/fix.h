@@ -157,13 +157,13 @@ static inline int32_t exh_recip_q24(int32_t x)
         m_q31 <<= up;
         shift += up;
     }
-    rest_q61 = (INT64_C(1) << 61) - (int64_t)m_q31 * (1 << 30);
+    rest_q61 = (INT64_C(1) << 61) - (int64_t)m_q31 * (INT32_C(1) << 30);
     z_q30 = 1957999797 - (int32_t)((int64_t)m_q31 * 2021161080 >> 31);
     for (int i = 0; i < 3; i++) {
         const int32_t off_q30 = (int32_t)((rest_q61 - (int64_t)m_q31 * z_q30) >> 31);
         z_q30 += off_q30 + (int32_t)((int64_t)z_q30 * off_q30 >> 30);
     }
-    return ((((1 << 30) + z_q30) >> (12 - shift)) + 1) >> 1;
+    return ((((INT32_C(1) << 30) + z_q30) >> (12 - shift)) + 1) >> 1;
 }
 
 /* Sets *g to num/den. 0, or -EXH_E_RANGE when den is 0 or >= 2^63, or when the
