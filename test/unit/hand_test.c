@@ -249,6 +249,11 @@ static void pulled(const struct exh_hand_finger *own, const struct exh_hand_fing
     exh_hand_tip(f, q, tip);
 }
 
+static int32_t axis(const struct exh_vec3 *v, int c)
+{
+    return c == 0 ? v->x : c == 1 ? v->y : v->z;
+}
+
 /* The string bends the wearer, the map the robot: what the slope says is what the tip does. */
 TEST(slope_is_that_of_the_string_through_the_map)
 {
@@ -264,8 +269,8 @@ TEST(slope_is_that_of_the_string_through_the_map)
             pulled(&own, &f, i, out_um, q, &tip);
             exh_hand_tip_slope(&f, q, &tip, &slope);
             for (int c = 0; c < 3; c++) { /* 1 mm of string: within 1 um, a thousandth */
-                const int64_t went = (int64_t)(&after.x)[c] - (&before.x)[c];
-                const int64_t said = (int64_t)(&slope.x)[c] * (1 << 6) / 1000;
+                const int64_t went = (int64_t)axis(&after, c) - axis(&before, c);
+                const int64_t said = (int64_t)axis(&slope, c) * (1 << 6) / 1000;
                 CHECK(went - said <= 1100 && said - went <= 1100,
                       "finger %u, %d um, axis %d: %d LSB, slope says %d", i, (int)out_um, c,
                       (int)went, (int)said);

@@ -555,7 +555,7 @@ TEST(setup_refuses_what_is_out_of_range)
         for (size_t k = 0; k < LEN(v); k++) {
             struct exh_safety_par p = par;
             struct exh_safety_cfg cfg;
-            (&p.missed_max)[r] = v[k];
+            ((int32_t *)&p)[r] = v[k];
             CHECK_EQ_I64(exh_safety_setup(&cfg, &p, T), k < 2 ? 0 : -EXH_E_RANGE);
             CHECK_EQ_I64(exh_safety_setup(&cfg, &p, none), k < 2 ? -EXH_E_RATE : -EXH_E_RANGE);
         }
