@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define LINE_B 512
 #define PUTS 3 /* tries to set the outputs low                               */
 
 static struct {
@@ -212,12 +213,30 @@ void gpio_start(struct exh_period T)
     gpio.failed = 0;
 }
 
+static void (*take_line)(const char *line);
+
+void gpio_say(void (*say)(const char *line))
+{
+    take_line = say;
+}
+
+static void tell(const char *line)
+{
+    if (take_line) {
+        take_line(line);
+    } else {
+        fprintf(stderr, "%s\n", line);
+    }
+}
+
 static int fail(const char *what)
 {
     const char *why = strerror(errno);
+    char line[LINE_B];
     if (!gpio.failed) {
-        fprintf(stderr, "exhand: %s: %s (%s): %s, the run ends\n", gpio.spec.path, what, why,
-                put_low() == 0 ? "outputs go low" : "outputs CAN'T BE SET LOW, switch them off by hand");
+        snprintf(line, sizeof line, "exhand: %s: %s (%s): %s, the run ends", gpio.spec.path, what, why,
+                 put_low() == 0 ? "outputs go low" : "outputs CAN'T BE SET LOW, switch them off by hand");
+        tell(line);
     }
     gpio.failed = 1;
     return -EXH_E_IO;
@@ -248,10 +267,22 @@ double gpio_differed_s(enum gpio_channel channel, uint32_t *times)
     return gpio.T.den ? (double)gpio.channel[channel].longest * gpio.T.num / gpio.T.den : 0;
 }
 
+static void say_stuck(unsigned i, const int *level)
+{
+    const unsigned *at = gpio.spec.contact[i];
+    char line[LINE_B];
+    snprintf(line, sizeof line,
+             "exhand: %s: its contacts disagree for more than %lu ticks (line %u closed, line %u "
+             "open): it is taken for open until both have been: look for a welded contact, a broken "
+             "or a shorted wire",
+             gpio_channel_name[i], (unsigned long)gpio.differ_max, at[level[0] ? 0 : 1],
+             at[level[0] ? 1 : 0]);
+    tell(line);
+}
+
 /* Contacts at such levels, for one tick more: 1 if the channel is closed. */
 static int believe(unsigned i, const int *level)
 {
-    const unsigned *line = gpio.spec.contact[i];
     if (gpio.spec.contacts[i] == 1) { return level[0]; }
     if (level[0] == level[1]) {
         gpio.channel[i].differ = 0;
@@ -261,13 +292,7 @@ static int believe(unsigned i, const int *level)
     count_differ(i);
     if (gpio.channel[i].differ > gpio.differ_max && !gpio.channel[i].stuck) {
         gpio.channel[i].stuck = 1;
-        fprintf(
-            stderr,
-            "exhand: %s: its contacts disagree for more than %lu ticks (line %u closed, line %u "
-            "open): it is taken for open until both have been: look for a welded contact, a broken "
-            "or a shorted wire\n",
-            gpio_channel_name[i], (unsigned long)gpio.differ_max, line[level[0] ? 0 : 1],
-            line[level[0] ? 1 : 0]);
+        say_stuck(i, level);
     }
     return 0;
 }

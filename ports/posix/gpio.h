@@ -34,6 +34,10 @@ int gpio_take(struct gpio_spec *s, const char *text, char said[GPIO_SAID_B]);
 int gpio_open(const struct gpio_spec *s, char said[GPIO_SAID_B]);
 void gpio_close(void);
 
+/* Who takes the lines that a tick has to say, each without its end; NULL, as it is at first: they are
+ * written to stderr, and the tick waits for that. */
+void gpio_say(void (*say)(const char *line));
+
 /* 1: a chip is open, and this contact is a real one. */
 int gpio_has(enum gpio_channel channel);
 

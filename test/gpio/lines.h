@@ -3,14 +3,18 @@
 #ifndef TEST_GPIO_LINES_H
 #define TEST_GPIO_LINES_H
 
+#define _XOPEN_SOURCE 700 /* pseudo-terminals */
+
 #include "check.h"
 #include "chip.h"
+#include "sim/terminal.h"
 
 #include "gpio.h"
 #include "posix.h"
 
 #include "cli/images.h"
 #include "cli/live.h"
+#include "cli/words.h"
 #include "drop/drop.h"
 #include "loop.h"
 
@@ -22,6 +26,8 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
+#include <termios.h>
+#include <time.h>
 #include <unistd.h>
 
 #define LEN(a)  (sizeof(a) / sizeof((a)[0]))
@@ -256,6 +262,48 @@ TEST(two_contacts_that_disagree)
     chip.line[ESTOP].level = chip.line[SECOND].level = 1;
     CHECK_EQ_I64(din(), BOTH);
     gpio_close();
+}
+
+/* A terminal that was halted (Ctrl-S) holds no tick up, whatever a tick has to say: it comes when the
+ * terminal goes on. */
+TEST(a_halted_terminal_stalls_no_tick)
+{
+    static char text[65536];
+    struct terminal tty;
+    const int was = dup(2);
+    if (terminal_open(&tty) < 0) { return; }
+    start(PAIR);
+    CHECK_EQ_I64(tcflow(tty.slave, TCOOFF), 0);
+    dup2(tty.slave, 2);
+    words_begin(1);
+    gpio_say(words_say);
+    alarm(60); /* a tick that stands still ends the test */
+    for (int k = 0; k < 100; k++) { /*/* so many lines a ring has room for, and no terminal */
+        chip.line[SECOND].level = 0;
+        for (int i = 0; i < 501; i++) { CHECK_EQ_I64(din(), EXH_DIN_DEADMAN); }
+        chip.line[ESTOP].level = 0;
+        CHECK_EQ_I64(din(), EXH_DIN_DEADMAN);
+        chip.line[ESTOP].level = chip.line[SECOND].level = 1;
+        CHECK_EQ_I64(din(), BOTH);
+        CHECK(gpio_differed() == (uint32_t)k + 1, "%d", k);
+    }
+    alarm(0);
+    CHECK_EQ_I64(tcflow(tty.slave, TCOON), 0);
+    text[0] = '\0';
+    for (int i = 0; i < 3000 && times(text, "disagree") + (int)words_lost() < 100; i++) {
+        const struct timespec a_while = {0, 10000000};
+        terminal_read(&tty, text, sizeof text);
+        (void)nanosleep(&a_while, NULL);
+    }
+    words_end();
+    gpio_say(NULL);
+    dup2(was, 2);
+    close(was);
+    CHECK(times(text, "disagree for more than 500 ticks") + (int)words_lost() == 100 &&
+              times(text, "disagree") > 50,
+          "%d came, %lu lost", times(text, "disagree"), (unsigned long)words_lost());
+    gpio_close();
+    terminal_close(&tty);
 }
 
 /* At a slow rate 0.5 s is two ticks at the least. */
@@ -636,7 +684,7 @@ TEST(a_switch_that_is_closed_from_the_start)
 
 #define LINES_TESTS \
     requested_low_and_pulled_down, a_field_alone, what_can_be_wrong, closed_if_both_reads_are, \
-        a_contact_closes_nothing, two_contacts, two_contacts_that_disagree, disagreement_in_ticks, \
+        a_contact_closes_nothing, two_contacts, two_contacts_that_disagree, a_halted_terminal_stalls_no_tick, disagreement_in_ticks, \
         lines_that_cannot_be_read, enable_and_beat, safe_is_low, lines_that_cannot_be_set, \
         low_at_the_third_try, \
         low_when_the_program_ends, low_when_it_is_stopped, closed_contacts_change_nothing, \

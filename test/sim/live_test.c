@@ -206,13 +206,64 @@ TEST(a_terminal_that_was_halted_stalls_nobody)
     if (terminal_open(&tty) < 0) { return; }
     CHECK_EQ_I64(tcflow(tty.slave, TCOOFF), 0);
     pid = said_start(dir, run_on_terminal,
-                     WORDS("run", "--pace", "--rate", "50", "--seconds", "2", "--log", log));
+                     WORDS("run", "--pace", "--rate", "50", "--seconds", "2", "--let-go", "1.5",
+                           "--blackbox", said_path(dir, "box.exh"), "--log", log));
     CHECK(ends_within(pid, 30) == 0, "it stands still");
     said_end(&s, dir, pid);
     CHECK(s.status == 0 && number_before(s.out, "ticks") >= 50, "%d %s", s.status, s.out);
     replay(dir, log, &s);
     CHECK(strstr(s.out, "end of the log, 0 records lost") != NULL, "%s", s.out);
     terminal_close(&tty);
+    said_clean(dir);
+}
+
+/* Paced, dumps go piece by piece, one after the other: what the person did, what a stop did. */
+TEST(dumps_of_a_paced_box)
+{
+    char *dir = said_dir();
+    const char *first = said_path(dir, "box.exh"), *second = said_path(dir, "box.exh.2"),
+               *err = said_path(dir, "said.err");
+    const struct timespec a_while = {0, 10000000}, until_it_runs = {3, 0}, stands = {1, 500000000};
+    struct said s;
+    const pid_t pid =
+        said_start(dir, cli_run,
+                   WORDS("run", "--pace", "--slack", "0.5", "--rate", "100", "--seconds", "10",
+                         "--let-go", "1.5", "--grip", "--blackbox", first));
+    for (int i = 0; i < 3000 && said_size(err) <= 0; i++) { nanosleep(&a_while, NULL); }
+    nanosleep(&until_it_runs, NULL);
+    kill(pid, SIGSTOP);
+    nanosleep(&stands, NULL);
+    kill(pid, SIGCONT);
+    CHECK(ends_within(pid, 60) == 0, "it does not end");
+    said_end(&s, dir, pid);
+    CHECK(s.status == 0 && times(s.err, "black box: fault ") >= 2, "%d %s%s", s.status, s.out,
+          s.err);
+    CHECK(said_size(first) > 2 * 4096, "%ld bytes: one piece", said_size(first));
+    replay(dir, first, &s);
+    CHECK(strstr(s.out, "end of the log, 0 records lost"), "%s", s.out);
+    replay(dir, second, &s);
+    CHECK(strstr(s.out, "end of the log, 0 records lost"), "%s", s.out);
+    said_clean(dir);
+}
+
+/* A pipe that nobody opens: the box goes on by its clock, and at the end gives the dump up. */
+TEST(a_dump_that_nobody_takes_stalls_nobody)
+{
+    char *dir = said_dir();
+    const char *dump = said_path(dir, "pipe"), *log = said_path(dir, "a.exh");
+    struct said s;
+    pid_t pid;
+    CHECK_EQ_I64(mkfifo(dump, 0600), 0);
+    pid = said_start(dir, cli_run,
+                     WORDS("run", "--pace", "--slack", "0.5", "--rate", "100", "--seconds", "3",
+                           "--let-go", "1.5", "--blackbox", dump, "--log", log));
+    CHECK(ends_within(pid, 60) == 0, "it stands still");
+    said_end(&s, dir, pid);
+    CHECK(s.status == 1 && strstr(s.err, "pipe: takes nothing for 2 s"), "%d %s", s.status, s.err);
+    CHECK(strstr(s.err, "black box: fault") == NULL, "%s", s.err);
+    replay(dir, log, &s);
+    CHECK(strstr(s.out, "run -> release") && strstr(s.out, "end of the log, 0 records lost"), "%s",
+          s.out);
     said_clean(dir);
 }
 
@@ -306,6 +357,6 @@ TEST(what_it_cannot_do_is_named)
 TEST_MAIN("live", each_scene_goes_on_until_its_time_is_over, the_shortest_time_ends,
           after_a_fault_it_runs_again_by_the_grip_alone, an_interrupt_leaves_a_complete_log,
           what_goes_by_while_it_is_stopped_is_missed, a_log_that_nobody_takes_stalls_nobody,
-          the_line_of_status, a_terminal_that_was_halted_stalls_nobody,
-          a_slow_log_is_complete_in_virtual_time, it_runs_again_wherever_the_fault_found_the_mass,
-          what_it_cannot_do_is_named);
+          dumps_of_a_paced_box, a_dump_that_nobody_takes_stalls_nobody, the_line_of_status,
+          a_terminal_that_was_halted_stalls_nobody, a_slow_log_is_complete_in_virtual_time,
+          it_runs_again_wherever_the_fault_found_the_mass, what_it_cannot_do_is_named);

@@ -4,6 +4,11 @@
 #include "cli/writer.h"
 
 #include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -163,5 +168,37 @@ TEST(a_file_that_takes_nothing)
     CHECK(now_s() - before_s >= 0.4, "it has no patience");
 }
 
+/* Its thread opens and closes it: a pipe that nobody opens for reading holds nobody up either. */
+TEST(a_file_by_its_name)
+{
+    char name[64] = "/tmp/exhand-writer-XXXXXX", got[64] = "";
+    struct writer *w = &writers[used];
+    int fd = mkstemp(name);
+    CHECK(fd >= 0 && write(fd, "something longer", 16) == 16, "no file");
+    CHECK_EQ_I64(writer_start_file(w, name, rings[used++], RING_B), 0);
+    CHECK_EQ_I64(writer_put(w, "ab", 2, 0), 1);
+    CHECK_EQ_I64(writer_put(w, "cd", 2, 0), 1);
+    CHECK_EQ_I64(writer_end(w, 30), 0);
+    CHECK_EQ_I64((int64_t)writer_held(w), 0);
+    CHECK(pread(fd, got, sizeof got, 0) == 4 && memcmp(got, "abcd", 4) == 0, "%s", got);
+    close(fd);
+    CHECK_EQ_I64(remove(name), 0);
+    CHECK_EQ_I64(mkfifo(name, 0600), 0);
+    w = &writers[used];
+    CHECK_EQ_I64(writer_start_file(w, name, rings[used++], RING_B), 0);
+    CHECK_EQ_I64(writer_put(w, "ab", 2, 0), 1);
+    CHECK_EQ_I64((int64_t)writer_held(w), 2);
+    CHECK_EQ_I64(writer_end(w, 0), -1);
+    fd = open(name, O_RDONLY);
+    CHECK_EQ_I64(writer_end(w, 30), 0);
+    CHECK_EQ_I64(read(fd, got, sizeof got), 2);
+    close(fd);
+    CHECK_EQ_I64(remove(name), 0);
+    w = &writers[used];
+    CHECK_EQ_I64(writer_start_file(w, "/nowhere/at.all", rings[used++], RING_B), 0);
+    CHECK_EQ_I64(writer_end(w, 30), ENOENT);
+    CHECK_EQ_I64(writer_put(w, "ab", 2, 0), -1);
+}
+
 TEST_MAIN("writer", a_full_pipe_refuses_and_waits_for_nobody, patience_loses_nothing,
-          a_reader_that_goes, a_file_that_takes_nothing);
+          a_reader_that_goes, a_file_that_takes_nothing, a_file_by_its_name);

@@ -1,6 +1,7 @@
 #include "contacts.h"
 
 #include "option.h"
+#include "words.h"
 
 #include <time.h>
 
@@ -41,6 +42,7 @@ int contacts_begin(const struct contacts *c)
         cli_complain("--gpio: %s", said);
         return 3;
     }
+    gpio_say(words_say);
     while (nanosleep(&left, &left) != 0) {}
     return 0;
 }
@@ -60,6 +62,6 @@ static void say_differed(void)
 
 void contacts_end(void)
 {
-    say_differed();
     gpio_close();
+    say_differed();
 }

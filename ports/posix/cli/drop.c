@@ -14,6 +14,7 @@
 #include "param.h"
 #include "params_file.h"
 #include "sweep.h"
+#include "words.h"
 
 #include "drop/drop.h"
 #include "guarded/guarded.h"
@@ -525,7 +526,9 @@ int cli_drop(int argc, char **argv)
     }
     err = refuse(&o);
     if (err == 0) { err = contacts_begin(&o.gpio); }
+    if (o.gpio.given && err == 0) { words_begin(1); }
     if (err == 0) { err = in_plane(&o) ? plane(&o) : experiment(&o); }
+    words_end();
     contacts_end();
     return err;
 }

@@ -13,6 +13,11 @@
  * also go to the board's log. len_B 0: DUMPFILE_B. 0, or 1 after a line on stderr. */
 int dumpfile_open(const char *path, int logged, size_t len_B);
 
+/* Before that: on: no tick writes a dump. It goes piece by piece a tick to a thread that writes it, and
+ * what its file does not take yet stays in the frozen box. One loop a process, then: the thread of a
+ * file that never takes it remains. */
+void dumpfile_paced(int on);
+
 /* Hooks, the log's among them. */
 void dumpfile_start(const struct exh_scene *sc, struct exh_scene_board board);
 void dumpfile_before(uint32_t tick, struct exh_scene_in *in);

@@ -7,6 +7,7 @@
 #include "option.h"
 #include "outfile.h"
 #include "param.h"
+#include "words.h"
 
 #include "guarded/guarded.h"
 
@@ -145,8 +146,10 @@ static int go(struct live_options *o)
     int err = sc ? prepare(o, sc) : 2;
     if (err == 0) {
         catch_signals();
+        words_begin(o->pace);
         err = live_box(o, sc);
         err = err == -EXH_E_IO ? 1 : err < 0 ? 2 : 0; /* the board failed; it could not be set up */
+        words_end();
         live_status_end();
     }
     if (o->modbus) { live_modbus_close(); }

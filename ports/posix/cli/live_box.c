@@ -1,8 +1,11 @@
 /* exhand run: the two kinds of box, and who is told what happens in them. */
 #include "live.h"
 
+#include "dumpfile.h"
 #include "modbus.h"
 #include "table2.h"
+
+#include "exhand/error.h"
 
 #include <limits.h>
 #include <string.h>
@@ -52,6 +55,12 @@ static void board(const struct live_options *o, struct posix_config *b)
     if (o->seconds > 0 && b->max_ticks == 0) { b->max_ticks = 1; } /* 0: never */
 }
 
+/* A dump that could not be written is an error of its own. */
+static int dumped(int err, int dumps)
+{
+    return err == 0 && dumps < 0 ? -EXH_E_IO : err;
+}
+
 /* A mass that is let fall again and again. */
 static int run_mass(const struct live_options *o, const struct exh_scene *sc)
 {
@@ -72,6 +81,7 @@ static int run_mass(const struct live_options *o, const struct exh_scene *sc)
     board(o, &c.board);
     live_status(0);
     err = run_drop(&c, &r);
+    err = dumped(err, r.dumps);
     run_free(&r);
     return err;
 }
@@ -106,12 +116,14 @@ static int run_hand(struct live_options *o)
     board(o, &c.board);
     live_status(lowest(c.board.exo.fingers));
     err = bilateral_run(&c, &r);
+    err = dumped(err, r.dumps);
     bilateral_run_free(&r);
     return err;
 }
 
 int live_box(struct live_options *o, const struct exh_scene *sc)
 {
+    dumpfile_paced(o->pace);
     clients.on = o->modbus != NULL;
     clients.status = 0;
     live_person(&(struct live_person){o->grip, o->let_go_s});

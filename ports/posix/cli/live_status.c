@@ -4,7 +4,7 @@
 #include "gpio.h"
 #include "names.h"
 #include "param.h"
-#include "writer.h"
+#include "words.h"
 
 #include "exhand/safety.h"
 
@@ -15,9 +15,7 @@
 #include <unistd.h>
 
 #define SHOWN_S 0.25
-#define LINE_B  512
 #define ODD_B   128
-#define WAITS_S 1.0 /* for a terminal that was halted                              */
 
 static struct {
     const struct exh_scene *sc;
@@ -25,13 +23,9 @@ static struct {
     unsigned finger;
     uint64_t ticks, missed;
     uint32_t every, faults;
-    int on, shown; /* a line stands on the terminal */
+    int on;
     struct timespec last;
 } status;
-
-/* A terminal takes what it likes, when it likes. What finds no room is old anyway. */
-static struct writer terminal;
-static uint8_t room[8 * LINE_B];
 
 void live_status(unsigned finger)
 {
@@ -44,8 +38,7 @@ void live_status_start(const struct exh_scene *sc, struct exh_scene_board board)
     status.sc = sc;
     status.T = board.T;
     status.every = board.T.den / board.T.num / 50 + 1;
-    status.on =
-        isatty(STDERR_FILENO) && writer_start(&terminal, STDERR_FILENO, room, sizeof room) == 0;
+    status.on = isatty(STDERR_FILENO);
 }
 
 /* In SI, of the finger; 0 where the scene has no such signal. */
@@ -75,14 +68,14 @@ static void odd(char to[ODD_B])
     to[0] = '\0';
     count(to, "", status.missed, "missed");
     count(to, "log: ", live_log_lost(), "records lost");
+    count(to, "", words_lost(), "lines not said");
     count(to, "contacts disagreed ", gpio_differed(), "times");
 }
 
 static void show(void)
 {
-    char faults[NAMES_B], more[ODD_B], line[LINE_B];
+    char faults[NAMES_B], more[ODD_B], line[WORDS_LINE_B - 8];
     struct timespec now;
-    int n;
     clock_gettime(CLOCK_MONOTONIC, &now);
     if ((double)(now.tv_sec - status.last.tv_sec) +
             (double)(now.tv_nsec - status.last.tv_nsec) * 1e-9 <
@@ -92,10 +85,10 @@ static void show(void)
     status.last = now;
     names_faults(faults, sizeof faults, status.sc->safety->faults);
     odd(more);
-    n = snprintf(line, sizeof line, "\r%10.1f s  %-7s  q %7.2f mm  f %7.2f N  faults %s%s\033[K",
-                 seconds(), names_word(&names_state, status.sc->safety->state), value("q") * 1e3,
-                 value("f_des"), faults, more);
-    status.shown |= n < LINE_B && writer_put(&terminal, line, (size_t)n, 0) == 1;
+    snprintf(line, sizeof line, "%10.1f s  %-7s  q %7.2f mm  f %7.2f N  faults %s%s", seconds(),
+             names_word(&names_state, status.sc->safety->state), value("q") * 1e3, value("f_des"),
+             faults, more);
+    words_show(line);
 }
 
 void live_status_after(uint32_t tick, const struct exh_scene_in *in)
@@ -109,10 +102,6 @@ void live_status_after(uint32_t tick, const struct exh_scene_in *in)
 void live_status_end(void)
 {
     char faults[NAMES_B], more[ODD_B];
-    if (status.on) {
-        if (status.shown) { (void)writer_put(&terminal, "\n", 1, WAITS_S); }
-        (void)writer_end(&terminal, WAITS_S);
-    }
     if (status.sc == NULL) { return; }
     names_faults(faults, sizeof faults, status.faults);
     odd(more);

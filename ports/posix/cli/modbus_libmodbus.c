@@ -11,6 +11,7 @@
 #include "modbus.h"
 
 #include "option.h"
+#include "thread.h"
 
 #include <arpa/inet.h>
 #include <errno.h>
@@ -19,7 +20,6 @@
 #include <netinet/tcp.h>
 #include <poll.h>
 #include <pthread.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -276,18 +276,9 @@ int live_modbus_open(const char *where)
     return err;
 }
 
-/* Signals are the loop's. But those of a crash come to the thread that crashes: blocked, they would end the program
- * without their handler, and so without its outputs low. */
 int live_modbus_serve(void)
 {
-    static const int crash[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP, SIGSYS};
-    sigset_t all, was;
-    sigfillset(&all);
-    for (size_t i = 0; i < sizeof crash / sizeof crash[0]; i++) { sigdelset(&all, crash[i]); }
-    pthread_sigmask(SIG_SETMASK, &all, &was);
-    server.serves =
-        pthread_create(&server.thread, NULL, server.rtu ? serve_rtu : serve_tcp, NULL) == 0;
-    pthread_sigmask(SIG_SETMASK, &was, NULL);
+    server.serves = thread_start(&server.thread, server.rtu ? serve_rtu : serve_tcp, NULL) == 0;
     return server.serves ? 0 : complain("a thread", "can't be started", "free some memory");
 }
 

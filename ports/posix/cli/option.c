@@ -9,6 +9,9 @@
 const char *cli_program = "exhand";
 static const char *command = ""; /* for cli_complain() */
 
+#define LINE_B 2048 /* of a complaint that somebody takes */
+void (*cli_complain_by)(const char *line);
+
 /* Between the program and its command. */
 static const char *blank(const char *name)
 {
@@ -17,12 +20,19 @@ static const char *blank(const char *name)
 
 void cli_complain(const char *format, ...)
 {
+    char line[LINE_B];
     va_list args;
-    fprintf(stderr, "%s%s%s: ", cli_program, blank(command), command);
     va_start(args, format);
-    vfprintf(stderr, format, args);
+    if (cli_complain_by) {
+        const int n = snprintf(line, 64, "%s%s%s: ", cli_program, blank(command), command);
+        vsnprintf(line + (n < 64 ? n : 63), sizeof line - 64, format, args);
+        cli_complain_by(line);
+    } else {
+        fprintf(stderr, "%s%s%s: ", cli_program, blank(command), command);
+        vfprintf(stderr, format, args);
+        fputc('\n', stderr);
+    }
     va_end(args);
-    fputc('\n', stderr);
 }
 
 int cli_finish(int status)

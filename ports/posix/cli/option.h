@@ -40,6 +40,9 @@ __attribute__((format(printf, 1, 2)))
 #endif
 void cli_complain(const char *format, ...);
 
+/* Who takes that line then, without its end; NULL: it is written. */
+extern void (*cli_complain_by)(const char *line);
+
 /* What a command's exit status becomes once stdout is written: 1 after a line on
  * stderr if it was 0 and stdout could not be. */
 int cli_finish(int status);

@@ -1,7 +1,9 @@
 #include "writer.h"
 
+#include "thread.h"
+
 #include <errno.h>
-#include <signal.h>
+#include <fcntl.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
@@ -17,14 +19,30 @@ static size_t piece(const struct writer *w)
     return n < PIECE_B ? n : PIECE_B;
 }
 
+/* errno of it, without the lock. */
+static int open_path(struct writer *w)
+{
+    if (w->path == NULL) { return 0; }
+    do {
+        w->fd = open(w->path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    } while (w->fd < 0 && errno == EINTR);
+    return w->fd < 0 ? errno : 0;
+}
+
+static int close_path(const struct writer *w)
+{
+    return w->path && w->fd >= 0 && close(w->fd) != 0 ? errno : 0;
+}
+
 static void *write_on(void *ctx)
 {
     struct writer *w = ctx;
+    int error = open_path(w);
     pthread_mutex_lock(&w->lock);
+    w->error = error;
     while (w->error == 0 && (w->held || !w->ends)) {
         const size_t n = piece(w);
         ssize_t done;
-        int error;
         if (n == 0) {
             pthread_cond_wait(&w->moved, &w->lock);
             continue;
@@ -42,29 +60,40 @@ static void *write_on(void *ctx)
         }
         pthread_cond_broadcast(&w->moved);
     }
+    pthread_mutex_unlock(&w->lock);
+    error = close_path(w);
+    pthread_mutex_lock(&w->lock);
+    if (w->error == 0) { w->error = error; }
     w->over = 1;
     pthread_cond_broadcast(&w->moved);
     pthread_mutex_unlock(&w->lock);
     return NULL;
 }
 
-int writer_start(struct writer *w, int fd, void *ring, size_t cap_B)
+static int start(struct writer *w, int fd, const char *path, void *ring, size_t cap_B)
 {
-    sigset_t all, was;
     pthread_t thread;
     int err;
     memset(w, 0, sizeof *w);
     w->fd = fd;
+    w->path = path;
     w->ring = ring;
     w->cap_B = cap_B;
     pthread_mutex_init(&w->lock, NULL);
     pthread_cond_init(&w->moved, NULL);
-    sigfillset(&all); /* signals are the loop's; a pipe without a reader is an error and no end */
-    pthread_sigmask(SIG_SETMASK, &all, &was);
-    err = pthread_create(&thread, NULL, write_on, w);
-    pthread_sigmask(SIG_SETMASK, &was, NULL);
+    err = thread_start(&thread, write_on, w); /* a pipe without a reader is an error and no end */
     if (err == 0) { (void)pthread_detach(thread); }
     return err;
+}
+
+int writer_start(struct writer *w, int fd, void *ring, size_t cap_B)
+{
+    return start(w, fd, NULL, ring, cap_B);
+}
+
+int writer_start_file(struct writer *w, const char *path, void *ring, size_t cap_B)
+{
+    return start(w, -1, path, ring, cap_B);
 }
 
 /* A tenth of a second, or until something moves; the lock is held. */
@@ -113,6 +142,15 @@ int writer_put(struct writer *w, const void *bytes, size_t n, double patience_s)
     return 1;
 }
 
+size_t writer_held(struct writer *w)
+{
+    size_t held;
+    pthread_mutex_lock(&w->lock);
+    held = w->held;
+    pthread_mutex_unlock(&w->lock);
+    return held;
+}
+
 int writer_end(struct writer *w, double patience_s)
 {
     int err;
@@ -120,7 +158,7 @@ int writer_end(struct writer *w, double patience_s)
     w->ends = 1;
     pthread_cond_broadcast(&w->moved);
     wait_for(w, SIZE_MAX, patience_s); /* so much room there never is */
-    err = w->error ? w->error : w->over ? 0 : -1;
+    err = w->over ? w->error : -1;
     pthread_mutex_unlock(&w->lock);
     return err;
 }

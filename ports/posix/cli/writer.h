@@ -9,6 +9,7 @@
 
 struct writer {
     int fd;
+    const char *path; /* the thread opens and closes it; NULL: fd is the caller's       */
     uint8_t *ring; /* cap_B of it, the caller's, as is the writer: for ever      */
     size_t cap_B;
     size_t head, held; /* where the thread reads, and how much of it is its       */
@@ -20,13 +21,19 @@ struct writer {
 
 /* 0, or the errno of a thread that could not be made. */
 int writer_start(struct writer *w, int fd, void *ring, size_t cap_B);
+/* The same, to a file of this name, new or emptied. The thread opens it, too, since that may take long:
+ * what comes of it is known by the end. */
+int writer_start_file(struct writer *w, const char *path, void *ring, size_t cap_B);
 
 /* One caller, in its order: 1: all of it will be written, unless the file fails; 0: none, there was no
  * room, and nothing moved for so long; -1: the file failed. */
 int writer_put(struct writer *w, const void *bytes, size_t n, double patience_s);
 
+/* Bytes that were put and are not written yet. */
+size_t writer_held(struct writer *w);
+
 /* Until all is written, the file fails, or nothing moves for so long. 0; errno of the file; or
- * -1: it does not move, and the thread keeps what it has. */
+ * -1: it does not move, and the thread keeps what it has; no patience: not yet. */
 int writer_end(struct writer *w, double patience_s);
 
 #endif
