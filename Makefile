@@ -401,12 +401,17 @@ faults-mutants: $(exhand)
 # tests that need no machine as one, over a library whose saturations are counted. SUITE_LINK links what CC compiled, SUITE_LTO is
 # none, gcc or clang, SUITE_CFLAGS is for all but the golden vectors.
 suite_def   := -D_POSIX_C_SOURCE=200809L -DEXH_CHECK_PLAIN
-suite_dirs  := unit prop cards emu pc104
+suite_dirs  := unit prop cards emu $(if $(SUITE_METAL),,pc104)
 suite_test  := $(filter $(suite_dirs:%=test/%/%),$(test_src))
-suite_src   := $(sort $(lib_src) test/support.c $(cards_src) $(emu_src) test/cards/bus.c test/cards/rig.c test/pc104/frames.c ports/pc104/net.c)
+suite_src   := $(sort $(lib_src) test/support.c $(cards_src) $(emu_src) test/cards/bus.c test/cards/rig.c $(if $(SUITE_METAL),,test/pc104/frames.c ports/pc104/net.c))
 suite_group  = $(subst /,_,$(1:test/%_test.c=%))
 suite_lto   := $(if $(filter gcc clang,$(SUITE_LTO)),-flto)
 suite_link  := $(or $(SUITE_LINK),$(CC))
+# Without a C library: start, memory's functions and the compiler's helpers (SUITE_METAL: test/matrix/NAME.c).
+suite_metal := $(if $(SUITE_METAL),$(patsubst %,$(B)/suite/metal/%.o,test/matrix/$(SUITE_METAL) ports/mps2/mem))
+suite_bare  := -nostdlib -Wl,--build-id=none -Wl,--no-enum-size-warning -Wl,-z,noexecstack
+suite_libs  := $(if $(SUITE_METAL),$(suite_bare) -T test/matrix/$(SUITE_METAL).ld -lgcc)
+suite_def   += $(if $(SUITE_METAL),-ffreestanding -DEXH_CHECK_PUTCHAR=metal_putchar -DEXH_CHECK_ENV=metal_env)
 
 $(B)/suite/plain/%.o: %.c $(stamp)
 	@mkdir -p $(@D)
@@ -416,6 +421,9 @@ $(B)/suite/audit/%.o: %.c $(stamp)
 	$(Q)$(CC) $(tflags) $(suite_lto) $(SUITE_CFLAGS) $(suite_def) -c $< -o $@
 $(B)/suite/audit/test/cards/%.o $(B)/suite/audit/ports/cards/%.o: tflags += -Iports
 $(B)/suite/audit/test/pc104/%.o $(B)/suite/audit/ports/pc104/%.o: tflags += -Iports -Itest/pc104
+$(B)/suite/metal/%.o: %.c $(stamp)
+	@mkdir -p $(@D)
+	$(Q)$(suite_link) $(base) $(CFLAGS) -ffreestanding -c $< -o $@
 # Each test's main under its folder and name.
 $(B)/suite/audit/%_test.o: tflags += -Dmain=suite_$(call suite_group,$*.c) -Wno-missing-prototypes
 $(B)/suite/groups.inc: $(suite_test) $(stamp)
@@ -426,12 +434,12 @@ $(B)/suite/audit/test/matrix/suite.o: tflags += -I$(B)/suite
 
 $(B)/suite/golden: $(patsubst %.c,$(B)/suite/plain/%.o,$(golden_src) test/support.c $(lib_src))
 $(B)/suite/tests: $(patsubst %.c,$(B)/suite/audit/%.o,$(suite_src) $(suite_test) test/matrix/suite.c)
-$(B)/suite/golden $(B)/suite/tests:
+$(B)/suite/golden $(B)/suite/tests: $(suite_metal)
 ifeq ($(SUITE_LTO),clang)
-	$(Q)test/matrix/lto.sh $@ "$(CC) -O$(O) $(CFLAGS)" $^
-	$(Q)$(suite_link) $(LDFLAGS) -o $@ $@.lto.o
+	$(Q)test/matrix/lto.sh $@ "$(CC) -O$(O) $(CFLAGS)" $(filter-out $(suite_metal),$^)
+	$(Q)$(suite_link) $(LDFLAGS) -o $@ $@.lto.o $(suite_metal) $(suite_libs)
 else
-	$(Q)$(suite_link) $(if $(suite_lto),-flto=1 -O$(O)) $(if $(filter $(CC),$(suite_link)),$(CFLAGS)) $(SUITE_CFLAGS) $(LDFLAGS) -o $@ $^
+	$(Q)$(suite_link) $(if $(suite_lto),-flto=1 -O$(O)) $(if $(filter $(CC),$(suite_link)),$(CFLAGS)) $(SUITE_CFLAGS) $(LDFLAGS) -o $@ $^ $(suite_libs)
 endif
 
 # For a 32-bit CPU; what overflows there and not in 64 bits traps. Every rate.

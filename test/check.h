@@ -76,6 +76,13 @@ int check_main(const char *group, const char *names, const check_fn *list, size_
 void check_failed(const char *file, int line, const char *cond, const char *fmt, ...)
     CHECK_PRINTF(4, 5);
 
+/* The value of NAME in the environment of a host, or where EXH_CHECK_ENV names a function of that kind in
+ * what that says; NULL where there is neither. */
+const char *check_env(const char *name);
+
+/* Prints a line: own printer alone. */
+void check_line(const char *fmt, ...) CHECK_PRINTF(1, 2);
+
 /* Prints a line that is no failure: what a test found, or could not cover here and why.
  * It begins with "  | ", by which test/run.sh shows it of a test that passed. */
 void check_note(const char *fmt, ...) CHECK_PRINTF(1, 2);

@@ -30,28 +30,34 @@ int EXH_CHECK_PUTCHAR(int c);
 
 void exh_fix_saturated(const char *file, int line);
 
-#define TESTS_MAX 64
+#define TESTS_MAX  64
 #define NAME_MAX_B 48
-#define NO_CASE UINT64_MAX
+#define NO_CASE    UINT64_MAX
 
 uint64_t check_count;
 uint32_t check_saturations;
-const int32_t check_corner[CHECK_CORNERS] = {INT32_MIN, INT32_MIN + 1, -65536, -1,
-                                             0,         1,             65535,  INT32_MAX};
+const int32_t check_corner[CHECK_CORNERS] = {INT32_MIN, INT32_MIN + 1, -65536,   -1, 0,
+                                             1,         65535,         INT32_MAX};
 
 static struct {
     const char *test; /* the one that runs                                     */
     uint64_t seed, cases, only;
     uint64_t part, parts; /* of all cases, those that are part modulo parts        */
-    uint64_t next;        /* case after the one that runs, 0 outside a property    */
-    uint64_t state;       /* of the generator                                      */
+    uint64_t next; /* case after the one that runs, 0 outside a property    */
+    uint64_t state; /* of the generator                                      */
 } run = {"", EXH_SEED, EXH_CASES, NO_CASE, 0, 1, 0, 0};
 
 /* --- what the environment asks for --- */
 
-static const char *env(const char *name)
+#ifdef EXH_CHECK_ENV
+const char *EXH_CHECK_ENV(const char *name);
+#endif
+
+const char *check_env(const char *name)
 {
-#if __STDC_HOSTED__
+#ifdef EXH_CHECK_ENV
+    return EXH_CHECK_ENV(name);
+#elif __STDC_HOSTED__
     return getenv(name);
 #else
     (void)name;
@@ -61,7 +67,7 @@ static const char *env(const char *name)
 
 static uint64_t env_u64(const char *name, uint64_t otherwise)
 {
-    const char *p = env(name);
+    const char *p = check_env(name);
     uint64_t v = 0;
     if (p == NULL || *p == '\0') { return otherwise; }
     for (; *p >= '0' && *p <= '9'; p++) { v = v * 10 + (uint64_t)(*p - '0'); }
@@ -111,7 +117,7 @@ static void start_test(const char *name)
 
 static int wanted(const char *name)
 {
-    const char *only = env("EXH_TEST");
+    const char *only = check_env("EXH_TEST");
     return only == NULL || check_same_text(only, name);
 }
 
@@ -236,13 +242,13 @@ static void put_args(const char *fmt, va_list ap)
         if (*fmt == 's') {
             put_text(va_arg(ap, const char *));
         } else if (*fmt == 'd' || *fmt == 'i') {
-            const int64_t s = longs == 0   ? va_arg(ap, int)
+            const int64_t s = longs == 0 ? va_arg(ap, int)
                               : longs == 1 ? (int64_t)va_arg(ap, long)
                                            : (int64_t)va_arg(ap, long long);
             if (s < 0) { (void)EXH_CHECK_PUTCHAR('-'); }
             put_u64(s < 0 ? (uint64_t)0 - (uint64_t)s : (uint64_t)s, 10, width, pad);
         } else if (*fmt == 'u' || *fmt == 'x' || *fmt == 'X') {
-            v = longs == 0   ? va_arg(ap, unsigned)
+            v = longs == 0 ? va_arg(ap, unsigned)
                 : longs == 1 ? (uint64_t)va_arg(ap, unsigned long)
                              : (uint64_t)va_arg(ap, unsigned long long);
             put_u64(v, *fmt == 'u' ? 10 : 16, width, pad);
@@ -258,9 +264,7 @@ static void put_line_of(const char *fmt, va_list ap)
     (void)EXH_CHECK_PUTCHAR('\n');
 }
 
-static void put_line(const char *fmt, ...) CHECK_PRINTF(1, 2);
-
-static void put_line(const char *fmt, ...)
+void check_line(const char *fmt, ...)
 {
     va_list ap;
     va_start(ap, fmt);
@@ -281,15 +285,15 @@ void check_failed(const char *file, int line, const char *cond, const char *fmt,
 {
     va_list ap;
     if (++failures > SHOWN_MAX) { return; }
-    put_line("%s:%d: %s", file, line, cond);
+    check_line("%s:%d: %s", file, line, cond);
     va_start(ap, fmt);
     put_line_of(fmt, ap);
     va_end(ap);
     if (run.next == 0) {
-        put_line("    again: EXH_TEST=%s", run.test);
+        check_line("    again: EXH_TEST=%s", run.test);
     } else {
-        put_line("    again: EXH_TEST=%s EXH_SEED=%" PRIu64 " EXH_CASE=%" PRIu64, run.test,
-                 run.seed, run.next - 1);
+        check_line("    again: EXH_TEST=%s EXH_SEED=%" PRIu64 " EXH_CASE=%" PRIu64, run.test,
+                   run.seed, run.next - 1);
     }
 }
 
@@ -308,20 +312,20 @@ int check_main(const char *group, const char *names, const check_fn *list, size_
         list[i]();
         if (failures == 0) {
             passed++;
-            put_line("ok     %s", name_of[i]);
+            check_line("ok     %s", name_of[i]);
         } else {
             failed++;
-            put_line("FAILED %s (%u)", name_of[i], failures);
+            check_line("FAILED %s (%u)", name_of[i], failures);
         }
     }
-    put_line("%s: %" PRIu64 " checks, seed %" PRIu64, group, check_count, run.seed);
-    put_line("%u passed, %u failed", passed, failed);
+    check_line("%s: %" PRIu64 " checks, seed %" PRIu64, group, check_count, run.seed);
+    check_line("%u passed, %u failed", passed, failed);
     return passed == 0 || failed != 0;
 }
 
 void exh_assert_failed(const char *file, int line)
 {
-    put_line("%s:%d: the library's assertion, in %s\n0 passed, 1 failed", file, line, run.test);
+    check_line("%s:%d: the library's assertion, in %s\n0 passed, 1 failed", file, line, run.test);
     for (;;) {
 #if __STDC_HOSTED__
         abort();

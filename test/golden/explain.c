@@ -209,9 +209,25 @@ const char *golden_trace(const char *name, golden_run *run, uint32_t rate_Hz)
 
 #else
 
+static uint32_t number(const char **p)
+{
+    uint32_t v = 0;
+    while (**p == '.' || **p == ':') { (*p)++; }
+    for (; **p >= '0' && **p <= '9'; (*p)++) { v = v * 10u + (uint32_t)(**p - '0'); }
+    return v;
+}
+
 struct golden_rates golden_rates(void)
 {
-    return (struct golden_rates){1, GOLDEN_RATES, 1};
+    struct golden_rates r = {1, GOLDEN_RATES, 1};
+    const char *text = check_env("EXH_RATES"); /* lo..hi:step, all three */
+    if (text == NULL) { return r; }
+    r.lo = number(&text);
+    r.hi = number(&text);
+    r.step = number(&text);
+    CHECK(*text == '\0' && r.lo >= 1 && r.lo <= r.hi && r.hi <= GOLDEN_RATES && r.step >= 1,
+          "EXH_RATES");
+    return r;
 }
 
 int golden_cells(void)

@@ -34,7 +34,7 @@ WHOLE = "gcc-O2"  # by this, every rate
 EVERY = 20        # else every twentieth, from the variant's number on
 CASES = 3000      # random cases of a law on the host; fewer on slower targets
 # What CI runs of it, 32 and 64 bits big-endian, char unsigned, every optimisation: {name: (every, random cases)}.
-CI = {"i686-gcc-O2": (1, 100000), "mips-gcc-O2": (100, 300), "s390x-clang-O3": (100, 300), "armhf-gcc-Os": (100, 300),
+CI = {"i686-gcc-O2": (1, 100000), "mips-gcc-O2": (100, 300), "s390x-clang-O3": (100, 300), "cortex_m0-gcc-Os": (100, 300),
       "x86_64-clang-O0": (100, 300), "x86_64-gcc-O3-lto": (100, 300)}
 TRAPS = ("i686-gcc-O2",)  # in CI: what overflows in 32 bits and not in 64 traps
 TRAP = "-fsanitize=undefined -fsanitize-undefined-trap-on-error"
@@ -51,8 +51,10 @@ def targets():
     return {w[0]: dict(zip(head, ["" if v == "-" else v for v in w])) for w in lines[1:]}
 
 
-def variants():
-    return ["%s-%s" % (c, o) for c in COMPILERS for o in OPTIONS]
+def variants(t):
+    """Of this target, all or those that its row names: their numbers, and names."""
+    every = ["%s-%s" % (c, o) for c in COMPILERS for o in OPTIONS]
+    return [(k, v) for k, v in enumerate(every) if not t["variants"] or v in t["variants"].split(",")]
 
 
 def commands(t, variant):
@@ -61,7 +63,8 @@ def commands(t, variant):
     level, _, lto = option.partition("-")
     gcc = t["triple"] + "-gcc" if t["triple"] else "gcc"
     clang = "clang --target=" + t["clang"] + (" -isystem /usr/%s/include" % t["triple"] if t["triple"] else "")
-    return ["CC=" + (gcc if compiler == "gcc" else clang), "O=" + level[1:], "SUITE_LINK=" + gcc, "LDFLAGS=-static",
+    return ["CC=" + (gcc if compiler == "gcc" else clang), "O=" + level[1:], "SUITE_LINK=" + gcc, "SUITE_METAL=" + t["metal"],
+            "LDFLAGS=" + " ".join(["-static", t["flags"] if t["metal"] else "", t["link"]]),
             "CFLAGS=" + t["flags"], "SUITE_LTO=" + (compiler if lto else "none")]
 
 
@@ -156,8 +159,9 @@ def one(job, a):
 
 def there(t, variants=(WHOLE,)):
     """Are compilers and emulator for these variants of this target here, or can they be had?"""
-    programs = [t["triple"] + "-gcc" if t["triple"] else "gcc", t["emulator"]]
-    packages = t["packages"].split() + (["qemu-user"] if t["emulator"] else [])
+    metal = t["metal"] != ""
+    programs = [t["triple"] + "-gcc" if t["triple"] else "gcc", "qemu-system-arm" if metal else t["emulator"]]
+    packages = t["packages"].split() + (["qemu-user"] if t["emulator"] and not metal else [])
     if any(v.startswith("clang") for v in variants):
         programs, packages = programs + ["clang"], packages + ["clang"]
     if any(v.startswith("clang") and v.endswith("lto") for v in variants):
@@ -176,7 +180,7 @@ def chosen(a):
     """[Job] of what is asked."""
     jobs = []
     for t in targets().values():  # each is one object: jobs of one target share it
-        for k, v in enumerate(variants()):
+        for k, v in variants(t):
             name = t["name"] + "-" + v
             if (a.ci and name not in CI) or (a.only and not any(asked_for(name, w) for w in a.only.split(","))):
                 continue
@@ -230,10 +234,10 @@ def current(rates, digest):
 def put(path, table):
     with open(path + ".new", "w") as f:
         f.write("\t".join(HEAD) + "\n")
-        for t in targets():
-            for v in variants():
-                if (t, v) in table:
-                    f.write("\t".join(table[t, v]) + "\n")
+        for name, t in targets().items():
+            for _, v in variants(t):
+                if (name, v) in table:
+                    f.write("\t".join(table[name, v]) + "\n")
     os.replace(path + ".new", path)
 
 
@@ -247,14 +251,14 @@ def document(table):
     good = [w for w in table.values() if not w[8]]
     modules = len(os.listdir(DIGESTS))
     yield "%d of %d variants ran, the last on top of commit %s; **%d cells** (module x rate x target x compiler x option) of %d modules" % (
-        len(table), len(targets()) * len(variants()), commit(), sum(int(w[3]) for w in good), modules)
+        len(table), sum(len(variants(t)) for t in targets().values()), commit(), sum(int(w[3]) for w in good), modules)
     yield "agree with the generator, %d variants do not. Tests passed beside them: %d. All rates of all modules together: `%08x`." % (
         len(table) - len(good), sum(int(w[5]) for w in good), together(expected(1, 2000, 1)))
     yield ""
     yield "| target | bits | compiler and option | rates, Hz | cells | digest | tests | s |"
     yield "|---|---|---|---|---|---|---|---|"
     for name, t in targets().items():
-        for v in variants():
+        for _, v in variants(t):
             w = table.get((name, v))
             if w:
                 yield "| %s | %s %s | %s | %s | %s | `%s` | %s | %s |" % (name, t["bits"], t["endian"], v, w[2], w[3], w[4], w[5], w[8] or w[7])

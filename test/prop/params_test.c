@@ -5,7 +5,6 @@
 
 #include "check.h"
 
-#include <inttypes.h>
 
 static int64_t distance(int32_t a, int32_t b)
 {

@@ -3,7 +3,6 @@
 
 #include "check.h"
 
-#include <string.h>
 
 #define LEN(a) (sizeof(a) / sizeof((a)[0]))
 

@@ -7,9 +7,6 @@
 
 #include "check.h"
 
-#include <inttypes.h>
-#include <string.h>
-
 #define LEN(a) (sizeof(a) / sizeof((a)[0]))
 
 static const struct exh_signal rows[] = {

@@ -5,7 +5,6 @@
 
 #include "check.h"
 
-#include <string.h>
 
 #define LEN(a) (sizeof(a) / sizeof((a)[0]))
 #define ALL_DRIVES (31u * EXH_DIN_DRIVE0)
@@ -571,8 +570,8 @@ TEST(names_are_all_there)
         for (unsigned i = 0; i < n[k]; i++) { CHECK(of[k](i)[0] != '\0', "%zu %u", k, i); }
         CHECK(of[k](n[k])[0] == '\0' && of[k](UINT32_MAX)[0] == '\0', "%zu: beyond", k);
     }
-    CHECK(strcmp(exh_fault_name(14), "logic") == 0, "logic");
-    CHECK(strcmp(exh_limit_name(10), "passivity") == 0, "passivity");
+    CHECK(check_same_text(exh_fault_name(14), "logic"), "logic");
+    CHECK(check_same_text(exh_limit_name(10), "passivity"), "passivity");
 }
 
 TEST_MAIN("unit/safety", every_cell_is_what_it_should_be, every_state_is_reached,
