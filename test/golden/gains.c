@@ -145,6 +145,55 @@ static void stage(struct golden *g, struct golden_rng *r, int32_t k, int32_t b)
     }
 }
 
+/* Inside a rule whose knots are none below k_min: no wall, a knot, below it, or anything under a piece. */
+static struct exh_contact_par place(struct golden_rng *r, const struct exh_gains_par *p)
+{
+    struct exh_contact_par at = {0};
+    const int64_t how = golden_draw(r, 0, 7);
+    const int64_t i = golden_draw(r, 0, p->knots - 1);
+    const int64_t j = i > 0 ? i - 1 : 1;
+    const int32_t least = p->k_Npm_q10[i] < p->k_Npm_q10[j] ? p->k_Npm_q10[i] : p->k_Npm_q10[j];
+    const int32_t b = p->b_Nspm_q20[i];
+    at.k_Npm_q10 = (int32_t)golden_draw(r, p->k_min_Npm_q10, least);
+    at.b_Nspm_q20 =
+        (int32_t)golden_draw(r, i < j ? b : p->b_Nspm_q20[j], i < j ? p->b_Nspm_q20[j] : b);
+    if (how == 0) { at.k_Npm_q10 = at.b_Nspm_q20 = 0; }
+    if (how > 0 && how < 5) { at.k_Npm_q10 = p->k_Npm_q10[i]; }
+    if (how == 5) { at.k_Npm_q10 = p->k_min_Npm_q10; }
+    if (how > 0 && how < 6) { at.b_Nspm_q20 = b; }
+    return at;
+}
+
+/* Some ticks of two ways under a rule of their own, to somewhere else after them: as many corners as there are ticks. */
+static void walk(struct golden *g, struct golden_rng *r, struct exh_period T)
+{
+    static struct exh_contact_par is[2], wanted[2];
+    struct exh_params p;
+    struct exh_gains_par own = any_rule(r, T);
+    if (golden_draw(r, 0, 1)) { own.b_Nspm_q20[0] = 0; } /* no wall is at a knot */
+    for (int i = 0; i < EXH_GAINS_KNOTS; i++) {
+        if (own.k_Npm_q10[i] < own.k_min_Npm_q10) { own.k_Npm_q10[i] = own.k_min_Npm_q10; }
+    }
+    exh_params_init(&p, &table, (int32_t *)is, (int32_t *)wanted);
+    exh_gains_lead(&p, 1);
+    for (int i = 0; i < 2; i++) { is[i] = place(r, &own); }
+    p.locked = 1;
+    p.shift = (uint8_t)golden_draw(r, 0, 5);
+    for (int part = 0; part < 2; part++) {
+        int64_t ticks = golden_draw(r, 1, 4);
+        for (int i = 0; i < 2; i++) { wanted[i] = place(r, &own); }
+        p.pending = 1;
+        while (ticks-- > 0) {
+            (void)exh_params_apply(&p);
+            exh_gains_step(&p, &own);
+        }
+        for (int i = 0; i < 2; i++) {
+            golden_put(g, is[i].k_Npm_q10);
+            golden_put(g, is[i].b_Nspm_q20);
+        }
+    }
+}
+
 /* Two walls at power on: none, and the least at the first knot. */
 static void start(void)
 {
@@ -177,6 +226,7 @@ void golden_gains(struct golden *g, uint32_t rate_Hz)
         golden_put(g, exh_gains_ok(&rule, k, b));
         wish(&r, k, b);
         stage(g, &r, k, b);
+        walk(g, &r, golden_period(rate_Hz, g->tick));
         golden_tick(g);
     }
 }

@@ -332,11 +332,6 @@ THIN = {
     "if (err < 0) { bilateral_trace_stop(t); }": 0.50,
     "!t->answer && n < EXH_WIRE_FRAMES": 0.50,
     "falls ? s->off_raw[k] : UINT16_MAX": 0.84,        # unit/gate, proof
-    "straight &= db > 0 ? over <= 0 : over >= 0": 0.45,  # slower where the way grazes a knot
-    "return straight ? goal.k : low": 0.85,            # the next three: prop/gains
-    "    if (is_under(rule, next)) { return next; }": 0.85,
-    "    if (next.k < at.k) {": 0.85,
-    "at.k <= rule->k_min_Npm_q10": 0.85,               # a tick later
     # Of 768 requests, 256 on the line, few come there; unit/modbus, unit/trace and unit/modbus_rtu tell them.
     "q->len_B != 10u + q->p[9]": 0.88,
     "? r->active[i]": 0.50,

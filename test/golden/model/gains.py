@@ -116,6 +116,19 @@ class Rule:
         return k, b
 
 
+    def place(self, rng):
+        """Inside: no wall, a knot, below it, or anything under a piece."""
+        how, i = rng.draw(0, 7), rng.draw(0, self.n - 1)
+        j = i - 1 if i > 0 else 1
+        k = rng.draw(self.least, min(self.k[i], self.k[j]))
+        b = rng.draw(min(self.b[i], self.b[j]), max(self.b[i], self.b[j]))
+        if how == 0:
+            return 0, 0
+        if how < 5:
+            return self.k[i], self.b[i]
+        return (self.least, self.b[i]) if how == 5 else (k, b)
+
+
 class Params:
     """Two instances of the contact's rows."""
 
@@ -163,6 +176,23 @@ class Params:
             self.moving |= int((is_[K], is_[B]) != (wanted[K], wanted[B]))
 
 
+def walk(rng, T):
+    """Some ticks of two ways under a rule of their own, to somewhere else after them."""
+    rule = Rule(rng, T)
+    if rng.draw(0, 1):
+        rule.b[0] = 0
+    rule.k = [max(k, rule.least) for k in rule.k]
+    at = [rule.place(rng) for _ in range(2)]
+    shift = rng.draw(0, 5)
+    for _ in range(2):
+        ticks = rng.draw(1, 4)
+        goals = [rule.place(rng) for _ in range(2)]
+        for _ in range(ticks):
+            at = [rule.step(is_, goal, shift) for is_, goal in zip(at, goals)]
+        for pair in at:
+            yield from pair
+
+
 def gains(rate):
     rng = Rng("gains", rate, 0)
     for tick in range(TICKS):
@@ -202,9 +232,11 @@ def gains(rate):
             done = params.apply(shift)
             params.step(rule, shift)
         yield (err, k, b, inside, put, ident, instance, raw, bad, at, done, params.pending, params.moving,
-               *(v for s, a in zip(params.staged, params.active) for v in (s[K], s[B], a[K], a[B]))), b""
+               *(v for s, a in zip(params.staged, params.active) for v in (s[K], s[B], a[K], a[B])),
+               *walk(rng, period(rate, tick))), b""
 
 
-COLUMNS = "setup k_Npm_q10 b_Nspm_q20 | inside stage id instance raw staged at apply pending moving k0 b0 k0_is b0_is k1 b1 k1_is b1_is"
+COLUMNS = "setup k_Npm_q10 b_Nspm_q20 | inside stage id instance raw staged at apply pending moving k0 b0 k0_is b0_is k1 b1 k1_is b1_is " \
+          "way0_k way0_b way1_k way1_b then0_k then0_b then1_k then1_b"
 
 MODULES = {"gains": (COLUMNS, gains)}
