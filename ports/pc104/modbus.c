@@ -224,9 +224,7 @@ static void carry_out(void)
 {
     const uint32_t asked = exh_regs_take(&regs);
     const uint8_t wanted = exh_regs_command(asked);
-    if (asked >> EXH_COIL_APPLY & 1u) {
-        exh_regs_did(&regs, apply());
-    }
+    if (asked >> EXH_COIL_APPLY & 1u) { exh_regs_did(&regs, apply()); }
     if (wanted == EXH_CMD_NONE) { return; }
     command = wanted;
     exh_regs_did(&regs, 0);
@@ -282,25 +280,85 @@ void pc104_modbus_poll(const struct exh_scene_in *in)
 
 /* --- what it costs --- */
 
-/* The longest answer, and as many accesses as a tick may have, for the clock. */
-void pc104_modbus_dry(void)
+#define MOST_READ    125u /* registers; of those that function 23 writes, whole numbers */
+#define MOST_WRITTEN 120u
+
+static struct exh_modbus_rtu dearest, apply_all; /* requests that have just come whole */
+
+static void request(struct exh_modbus_rtu *u, const uint8_t *byte, uint32_t len_B)
+{
+    const uint16_t crc = exh_crc16(byte, len_B);
+    (void)exh_modbus_rtu_setup(u, 1, (uint32_t)par.baud);
+    for (uint32_t i = 0; i < len_B; i++) { exh_modbus_rtu_byte(u, byte[i]); }
+    exh_modbus_rtu_byte(u, (uint8_t)(crc & 0xFFu));
+    exh_modbus_rtu_byte(u, (uint8_t)(crc >> 8));
+}
+
+static void dry_answer(const struct exh_modbus_rtu *asked)
 {
     static struct exh_modbus_rtu twin;
-    static uint8_t to[EXH_MODBUS_ADU_B];
-    uint8_t ask[8] = {1, 3, EXH_REGS_PARAM_FLOAT_AT >> 8, 0, 0, 0, 0, 0};
-    uint32_t n = 2 * regs.params_n;
-    uint16_t crc;
-    if (!open) { return; }
-    n = n < 124 ? n : 124;
-    ask[5] = (uint8_t)n;
-    crc = exh_crc16(ask, 6);
-    ask[6] = (uint8_t)(crc & 0xFFu);
-    ask[7] = (uint8_t)(crc >> 8);
-    (void)exh_modbus_rtu_setup(&twin, 1, (uint32_t)par.baud);
-    for (unsigned i = 0; i < sizeof ask; i++) { exh_modbus_rtu_byte(&twin, ask[i]); }
+    twin = *asked;
     (void)exh_modbus_rtu_pass(&twin, UINT32_MAX);
-    (void)exh_modbus_rtu_answer(&twin, &regs, to, sizeof to);
-    for (uint32_t i = 0; i < 2 * most + 1; i++) { (void)pc104_in8(COM2(UART_STATUS)); }
+    (void)exh_modbus_rtu_answer(&twin, &regs, answer, sizeof answer);
+}
+
+/* Function 23 reads as much as any, twice, and writes nearly as much as 16: numbers here, in the middle of what may be, so
+ * that each is made a raw value anew. */
+static void prepare(void)
+{
+    static const uint8_t coil[] = {1, 5, 0, EXH_COIL_APPLY, 0xFF, 0};
+    static uint8_t ask[11 + 2 * MOST_WRITTEN] = {1, 23};
+    const uint32_t all = 2 * regs.params_n;
+    const uint32_t get = all < MOST_READ ? all : MOST_READ,
+                   put = all < MOST_WRITTEN ? all : MOST_WRITTEN;
+    ask[2] = ask[6] = EXH_REGS_PARAM_FLOAT_AT >> 8;
+    ask[5] = (uint8_t)get;
+    ask[9] = (uint8_t)put;
+    ask[10] = (uint8_t)(2 * put);
+    for (uint32_t i = 0; i < put / 2; i++) {
+        const struct exh_signal *row = exh_signal_at(regs.params, i, NULL);
+        const uint32_t bits = exh_float_of(row->min / 2 + row->max / 2, row->frac);
+        for (uint32_t k = 0; k < 4; k++) { ask[11 + 4 * i + k] = (uint8_t)(bits >> (24 - 8 * k)); }
+    }
+    request(&dearest, ask, 11 + 2 * put);
+    request(&apply_all, coil, sizeof coil);
+    dry_answer(&dearest);
+    if (put > 0 && answer[1] != 23) {
+        pc104_say("modbus: the dearest request is refused: not in the budget\n");
+    }
+}
+
+/* All values, and a rule that refuses them in the end; none is another. */
+static void dry_apply(void)
+{
+    const uint8_t pending = params->pending;
+    memcpy(staged, params->staged, 4 * (size_t)regs.params_n);
+    memset(touched, 0xFF, 4 * (size_t)EXH_REGS_WORDS(regs.params_n));
+    dry_answer(&apply_all);
+    carry_out();
+    exh_params_unstage(params, params->staged, pending);
+}
+
+/* A tick has no more than one of these: a request is answered when no character has come in that tick, none is heard
+ * before the answer is out, and of one without an answer the silence behind the next is a tick away. */
+int pc104_modbus_dry(unsigned part)
+{
+    const struct exh_regs before = regs;
+    if (!open) { return 0; }
+    if (part > 1 || params == NULL) {
+        for (uint32_t i = 0; i < 2 * most + 1; i++) { (void)pc104_in8(COM2(UART_STATUS)); }
+        return 0;
+    }
+    if (dearest.len_B == 0) { prepare(); }
+    (void)pc104_in8(COM2(UART_STATUS));
+    if (part == 0) {
+        dry_answer(&dearest);
+    } else {
+        dry_apply();
+    }
+    memset(touched, 0, 4 * (size_t)EXH_REGS_WORDS(regs.params_n));
+    regs = before;
+    return 1;
 }
 
 void pc104_modbus_report(void)

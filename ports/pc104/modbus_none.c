@@ -28,8 +28,10 @@ uint8_t pc104_modbus_command(void)
     return EXH_CMD_NONE;
 }
 
-void pc104_modbus_dry(void)
+int pc104_modbus_dry(unsigned part)
 {
+    (void)part;
+    return 0;
 }
 
 void pc104_modbus_report(void)

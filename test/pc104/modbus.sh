@@ -2,7 +2,7 @@
 # The image's Modbus slave under QEMU: modbus.sh [READS]
 #   ways       what is said where there is no UART, or an option that does not hold
 #   master     a client of its own (modbus.py) reads, writes and commands; no tick is missed, and the log replays bit for bit
-# B: where things are built (build). Virtual time, 8 ns an instruction, the processor never sleeps: a request comes when the
+# B: where things are built (build). Virtual time, 8 ns an instruction (4 at two rates), the processor never sleeps: a request comes when the
 # host sends it, so every run is another. It says nothing of a real line's timing.
 # Exit status: 0 all as told, 1 not, 2 bad usage, 3 something is missing (it says what).
 set -u
@@ -70,11 +70,17 @@ replays()
     "$b/posix/exhand" replay "$dir/log" >>"$dir/said" 2>&1
 }
 
-# master TICKS RATE BAUD [remote]: its client ends long before its ticks do
+priced()
+{
+    says '^budget measured: ' && ! says 'not in the budget$'
+}
+
+# master TICKS RATE BAUD [remote]: its client ends long before its ticks do. 4 ns an instruction: at 8 ns the dearest tick, with
+# a keyframe and the dearest request, would be more than 0.5 ms.
 master()
 {
     local ticks=$1 rate=$2 baud=$3 remote=${4:-} status
-    QEMU_FLAGS="-icount shift=3,sleep=on -serial tcp:127.0.0.1:$port,server=on,wait=on" RECORDS=$dir/log TIMEOUT_s=300 \
+    QEMU_FLAGS="-icount shift=2,sleep=on -serial tcp:127.0.0.1:$port,server=on,wait=on" RECORDS=$dir/log TIMEOUT_s=300 \
         $run "$image" "ticks=$ticks" "rate=$rate" idle=spin log=debug uncalibrated=1 "modbus=com2,1,$baud${remote:+,$remote}" \
         >"$dir/said" 2>"$dir/err" &
     pid=$!
@@ -85,6 +91,7 @@ master()
     status=$?
     pid=
     check "$rate Hz, $baud baud: the image ends with $status" [ $status = 0 ]
+    check "$rate Hz, $baud baud: the dearest request is in the budget" priced
     check "$rate Hz, $baud baud: no tick missed" says "^ticks $ticks run, 0 missed$"
     check "$rate Hz, $baud baud: one damaged, one for others" says '^modbus answers [0-9]+, damaged 1, for others 1$'
     check "$rate Hz, $baud baud: its log replays" replays
