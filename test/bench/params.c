@@ -1,4 +1,4 @@
-/* Parameters: what exh_params_apply() costs in a tick of each class. */
+/* Parameters: what exh_params_apply() costs in a tick of each class, and exh_gains_step() behind it. */
 #include "bench.h"
 
 #include "exhand/exhand.h"
@@ -50,6 +50,36 @@ static void apply_op(uint32_t i)
     bench_sink = exh_params_apply(&p);
 }
 
+/* Five walls on their way below a rule of as many knots as there may be, each with a knot in the way. */
+static struct exh_gains_par rule;
+
+static void start_led(void)
+{
+    start();
+    rule.knots = EXH_GAINS_KNOTS;
+    for (int i = 0; i < EXH_GAINS_KNOTS; i++) {
+        rule.b_Nspm_q20[i] = (i + 1) * EXH_Q(10, 1, EXH_Q_B);
+        rule.k_Npm_q10[i] = EXH_Q(5000, 1, EXH_Q_K) - (i & 1) * EXH_Q(2000, 1, EXH_Q_K);
+    }
+    exh_gains_lead(&p, 1);
+    for (uint16_t k = 0; k < 5; k++) {
+        const int32_t at = exh_signal_find(&table, 0x0401, k),
+                      b = exh_signal_find(&table, 0x0402, k);
+        exh_params_put(&p, (uint32_t)at, EXH_Q(5000, 1, EXH_Q_K));
+        exh_params_put(&p, (uint32_t)b, EXH_Q(10, 1, EXH_Q_B));
+        (void)exh_params_stage_at(&p, (uint32_t)at, EXH_Q(3000, 1, EXH_Q_K));
+        (void)exh_params_stage_at(&p, (uint32_t)b, EXH_Q(80, 1, EXH_Q_B));
+    }
+    (void)exh_params_apply(&p);
+}
+
+static void led_op(uint32_t i)
+{
+    (void)i;
+    exh_gains_step(&p, &rule);
+    bench_sink = p.moving;
+}
+
 static void no_error(struct error *e)
 {
     error_add(e, 0);
@@ -63,5 +93,7 @@ static const struct kernel kernels[] = {
      "a tick in which something is new; 208 values", 0, NULL},
     {"params_apply_moving", "", 1, 0, 1, start_moving, apply_op, no_error,
      "a tick in which one is on its way; 20 slewed values", 0, NULL},
+    {"gains_step", "", 1, 0, 1, start_led, led_op, no_error,
+     "five walls on their way, 8 knots; every tick of a scene with a rule", 0, NULL},
 };
 const struct kernel_group params_group = {kernels, sizeof kernels / sizeof kernels[0]};
