@@ -214,17 +214,21 @@ static struct pair stepped(const struct exh_gains_par *rule, struct pair at, str
     return goal;
 }
 
+/* While nothing is on its way, what is staged is what is active, or damaged, and nobody goes there: that is the
+ * guard's to tell. */
 void exh_gains_step(struct exh_params *p, const struct exh_gains_par *rule)
 {
+    const int moves = p->moving;
     int32_t k;
     for (uint16_t n = 0; (k = exh_signal_find(p->table, K_ID, n)) >= 0; n++) {
         const int32_t b = exh_signal_find(p->table, B_ID, n);
-        struct pair at, goal;
+        struct pair at, goal, next;
         if (b < 0) { continue; }
         at = (struct pair){p->active[k], p->active[b]};
-        goal = (struct pair){p->staged[k], p->staged[b]};
-        at = stepped(rule, at, goal, p->shift & 31u);
-        exh_params_put(p, (uint32_t)k, at.k);
-        exh_params_put(p, (uint32_t)b, at.b);
+        goal = moves ? (struct pair){p->staged[k], p->staged[b]} : at;
+        next = stepped(rule, at, goal, p->shift & 31u);
+        if (!moves && next.k == at.k && next.b == at.b) { continue; }
+        exh_params_put(p, (uint32_t)k, next.k);
+        exh_params_put(p, (uint32_t)b, next.b);
     }
 }

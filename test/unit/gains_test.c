@@ -219,6 +219,28 @@ TEST(through_a_valley)
     CHECK(low < K(2500) && was == K(10000) && now->b_Nspm_q20 == B(40), "low %d", (int)low);
 }
 
+/* A bit of what is staged that turns over by itself: nothing goes there, and the guard's look tells in one round. */
+TEST(a_damaged_goal_is_not_gone_to)
+{
+    const struct exh_contact_par *now = &active.contact[0];
+    int told = 0;
+    start();
+    exh_gains_lead(&params, 1);
+    params.locked = 1;
+    params.shift = 3;
+    (void)exh_params_apply(&params);
+    exh_params_seal(&params);
+    staged.contact[0].k_Npm_q10 ^= 1 << 23; /* 9692 N/m: inside, too */
+    CHECK_EQ_I64(exh_gains_staged(&params, &rule, NULL), 0);
+    for (uint32_t n = 0; n < params.count; n++) {
+        (void)exh_params_apply(&params);
+        exh_gains_step(&params, &rule);
+        told |= exh_params_look(&params);
+        CHECK_EQ_I64(now->k_Npm_q10, K(1500));
+    }
+    CHECK(told, "never told");
+}
+
 /* Nothing lies between no wall and the rule's least k. */
 TEST(no_wall_is_a_jump_away)
 {
@@ -259,5 +281,5 @@ TEST(rows_are_of_the_struct)
 
 TEST_MAIN("gains", pieces_and_ends, setup_refuses, setup_refuses_two_halves,
           setup_asks_for_its_rate, staging_refuses_what_is_outside,
-          a_whole_image_is_asked_and_dropped, through_a_valley, no_wall_is_a_jump_away,
-          rows_are_of_the_struct);
+          a_whole_image_is_asked_and_dropped, through_a_valley, a_damaged_goal_is_not_gone_to,
+          no_wall_is_a_jump_away, rows_are_of_the_struct);

@@ -69,7 +69,8 @@ void exh_gains_lead(struct exh_params *p, int on);
  * at most the ticks of exh_params_toward() for falling, for b and for rising, one behind the other.
  * To and from k = b = 0 where that lies apart from the rest of the rule (k_min > 0, or the first knot's b > 0): one
  * jump between it and k_min. shift 0: at once. Staged pairs outside, which exh_gains_stage() refuses, are not
- * gone to; an active pair outside, from a damaged keyframe, becomes 0 at once. Costs the same in every tick. */
+ * gone to; an active pair outside, from a damaged keyframe, becomes 0 at once. Where apply left nothing on its way,
+ * nothing is gone to: what differs then is damaged, and exh_params_look() tells. */
 void exh_gains_step(struct exh_params *p, const struct exh_gains_par *rule);
 
 #ifdef __cplusplus

@@ -171,9 +171,12 @@ class Params:
         return done
 
     def step(self, rule, shift):
+        moves = self.moving
         for is_, wanted in zip(self.active, self.staged):
-            is_[K], is_[B] = rule.step((is_[K], is_[B]), (wanted[K], wanted[B]), shift)
-            self.moving |= int((is_[K], is_[B]) != (wanted[K], wanted[B]))
+            was = is_[K], is_[B]
+            goal = (wanted[K], wanted[B]) if moves else was
+            is_[K], is_[B] = now = rule.step(was, goal, shift)
+            self.moving |= int((moves or now != was) and now != (wanted[K], wanted[B]))
 
 
 def walk(rng, T):
