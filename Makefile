@@ -619,7 +619,7 @@ strangers:
 .PHONY: modbus
 modbus:
 	@.ci/deps "Modbus" "test -f /usr/include/modbus/modbus.h && command -v mbpoll && command -v python3" libmodbus-dev mbpoll python3 python3-pip || exit 3
-	@$(MAKE) --no-print-directory $(if $(V),,-s) $(exhand) $(B)/test/sim/modbus_test $(B)/test/sim/modbus_fuzz_test
+	@$(MAKE) --no-print-directory $(if $(V),,-s) $(exhand) $(B)/test/sim/modbus_reads_test $(B)/test/sim/modbus_fuzz_test
 	@B=$(B) test/modbus/modbus.sh
 
 # The host program for an emulated Linux, with either libgpiod in it.

@@ -61,5 +61,5 @@ strangers drop "rtu:$ours:115200" "$theirs"
 kill $line
 line=0
 
-EXH_READS=${READS:-1000000} EXH_TEST=no_read_is_torn LIMIT=1200 test/run.sh "$B/test/sim/modbus_test"
+EXH_READS=${READS:-1000000} EXH_TEST=no_read_is_torn LIMIT=1200 test/run.sh "$B/test/sim/modbus_reads_test"
 EXH_REQUESTS=${REQUESTS:-1000000} LIMIT=1200 test/run.sh "$B/test/sim/modbus_fuzz_test"

@@ -4,11 +4,48 @@
 
 #include "said.h"
 
+#ifndef EXH_MODBUS
+/* Where libmodbus is not. sim/modbus says what the command says then. */
+#define RIG_NONE(name) \
+    TEST(without_libmodbus) \
+    { \
+        check_note("libmodbus is not here: nothing was tested"); \
+    } \
+    TEST_MAIN(name, without_libmodbus)
+#else
+
+#include "bilateral/bilateral.h"
+#include "drop/drop.h"
+#include "guarded/guarded.h"
+
 #include "exhand/modbus.h"
 
 #include <errno.h>
 #include <modbus/modbus.h>
 #include <time.h>
+
+/* Where blocks begin, in registers. */
+#define RIG_RAW     0x5000u
+#define RIG_FLOAT   0x7000u
+#define RIG_OUT     0x1000u
+#define RIG_OUT_F   0x3000u
+#define RIG_HEAD(h) (2 * (unsigned)(h))
+
+static inline uint32_t rig_float(double v)
+{
+    const float f = (float)v;
+    uint32_t bits;
+    memcpy(&bits, &f, sizeof bits);
+    return bits;
+}
+
+/* Tables are there when a scene has had its defaults. */
+static inline void rig_tables(void)
+{
+    exh_scene_drop.defaults();
+    exh_scene_guarded.defaults();
+    exh_scene_bilateral.defaults();
+}
 
 struct rig {
     const char *dir;
@@ -104,4 +141,5 @@ static inline int rig_wait(struct rig *r, unsigned at, int32_t v)
     return -1;
 }
 
+#endif
 #endif
