@@ -169,15 +169,17 @@ void exh_log_mark(uint32_t tick, int32_t value)
 }
 
 /* Staged parameters become events at the tick they will first act in; one on its way still may
- * come again, and is staged anew with the value it has. */
+ * come again, and is staged anew with the value it has. Who stages where one on its way is now halts it: while any
+ * is, all that may be are told. */
 static void log_params(uint32_t tick, const struct exh_params *p)
 {
     const uint32_t n = exh_signal_count(p->table);
     for (uint32_t i = 0; i < n; i++) {
-        if (p->staged[i] != p->active[i]) {
-            uint16_t instance;
-            const uint16_t id = exh_signal_at(p->table, i, &instance)->id;
-            event(tick, (struct exh_event){EXH_EVENT_PARAM, id, instance, p->staged[i]});
+        uint16_t instance;
+        const struct exh_signal *row = exh_signal_at(p->table, i, &instance);
+        const int halts = p->moving && (row->when == EXH_WHEN_SLEWED || row->when == EXH_WHEN_LIMIT);
+        if (halts || p->staged[i] != p->active[i]) {
+            event(tick, (struct exh_event){EXH_EVENT_PARAM, row->id, instance, p->staged[i]});
         }
     }
 }

@@ -15,6 +15,7 @@
 
 enum how {
     ONE, /* k from 500 to 5000 N/m, in equal parts                              */
+    HALT, /* as ONE in one part, and where it is 40 ticks later it is to stay  */
     FORCE, /* every slewed row at random, in every tick                         */
     ALL, /* every row that may change, in every tick                           */
     SELDOM, /* the slewed ones every 10 ticks                                    */
@@ -74,7 +75,8 @@ static void before(uint32_t tick, struct exh_scene_in *in)
         CHECK(s->f_des_N_q20 > EXH_Q(1, 1, EXH_Q_FORCE), "%.3f N to be lowered", newton(s->f_des_N_q20));
         CHECK_EQ_I64(exh_params_stage(p, 0x0501, 0, EXH_Q(1, 2, EXH_Q_FORCE)), 0);
     }
-    if (see.how == ONE && tick >= see.at && n < see.parts) {
+    if (see.how == HALT && n == 40) { CHECK_EQ_I64(exh_params_stage(p, 0x0401, 0, see.k_Npm_q10), 0); }
+    if ((see.how == ONE || see.how == HALT) && tick >= see.at && n < see.parts) {
         const int64_t part = (int64_t)EXH_Q(4500, 1, EXH_Q_K) * (n + 1) / see.parts;
         CHECK_EQ_I64(exh_params_stage(p, 0x0401, 0, EXH_Q(500, 1, EXH_Q_K) + (int32_t)part), 0);
     }
@@ -251,13 +253,13 @@ TEST(a_lowered_limit_is_never_late)
 TEST(replay_from_mid_way)
 {
     static const struct run_setting set[] = {{"q_lim", 0.03}, {"arm_time", 1}, {"ramp_time", 1}};
-    static const enum how hows[] = {ONE, SELDOM, FORCE};
+    static const enum how hows[] = {ONE, HALT, SELDOM, FORCE};
     for (size_t h = 0; h < LEN(hows); h++) {
         struct run_cfg c = pressing(1000, 2.5, set, LEN(set));
         const char *path = log_path();
         c.board.log = fopen(path, "wb");
         CHECK(c.board.log != NULL, "%s", path);
-        press(&c, hows[h], hows[h] == ONE ? 1010 : 0, 1);
+        press(&c, hows[h], hows[h] <= HALT ? 1010 : 0, 1);
         CHECK_EQ_I64(fclose(c.board.log), 0);
         CHECK(see.settled > 1040, "still at %" PRIu32, see.settled);
         CHECK_EQ_I64(replay(path, NULL), 0);
