@@ -56,4 +56,21 @@ TEST(degrees_and_radians)
     CHECK_EQ_I64(EXH_URAD(-3141592), INT64_C(-2147483201));
 }
 
-TEST_MAIN("unit/angle", quarters_are_exact, known_angles, degrees_and_radians);
+/* Where sine and cosine change places they are 2 LSB apart: a quarter on is exact, -x is not. */
+TEST(odd_eighths_change_places)
+{
+    static const struct {
+        int32_t x, sin, cos;
+    } row[] = {{1 << 29, 759250125, 759250123},
+               {3 * (1 << 29), 759250123, -759250125},
+               {-3 * (1 << 29), -759250125, -759250123},
+               {-(1 << 29), -759250123, 759250125}};
+    for (size_t i = 0; i < LEN(row); i++) {
+        struct exh_sincos y;
+        exh_sincos(row[i].x, &y);
+        CHECK_EQ_I64(y.sin_q30, row[i].sin);
+        CHECK_EQ_I64(y.cos_q30, row[i].cos);
+    }
+}
+
+TEST_MAIN("unit/angle", quarters_are_exact, odd_eighths_change_places, known_angles, degrees_and_radians);
