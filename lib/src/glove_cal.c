@@ -114,7 +114,7 @@ unsigned exh_glove_sensor_valid(const struct exh_glove_cal *cal, unsigned at)
 
 int exh_glove_cal_valid(const struct exh_glove_cal *cal, struct exh_glove_bad *bad)
 {
-    if (cal->present == 0 || cal->present >> EXH_GLOVE_SENSORS) {
+    if (cal->present == 0 || cal->present >= UINT32_C(1) << EXH_GLOVE_SENSORS) {
         return refuse(bad, EXH_GLOVE_PRESENT, 0, -EXH_E_RANGE);
     }
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
@@ -190,7 +190,7 @@ int32_t exh_glove_cal_save(const struct exh_glove_cal *cal, void *buf, size_t ca
 static int load(struct exh_glove_cal *cal, const void *buf, size_t len_B)
 {
     struct exh_bytes b = exh_bytes_reader(buf, len_B);
-    struct head h;
+    struct head h = {0, 0, 0};
     uint32_t at, crc = 0;
     head_bytes(&b, &h);
     if (!exh_bytes_ok(&b)) { return -EXH_E_SHORT; }
