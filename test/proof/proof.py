@@ -7,6 +7,9 @@ A unit is a file eva/any_UNIT.c, whose first comment says what has to be known o
     EVA: more options for Eva                        (may be missing)
     PLANT: file: text -> what it becomes             (an error that Eva has to tell; any number)
 
+A unit of every/ is a program with the same comment that goes through every argument there is, built
+to stop at undefined behaviour; it returns 0 if what it says holds of all.
+
 With eva/UNIT.acsl, annotations are put into the copy of the source for Eva, in the form that the
 files of wp/ have. Units that WP judges, too, stand in UNITS below.
 
@@ -87,10 +90,12 @@ def missing():
 
 
 class Unit:
-    """What the first comment of eva/any_NAME.c says."""
+    """What the first comment of eva/any_NAME.c or every/NAME.c says."""
 
-    def __init__(self, name):
-        self.name, self.harness = name, os.path.join(HERE, "eva", "any_" + name + ".c")
+    def __init__(self, harness):
+        self.harness = harness
+        self.every = os.path.basename(os.path.dirname(harness)) == "every"
+        self.name = os.path.basename(harness)[0 if self.every else 4:-2]
         self.about, self.options, self.plants = "", [], []
         with open(self.harness) as f:
             head = f.read().split("*/", 1)[0]
@@ -106,13 +111,13 @@ class Unit:
                 self.plants.append((path, old.strip(), new.strip()))
         if not self.about:
             raise SystemExit(self.harness + ": PROVES: is missing")
-        spec = os.path.join(HERE, "eva", name + ".acsl")
+        spec = os.path.join(HERE, "eva", self.name + ".acsl")
         self.spec = spec if os.path.exists(spec) else None
 
 
 def units(only):
-    names = sorted(os.path.basename(f)[4:-2] for f in glob.glob(os.path.join(HERE, "eva", "any_*.c")))
-    return [Unit(n) for n in names if not only or n in only]
+    found = [Unit(f) for d in ("eva/any_*.c", "every/*.c") for f in sorted(glob.glob(os.path.join(HERE, d)))]
+    return [u for u in found if not only or u.name in only]
 
 
 class Proof:
@@ -158,6 +163,19 @@ class Proof:
         valid = sum(int(m.group(1)) for m in (stated, needed) if m)
         open_ = sum(int(m.group(2)) + int(m.group(3)) for m in (stated, needed) if m)
         return int(alarms.group(1)) if alarms else 0, open_, valid, True
+
+    def each(self, unit, name, change=None):
+        """Whether it holds of every value, and whether it ran."""
+        tree = self.tree(name + ".tree", change)
+        program = os.path.join(self.out, name + ".bin")
+        code, said = run(["gcc", "-std=c99", "-O2", "-fsanitize=undefined", "-fno-sanitize-recover=all",
+                          "-I%s/lib/src" % tree, "-I%s/lib/include" % tree, unit.harness, "-o", program], 60)
+        built = code == 0
+        if built:
+            code, said = run([program], 600)
+        self.log(name + ".txt", said)
+        shutil.rmtree(tree)
+        return built and code == 0, built and code != 124
 
     def wp(self, unit, tree, name, seconds, functions=None):
         """Goals, proved, names of the others, provers. Of these functions, or all of the unit."""
@@ -244,12 +262,17 @@ def prove(p, only, pool):
         sys.stdout.flush()
 
     every = units(only)
-    judged = [(u, m, pool.submit(timed, p.eva, u, m, "%s.%s" % (u.name, m))) for u in every for m in BOTH]
+    judged = [(u, m, pool.submit(timed, p.eva, u, m, "%s.%s" % (u.name, m)))
+              for u in every for m in BOTH if not u.every]
+    gone_through = [(u, pool.submit(timed, p.each, u, u.name + ".every")) for u in every if u.every]
     for u, m, job in judged:
         (alarms, open_, valid, _), s = job.result()
         names = ["%s: %d alarms, %d assertions open: %s.%s.txt" % (u.name, alarms, open_, u.name, m)]
         row(u.name, u.about, "Eva, %s-bit" % m[-2:], "%s.eva%s" % (u.name, m[-2:]), valid, valid + open_ + alarms, s,
             names if alarms or open_ else ())
+    for u, job in gone_through:
+        (holds, _), s = job.result()
+        row(u.name, u.about, "every value", u.name + ".every", int(holds), 1, s, () if holds else (u.name,))
     for u in every:
         if u.name not in WP:
             continue
@@ -276,12 +299,18 @@ def plant(p, only, pool):
         print("  %-8s %s by %s: %s -> %s" % ("told" if told else "NOT TOLD", unit, tool, old, new))
         sys.stdout.flush()
 
-    planted = [(u, plan, pool.submit(p.eva, u, BOTH[0], "planted.%s%d" % (u.name, k), plan))
+    def told(u, name, plan):
+        # What does not even run is no proof of anything.
+        if u.every:
+            holds, ran = p.each(u, name, plan)
+            return ran and not holds
+        alarms, open_, _, ran = p.eva(u, BOTH[0], name, plan)
+        return ran and alarms + open_ > 0
+
+    planted = [(u, plan, pool.submit(told, u, "planted.%s%d" % (u.name, k), plan))
                for u in units(only) for k, plan in enumerate(u.plants)]
     for u, (_, old, new), job in planted:
-        alarms, open_, _, ran = job.result()
-        # What does not even run is no proof of anything.
-        tell(alarms + open_ > 0 and ran, u.name, "Eva", old, new)
+        tell(job.result(), u.name, "every value" if u.every else "Eva", old, new)
     for k, (unit, functions, path, old, new) in enumerate(MUTANTS):
         if only and unit not in only:
             continue

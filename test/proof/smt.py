@@ -94,5 +94,32 @@ def release_step_is_bounded():
     return True
 
 
+def unit_has_components_of_one():
+    """What is_unit() of precontact.c lets pass has no component beyond 2^30 + 2^13."""
+    square, v = z3.Ints("square v")  # of all three; one of them
+    one, tol = 1 << 60, 1 << 44
+    passes = z3.And((square - (one - tol)) % (1 << 64) <= 2 * tol, square >= 0, square <= 3 << 62)
+    bounded = holds(z3.Implies(passes, square <= one + tol))
+    most = (1 << 30) + (1 << 13)
+    return bounded and holds(z3.Implies(z3.And(v * v <= square, square <= one + tol),
+                                        z3.And(v <= most, v >= -most)))
+
+
+def toward_stays_between():
+    """exh_params_toward() of any two values and any shift stays between them and arrives."""
+    now, goal = z3.BitVecs("now goal", 32)
+
+    def stays(shift):
+        up = goal - now
+        left = z3.If(goal < now, -up, up)
+        rest = left & ((1 << shift) - 1)
+        part = z3.LShR(left, shift) + z3.If(rest != 0, z3.BitVecVal(1, 32), z3.BitVecVal(0, 32))
+        to = now + z3.If(goal < now, -part, part)
+        return z3.And(z3.If(goal < now, z3.And(to >= goal, to < now), z3.And(to <= goal, to >= now)),
+                      z3.Implies(goal > now, to > now))
+
+    return all(holds(stays(shift)) for shift in range(32))
+
+
 LEMMAS = [shr_is_floor, from_u64_keeps_bits, wrapped_sum_is_the_sum, gain_floor_is_no_more, share_of_limit,
-          release_ends, release_step_is_bounded] + smt_passivity.LEMMAS
+          release_ends, release_step_is_bounded, unit_has_components_of_one, toward_stays_between] + smt_passivity.LEMMAS

@@ -1,16 +1,28 @@
 /* PROVES: rule of gains
  * Any rule and any period into set-up. Of a rule that it takes, with any values in the knots that do not
- * count, any k and b.
+ * count, any k and b asked; and of the way, any two pairs within the rows of k and b, any shift.
  *
  * PLANT: lib/src/gains.c: for (int32_t i = 1; i < rule->knots; i++) -> for (int32_t i = 1; i <= rule->knots; i++)
  * PLANT: lib/src/gains.c: !exh_inside(rule->knots, 2, EXH_GAINS_KNOTS) -> !exh_inside(rule->knots, 2, EXH_GAINS_KNOTS + 1)
  * PLANT: lib/src/gains.c: (off < 0 ? -off : off) * 100 <= want -> (off < 0 ? -off : off) * 10000000 <= want
+ * PLANT: lib/src/gains.c: const int64_t over = (at.k - k) * db + dk * b; -> const int64_t over = (at.k - (int32_t)k) * (int32_t)db + dk * b;
  */
+#include "bytes.c"
 #include "gains.c"
+#include "params.c"
+#include "signal.c"
 
 #include "any.h"
 
 static struct exh_gains_par rule;
+
+static struct pair any_pair(void)
+{
+    struct pair p;
+    p.k = Frama_C_interval(0, K_MAX);
+    p.b = Frama_C_interval(0, B_MAX);
+    return p;
+}
 
 static void setup(void)
 {
@@ -21,6 +33,7 @@ static void setup(void)
 
 static void ask(int32_t knots)
 {
+    struct pair at;
     int ok;
     ANY(rule);
     rule.knots = knots;
@@ -31,6 +44,7 @@ static void ask(int32_t knots)
     }
     ok = exh_gains_ok(&rule, any32(), any32());
     /*@ assert says: ok == 0 || ok == 1; */
+    at = stepped(&rule, any_pair(), any_pair(), Frama_C_unsigned_int_interval(0, 31));
 }
 
 int main(void)

@@ -1,0 +1,61 @@
+/* PROVES: calibration of a glove
+ * Any bytes of any length into a calibration: what is accepted has its sensors, ends and terms in range, what is
+ * refused has no sensor present. Any calibration into judging, for any user, glove and day, and into an image of any size.
+ *
+ * PLANT: lib/src/glove_cal.c: of >= EXH_GLOVE_SENSORS || -> 0 ||
+ * PLANT: lib/src/glove_cal.c: const int64_t gain = s->gain_turnpraw_q38; -> const int32_t gain = s->gain_turnpraw_q38;
+ * PLANT: lib/src/glove_cal.c: if (err < 0) { cal->present = 0; } -> (void)0;
+ * PLANT: lib/src/glove_cal.c: exh_bytes_ok(&b) ? exh_crc32(0, buf, b.at) : 0 -> exh_crc32(0, buf, b.at)
+ * PLANT: lib/src/glove_cal.c: struct head h = {0, 0, 0}; -> struct head h;
+ */
+#include "bytes.c"
+#include "glove_cal.c"
+
+#include "any.h"
+
+#define IMAGE_B EXH_GLOVE_CAL_IMAGE_B
+
+static struct exh_glove_cal cal;
+static struct exh_glove_bad bad;
+static uint8_t image_B[IMAGE_B + 1];
+
+static void judged(void)
+{
+    ANY(cal);
+    (void)exh_glove_cal_valid(&cal, &bad);
+    (void)exh_glove_cal_check(&cal, any_u32(), any_u32(), any_u32(), &bad);
+}
+
+static void read(size_t len_B)
+{
+    int err;
+    ANY(image_B);
+    err = exh_glove_cal_load(&cal, image_B, len_B, &bad);
+    if (err < 0) {
+        /*@ assert none_present: cal.present == 0; */
+    } else {
+        /*@ assert some_present: 1 <= cal.present < 1 << 22; */
+    }
+}
+
+static void written(size_t cap_B)
+{
+    ANY(cal);
+    (void)exh_glove_cal_save(&cal, image_B, cap_B, NULL);
+}
+
+int main(void)
+{
+    judged();
+    read(IMAGE_B);
+    read(IMAGE_B + 1);
+    read(IMAGE_B - 1);
+    read(8);
+    read(7);
+    read(0);
+    written(IMAGE_B);
+    written(IMAGE_B - 1);
+    written(0);
+    END();
+    return 0;
+}

@@ -1,0 +1,69 @@
+/* PROVES: hand: map and joints
+ * Any map into its check; of a map that passes, any sensors into the joints of each finger, and
+ * any pulls into those that follow. The DLR/HIT II's own map passes.
+ *
+ * EVA: -eva-slevel 40
+ * PLANT: lib/src/hand.c: map->bent[f][j] >= EXH_HAND_SENSORS -> map->bent[f + 1][j] >= EXH_HAND_SENSORS
+ * PLANT: lib/src/hand.c: (int64_t)j->gain_q24[t] * sensor_turn_q32[j->sensor[t]] -> j->gain_q24[t] * sensor_turn_q32[j->sensor[t]]
+ * PLANT: lib/src/hand.c: exh_clamp(want, j->lo_turn_q32, j->hi_turn_q32) -> (int32_t)want
+ * PLANT: lib/src/hand.c: if (sum_q44 > PULL_MAX_RADPM_Q20 || sum_q44 < -PULL_MAX_RADPM_Q20) -> if (sum_q44 > PULL_MAX_RADPM_Q20)
+ * PLANT: lib/src/hand_hit2.c: #define SPREAD_GAIN EXH_Q(1, 4, 24) -> #define SPREAD_GAIN EXH_Q(9, 1, 24)
+ */
+#include "fix.c"
+#include "hand.c"
+#include "hand_hit2.c"
+
+#include "any.h"
+
+static struct exh_hand_map map;
+
+static void checked(void)
+{
+    int ok = exh_hand_map_check(&exh_hit2_map);
+    /*@ assert hit2_passes: ok == 0; */
+    ANY(map);
+    ok = exh_hand_map_check(&map);
+    (void)ok;
+}
+
+/* As the check lets it. */
+static void any_map(void)
+{
+    ANY(map);
+    for (unsigned f = 0; f < EXH_HAND_FINGERS; f++) {
+        for (unsigned i = 0; i < EXH_HAND_JOINTS; i++) {
+            struct exh_hand_joint *j = &map.joint[f][i];
+            for (unsigned t = 0; t < EXH_HAND_TERMS; t++) {
+                j->gain_q24[t] = Frama_C_interval(-EXH_HAND_GAIN_MAX_Q24, EXH_HAND_GAIN_MAX_Q24);
+                j->sensor[t] = (uint8_t)Frama_C_unsigned_int_interval(0, EXH_HAND_SENSORS - 1);
+            }
+            map.bent[f][i] = (uint8_t)Frama_C_unsigned_int_interval(0, EXH_HAND_SENSORS - 1);
+        }
+    }
+}
+
+static void finger(const struct exh_hand_map *of, unsigned at)
+{
+    static int32_t sensor_turn_q32[EXH_HAND_SENSORS], joint_turn_q32[EXH_HAND_JOINTS];
+    static struct exh_hand_finger f;
+    uint32_t limited;
+    for (unsigned i = 0; i < EXH_HAND_SENSORS; i++) { sensor_turn_q32[i] = any32(); }
+    limited = exh_hand_joints(of, at, sensor_turn_q32, joint_turn_q32);
+    /*@ assert three: limited <= 7; */
+    f.pull_radpm_q20[0] = Frama_C_interval(-PULL_MAX_RADPM_Q20, PULL_MAX_RADPM_Q20);
+    f.pull_radpm_q20[1] = Frama_C_interval(-PULL_MAX_RADPM_Q20, PULL_MAX_RADPM_Q20);
+    (void)exh_hand_follow(&f, of, at);
+    /*@ assert pulls: -262144000 <= f.pull_radpm_q20[0] <= 262144000 && -262144000 <= f.pull_radpm_q20[1] <= 262144000; */
+}
+
+int main(void)
+{
+    checked();
+    any_map();
+    for (unsigned at = 0; at < EXH_HAND_FINGERS; at++) {
+        finger(&map, at);
+        finger(&exh_hit2_map, at);
+    }
+    END();
+    return 0;
+}

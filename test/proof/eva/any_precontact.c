@@ -1,0 +1,99 @@
+/* PROVES: pre-contact
+ * Told any plane of any age, in any state that the bytes leave, any fingertip, slope, string and age; ticks missed.
+ * Parameters in their rows, read at every tick; set-up of any. What is left is again such a state: the phase one of the
+ * four, the planes none or with a unit normal (by eva/precontact.acsl).
+ *
+ * EVA: -eva-slevel 300
+ * PLANT: lib/src/precontact.c: s->phase > EXH_PRECONTACT_FROZEN || -> 0 ||
+ * PLANT: lib/src/precontact.c: cfg->material[m < cfg->materials ? m : 0] -> cfg->material[m]
+ * PLANT: lib/src/precontact.c: is_unit(&p->normal_q30) && p->offset -> p->offset
+ * PLANT: lib/src/precontact.c: exh_wrap_diff64(p->offset_m_q60, dot(&p->normal_q30, tip)) -> (p->offset_m_q60 - dot(&p->normal_q30, tip))
+ * PLANT: lib/src/precontact.c: const int64_t free_m_q30 = (int64_t)cfg->par->d_lim_m_q30 - -> const int64_t free_m_q30 = 16 * cfg->par->d_lim_m_q30 -
+ * PLANT: lib/src/precontact.c: exh_sat32(exh_wrap_diff64( -> (int32_t)(exh_wrap_diff64(
+ */
+#include "bytes.c"
+#include "fix.c"
+
+#include "any.h"
+
+/* The reciprocal's own proof is eva/any_recip.c. */
+static int32_t recip(int32_t x)
+{
+    /*@ assert recip_of: 1 << 21 <= x <= 1 << 27; */
+    (void)x;
+    return Frama_C_interval(1 << 21, 1 << 27);
+}
+#define exh_recip_q24 recip
+#include "precontact.c"
+
+static struct exh_precontact s;
+static struct exh_precontact_cfg cfg;
+static struct exh_precontact_par par;
+static struct exh_material_par material[3];
+static struct exh_plane plane;
+static struct exh_precontact_in in;
+
+static int32_t in_row(const struct exh_signal *row)
+{
+    return Frama_C_interval(row->min, row->max);
+}
+
+static void any_cfg(unsigned materials)
+{
+    const struct exh_signal *row = exh_precontact_rows;
+    ANY(cfg);
+    ANY(material);
+    for (unsigned i = 0; i < 3; i++) {
+        material[i].k_Npm_q10 = in_row(&exh_material_rows[0]);
+        material[i].b_Nspm_q20 = in_row(&exh_material_rows[1]);
+        material[i].f_max_N_q20 = in_row(&exh_material_rows[2]);
+    }
+    par.d_lim_m_q30 = in_row(&row[0]);
+    par.hyst_m_q30 = in_row(&row[1]);
+    par.scale_q24 = in_row(&row[2]);
+    par.from_slope = any32();
+    par.printed_sign = any32();
+    par.age_max_ms = in_row(&row[5]);
+    par.doubt_m_q30 = in_row(&row[6]);
+    par.doubt_ms = in_row(&row[7]);
+    par.tip_age_max_ms = in_row(&row[8]);
+    cfg.par = &par;
+    cfg.material = material;
+    cfg.materials = (uint8_t)materials;
+    cfg.pad_m_q60 = Frama_C_long_long_interval(-PAD_MAX_M_Q30, PAD_MAX_M_Q30) * (INT64_C(1) << 30);
+}
+
+static void ticks(unsigned materials)
+{
+    any_cfg(materials);
+    FROM_BYTES(s, exh_precontact_bytes);
+    /*@ assert phase_read: s.phase <= 3; */
+    ANY(plane);
+    (void)exh_precontact_tell(&s, &cfg, &plane, any_u32());
+    exh_precontact_skip(&s, any_u32());
+    ANY(in);
+    (void)exh_precontact_step(&s, &cfg, &in);
+    /*@ assert phase: s.phase <= 3; */
+    /*@ assert newest: -1073750016 <= s.newest.normal_q30.x <= 1073750016; */
+    /*@ assert held: -1073750016 <= s.held.normal_q30.x <= 1073750016; */
+    s.newest.offset_m_q60 = any64(); /* what a tick leaves is any, as sums and differences of it wrap */
+    s.held.offset_m_q60 = any64();
+    (void)exh_precontact_step(&s, &cfg, &in);
+}
+
+static void set_up(void)
+{
+    const struct exh_period T = {any_u32(), any_u32()};
+    ANY(par);
+    ANY(material);
+    (void)exh_precontact_setup(&cfg, &par, material, Frama_C_unsigned_int_interval(0, 3), any32(), T);
+}
+
+int main(void)
+{
+    set_up();
+    ticks(1);
+    ticks(3);
+    END();
+    return 0;
+}
