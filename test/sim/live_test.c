@@ -327,7 +327,7 @@ TEST(it_runs_again_wherever_the_fault_found_the_mass)
 TEST(what_it_cannot_do_is_named)
 {
     static const struct {
-        const char *word[6], *said;
+        const char *word[8], *said;
         int status;
     } row[] = {{{"run", "--scene", "minimal"}, "give drop, guarded or bilateral", 2},
                {{"run", "--set", "nobody=1"}, "nobody: no such parameter", 2},
@@ -341,6 +341,8 @@ TEST(what_it_cannot_do_is_named)
                {{"run", "--log", "/nowhere/at.all"}, "give --seconds, or --pace", 2},
                {{"run", "--slack", "0.1"}, "only with --pace", 2},
                {{"run", "--pace", "--slack", "1.1"}, "--slack", 2},
+               {{"run", "--pace", "--slack", "0.1", "--gpio", "gpiochip9:estop=4,deadman=5"},
+                "not with --gpio", 2},
                {{"run", "--seconds", "1", "--log", "/dev/full"},
                 "/dev/full: can't be written: No space",
                 1}};

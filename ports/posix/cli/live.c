@@ -132,6 +132,11 @@ static int prepare(struct live_options *o, const struct exh_scene *sc)
         cli_complain("--slack: nothing is late in virtual time: only with --pace");
         err = 2;
     }
+    /* A real output would stand as long, and no fault would tell. */
+    if (err == 0 && o->slack_s > 0 && o->gpio.given) {
+        cli_complain("--slack: not with --gpio: a real output has no time to make up for");
+        err = 2;
+    }
     if (err == 0) { err = contacts_check(&o->gpio, o->pace); }
     if (err == 0) { err = read_params(o); }
     if (err == 0) { err = live_log_open(o->log, o->pace, o->seconds > 0); }
