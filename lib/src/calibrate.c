@@ -37,7 +37,7 @@ static int32_t current_of(const struct exh_calib_point *p, enum exh_calib_which 
     return which == EXH_CALIB_MONITOR ? p->mon_A_q26 : p->cur_A_q26;
 }
 
-/* Force over current; raw force q20 per raw current q26 is 2^-6 N/A. */
+/* Force over current, which is above 0 where the force is; raw force q20 per raw current q26 is 2^-6 N/A. */
 static int ratio_ok(int64_t force, int64_t cur)
 {
     const int64_t force_q26 = force * (1 << (EXH_Q_CUR - EXH_Q_FORCE)); /* < 2^33 */
@@ -47,7 +47,7 @@ static int ratio_ok(int64_t force, int64_t cur)
 static int point_ok(const struct exh_calib_point *p, enum exh_calib_which which)
 {
     const int32_t cur = current_of(p, which);
-    return ratio_ok(p->force_N_q20, cur) && p->force_N_q20 > 0 && p->force_N_q20 <= FORCE_MAX_N_Q20 && cur > 0 &&
+    return ratio_ok(p->force_N_q20, cur) && p->force_N_q20 > 0 && p->force_N_q20 <= FORCE_MAX_N_Q20 &&
            cur <= (which == EXH_CALIB_MONITOR ? MON_MAX_A_Q26 : CUR_MAX_A_Q26) &&
            p->friction_A_q26 >= 0 && p->friction_A_q26 <= CUR_MAX_A_Q26;
 }
@@ -56,7 +56,6 @@ int exh_calib_fit(struct exh_calib_fit *fit, const struct exh_calib_point *p, un
                   enum exh_calib_which which)
 {
     uint64_t fi = 0, ii = 0; /* terms < 2^57 and < 2^59, 16 of them              */
-    int64_t kf;
     fit->gain = (struct exh_gain){0, 1};
     fit->kf_NpA_q20 = 0;
     if (n < 1 || n > EXH_CALIB_POINTS_MAX) { return -EXH_E_RANGE; }
@@ -67,9 +66,7 @@ int exh_calib_fit(struct exh_calib_fit *fit, const struct exh_calib_point *p, un
         ii += cur * cur;
     }
     if (exh_gain_set(&fit->gain, fi, ii) < 0) { return -EXH_E_RANGE; }
-    kf = exh_gain_mul(fit->gain, INT32_C(1) << EXH_Q_CUR);
-    if (kf > INT32_MAX) { return -EXH_E_RANGE; }
-    fit->kf_NpA_q20 = (int32_t)kf;
+    fit->kf_NpA_q20 = (int32_t)exh_gain_mul(fit->gain, INT32_C(1) << EXH_Q_CUR); /* as each point's, below 2^31 */
     return 0;
 }
 

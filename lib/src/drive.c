@@ -117,9 +117,10 @@ static int setup_i2t(struct exh_drive_cfg *cfg, const struct exh_drive_par *par,
     if (ticks > exh_udiv64(INT64_MAX / 2, excess_q32, NULL)) { return -EXH_E_RANGE; }
     cfg->i2t_budget_q32 = (int64_t)(excess_q32 * ticks);
     while (cfg->i2t_budget_q32 >> cfg->i2t_shift > INT32_MAX) { cfg->i2t_shift++; }
+    /* Never 0: one LSB of peak above i_cont, i_peak 0.1 A, is 2^13 already. */
     knee = (uint64_t)cfg->i2t_budget_q32 >> cfg->i2t_shift >> 2;
     return exh_gain_set(&cfg->i2t_fold, (uint64_t)(par->i_peak_A_q26 - par->i_cont_A_q26),
-                        knee ? knee : 1);
+                        knee);
 }
 
 /* exh_table_set() was here: slopes are filled, so knots rise. */

@@ -42,7 +42,7 @@ static void low2(struct exh_filter_cfg *cfg, struct exh_real g, struct exh_real 
     int32_t n;
     cfg->c = coefficient(exh_real_mul(g, exh_real_scale(exh_real_of(23), -4)), POS_Q, 31);
     a = exh_real_scale(exh_real_div(a, exh_real_of((uint64_t)cfg->c)), POS_Q);
-    n = places(a, 30) < places(b, 31) ? places(a, 30) : places(b, 31); /* 2a must fit, too */
+    n = places(b, 31); /* 2a fits, too: b is (g + sqrt 2) 23/16 a, more than 2a */
     cfg->a = coefficient(a, n, 30);
     cfg->b = coefficient(b, n, 31);
     cfg->shift = (uint8_t)(n - VEL_Q);
@@ -86,7 +86,8 @@ int exh_filter_setup(struct exh_filter_cfg *cfg, const struct exh_filter_par *pa
     if (num < den >> 21) { return -EXH_E_RANGE; }
 
     g = exh_real_tan_pi(num, den);
-    high = exh_real_round(exh_real_scale(g, 32)) > UINT64_C(11) << 27; /* g > 11/32 */
+    /* g > 11/32. Beyond an eighth of the rate g > 1, and without end. */
+    high = num > den / 4 || exh_real_round(exh_real_scale(g, 32)) > UINT64_C(11) << 27;
     damped = exh_real_mul(g, exh_real_add(g, EXH_REAL_SQRT2));
     *cfg = (struct exh_filter_cfg){0, 0, 0, 0, 0, 0};
     if (par->order == 1 && high) {

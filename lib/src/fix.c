@@ -10,10 +10,9 @@ uint64_t exh_udiv64(uint64_t num, uint64_t den, uint64_t *rem)
     uint64_t r = 0;
     EXH_ASSERT(den != 0);
     for (int i = 63; i >= 0; i--) {
-        const unsigned carry = (unsigned)(r >> 63); /* r < den, but 2r may need bit 64 */
-        r = r << 1 | (num >> i & 1);
+        r = r << 1 | (num >> i & 1); /* no more than num >> i */
         quot <<= 1;
-        if (carry || r >= den) {
+        if (r >= den) {
             r -= den;
             quot |= 1;
         }

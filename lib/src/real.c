@@ -55,8 +55,8 @@ struct exh_real exh_real_div(struct exh_real a, struct exh_real b)
 
 struct exh_real exh_real_add(struct exh_real a, struct exh_real b)
 {
-    const struct exh_real big = a.m != 0 && (b.m == 0 || a.e >= b.e) ? a : b;
-    const struct exh_real small = a.m != 0 && (b.m == 0 || a.e >= b.e) ? b : a;
+    const int first = a.m != 0 && (b.m == 0 || a.e >= b.e);
+    const struct exh_real big = first ? a : b, small = first ? b : a;
     const int32_t n = big.e - small.e;
     return norm(big.m + (small.m == 0 || n > 62 ? 0 : small.m >> n), big.e);
 }

@@ -167,7 +167,7 @@ static uint32_t triggers(const struct exh_safety *s, const struct exh_safety_cfg
     const int asked = s->state == EXH_STATE_OFF && run;
     const int ended = s->state == EXH_STATE_RELEASE && s->steps >= cfg->release_ticks;
     const int runs = exh_safety_runs(s);
-    return ON(REFUSED, ((asked || early) && lacks) || (early && off)) |
+    return ON(REFUSED, (asked && lacks) || (early && (lacks || off))) |
            ON(CUT, s->present & EXH_FAULT_CUT) | ON(LATCHED, ended && s->faults) |
            ON(RELEASED, ended && !s->faults) | ON(CAUSE, s->present) |
            ON(OFF, off || (ramp && lacks & EXH_ARM_ALL)) |

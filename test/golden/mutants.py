@@ -35,7 +35,7 @@ PASSIVITY, GAINS = L + "passivity.c", L + "gains.c"
 # run, which is where its inline functions are.
 MUTANTS = (
     ("fix", L + "fix.c", "if (rem >= den - rem) { mant++; }", ""),
-    ("fix", L + "fix.c", "carry || r >= den", "carry || r > den"),
+    ("fix", L + "fix.c", "if (r >= den) {\n            r", "if (r > den) {\n            r"),
     ("fix", H + "fix.h", "((v >> (n - 1)) & 1)", "0"),
     ("fix", H + "fix.h", "(lo + (INT64_C(1) << 30)) >> 31", "lo >> 31"),
     ("fix", H + "fix.h", "return INT32_MIN;", "return -INT32_MAX;"),

@@ -129,16 +129,17 @@ class Condition:
         return "never decides alone" if self.several and not self.alone else ""
 
 
-def add_function(f, condition, called, source):
-    """Adds what this copy of a function has seen."""
+def add_function(f, condition, called, name_of, source):
+    """Adds what this copy of a function has seen. A test that includes a source may name it otherwise: the library's name counts."""
     files, use = f["filenames"], {}
     for l0, c0, _, _, _, fid, sub, kind in f["regions"]:
         if kind == EXPANSION:
             use[sub] = (fid, l0, c0)
     home = next(r for r in f["regions"] if r[5] not in use)
-    path, name = inside(files[home[5]]), f["name"].split(":")[-1]
+    path = inside(files[home[5]])
     if path is None:
         return
+    name = name_of.setdefault((path, *home[:2]), f["name"].split(":")[-1])
     called[(path, name, *home[:2])] += f["count"]
 
     of_branch, nth = [], collections.Counter()
@@ -172,9 +173,9 @@ def add_function(f, condition, called, source):
 
 def gaps(functions, source):
     """What is missing, and of each file what there is: (conditions of several, of them covered; others, covered)."""
-    condition, called = collections.defaultdict(Condition), collections.Counter()
+    condition, called, name_of = collections.defaultdict(Condition), collections.Counter(), {}
     for f in functions:
-        add_function(f, condition, called, source)
+        add_function(f, condition, called, name_of, source)
     missing, have, seen = [], collections.defaultdict(lambda: [0, 0, 0, 0]), collections.Counter()
 
     def add(path, name, line, text, what):

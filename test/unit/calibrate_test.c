@@ -342,9 +342,72 @@ TEST(fit_by_hand)
     CHECK_EQ_I64(exh_calib_fit(&fit, f.point, 1, EXH_CALIB_CURRENT), -EXH_E_RANGE);
 }
 
+/* What goes straight on from the last point must rise, and have room; a monitor's table both ways. */
+TEST(tables_that_cannot_go_on_are_refused)
+{
+    static const struct {
+        struct exh_calib_point point;
+        int32_t end_A_q26;
+        uint8_t what;
+    } row[] = {
+        {{N(1000), A(5000), A(5000), 0}, A(5000) + 1, EXH_CALIB_FORCE_TABLE},       /* by less than an LSB */
+        {{N(100000), A(50), A(50), 0}, A(6600), EXH_CALIB_FORCE_TABLE},             /* to 13 kN */
+        {{N(10000), A(1000), A(5), 0}, A(3000), EXH_CALIB_MONITOR_TABLE},           /* to 4 kN by the monitor */
+        {{N(10000), A(1000), A(10), 0}, A(3000), EXH_CALIB_MONITOR_TABLE},          /* from -2 kN to 2 kN */
+        {{N(10000), A(1000), A(10000), 0}, A(6600), EXH_CALIB_WHATS},               /* from -15.6 A to 15.6 A */
+        {{N(10000), A(100), A(10000), 0}, A(6600), EXH_CALIB_MONITOR_TABLE},        /* from -16.5 A to 16.5 A */
+    };
+    for (size_t i = 0; i < LEN(row); i++) {
+        struct exh_calib_bad bad = {99, 99};
+        struct fixture f;
+        int err;
+        set_up(&f);
+        f.point[0] = row[i].point;
+        f.c.points = 1;
+        f.c.end_A_q26 = row[i].end_A_q26;
+        err = exh_calib_valid(&f.c, &bad);
+        if (row[i].what == EXH_CALIB_WHATS) {
+            CHECK(err == 0, "row %zu: %d", i, err);
+        } else {
+            CHECK(err == -EXH_E_RANGE && bad.what == row[i].what && bad.at == 0, "row %zu: %d, %s", i, err,
+                  exh_calib_what_text(bad.what));
+        }
+    }
+}
+
+TEST(points_that_are_none_are_not_fitted)
+{
+    static const struct exh_calib_point point[] = {
+        {0, 0, 0, 0}, /* any ratio */
+        {N(990), A(300), A(303), A(6600) + 1},
+        {N(990), A(300), A(303), -1},
+        {-N(990), -A(300), -A(303), 0},
+    };
+    struct exh_calib_fit fit;
+    for (size_t i = 0; i < LEN(point); i++) {
+        CHECK(exh_calib_fit(&fit, &point[i], 1, EXH_CALIB_CURRENT) == -EXH_E_RANGE, "point %zu", i);
+    }
+}
+
+TEST(an_image_needs_room)
+{
+    struct fixture f;
+    struct exh_calib_bad bad = {99, 99};
+    uint8_t image[1024];
+    int32_t len;
+    set_up(&f);
+    len = exh_calib_save(&f.c, image, sizeof image, &bad);
+    CHECK(len > 0, "%" PRId32, len);
+    for (int32_t cap = 0; cap < len; cap++) {
+        bad.what = 99;
+        CHECK(exh_calib_save(&f.c, image, (size_t)cap, &bad) == -EXH_E_SHORT && bad.what == EXH_CALIB_IMAGE,
+              "%" PRId32 " bytes", cap);
+    }
+}
+
 TEST_MAIN("unit/calibrate", mean_rounds_half_up_once, mean_stops_before_it_overflows,
           tables_meet_every_point_and_go_straight_on, tables_need_room,
           refusals_name_table_and_point, values_out_of_range_are_refused,
           another_device_and_stale_ones_are_refused, image_round_trip,
           any_bit_flipped_any_byte_missing_is_refused,
-          a_sound_image_of_a_bad_table_is_refused, every_name_has_its_text, fit_by_hand);
+          a_sound_image_of_a_bad_table_is_refused, every_name_has_its_text, fit_by_hand, tables_that_cannot_go_on_are_refused, points_that_are_none_are_not_fitted, an_image_needs_room);

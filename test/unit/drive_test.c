@@ -82,6 +82,8 @@ TEST(table_rejections)
         {0, -1, 1, 1, 2, INT32_MAX, 3, -EXH_E_RANGE},
         {INT32_MIN, 0, 0, 1, 5, 2, 3, -EXH_E_RANGE},
         {INT32_MIN, INT32_MIN, -2, -2, -1, -1, 3, 0}, /* spans 2^31-1 */
+        {0, INT32_MIN, 1, INT32_MAX, 2, 2, 2, -EXH_E_RANGE}, /* a slope beyond 2^31 */
+        {0, 0, 1, 1, 2, 2, 256, -EXH_E_RANGE},
         {0, 0, INT32_MAX - 1, 1, INT32_MAX, 2, 3, 0},
     };
     for (size_t i = 0; i < LEN(row); i++) {
@@ -189,6 +191,8 @@ TEST(setup_rejections)
         {5, 2701, "a peak longer than the drive's"},
         {9, 32768, "a monitor zero beyond 16 bits"},
     };
+    /* None, one whose newtons a tick have no room, one in which 2.7 s are more heat than there is room for. */
+    static const struct exh_period period[] = {{0, 2000}, {1, 0}, {UINT32_MAX, 1}, {1, 1000000000}};
     struct axis a;
     axis_par(&a.par);
     CHECK_EQ_I64(axis_setup(&a, (struct exh_period){1, 2000}), 0);
@@ -198,6 +202,10 @@ TEST(setup_rejections)
         axis_par(&a.par);
         (&a.par.f_max_N_q20)[row[i].field] = row[i].v;
         CHECK(axis_setup(&a, (struct exh_period){1, 2000}) == -EXH_E_RANGE, "%s", row[i].what);
+    }
+    axis_par(&a.par);
+    for (size_t i = 0; i < LEN(period); i++) {
+        CHECK(axis_setup(&a, period[i]) == -EXH_E_RANGE, "period %zu", i);
     }
 }
 
@@ -314,6 +322,8 @@ TEST(setup_refuses_a_table_that_was_not_set)
     CHECK_EQ_I64(exh_drive_setup(&cfg, &par, T, set, set), 0);
     CHECK_EQ_I64(exh_drive_setup(&cfg, &par, T, raw, none), -EXH_E_RANGE);
     CHECK_EQ_I64(exh_drive_setup(&cfg, &par, T, set, raw), -EXH_E_RANGE);
+    good[1].x = good[0].x; /* was set, and was changed */
+    CHECK_EQ_I64(exh_drive_setup(&cfg, &par, T, set, none), -EXH_E_RANGE);
 }
 
 /* Outside RUN nothing is commanded and nothing is remembered. */

@@ -92,6 +92,8 @@ TEST(coefficients_by_hand)
         {{2, 32767}, {1, 1}, {5, 71608, 147972, 2147338069, 0, 2}},
         {{1, 32767}, {1, 1}, {2147380709, 0, 0, 0, 0, 3}},
         {{1, 16384000}, {1, 20000}, {649480731, 0, 0, 0, 3, 1}},
+        /* A hair below half the rate g/(1 + g) is nearer to 1 than to any coefficient. */
+        {{1, (1 << 23) - 1}, {(1 << 23) + 1, UINT32_C(1) << 31}, {INT32_MAX, 0, 0, 0, 0, 3}},
     };
     for (size_t i = 0; i < LEN(row); i++) {
         const struct exh_filter_cfg *w = &row[i].want;

@@ -173,6 +173,10 @@ TEST(udiv64_by_hand)
         {UINT64_MAX - 1, UINT64_MAX, 0, UINT64_MAX - 1},
         {UINT64_MAX, (UINT64_C(1) << 63) + 1, 1, (UINT64_C(1) << 63) - 2},
         {1000000007, 10, 100000000, 7},
+        {UINT64_MAX, UINT64_MAX - 1, 1, 1},
+        {UINT64_C(0xFEDCBA9876543210), UINT64_C(0xC000000000000001), 1, UINT64_C(0x3EDCBA987654320F)},
+        /* Twice the remainder needs bit 64 and is less than the divisor without it. */
+        {UINT64_C(0xFFFFFFFFFFFFFFFE), UINT64_MAX, 0, UINT64_C(0xFFFFFFFFFFFFFFFE)},
     };
     for (size_t i = 0; i < LEN(row); i++) {
         uint64_t rem = 99;
@@ -182,7 +186,16 @@ TEST(udiv64_by_hand)
     }
 }
 
+TEST(high_words_by_hand)
+{
+    CHECK_EQ_I64(exh_umul_hi(UINT32_MAX, UINT32_MAX), UINT32_MAX - 1);
+    CHECK_EQ_I64(exh_umul_hi(UINT32_C(1) << 16, UINT32_C(1) << 16), 1);
+    CHECK_EQ_I64(exh_umul_hi(UINT32_C(1) << 16, (UINT32_C(1) << 16) - 1), 0);
+    CHECK_EQ_I64(exh_mul_hi(INT32_MIN, INT32_MIN), 1 << 30);
+    CHECK_EQ_I64(exh_mul_hi(-1, 1), -1);
+}
+
 TEST_MAIN("unit/fix", sat32_keeps_the_sign_and_is_audited, clamp_is_a_limit_not_an_overflow,
           shr_round_is_half_up, mul_shr_is_half_up, mul64_q31_at_its_ends,
           from_u32_is_twos_complement, counters_wrap_both_ways, gain_set_at_its_ends,
-          gain_set_at_its_upper_end, gain_mul_is_exact_for_powers_of_two, udiv64_by_hand);
+          gain_set_at_its_upper_end, gain_mul_is_exact_for_powers_of_two, udiv64_by_hand, high_words_by_hand);

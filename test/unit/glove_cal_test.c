@@ -351,7 +351,8 @@ static void knuckles(struct fixture *f, unsigned p, int32_t a_deg, int32_t b_deg
 
 TEST(poses_are_refused_by_name)
 {
-    for (int k = 0; k < 16; k++) {
+    for (int k = 0; k < 22; k++) {
+        struct exh_glove_fit_par fit_par = exh_glove_fit_default;
         struct fixture f;
         int what, at = 5;
         set_up(&f);
@@ -429,23 +430,49 @@ TEST(poses_are_refused_by_name)
             what = EXH_GLOVE_POSES;
             at = 10;
             break;
-        case 14: /* three times as far as the knuckle itself */
+        case 14: /* three times as far as the knuckle itself, either way */
+        case 16:
             for (unsigned p = 0; p < POSES; p++) {
                 const int32_t a = f.pose[p].angle_turn_q32[4] / DEG(1),
                               ab = f.pose[p].angle_turn_q32[10] / DEG(1);
-                f.pose[p].mean_raw_q16[10] = code_q16(10, ab + 3 * a - 100);
+                f.pose[p].mean_raw_q16[10] = code_q16(10, k == 14 ? ab + 3 * a - 100 : ab - 3 * a + 100);
             }
             what = EXH_GLOVE_CROSS;
             at = 10;
             break;
         case 15: /* one and a half of both, against each other: the first leaves 240 degrees */
+        case 17:
             for (unsigned p = 0; p < POSES; p++) {
                 const int32_t a = p % 3 == 0 ? 0 : 160, b = p % 3 == 0 ? 0 : p & 1 ? 110 : 160;
                 knuckles(&f, p, a, b, p & 4 ? 30 : 0);
-                f.pose[p].mean_raw_q16[10] = code_q16(10, (p & 4 ? 30 : 0) + (a - b) * 3 / 2);
+                f.pose[p].mean_raw_q16[10] = code_q16(10, (p & 4 ? 30 : 0) + (k == 15 ? a - b : b - a) * 3 / 2);
             }
             what = EXH_GLOVE_CROSS;
             at = 10;
+            break;
+        case 18: /* its zero is beyond the other end */
+            f.pose[0].angle_turn_q32[5] = DEG(-120);
+            f.pose[1].angle_turn_q32[5] = DEG(-100);
+            f.pose[0].mean_raw_q16[5] = -30000 * 65536;
+            f.pose[1].mean_raw_q16[5] = 30000 * 65536;
+            what = EXH_GLOVE_ZERO;
+            break;
+        case 19: /* half a turn in 64 codes, up and down */
+        case 20:
+            fit_par.move_min_raw = 64;
+            f.pose[0].angle_turn_q32[5] = INT32_MIN;
+            f.pose[1].angle_turn_q32[5] = INT32_MAX;
+            f.pose[0].mean_raw_q16[5] = k == 19 ? -32 * 65536 : 32 * 65536;
+            f.pose[1].mean_raw_q16[5] = k == 19 ? 32 * 65536 : -32 * 65536;
+            what = EXH_GLOVE_GAIN;
+            break;
+        case 21: /* up and down again: the line through it is level */
+            f.pose[2].known |= 1u << 5;
+            for (unsigned p = 0; p < 3; p++) {
+                f.pose[p].angle_turn_q32[5] = DEG(p == 1 ? 60 : 0);
+                f.pose[p].mean_raw_q16[5] = (int32_t)p * 1000 * 65536;
+            }
+            what = EXH_GLOVE_GAIN;
             break;
         default:
             f.n = EXH_GLOVE_POSES_MAX + 1;
@@ -453,7 +480,7 @@ TEST(poses_are_refused_by_name)
             at = 0;
             break;
         }
-        CHECK(fit(&f) == -EXH_E_RANGE, "case %d", k);
+        CHECK(exh_glove_cal_fit(&f.cal, f.fit, f.pose, f.n, &fit_par, &f.bad) == -EXH_E_RANGE, "case %d", k);
         CHECK(f.bad.what == what && f.bad.at == at, "case %d: %s of %s", k,
               exh_glove_what_text(f.bad.what), exh_glove_sensor_text(f.bad.at));
         CHECK(f.cal.present == 0, "case %d", k);
@@ -477,8 +504,23 @@ TEST(absent_sensors_need_no_pose)
     CHECK_EQ_I64(f.cal.sensor[6].gain_turnpraw_q38, 0);
 }
 
+/* All but level: one LSB of angle is left over, by which no zero can be found. */
+TEST(a_line_as_good_as_level_is_refused)
+{
+    const int32_t x = 1 << 22; /* codes q12: 0, x, 2 x + 1 at angles 0, 3 x + 1, 1 of q28: the sum is 1 */
+    struct fixture f;
+    set_up(&f);
+    f.pose[2].known |= 1u << 5;
+    for (unsigned p = 0; p < 3; p++) {
+        f.pose[p].mean_raw_q16[5] = (p == 0 ? 0 : p == 1 ? x : 2 * x + 1) * 16;
+        f.pose[p].angle_turn_q32[5] = (p == 0 ? 0 : p == 1 ? 3 * x + 1 : 1) * 16;
+    }
+    CHECK_EQ_I64(fit(&f), -EXH_E_RANGE);
+    CHECK(f.bad.what == EXH_GLOVE_GAIN && f.bad.at == 5, "%s of %d", exh_glove_what_text(f.bad.what), f.bad.at);
+}
+
 TEST_MAIN("unit/glove_cal", valid_names_the_culprit, present_and_absent, check_tells_whose_and_when,
           every_word_is_there, image_round_trip, every_flipped_bit_is_seen, every_cut_is_seen,
           an_image_of_nonsense_is_refused, poses_give_gain_zero_and_cross_terms,
           residual_is_the_worst_pose, limits_of_poses_are_allowed, poses_are_refused_by_name,
-          absent_sensors_need_no_pose);
+          absent_sensors_need_no_pose, a_line_as_good_as_level_is_refused);

@@ -513,6 +513,7 @@ TEST(set_up_refuses)
     CHECK_EQ_I64(exh_precontact_setup(&cfg, &par, material, 256, 0, TICK), -EXH_E_RANGE);
     CHECK_EQ_I64(exh_precontact_setup(&cfg, &par, material, 2, -1, TICK), -EXH_E_RANGE);
     CHECK_EQ_I64(exh_precontact_setup(&cfg, &par, material, 2, MM(25) + 1, TICK), -EXH_E_RANGE);
+    CHECK_EQ_I64(exh_precontact_setup(&cfg, &par, material, 2, 0, (struct exh_period){0, 1000}), -EXH_E_RANGE);
     for (int i = 0; i < EXH_PRECONTACT_ROWS; i++) {
         CHECK(exh_precontact_rows[i].dflt >= exh_precontact_rows[i].min &&
                   exh_precontact_rows[i].dflt <= exh_precontact_rows[i].max,
@@ -656,6 +657,25 @@ TEST(advice)
     CHECK_EQ_I64(exh_precontact_advise(&a, &n, fast, -MM(5)), -EXH_E_RANGE);
     n.speed_mps_q27 = -1;
     CHECK_EQ_I64(exh_precontact_advise(&a, &n, fast, -MM(5)), -EXH_E_RANGE);
+    n = (struct exh_precontact_need){1, 0, 0, 1, 1, 1, MM(20)};
+    CHECK_EQ_I64(exh_precontact_advise(&a, &n, (struct exh_period){0, 1000}, -MM(5)), -EXH_E_RANGE);
+    CHECK_EQ_I64(exh_precontact_advise(&a, &n, (struct exh_period){1, 0}, -MM(5)), -EXH_E_RANGE);
+}
+
+/* Through the origin all planes have the offset 0: the normal alone tells them apart. */
+TEST(a_plane_that_turned_over_is_another)
+{
+    struct exh_plane p = {EXH_PLANE_HIT, 0, 1, {0, 0, ONE}, {0, 0, 0}};
+    start();
+    tell(p);
+    at(MM(16));
+    at(MM(14));
+    CHECK(s.phase == EXH_PRECONTACT_FROZEN, "d = -4 mm");
+    tell(p);
+    CHECK_EQ_I64(s.ignored_n, 0);
+    p.normal_q30.z = -ONE;
+    tell(p);
+    CHECK_EQ_I64(s.ignored_n, 1);
 }
 
 TEST_MAIN("unit/precontact", distance_has_the_sign_of_the_text, rounds_once_and_half_up,
@@ -668,4 +688,4 @@ TEST_MAIN("unit/precontact", distance_has_the_sign_of_the_text, rounds_once_and_
           a_stale_plane_is_none, a_message_may_be_old_when_it_comes, a_frozen_plane_does_not_age,
           what_cannot_be_is_refused, material_is_taken_at_the_freeze, scale_and_slope,
           set_up_refuses, state_round_trip, damaged_state_comes_back_into_range,
-          restored_tracking_touches_nothing_at_once, advice);
+          restored_tracking_touches_nothing_at_once, advice, a_plane_that_turned_over_is_another);

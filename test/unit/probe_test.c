@@ -173,6 +173,16 @@ TEST(set_up_refuses_what_is_out_of_range)
         if (i == 4) { p.probe.step_A_q26 = -MA(10); }
         CHECK(exh_weigh_setup(&weigh, &p, scale) == -EXH_E_RANGE, "weigh, row %u", i);
     }
+    for (unsigned i = 0; i < 2; i++) { /* no way at all, and one that would wrap */
+        struct exh_probe_par p = par;
+        struct exh_home_par h = home_par;
+        p.travel_m_q30 = h.most_m_q30 = i ? EXH_Q(1, 1, EXH_Q_POS) : 1;
+        p.move_m_q30 = h.move_m_q30 = 1;
+        h.least_m_q30 = 0;
+        bad.step_m_q42 = i ? 1 : scale.step_m_q42;
+        CHECK(exh_probe_setup(&cfg, &p, bad) == -EXH_E_RANGE, "way %u", i);
+        CHECK(exh_home_setup(&home, &h, bad) == -EXH_E_RANGE, "way %u", i);
+    }
     bad.step_m_q42 = 0;
     CHECK_EQ_I64(exh_probe_setup(&cfg, &par, bad), -EXH_E_RANGE);
     bad = scale;
@@ -465,9 +475,27 @@ TEST(every_result_has_its_text)
     }
 }
 
+/* A string that creeps out, in no dwell by as much as a movement. */
+TEST(creeping_out_ends_at_the_travel)
+{
+    struct exh_probe_par p = par;
+    struct exh_probe_cfg cfg;
+    struct exh_probe s;
+    int32_t cnt = 0;
+    p.travel_m_q30 = MM(2) + 64; /* 20 counts; a movement is 10 */
+    CHECK_EQ_I64(exh_probe_setup(&cfg, &p, scale), 0);
+    exh_probe_start(&s, 0, 0);
+    for (unsigned k = 0; k < 1000 && s.result == EXH_PROBE_BUSY; k++) {
+        cnt += k % 10 == 0; /* one a dwell */
+        (void)exh_probe_step(&s, &cfg, cnt);
+    }
+    CHECK(s.result == EXH_PROBE_TRAVEL && cnt == 21, "%s at %" PRId32, exh_probe_text(s.result), cnt);
+    CHECK_EQ_I64(s.cur_A_q26, 0);
+}
+
 TEST_MAIN("unit/probe", finds_the_current_that_moves_within_a_step,
           falling_finds_the_current_that_lets_go, slack_is_taken_up_first, what_stops_a_probe,
           set_up_refuses_what_is_out_of_range, home_is_the_end_of_the_string, what_stops_homing,
           homing_takes_no_longer_than_allowed, weighing_brackets_friction, what_stops_weighing,
           travel_is_of_all_phases_together, a_mass_that_swings_is_not_waited_for,
-          means_begin_anew_after_a_movement, any_counts_stay_within_the_bounds, every_result_has_its_text);
+          means_begin_anew_after_a_movement, any_counts_stay_within_the_bounds, every_result_has_its_text, creeping_out_ends_at_the_travel);

@@ -204,7 +204,17 @@ TEST(measuring_a_record)
     CHECK_EQ_I64(exh_record_end(&c), 1 + EXH_RECORD_OVERHEAD);
 }
 
+TEST(what_was_not_begun_does_not_end)
+{
+    uint8_t buf[64];
+    struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
+    uint8_t b = 1;
+    CHECK_EQ_I64(exh_record_end(&c), 0);
+    for (unsigned i = 0; i < EXH_RECORD_HEAD_B - 1; i++) { exh_bytes_u8(&c, &b); }
+    CHECK_EQ_I64(exh_record_end(&c), 0);
+}
+
 TEST_MAIN("unit/record", layout_by_hand, round_trip_of_every_type_and_size,
           largest_payload_and_one_more, does_not_fit_at_any_size, truncated_at_every_byte,
           every_flipped_bit_is_detected, another_version_is_named, resync_after_damage,
-          any_bytes_are_safe_to_read, header_and_event_round_trip, measuring_a_record);
+          any_bytes_are_safe_to_read, header_and_event_round_trip, measuring_a_record, what_was_not_begun_does_not_end);

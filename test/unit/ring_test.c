@@ -196,8 +196,24 @@ TEST(damaged_memory_is_safe_to_read)
     }
 }
 
+/* Only damage makes as many parts as there is room for their beginnings: the oldest goes. */
+TEST(beginnings_have_their_room)
+{
+    const uint32_t slots = EXH_RING_PARTS + 2;
+    for (int begins = 0; begins < 2; begins++) {
+        open_ring();
+        CHECK_EQ_I64(put(EXH_RECORD_KEYFRAME, 0, 50), 1);
+        for (uint32_t i = 0; i < slots; i++) { ring.start[i] = 0; }
+        ring.live = slots;
+        CHECK_EQ_I64(put(begins ? EXH_RECORD_KEYFRAME : EXH_RECORD_FRAME, 1, 5), 1);
+        CHECK_EQ_I64(ring.live & 0xFF, slots);
+        CHECK_EQ_I64(ring.live >> 8, begins);
+        CHECK_EQ_I64(ring.start[0], begins ? 50 + EXH_RING_HEAD_B : 0);
+    }
+}
+
 TEST_MAIN("unit/ring", set_up_refuses_memory_that_is_none, nothing_before_the_first_keyframe,
           a_keyframe_is_wanted_when_a_part_is_long_enough, the_oldest_part_goes,
           what_is_too_long_is_lost_and_harms_nothing, a_part_ends_on_its_very_byte, losses_do_not_wrap,
           without_keyframes_there_is_nothing_to_begin_with, a_record_in_pieces_is_the_record,
-          damaged_memory_is_safe_to_read);
+          damaged_memory_is_safe_to_read, beginnings_have_their_room);

@@ -574,6 +574,20 @@ TEST(names_are_all_there)
     CHECK(check_same_text(exh_limit_name(10), "passivity"), "passivity");
 }
 
+/* A dump that has no room is no reason to stop. */
+TEST(a_buffer_too_short_changes_no_state)
+{
+    const struct exh_safety_cfg cfg = cfg_of(par, 1000);
+    for (uint32_t cap = 0; cap < 128; cap++) {
+        struct exh_safety s = box_in(&cfg, EXH_STATE_RUN, 0);
+        const uint8_t opened = s.opened;
+        uint8_t buf[128];
+        struct exh_bytes c = exh_bytes_writer(buf, cap);
+        exh_safety_bytes(&c, &s);
+        CHECK(s.state == EXH_STATE_RUN && s.faults == 0 && s.opened == opened, "%" PRIu32 " bytes", cap);
+    }
+}
+
 TEST_MAIN("unit/safety", every_cell_is_what_it_should_be, every_state_is_reached,
           every_fault_in_every_state, several_causes_cut_if_one_of_them_does, power_on_is_off,
           each_step_is_named_where_it_does_not_hold, the_first_of_several_steps_is_named, a_refusal_is_forgotten_once_it_runs,
@@ -582,4 +596,4 @@ TEST_MAIN("unit/safety", every_cell_is_what_it_should_be, every_state_is_reached
           late_too_often_is_an_overrun, an_overrun_is_gone_in_time, only_drives_in_use_count, release_ends_at_every_rate,
           clearing_in_every_order, a_cause_that_comes_back_asks_for_the_hand_again, a_fault_never_clears_by_itself,
           a_state_that_cannot_be_is_a_fault, no_byte_of_a_state_opens_the_gate, state_round_trip,
-          setup_refuses_what_is_out_of_range, names_are_all_there);
+          setup_refuses_what_is_out_of_range, names_are_all_there, a_buffer_too_short_changes_no_state);

@@ -239,7 +239,8 @@ TEST(setup_refuses)
         {POLE, 1000001, {69049330, {1, 2000}}},   {POLE, 0, {0, {1, 2000}}},
         {FOAW, 0, {69049330, {1, 2000}}},         {FOAW, 17, {69049330, {1, 2000}}},
         {FOAW, 16, {0, {1, 2000}}},               {TRACK, 1000001, {69049330, {1, 2000}}},
-        {TRACK, 0, {-5, {1, 2000}}},
+        {TRACK, 0, {-5, {1, 2000}}},              {WINDOW, 0, {69049330, {0, 2000}}},
+        {POLE, 0, {69049330, {1, 0}}},
     };
     struct any e;
     struct exh_velocity_foaw_cfg foaw;
@@ -301,8 +302,26 @@ TEST(damaged_state_is_harmless)
     }
 }
 
+/* 2.4 m/s a count of a second: sums beyond 32 bits times a gain of 0.6, which saturate nothing. */
+TEST(sums_beyond_32_bits_are_exact)
+{
+    static const struct exh_velocity_scale s = {78643, {1, 1}};
+    for (int sign = -1; sign <= 1; sign += 2) {
+        const int32_t d = sign * 700000000;
+        int64_t cnt = 0;
+        int32_t got = 0;
+        struct any e;
+        CHECK_EQ_I64(any_setup(&e, FOAW, 2, s), 0);
+        for (int k = 0; k < 6; k++) {
+            got = any_step(&e, wrapped(cnt));
+            cnt += d;
+        }
+        CHECK(near(got, s, d, 1, 0, 1), "%" PRId32, got);
+    }
+}
+
 TEST_MAIN("unit/velocity", first_call_returns_zero, constant_velocity_is_exact_across_the_wrap,
           quantisation_error_stays_in_its_bound, lag_is_the_documented_one,
           saturates_with_the_right_sign, rest_returns_to_zero,
           slow_observer_rests_within_its_residual, foaw_acceptance_by_hand, setup_refuses,
-          state_survives_a_round_trip, damaged_state_is_harmless);
+          state_survives_a_round_trip, damaged_state_is_harmless, sums_beyond_32_bits_are_exact);

@@ -1,0 +1,76 @@
+/* The positive reals of set-ups (lib/src/real.h): where they end. What they come to is in unit/filter and golden. */
+#include "../../lib/src/real.h"
+
+#include "check.h"
+
+static int same(struct exh_real a, uint64_t m, int32_t e)
+{
+    return a.m == m && a.e == e;
+}
+
+static int64_t rounded(struct exh_real a)
+{
+    return (int64_t)exh_real_round(a);
+}
+
+#define TOP (UINT64_C(1) << 62)
+
+TEST(none_is_none)
+{
+    const struct exh_real none = exh_real_of(0), one = exh_real_of(1);
+    CHECK(same(none, 0, 0), "0 * 2^0");
+    CHECK(same(one, TOP, -62), "1");
+    CHECK(same(exh_real_scale(none, 7), 0, 0), "0 * 2^7");
+    CHECK(same(exh_real_mul(none, one), 0, 0), "0 * 1");
+    CHECK(same(exh_real_div(none, one), 0, 0), "0 / 1");
+    CHECK(same(exh_real_add(none, none), 0, 0), "0 + 0");
+    CHECK(same(exh_real_add(one, none), TOP, -62), "1 + 0");
+    CHECK(same(exh_real_add(none, one), TOP, -62), "0 + 1");
+    CHECK(same(exh_real_sub(one, none), TOP, -62), "1 - 0");
+    CHECK(same(exh_real_sub(one, one), 0, 0), "1 - 1");
+    CHECK_EQ_I64(rounded(none), 0);
+}
+
+/* With 0 the exponents say nothing of which is larger. */
+TEST(none_and_very_small)
+{
+    const struct exh_real none = exh_real_of(0), small = exh_real_scale(exh_real_of(3), -200);
+    CHECK(same(exh_real_add(none, small), small.m, small.e), "0 + 3/2^200");
+    CHECK(same(exh_real_add(small, none), small.m, small.e), "3/2^200 + 0");
+    CHECK(same(exh_real_sub(small, none), small.m, small.e), "3/2^200 - 0");
+}
+
+TEST(what_is_too_small_to_matter)
+{
+    for (int32_t n = 60; n < 70; n++) {
+        const struct exh_real one = exh_real_of(1), small = exh_real_scale(one, -n);
+        const uint64_t left = n <= 62 ? UINT64_C(1) << (62 - n) : 0;
+        CHECK(same(exh_real_add(one, small), TOP + left, -62), "1 + 2^-%" PRId32, n);
+        CHECK(same(exh_real_add(small, one), TOP + left, -62), "2^-%" PRId32 " + 1", n);
+        CHECK(same(exh_real_sub(one, small), left ? 2 * (TOP - left) : TOP, left ? -63 : -62),
+              "1 - 2^-%" PRId32, n);
+    }
+}
+
+TEST(sums_in_either_order)
+{
+    const struct exh_real a = exh_real_of(5), b = exh_real_of(7000000);
+    const struct exh_real c = exh_real_of(7000005);
+    CHECK(same(exh_real_add(a, b), c.m, c.e), "5 + 7000000");
+    CHECK(same(exh_real_add(b, a), c.m, c.e), "7000000 + 5");
+    CHECK(same(exh_real_sub(c, b), a.m, a.e), "7000005 - 7000000");
+    CHECK(same(exh_real_of(UINT64_MAX), UINT64_C(0x7FFFFFFFFFFFFFFF), 1), "63 bits of 64");
+}
+
+TEST(rounds_half_up_once)
+{
+    CHECK_EQ_I64(rounded(exh_real_scale(exh_real_of(1), -1)), 1);
+    CHECK_EQ_I64(rounded(exh_real_scale(exh_real_of(3), -1)), 2);
+    CHECK_EQ_I64(rounded(exh_real_scale(exh_real_of(3), -3)), 0);
+    CHECK_EQ_I64(rounded(exh_real_scale(exh_real_of(1), -2)), 0);
+    CHECK_EQ_I64(rounded(exh_real_scale(exh_real_of(1), -300)), 0);
+    CHECK_EQ_I64(rounded(exh_real_scale(exh_real_of(1), 61)), INT64_C(1) << 61);
+}
+
+TEST_MAIN("unit/real", none_is_none, none_and_very_small, what_is_too_small_to_matter,
+          sums_in_either_order, rounds_half_up_once);
