@@ -1,5 +1,6 @@
 /* Lines of one GPIO chip, as a version of libgpiod gives them: gpio_v1.c, gpio_v2.c, or gpio_none.c
- * where there is none. One of them is linked; what lines mean is gpio.c's. Levels, never edges. */
+ * where there is none. One of them is linked, and gpio_lines.c with it; what lines mean is gpio.c's.
+ * Levels, never edges. */
 #ifndef GPIO_LINES_H
 #define GPIO_LINES_H
 
@@ -29,6 +30,14 @@ extern const char gpio_lines_library[]; /* "libgpiod 1"; "" without            *
 int gpio_lines_open(const char *path, const unsigned *in, unsigned ins, const unsigned *out,
                     unsigned outs, struct gpio_problem *p);
 void gpio_lines_close(void);
+
+/* What each version has of it. The chip alone: 0, or -1 with errno. Then its lines: 0, or -1 with *p
+ * said, and what is held by then is left to gpio_lines_close(). */
+int gpio_chip_open(const char *path);
+int gpio_chip_request(const unsigned *in, unsigned ins, const unsigned *out, unsigned outs,
+                      struct gpio_problem *p);
+/* This line is somebody's; who: NULL, or a name. */
+void gpio_lines_busy(struct gpio_problem *p, unsigned line, const char *who);
 
 /* All inputs at once: level[i] 0 or 1. 0, or -1 with errno. */
 int gpio_lines_get(int *level);

@@ -4,7 +4,6 @@
 #include <gpiod.h>
 
 #include <errno.h>
-#include <stdio.h>
 #include <string.h>
 
 const char gpio_lines_library[] = "libgpiod 1";
@@ -20,10 +19,8 @@ static int busy(struct gpiod_line_bulk *bulk, struct gpio_problem *p)
 {
     for (unsigned i = 0; i < bulk->num_lines; i++) {
         if (gpiod_line_update(bulk->lines[i]) == 0 && gpiod_line_is_used(bulk->lines[i])) {
-            const char *who = gpiod_line_consumer(bulk->lines[i]);
-            p->why = GPIO_BUSY;
-            p->line = gpiod_line_offset(bulk->lines[i]);
-            snprintf(p->who, sizeof p->who, "%s", who ? who : "");
+            gpio_lines_busy(p, gpiod_line_offset(bulk->lines[i]),
+                            gpiod_line_consumer(bulk->lines[i]));
             return 1;
         }
     }
@@ -68,8 +65,15 @@ static int request_in(struct gpio_problem *p)
     return p->error == EINVAL ? request(bulk, GPIOD_LINE_REQUEST_DIRECTION_INPUT, 0, p) : -1;
 }
 
-static int request_all(const unsigned *in, unsigned ins, const unsigned *out, unsigned outs,
-                       struct gpio_problem *p)
+int gpio_chip_open(const char *path)
+{
+    memset(&held, 0, sizeof held);
+    held.chip = gpiod_chip_open(path);
+    return held.chip ? 0 : -1;
+}
+
+int gpio_chip_request(const unsigned *in, unsigned ins, const unsigned *out, unsigned outs,
+                      struct gpio_problem *p)
 {
     p->lines = gpiod_chip_num_lines(held.chip);
     if (find(in, ins, &held.in, p) < 0 || find(out, outs, &held.out, p) < 0) { return -1; }
@@ -77,25 +81,6 @@ static int request_all(const unsigned *in, unsigned ins, const unsigned *out, un
     held.ins = ins;
     if (outs && request(&held.out, GPIOD_LINE_REQUEST_DIRECTION_OUTPUT, 0, p) < 0) { return -1; }
     held.outs = outs;
-    return 0;
-}
-
-int gpio_lines_open(const char *path, const unsigned *in, unsigned ins, const unsigned *out,
-                    unsigned outs, struct gpio_problem *p)
-{
-    memset(p, 0, sizeof *p);
-    memset(&held, 0, sizeof held);
-    held.chip = gpiod_chip_open(path);
-    if (held.chip == NULL) {
-        p->why = GPIO_NO_CHIP;
-        p->error = errno;
-        return -1;
-    }
-    if (request_all(in, ins, out, outs, p) < 0) {
-        gpio_lines_close();
-        return -1;
-    }
-    p->why = GPIO_FINE;
     return 0;
 }
 

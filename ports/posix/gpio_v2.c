@@ -4,7 +4,6 @@
 #include <gpiod.h>
 
 #include <errno.h>
-#include <stdio.h>
 #include <string.h>
 
 const char gpio_lines_library[] = "libgpiod 2";
@@ -21,10 +20,7 @@ static int busy(const unsigned *line, unsigned n, struct gpio_problem *p)
     for (unsigned i = 0; i < n && p->why != GPIO_BUSY; i++) {
         struct gpiod_line_info *info = gpiod_chip_get_line_info(held.chip, line[i]);
         if (info && gpiod_line_info_is_used(info)) {
-            const char *who = gpiod_line_info_get_consumer(info);
-            p->why = GPIO_BUSY;
-            p->line = line[i];
-            snprintf(p->who, sizeof p->who, "%s", who ? who : "");
+            gpio_lines_busy(p, line[i], gpiod_line_info_get_consumer(info));
         }
         if (info) { gpiod_line_info_free(info); }
     }
@@ -93,8 +89,15 @@ static struct gpiod_line_request *request(const unsigned *line, unsigned n, int 
     return r;
 }
 
-static int request_all(const unsigned *in, unsigned ins, const unsigned *out, unsigned outs,
-                       struct gpio_problem *p)
+int gpio_chip_open(const char *path)
+{
+    memset(&held, 0, sizeof held);
+    held.chip = gpiod_chip_open(path);
+    return held.chip ? 0 : -1;
+}
+
+int gpio_chip_request(const unsigned *in, unsigned ins, const unsigned *out, unsigned outs,
+                      struct gpio_problem *p)
 {
     if (count(p) < 0) {
         p->why = GPIO_NO_CHIP;
@@ -106,25 +109,6 @@ static int request_all(const unsigned *in, unsigned ins, const unsigned *out, un
     if (outs && (held.out = request(out, outs, 1, p)) == NULL) { return -1; }
     held.ins = ins;
     held.outs = outs;
-    return 0;
-}
-
-int gpio_lines_open(const char *path, const unsigned *in, unsigned ins, const unsigned *out,
-                    unsigned outs, struct gpio_problem *p)
-{
-    memset(p, 0, sizeof *p);
-    memset(&held, 0, sizeof held);
-    held.chip = gpiod_chip_open(path);
-    if (held.chip == NULL) {
-        p->why = GPIO_NO_CHIP;
-        p->error = errno;
-        return -1;
-    }
-    if (request_all(in, ins, out, outs, p) < 0) {
-        gpio_lines_close();
-        return -1;
-    }
-    p->why = GPIO_FINE;
     return 0;
 }
 

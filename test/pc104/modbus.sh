@@ -18,7 +18,8 @@ clean()
 }
 trap clean EXIT
 trap 'exit 130' INT TERM
-failed=0 checks=0
+name=modbus
+. test/pc104/check.sh
 port=$((20000 + ($$ + 7919) % 20000))
 
 for tool in qemu-system-i386:qemu-system-x86 python3:python3; do
@@ -27,22 +28,6 @@ for tool in qemu-system-i386:qemu-system-x86 python3:python3; do
         exit 3
     }
 done
-
-check() # WHAT COMMAND...
-{
-    local what=$1
-    shift
-    checks=$((checks + 1))
-    "$@" && return
-    failed=$((failed + 1))
-    echo "modbus: FAILED: $what" >&2
-    sed 's/^/    /' "$dir/said" "$dir/err" >&2
-}
-
-says() # PATTERN: a whole line of what the image said
-{
-    tr -d '\r' <"$dir/said" | grep -aqE "$1"
-}
 
 boot() # STATUS LINE OPTION...
 {

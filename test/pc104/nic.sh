@@ -27,7 +27,8 @@ clean()
 }
 trap clean EXIT
 trap 'exit 130' INT TERM
-failed=0 checks=0
+name=nic
+. test/pc104/check.sh
 port=$((20000 + $$ % 20000))
 
 command -v qemu-system-i386 >/dev/null || {
@@ -40,22 +41,6 @@ for device in e1000e e1000; do
         exit 3
     }
 done
-
-check() # WHAT COMMAND...
-{
-    local what=$1
-    shift
-    checks=$((checks + 1))
-    "$@" && return
-    failed=$((failed + 1))
-    echo "nic: FAILED: $what" >&2
-    sed 's/^/    /' "$dir/said" "$dir/err" >&2
-}
-
-says() # PATTERN: a whole line of what the image said
-{
-    tr -d '\r' <"$dir/said" | grep -aqE "$1"
-}
 
 # boot STATUS FLAGS IMAGE OPTION...
 boot()

@@ -6,20 +6,9 @@
 # these units may move and combine integers (struct copies, memset). Software floating point
 # and division show as undefined helpers, which undef.sh refuses.
 # Exit status: 0 none, 1 some, 2 bad usage or an unknown machine, 3 no such tool.
-set -eu
+# shellcheck source=test/size/archive.sh
+. "${0%/*}/archive.sh"
 
-if [ $# -ne 2 ]; then
-    echo "usage: $0 ARCHIVE OBJDUMP" >&2
-    exit 2
-fi
-archive=$1
-objdump=$2
-[ -r "$archive" ] || { echo "$archive: not readable: build the library first" >&2; exit 2; }
-command -v "$objdump" >/dev/null 2>&1 ||
-    { echo "$objdump: not found: install its binutils" >&2; exit 3; }
-
-listing=$(mktemp)
-trap 'rm -f "$listing"' EXIT
 "$objdump" -d --no-show-raw-insn "$archive" >"$listing"
 
 awk -v archive="$archive" '
