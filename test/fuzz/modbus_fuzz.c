@@ -10,6 +10,7 @@
  * locked; nothing is commanded that may not be.
  *
  * LLVMFuzzerTestOneInput() is libFuzzer's; the rest makes inputs without it: [SECONDS [SEED]]. */
+#include "fails.h"
 #include "must.h"
 
 #include "exhand/error.h"
@@ -31,20 +32,6 @@
 #define CARRY_OUT    128u
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-void exh_assert_failed(const char *file, int line)
-{
-    fprintf(stderr, "%s:%d: assertion\n", file, line);
-    abort();
-}
-
-#ifdef EXH_FIX_AUDIT
-void exh_fix_saturated(const char *file, int line)
-{
-    (void)file;
-    (void)line;
-}
-#endif
 
 /* --- a box --- */
 

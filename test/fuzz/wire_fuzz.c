@@ -11,6 +11,7 @@
  * before the freeze.
  *
  * LLVMFuzzerTestOneInput() is libFuzzer's; driver.c calls it without libFuzzer. */
+#include "fails.h"
 #include "must.h"
 
 #include "exhand/error.h"
@@ -33,20 +34,6 @@
 #define LIMIT_US    1000000u
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-void exh_assert_failed(const char *file, int line)
-{
-    fprintf(stderr, "%s:%d: assertion\n", file, line);
-    abort();
-}
-
-#ifdef EXH_FIX_AUDIT
-void exh_fix_saturated(const char *file, int line)
-{
-    (void)file;
-    (void)line;
-}
-#endif
 
 static const struct exh_material_par material[2] = {{1 << 24, 1 << 24, 1 << 22}, {1, 1, 1}};
 static const struct exh_precontact_par par = {-5368709, 1073741, 1 << 24, 0, 0, 100, 5368709, 100, 50};

@@ -195,8 +195,7 @@ static int bad(const char *where)
     return 2;
 }
 
-/* The number behind the last colon of text, which is cut off there; -1: none. */
-static long cut_number(char *text, long most)
+long modbus_cut_number(char *text, long most)
 {
     char *colon = strrchr(text, ':'), *end;
     long v;
@@ -255,11 +254,11 @@ static int open_where(const char *where)
     if (strlen(where) >= sizeof text) { return bad(where); }
     strcpy(text, where);
     if (strncmp(text, "tcp:", 4) == 0) {
-        number = cut_number(text, 65535);
+        number = modbus_cut_number(text, 65535);
         if (number < 0 || inet_pton(AF_INET, text + 4, &any) != 1) { return bad(where); }
         return open_tcp(where, text + 4, (int)number);
     }
-    number = cut_number(text, 4000000);
+    number = modbus_cut_number(text, 4000000);
     if (strncmp(text, "rtu:", 4) != 0 || number < 300 || text[4] == '\0') { return bad(where); }
     return open_rtu(where, text + 4, (int)number);
 }

@@ -1,10 +1,14 @@
-/* What the two files of the libmodbus server share. */
+/* What the files that use libmodbus share. */
 #ifndef CLI_MODBUS_LIBMODBUS_H
 #define CLI_MODBUS_LIBMODBUS_H
 
 #include <modbus/modbus.h>
 
 #include <stdint.h>
+
+/* Of "tcp:ADDRESS:PORT" and the like: the number behind the last colon, 0..most; -1: none. The text is cut
+ * off at that colon. */
+long modbus_cut_number(char *text, long most);
 
 struct request {
     modbus_t *ctx;

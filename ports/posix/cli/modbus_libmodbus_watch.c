@@ -1,13 +1,12 @@
 /* The registers of a box, read as a Modbus client. */
 #include "watch.h"
 
+#include "modbus_libmodbus.h"
 #include "option.h"
 #include "until.h"
 
 #include <arpa/inet.h>
 #include <errno.h>
-#include <modbus/modbus.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define WHERE_B  256
@@ -39,17 +38,6 @@ static int bad(const char *where)
     return 2;
 }
 
-/* The number behind the last colon of text, which is cut off there; -1: none. */
-static long cut_number(char *text, long most)
-{
-    char *colon = strrchr(text, ':'), *end;
-    long v;
-    if (colon == NULL || colon[1] < '0' || colon[1] > '9') { return -1; }
-    v = strtol(colon + 1, &end, 10);
-    *colon = '\0';
-    return *end == '\0' && v <= most ? v : -1;
-}
-
 static modbus_t *context_of(const char *where)
 {
     char text[WHERE_B];
@@ -58,11 +46,11 @@ static modbus_t *context_of(const char *where)
     if (strlen(where) >= sizeof text) { return NULL; }
     strcpy(text, where);
     if (strncmp(text, "tcp:", 4) == 0) {
-        number = cut_number(text, 65535);
+        number = modbus_cut_number(text, 65535);
         if (number < 1 || inet_pton(AF_INET, text + 4, &any) != 1) { return NULL; }
         return modbus_new_tcp(text + 4, (int)number);
     }
-    number = cut_number(text, 4000000);
+    number = modbus_cut_number(text, 4000000);
     if (strncmp(text, "rtu:", 4) != 0 || number < 300 || text[4] == '\0') { return NULL; }
     return modbus_new_rtu(text + 4, (int)number, 'E', 8, 1);
 }
