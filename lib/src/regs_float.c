@@ -30,13 +30,13 @@ int exh_float_raw(uint32_t bits, unsigned frac, int32_t *raw)
 {
     const uint32_t field = bits >> FRACTION & 0xFFu;
     const uint32_t mant = (bits & (HIDDEN - 1)) | (field ? HIDDEN : 0u);
-    /* value = mant 2^(field - 150); below the normal ones as field 1 */
+    /* value = mant 2^(field - 150); below the normal ones, and 0, as field 1: up < 0 for every frac */
     const int32_t up = (int32_t)(field ? field : 1) - (BIAS + FRACTION) + (int32_t)frac;
     uint32_t mag = 0;
     int64_t v;
-    if (field == 0xFFu || (up > 8 && mant != 0)) { return -EXH_E_RANGE; }
+    if (field == 0xFFu || up > 8) { return -EXH_E_RANGE; }
     if (up >= 0) {
-        mag = mant == 0 ? 0 : mant << up;
+        mag = mant << up;
     } else if (up >= -FRACTION - 2) {
         const uint32_t n = (uint32_t)-up;
         const uint32_t half = UINT32_C(1) << (n - 1);

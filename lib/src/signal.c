@@ -18,17 +18,14 @@ const struct exh_signal *exh_signal_at(const struct exh_signal_table *t, uint32_
     for (uint16_t g = 0; g < t->groups; g++) {
         const struct exh_signal_group *grp = &t->group[g];
         const uint32_t all = (uint32_t)grp->rows * grp->instances;
+        uint16_t k = 0;
         if (i >= all) { /* a group in one go: every value staged in a tick is looked for */
             i -= all;
             continue;
         }
-        for (uint16_t k = 0; k < grp->instances; k++) {
-            if (i < grp->rows) {
-                if (instance != NULL) { *instance = k; }
-                return &grp->row[i];
-            }
-            i -= grp->rows;
-        }
+        for (; i >= grp->rows; k++) { i -= grp->rows; }
+        if (instance != NULL) { *instance = k; }
+        return &grp->row[i];
     }
     return NULL;
 }

@@ -279,7 +279,54 @@ TEST(rows_are_of_the_struct)
     }
 }
 
+/* Scenes with no contact, or half of one: nothing is asked of what is not there, and nothing moves. */
+TEST(half_a_pair_is_none)
+{
+    for (unsigned k = 0; k < 2; k++) { /* k alone, b alone */
+        const struct exh_signal_group half[] = {{&exh_contact_rows[k], 1, 1}};
+        const struct exh_signal_table t = {half, 1};
+        const int32_t v = k == 0 ? K(50000) : B(60);
+        int32_t now[1], want[1];
+        exh_params_init(&params, &t, now, want);
+        params.shift = 3;
+        params.locked = 1;
+        exh_gains_lead(&params, 1);
+        CHECK_EQ_I64(exh_gains_stage(&params, &rule, exh_contact_rows[k].id, 0, v), 0);
+        CHECK_EQ_I64(exh_gains_staged(&params, &rule, NULL), 0);
+        (void)exh_params_apply(&params);
+        exh_gains_step(&params, &rule);
+        CHECK(now[0] == exh_contact_rows[k].dflt && want[0] == v, "half %u", k);
+    }
+}
+
+TEST(without_the_lead_both_go_by_themselves)
+{
+    start();
+    exh_gains_lead(&params, 1);
+    exh_gains_lead(&params, 0);
+    params.locked = 1;
+    params.shift = 3;
+    CHECK_EQ_I64(exh_gains_stage(&params, &rule, 0x0401, 0, K(2300)), 0);
+    CHECK_EQ_I64(exh_params_apply(&params), 1);
+    CHECK_EQ_I64(active.contact[0].k_Npm_q10, K(1600));
+}
+
+/* A pair in effect that is outside, though nobody asked for another: no wall. */
+TEST(a_damaged_pair_becomes_none)
+{
+    start();
+    exh_gains_lead(&params, 1);
+    params.locked = 1;
+    params.shift = 3;
+    active.contact[0].k_Npm_q10 = 0;
+    active.contact[0].b_Nspm_q20 = B(3);
+    exh_gains_step(&params, &rule);
+    CHECK(active.contact[0].k_Npm_q10 == 0 && active.contact[0].b_Nspm_q20 == 0, "b without k");
+    CHECK(active.contact[1].k_Npm_q10 == K(1500), "the other one");
+}
+
 TEST_MAIN("gains", pieces_and_ends, setup_refuses, setup_refuses_two_halves,
           setup_asks_for_its_rate, staging_refuses_what_is_outside,
           a_whole_image_is_asked_and_dropped, through_a_valley, a_damaged_goal_is_not_gone_to,
-          no_wall_is_a_jump_away, rows_are_of_the_struct);
+          no_wall_is_a_jump_away, rows_are_of_the_struct, half_a_pair_is_none, without_the_lead_both_go_by_themselves,
+          a_damaged_pair_becomes_none);

@@ -574,9 +574,10 @@ TEST(set_up_refuses)
     static const struct exh_signal finer[1] = {{1, 127, EXH_WHEN_ANY, 0, 9, 0, "a", "", ""}};
     static const struct exh_signal_group most[1] = {{fine, 1, EXH_REGS_VALUES}},
                                          more[1] = {{fine, 1, EXH_REGS_VALUES + 1}},
-                                         bits[1] = {{finer, 1, 1}}, empty[1] = {{fine, 0, 1}};
+                                         bits[1] = {{finer, 1, 1}}, empty[1] = {{fine, 0, 1}},
+                                         none[1] = {{fine, 1, 0}};
     static const struct exh_signal_table t_most = {most, 1}, t_more = {more, 1}, t_bits = {bits, 1},
-                                         t_empty = {empty, 1};
+                                         t_empty = {empty, 1}, t_none = {none, 1};
     begin();
     g.r.signals = &t_most;
     CHECK_EQ_I64(exh_regs_setup(&g.r), 0);
@@ -586,12 +587,21 @@ TEST(set_up_refuses)
     CHECK_EQ_I64(exh_regs_setup(&g.r), -EXH_E_RANGE);
     g.r.signals = &t_empty;
     CHECK_EQ_I64(exh_regs_setup(&g.r), -EXH_E_RANGE);
+    g.r.signals = &t_none;
+    CHECK_EQ_I64(exh_regs_setup(&g.r), -EXH_E_RANGE);
     g.r.signals = &out_table;
     g.r.signal = NULL;
     CHECK_EQ_I64(exh_regs_setup(&g.r), -EXH_E_ABSENT);
     g.r.signal = g.signal;
     g.r.touched = NULL;
     CHECK_EQ_I64(exh_regs_setup(&g.r), -EXH_E_ABSENT);
+    for (unsigned i = 0; i < 3; i++) {
+        begin();
+        if (i == 0) { g.r.active = NULL; }
+        if (i == 1) { g.r.wanted = NULL; }
+        if (i == 2) { g.r.staged = NULL; }
+        CHECK(exh_regs_setup(&g.r) == -EXH_E_ABSENT, "without array %u", i);
+    }
 }
 
 TEST(without_tables_the_head_alone_is_there)
@@ -623,6 +633,43 @@ TEST(words_for_people_are_all_there)
     }
 }
 
+TEST(requests_of_nothing)
+{
+    static uint8_t longest[65536 + 6] = {16, 0x50, 0, 0, 2, 4};
+    const uint8_t bytes[4] = {1, 2, 3, 4};
+    begin();
+    ASK(23, 0, 0, 0, 0, 0x50, 0, 0, 2, 4, 0, 0, 0, 1); /* reads none */
+    GIVES(0x97, 3);
+    CHECK_EQ_I64(exh_regs_read(&g.r, EXH_REGS_INPUT, 0, 0, g.resp), 0);
+    CHECK_EQ_I64(g.resp[0], 0x97); /* stands */
+    CHECK_EQ_I64(exh_regs_judge(&g.r, 0x5000, 0, bytes), 0);
+    CHECK_EQ_I64(exh_regs_write(&g.r, 0x5000, 0, bytes), 0);
+    CHECK_EQ_I64(exh_regs_read(&g.r, EXH_REGS_INPUT, 0x4000, 0, g.resp), EXH_MODBUS_ADDRESS);
+    ask(longest, 10);
+    GIVES(16, 0x50, 0, 0, 2);
+    ask(longest, 65535); /* its length would be that of the shorter one modulo 2^16 and a bit */
+    GIVES(0x90, 3);
+    ask(longest, sizeof longest);
+    GIVES(0x90, 3);
+    ask(longest, 65536 + 10 - 4);
+    GIVES(0x90, 3);
+}
+
+/* A table of parameters with a row that is computed: it may be written as it reads. */
+TEST(outputs_among_parameters_stay)
+{
+    static const struct exh_signal row[] = {{0x7401, 0, EXH_WHEN_OUTPUT, 0, 9, 4, "out", "", ""}};
+    static const struct exh_signal_group group[] = {{row, 1, 1}};
+    static const struct exh_signal_table outputs = {group, 1};
+    const uint8_t same[4] = {0, 0, 0, 4}, other[4] = {0, 0, 0, 5};
+    begin();
+    g.r.params = &outputs;
+    g.active[0] = g.wanted[0] = 4;
+    CHECK_EQ_I64(exh_regs_setup(&g.r), 0);
+    CHECK_EQ_I64(exh_regs_write(&g.r, 0x5000, 2, same), 0);
+    CHECK_EQ_I64(exh_regs_write(&g.r, 0x5000, 2, other), EXH_MODBUS_VALUE);
+}
+
 TEST_MAIN("modbus", head_says_what_this_is, a_value_is_high_word_first_and_starts_anywhere,
           reads_as_in_the_examples, writes_as_in_the_examples, mask_and_both_as_in_the_examples,
           says_who_it_is, no_such_function, counts_end_where_the_specification_says,
@@ -631,4 +678,4 @@ TEST_MAIN("modbus", head_says_what_this_is, a_value_is_high_word_first_and_start
           what_reads_the_same_stays, apply_hands_over_all_or_none,
           what_is_staged_reads_back_and_is_counted, while_apply_is_pending_nothing_changes,
           commands_in_order_of_caution, bits_are_the_box, set_up_refuses,
-          without_tables_the_head_alone_is_there, words_for_people_are_all_there);
+          without_tables_the_head_alone_is_there, words_for_people_are_all_there, requests_of_nothing, outputs_among_parameters_stay);

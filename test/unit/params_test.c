@@ -281,6 +281,22 @@ TEST(a_limit_falls_at_once)
     CHECK(active[0] == 49 && !p.moving, "%d", (int)active[0]);
 }
 
+TEST(what_may_be_staged)
+{
+    static const struct exh_signal out[] = {{0x7401, 0, EXH_WHEN_OUTPUT, 0, 9, 4, "out", "", "computed"}};
+    static const struct exh_signal_group group[] = {{out, 1, 1}};
+    static const struct exh_signal_table outputs = {group, 1};
+    start(0);
+    CHECK_EQ_I64(exh_params_may(&p, VALUES - 1, 1000), 0);
+    CHECK_EQ_I64(exh_params_may(&p, VALUES - 1, 1001), -EXH_E_RANGE);
+    CHECK_EQ_I64(exh_params_may(&p, VALUES, 0), -EXH_E_UNKNOWN);
+    CHECK_EQ_I64(exh_params_may(&p, UINT32_MAX, 0), -EXH_E_UNKNOWN);
+    exh_params_init(&p, &outputs, active, staged);
+    CHECK_EQ_I64(exh_params_may(&p, 0, 4), -EXH_E_STATE);
+    CHECK_EQ_I64(exh_params_stage(&p, 0x7401, 0, 5), -EXH_E_STATE);
+    CHECK_EQ_I64(staged[0], 4);
+}
+
 TEST_MAIN("unit/params", steps_worked_out, slewed_and_not, before_the_loop_at_once, shift_of_a_time,
           image_in_mid_way, keyframe_in_mid_way, bad_keyframes, guard_in_mid_way, taken_back,
-          a_table_of_none, a_limit_falls_at_once);
+          a_table_of_none, a_limit_falls_at_once, what_may_be_staged);
