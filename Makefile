@@ -562,7 +562,7 @@ $(mcdc_bin) $(mcdc_fuzz):
 mcdc:
 	@.ci/deps "MC/DC" "$(mcdc_probe)" clang-19 llvm-19 libclang-rt-19-dev libcmocka-dev python3 || exit 3
 	@$(MAKE) --no-print-directory $(if $(V),,-s) mcdc-built
-	@test/mcdc/mcdc.py --build $(B)/mcdc --jobs $(jobs) $(ARGS)
+	@test/mcdc/mcdc.py --build $(B)/mcdc --jobs $(jobs) --strict $(ARGS)
 mcdc-built: $(mcdc_bin) $(mcdc_fuzz)
 
 # --- the pc104 image in the loop ----------------------------------------------------------

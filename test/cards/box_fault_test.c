@@ -293,6 +293,11 @@ TEST(configurations_are_refused_by_name)
     REFUSED(EXH_BOX_ROW_WAIT, c.s526.ad_wait_us = 0);
     REFUSED(EXH_BOX_ROW_WAIT, c.s526.ee_wait_us = 60001);
     REFUSED(EXH_BOX_ROW_WAIT, c.mm32xat.scan_wait_us = 0);
+    REFUSED(EXH_BOX_ROW_WAIT, c.s526.da_wait_us = 0);
+    REFUSED(EXH_BOX_ROW_WAIT, c.mm32xat.settle_us = 0);
+    REFUSED(EXH_BOX_ROW_WAIT, c.mm32xat.reset_us = 0);
+    REFUSED(EXH_BOX_ROW_WAIT, c.mm32xat.set_us = 60001);
+    REFUSED(EXH_BOX_ROW_SCAN, c.mm32xat.slice = 33);
     REFUSED(EXH_BOX_ROW_SPAN, c.dac_rest_raw = 12185);
     REFUSED(EXH_BOX_ROW_PINS, c.watchdog = 2);
     REFUSED(EXH_BOX_ROW_FULL, c.full = 2);
@@ -379,10 +384,53 @@ TEST(every_place_of_the_glove_s_jumpers_is_found)
 TEST(what_is_not_used_may_be_anything)
 {
     struct exh_box_config c = one();
+    int32_t value;
     c.s526_base[1] = 3;
     c.mm32xat_base = 0x2C0;
     c.mm32xat.channels = 0;
     opened(c);
+    c.s526_base[1] = 0xC0; /* where no board can be */
+    opened(c);
+    c = gloved(EXH_BOX_LAST);
+    c.fingers = 1;
+    c.mm32xat_base = c.s526_base[1];
+    CHECK_EQ_I64(exh_box_check(&c, &value), EXH_BOX_ROWS);
+    c.full = 1;
+    CHECK_EQ_I64(exh_box_check(&c, &value), EXH_BOX_ROW_OVERLAP);
+}
+
+/* Alive but no more the card it was: the fault is what was found first. */
+TEST(a_card_that_changes_its_name_is_not_dead)
+{
+    opened(five());
+    bus.s526[0].signature = 0x1234;
+    bus.s526[0].mute = 4;
+    fails(exh_box_read_drive(&in), EXH_BOX_A, EXH_CARD_AD_TIMEOUT);
+}
+
+TEST(every_fault_has_its_words)
+{
+    static const struct {
+        struct exh_card_fault fault;
+        const char *want;
+    } row[] = {
+        {{EXH_CARD_SELFTEST, EXH_CARD_COUNTER, 3, 5, 7, 7}, "self-test: counter does not hold what was loaded, number 3: 5 (7)"},
+        {{EXH_CARD_EEPROM, EXH_CARD_EE_TIMEOUT, 9, 0, 0, 0}, "EEPROM: word does not come, number 9"},
+        {{EXH_CARD_EEPROM, EXH_CARD_DA_OFFSET, 1, 1, -5, 0}, "EEPROM: D/A offset implausible, 0.001 codes, number 1: 1 (-5 .. 0)"},
+        {{EXH_CARD_INPUT, EXH_CARD_QUADRATURE, 2, 9, 0, 8}, "inputs: illegal transitions of the encoder lines, number 2: 9 (0 .. 8)"},
+        {{EXH_CARD_INPUT, EXH_CARD_LINES, 2, 0x10, 0, 0}, "inputs: digital outputs are not as written: 0x0010 (0x0000)"},
+        {{EXH_CARD_CONFIG, EXH_CARD_BAD_VALUE, EXH_BOX_ROWS, 7, 0, 0}, "configuration: value not allowed: 7"},
+        {{EXH_CARD_PHASES, EXH_CARD_WHATS, 0, 0, 0, 0}, "?: ?"},
+    };
+    for (unsigned i = 0; i < sizeof row / sizeof row[0]; i++) {
+        struct exh_box_error e = {0};
+        char want[120] = "?: ";
+        e.card = EXH_BOX_CARDS + 1;
+        e.code = -EXH_E_IO;
+        e.fault = row[i].fault;
+        strcat(want, row[i].want);
+        says(&e, want);
+    }
 }
 
 TEST_MAIN("box fault", a_board_that_dies_is_found_within_a_tick,
@@ -396,4 +444,5 @@ TEST_MAIN("box fault", a_board_that_dies_is_found_within_a_tick,
           all_cards_that_are_absent_are_named, faults_by_example,
           configurations_are_refused_by_name, every_place_of_the_glove_s_jumpers_is_found,
           what_is_not_used_may_be_anything, one_finger_on_a_full_box_has_to_be_said,
-          a_current_for_a_drive_that_is_off_is_a_fault);
+          a_current_for_a_drive_that_is_off_is_a_fault,
+          a_card_that_changes_its_name_is_not_dead, every_fault_has_its_words);

@@ -389,7 +389,37 @@ TEST(a_glove_that_fails_makes_the_drives_safe)
     CHECK_EQ_I64(bus.n, 0);
 }
 
-TEST_MAIN("box", five_fingers_take_30_and_14_accesses, one_finger_takes_10_and_4_of_one_board,
+/* The first of all: nothing was ever opened. */
+TEST(before_the_opening_there_is_nothing)
+{
+    struct exh_box_counts n;
+    bus_reset();
+    bus_clear();
+    memset(&n, 0xFF, sizeof n);
+    exh_box_counts(&n);
+    for (unsigned i = 0; i < EXH_FINGERS; i++) { CHECK_EQ_I64(n.quad[i], 0); }
+    CHECK_EQ_I64(exh_box_read_drive(&in), -EXH_E_ABSENT);
+    CHECK_EQ_I64(put(1), -EXH_E_ABSENT);
+    CHECK_EQ_I64(exh_box_read_glove(&glove), -EXH_E_ABSENT);
+    CHECK_EQ_I64(bus.n, 0);
+}
+
+TEST(scans_lost_in_a_row_make_the_drives_safe)
+{
+    int err = 0;
+    opened(gloved(EXH_BOX_NOW));
+    CHECK_EQ_I64(put(1), 0);
+    bus.mm.drop = 1;
+    for (unsigned t = 0; t < 3; t++) {
+        CHECK_EQ_I64(err, 0);
+        CHECK_EQ_I64(exh_box_read_drive(&in), 0);
+        err = exh_box_read_glove(&glove);
+    }
+    fails(err, EXH_BOX_GLOVE, EXH_CARD_SCAN_LOST);
+    CHECK_EQ_I64(exh_box_read_glove(&glove), -EXH_E_IO);
+}
+
+TEST_MAIN("box", before_the_opening_there_is_nothing, five_fingers_take_30_and_14_accesses, one_finger_takes_10_and_4_of_one_board,
           monitors_of_the_last_tick_take_no_wait, monitors_in_the_tick_are_that_tick_s,
           without_monitors_a_board_is_asked_for_its_name, figures_of_a_tick,
           every_finger_has_its_counter_monitor_and_output, a_board_without_a_finger_has_the_rest,
@@ -398,4 +428,4 @@ TEST_MAIN("box", five_fingers_take_30_and_14_accesses, one_finger_takes_10_and_4
           a_scan_in_the_tick_is_that_tick_s, a_scan_of_the_tick_before_takes_no_wait,
           a_scan_of_the_opening_that_still_runs_is_no_frame,
           a_scan_that_still_runs_is_not_waited_for, a_scan_that_is_lost_leaves_the_last_frame_older,
-          a_glove_that_fails_makes_the_drives_safe);
+          a_glove_that_fails_makes_the_drives_safe, scans_lost_in_a_row_make_the_drives_safe);

@@ -267,10 +267,19 @@ TEST(a_card_that_dies_is_found_dead)
     }
 }
 
+TEST(a_card_that_dies_in_a_scan_is_found_dead_when_asked)
+{
+    opened();
+    exh_mm32xat_start(&card);
+    bus.mm.base = 0;
+    CHECK_EQ_I64(exh_mm32xat_done(&card, &fault), -EXH_E_IO);
+    CHECK(fault.phase == EXH_CARD_SCAN && fault.what == EXH_CARD_EMPTY, "%u", fault.what);
+}
+
 TEST_MAIN("mm32xat", detection_by_example, an_empty_port_is_not_written,
           each_register_that_is_unlike_it_is_named, the_set_up_of_a_scan_by_example,
           a_scan_by_example, words_take_half, every_number_of_channels,
           samples_missing_or_too_many_are_dropped_and_counted, three_lost_in_a_row_are_a_fault,
           a_card_that_always_loses_samples_does_not_open,
           a_scan_that_never_ends_is_a_fault_by_time_or_by_polls, also_where_it_is_only_asked_for,
-          an_input_that_never_settles_is_a_fault, a_card_that_dies_is_found_dead);
+          an_input_that_never_settles_is_a_fault, a_card_that_dies_is_found_dead, a_card_that_dies_in_a_scan_is_found_dead_when_asked);

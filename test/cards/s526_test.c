@@ -268,6 +268,10 @@ TEST(garbage_in_the_eeprom_is_refused_by_name)
     refused(open_it(), -EXH_E_IO, EXH_CARD_EEPROM, EXH_CARD_AD_VREF);
     CHECK_EQ_I64(fault.got, 5000000);
     bus_reset();
+    bus_double(&bus.s526[0].ee[0], 1, 3000000, 0); /* too low to be told */
+    refused(open_it(), -EXH_E_IO, EXH_CARD_EEPROM, EXH_CARD_DA_GAIN);
+    CHECK_EQ_I64(fault.got, INT32_MIN);
+    bus_reset();
     memset(bus.s526[0].ee, 0xFF, sizeof bus.s526[0].ee);
     refused(open_it(), -EXH_E_IO, EXH_CARD_EEPROM, EXH_CARD_DA_GAIN);
     CHECK_EQ_I64(fault.got, INT32_MAX);
@@ -440,6 +444,20 @@ TEST(a_card_that_dies_while_it_is_opened_is_found_dead)
     }
 }
 
+TEST(settling_may_be_left_out)
+{
+    struct exh_s526_par par = EXH_S526_PAR_DEFAULT;
+    for (unsigned k = 0; k < 2; k++) {
+        par.settle = (uint8_t)k;
+        bus_reset();
+        CHECK_EQ_I64(open_with(par), 0);
+        card.ad_mask = 1;
+        bus_clear();
+        exh_s526_ad_start(&card);
+        CHECK(bus_said(0, k ? "w 2C6 8021, " : "w 2C6 21, "), "settle %u", k);
+    }
+}
+
 TEST_MAIN("s526", doubles_by_example, doubles_that_are_no_number_or_too_large_are_refused,
           doubles_of_every_size_round_once, a_nominal_card_changes_no_code,
           a_reference_off_10_V_on_a_nominal_card_changes_no_code,
@@ -455,4 +473,4 @@ TEST_MAIN("s526", doubles_by_example, doubles_that_are_no_number_or_too_large_ar
           flags_of_whatever_was_before_are_not_taken_for_an_answer,
           a_scan_that_ends_while_it_is_opened_is_not_taken_for_a_reference,
           and_by_polls_where_time_stands_still, a_wait_that_was_held_up_polls_once_more,
-          a_card_that_dies_while_it_is_opened_is_found_dead);
+          a_card_that_dies_while_it_is_opened_is_found_dead, settling_may_be_left_out);

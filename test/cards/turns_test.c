@@ -226,9 +226,55 @@ TEST(a_scan_in_parts_is_as_sound_as_one_in_a_piece)
     }
 }
 
+/* Asked for before it has ended: the last frame again, and the scan goes on. */
+TEST(a_scan_in_parts_that_still_runs_is_counted)
+{
+    struct exh_box_counts n;
+    opened(parts(4));
+    for (unsigned t = 0; t < 40; t++) {
+        pass();
+        CHECK_EQ_I64(exh_box_read_drive(&in), 0);
+        if (t % 2 == 0) { CHECK_EQ_I64(exh_box_read_glove(&glove), 0); }
+    }
+    exh_box_counts(&n);
+    CHECK(n.glove_waits > 0 && n.glove_frames > 0 && n.glove_waits + n.glove_frames == 19,
+          "%" PRIu32 " waits, %" PRIu32 " frames", n.glove_waits, n.glove_frames);
+    bus.mm.base = 0;
+    for (unsigned k = 0; k < 20 && exh_box_error()->code == 0; k++) {
+        pass();
+        (void)exh_box_read_drive(&in);
+        (void)exh_box_read_glove(&glove);
+    }
+    CHECK(exh_box_error()->card == EXH_BOX_GLOVE && exh_box_error()->fault.what == EXH_CARD_EMPTY, "%s",
+          exh_card_what_text(exh_box_error()->fault.what));
+}
+
+/* Without the check of quadrature errors every turn is of the counters. */
+TEST(turns_of_counters_alone)
+{
+    struct exh_box_config c = turning(5);
+    struct exh_box_counts n;
+    int err = 0;
+    c.s526.quad_check = 0;
+    opened(c);
+    for (unsigned i = 0; i < 5; i++) { bus.s526[i / 4].ecap[i % 4] = 1; }
+    for (unsigned k = 0; k < 9; k++) {
+        pass();
+        CHECK_EQ_I64(exh_box_read_drive(&in), 0);
+    }
+    exh_box_counts(&n);
+    for (unsigned i = 0; i < 5; i++) { CHECK_EQ_I64(n.quad[i], 0); }
+    bus.s526[0].count[3] = 0x20000;
+    for (unsigned k = 0; k < 8 && err == 0; k++) {
+        pass();
+        err = exh_box_read_drive(&in);
+    }
+    fails(err, EXH_BOX_A, EXH_CARD_FOLLOW);
+}
+
 TEST_MAIN("turns", five_fingers_take_17_and_13_accesses, one_finger_takes_7_and_4,
           counts_are_those_of_24_bits, a_count_that_jumps_is_found_within_two_turns,
           every_quadrature_error_is_counted, monitors_are_handed_over_in_turn,
           output_pins_are_written_when_they_change_and_every_16_times,
           pins_that_do_not_follow_are_a_fault_as_ever, the_glove_converts_while_ticks_compute,
-          a_scan_in_parts_is_as_sound_as_one_in_a_piece);
+          a_scan_in_parts_is_as_sound_as_one_in_a_piece, a_scan_in_parts_that_still_runs_is_counted, turns_of_counters_alone);
