@@ -30,7 +30,7 @@ MAKEFLAGS += $(if $(filter 0,$(MAKELEVEL)),-j$(or $(shell nproc 2>/dev/null),1),
 jobs       = $(or $(patsubst -j%,%,$(filter -j%,$(MAKEFLAGS))),1)
 
 # These call make for what they need, or take it away: two at a time would write the same files.
-callers := all test demo run image coverage stress test-i686 matrix matrix-box mutants mcdc fuzz hil hil-built strangers gpio linux-program \
+callers := all test demo run image coverage stress test-i686 matrix matrix-box mutants mcdc mutation fuzz hil hil-built strangers gpio linux-program \
            boot boot-built \
            contract contract-built nic nic-built modbus-image modbus world two-computers bench-world bench size cards install diagrams clean check
 ifneq ($(and $(filter $(callers),$(MAKECMDGOALS)),$(word 2,$(MAKECMDGOALS))),)
@@ -564,6 +564,30 @@ mcdc:
 	@$(MAKE) --no-print-directory $(if $(V),,-s) mcdc-built
 	@test/mcdc/mcdc.py --build $(B)/mcdc --jobs $(jobs) --strict $(ARGS)
 mcdc-built: $(mcdc_bin) $(mcdc_fuzz)
+
+# --- small errors planted everywhere in the library ----------------------------------------
+
+# The tests beside the library as a shared object: a mutant is one source of it, preloaded.
+mutation_flags = $(filter-out -O$(O) -g,$(base)) -O1 $(PORT_HOSTFLAGS) -Itest -DEXH_FIX_AUDIT -fPIC
+mutation_bin   := $(patsubst test/%_test.c,$(B)/mutation/%_test,$(filter test/unit/% test/prop/% test/golden/%,$(test_src)))
+mutation_obj    = $(patsubst %.c,$(B)/mutation/obj/%.o,$(1))
+$(B)/mutation/obj/%.o: %.c $(stamp)
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(mutation_flags) -c $< -o $@
+$(B)/mutation/libexhand.so: $(call mutation_obj,$(lib_src))
+	$(Q)$(CC) -shared -o $@ $^
+$(mutation_bin): $(B)/mutation/%_test: $(B)/mutation/obj/test/%_test.o $(call mutation_obj,test/support.c) $(B)/mutation/libexhand.so
+$(B)/mutation/golden/golden_test: $(call mutation_obj,$(golden_src))
+$(mutation_bin):
+	@mkdir -p $(@D)
+	$(Q)$(CC) -o $@ $(filter %.o,$^) $(filter %.so,$^) -Wl,-rpath,$(abspath $(B)/mutation) -lcmocka
+
+## Small errors planted all over lib/src: the unit tests, laws and golden vectors of a source must tell 95 of 100 (ARGS="--sample 30 quad")
+.PHONY: mutation mutation-built
+mutation:
+	@$(MAKE) --no-print-directory $(if $(V),,-s) mutation-built
+	@CC="$(CC)" test/mutation/mutation.py --build $(B)/mutation --jobs $(jobs) $(ARGS)
+mutation-built: $(mutation_bin)
 
 # --- the pc104 image in the loop ----------------------------------------------------------
 
