@@ -401,6 +401,7 @@ faults-mutants: $(exhand)
 # tests that need no machine as one, over a library whose saturations are counted. SUITE_LINK links what CC compiled, SUITE_LTO is
 # none, gcc or clang, SUITE_CFLAGS is for all but the golden vectors.
 suite_def   := -D_POSIX_C_SOURCE=200809L -DEXH_CHECK_PLAIN
+comma       := ,
 suite_dirs  := unit prop cards emu $(if $(SUITE_METAL),,pc104)
 suite_test  := $(filter $(suite_dirs:%=test/%/%),$(test_src))
 suite_src   := $(sort $(lib_src) test/support.c $(cards_src) $(emu_src) test/cards/bus.c test/cards/rig.c $(if $(SUITE_METAL),,test/pc104/frames.c ports/pc104/net.c))
@@ -411,7 +412,7 @@ suite_link  := $(or $(SUITE_LINK),$(CC))
 suite_metal := $(if $(SUITE_METAL),$(patsubst %,$(B)/suite/metal/%.o,test/matrix/$(SUITE_METAL) ports/mps2/mem))
 suite_bare  := -nostdlib -Wl,--build-id=none -Wl,--no-enum-size-warning -Wl,-z,noexecstack
 suite_libs  := $(if $(SUITE_METAL),$(suite_bare) -T test/matrix/$(SUITE_METAL).ld -lgcc)
-suite_def   += $(if $(SUITE_METAL),-ffreestanding -DEXH_CHECK_PUTCHAR=metal_putchar -DEXH_CHECK_ENV=metal_env)
+suite_def   += $(if $(SUITE_METAL),-ffreestanding -DEXH_CHECK_PUTCHAR=metal_putchar $(if $(filter avr,$(SUITE_METAL)),,-DEXH_CHECK_ENV=metal_env))
 
 $(B)/suite/plain/%.o: %.c $(stamp)
 	@mkdir -p $(@D)
@@ -431,6 +432,25 @@ $(B)/suite/groups.inc: $(suite_test) $(stamp)
 	@printf 'GROUP(%s)\n' $(foreach t,$(suite_test),$(call suite_group,$t)) > $@
 $(B)/suite/audit/test/matrix/suite.o: $(B)/suite/groups.inc
 $(B)/suite/audit/test/matrix/suite.o: tflags += -I$(B)/suite
+
+# AVR: an image a module, which says its digests and compares none; those that do not fit are SUITE_WITHOUT. What runs them
+# has 63 KiB of memory for avr_large.
+avr_src    := $(filter-out $(patsubst %,test/golden/%.c,digests golden_test explain $(SUITE_WITHOUT)),$(golden_src) test/support.c $(lib_src))
+avr_module := $(filter-out $(SUITE_WITHOUT),$(patsubst test/golden/digest/%.inc,%,$(sort $(wildcard test/golden/digest/*.inc))))
+avr_large  := bilateral precontact
+avr_link   := -Wl,--gc-sections -Wl,--defsym=__DATA_REGION_LENGTH__=0xFF00
+$(B)/suite/avr/%.elf: test/matrix/avr.c $(patsubst %.c,$(B)/suite/plain/%.o,$(avr_src))
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(base) $(CFLAGS) $(suite_lto) -Itest -Itest/golden $(suite_def) -DMETAL_MODULE=$* -c $< -o $(@:.elf=.main.o)
+	$(Q)$(CC) -O$(O) $(CFLAGS) $(suite_lto) $(avr_link) $(if $(filter $*,$(avr_large)),-Wl$(comma)--defsym=__stack=0xFFFF) \
+	    -o $@ $(@:.elf=.main.o) $(filter %.o,$^)
+# A size at which this compiler fails.
+$(if $(filter avr,$(SUITE_METAL)),$(B)/suite/plain/test/golden/bilateral.o: suite_def += -O2)
+$(B)/suite/avr_run: test/matrix/avr_run.c $(stamp)
+	@mkdir -p $(@D)
+	$(Q)gcc -std=gnu99 -O2 -Wall -Wextra -Werror -o $@ $< -lsimavr -lelf
+$(B)/suite/images: $(avr_module:%=$(B)/suite/avr/%.elf) $(B)/suite/avr_run
+	@echo $(filter %.elf,$^) > $@
 
 $(B)/suite/golden: $(patsubst %.c,$(B)/suite/plain/%.o,$(golden_src) test/support.c $(lib_src))
 $(B)/suite/tests: $(patsubst %.c,$(B)/suite/audit/%.o,$(suite_src) $(suite_test) test/matrix/suite.c)

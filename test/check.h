@@ -19,10 +19,17 @@
 #if __STDC_HOSTED__
 #include <inttypes.h>
 #include <string.h>
-#else /* without a C library: int has 32 bits, whichever of int and long int32_t is */
+#else /* without a C library; where int has 32 bits it does whichever of int and long int32_t is */
+#include <limits.h>
+#if INT_MAX >= INT32_MAX
 #define PRId32 "d"
 #define PRIu32 "u"
 #define PRIx32 "x"
+#else
+#define PRId32 "ld"
+#define PRIu32 "lu"
+#define PRIx32 "lx"
+#endif
 #define PRId64 "lld"
 #define PRIu64 "llu"
 #define PRIx64 "llx"

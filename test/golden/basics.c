@@ -205,7 +205,7 @@ void golden_record(struct golden *g, uint32_t rate_Hz)
         if (golden_draw(&r, 0, 9) == 0) { other_version(buf, whole); }
         if (how & 1) {
             const uint32_t at = how == 1 ? where : where & 15;
-            buf[at >> 3] ^= (uint8_t)(1u << (at & 7));
+            buf[at >> 3] ^= (uint8_t)(UINT32_C(1) << (at & 7));
         }
         if (how & 2) { len = where >> 3; }
         golden_put(g, how);

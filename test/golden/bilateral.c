@@ -109,11 +109,11 @@ static void any_finger(unsigned f, struct golden_rng *r, uint32_t rate_Hz)
     p->hand[f].pad_m_q30 = (int32_t)golden_draw(r, 0, 26843545);
     p->precontact[f].from_slope = (int32_t)golden_draw(r, 0, 1);
     p->precontact[f].printed_sign = (int32_t)golden_draw(r, 0, 1);
-    p->precontact[f].d_lim_m_q30 = (int32_t)-golden_draw(r, 1 << 22, 1 << 25);
-    p->precontact[f].hyst_m_q30 = (int32_t)golden_draw(r, 0, 1 << 22);
-    p->precontact[f].scale_q24 = (int32_t)golden_draw(r, 1 << 21, 1 << 27);
+    p->precontact[f].d_lim_m_q30 = (int32_t)-golden_draw(r, INT32_C(1) << 22, INT32_C(1) << 25);
+    p->precontact[f].hyst_m_q30 = (int32_t)golden_draw(r, 0, INT32_C(1) << 22);
+    p->precontact[f].scale_q24 = (int32_t)golden_draw(r, INT32_C(1) << 21, INT32_C(1) << 27);
     p->precontact[f].age_max_ms = any_ms(r, 20, 120, rate_Hz);
-    p->precontact[f].doubt_m_q30 = (int32_t)golden_draw(r, 0, 1 << 23);
+    p->precontact[f].doubt_m_q30 = (int32_t)golden_draw(r, 0, INT32_C(1) << 23);
     p->precontact[f].doubt_ms = any_ms(r, 1, 20, rate_Hz);
     p->precontact[f].tip_age_max_ms = any_ms(r, 1, 12, rate_Hz);
 }
@@ -127,13 +127,14 @@ static void any_sensor(struct glove_sensor_par *s, unsigned i, struct golden_rng
 {
     s->low_raw = (int32_t)golden_draw(r, -24000, -8000);
     s->high_raw = (int32_t)golden_draw(r, 8000, 24000);
-    s->zero_raw_q15 = (int32_t)golden_draw(r, -(8000 << 15), 8000 << 15);
+    s->zero_raw_q15 = (int32_t)golden_draw(r, -(INT32_C(8000) << 15), INT32_C(8000) << 15);
     s->gain_turnpraw_q38 = (int32_t)golden_draw(r, 1500000, 4000000);
     if (golden_draw(r, 0, 7) == 0) { s->gain_turnpraw_q38 = -s->gain_turnpraw_q38; }
     for (unsigned n = 0; n < 2; n++) {
         const int crossed = any_crossed(i);
         s->of[n] = !crossed ? EXH_GLOVE_NONE : (int32_t)(n == 0 ? i - 1 : i + 1);
-        s->cross_q30[n] = crossed ? (int32_t)golden_draw(r, -(1 << 28), 1 << 28) : 0;
+        s->cross_q30[n] =
+            crossed ? (int32_t)golden_draw(r, -(INT32_C(1) << 28), INT32_C(1) << 28) : 0;
     }
 }
 
@@ -150,7 +151,7 @@ static void any_par(struct golden_rng *r, uint32_t rate_Hz, uint32_t k)
     p->own.link_ms = golden_draw(r, 0, 15) ? any_ms(r, 10, 14, rate_Hz) : 0;
     p->calib.uncalibrated = 1;
     p->glove_own.every = (int32_t)golden_draw(r, 1, 4);
-    p->glove_own.present = (1 << EXH_GLOVE_SENSORS) - 1;
+    p->glove_own.present = (INT32_C(1) << EXH_GLOVE_SENSORS) - 1;
     for (unsigned f = 0; f < FINGERS; f++) { any_finger(f, r, rate_Hz); }
     for (unsigned i = 0; i < BILATERAL_MATERIALS; i++) {
         p->material[i].k_Npm_q10 = any_size(r, 1024000000);
@@ -216,7 +217,7 @@ static void send(struct exh_wire_packet *p, struct golden_rng *r)
     d.len = (uint16_t)exh_wire_write(&rig.tx, p, stamp_us, d.b, sizeof d.b);
     if (how == 2) {
         const int64_t bit = golden_draw(r, 0, 8 * d.len - 1);
-        d.b[bit >> 3] ^= (uint8_t)(1 << (bit & 7));
+        d.b[bit >> 3] ^= (uint8_t)(INT32_C(1) << (bit & 7));
     }
     if (how == 3 && rig.lates < LATE) {
         rig.late[rig.lates++] = d;
@@ -246,7 +247,7 @@ static void any_object(struct object *o, unsigned f, struct golden_rng *r)
     o->plane.object = (uint16_t)golden_draw(r, 0, 65535);
     o->plane.material = (uint8_t)golden_draw(r, 0, BILATERAL_MATERIALS);
     for (int i = 0; i < 3; i++) { o->plane.normal_q30[i] = golden_q30(n[i], t.d * u.d); }
-    put_before(o, f, golden_draw(r, 0, 1 << 26));
+    put_before(o, f, golden_draw(r, 0, INT32_C(1) << 26));
 }
 
 static struct exh_wire_plane any_plane(unsigned f, struct golden_rng *r)
@@ -257,7 +258,7 @@ static struct exh_wire_plane any_plane(unsigned f, struct golden_rng *r)
     struct exh_wire_plane p;
     int64_t i;
     if (how < 2 || !o->there) { any_object(o, f, r); }
-    if (how >= 9 && how < 18) { put_before(o, f, golden_draw(r, 0, 1 << 26)); }
+    if (how >= 9 && how < 18) { put_before(o, f, golden_draw(r, 0, INT32_C(1) << 26)); }
     p = o->plane;
     if (how == 4) { p = none; }
     if (how == 5 || how == 6) {
@@ -267,7 +268,7 @@ static struct exh_wire_plane any_plane(unsigned f, struct golden_rng *r)
     if (how == 7) { p.object ^= 1; }
     if (how == 8) {
         i = golden_draw(r, 0, 2);
-        p.point_m_q30[i] += (int32_t)golden_draw(r, -(1 << 22), 1 << 22);
+        p.point_m_q30[i] += (int32_t)golden_draw(r, -(INT32_C(1) << 22), INT32_C(1) << 22);
     }
     for (i = 0; i < 3; i++) { p.hit_m_q30[i] = p.point_m_q30[i]; }
     return p;
@@ -296,9 +297,9 @@ static const struct {
     {0x0B01, BILATERAL_MATERIALS, 0, 1024000000, 1024000001},
     {0x0B02, BILATERAL_MATERIALS, 0, 1048576000, -1},
     {0x0B03, BILATERAL_MATERIALS, 0, 104857600, 104857601},
-    {0x0C01, FINGERS, -(1 << 25), -(1 << 22), 0},
-    {0x0C02, FINGERS, 0, 1 << 22, -1},
-    {0x0C03, FINGERS, 1 << 21, 1 << 27, (1 << 27) + 1},
+    {0x0C01, FINGERS, -(INT32_C(1) << 25), -(INT32_C(1) << 22), 0},
+    {0x0C02, FINGERS, 0, INT32_C(1) << 22, -1},
+    {0x0C03, FINGERS, INT32_C(1) << 21, INT32_C(1) << 27, (INT32_C(1) << 27) + 1},
     {0x0C04, FINGERS, 0, 1, 2},
     {0x8611, 1, 1, 12, 10001},
     {0x8612, 1, 1, 1000, -1},
@@ -370,11 +371,11 @@ static void any_frame(struct golden_rng *r, const struct golden_wave *w, uint32_
     rig.in.glove_new = 0;
     if (g->age_ticks < UINT16_MAX) { g->age_ticks++; }
     if (golden_draw(r, 0, 47) == 0) {
-        rig.wrong ^= 1u << golden_draw(r, 0, 21);
+        rig.wrong ^= UINT32_C(1) << golden_draw(r, 0, 21);
     } else if (golden_draw(r, 0, 7) == 0) {
         rig.wrong = 0;
     }
-    if (away(k)) { rig.wrong = (1u << EXH_GLOVE_SENSORS) - 1; }
+    if (away(k)) { rig.wrong = (UINT32_C(1) << EXH_GLOVE_SENSORS) - 1; }
     if (k % (uint32_t)rig.par.glove_own.every != 0 || golden_draw(r, 0, 31) == 0) { return; }
     rig.in.glove_new = 1;
     g->age_ticks = 0;
@@ -401,7 +402,7 @@ static void any_in(struct golden_rng *r, struct golden_wave moves[FINGERS], uint
             golden_monitor(&rig.astray[f], &rig.par.drive[f], r, rig.sig.paper[f].i_des_A_q26);
     }
     if (golden_draw(r, 0, 127) == 0) {
-        in->drive.din ^= 1u << golden_draw(r, 0, 12);
+        in->drive.din ^= UINT32_C(1) << golden_draw(r, 0, 12);
     } else if (golden_draw(r, 0, 3) == 0) {
         in->drive.din = HEALTHY;
     }
@@ -474,7 +475,7 @@ void golden_bilateral(struct golden *g, uint32_t rate_Hz)
     struct golden_rng r = golden_rng("bilateral", rate_Hz, 0);
     for (uint32_t i = 0; i < 4; i++) {
         golden_wave(&codes[i], "bilateral", rate_Hz, 20 + i, -32768, 32767,
-                    1 << golden_draw(&r, 4, 9));
+                    INT32_C(1) << golden_draw(&r, 4, 9));
     }
     while (g->tick < GOLDEN_TICKS) {
         const uint32_t k = g->tick;

@@ -25,14 +25,14 @@ static uint8_t any_points(struct golden_rng *r, struct exh_calib_point *p)
     int64_t i = 0;
     int64_t m = 0;
     for (int64_t k = 0; k < n; k++) {
-        const int64_t df = golden_draw(r, 1 << 18, 1 << 20);
+        const int64_t df = golden_draw(r, INT32_C(1) << 18, INT32_C(1) << 20);
         f += df;
         i += df * 64 / kf * golden_draw(r, 90, 110) / 100;
         m += df * 64 / kf * golden_draw(r, 80, 120) / 100;
         p[k].force_N_q20 = (int32_t)f;
         p[k].cur_A_q26 = (int32_t)i;
         p[k].mon_A_q26 = (int32_t)m;
-        p[k].friction_A_q26 = (int32_t)golden_draw(r, 0, 1 << 24);
+        p[k].friction_A_q26 = (int32_t)golden_draw(r, 0, INT32_C(1) << 24);
     }
     return (uint8_t)n;
 }
@@ -83,7 +83,7 @@ static void put_image(struct golden *g, struct golden_rng *r, const struct exh_c
     golden_put(g, exh_crc32(0, buf, (size_t)size - 1)); /* over all, the CRC is constant */
     const int spoilt = golden_draw(r, 0, 3) == 0;
     const int64_t where = golden_draw(r, 64, 8 * (int64_t)size - 1);
-    if (spoilt) { buf[where >> 3] ^= (uint8_t)(1u << (where & 7)); }
+    if (spoilt) { buf[where >> 3] ^= (uint8_t)(UINT32_C(1) << (where & 7)); }
     golden_put(g, exh_calib_load(&again, buf, (size_t)size, NULL));
 }
 

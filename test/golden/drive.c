@@ -97,7 +97,7 @@ void golden_drive_par(struct exh_drive_par *p, struct golden_rng *r, uint32_t ra
     const int32_t cont_max = 221459251;
     const int32_t least_peak = 6710886;
     const int32_t ms_max = (int32_t)(12000 / rate_Hz + 1);
-    p->f_max_N_q20 = (int32_t)golden_draw(r, 1 << 20, 104857600);
+    p->f_max_N_q20 = (int32_t)golden_draw(r, INT32_C(1) << 20, 104857600);
     p->slew_up_Nps = slew(r, rate_Hz, 1);
     p->slew_down_Nps = slew(r, rate_Hz, 1000);
     p->i_peak_A_q26 = (int32_t)golden_draw(r, least_peak, 442918502);
@@ -130,22 +130,25 @@ static void axis_setup(struct axis *a, struct golden_rng *r, uint32_t rate_Hz, u
     int32_t y;
     (void)memset(a, 0, sizeof *a);
     golden_drive_par(&a->par, r, rate_Hz);
-    to_cur = rising(r, a->to_cur, 0, 0, 1 << 25, 1 << 28);
-    x = (int32_t)golden_draw(r, -(1 << 29), 0);
-    y = (int32_t)golden_draw(r, -(1 << 27), 0);
+    to_cur = rising(r, a->to_cur, 0, 0, INT32_C(1) << 25, INT32_C(1) << 28);
+    x = (int32_t)golden_draw(r, -(INT32_C(1) << 29), 0);
+    y = (int32_t)golden_draw(r, -(INT32_C(1) << 27), 0);
     CHECK_EQ_I64(exh_drive_setup(&a->cfg, &a->par, golden_period(rate_Hz, k), to_cur,
-                                 rising(r, a->to_force, x, y, 1 << 28, 1 << 25)),
+                                 rising(r, a->to_force, x, y, INT32_C(1) << 28, INT32_C(1) << 25)),
                  0);
 }
 
 static struct exh_permit any_permit(struct golden_rng *r, uint32_t k, struct exh_gain fall)
 {
     static const uint8_t mode[] = {0, 2, 2, 2, 3};
-    struct exh_permit p = {k < 4 || (k >= 70 && k < 76) ? 0 : k == 130 ? 3 : 1, 1 << 30, 0, 1, fall};
+    struct exh_permit p = {k < 4 || (k >= 70 && k < 76) ? 0
+                           : k == 130                   ? 3
+                                                        : 1,
+                           INT32_C(1) << 30, 0, 1, fall};
     int64_t any;
     if (k >= 100 && k < 110) { p.mode = EXH_PERMIT_RELEASE; }
     if (k >= 160 && (any = golden_draw(r, 0, 31)) < 5) { p.mode = mode[any]; }
-    if (golden_draw(r, 0, 3) == 0) { p.share_q30 = (int32_t)golden_draw(r, 0, 1 << 30); }
+    if (golden_draw(r, 0, 3) == 0) { p.share_q30 = (int32_t)golden_draw(r, 0, INT32_C(1) << 30); }
     p.small_N_q20 = (int32_t)golden_draw(r, 0, 10485760);
     if (golden_draw(r, 0, p.mode == EXH_PERMIT_RELEASE ? 1 : 7) == 0) { p.ticks = (uint32_t)golden_draw(r, 1, 3); }
     return p;
@@ -158,8 +161,10 @@ void golden_drive(struct golden *g, uint32_t rate_Hz)
     static struct axis a;
     struct golden_rng r = golden_rng("drive", rate_Hz, 0);
     struct exh_gain fall = {0, 1};
-    golden_wave(&spring, "drive", rate_Hz, 1, -(1 << 26), 1 << 27, 1 << golden_draw(&r, 10, 22));
-    golden_wave(&damper, "drive", rate_Hz, 2, -(1 << 25), 1 << 25, 1 << golden_draw(&r, 10, 22));
+    golden_wave(&spring, "drive", rate_Hz, 1, -(INT32_C(1) << 26), INT32_C(1) << 27,
+                INT32_C(1) << golden_draw(&r, 10, 22));
+    golden_wave(&damper, "drive", rate_Hz, 2, -(INT32_C(1) << 25), INT32_C(1) << 25,
+                INT32_C(1) << golden_draw(&r, 10, 22));
     while (g->tick < GOLDEN_TICKS) {
         const uint32_t k = g->tick;
         struct exh_permit permit;

@@ -37,7 +37,7 @@ static void any_par(struct drop_par *p, struct golden_rail *rail, struct golden_
     golden_watch_par(&p->watch, r, rate_Hz);
     golden_safety_par(&p->safety, r, rate_Hz);
     golden_supply_par(&p->supply, rail, r, rate_Hz, 31);
-    p->own.q_lim_m_q30 = (int32_t)golden_draw(r, -(1 << 26), 1 << 26);
+    p->own.q_lim_m_q30 = (int32_t)golden_draw(r, -(INT32_C(1) << 26), INT32_C(1) << 26);
     p->own.kf_NpA_q20 = (int32_t)golden_draw(r, 104858, 104857600);
     p->calib.uncalibrated = 1;
 }
@@ -71,7 +71,7 @@ static void any_in(struct exh_scene_in *in, struct golden_rng *r, uint32_t k, st
 {
     const uint8_t state = d->s.drop.safety.state;
     if (golden_draw(r, 0, 191) == 0) {
-        in->drive.din ^= 1u << golden_draw(r, 0, 8);
+        in->drive.din ^= UINT32_C(1) << golden_draw(r, 0, 8);
     } else if (golden_draw(r, 0, 3) == 0) {
         in->drive.din = HEALTHY;
     }

@@ -51,7 +51,7 @@ void golden_filter(struct golden *g, uint32_t rate_Hz)
     int err = 0;
     for (uint32_t i = 0; i < CHANNELS; i++) {
         golden_wave(&w[i], "filter", rate_Hz, 1 + i, INT32_MIN, INT32_MAX,
-                    1 << golden_draw(&r, 8, 28));
+                    INT32_C(1) << golden_draw(&r, 8, 28));
     }
     while (g->tick < GOLDEN_TICKS) {
         const uint32_t k = g->tick;
@@ -85,7 +85,8 @@ void golden_quantizer(struct golden *g, uint32_t rate_Hz)
     struct exh_quantizer_cfg cfg = {0, 0};
     struct exh_quantizer s = {0, 0};
     int err = 0;
-    golden_wave(&w, "quantizer", rate_Hz, 1, INT32_MIN, INT32_MAX, 1 << golden_draw(&r, 4, 30));
+    golden_wave(&w, "quantizer", rate_Hz, 1, INT32_MIN, INT32_MAX,
+                INT32_C(1) << golden_draw(&r, 4, 30));
     while (g->tick < GOLDEN_TICKS) {
         int32_t x = w.at[g->tick];
         if (g->tick == GOLDEN_AGAIN) { s = (struct exh_quantizer){0, 0}; }
@@ -95,7 +96,7 @@ void golden_quantizer(struct golden *g, uint32_t rate_Hz)
             hyst = golden_draw(&r, 0, INT64_C(1) << (32 - par.bits));
             par.hyst_raw_q16 = hyst > INT32_MAX ? INT32_MAX : (int32_t)hyst;
             other.bits = (int32_t)golden_draw(&r, 0, 25);
-            other.hyst_raw_q16 = (int32_t)golden_draw(&r, -1, 1 << 24);
+            other.hyst_raw_q16 = (int32_t)golden_draw(&r, -1, INT32_C(1) << 24);
             err = exh_quantizer_setup(&cfg, &other);
             CHECK_EQ_I64(exh_quantizer_setup(&cfg, &par), 0);
         }

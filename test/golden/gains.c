@@ -18,23 +18,23 @@ static struct exh_params params;
 static struct exh_gains_par any_rule(struct golden_rng *r, struct exh_period T)
 {
     struct exh_gains_par p;
-    int64_t b = golden_draw(r, 0, 1 << 24);
+    int64_t b = golden_draw(r, 0, INT32_C(1) << 24);
     const int line = golden_draw(r, 0, 2) == 0; /* knots that are none: the way grazes them */
     p.rate_Hz_q8 = (int32_t)((256 * (int64_t)T.den + T.num / 2) / T.num);
     p.knots = (int32_t)golden_draw(r, 2, 8);
-    p.k_min_Npm_q10 = (int32_t)(golden_draw(r, 0, 1) * golden_draw(r, 0, 1 << 24));
+    p.k_min_Npm_q10 = (int32_t)(golden_draw(r, 0, 1) * golden_draw(r, 0, INT32_C(1) << 24));
     for (int i = 0; i < EXH_GAINS_KNOTS; i++) {
         p.b_Nspm_q20[i] = (int32_t)b;
         p.k_Npm_q10[i] = (int32_t)golden_draw(r, 0, K_MAX);
         if (line) { p.k_Npm_q10[i] = (int32_t)b; }
-        b += golden_draw(r, 1, 1 << 26);
+        b += golden_draw(r, 1, INT32_C(1) << 26);
     }
     return p;
 }
 
 static void spoil(struct exh_gains_par *p, int64_t how)
 {
-    switch (how) {
+    switch ((int)how) {
     case 1: p->knots = 1; break;
     case 2: p->knots = 9; break;
     case 3: p->rate_Hz_q8 = 255; break;

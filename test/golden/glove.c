@@ -12,11 +12,11 @@ static void any_sensor(struct golden_rng *r, int i, int present, struct exh_glov
 {
     int64_t gain;
     s->low_raw = (int16_t)golden_draw(r, -30000, 29000);
-    s->high_raw = (int16_t)(s->low_raw + golden_draw(r, 64, 30000 - s->low_raw));
-    s->zero_raw_q15 = (int32_t)golden_draw(r, -(1 << 30), (1 << 30) - 32768);
-    gain = golden_draw(r, 1 << 17, INT32_MAX);
+    s->high_raw = (int16_t)(s->low_raw + golden_draw(r, 64, INT64_C(30000) - s->low_raw));
+    s->zero_raw_q15 = (int32_t)golden_draw(r, -(INT32_C(1) << 30), (INT32_C(1) << 30) - 32768);
+    gain = golden_draw(r, INT32_C(1) << 17, INT32_MAX);
     gain >>= golden_draw(r, 0, 13);
-    if (gain < 1 << 17) { gain = 1 << 17; }
+    if (gain < INT32_C(1) << 17) { gain = INT32_C(1) << 17; }
     if (golden_draw(r, 0, 1) != 0) { gain = -gain; }
     s->gain_turnpraw_q38 = present ? (int32_t)gain : 0;
     s->cross_q30[0] = s->cross_q30[1] = 0;
@@ -66,7 +66,7 @@ struct worn {
 void golden_glove_sensors(struct exh_glove_cal *cal, struct golden_rng *r)
 {
     static const uint8_t absent[] = {0, 5, 10, 14, 20, 21, 31, 31}; /* 31: none is */
-    cal->present = 0x3FFFFFu & ~(1u << absent[golden_draw(r, 0, 7)]);
+    cal->present = 0x3FFFFFu & ~(UINT32_C(1) << absent[golden_draw(r, 0, 7)]);
     for (int i = 0; i < EXH_GLOVE_SENSORS; i++) {
         any_sensor(r, i, cal->present >> i & 1, &cal->sensor[i]);
     }
@@ -84,7 +84,7 @@ static void wear(struct worn *g, struct golden_rng *r, struct exh_period T)
 static int32_t bad_code(const struct worn *g, int i, uint32_t k)
 {
     const struct exh_glove_sensor *s = &g->cal.sensor[i];
-    const int64_t span = s->high_raw - s->low_raw;
+    const int64_t span = (int64_t)s->high_raw - s->low_raw;
     const int64_t past = ((span * g->par.margin_q16 + 32768) >> 16) + (k & 1);
     switch (((uint32_t)i + (k >> 5)) & 3) {
     case 0: return -32768;
@@ -101,7 +101,7 @@ static void any_frame(const struct worn *g, const struct golden_wave *w, uint32_
         const struct exh_glove_sensor *s = &g->cal.sensor[i];
         const int32_t share = w[i & 3].at[k] + 32768;
         const int32_t good =
-            s->low_raw + (int32_t)((int64_t)share * (s->high_raw - s->low_raw) >> 16);
+            s->low_raw + (int32_t)(share * ((int64_t)s->high_raw - s->low_raw) >> 16);
         in->raw[i] = (int16_t)(g->wrong >> i & 1 ? bad_code(g, i, k) : good);
     }
 }
@@ -130,7 +130,8 @@ static void frames(struct golden *g, const char *name, uint32_t rate_Hz, uint32_
     static struct worn worn;
     struct golden_rng r = golden_rng(name, rate_Hz, 0);
     for (uint32_t i = 0; i < 4; i++) {
-        golden_wave(&w[i], name, rate_Hz, 1 + i, -32768, 32767, 1 << golden_draw(&r, 0, 11));
+        golden_wave(&w[i], name, rate_Hz, 1 + i, -32768, 32767,
+                    INT32_C(1) << golden_draw(&r, 0, 11));
     }
     while (g->tick < GOLDEN_TICKS) {
         struct exh_glove_in in = {.age_ticks = 0};
@@ -138,7 +139,7 @@ static void frames(struct golden *g, const char *name, uint32_t rate_Hz, uint32_
         if (g->tick == 0 || g->tick == GOLDEN_AGAIN) {
             wear(&worn, &r, frame_period(rate_Hz, g->tick, every));
         }
-        worn.wrong ^= 1u << golden_draw(&r, 0, 21);
+        worn.wrong ^= UINT32_C(1) << golden_draw(&r, 0, 21);
         any_frame(&worn, w, g->tick, &in);
         for (int i = 0; i < EXH_GLOVE_SENSORS; i++) { golden_put(g, in.raw[i]); }
         golden_put(g, exh_glove_step(&worn.s, &worn.cfg, &in, angle));

@@ -16,7 +16,7 @@ static void put_image(struct golden *g, struct golden_rng *r, const struct exh_g
     golden_put(g, exh_crc32(0, buf, sizeof buf - 1)); /* over all, the CRC is constant */
     spoilt = golden_draw(r, 0, 3) == 0;
     where = golden_draw(r, 64, 8 * (int64_t)sizeof buf - 1);
-    if (spoilt) { buf[where >> 3] ^= (uint8_t)(1u << (where & 7)); }
+    if (spoilt) { buf[where >> 3] ^= (uint8_t)(UINT32_C(1) << (where & 7)); }
     golden_put(g, exh_glove_cal_load(&again, buf, sizeof buf, NULL));
 }
 
@@ -46,10 +46,10 @@ static void spoil(struct golden_rng *r, struct exh_glove_cal *cal)
     const int present = cal->present >> at & 1;
     struct exh_glove_sensor *s = &cal->sensor[at];
     switch (what) {
-    case 0: cal->present = at & 1 ? 0 : cal->present | 1u << EXH_GLOVE_SENSORS; break;
+    case 0: cal->present = at & 1 ? 0 : cal->present | UINT32_C(1) << EXH_GLOVE_SENSORS; break;
     case 1: s->gain_turnpraw_q38 = little; break;
     case 2:
-        if (present) { s->zero_raw_q15 = little < 0 ? -(1 << 30) - 1 : 1 << 30; }
+        if (present) { s->zero_raw_q15 = little < 0 ? -(INT32_C(1) << 30) - 1 : INT32_C(1) << 30; }
         break;
     case 3: s->high_raw = (int16_t)(s->low_raw + EXH_GLOVE_SPAN_MIN_RAW - 1); break;
     case 4: cal->sensor[crossed[at & 3]].of[0] = crossed[at >> 2 & 3]; break;

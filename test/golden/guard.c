@@ -39,7 +39,7 @@ static void any_change(struct still *s, struct golden_rng *r)
     const int64_t how = golden_draw(r, 0, 9);
     const uint32_t at = (uint32_t)golden_draw(r, 0, s->len_B > 0 ? s->len_B - 1 : 0);
     const uint32_t word = (uint32_t)golden_draw(r, 0, GOLDEN_VALUES - 1);
-    const uint8_t bit = (uint8_t)(1 << golden_draw(r, 0, 7));
+    const uint8_t bit = (uint8_t)(INT32_C(1) << golden_draw(r, 0, 7));
     if (how < 5) { change(s, 0, 0); }
     if (how < 3) {
         s->at = at;

@@ -9,7 +9,7 @@ void golden_angle(struct golden *g, uint32_t rate_Hz)
 {
     static struct golden_wave x;
     struct golden_rng r = golden_rng("angle", rate_Hz, 0);
-    golden_wave(&x, "angle", rate_Hz, 1, INT32_MIN, INT32_MAX, 1 << 24);
+    golden_wave(&x, "angle", rate_Hz, 1, INT32_MIN, INT32_MAX, INT32_C(1) << 24);
     while (g->tick < GOLDEN_TICKS) {
         const uint32_t eighth = (uint32_t)golden_draw(&r, 0, 7);
         const int32_t near = exh_from_u32((eighth << 29) + (uint32_t)golden_draw(&r, -3, 3));
@@ -35,7 +35,9 @@ static int32_t any_size(struct golden_rng *r, int32_t lo, int32_t hi)
 static void any_joint(struct golden_rng *r, struct exh_hand_joint *j)
 {
     j->bias_turn_q32 = any_size(r, INT32_MIN, INT32_MAX);
-    for (int t = 0; t < EXH_HAND_TERMS; t++) { j->gain_q24[t] = any_size(r, -(1 << 27), 1 << 27); }
+    for (int t = 0; t < EXH_HAND_TERMS; t++) {
+        j->gain_q24[t] = any_size(r, -(INT32_C(1) << 27), INT32_C(1) << 27);
+    }
     for (int t = 0; t < EXH_HAND_TERMS; t++) { j->sensor[t] = (uint8_t)golden_draw(r, 0, 21); }
     j->lo_turn_q32 = (int32_t)golden_draw(r, INT32_MIN, 0);
     j->hi_turn_q32 = (int32_t)golden_draw(r, 0, INT32_MAX);
@@ -97,7 +99,7 @@ void golden_hand(struct golden *g, uint32_t rate_Hz)
     struct golden_rng r = golden_rng("hand", rate_Hz, 0);
     for (uint32_t i = 0; i < 4; i++) {
         golden_wave(&w[i], "hand", rate_Hz, 1 + i, INT32_MIN, INT32_MAX,
-                    1 << golden_draw(&r, 16, 28));
+                    INT32_C(1) << golden_draw(&r, 16, 28));
     }
     while (g->tick < GOLDEN_TICKS) {
         const unsigned f = g->tick % EXH_HAND_FINGERS;

@@ -60,7 +60,7 @@ static uint32_t any_frame(const struct exh_modbus_rtu *u, struct golden_rng *r, 
     if (how == 1) { len_B = (uint32_t)golden_draw(r, 1, len_B); }
     if (how == 2) {
         const int64_t at = golden_draw(r, 0, (int64_t)len_B - 1);
-        frame[at] = (uint8_t)(frame[at] ^ 1u << golden_draw(r, 0, 7));
+        frame[at] = (uint8_t)(frame[at] ^ UINT32_C(1) << golden_draw(r, 0, 7));
     }
     return len_B;
 }

@@ -348,7 +348,7 @@ uint32_t golden_request(const struct golden_box *b, struct golden_rng *r, uint8_
     }
     if (how == 2) {
         const int64_t at = golden_draw(r, 0, (int64_t)len_B - 1);
-        req[at] = (uint8_t)(req[at] ^ 1u << golden_draw(r, 0, 7));
+        req[at] = (uint8_t)(req[at] ^ UINT32_C(1) << golden_draw(r, 0, 7));
     }
     if (how > 2 && how < 6 && (req[0] == 16 || req[0] == 23) && len_B > count_at + 2) {
         len_B -= 2; /* one register fewer than it says */

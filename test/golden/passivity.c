@@ -18,8 +18,10 @@ struct finger {
 static void any_tables(struct finger *d, struct golden_rng *r)
 {
     for (int i = 1; i < 3; i++) {
-        d->to_cur[i].x = d->to_cur[i - 1].x + (int32_t)golden_draw(r, 1 << 20, 1 << 25);
-        d->to_cur[i].y = d->to_cur[i - 1].y + (int32_t)golden_draw(r, 1 << 24, 1 << 27);
+        d->to_cur[i].x =
+            d->to_cur[i - 1].x + (int32_t)golden_draw(r, INT32_C(1) << 20, INT32_C(1) << 25);
+        d->to_cur[i].y =
+            d->to_cur[i - 1].y + (int32_t)golden_draw(r, INT32_C(1) << 24, INT32_C(1) << 27);
     }
     CHECK_EQ_I64(exh_table_set(d->to_cur, 3), 0);
     CHECK_EQ_I64(exh_table_invert(d->held, d->to_cur, 3), 0);
@@ -57,10 +59,10 @@ static int32_t any_move(struct golden_rng *r, int32_t way)
 static void any_asked(struct exh_force_ledger *f, struct golden_rng *r, int32_t most)
 {
     const int64_t how = golden_draw(r, 0, 7);
-    const int64_t some = golden_draw(r, -(1 << 20), 1 << 27);
+    const int64_t some = golden_draw(r, -(INT32_C(1) << 20), INT32_C(1) << 27);
     const int64_t any = golden_draw(r, INT32_MIN, INT32_MAX);
     f->spring_N_q20 = how < 1 ? 0 : how < 3 ? most : how < 4 ? any * 2048 : some;
-    f->damper_N_q20 = golden_draw(r, -(1 << 22), 1 << 22);
+    f->damper_N_q20 = golden_draw(r, -(INT32_C(1) << 22), INT32_C(1) << 22);
 }
 
 /* What the code stands for: some 20000 LSB beside it, now and then nothing. */

@@ -42,7 +42,9 @@ static void any_object(struct object *o, struct golden_rng *r)
     const struct golden_turn u = golden_any_turn(r);
     const int64_t n[3] = {t.c * u.c, t.s * u.c, u.s * t.d};
     for (int i = 0; i < 3; i++) { o->n[i] = golden_q30(n[i], t.d * u.d); }
-    for (int i = 0; i < 3; i++) { o->point[i] = (int32_t)golden_draw(r, -(1 << 28), 1 << 28); }
+    for (int i = 0; i < 3; i++) {
+        o->point[i] = (int32_t)golden_draw(r, -(INT32_C(1) << 28), INT32_C(1) << 28);
+    }
     o->number = (uint16_t)golden_draw(r, 0, 65535);
     o->material = (uint8_t)golden_draw(r, 0, 2);
 }
@@ -62,7 +64,7 @@ static void again(struct exh_precontact_par *p, struct golden_rng *r)
     const int32_t d = smaller(r, 107375, 214748364, 4);
     p->d_lim_m_q30 = d < 107375 ? -107375 : -d;
     p->hyst_m_q30 = smaller(r, 0, 53687091, 3);
-    p->scale_q24 = (int32_t)golden_draw(r, 1 << 21, 1 << 27);
+    p->scale_q24 = (int32_t)golden_draw(r, INT32_C(1) << 21, INT32_C(1) << 27);
     p->doubt_m_q30 = smaller(r, 0, 53687091, 6);
 }
 
@@ -113,26 +115,26 @@ static int refused(int64_t how, struct exh_period T)
     struct exh_precontact_par p = world.par[0];
     struct exh_precontact_cfg cfg;
     unsigned materials = 256 - (how != 2);
-    int32_t pad = 1 << 24;
+    int32_t pad = INT32_C(1) << 24;
     int err;
     const int32_t was = world.material[254].k_Npm_q10;
-    switch (how) {
+    switch ((int)how) {
     case 1: p.age_max_ms = 60000; break;
     case 3: p.d_lim_m_q30 = 0; break;
-    case 4: p.d_lim_m_q30 = -(1 << 28); break;
+    case 4: p.d_lim_m_q30 = -(INT32_C(1) << 28); break;
     case 5: p.hyst_m_q30 = -1; break;
-    case 6: p.hyst_m_q30 = 1 << 26; break;
-    case 7: p.scale_q24 = (1 << 21) - 1; break;
-    case 8: p.scale_q24 = (1 << 27) + 1; break;
+    case 6: p.hyst_m_q30 = INT32_C(1) << 26; break;
+    case 7: p.scale_q24 = (INT32_C(1) << 21) - 1; break;
+    case 8: p.scale_q24 = (INT32_C(1) << 27) + 1; break;
     case 9: p.from_slope = 2; break;
     case 10: p.printed_sign = -1; break;
     case 11: p.age_max_ms = (T.num & 1) != 0 ? 0 : 60001; break;
     case 12: materials = 0; break;
     case 13: pad = -1; break;
-    case 14: pad = 1 << 25; break;
+    case 14: pad = INT32_C(1) << 25; break;
     case 15: world.material[254].k_Npm_q10 = -1; break;
     case 16: p.doubt_m_q30 = -1; break;
-    case 17: p.doubt_m_q30 = 1 << 26; break;
+    case 17: p.doubt_m_q30 = INT32_C(1) << 26; break;
     case 18: p.doubt_ms = (T.num & 1) != 0 ? 0 : 60001; break;
     case 19: p.tip_age_max_ms = (T.num & 1) != 0 ? 0 : 60001; break;
     default: break;
@@ -164,7 +166,7 @@ static struct exh_plane any_plane(unsigned f, int64_t how, struct golden_rng *r)
     if (how == 26) { o.material = (uint8_t)(materials + golden_draw(r, 0, 2)); }
     if (how == 28) {
         i = golden_draw(r, 0, 2);
-        o.point[i] += (int32_t)golden_draw(r, -(1 << 26), 1 << 26);
+        o.point[i] += (int32_t)golden_draw(r, -(INT32_C(1) << 26), INT32_C(1) << 26);
     }
     if (how == 30) { kind = (uint8_t)golden_draw(r, 3, 255); }
     if (how == 31) { o.number ^= 1; }
@@ -188,13 +190,13 @@ static struct exh_precontact_in any_in(unsigned f, uint32_t k, int64_t d, struct
     int32_t g;
     if (golden_draw(r, 0, 1) == 0) {
         d = par->d_lim_m_q30 - (world.cfg[f].pad_m_q60 >> 30);
-        d -= golden_draw(r, -(1 << 16), 2 * ((int64_t)par->hyst_m_q30 + par->doubt_m_q30));
+        d -= golden_draw(r, -(INT32_C(1) << 16), 2 * ((int64_t)par->hyst_m_q30 + par->doubt_m_q30));
     }
     for (int i = 0; i < 3; i++) { tip[i] = exh_sat32(o->point[i] - (o->n[i] * d >> 30)); }
     if (extreme && golden_draw(r, 0, 1) != 0) {
         for (int i = 0; i < 3; i++) { tip[i] = (int32_t)golden_draw(r, INT32_MIN, INT32_MAX); }
     }
-    g = smaller(r, 0, 1 << 28, 8);
+    g = smaller(r, 0, INT32_C(1) << 28, 8);
     for (int i = 0; i < 3; i++) {
         slope[i] = (int32_t)(-((int64_t)o->n[i] * g >> 30) + golden_draw(r, -65536, 65536));
     }
@@ -221,12 +223,12 @@ static void put_advice(struct golden *g, struct exh_period T, struct golden_rng 
     int64_t bad;
     n.speed_mps_q27 = smaller(r, 0, INT32_MAX, 12);
     n.lag_us = smaller(r, 0, 2000000, 12);
-    n.noise_m_q30 = (int32_t)golden_draw(r, 0, 1 << 22);
+    n.noise_m_q30 = (int32_t)golden_draw(r, 0, INT32_C(1) << 22);
     n.age_us = smaller(r, 0, 2000000, 12);
     n.object_mps_q27 = smaller(r, 0, INT32_MAX, 12);
-    n.slide_m_q30 = smaller(r, 0, 1 << 30, 8);
-    n.radius_m_q30 = golden_draw(r, 0, 3) != 0 ? (int32_t)golden_draw(r, 1, 1 << 29) : 0;
-    d_lim = (int32_t)-golden_draw(r, 1, 1 << 28);
+    n.slide_m_q30 = smaller(r, 0, INT32_C(1) << 30, 8);
+    n.radius_m_q30 = golden_draw(r, 0, 3) != 0 ? (int32_t)golden_draw(r, 1, INT32_C(1) << 29) : 0;
+    d_lim = (int32_t)-golden_draw(r, 1, INT32_C(1) << 28);
     bad = golden_draw(r, 0, 31);
     if (bad == 0) { n.speed_mps_q27 = -1; }
     if (bad == 1) { n.lag_us = -1; }
@@ -282,9 +284,9 @@ void golden_precontact(struct golden *g, uint32_t rate_Hz)
     static struct golden_wave pos[FINGERS];
     struct golden_rng r = golden_rng("precontact", rate_Hz, 0);
     for (uint32_t f = 0; f < FINGERS; f++) {
-        golden_wave(&way[f], "precontact", rate_Hz, 1 + f, -214748364, 1 << 25,
-                    1 << golden_draw(&r, 16, 23));
-        golden_wave(&pos[f], "precontact", rate_Hz, 5 + f, INT32_MIN, INT32_MAX, 1 << 24);
+        golden_wave(&way[f], "precontact", rate_Hz, 1 + f, -214748364, INT32_C(1) << 25,
+                    INT32_C(1) << golden_draw(&r, 16, 23));
+        golden_wave(&pos[f], "precontact", rate_Hz, 5 + f, INT32_MIN, INT32_MAX, INT32_C(1) << 24);
     }
     while (g->tick < GOLDEN_TICKS) {
         const uint32_t k = g->tick;

@@ -44,12 +44,12 @@ static struct exh_probe_par any_par(struct golden_rng *r, struct any *a, uint32_
     p.step_A_q26 = (int32_t)(falls ? -v : v);
     p.end_A_q26 = (int32_t)golden_draw(r, 0, EXH_PROBE_CUR_MAX_A_Q26);
     p.end_A_q26 >>= golden_draw(r, 0, 2);
-    p.move_m_q30 = (int32_t)golden_draw(r, 1, 1 << 22);
+    p.move_m_q30 = (int32_t)golden_draw(r, 1, INT32_C(1) << 22);
     v = a->few_ms * golden_draw(r, 1, 3);
     p.dwell_ms = v > 10000 ? 10000 : (int32_t)v;
     v = a->few_ms * golden_draw(r, 8, 64);
     p.time_ms = v > 1000000 ? 1000000 : (int32_t)v;
-    p.travel_m_q30 = (int32_t)golden_draw(r, 1 << 23, 1 << 26);
+    p.travel_m_q30 = (int32_t)golden_draw(r, INT32_C(1) << 23, INT32_C(1) << 26);
     return p;
 }
 
@@ -108,9 +108,9 @@ static struct exh_home_par home_par(struct golden_rng *r, struct any *a, uint32_
     p.dwell_ms = v > 10000 ? 10000 : (int32_t)v;
     v = a->few_ms * golden_draw(r, 4, 32);
     p.time_ms = v > 1000000 ? 1000000 : (int32_t)v;
-    p.move_m_q30 = (int32_t)golden_draw(r, 1, 1 << 21);
-    p.least_m_q30 = shifted(r, 1 << 23, 3);
-    p.most_m_q30 = (int32_t)golden_draw(r, 1 << 23, 1 << 25);
+    p.move_m_q30 = (int32_t)golden_draw(r, 1, INT32_C(1) << 21);
+    p.least_m_q30 = shifted(r, INT32_C(1) << 23, 3);
+    p.most_m_q30 = (int32_t)golden_draw(r, INT32_C(1) << 23, INT32_C(1) << 25);
     return p;
 }
 
@@ -153,15 +153,15 @@ static struct exh_weigh_par weigh_par(struct golden_rng *r, struct any *a, uint3
     struct exh_weigh_par p;
     int64_t v;
     any_scale(r, a, rate_Hz, k);
-    p.probe.step_A_q26 = (int32_t)golden_draw(r, 1 << 20, 1 << 23);
-    p.probe.end_A_q26 = (int32_t)golden_draw(r, 1 << 26, EXH_PROBE_CUR_MAX_A_Q26);
+    p.probe.step_A_q26 = (int32_t)golden_draw(r, INT32_C(1) << 20, INT32_C(1) << 23);
+    p.probe.end_A_q26 = (int32_t)golden_draw(r, INT32_C(1) << 26, EXH_PROBE_CUR_MAX_A_Q26);
     v = a->few_ms * golden_draw(r, 1, 2);
     p.probe.dwell_ms = v > 10000 ? 10000 : (int32_t)v;
     v = a->few_ms * golden_draw(r, 16, 40);
     p.probe.time_ms = v > 1000000 ? 1000000 : (int32_t)v;
-    p.probe.move_m_q30 = (int32_t)golden_draw(r, 1, 1 << 21);
-    p.probe.travel_m_q30 = (int32_t)golden_draw(r, 1 << 23, 1 << 26);
-    p.slack_A_q26 = (int32_t)golden_draw(r, 1 << 23, 1 << 26);
+    p.probe.move_m_q30 = (int32_t)golden_draw(r, 1, INT32_C(1) << 21);
+    p.probe.travel_m_q30 = (int32_t)golden_draw(r, INT32_C(1) << 23, INT32_C(1) << 26);
+    p.slack_A_q26 = (int32_t)golden_draw(r, INT32_C(1) << 23, INT32_C(1) << 26);
     p.hold_ms = a->few_ms * (int32_t)golden_draw(r, 4, 12);
     return p;
 }
@@ -214,8 +214,8 @@ void golden_weigh(struct golden *g, uint32_t rate_Hz)
             const int knock = odd == 0 || s.phase > 1;
             a.cnt = exh_wrap_add(a.cnt, knock ? by * cfg.up.move_cnt : by);
         }
-        coded = (int32_t)golden_draw(&r, -(1 << 20), 1 << 28);
-        mon = (int32_t)golden_draw(&r, -(1 << 20), 1 << 28);
+        coded = (int32_t)golden_draw(&r, -(INT32_C(1) << 20), INT32_C(1) << 28);
+        mon = (int32_t)golden_draw(&r, -(INT32_C(1) << 20), INT32_C(1) << 28);
         golden_put(g, a.cnt);
         golden_put(g, coded);
         golden_put(g, mon);

@@ -31,7 +31,7 @@ void golden_safety_par(struct exh_safety_par *p, struct golden_rng *r, uint32_t 
 
 static void box_setup(struct box *b, struct golden_rng *r, uint32_t rate_Hz, uint32_t k)
 {
-    static struct exh_knot knot[2] = {{0, 0, {0, 0}}, {1 << 25, 1 << 28, {0, 0}}};
+    static struct exh_knot knot[2] = {{0, 0, {0, 0}}, {INT32_C(1) << 25, INT32_C(1) << 28, {0, 0}}};
     struct exh_safety_par par;
     (void)memset(b, 0, sizeof *b);
     CHECK_EQ_I64(exh_table_set(knot, 2), 0);
@@ -56,14 +56,16 @@ static void any_in(struct box *b, struct golden_rng *r, uint32_t k)
     const int release = b->s.state == EXH_STATE_RELEASE;
     struct exh_safety_in *in = &b->in;
     if (golden_draw(r, 0, 127) == 0) {
-        in->din ^= 1u << golden_draw(r, 0, 12);
+        in->din ^= UINT32_C(1) << golden_draw(r, 0, 12);
     } else if (golden_draw(r, 0, 1) == 0) {
         in->din = HEALTHY;
     }
     if (b->s.state == EXH_STATE_FAULT && golden_draw(r, 0, 1) == 0) { in->din ^= 2; }
     in->raised = 0;
     in->missed = 0;
-    if (golden_draw(r, 0, often[b->s.state]) == 0) { in->raised = 1u << golden_draw(r, 0, 14); }
+    if (golden_draw(r, 0, often[b->s.state]) == 0) {
+        in->raised = UINT32_C(1) << golden_draw(r, 0, 14);
+    }
     if (golden_draw(r, 0, release ? 7 : 63) == 0) { in->missed = (uint32_t)golden_draw(r, 0, 2); }
     if (k == 188 || k == 190) { in->missed = (uint32_t)golden_draw(r, 0, UINT32_MAX); }
     in->command = command[golden_draw(r, 0, 7)];
@@ -105,7 +107,8 @@ void golden_safety(struct golden *g, uint32_t rate_Hz)
     struct golden_rng r = golden_rng("safety", rate_Hz, 0);
     const int32_t end = 442918502;
     for (uint32_t f = 0; f < EXH_FINGERS; f++) {
-        golden_wave(&cur[f], "safety", rate_Hz, 1 + f, -end, end, 1 << golden_draw(&r, 10, 26));
+        golden_wave(&cur[f], "safety", rate_Hz, 1 + f, -end, end,
+                    INT32_C(1) << golden_draw(&r, 10, 26));
     }
     while (g->tick < GOLDEN_TICKS) {
         struct exh_current_ledger i[EXH_FINGERS];
@@ -123,7 +126,7 @@ void golden_safety(struct golden *g, uint32_t rate_Hz)
                 i[f].table_A_q26 = (int32_t)golden_draw(&r, -end, end);
             }
             if (f < b.in.fingers && golden_draw(&r, 0, 15) == 0) {
-                limits[f] = 1u << golden_draw(&r, 0, 10);
+                limits[f] = UINT32_C(1) << golden_draw(&r, 0, 10);
             }
             if (f == 0 && golden_draw(&r, 0, 3) == 0) { limits[f] |= EXH_LIMIT_PULL; }
         }

@@ -114,7 +114,7 @@ void golden_slots(struct golden *g, uint32_t rate_Hz)
         any_save(g, &b, &r);
         bit = golden_draw(&r, 0, 31 * (int64_t)b.slot_B);
         if (bit < 16 * (int64_t)b.slot_B) {
-            b.slot[bit & 1][bit >> 4] ^= (uint8_t)(1u << (bit >> 1 & 7));
+            b.slot[bit & 1][bit >> 4] ^= (uint8_t)(UINT32_C(1) << (bit >> 1 & 7));
         }
         put_what_counts(g, &b);
         c = golden_state(g);

@@ -39,7 +39,7 @@ void golden_track(struct golden *g, uint32_t rate_Hz)
     int32_t last = 0;
     unsigned astray = 0;
     golden_wave(&coded, "track", rate_Hz, 1, INT32_MIN, INT32_MAX,
-                (int32_t)(1u << golden_draw(&r, 20, 27)));
+                (int32_t)(UINT32_C(1) << golden_draw(&r, 20, 27)));
     while (g->tick < GOLDEN_TICKS) {
         const uint32_t k = g->tick;
         int32_t mon;

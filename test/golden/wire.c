@@ -52,7 +52,7 @@ static void forge(struct golden_rng *r, struct datagram *d)
     if (how == 1) { d->b[3] = (uint8_t)golden_draw(r, 8, 255); }
     if (how == 2) { (void)memset(d->b + 6, 0, 4); }
     if (how == 3) { golden_body_spoil(r, d->b[3], d->b + 18); }
-    if (how == 4) { d->b[0] ^= (uint8_t)(1 << golden_draw(r, 0, 7)); }
+    if (how == 4) { d->b[0] ^= (uint8_t)(INT32_C(1) << golden_draw(r, 0, 7)); }
     if (how > 4) {
         const uint32_t n = how == 5 ? d->len - 23 : 300;
         (void)memset(d->b + d->len - 4, 0, 4);
@@ -150,7 +150,7 @@ static void any_arriving(struct golden_rng *r, int64_t how, struct datagram *d)
     }
     if (how == 2) {
         const int64_t i = golden_draw(r, 0, 8 * (int64_t)d->len - 1);
-        d->b[i >> 3] ^= (uint8_t)(1 << (i & 7));
+        d->b[i >> 3] ^= (uint8_t)(INT32_C(1) << (i & 7));
     }
     if (how == 3) { d->len = (uint32_t)golden_draw(r, 0, (int64_t)d->len - 1); }
     if (how == 4) { d->len += (uint32_t)golden_draw(r, 1, 8); }

@@ -142,11 +142,11 @@ static void spoil_planes(struct golden_rng *r, uint8_t *b)
     const int64_t f = golden_draw(r, 0, 4);
     if (how == 0) { b[8] |= (uint8_t)(32 << golden_draw(r, 0, 2)); }
     if (how == 1) {
-        b[8] |= (uint8_t)(1 << f);
+        b[8] |= (uint8_t)(INT32_C(1) << f);
         b[9 + 40 * f] = (uint8_t)golden_draw(r, 3, 255);
     }
     if (how == 2) {
-        b[8] &= (uint8_t) ~(1 << f);
+        b[8] &= (uint8_t) ~(INT32_C(1) << f);
         b[9 + 40 * f] = (uint8_t)golden_draw(r, 1, 2);
     }
 }

@@ -34,7 +34,7 @@ def main():
     p.add_argument("dir")
     p.add_argument("--only", default="")
     a = p.parse_args()
-    some = [t for n, t in targets().items() if not a.only or n in a.only.split(",")]
+    some = [t for n, t in targets().items() if not t["metal"] and (not a.only or n in a.only.split(","))]
     if not all([there(t) for t in some]):
         return 3
     script = {t["name"]: built(t, os.path.join(a.dir, t["name"])) for t in some}

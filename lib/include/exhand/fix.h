@@ -26,8 +26,7 @@ void exh_fix_saturated(const char *file, int line);
 /* C99 leaves >> of a negative number to the compiler; we need the floor. */
 typedef char exh_needs_arithmetic_shift[((-3) >> 1) == -2 ? 1 : -1];
 
-/* Constants and products of small types are int. */
-typedef char exh_needs_32_bit_int[sizeof(int) >= sizeof(int32_t) ? 1 : -1];
+/* int may have 16 bits: a constant or product that needs more says so (INT32_C(1) << 30, one factor cast). */
 
 /* v limited to int32_t; the sign is always kept. */
 static inline int32_t exh_sat32(int64_t v)
