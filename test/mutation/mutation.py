@@ -179,20 +179,14 @@ class Planted:
 
     def run(self, n, jobs, until):
         took = self.begin()
-        for k, s in list(self.state.items()):
-            if s["what"] == SURVIVED:  # tests may have come since
-                self.objects.discard(s["object"])
-                del self.state[k]
+        again = [m for m in self.mutants if self.state.get(key(m), {}).get("what") == SURVIVED]  # tests may have come since
+        for m in again:
+            self.objects.discard(self.state[key(m)]["object"])
+        fresh = [m for m in self.dealt if key(m) not in self.state]
         with ThreadPoolExecutor(jobs) as pool:
-            rest = iter(self.dealt)
-            while len(self.ran()) < n and time.time() < until:
-                some = []
-                for m in rest:
-                    some += [m] if key(m) not in self.state else []
-                    if len(some) == 4 * jobs:
-                        break
-                if not some:
-                    break
+            while (again or fresh and len(self.ran()) < n) and time.time() < until:
+                some, again = (again, []) if again else (fresh[:4 * jobs], [])
+                fresh = [m for m in fresh if m not in some]
                 for m, got in zip(some, pool.map(self.plant, some)):
                     self.state[key(m)] = got
         self.save()

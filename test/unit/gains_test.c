@@ -325,8 +325,24 @@ TEST(a_damaged_pair_becomes_none)
     CHECK(active.contact[1].k_Npm_q10 == K(1500), "the other one");
 }
 
+/* A table may have b before k, and either first of all. */
+TEST(rows_may_stand_in_any_order)
+{
+    const struct exh_signal_group turned[] = {{&exh_contact_rows[1], 1, 1}, {&exh_contact_rows[0], 1, 1}};
+    const struct exh_signal_table t = {turned, 2};
+    int32_t now[2], want[2];
+    exh_params_init(&params, &t, now, want);
+    exh_gains_lead(&params, 1);
+    params.shift = 3;
+    params.locked = 1;
+    CHECK_EQ_I64(exh_gains_stage(&params, &rule, 0x0401, 0, K(20000)), -EXH_E_GAINS);
+    CHECK_EQ_I64(exh_gains_stage(&params, &rule, 0x0402, 0, B(20)), 0);
+    for (int n = 0; exh_params_apply(&params) && n < 1000; n++) { exh_gains_step(&params, &rule); }
+    CHECK(now[0] == B(20) && now[1] == K(1500), "b %d", (int)now[0]);
+}
+
 TEST_MAIN("gains", pieces_and_ends, setup_refuses, setup_refuses_two_halves,
           setup_asks_for_its_rate, staging_refuses_what_is_outside,
           a_whole_image_is_asked_and_dropped, through_a_valley, a_damaged_goal_is_not_gone_to,
           no_wall_is_a_jump_away, rows_are_of_the_struct, half_a_pair_is_none, without_the_lead_both_go_by_themselves,
-          a_damaged_pair_becomes_none);
+          a_damaged_pair_becomes_none, rows_may_stand_in_any_order);

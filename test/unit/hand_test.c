@@ -309,6 +309,41 @@ TEST(follow_by_hand)
     }
 }
 
+/* Of the 48 ways to lay axes onto axes half are turns. */
+TEST(mirror_images_are_no_turns)
+{
+    const struct exh_hand_par par = defaults();
+    for (unsigned i = 0; i < 6 * 8; i++) {
+        static const uint8_t to[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
+        const unsigned way = i / 8, negative = i % 8;
+        const unsigned odd = (way >= 3) ^ (negative & 1) ^ (negative >> 1 & 1) ^ (negative >> 2);
+        struct exh_hand_bones b = exh_hit2_bones[EXH_INDEX];
+        struct exh_hand_finger f;
+        for (unsigned r = 0; r < 9; r++) { b.rot_q30[r / 3][r % 3] = 0; }
+        for (unsigned r = 0; r < 3; r++) {
+            b.rot_q30[r][to[way][r]] = negative >> r & 1 ? -(INT32_C(1) << 30) : INT32_C(1) << 30;
+        }
+        CHECK(exh_hand_setup(&f, &b, &par) == (odd ? -EXH_E_RANGE : 0), "way %u, signs %u", way, negative);
+    }
+}
+
+/* What the hand's description leaves open is 0, so that two of them can be compared. */
+TEST(what_a_hand_does_not_use_is_zero)
+{
+    for (unsigned f = 0; f < EXH_HAND_FINGERS; f++) {
+        for (unsigned q = 0; q < EXH_HAND_JOINTS; q++) {
+            const struct exh_hand_joint *j = &exh_hit2_map.joint[f][q];
+            for (unsigned t = 0; t < EXH_HAND_TERMS; t++) {
+                CHECK(j->gain_q24[t] != 0 || j->sensor[t] == 0, "finger %u, joint %u", f, q);
+            }
+        }
+    }
+    for (unsigned f = EXH_INDEX; f < EXH_HAND_FINGERS; f++) { /* fingers bend about an axis of the palm */
+        const int32_t(*r)[3] = exh_hit2_bones[f].rot_q30;
+        CHECK(r[0][0] == 0 && r[1][0] == 0 && r[2][0] == 1 << 30 && r[2][1] == 0 && r[2][2] == 0, "finger %u", f);
+    }
+}
+
 TEST_MAIN("unit/hand", published_vectors, turns_are_turns, slope_on_paper, setup_refuses,
           map_of_the_hand_is_sound, a_finger_follows_its_own_sensors, spans_end_at_the_limits,
-          map_check_refuses, slope_is_that_of_the_string_through_the_map, follow_by_hand);
+          map_check_refuses, slope_is_that_of_the_string_through_the_map, follow_by_hand, mirror_images_are_no_turns, what_a_hand_does_not_use_is_zero);

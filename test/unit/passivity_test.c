@@ -306,8 +306,40 @@ TEST(damaged_bytes_do_no_harm)
     }
 }
 
+/* A table that goes beyond the highest f_max: that one is what has to be able to fall. */
+TEST(what_has_to_fall_is_no_more_than_the_highest_limit)
+{
+    start(1);
+    rig.to_cur[1] = (struct exh_knot){200 * NEWTON, 6 * AMPERE, {0, 0}};
+    CHECK_EQ_I64(exh_table_set(rig.to_cur, 2), 0);
+    rig.drive_par.slew_down_Nps = 100001; /* of a tick of 1 ms, rounded: 100 N */
+    CHECK_EQ_I64(exh_drive_setup(&rig.drive, &rig.drive_par, rig.T, (struct exh_table){rig.to_cur, 2},
+                                 (struct exh_table){NULL, 0}),
+                 0);
+    CHECK_EQ_I64(setup(), 0);
+    rig.drive_par.slew_down_Nps = 99999;
+    CHECK_EQ_I64(setup(), -EXH_E_RANGE);
+}
+
+/* The last LSB of a contact's energy goes with it; before the first tick nothing has moved. */
+TEST(the_least_energy_is_forgotten_and_the_first_tick_moves_nothing)
+{
+    struct exh_force_ledger f = {.force_N_q20 = 0};
+    start(2);
+    CHECK_EQ_I64(setup(), 0);
+    rig.s = (struct exh_passivity){.energy_Ncnt_q20 = 1, .late_N_q20 = 5, .started = 1};
+    (void)exh_passivity_step(&rig.s, &rig.cfg, 0, 0, &f);
+    CHECK_EQ_I64(rig.s.energy_Ncnt_q20, 0);
+    rig.s = (struct exh_passivity){.energy_Ncnt_q20 = -1, .late_N_q20 = 5, .started = 1};
+    (void)exh_passivity_step(&rig.s, &rig.cfg, 0, 0, &f);
+    CHECK_EQ_I64(rig.s.energy_Ncnt_q20, -1);
+    rig.s = (struct exh_passivity){.held_N_q20 = 7, .late_N_q20 = 5, .cnt = 1000};
+    (void)exh_passivity_step(&rig.s, &rig.cfg, 3, 1, &f);
+    CHECK_EQ_I64(rig.s.energy_Ncnt_q20, 0);
+}
+
 TEST_MAIN("passivity", what_is_held_times_what_moves, what_is_owed_lowers_the_limit,
           the_bit_says_when_and_the_term_what, the_pull_back_is_not_the_contacts,
           contacts_are_reckoned_one_by_one, late_outputs_count_for_the_worse, counts_wrap,
           what_cannot_be_proved_is_refused, force_has_to_be_able_to_fall_in_one_tick,
-          bytes_come_back, damaged_bytes_do_no_harm);
+          bytes_come_back, damaged_bytes_do_no_harm, what_has_to_fall_is_no_more_than_the_highest_limit, the_least_energy_is_forgotten_and_the_first_tick_moves_nothing);

@@ -678,6 +678,17 @@ TEST(a_plane_that_turned_over_is_another)
     CHECK_EQ_I64(s.ignored_n, 1);
 }
 
+/* |n|^2 = 1 + 2^-16, which is 1^2 + (2^-8)^2, is the last one that is a normal. */
+TEST(the_longest_normal)
+{
+    struct exh_plane p = floor_plane;
+    start();
+    p.normal_q30 = (struct exh_vec3){0, ONE >> 8, ONE};
+    CHECK_EQ_I64(exh_precontact_tell(&s, &cfg, &p, 0), 0);
+    p.normal_q30.x = 1;
+    CHECK_EQ_I64(exh_precontact_tell(&s, &cfg, &p, 0), -EXH_E_RANGE);
+}
+
 TEST_MAIN("unit/precontact", distance_has_the_sign_of_the_text, rounds_once_and_half_up,
           no_plane_means_no_contact, tracks_freezes_and_releases, the_boundary_is_d_lim_itself,
           a_touching_finger_is_not_released,
@@ -688,4 +699,4 @@ TEST_MAIN("unit/precontact", distance_has_the_sign_of_the_text, rounds_once_and_
           a_stale_plane_is_none, a_message_may_be_old_when_it_comes, a_frozen_plane_does_not_age,
           what_cannot_be_is_refused, material_is_taken_at_the_freeze, scale_and_slope,
           set_up_refuses, state_round_trip, damaged_state_comes_back_into_range,
-          restored_tracking_touches_nothing_at_once, advice, a_plane_that_turned_over_is_another);
+          restored_tracking_touches_nothing_at_once, advice, a_plane_that_turned_over_is_another, the_longest_normal);

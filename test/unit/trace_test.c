@@ -253,6 +253,35 @@ TEST(state_there_and_back_and_brought_into_range)
     CHECK_EQ_I64(t.left, 0);
 }
 
+/* Two frames are enough; and of every tick, left is 0 when it comes back. */
+TEST(the_least_ring)
+{
+    begin(2);
+    trace(&t, 1, 0);
+    ticks(0, 5);
+    CHECK(t.head == 5 && exh_trace_oldest(&t) <= 4 && exh_trace_oldest(&t) >= 3, "oldest %lu",
+          (unsigned long)exh_trace_oldest(&t));
+    holds(&t, 4, 4, 0);
+}
+
+/* What was passed on is not written again: somebody may read it. */
+TEST(a_frame_is_passed_on_once)
+{
+    begin(FRAMES);
+    trace(&shown, 1, 0);
+    exh_trace_pass(&t, &shown); /* takes what is asked */
+    ticks(0, 3);
+    exh_trace_pass(&t, &shown);
+    CHECK_EQ_I64(shown.head, 3);
+    for (uint32_t n = 0; n < 3; n++) { shown_frame[n].tick = 1000 + n; }
+    ticks(3, 2);
+    exh_trace_pass(&t, &shown);
+    CHECK_EQ_I64(shown.head, 5);
+    for (uint32_t n = 0; n < 3; n++) { CHECK(shown_frame[n].tick == 1000 + n, "frame %lu again", (unsigned long)n); }
+    holds(&shown, 3, 3, 0);
+    holds(&shown, 4, 4, 0);
+}
+
 TEST_MAIN("trace", what_cannot_be_is_refused, every_nth_tick_from_the_next_on, the_newest_are_held,
           numbers_go_on_and_wrap, a_frame_that_never_was_has_another_number, passed_on_whole,
-          state_there_and_back_and_brought_into_range, set_and_read_by_registers, halves_and_edges_of_its_registers);
+          state_there_and_back_and_brought_into_range, set_and_read_by_registers, halves_and_edges_of_its_registers, the_least_ring, a_frame_is_passed_on_once);
