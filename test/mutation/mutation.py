@@ -84,6 +84,8 @@ class Tests:
     def run(self, test, so):
         """Whether it passes; nothing at all counts as that."""
         kind, _, name = test.partition("/")
+        if kind == "with":
+            return self.run_with(name, os.path.dirname(so))
         env = {k: v for k, v in os.environ.items() if not k.startswith("EXH_")}
         env.update(EXH_SEED="1", EXH_CASES=CASES, LD_PRELOAD=so)
         exe = os.path.join(self.build, kind, ("golden" if kind == "golden" else name) + "_test")
@@ -92,6 +94,21 @@ class Tests:
         try:
             return subprocess.run([exe], cwd=ROOT, env=env, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                   stderr=subprocess.DEVNULL, timeout=SLOW_S).returncode == 0
+        except subprocess.TimeoutExpired:
+            return False
+
+    def run_with(self, name, where):
+        """A test that has the source in itself: made of it anew."""
+        own, exe = "test/unit/%s_test.c" % name, os.path.join(where, "own")
+        with open(os.path.join(ROOT, own), encoding="utf-8") as f, open(exe + ".c", "w", encoding="utf-8") as to:
+            to.write(re.sub(r'"[./]*lib/src/(\w+\.c)"', r'"\1"', f.read()))
+        p = subprocess.run(CC + FLAGS + ["-Itest", "-I" + where, exe + ".c", self.build + "/obj/test/support.o", "-L" + self.build, "-lexhand",
+                                         "-lcmocka", "-Wl,-rpath," + self.build, "-o", exe],
+                           cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        if p.returncode:
+            sys.exit("%s: does not build with a mutant" % own)
+        try:
+            return subprocess.run([exe], cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=SLOW_S).returncode == 0
         except subprocess.TimeoutExpired:
             return False
 
