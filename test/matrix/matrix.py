@@ -63,16 +63,22 @@ def without(t, variant):
     return " ".join(m for m, _, o in [w.partition("@") for w in t["without"].split()] if o in ("", option))
 
 
+def clang_of(t):
+    """Its name and --target."""
+    version, _, target = t["clang"].rpartition(":")
+    return "clang" + ("-" + version if version else ""), target
+
+
 def commands(t, variant):
     """Variables for make: how this variant is compiled and linked for this target."""
     compiler, option = variant.split("-", 1)
     level, _, lto = option.partition("-")
     gcc = t["triple"] + "-gcc" if t["triple"] else "gcc"
-    clang = "clang --target=" + t["clang"] + (" -isystem /usr/%s/include" % t["triple"] if t["triple"] else "")
+    clang = "%s --target=%s" % clang_of(t) + (" -isystem /usr/%s/include" % t["triple"] if t["triple"] else "")
     return ["CC=" + (gcc if compiler == "gcc" else clang), "O=" + level[1:], "SUITE_LINK=" + gcc, "SUITE_METAL=" + t["metal"],
             "SUITE_WITHOUT=" + without(t, variant),
             "LDFLAGS=" + " ".join(["-static", t["flags"] if t["metal"] else "", t["link"]]),
-            "CFLAGS=" + t["flags"], "SUITE_LTO=" + (compiler if lto else "none")]
+            "CFLAGS=" + (t["flags"] + " -g0").strip(), "SUITE_LTO=" + (compiler if lto else "none")]
 
 
 @functools.lru_cache(None)
@@ -176,9 +182,10 @@ def there(t, variants=(WHOLE,)):
     programs = [t["triple"] + "-gcc" if t["triple"] else "gcc", runs]
     packages = t["packages"].split() + (["qemu-user"] if t["emulator"] and not t["metal"] else [])
     if any(v.startswith("clang") for v in variants):
-        programs, packages = programs + ["clang"], packages + ["clang"]
+        programs, packages = programs + [clang_of(t)[0]], packages + [clang_of(t)[0]]
     if any(v.startswith("clang") and v.endswith("lto") for v in variants):
-        programs, packages = programs + ["llvm-link"], packages + ["llvm"]
+        llvm = clang_of(t)[0].replace("clang", "llvm")
+        programs, packages = programs + [llvm.replace("llvm", "llvm-link")], packages + [llvm]
     probe = " && ".join("command -v %s" % w for w in programs if w)
     return subprocess.run([os.path.join(ROOT, ".ci", "deps"), "the matrix: " + t["name"], probe] + packages).returncode == 0
 
