@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """box.py DIR [--only T,T]: the host program for every target of targets.tsv, by its gcc; test/sim/bits.sh compares what each makes
 with the host's in DIR/host: Table II, logs of it and of the full box, a calibration, replays, faults. `make matrix-box`.
-Writes DIR/box.tsv. Standard library only.
+Writes DIR/box.tsv, keeps the rows of targets that are not asked for, and writes docs/MATRIX.md's table anew. Standard library only.
 """
 
 import argparse
@@ -12,7 +12,8 @@ import sys
 import time
 
 sys.dont_write_bytecode = True
-from matrix import ROOT, commands, targets, there  # noqa: E402
+from matrix import commands, there  # noqa: E402
+from table import ROOT, commit, section, targets  # noqa: E402
 
 
 def built(t, where):
@@ -29,6 +30,28 @@ def built(t, where):
     return script
 
 
+def kept(path):
+    """{target: (target, agree, of, commit)} of runs of before."""
+    if not os.path.exists(path):
+        return {}
+    with open(path) as f:
+        return {w[0]: w for w in [tuple(line.rstrip("\n").split("\t")) for line in f][1:]}
+
+
+def document(rows):
+    yield "| target | agree | of | on top of commit |"
+    yield "|---|---|---|---|"
+    for r in rows:
+        yield "| %s | %s | %s | %s |" % r
+
+
+def put(path, table):
+    rows = [table[name] for name in targets() if name in table]
+    with open(path, "w") as f:
+        f.write("".join("\t".join(r) + "\n" for r in [("target", "agree", "of", "commit")] + rows))
+    section("make matrix-box", document(rows))
+
+
 def main():
     p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("dir")
@@ -42,11 +65,11 @@ def main():
     run = subprocess.run(["test/sim/bits.sh", a.dir + "/bits", a.dir + "/host"] + [s for s in script.values() if s], cwd=ROOT,
                          stdout=subprocess.PIPE, text=True)
     print(run.stdout, end="")
-    with open(os.path.join(a.dir, "box.tsv"), "w") as f:
-        f.write("target\tagree\tof\n")
-        for name, s in script.items():
-            said = re.search("^%s: (\\d+) of (\\d+)$" % re.escape(s or "-"), run.stdout, re.M)
-            f.write("%s\t%s\t%s\n" % ((name,) + (said.groups() if said else ("0", "0"))))
+    table = kept(os.path.join(a.dir, "box.tsv"))
+    for name, s in script.items():
+        said = re.search("^%s: (\\d+) of (\\d+)$" % re.escape(s or "-"), run.stdout, re.M)
+        table[name] = (name,) + (said.groups() if said else ("0", "0")) + (commit(),)
+    put(os.path.join(a.dir, "box.tsv"), table)
     bad = [n for n, s in script.items() if s is None]
     print("%d targets in %.0f s, not built: %s" % (len(script), time.time() - start, " ".join(bad) or "none"))
     return 1 if bad or run.returncode else 0

@@ -6,6 +6,7 @@
     matrix.py --resume            without what build/matrix/matrix.tsv has
     matrix.py --ci                the part of it that CI runs
     matrix.py --list              names, and what is thinned
+    matrix.py --tables TSV...     runs nothing: adds these tables to build/matrix/matrix.tsv, docs/MATRIX.md anew
 
 A cell is a module at a rate on a target by a compiler with an option; each is compared with the digest of the
 independent generator (test/golden). targets.tsv has the targets, README.md the rest. Standard library only.
@@ -14,22 +15,17 @@ independent generator (test/golden). targets.tsv has the targets, README.md the 
 import argparse
 import collections
 import concurrent.futures
-import functools
 import os
 import re
 import shutil
 import subprocess
 import sys
 import time
-import zlib
-from struct import pack
 
-HERE = os.path.dirname(os.path.abspath(__file__))
-ROOT = os.path.dirname(os.path.dirname(HERE))
-DOC = os.path.join(ROOT, "docs", "MATRIX.md")
-DIGESTS = os.path.join(ROOT, "test", "golden", "digest")
-OPTIONS = ("O0", "O2", "O3", "Os", "O2-lto", "O3-lto", "Os-lto")
-COMPILERS = ("gcc", "clang")
+sys.dont_write_bytecode = True
+from table import (DIGESTS, ROOT, clang_of, document, expected, kept, put, section, stale, targets, together, variants,  # noqa: E402
+                   without, words)
+
 WHOLE = "gcc-O2"  # by this, every rate
 EVERY = 20        # else every twentieth, from the variant's number on
 CASES = 3000      # random cases of a law on the host; fewer on slower targets
@@ -43,32 +39,6 @@ Job = collections.namedtuple("Job", "name target variant rates cases trap")
 Row = collections.namedtuple("Row", "target variant rates golden cells tests groups seconds failed")
 
 
-def targets():
-    """{name: {column: value}} in the table's order; "-" is empty."""
-    with open(os.path.join(HERE, "targets.tsv")) as f:
-        lines = [line.rstrip("\n").split("\t") for line in f if not line.startswith("#")]
-    head = lines[0]
-    return {w[0]: dict(zip(head, ["" if v == "-" else v for v in w])) for w in lines[1:]}
-
-
-def variants(t):
-    """Of this target, all or those that its row names: their numbers, and names."""
-    every = ["%s-%s" % (c, o) for c in COMPILERS for o in OPTIONS]
-    return [(k, v) for k, v in enumerate(every) if not t["variants"] or v in t["variants"].split(",")]
-
-
-def without(t, variant):
-    """The modules that this variant has not: those that a target's row names, as module or module@option."""
-    option = variant.split("-", 1)[1]
-    return " ".join(m for m, _, o in [w.partition("@") for w in t["without"].split()] if o in ("", option))
-
-
-def clang_of(t):
-    """Its name and --target."""
-    version, _, target = t["clang"].rpartition(":")
-    return "clang" + ("-" + version if version else ""), target
-
-
 def commands(t, variant):
     """Variables for make: how this variant is compiled and linked for this target."""
     compiler, option = variant.split("-", 1)
@@ -79,23 +49,6 @@ def commands(t, variant):
             "SUITE_WITHOUT=" + without(t, variant),
             "LDFLAGS=" + " ".join(["-static", t["flags"] if t["metal"] else "", t["link"]]),
             "CFLAGS=" + (t["flags"] + " -g0").strip(), "SUITE_LTO=" + (compiler if lto else "none")]
-
-
-@functools.lru_cache(None)
-def expected(lo, hi, step, without=""):
-    """{module: CRC of its digests at these rates}, from the generator's files."""
-    crc = {}
-    for name in sorted(set(os.listdir(DIGESTS)) - {m + ".inc" for m in without.split()}):
-        with open(os.path.join(DIGESTS, name)) as f:
-            word = f.read().split()
-        of = [int(word[r - 1].rstrip(","), 16) for r in range(lo, hi + 1, step)]
-        crc[name[:-4]] = zlib.crc32(b"".join(pack("<I", c) for c in of))
-    return crc
-
-
-def together(crcs):
-    """One digest of all modules', in the order of their names."""
-    return zlib.crc32(b"".join(pack("<I", crcs[m]) for m in sorted(crcs)))
 
 
 def run(command, env, log):
@@ -145,11 +98,11 @@ def programs(t):
     return ["images"] if t["metal"] == "avr" else ["golden", "tests"]
 
 
-def made(job, build, log):
+def made(job, build, a, log):
     """Builds these; what went wrong."""
     make = [os.environ.get("MAKE", "make"), "--no-print-directory", "-s", "-j1", "B=" + build, "WERROR=1",
             "SUITE_CFLAGS=" + (TRAP if job.trap else "")] + commands(job.target, job.variant)
-    status, said = run(make + [build + "/suite/" + p for p in programs(job.target)], {"MAKEFLAGS": ""}, log)
+    status, said = run(make + [build + "/suite/" + p for p in programs(job.target)[:1 if a.golden else 2]], {"MAKEFLAGS": ""}, log)
     if status != 0:
         print(said)
     return ["build: exit %d" % status] if status else []
@@ -162,12 +115,12 @@ def one(job, a):
     os.makedirs(build, exist_ok=True)
     golden = agree = passed = groups = 0
     with open(os.path.join(build, "log.txt"), "w") as log:
-        failed = made(job, build, log)
+        failed = made(job, build, a, log)
         if not failed:
             program = [build + "/suite/" + p for p in programs(job.target)]
             status, said = run(emulator + program[:1], {"EXH_CELLS": "1", "EXH_RATES": "%d..%d:%d" % job.rates}, log)
             golden, agree, failed = judge(said, status, job.rates, without(job.target, job.variant))
-            if program[1:]:
+            if program[1:] and not a.golden:
                 status, said = run(emulator + program[1:], {"EXH_CASES": str(job.cases)}, log)
                 passed, groups, worse = tests(said, status)
                 failed += worse
@@ -226,79 +179,20 @@ def ran(jobs, a, table, path):
     return bad, agree
 
 
-# --- what is kept of it ---
-
-HEAD = "target variant rates cells digest tests groups seconds failed".split()
-
-
-def words(r):
-    return [r.target, r.variant, "%d..%d:%d" % r.rates, "%d" % r.cells, "%08x" % r.golden, "%d" % r.tests, "%d" % r.groups,
-            "%.0f" % r.seconds, "; ".join(r.failed)]
-
-
-def kept(path):
-    """{(target, variant): words} of a table of before; what is of other bits is left out."""
-    try:
-        with open(path) as f:
-            rows = [line.rstrip("\n").split("\t") for line in f][1:]
-    except OSError:
-        return {}
-    return {(w[0], w[1]): w for w in rows if current(*w[:3], w[4])}
+def added(tables, path, table):
+    """Tables of runs elsewhere, to this one."""
+    for t in tables:
+        table.update(kept(t))
+    os.makedirs(os.path.dirname(path), exist_ok=True)
+    put(path, table)
+    section("make matrix", document(table))
+    print("%d variants" % len(table))
+    return 0
 
 
-def current(target, variant, rates, digest):
-    """Is this what the generator's files say of these rates?"""
-    t = targets().get(target, {"without": ""})
-    return "%08x" % together(expected(*[int(n) for n in re.split(r"\.\.|:", rates)], without(t, variant))) == digest
-
-
-def put(path, table):
-    with open(path + ".new", "w") as f:
-        f.write("\t".join(HEAD) + "\n")
-        for name, t in targets().items():
-            for _, v in variants(t):
-                if (name, v) in table:
-                    f.write("\t".join(table[name, v]) + "\n")
-    os.replace(path + ".new", path)
-
-
-def commit():
-    said = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True).stdout
-    return said.strip() or "unknown"
-
-
-def document(table):
-    """The generated part of docs/MATRIX.md."""
-    good = [w for w in table.values() if not w[8]]
-    modules = len(os.listdir(DIGESTS))
-    yield "%d of %d variants ran, the last on top of commit %s; **%d cells** (module x rate x target x compiler x option) of %d modules" % (
-        len(table), sum(len(variants(t)) for t in targets().values()), commit(), sum(int(w[3]) for w in good), modules)
-    yield "agree with the generator, %d variants do not. Tests passed beside them: %d. All rates of all modules together: `%08x`." % (
-        len(table) - len(good), sum(int(w[5]) for w in good), together(expected(1, 2000, 1)))
-    yield ""
-    yield "| target | bits | compiler and option | rates, Hz | cells | digest | tests | s |"
-    yield "|---|---|---|---|---|---|---|---|"
-    for name, t in targets().items():
-        for _, v in variants(t):
-            w = table.get((name, v))
-            if w:
-                yield "| %s | %s %s | %s | %s | %s | `%s` | %s | %s |" % (name, t["bits"], t["endian"], v, w[2], w[3], w[4], w[5], w[8] or w[7])
-
-
-def write_document(table):
-    with open(DOC) as f:
-        text = f.read()
-    begin, end = "<!-- make matrix -->\n", "<!-- end -->\n"
-    head, tail = text[:text.index(begin) + len(begin)], text[text.index(end):]
-    with open(DOC, "w") as f:
-        f.write(head + "\n".join(document(table)) + "\n" + tail)
-
-
-def stale():
-    """Rows of docs/MATRIX.md whose digest is not the generator's any more."""
-    with open(DOC) as f:
-        row = re.findall(r"^\| (\w+) \| [^|]* \| ([\w-]+) \| (\d+\.\.\d+:\d+) \| \d+ \| `([0-9a-f]{8})` ", f.read(), re.M)
-    return ["%s-%s" % (t, v) for t, v, rates, digest in row if not current(t, v, rates, digest)], len(row)
+def done(job, a, w):
+    """Is this row what the job would make?"""
+    return w is not None and w[2] == "%d..%d:%d" % job.rates and not w[8] and (int(w[6]) > 0 or a.golden or job.target["metal"] == "avr")
 
 
 def main():
@@ -307,12 +201,18 @@ def main():
     p.add_argument("--only", default="")
     p.add_argument("--ci", action="store_true")
     p.add_argument("--list", action="store_true")
+    p.add_argument("--tables", nargs="*", metavar="TSV")
+    p.add_argument("--golden", action="store_true", help="golden vectors alone, without the other tests")
     p.add_argument("--resume", action="store_true", help="leave out what build/matrix/matrix.tsv has")
     p.add_argument("--trap", action="store_true", help="what overflows traps")
     p.add_argument("--cases", type=int, default=0, help="random cases of a law")
     p.add_argument("--every", type=int, default=0, metavar="N", help="every Nth rate alone")
     p.add_argument("--keep", action="store_true", help="leave what was built")
     a = p.parse_args()
+    path = os.path.join(a.dir, "ci.tsv" if a.ci or a.trap else "matrix.tsv")
+    table = {} if a.ci or a.trap else kept(path)
+    if a.tables is not None:
+        return added(a.tables, path, table)
     jobs = chosen(a)
     if not jobs:
         p.error("nothing is called " + a.only)
@@ -323,15 +223,12 @@ def main():
     if not all([there(t, [j.variant for j in jobs if j.target is t]) for t in {id(j.target): j.target for j in jobs}.values()]):
         return 3
     os.makedirs(a.dir, exist_ok=True)
-    path = os.path.join(a.dir, "ci.tsv" if a.ci or a.trap else "matrix.tsv")
-    table = {} if a.ci or a.trap else kept(path)
     if a.resume:
-        jobs = [j for j in jobs if table.get((j.target["name"], j.variant), [""] * 9)[2] != "%d..%d:%d" % j.rates
-                or table[j.target["name"], j.variant][8]]
+        jobs = [j for j in jobs if not done(j, a, table.get((j.target["name"], j.variant)))]
     bad, agree = ran(jobs, a, table, path)
     print("%d cells agree" % agree)
     if not (a.ci or a.trap):
-        write_document(table)
+        section("make matrix", document(table))
     old, rows = stale()
     print("docs/MATRIX.md: %d rows, %d of other bits%s" % (rows, len(old), ": make matrix makes them anew: " + " ".join(old[:3]) if old else ""))
     print("%d passed, %d failed" % (len(jobs) - bad, bad))
