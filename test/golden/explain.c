@@ -178,8 +178,9 @@ const char *golden_explain(const char *name, golden_run *run, uint32_t rate_Hz)
     return r.said;
 }
 
-int golden_hundreds(const char *name, uint32_t crc[GOLDEN_HUNDREDS])
+unsigned golden_hundreds(const char *name, uint32_t crc[GOLDEN_HUNDREDS])
 {
+    unsigned every = 1;
     char path[200];
     FILE *f;
     unsigned v;
@@ -187,9 +188,10 @@ int golden_hundreds(const char *name, uint32_t crc[GOLDEN_HUNDREDS])
     (void)snprintf(path, sizeof path, DIR "beyond/%s.inc", name);
     f = fopen(path, "r");
     if (f == NULL) { return 0; }
+    if (fscanf(f, "every %u", &every) != 1) { rewind(f); }
     while (n < GOLDEN_HUNDREDS && fscanf(f, "%x,", &v) == 1) { crc[n++] = v; }
     (void)fclose(f);
-    return n == GOLDEN_HUNDREDS;
+    return n == GOLDEN_HUNDREDS ? every : 0;
 }
 
 const char *golden_trace(const char *name, golden_run *run, uint32_t rate_Hz)
@@ -240,7 +242,7 @@ int golden_quiet(void)
     return 0;
 }
 
-int golden_hundreds(const char *name, uint32_t crc[GOLDEN_HUNDREDS])
+unsigned golden_hundreds(const char *name, uint32_t crc[GOLDEN_HUNDREDS])
 {
     (void)name;
     (void)crc;
