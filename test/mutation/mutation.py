@@ -35,7 +35,7 @@ ROOT = os.path.normpath(os.path.join(HERE, "..", ".."))
 LEAST = 0.95
 CC = os.environ.get("CC", "cc").split()
 FLAGS = "-std=c99 -w -fPIC -DEXH_FIX_AUDIT -Ilib/include -Ilib/src".split()
-TRAP = "-fsanitize=undefined -fsanitize-undefined-trap-on-error".split()
+TRAP = "-fsanitize=undefined,bounds-strict -fsanitize-undefined-trap-on-error".split()
 RATES = {"EXH_RATES": "91..1900:603", "EXH_EXPLAIN": "0"}
 CASES = "1000"
 SLOW_S = 10  # of one test, which takes a tenth of a second otherwise

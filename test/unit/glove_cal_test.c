@@ -552,11 +552,16 @@ TEST(the_default_goes_through_its_ends)
 /* A bit beyond the last sensor does not make it one. */
 TEST(no_cross_term_of_what_is_no_sensor)
 {
-    struct exh_glove_cal cal = sound();
-    cal.present = UINT32_MAX;
-    cal.sensor[6].of[0] = EXH_GLOVE_SENSORS;
-    cal.sensor[6].cross_q30[0] = 1;
-    CHECK_EQ_I64(exh_glove_sensor_valid(&cal, 6), EXH_GLOVE_CROSS);
+    struct {
+        struct exh_glove_cal cal;
+        struct exh_glove_sensor beyond; /* as one would be that is there and has no cross terms */
+    } of;
+    of.cal = sound();
+    of.beyond = of.cal.sensor[0];
+    of.cal.present = UINT32_MAX;
+    of.cal.sensor[6].of[0] = EXH_GLOVE_SENSORS;
+    of.cal.sensor[6].cross_q30[0] = 1;
+    CHECK_EQ_I64(exh_glove_sensor_valid(&of.cal, 6), EXH_GLOVE_CROSS);
 }
 
 /* Nothing of an old calibration gets into a new one. */

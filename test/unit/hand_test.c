@@ -129,7 +129,7 @@ TEST(setup_refuses)
     }
     CHECK_EQ_I64(exh_hand_setup(&f, &exh_hit2_bones[0], &good), 0);
     CHECK_EQ_I64(exh_hand_setup(&f, &exh_hit2_bones[0], &least), 0);
-    for (unsigned i = 0; i < 10; i++) {
+    for (unsigned i = 0; i < 12; i++) {
         struct exh_hand_bones b = exh_hit2_bones[EXH_THUMB];
         switch (i) {
         case 0: b.len_m_q34[1] = 0; break;
@@ -142,6 +142,12 @@ TEST(setup_refuses)
             for (unsigned c = 0; c < 3; c++) { b.rot_q30[1][c] = -b.rot_q30[1][c]; }
             break;
         case 7: b.rot_q30[0][0] = (1 << 30) + 1; break; /* 2e-9 more than there is */
+        case 9: /* too short; lying in the plane of the others */
+            for (unsigned c = 0; c < 3; c++) { b.rot_q30[2][c] /= 2; }
+            break;
+        case 10:
+            for (unsigned c = 0; c < 3; c++) { b.rot_q30[2][c] = b.rot_q30[2][c] / 2 + b.rot_q30[1][c] / 2; }
+            break;
         case 8: b.rot_q30[0][0] = -(1 << 30) - 1; break;
         default: b.rot_q30[2][0] = INT32_MIN; break;
         }

@@ -630,6 +630,7 @@ TEST(words_for_people_are_all_there)
     for (unsigned i = 0; i < EXH_COILS; i++) { CHECK(exh_regs_coil_row[i].name, "coil %u", i); }
     for (unsigned i = 0; i < EXH_REGS_BLOCKS; i++) {
         CHECK(exh_regs_blocks[i].name, "block %u", i);
+        CHECK(exh_regs_blocks[i].kind > EXH_REGS_DISCRETE || exh_regs_blocks[i].at == 0, "bits begin at 0: block %u", i);
     }
 }
 

@@ -271,6 +271,23 @@ TEST(homing_takes_no_longer_than_allowed)
     CHECK(s.result == EXH_PROBE_TIME && n == 99, "%s, %u ticks", exh_probe_text(s.result), n);
 }
 
+/* With a least way of 0 an end at once is one; the whole way may be gone, and no more. */
+TEST(homing_from_the_end_and_all_the_way)
+{
+    struct exh_home_par p = home_par;
+    struct exh_home_cfg cfg;
+    struct exh_home s;
+    unsigned n = 0;
+    p.least_m_q30 = 0;
+    CHECK_EQ_I64(exh_home_setup(&cfg, &p, scale), 0);
+    exh_home_start(&s, 500);
+    while (exh_home_step(&s, &cfg, 500) == EXH_PROBE_BUSY && n < 1000) { n++; }
+    CHECK(s.result == EXH_PROBE_DONE && s.home_cnt == 500, "%s", exh_probe_text(s.result));
+    exh_home_start(&s, 0);
+    CHECK_EQ_I64(exh_home_step(&s, &cfg, -cfg.most_cnt), EXH_PROBE_BUSY);
+    CHECK_EQ_I64(exh_home_step(&s, &cfg, -cfg.most_cnt - 1), EXH_PROBE_TRAVEL);
+}
+
 /* --- weigh --- */
 
 static struct found weigh(struct string *w, struct exh_calib_point *p, int32_t mon_A_q26)
@@ -498,4 +515,4 @@ TEST_MAIN("unit/probe", finds_the_current_that_moves_within_a_step,
           set_up_refuses_what_is_out_of_range, home_is_the_end_of_the_string, what_stops_homing,
           homing_takes_no_longer_than_allowed, weighing_brackets_friction, what_stops_weighing,
           travel_is_of_all_phases_together, a_mass_that_swings_is_not_waited_for,
-          means_begin_anew_after_a_movement, any_counts_stay_within_the_bounds, every_result_has_its_text, creeping_out_ends_at_the_travel);
+          means_begin_anew_after_a_movement, any_counts_stay_within_the_bounds, every_result_has_its_text, creeping_out_ends_at_the_travel, homing_from_the_end_and_all_the_way);

@@ -244,6 +244,11 @@ TEST(of_home)
     CHECK(home(par) == 0, "only the last place is none");
     par[4] = par[5] + 1;
     CHECK(home(par) == -EXH_E_RANGE, "not that either");
+    par[4] = 0;
+    par[5] = par[3];
+    CHECK(home(par) == -EXH_E_RANGE, "no way beyond the movement");
+    par[5] = par[3] + M(1, 10000);
+    CHECK(home(par) == 0, "a little more");
     par[5] = M(1, 1);
     CHECK(home(par) == 0, "1 m");
     par[5] = M(1, 1) + 1;
