@@ -351,8 +351,40 @@ TEST(recovers_from_any_state)
     }
 }
 
+/* A state of a high kind may swing to 32 times full scale: up to there each has its own way. */
+TEST(a_high_state_swings_to_32_times)
+{
+    static const struct exh_filter_cfg *cfg;
+    for (int32_t order = 1; order <= 2; order++) {
+        const int64_t full = INT64_C(1) << (31 + 26);
+        struct exh_filter near = {20 * full, 0, 1}, far = {32 * full - 1, 0, 1}, end = {32 * full, 0, 1},
+                          beyond = {40 * full, 0, 1};
+        cfg = tuned(order, 400 << 16, 1000);
+        (void)one(&near, cfg, 0);
+        (void)one(&far, cfg, 0);
+        (void)one(&end, cfg, 0);
+        (void)one(&beyond, cfg, 0);
+        CHECK(near.wide && far.pos != near.pos && far.pos - near.pos != end.pos - near.pos, "order %d", (int)order);
+        CHECK(beyond.pos == end.pos && beyond.vel == end.vel, "order %d: beyond", (int)order);
+    }
+}
+
+/* 5/4 of full scale is the last a state may be at without starting anew. */
+TEST(the_last_state_that_goes_on)
+{
+    const struct exh_filter_cfg *cfg = tuned(1, 1 << 16, 1000);
+    const int64_t last = INT64_C(5) << 60;
+    struct exh_filter s = {last, 0, 0}, more = {last + (INT64_C(1) << 55), 0, 0}, fresh;
+    const int32_t rail = INT32_MAX;
+    exh_filter_reset(&fresh, &rail, 1);
+    CHECK_EQ_I64(one(&s, cfg, rail), rail);
+    CHECK_EQ_I64(one(&more, cfg, rail), rail);
+    CHECK(s.pos != fresh.pos, "started anew");
+    CHECK(more.pos == fresh.pos, "went on");
+}
+
 TEST_MAIN("unit/filter", refusals_by_name, coefficients_by_hand, half_the_power_at_the_cut_off,
           a_constant_input_comes_out_exactly, reset_is_settled, a_step_rises_once_and_overshoots,
           full_scale_does_not_latch, channels_do_not_touch, retune_keeps_what_is_settled,
           retune_keeps_every_settled_state, a_change_of_order_drops_the_speed,
-          a_state_beyond_any_input_starts_anew, state_round_trip, recovers_from_any_state);
+          a_state_beyond_any_input_starts_anew, state_round_trip, recovers_from_any_state, a_high_state_swings_to_32_times, the_last_state_that_goes_on);

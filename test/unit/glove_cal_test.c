@@ -587,8 +587,43 @@ TEST(a_fit_begins_anew)
     }
 }
 
+/* Two poses will do where nothing couples, 5 degrees apart and no less; what was there stays there. */
+TEST(two_poses_five_degrees_apart)
+{
+    for (int32_t less = 0; less < 2; less++) {
+        struct fixture f;
+        set_up(&f);
+        f.cal.sensor[10].of[0] = f.cal.sensor[10].of[1] = EXH_GLOVE_NONE;
+        f.n = 2;
+        f.pose[1].angle_turn_q32[5] = EXH_Q(5, 360, 32) - less;
+        CHECK(fit(&f) == (less ? -EXH_E_RANGE : 0), "%d: %s of %d", (int)less, exh_glove_what_text(f.bad.what), f.bad.at);
+        CHECK(f.cal.present == (less ? 0u : ALL), "%d", (int)less);
+        CHECK(!less || (f.bad.what == EXH_GLOVE_POSES && f.bad.at == 5), "%s of %d", exh_glove_what_text(f.bad.what), f.bad.at);
+        f.n = 1;
+        CHECK_EQ_I64(fit(&f), -EXH_E_RANGE);
+    }
+}
+
+/* The worst pose counts on either side of the line. */
+TEST(residual_has_two_sides)
+{
+    for (int32_t side = -1; side <= 1; side += 2) {
+        struct fixture f;
+        set_up(&f);
+        f.pose[2].known |= 1u << 5;
+        f.pose[2].angle_turn_q32[5] = DEG(40);
+        f.pose[2].mean_raw_q16[5] = code_q16(5, 40 + 3 * side);
+        CHECK_EQ_I64(fit(&f), 0);
+        CHECK_EQ_I64(f.fit[5].pose, 2);
+        CHECK(near(f.fit[5].residual_turn_q32, -2 * side * (int64_t)DEG(1), DEG(1) / 50), "%d: %" PRId32, (int)side,
+              f.fit[5].residual_turn_q32);
+        f.pose[2].mean_raw_q16[5] = code_q16(5, 40 + 12 * side);
+        CHECK(fit(&f) == -EXH_E_RANGE && f.bad.what == EXH_GLOVE_RESIDUAL && f.bad.at == 5, "%d", (int)side);
+    }
+}
+
 TEST_MAIN("unit/glove_cal", valid_names_the_culprit, present_and_absent, check_tells_whose_and_when,
           every_word_is_there, image_round_trip, every_flipped_bit_is_seen, every_cut_is_seen,
           an_image_of_nonsense_is_refused, poses_give_gain_zero_and_cross_terms,
           residual_is_the_worst_pose, limits_of_poses_are_allowed, poses_are_refused_by_name,
-          absent_sensors_need_no_pose, a_line_as_good_as_level_is_refused, the_default_goes_through_its_ends, no_cross_term_of_what_is_no_sensor, a_fit_begins_anew);
+          absent_sensors_need_no_pose, a_line_as_good_as_level_is_refused, the_default_goes_through_its_ends, no_cross_term_of_what_is_no_sensor, a_fit_begins_anew, two_poses_five_degrees_apart, residual_has_two_sides);

@@ -510,9 +510,23 @@ TEST(creeping_out_ends_at_the_travel)
     CHECK_EQ_I64(s.cur_A_q26, 0);
 }
 
+/* At rest with the mass, all of the way may be gone, either way, and no more. */
+TEST(holding_stays_within_the_way)
+{
+    const struct exh_weigh_par wp = {.probe = par, .slack_A_q26 = MA(20), .hold_ms = 100};
+    struct exh_weigh_cfg cfg;
+    CHECK_EQ_I64(exh_weigh_setup(&cfg, &wp, scale), 0);
+    for (int32_t way = -1; way <= 1; way += 2) {
+        struct exh_weigh s = {.phase = 2, .result = EXH_PROBE_BUSY};
+        CHECK_EQ_I64(exh_weigh_step(&s, &cfg, way * cfg.up.travel_cnt, 0, 0), EXH_PROBE_BUSY);
+        CHECK_EQ_I64(exh_weigh_step(&s, &cfg, way * (cfg.up.travel_cnt + 1), 0, 0), EXH_PROBE_TRAVEL);
+    }
+    CHECK_EQ_I64(cfg.down.end_A_q26, 0);
+}
+
 TEST_MAIN("unit/probe", finds_the_current_that_moves_within_a_step,
           falling_finds_the_current_that_lets_go, slack_is_taken_up_first, what_stops_a_probe,
           set_up_refuses_what_is_out_of_range, home_is_the_end_of_the_string, what_stops_homing,
           homing_takes_no_longer_than_allowed, weighing_brackets_friction, what_stops_weighing,
           travel_is_of_all_phases_together, a_mass_that_swings_is_not_waited_for,
-          means_begin_anew_after_a_movement, any_counts_stay_within_the_bounds, every_result_has_its_text, creeping_out_ends_at_the_travel, homing_from_the_end_and_all_the_way);
+          means_begin_anew_after_a_movement, any_counts_stay_within_the_bounds, every_result_has_its_text, creeping_out_ends_at_the_travel, homing_from_the_end_and_all_the_way, holding_stays_within_the_way);
