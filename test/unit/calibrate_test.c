@@ -405,9 +405,45 @@ TEST(an_image_needs_room)
     }
 }
 
+/* Each value at the ends of its range, and one beyond. */
+TEST(values_at_the_ends_of_their_ranges)
+{
+    static const struct {
+        int32_t lo, hi;
+    } row[] = {{1, INT32_MAX}, {0, 65535}, {1, INT32_MAX}, {-32768, 32767}, {0, A(6600)}, {0, A(6600)}};
+    for (unsigned i = 0; i < LEN(row); i++) {
+        for (unsigned end = 0; end < 4; end++) {
+            struct exh_calib_bad bad = {99, 99};
+            struct fixture f;
+            int32_t *const of[] = {&f.c.dac_rawpA_q16, &f.c.dac_zero_raw, &f.c.mon_A_q40, &f.c.mon_zero_raw,
+                                   &f.c.f0_A_q26,      &f.c.end_A_q26};
+            const int beyond = end >= 2;
+            set_up(&f);
+            if (end == 3 && row[i].hi == INT32_MAX) { continue; }
+            *of[i] = end == 0 ? row[i].lo : end == 1 ? row[i].hi : end == 2 ? row[i].lo - 1 : row[i].hi + 1;
+            CHECK(exh_calib_valid(&f.c, &bad) == (beyond ? -EXH_E_RANGE : 0), "value %u, %u", i, end);
+            CHECK(!beyond || (bad.what == EXH_CALIB_VALUE && bad.at == 0), "value %u, %u: %d of %d", i, end, bad.what,
+                  bad.at);
+        }
+    }
+}
+
+/* The least numbers there are: nothing is added to the sums. */
+TEST(the_least_point_is_fitted)
+{
+    struct exh_calib_point p = {1, 2, 4, 0};
+    struct exh_calib_fit fit;
+    CHECK_EQ_I64(exh_calib_fit(&fit, &p, 1, EXH_CALIB_CURRENT), 0);
+    CHECK_EQ_I64(fit.kf_NpA_q20, INT32_C(1) << 25); /* 1/2 q20 over q26 */
+    CHECK_EQ_I64(exh_calib_fit(&fit, &p, 1, EXH_CALIB_MONITOR), 0);
+    CHECK_EQ_I64(fit.kf_NpA_q20, INT32_C(1) << 24);
+    p.force_N_q20 = 0;
+    CHECK_EQ_I64(exh_calib_fit(&fit, &p, 1, EXH_CALIB_CURRENT), -EXH_E_RANGE);
+}
+
 TEST_MAIN("unit/calibrate", mean_rounds_half_up_once, mean_stops_before_it_overflows,
           tables_meet_every_point_and_go_straight_on, tables_need_room,
           refusals_name_table_and_point, values_out_of_range_are_refused,
           another_device_and_stale_ones_are_refused, image_round_trip,
           any_bit_flipped_any_byte_missing_is_refused,
-          a_sound_image_of_a_bad_table_is_refused, every_name_has_its_text, fit_by_hand, tables_that_cannot_go_on_are_refused, points_that_are_none_are_not_fitted, an_image_needs_room);
+          a_sound_image_of_a_bad_table_is_refused, every_name_has_its_text, fit_by_hand, tables_that_cannot_go_on_are_refused, points_that_are_none_are_not_fitted, an_image_needs_room, values_at_the_ends_of_their_ranges, the_least_point_is_fitted);

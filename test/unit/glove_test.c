@@ -614,6 +614,22 @@ TEST(every_cause_has_a_word)
     }
 }
 
+/* Any sensor may lose what another adds, the first and the last as well. */
+TEST(the_first_and_the_last_have_cross_terms)
+{
+    struct fixture f;
+    set_up(&f);
+    f.cal.sensor[0].of[0] = 1;
+    f.cal.sensor[0].cross_q30[0] = INT32_C(1) << 29;
+    f.cal.sensor[EXH_GLOVE_SENSORS - 1].of[1] = 1;
+    f.cal.sensor[EXH_GLOVE_SENSORS - 1].cross_q30[1] = -(INT32_C(1) << 29);
+    ready(&f);
+    f.in.raw[1] = 1000 + 80;
+    (void)frame(&f);
+    CHECK_EQ_I64(f.angle[0], 40 * 65536);
+    CHECK_EQ_I64(f.angle[EXH_GLOVE_SENSORS - 1], -40 * 65536);
+}
+
 TEST_MAIN("unit/glove", codes_become_angles, a_gain_below_zero_falls,
           angles_saturate_at_half_a_turn, abductions_lose_what_knuckles_add,
           absent_sensors_have_no_faults, causes_are_told_apart,
@@ -623,4 +639,4 @@ TEST_MAIN("unit/glove", codes_become_angles, a_gain_below_zero_falls,
           a_spike_leaves_no_trace, after_a_fault_the_angle_glides,
           noise_within_the_hysteresis_moves_no_angle_twice, default_calibration_runs_at_the_default,
           default_calibration_gives_its_end_points, setup_rejections, state_round_trip,
-          damaged_state_finds_back, a_state_that_has_not_begun_is_empty, every_cause_has_a_word);
+          damaged_state_finds_back, a_state_that_has_not_begun_is_empty, every_cause_has_a_word, the_first_and_the_last_have_cross_terms);

@@ -113,6 +113,8 @@ TEST(shift_of_a_time)
         {20, {596, 1193182}, 6},
         {512, {1, 2000}, 10},
         {513, {1, 2000}, 11},
+        {512, {1, 2001}, 11},
+        {512, {1, 1999}, 10},
     };
     for (size_t i = 0; i < LEN(row); i++) {
         const struct exh_tune_par par = {row[i].ms};

@@ -2,6 +2,7 @@
 #include "../../lib/src/real.h"
 
 #include "check.h"
+#include "wide.h"
 
 static int same(struct exh_real a, uint64_t m, int32_t e)
 {
@@ -72,5 +73,19 @@ TEST(rounds_half_up_once)
     CHECK_EQ_I64(rounded(exh_real_scale(exh_real_of(1), 61)), INT64_C(1) << 61);
 }
 
+/* The upper half of the product, to its last bit. */
+TEST(products_are_exact_in_64_bits)
+{
+    for (uint32_t i = 0; i < 1000; i++) {
+        const struct exh_real a = {TOP | (UINT64_C(0x9E3779B97F4A7C15) * (i + 1) >> 2), (int32_t)i - 500};
+        const struct exh_real b = {TOP | (i == 0 ? TOP - 1 : UINT64_C(0xD1342543DE82EF95) * (i + 7) >> 2), 3};
+        uint64_t m = wide_mulu(a.m, b.m).hi;
+        int32_t e = a.e + b.e + 64;
+        for (; m < TOP; m <<= 1) { e--; }
+        CHECK(same(exh_real_mul(a, b), m, e), "case %" PRIu32, i);
+        CHECK(same(exh_real_mul(b, a), m, e), "case %" PRIu32 ", turned", i);
+    }
+}
+
 TEST_MAIN("unit/real", none_is_none, none_and_very_small, what_is_too_small_to_matter,
-          sums_in_either_order, rounds_half_up_once);
+          sums_in_either_order, rounds_half_up_once, products_are_exact_in_64_bits);
