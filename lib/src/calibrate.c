@@ -263,7 +263,7 @@ int32_t exh_calib_save(const struct exh_calib *c, void *buf, size_t cap_B,
 static int load(struct exh_calib *c, const void *buf, size_t len_B)
 {
     struct exh_bytes b = exh_bytes_reader(buf, len_B);
-    struct head h;
+    struct head h = {0, 0, 0};
     uint32_t at, crc = 0;
     head_bytes(&b, &h);
     if (!exh_bytes_ok(&b)) { return -EXH_E_SHORT; }

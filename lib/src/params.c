@@ -279,7 +279,7 @@ int exh_params_load(struct exh_params *p, const void *buf, size_t len_B, uint32_
     const size_t body_B = IMAGE_HEAD_B + 4 * (size_t)n;
     struct exh_bytes c = exh_bytes_reader(buf, len_B);
     struct exh_bytes tail;
-    struct head h;
+    struct head h = {0, 0, 0, 0};
     uint32_t crc = 0;
 
     if (len_B < IMAGE_HEAD_B) { return -EXH_E_SHORT; }

@@ -9,7 +9,7 @@
 static uint32_t u32_at(const uint8_t *p, size_t at)
 {
     struct exh_bytes c = exh_bytes_reader(p + at, 4);
-    uint32_t v;
+    uint32_t v = 0;
     exh_bytes_u32(&c, &v);
     return v;
 }

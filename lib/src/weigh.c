@@ -15,7 +15,7 @@ int exh_weigh_setup(struct exh_weigh_cfg *cfg, const struct exh_weigh_par *par,
         par->slack_A_q26 > par->probe.end_A_q26 || par->hold_ms < 1 || par->hold_ms > HOLD_MAX_MS) {
         return -EXH_E_RANGE;
     }
-    down.step_A_q26 = -down.step_A_q26;
+    down.step_A_q26 = -par->probe.step_A_q26;
     down.end_A_q26 = 0;
     err = exh_probe_setup(&cfg->up, &par->probe, scale);
     if (err == 0) { err = exh_probe_setup(&cfg->down, &down, scale); }

@@ -274,7 +274,7 @@ int exh_wire_pass(struct exh_wire_rx *rx, uint32_t passed_us, uint32_t limit_us)
 int exh_wire_take(struct exh_wire_rx *rx, struct exh_wire_packet *p, const void *buf, size_t len_B)
 {
     struct exh_wire_packet now = {0};
-    struct head h;
+    struct head h = {0, 0, 0, 0, 0, 0, 0};
     int r = read_packet(rx, &h, &now, buf, len_B);
     if (r < 0) { return r; }
     if (is_next(rx, &h)) {

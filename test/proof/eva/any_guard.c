@@ -1,0 +1,61 @@
+/* PROVES: guard
+ * Areas of 0, 1, 8, 13 and 16 bytes with anything in them, at any place of a round: the tick reads none beyond and
+ * leaves a place in the area; with parameters and without, anything in these (any_params.c).
+ *
+ * EVA: -eva-slevel 200
+ * PLANT: lib/src/guard.c: left < EXH_GUARD_B ? left : EXH_GUARD_B -> EXH_GUARD_B
+ * PLANT: lib/src/guard.c: if (g->at < g->len_B) { return; } -> if (g->at <= g->len_B) { return; }
+ * PLANT: lib/src/guard.c: EXH_GUARD_B - n) -> EXH_GUARD_B - n + 2)
+ * PLANT: lib/src/guard.c: if (g->params) { look_at_params(g); } -> look_at_params(g);
+ */
+#include "bytes.c"
+#include "fix.c"
+#include "guard.c"
+#include "params.c"
+#include "../src/signal.c" /* not that of Frama-C */
+
+#include "table.h"
+
+static struct exh_guard g;
+static struct exh_params p;
+static int32_t active[TABLE_VALUES], staged[TABLE_VALUES];
+
+static void rounds(const uint8_t *area, uint32_t len_B, struct exh_params *params)
+{
+    exh_guard_seal(&g, area, len_B, params);
+    for (uint32_t at = 0; at < len_B || at == 0; at++) {
+        g.at = at;
+        g.want = any_u32();
+        g.crc = any_u32();
+        (void)exh_guard_step(&g);
+        /*@ assert place: g.at < len_B || g.at == 0; */
+    }
+}
+
+static void area_of(uint32_t len_B)
+{
+    static uint8_t area[16];
+    ANY(area);
+    rounds(area + 16 - len_B, len_B, &p);
+    rounds(area + 16 - len_B, len_B, NULL);
+}
+
+int main(void)
+{
+    static const struct exh_guard zero;
+    g = zero;
+    (void)exh_guard_step(&g);
+    any_rows();
+    exh_params_init(&p, &table, active, staged);
+    ANY(active);
+    ANY(staged);
+    p.pending = any8();
+    p.at = any_u32();
+    area_of(0);
+    area_of(1);
+    area_of(8);
+    area_of(13);
+    area_of(16);
+    END();
+    return 0;
+}

@@ -1,0 +1,77 @@
+/* PROVES: wire
+ * Any bytes of any length as a datagram, into a receiver in any state that its bytes leave; time that passes. Any packet into
+ * buffers of any size; what came as a plane, and as a parameter of any table of ten values.
+ *
+ * EVA: -eva-slevel 20
+ * PLANT: lib/src/wire.c: !exh_bytes_ok(&c) || len_B != HEAD_B + h->len_B + CRC_B -> !exh_bytes_ok(&c)
+ * PLANT: lib/src/wire.c: if (late >= WINDOW) { -> if (late > WINDOW) {
+ * PLANT: lib/src/wire.c: ahead < WINDOW ? rx->seen -> ahead <= WINDOW ? rx->seen
+ * PLANT: lib/src/wire.c: i < t->frames && i < EXH_WIRE_FRAMES -> i < t->frames
+ * PLANT: lib/src/wire.c: if (cap_B < end + CRC_B) { return -EXH_E_SHORT; } -> (void)0;
+ * PLANT: lib/src/wire.c: if (!payload_bytes(&c, p)) { return -EXH_E_UNKNOWN; } -> (void)payload_bytes(&c, p); c.at += cap_B;
+ */
+#include "bytes.c"
+#include "fix.c"
+#include "params.c"
+#include "../src/signal.c" /* not that of Frama-C */
+#define head wire_head /* params.c has its own */
+#define head_bytes wire_head_bytes
+#include "wire.c"
+
+#include "table.h"
+
+static struct exh_wire_rx rx;
+static struct exh_wire_tx tx;
+static struct exh_wire_packet p;
+static uint8_t buf[EXH_WIRE_MAX_B];
+
+static void receive(uint32_t least_B, uint32_t most_B)
+{
+    const uint32_t len_B = Frama_C_unsigned_int_interval(least_B, most_B);
+    FROM_BYTES(rx, exh_wire_rx_bytes);
+    /*@ assert open: rx.open <= 1; */
+    ANY(buf);
+    (void)exh_wire_take(&rx, &p, buf + (sizeof buf - most_B), len_B);
+    (void)exh_wire_pass(&rx, any_u32(), any_u32());
+    /*@ assert open_after: rx.open <= 1; */
+}
+
+static void send(uint8_t type, uint32_t least_B, uint32_t most_B)
+{
+    const uint32_t cap_B = Frama_C_unsigned_int_interval(least_B, most_B);
+    int32_t n;
+    FROM_BYTES(tx, exh_wire_tx_bytes);
+    ANY(p);
+    p.type = type;
+    n = exh_wire_write(&tx, &p, any_u32(), buf + (sizeof buf - most_B), cap_B);
+    /*@ assert no_more_than_fits: n <= 256; */
+}
+
+static void use(void)
+{
+    static struct exh_params params;
+    static int32_t active[TABLE_VALUES], staged[TABLE_VALUES];
+    struct exh_wire_hello ours, theirs;
+    any_rows();
+    exh_params_init(&params, &table, active, staged);
+    ANY(p);
+    (void)exh_wire_stage(&params, &p);
+    (void)exh_wire_plane_of(&p.u.planes, Frama_C_unsigned_int_interval(0, EXH_WIRE_FINGERS - 1));
+    ANY(ours);
+    ANY(theirs);
+    (void)exh_wire_differs(&ours, &theirs);
+}
+
+int main(void)
+{
+    receive(0, EXH_WIRE_MAX_B);
+    receive(22, 22);
+    receive(35, 35);
+    for (unsigned type = 0; type <= 8; type++) {
+        send((uint8_t)type, 0, EXH_WIRE_MAX_B);
+    }
+    send(EXH_WIRE_PLANES, 0, 40);
+    use();
+    END();
+    return 0;
+}
