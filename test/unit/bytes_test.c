@@ -182,6 +182,21 @@ TEST(crc_check_value_and_definition)
     }
 }
 
+/* A buffer of more than 2^32 - 2 bytes is one of so many. */
+TEST(the_largest_buffer)
+{
+    uint8_t buf[4] = {0};
+    uint32_t v = 0x12345678u;
+    struct exh_bytes c = exh_bytes_writer(buf, UINT32_MAX);
+    CHECK_EQ_I64(c.cap, UINT32_MAX - 1);
+    exh_bytes_u32(&c, &v);
+    CHECK(exh_bytes_ok(&c) && buf[3] == 0x12, "not written");
+    c = exh_bytes_writer(buf, UINT32_MAX - 1);
+    CHECK_EQ_I64(c.cap, UINT32_MAX - 1);
+    c = exh_bytes_writer(buf, UINT32_MAX - 2);
+    CHECK_EQ_I64(c.cap, UINT32_MAX - 2);
+}
+
 TEST_MAIN("unit/bytes", layout_is_little_endian, round_trip_of_extremes_and_random,
           measuring_needs_no_buffer, short_buffers_at_every_length, short_reads_are_zeros,
-          a_failed_cursor_stays_failed, crc_check_value_and_definition, counting_does_not_wrap);
+          a_failed_cursor_stays_failed, crc_check_value_and_definition, counting_does_not_wrap, the_largest_buffer);

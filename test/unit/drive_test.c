@@ -670,6 +670,22 @@ TEST(hostile_bytes_come_into_range)
     }
 }
 
+/* Where no peak is allowed above the lasting current nothing of an earlier set-up stays. */
+TEST(no_peak_no_budget)
+{
+    struct exh_knot k[2] = {{0, 0, {0, 1}}, {1 << 20, 1 << 26, {0, 1}}};
+    struct exh_drive_par par;
+    struct exh_drive_cfg cfg;
+    for (unsigned i = 0; i < EXH_DRIVE_ROWS; i++) { ((int32_t *)(void *)&par)[i] = exh_drive_rows[i].dflt; }
+    CHECK_EQ_I64(exh_table_set(k, 2), 0);
+    memset(&cfg, 0x55, sizeof cfg);
+    par.i_peak_A_q26 = par.i_cont_A_q26;
+    CHECK_EQ_I64(exh_drive_setup(&cfg, &par, (struct exh_period){1, 1000}, (struct exh_table){k, 2},
+                                 (struct exh_table){NULL, 0}),
+                 0);
+    CHECK(cfg.i2t_budget_q32 == 0 && cfg.i2t_shift == 0 && cfg.i2t_fold.mant == 0 && cfg.i2t_fold.shift == 1, "a budget");
+}
+
 TEST_MAIN("unit/drive", table_is_exact_at_knots_and_clamps_outside, table_between_knots,
           table_is_monotone_around_every_knot, table_rejections, steepest_table_is_accepted,
           inverse_round_trip, inverse_refuses_what_set_refuses, setup_rejections,
@@ -680,4 +696,4 @@ TEST_MAIN("unit/drive", table_is_exact_at_knots_and_clamps_outside, table_betwee
           slew_both_ways, hostile_bytes_come_into_range,
           slowest_slew_still_moves, peak_limit, i2t_holds_folds_back_and_recovers,
           continuous_current_is_for_ever, bursts_add_up, peak_equal_to_continuous, monitor_by_hand,
-          frames_round_trip, state_round_trip);
+          frames_round_trip, state_round_trip, no_peak_no_budget);

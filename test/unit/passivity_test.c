@@ -338,8 +338,36 @@ TEST(the_least_energy_is_forgotten_and_the_first_tick_moves_nothing)
     CHECK_EQ_I64(rig.s.energy_Ncnt_q20, 0);
 }
 
+/* Energies end at 2^60; a way of so few counts that nothing has to be shifted. */
+TEST(energies_and_ways_at_their_ends)
+{
+    static const int64_t row[][2] = {{INT64_C(1) << 60, INT64_C(1) << 60},
+                                     {(INT64_C(1) << 60) + 1, INT64_C(1) << 60},
+                                     {INT64_MIN, -(INT64_C(1) << 60)},
+                                     {INT64_MAX, INT64_C(1) << 60}};
+    const struct exh_velocity_scale scale = {INT32_MAX, {1, 20000}};
+    for (size_t i = 0; i < LEN(row); i++) {
+        struct exh_passivity s = {.energy_Ncnt_q20 = row[i][0]};
+        uint8_t buf[32];
+        struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
+        exh_bytes_i64(&c, &s.energy_Ncnt_q20);
+        memset(buf + 8, 0, sizeof buf - 8);
+        c = exh_bytes_reader(buf, sizeof buf);
+        exh_passivity_bytes(&c, &s);
+        CHECK(s.energy_Ncnt_q20 == row[i][1], "row %zu", i);
+    }
+    start(1);
+    rig.T = scale.T;
+    rig.drive_par.slew_down_Nps = 10000000;
+    CHECK_EQ_I64(exh_drive_setup(&rig.drive, &rig.drive_par, rig.T, (struct exh_table){rig.to_cur, 2},
+                                 (struct exh_table){NULL, 0}),
+                 0);
+    CHECK_EQ_I64(exh_passivity_setup(&rig.cfg, &rig.par, &rig.drive, held(), scale, SPEED), 0);
+    CHECK(rig.cfg.way_cnt == 1 && rig.cfg.shift == 0, "way %" PRId32 ", shift %d", rig.cfg.way_cnt, rig.cfg.shift);
+}
+
 TEST_MAIN("passivity", what_is_held_times_what_moves, what_is_owed_lowers_the_limit,
           the_bit_says_when_and_the_term_what, the_pull_back_is_not_the_contacts,
           contacts_are_reckoned_one_by_one, late_outputs_count_for_the_worse, counts_wrap,
           what_cannot_be_proved_is_refused, force_has_to_be_able_to_fall_in_one_tick,
-          bytes_come_back, damaged_bytes_do_no_harm, what_has_to_fall_is_no_more_than_the_highest_limit, the_least_energy_is_forgotten_and_the_first_tick_moves_nothing);
+          bytes_come_back, damaged_bytes_do_no_harm, what_has_to_fall_is_no_more_than_the_highest_limit, the_least_energy_is_forgotten_and_the_first_tick_moves_nothing, energies_and_ways_at_their_ends);

@@ -508,6 +508,9 @@ TEST(set_up_refuses)
         *(&odd[1].k_Npm_q10 + i) = exh_material_rows[i].max + 1;
         CHECK(exh_precontact_setup(&cfg, &par, odd, 2, 0, TICK) == -EXH_E_RANGE, "row %d", i);
         CHECK(exh_precontact_setup(&cfg, &par, odd, 1, 0, TICK) == 0, "row %d unused", i);
+        memcpy(odd, material, sizeof odd);
+        *(&odd[0].k_Npm_q10 + i) = exh_material_rows[i].max + 1;
+        CHECK(exh_precontact_setup(&cfg, &par, odd, 2, 0, TICK) == -EXH_E_RANGE, "row %d of the first", i);
     }
     CHECK_EQ_I64(exh_precontact_setup(&cfg, &par, material, 0, 0, TICK), -EXH_E_RANGE);
     CHECK_EQ_I64(exh_precontact_setup(&cfg, &par, material, 256, 0, TICK), -EXH_E_RANGE);

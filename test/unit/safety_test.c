@@ -588,6 +588,19 @@ TEST(a_buffer_too_short_changes_no_state)
     }
 }
 
+/* A damaged image is a fault of its own, beside those that it tells of. */
+TEST(damage_forgets_no_fault)
+{
+    struct exh_safety was = {.faults = EXH_FAULT_ENCODER, .state = EXH_STATE_FAULT}, now = {0};
+    uint8_t image[256];
+    struct exh_bytes c = exh_bytes_writer(image, sizeof image);
+    exh_safety_bytes(&c, &was);
+    image[c.at - 1] ^= 1;
+    c = exh_bytes_reader(image, c.at);
+    exh_safety_bytes(&c, &now);
+    CHECK_EQ_I64(now.faults, EXH_FAULT_ENCODER | EXH_FAULT_LOGIC);
+}
+
 TEST_MAIN("unit/safety", every_cell_is_what_it_should_be, every_state_is_reached,
           every_fault_in_every_state, several_causes_cut_if_one_of_them_does, power_on_is_off,
           each_step_is_named_where_it_does_not_hold, the_first_of_several_steps_is_named, a_refusal_is_forgotten_once_it_runs,
@@ -596,4 +609,4 @@ TEST_MAIN("unit/safety", every_cell_is_what_it_should_be, every_state_is_reached
           late_too_often_is_an_overrun, an_overrun_is_gone_in_time, only_drives_in_use_count, release_ends_at_every_rate,
           clearing_in_every_order, a_cause_that_comes_back_asks_for_the_hand_again, a_fault_never_clears_by_itself,
           a_state_that_cannot_be_is_a_fault, no_byte_of_a_state_opens_the_gate, state_round_trip,
-          setup_refuses_what_is_out_of_range, names_are_all_there, a_buffer_too_short_changes_no_state);
+          setup_refuses_what_is_out_of_range, names_are_all_there, a_buffer_too_short_changes_no_state, damage_forgets_no_fault);

@@ -166,8 +166,24 @@ TEST(its_state_goes_through_a_cursor)
     CHECK_EQ_I64(exh_supply_step(&back, &cfg, code(24000), 0), 0);
 }
 
+/* A refused set-up judges nothing; a count from damaged bytes stays told, and does not wrap. */
+TEST(what_comes_of_refusals_and_damage)
+{
+    const struct exh_supply_par none = {V(20), V(19), QUARTER, 10};
+    struct exh_supply_cfg cfg;
+    struct exh_supply s = {0};
+    CHECK_EQ_I64(exh_supply_setup(&cfg, &none, kHz), -EXH_E_RANGE);
+    CHECK_EQ_I64(exh_supply_step(&s, &cfg, INT16_MIN, 0), 0);
+    CHECK_EQ_I64(exh_supply_step(&s, &cfg, INT16_MAX, 0), 0);
+    CHECK_EQ_I64(exh_supply_setup(&cfg, &par, kHz), 0);
+    s.off_ticks = UINT32_MAX;
+    CHECK_EQ_I64(exh_supply_step(&s, &cfg, 0, 0), 1);
+    CHECK_EQ_I64(exh_supply_step(&s, &cfg, 0, 5), 1);
+    CHECK_EQ_I64(exh_supply_step(&s, &cfg, code(24000), 0), 0);
+}
+
 TEST_MAIN("supply", limits_become_codes, a_code_is_within_the_limits_exactly_when_its_voltage_is,
           it_is_told_after_its_time_and_not_before, one_tick_within_the_limits_begins_anew,
           missed_ticks_count, without_a_least_voltage_nothing_is_judged,
           what_cannot_be_judged_is_refused, its_rows_are_its_parameters,
-          its_state_goes_through_a_cursor);
+          its_state_goes_through_a_cursor, what_comes_of_refusals_and_damage);
