@@ -383,8 +383,23 @@ TEST(the_last_state_that_goes_on)
     CHECK(more.pos == fresh.pos, "went on");
 }
 
+/* 2^-21 of the rate is the lowest cut-off; none is below 2^-16 Hz. */
+TEST(the_lowest_cut_off)
+{
+    static const struct {
+        int32_t fc_Hz_q16;
+        uint32_t rate_Hz;
+        int err;
+    } row[] = {{1, 1, 0}, {0, 1, -EXH_E_RANGE}, {-1, 1, -EXH_E_RANGE}, {1, 32, 0}, {1, 64, -EXH_E_RANGE}, {2, 64, 0}};
+    for (size_t i = 0; i < LEN(row); i++) {
+        const struct exh_filter_par par = {1, row[i].fc_Hz_q16};
+        struct exh_filter_cfg cfg;
+        CHECK(exh_filter_setup(&cfg, &par, (struct exh_period){1, row[i].rate_Hz}) == row[i].err, "row %zu", i);
+    }
+}
+
 TEST_MAIN("unit/filter", refusals_by_name, coefficients_by_hand, half_the_power_at_the_cut_off,
           a_constant_input_comes_out_exactly, reset_is_settled, a_step_rises_once_and_overshoots,
           full_scale_does_not_latch, channels_do_not_touch, retune_keeps_what_is_settled,
           retune_keeps_every_settled_state, a_change_of_order_drops_the_speed,
-          a_state_beyond_any_input_starts_anew, state_round_trip, recovers_from_any_state, a_high_state_swings_to_32_times, the_last_state_that_goes_on);
+          a_state_beyond_any_input_starts_anew, state_round_trip, recovers_from_any_state, a_high_state_swings_to_32_times, the_last_state_that_goes_on, the_lowest_cut_off);

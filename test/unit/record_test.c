@@ -214,7 +214,20 @@ TEST(what_was_not_begun_does_not_end)
     CHECK_EQ_I64(exh_record_end(&c), 0);
 }
 
+/* A record begins at the beginning of its buffer, whatever was there. */
+TEST(begins_at_the_beginning)
+{
+    uint8_t buf[64];
+    struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
+    struct exh_record r;
+    c.at = 17;
+    exh_record_begin(&c, EXH_RECORD_END, 5, 6);
+    CHECK_EQ_I64(exh_record_end(&c), EXH_RECORD_OVERHEAD);
+    CHECK_EQ_I64(exh_record_read(buf, EXH_RECORD_OVERHEAD, &r), EXH_RECORD_OVERHEAD);
+    CHECK(r.type == EXH_RECORD_END && r.seq == 5 && r.tick == 6 && r.len_B == 0, "another one");
+}
+
 TEST_MAIN("unit/record", layout_by_hand, round_trip_of_every_type_and_size,
           largest_payload_and_one_more, does_not_fit_at_any_size, truncated_at_every_byte,
           every_flipped_bit_is_detected, another_version_is_named, resync_after_damage,
-          any_bytes_are_safe_to_read, header_and_event_round_trip, measuring_a_record, what_was_not_begun_does_not_end);
+          any_bytes_are_safe_to_read, header_and_event_round_trip, measuring_a_record, what_was_not_begun_does_not_end, begins_at_the_beginning);
