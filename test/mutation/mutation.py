@@ -251,8 +251,9 @@ def report(accounts):
         by = [a.by["unit"], a.by["golden"], a.by["prop"], sum(v for k, v in a.by.items() if "trap" in k)]
         row = [len(a.planted.mutants), a.ran, a.killed, a.explained, len(a.open)]
         total = [t + r for t, r in zip(total, row)]
-        print("| `%s` | %d | %d | %d | %s | %d | %d | %.1f %% |" %
-              (os.path.basename(a.planted.source)[:-2], *row[:3], ", ".join(map(str, by)), *row[3:], 100 * a.score()))
+        score = "%.1f %%" % (100 * a.score()) if a.ran else "-"
+        print("| `%s` | %d | %d | %d | %s | %d | %d | %s |" %
+              (os.path.basename(a.planted.source)[:-2], *row[:3], ", ".join(map(str, by)), *row[3:], score))
     print("| all | %d | %d | %d | | %d | %d | %.1f %% |" % (*total, 100 * total[2] / max(1, total[2] + total[4])))
 
 
