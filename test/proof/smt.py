@@ -121,5 +121,15 @@ def toward_stays_between():
     return all(holds(stays(shift)) for shift in range(32))
 
 
+def mean_is_within_32_bits():
+    """The quotient in exh_mean_value(): n values of 32 bits, lifted by 2^31 each, over n."""
+    total, n, quot, rem = z3.Ints("total n quot rem")
+    lift = n * (1 << 31)
+    sums = z3.And(n >= 1, n < 1 << 31, total >= -lift, total <= n * ((1 << 31) - 1))
+    divides = z3.And(total + lift == quot * n + rem, rem >= 0, rem < n)
+    return holds(z3.Implies(z3.And(sums, divides), z3.And(quot >= 0, quot <= 1 << 32)))
+
+
 LEMMAS = [shr_is_floor, from_u64_keeps_bits, wrapped_sum_is_the_sum, gain_floor_is_no_more, share_of_limit,
-          release_ends, release_step_is_bounded, unit_has_components_of_one, toward_stays_between] + smt_passivity.LEMMAS
+          release_ends, release_step_is_bounded, unit_has_components_of_one, toward_stays_between,
+          mean_is_within_32_bits] + smt_passivity.LEMMAS

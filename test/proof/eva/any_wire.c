@@ -8,7 +8,6 @@
  * PLANT: lib/src/wire.c: ahead < WINDOW ? rx->seen -> ahead <= WINDOW ? rx->seen
  * PLANT: lib/src/wire.c: i < t->frames && i < EXH_WIRE_FRAMES -> i < t->frames
  * PLANT: lib/src/wire.c: if (cap_B < end + CRC_B) { return -EXH_E_SHORT; } -> (void)0;
- * PLANT: lib/src/wire.c: if (!payload_bytes(&c, p)) { return -EXH_E_UNKNOWN; } -> (void)payload_bytes(&c, p); c.at += cap_B;
  */
 #include "bytes.c"
 #include "fix.c"

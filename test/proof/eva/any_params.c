@@ -1,0 +1,120 @@
+/* PROVES: parameters
+ * Anything in the rows of a table (four groups), in both arrays and in what is kept beside them, damaged or not: look,
+ * apply, stage, put, drop and take back; any index, any value. A step towards any goal by any shift. Set-up of any time and
+ * period. Images of any bytes and three lengths, a keyframe of any bytes; both written into buffers of some sizes.
+ *
+ * EVA: -eva-slevel 10 -eva-min-loop-unroll 16
+ * PLANT: lib/src/params.c: const uint32_t i = p->at < p->count ? p->at : 0; -> const uint32_t i = p->at;
+ * PLANT: lib/src/params.c: if (row == NULL) { return -EXH_E_UNKNOWN; } -> (void)0;
+ * PLANT: lib/src/params.c: if (err < 0) { return err; } -> (void)err;
+ * PLANT: lib/src/params.c: falls ? 0 : p->shift & 31u -> falls ? 0 : p->shift
+ * PLANT: lib/src/params.c: if (len_B < body_B + IMAGE_CRC_B) { return -EXH_E_SHORT; } -> (void)0;
+ */
+#include "bytes.c"
+#include "fix.c"
+#define exh_signal_crc table_crc /* its proof is any_signal.c */
+struct exh_signal_table;
+uint32_t table_crc(const struct exh_signal_table *t);
+#include "params.c"
+#undef exh_signal_crc
+#include "../src/signal.c" /* not that of Frama-C */
+
+#include "table.h"
+
+#define IMAGE_B (IMAGE_HEAD_B + 4 * TABLE_VALUES + IMAGE_CRC_B)
+
+static struct exh_params p;
+static int32_t active[TABLE_VALUES], staged[TABLE_VALUES], was[TABLE_VALUES];
+static uint8_t image_B[IMAGE_B + 1];
+
+uint32_t table_crc(const struct exh_signal_table *t)
+{
+    (void)t;
+    return any_u32();
+}
+
+static void any_params(void)
+{
+    any_rows();
+    exh_params_init(&p, &table, active, staged);
+    /*@ assert counted: p.count == 8; */
+    ANY(active);
+    ANY(staged);
+    p.locked = any8();
+    p.pending = any8();
+    p.moving = any8();
+    p.shift = any8();
+    p.led[0] = p.led[1] = (uint16_t)any_u32();
+    p.sum = any_u32();
+    p.passed = any_u32();
+    p.at = any_u32();
+}
+
+static void changes(void)
+{
+    const struct exh_tune_par tune = {any32()};
+    const struct exh_period T = {any_u32(), any_u32()};
+    any_params();
+    (void)exh_params_look(&p);
+    /*@ assert next: p.at < 8; */
+    (void)exh_params_stage(&p, (uint16_t)any_u32(), (uint16_t)any_u32(), any32());
+    (void)exh_params_stage_at(&p, Frama_C_unsigned_int_interval(TABLE_VALUES, UINT32_MAX), any32());
+    for (uint32_t i = 0; i < TABLE_VALUES; i++) { (void)exh_params_stage_at(&p, i, any32()); }
+    exh_params_put(&p, Frama_C_unsigned_int_interval(0, TABLE_VALUES - 1), any32());
+    (void)exh_params_apply(&p);
+    exh_params_drop(&p);
+    ANY(was);
+    exh_params_unstage(&p, was, any8());
+    exh_params_slew(&p, &tune, T);
+    /*@ assert shift: p.shift <= 15; */
+    (void)exh_params_apply(&p);
+    exh_params_seal(&p);
+    (void)exh_params_toward(any32(), any32(), Frama_C_unsigned_int_interval(0, 31));
+}
+
+static void load(size_t len_B)
+{
+    uint32_t bad;
+    any_params();
+    ANY(image_B);
+    /* Its end is the end of the array. */
+    (void)exh_params_load(&p, image_B + sizeof image_B - len_B, len_B, len_B & 1 ? &bad : NULL);
+}
+
+static void save(size_t cap_B)
+{
+    any_params();
+    (void)exh_params_save(&p, image_B + sizeof image_B - cap_B, cap_B);
+}
+
+static void keyframe(void)
+{
+    static uint8_t frame_B[8 * TABLE_VALUES];
+    struct exh_bytes c;
+    any_params();
+    FROM_BYTES(p, exh_params_bytes);
+    c = exh_bytes_writer(frame_B, sizeof frame_B);
+    exh_params_bytes(&c, &p);
+    c = exh_bytes_writer(frame_B, 7);
+    exh_params_bytes(&c, &p);
+    ANY(frame_B);
+    c = exh_bytes_reader(frame_B, 7);
+    exh_params_bytes(&c, &p);
+}
+
+int main(void)
+{
+    static const struct exh_params zero;
+    p = zero;
+    (void)exh_params_look(&p);
+    changes();
+    load(IMAGE_B);
+    load(IMAGE_B - 1);
+    load(IMAGE_HEAD_B - 1);
+    save(IMAGE_B);
+    save(IMAGE_B - 1);
+    save(3);
+    keyframe();
+    END();
+    return 0;
+}

@@ -1,0 +1,43 @@
+/* PROVES: self-test
+ * Whatever memory and machine make of the operands (they are volatile: any value), no undefined behaviour; the answer is one
+ * of its enumeration. The filter's set-up is any, as is
+ * the sine (any_angle.c).
+ *
+ * EVA: -eva-slevel 100
+ * PLANT: lib/src/selftest.c: k < sizeof want / sizeof want[0] -> k <= sizeof want / sizeof want[0]
+ */
+#include "bytes.c"
+#include "fix.c"
+#include "filter.c"
+#include "filter_low.c"
+#include "filter_high.c"
+#define exh_filter_setup(cfg, ...) filter_set_up(cfg)
+static int filter_set_up(struct exh_filter_cfg *cfg);
+
+/* den is a constant of the program but for damage: a divisor of 0 stops it, as documented. */
+#define MAY_STOP
+#include "selftest.c"
+
+#include "any.h"
+
+static int filter_set_up(struct exh_filter_cfg *cfg)
+{
+    ANY(*cfg);
+    cfg->kind = EXH_FILTER_LOW2;
+    cfg->a = Frama_C_interval(0, (1 << 30) - 1);
+    return any32();
+}
+
+void exh_sincos(int32_t x_turn_q32, struct exh_sincos *y)
+{
+    (void)x_turn_q32;
+    ANY(*y);
+}
+
+int main(void)
+{
+    int first = exh_selftest_glove();
+    /*@ assert one_of_them: 0 <= first <= 6; */
+    END();
+    return 0;
+}
