@@ -111,7 +111,7 @@ static int at_the_gains(const struct plant_point *p, const struct score_plan *pl
         }
     }
     for (int k = 0; k < READINGS; k++) {
-        s->ln_k[row][k] = none[k] ? SCORE_NONE : (float)(sum[k] / plan->runs);
+        s->ln_k[row][k] = (float)(none[k] ? (double)SCORE_NONE : sum[k] / plan->runs);
     }
     s->rest[row] = 1 - (float)oscillating / (float)(FALLS * plan->runs);
     unrest /= FALLS * plan->runs;
