@@ -114,7 +114,7 @@ TEST(gate_before_noise)
 /* The state of a drive from noise, as it comes out of a log. */
 static void any_drive(struct exh_drive *s)
 {
-    uint8_t bytes[32];
+    uint8_t bytes[32] = {0};
     struct exh_bytes c = exh_bytes_reader(bytes, sizeof bytes);
     noise(bytes, sizeof bytes);
     exh_drive_bytes(&c, s);
