@@ -347,7 +347,7 @@ int pc104_modbus_dry(unsigned part)
     if (!open) { return 0; }
     if (part > 1 || params == NULL) {
         for (uint32_t i = 0; i < 2 * most + 1; i++) { (void)pc104_in8(COM2(UART_STATUS)); }
-        return 0;
+        return params != NULL;
     }
     if (dearest.len_B == 0) { prepare(); }
     (void)pc104_in8(COM2(UART_STATUS));
@@ -358,7 +358,7 @@ int pc104_modbus_dry(unsigned part)
     }
     memset(touched, 0, 4 * (size_t)EXH_REGS_WORDS(regs.params_n));
     regs = before;
-    return 1;
+    return 0;
 }
 
 void pc104_modbus_report(void)

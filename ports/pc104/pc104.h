@@ -210,7 +210,7 @@ void pc104_modbus_open(const struct exh_scene *sc); /* finds the UART; says so *
 void pc104_modbus_start(struct exh_scene_board board); /* halts where the rate does not hold it */
 void pc104_modbus_poll(const struct exh_scene_in *in); /* behind a tick's outputs: bounded work */
 uint8_t pc104_modbus_command(void); /* enum exh_command asked for since the last call */
-/* The work of a tick, to be timed: part 0 the dearest request, 1 all values applied, else characters. 1: of a request */
+/* The work of a tick, to be timed: part 0 the dearest request, 1 APPLY, else characters. 1: what was staged may be applied in it */
 int pc104_modbus_dry(unsigned part);
 void pc104_modbus_report(void);
 

@@ -129,13 +129,14 @@ static void apply_dry(struct exh_params *p)
 }
 
 /* Records of a dry tick, which come to nothing but time; every 16th with a keyframe: one for each thing that Modbus may
- * do. What it has staged is applied in the next tick, in which there is no request; what a link has staged, in any. */
+ * do. What it has staged is applied in the next tick, in which there is no request; what a link has staged, in any. Nobody
+ * else stages while the loop runs. */
 void pc104_scene_dry(const struct exh_scene *sc, uint32_t tick, const struct exh_scene_in *in,
                      const struct exh_drive_out *out)
 {
     const uint32_t every = EXH_LOG_KEYFRAME_TICKS / 16u;
     if (tick == 0) { boxed = (uint8_t)pc104_dump_open(); }
-    if (!pc104_modbus_dry(tick / 16 % 4) || sc->link) { apply_dry(sc->params); }
+    if ((pc104_modbus_dry(tick / 16 % 4) || sc->link) && sc->params) { apply_dry(sc->params); }
     if (pc104_par.log == PC104_LOG_OFF && !boxed) { return; }
     dry = 1;
     if (tick == 0) {
