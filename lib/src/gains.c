@@ -222,12 +222,17 @@ void exh_gains_step(struct exh_params *p, const struct exh_gains_par *rule)
     int32_t k;
     for (uint16_t n = 0; (k = exh_signal_find(p->table, K_ID, n)) >= 0; n++) {
         const int32_t b = exh_signal_find(p->table, B_ID, n);
-        struct pair at, goal, next;
+        const struct pair none = {0, 0};
+        struct pair at, next;
         if (b < 0) { continue; }
         at = (struct pair){p->active[k], p->active[b]};
-        goal = moves ? (struct pair){p->staged[k], p->staged[b]} : at;
-        next = stepped(rule, at, goal, p->shift & 31u);
-        if (!moves && next.k == at.k && next.b == at.b) { continue; }
+        if (moves) {
+            next = stepped(rule, at, (struct pair){p->staged[k], p->staged[b]}, p->shift & 31u);
+        } else if (exh_gains_ok(rule, at.k, at.b)) {
+            continue;
+        } else {
+            next = none;
+        }
         exh_params_put(p, (uint32_t)k, next.k);
         exh_params_put(p, (uint32_t)b, next.b);
     }

@@ -116,8 +116,18 @@ static long number_before(const char *text, const char *words)
     return strtol(at, NULL, 10);
 }
 
-/* A stopped program misses the ticks of that time: they are counted, the box lets go, none is made up for. */
-/* 1: it was in RUN when it was stopped, and stood still while nothing else kept it from its ticks. */
+/* Runs for a time, stands still for a time, runs to its end. */
+static void stopped_for(pid_t pid, struct timespec runs, struct timespec stands)
+{
+    nanosleep(&runs, NULL);
+    kill(pid, SIGSTOP);
+    nanosleep(&stands, NULL);
+    kill(pid, SIGCONT);
+    CHECK(ends_within(pid, 60) == 0, "it does not end");
+}
+
+/* A stopped program misses the ticks of that time: they are counted, the box lets go, none is made up for.
+ * 1: it was in RUN when it was stopped, and stood still while nothing else kept it from its ticks. */
 static int stopped_in_run(void)
 {
     char *dir = said_dir();
@@ -129,11 +139,7 @@ static int stopped_in_run(void)
     const pid_t pid = said_start(dir, cli_run, WORDS("run", "--pace", "--rate", "100", "--seconds",
                                                      "4", "--slack", "0.3", "--log", log));
     for (int i = 0; i < 1000 && said_size(log) <= 0; i++) { nanosleep(&a_while, NULL); }
-    nanosleep(&runs, NULL);
-    kill(pid, SIGSTOP);
-    nanosleep(&stands, NULL);
-    kill(pid, SIGCONT);
-    CHECK(ends_within(pid, 30) == 0, "it does not end");
+    stopped_for(pid, runs, stands);
     said_end(&s, dir, pid);
     CHECK(s.status == 0 && strstr(s.out, " s, faults overrun"), "%d %s%s", s.status, s.out, s.err);
     ticks = number_before(s.out, "ticks");
@@ -243,11 +249,7 @@ TEST(dumps_of_a_paced_box)
                    WORDS("run", "--pace", "--slack", "0.5", "--rate", "100", "--seconds", "10",
                          "--let-go", "1.5", "--grip", "--blackbox", first));
     for (int i = 0; i < 3000 && said_size(err) <= 0; i++) { nanosleep(&a_while, NULL); }
-    nanosleep(&until_it_runs, NULL);
-    kill(pid, SIGSTOP);
-    nanosleep(&stands, NULL);
-    kill(pid, SIGCONT);
-    CHECK(ends_within(pid, 60) == 0, "it does not end");
+    stopped_for(pid, until_it_runs, stands);
     said_end(&s, dir, pid);
     CHECK(s.status == 0 && times(s.err, "black box: fault ") >= 2, "%d %s%s", s.status, s.out,
           s.err);

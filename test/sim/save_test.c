@@ -45,6 +45,18 @@ static void stage(int32_t raw)
     mail_give();
 }
 
+#define APPLY (1u << EXH_COIL_APPLY)
+#define SAVE  (1u << EXH_COIL_SAVE)
+
+/* A stiffer wall, applied and kept. Returns its k. */
+static int32_t ask_for_more(void)
+{
+    const int32_t goal = sc->params->staged[k] + 4096;
+    stage(goal);
+    ask(APPLY | SAVE);
+    return goal;
+}
+
 static void tick(void)
 {
     struct exh_scene_in in = {0};
@@ -64,9 +76,6 @@ static int32_t kept(const char *path)
     CHECK_EQ_I64(params_load_file(path, sc->params), 0);
     return sc->params->staged[k];
 }
-
-#define APPLY (1u << EXH_COIL_APPLY)
-#define SAVE  (1u << EXH_COIL_SAVE)
 
 TEST(behind_the_last_tick_too)
 {
@@ -111,9 +120,7 @@ TEST(of_two_the_later_stays)
     begin(path);
     ask(SAVE);
     tick();
-    goal = sc->params->staged[k] + 4096;
-    stage(goal);
-    ask(APPLY | SAVE);
+    goal = ask_for_more();
     tick();
     mail_end();
     CHECK_EQ_I64(kept(path), goal);
@@ -127,9 +134,7 @@ TEST(what_was_applied_with_it_is_in_it)
     int32_t goal;
     begin(path);
     tick();
-    goal = sc->params->staged[k] + 4096;
-    stage(goal);
-    ask(APPLY | SAVE);
+    goal = ask_for_more();
     mail_end();
     CHECK_EQ_I64(kept(path), goal);
     said_clean(dir);
@@ -142,9 +147,7 @@ TEST(it_keeps_what_is_wanted)
     int32_t goal;
     begin(path);
     tick();
-    goal = sc->params->staged[k] + 4096;
-    stage(goal);
-    ask(APPLY | SAVE);
+    goal = ask_for_more();
     tick();
     CHECK(sc->params->active[k] < goal && sc->params->moving, "it is there already");
     stage(goal + 4096); /* not applied: not wanted */
