@@ -429,9 +429,10 @@ $(B)/suite/metal/%.o: %.c $(stamp)
 	$(Q)$(suite_link) $(base) $(CFLAGS) -ffreestanding -c $< -o $@
 # Each test's main under its folder and name.
 $(B)/suite/audit/%_test.o: tflags += -Dmain=suite_$(call suite_group,$*.c) -Wno-missing-prototypes
-$(B)/suite/groups.inc: $(suite_test) $(stamp)
+$(B)/suite/groups.inc: FORCE
 	@mkdir -p $(@D)
-	@printf 'GROUP(%s)\n' $(foreach t,$(suite_test),$(call suite_group,$t)) > $@
+	@printf 'GROUP(%s)\n' $(foreach t,$(suite_test),$(call suite_group,$t)) > $@.new
+	@cmp -s $@.new $@ || cp $@.new $@
 $(B)/suite/audit/test/matrix/suite.o: $(B)/suite/groups.inc
 $(B)/suite/audit/test/matrix/suite.o: tflags += -I$(B)/suite
 
@@ -451,7 +452,7 @@ $(if $(filter avr,$(SUITE_METAL)),$(B)/suite/plain/test/golden/bilateral.o: suit
 $(B)/suite/avr_run: test/matrix/avr_run.c $(stamp)
 	@mkdir -p $(@D)
 	$(Q)gcc -std=gnu99 -O2 -Wall -Wextra -Werror -o $@ $< -lsimavr -lelf
-$(B)/suite/images: $(avr_module:%=$(B)/suite/avr/%.elf) $(B)/suite/avr_run
+$(B)/suite/images: $(avr_module:%=$(B)/suite/avr/%.elf) $(B)/suite/avr_run FORCE
 	@echo $(filter %.elf,$^) > $@
 
 $(B)/suite/golden: $(patsubst %.c,$(B)/suite/plain/%.o,$(golden_src) test/support.c $(lib_src))
