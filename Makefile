@@ -32,7 +32,7 @@ jobs       = $(or $(patsubst -j%,%,$(filter -j%,$(MAKEFLAGS))),1)
 # These call make for what they need, or take it away: two at a time would write the same files.
 callers := all test demo run image coverage stress test-i686 matrix matrix-box mutants mcdc mutation fuzz hil hil-built strangers gpio linux-program \
            boot boot-built \
-           contract contract-built nic nic-built modbus-image modbus world two-computers bench-world bench size cards install diagrams clean check
+           contract contract-built nic nic-built modbus-image modbus world two-computers bench-world bench report size cards install diagrams clean check
 ifneq ($(and $(filter $(callers),$(MAKECMDGOALS)),$(word 2,$(MAKECMDGOALS))),)
 .NOTPARALLEL:
 endif
@@ -746,6 +746,7 @@ check:
 	@$(timed) stress-short
 	@$(timed) size
 	@$(timed) bench
+	@$(timed) report ARGS=--short
 
 # What runs built images and programs, one core each: as many at a time as there are cores.
 check_runs := boot-run hil-short nic-run contract-run two-run picture
@@ -897,6 +898,18 @@ bench:
 	    $(MAKE) --no-print-directory $(bench_i686) $(peers)-i686; else rm -f $(bench_i686) $(peers)-i686; fi
 	@B=$(B) test/bench/bench.sh $(ARGS)
 	@echo; B=$(B) test/bench/peers.sh table
+
+# What the report draws of the bench; with SHORT what the last bench has left, if its binaries are no newer.
+.PHONY: bench-csv
+bench-csv:
+	@[ -n "$$SHORT" ] && $(MAKE) --no-print-directory -s $(bench_bin) $(peers) && [ $(B)/bench/velocity.csv -nt $(B)/bench/kernels ] && \
+	    [ $(B)/bench/sines.csv -nt $(peers) ] || $(MAKE) --no-print-directory bench ARGS=
+
+## Error against run time, stability, costs: pictures and one page in build/report (ARGS="--list", "--only NAME", "--short")
+.PHONY: report
+report:
+	@.ci/deps "the report's pictures" gnuplot gnuplot-nox fonts-dejavu-core || true
+	@test/report/report.py --build $(B) $(ARGS)
 
 ## Make the table of docs/CARDS.md anew: every misbehaviour of a card in every phase of its driver
 .PHONY: cards

@@ -4,7 +4,7 @@
 # fetch: CMSIS-DSP's C sources, as its package on PyPI holds them, into $B/peers, checked by
 # their sum; never committed. When that cannot be had it says why and the table does without.
 # table: runs $B/bench/peers and, where built, peers-i686; prints both tables, what is not run
-# from peers.csv. Instructions above the requirement are shown as "over", never fatal.
+# from peers.csv; both as CSV in $B/bench/filters.csv and sines.csv. Instructions above the requirement are shown as "over", never fatal.
 #
 # Environment: B (build).
 # Exit status: 0 ok; table: 1 an error of ours above its bound; fetch: 1 not there; 2 bad
@@ -79,21 +79,28 @@ fi
 
 echo "low-pass, second order: 22 channels of one sample (x64, i686), and one channel of 64"
 echo "samples, each (b64); error in ppm of full scale, worst at rest; rms of a step; of a sine at fc."
-awk -F, -v ram="$tmp/ram" '
+awk -F, -v ram="$tmp/ram" -v csv="$b/bench/filters.csv" '
     function triple(k) { return sprintf("%s; %s; %s", $k, $(k + 1), $(k + 2)) }
     function line(a, b, c, d, e, f, g, h, i, j) {
         printf "%-29s %6s %6s %6s %6s | %-25s %-25s %-25s %-25s | %-5s %5s\n", \
                a, b, c, d, e, f, g, h, i, j, mem }
+    function field(a, b, c, d, e, k, last) {
+        row = a "," b "," c "," d "," e
+        for (; k <= last; k++) row = row "," $k
+        print row "," mem > csv }
     FILENAME == ram { ram_B[$1] = $2; next }
     FILENAME ~ /x64$/ { x64[$1] = $2; x64_b[$1] = $3; next }
     FILENAME ~ /i686$/ { i686[$1] = $2; i686_b[$1] = $3; next }
     !head++ { mem = "RAM B"
+              print "name,where,x64,x64_b64,i686,rest_1,step_1,sine_1,rest_2,step_2,sine_2,rest_3,step_3,sine_3," \
+                    "rest_4,step_4,sine_4,latches,ram_B" > csv
               line("", "x64", "b64", "i686", "b64", "fc/fs = 0.1", "0.01", "0.001", "0.0001", "latch") }
     FILENAME ~ /errors$/ {
         ran[$1] = 1
         mem = ram_B[$1]
         line($1, x64[$1], x64_b[$1], $1 in i686 ? i686[$1] : "-", $1 in i686 ? i686_b[$1] : "-", \
              triple(2), triple(5), triple(8), triple(11), $14 ? "yes" : "no")
+        field($1, "here", x64[$1], x64_b[$1], $1 in i686 ? i686[$1] : "-", 2, 14)
         if (FNR == 1) for (k = 2; k <= 13; k++) {
             bound = (k - 2) % 3 ? 0.002 : 1 / 2147.483648
             if ($k + 0 > bound) wrong = wrong " " $k }
@@ -103,6 +110,7 @@ awk -F, -v ram="$tmp/ram" '
     ($1 in ran) { next }
     { if (!elsewhere++) print "measured once elsewhere, NOT in this run:"
       mem = $17
+      field($1, "elsewhere", $2, "-", $3, 4, 16)
       line($1, $2, "-", $3, "-", triple(4), triple(7), triple(10), triple(13), $16 ? "yes" : "no") }
     END {
         a = x64[ours] > 760 ? "over" : x64[ours] > 708 ? "ok" : "goal"
@@ -118,9 +126,11 @@ awk -F, -v ram="$tmp/ram" '
 
 echo
 echo "sine and cosine of one angle, both: 2^20 angles"
-awk -F, -v i686="$tmp/i686" '
+awk -F, -v i686="$tmp/i686" -v csv="$b/bench/sines.csv" '
     FILENAME == i686 { n32[$1] = $2; next }
     FILENAME ~ /x64$/ { n64[$1] = $2; next }
+    !head { print "name,x64,i686,worst_ppm,rms_ppm,table_B" > csv }
+    { print $1 "," n64[$1] "," ($1 in n32 ? n32[$1] : "-") "," $2 "," $3 "," $4 > csv }
     !head++ { printf "%-29s %6s %6s | %10s %10s | %7s\n", "", "x64", "i686", "worst ppm", "rms ppm", "table B" }
     { printf "%-29s %6s %6s | %10s %10s | %7s\n", $1, n64[$1], $1 in n32 ? n32[$1] : "-", $2, $3, $4 }
 ' "$tmp/i686" "$tmp/x64" "$tmp/sines"

@@ -1,0 +1,17 @@
+# What all pictures of the report have in common. Given by report.py: data (NAME.csv), out (NAME.png), here (this directory).
+if (!exists("width")) width = 1500
+if (!exists("height")) height = 950
+set terminal pngcairo size width,height font 'DejaVu Sans,18' linewidth 1.6 background '#ffffff'
+set output out
+set datafile separator ','
+set encoding utf8
+ink = '#333333'
+ours_colour = '#1f5fbf'
+integer_colour = '#d07800'
+float_colour = '#1a8f2e'
+away_colour = '#999999'
+bad_colour = '#d62728'
+set border 3 lc rgb ink lw 0.8
+set tics nomirror out scale 0.5 textcolor rgb ink
+set grid lc rgb '#dddddd' lw 0.6 lt 1
+set key textcolor rgb ink
