@@ -848,10 +848,11 @@ size:
 
 # Objects as they are shipped: no sanitizer, no audit hook. Linked without debug information,
 # which not every valgrind reads of every compiler; its profile needs the symbols alone.
-bench_obj := $(patsubst %,$(B)/posix/test/bench/%.o,kernels measure number estimate force path law filter glove hand precontact passivity scene minimal modbus params)
+bench_obj := $(patsubst %,$(B)/posix/test/bench/%.o,kernels measure number estimate force path law filter glove hand precontact passivity scene minimal modbus params tick box)
+bench_scenes := examples/drop/drop.c examples/calib.c examples/glove/cal.c $(wildcard examples/bilateral/*.c)
 bench_bin := $(B)/bench/kernels $(B)/bench/velocity $(B)/bench/speed
 $(B)/posix/test/bench/kernels.o: PORT_HOSTFLAGS += -DBENCH_FLAGS='"-std=c99 -O$(O)$(if $(CFLAGS), $(CFLAGS))"'
-$(B)/bench/kernels: $(bench_obj) $(B)/posix/examples/drop/drop.o $(B)/posix/examples/calib.o
+$(B)/bench/kernels: $(bench_obj) $(bench_scenes:%.c=$(B)/posix/%.o)
 $(B)/bench/velocity: $(B)/posix/test/bench/velocity.o $(B)/posix/test/bench/measure.o
 $(B)/bench/speed: $(B)/posix/test/bench/speed.o $(B)/posix/examples/drop/drop.o $(B)/posix/examples/calib.o $(sim_obj)
 $(bench_bin): $(B)/posix/libexhand.a
@@ -860,7 +861,7 @@ $(bench_bin): $(B)/posix/libexhand.a
 
 # The kernels again for a 32-bit CPU, where only instructions are counted: the same flags, static.
 bench_i686 := $(B)/bench/kernels-i686
-i686_src   := $(patsubst $(B)/posix/%.o,%.c,$(filter-out %/velocity.o,$(bench_obj))) examples/drop/drop.c examples/calib.c $(lib_src)
+i686_src   := $(patsubst $(B)/posix/%.o,%.c,$(filter-out %/velocity.o,$(bench_obj))) $(bench_scenes) $(lib_src)
 $(bench_i686): $(i686_src) $(wildcard test/bench/*.h lib/src/*.h lib/include/exhand/*.h test/wide.h) $(stamp)
 	@mkdir -p $(@D)
 	$(Q)i686-linux-gnu-gcc -static $(filter-out -MMD -MP -g,$(base)) $(PORT_HOSTFLAGS) $(CFLAGS) -Itest \

@@ -18,7 +18,7 @@ static const struct kernel_group *const groups[] = {&number_group, &estimate_gro
                                                     &filter_group, &glove_group, &hand_group,
                                                     &precontact_group, &passivity_group,
                                                     &scene_group, &modbus_group,
-                                                    &params_group};
+                                                    &params_group, &box_group};
 
 static void for_each(void (*visit)(const struct kernel *k))
 {
