@@ -86,7 +86,7 @@ int exh_filter_setup(struct exh_filter_cfg *cfg, const struct exh_filter_par *pa
     if (num < den >> 21) { return -EXH_E_RANGE; }
 
     g = exh_real_tan_pi(num, den);
-    /* g > 11/32. Beyond an eighth of the rate g > 1, and without end. */
+    /* g > 11/32. Beyond a quarter of the rate g > 1, and without end. */
     high = num > den / 4 || exh_real_round(exh_real_scale(g, 32)) > UINT64_C(11) << 27;
     damped = exh_real_mul(g, exh_real_add(g, EXH_REAL_SQRT2));
     *cfg = (struct exh_filter_cfg){0, 0, 0, 0, 0, 0};

@@ -208,7 +208,8 @@ TEST(another_device_and_stale_ones_are_refused)
         here.dac_zero_raw += f.c.dac_zero_raw;
         here.mon_zero_raw += f.c.mon_zero_raw;
         CHECK(exh_calib_check(&f.c, &here, &bad) == row[i].err, "row %zu", i);
-        CHECK(bad.what == row[i].what, "row %zu: %s", i, exh_calib_what_text(bad.what));
+        CHECK(bad.what == row[i].what && bad.at == (row[i].err == 0 ? 99 : 0), "row %zu: %s of %d", i,
+              exh_calib_what_text(bad.what), bad.at);
         CHECK_EQ_I64(exh_calib_check(&f.c, &here, NULL), row[i].err);
     }
     f.c.valid_days = UINT32_MAX; /* for ever, but not before it was made */
@@ -236,6 +237,7 @@ static int32_t save(struct fixture *f, uint8_t *buf)
 TEST(image_round_trip)
 {
     struct fixture a, b;
+    struct exh_calib_bad bad = {99, 99};
     uint8_t buf[EXH_CALIB_IMAGE_B], again[EXH_CALIB_IMAGE_B];
     int32_t len;
     set_up(&a);
@@ -248,7 +250,8 @@ TEST(image_round_trip)
     CHECK_EQ_I64(save(&b, again), len);
     CHECK(memcmp(buf, again, (size_t)len) == 0, "what is loaded is what was saved");
     CHECK(memcmp(a.point, b.point, sizeof a.point) == 0, "points");
-    CHECK(exh_calib_save(&a.c, again, (size_t)len - 1, NULL) == -EXH_E_SHORT, "short buffer");
+    CHECK(exh_calib_save(&a.c, again, (size_t)len - 1, &bad) == -EXH_E_SHORT, "short buffer");
+    CHECK(bad.what == EXH_CALIB_IMAGE && bad.at == 0, "short buffer: %d of %d", bad.what, bad.at);
     b.c.cap = POINTS - 1;
     CHECK_EQ_I64(exh_calib_load(&b.c, buf, (size_t)len, NULL), -EXH_E_SHORT);
     CHECK_EQ_I64(b.c.points, 0);
@@ -441,9 +444,46 @@ TEST(the_least_point_is_fitted)
     CHECK_EQ_I64(exh_calib_fit(&fit, &p, 1, EXH_CALIB_CURRENT), -EXH_E_RANGE);
 }
 
+/* 0.1 and 2047 N/A to the bit; and what is refused fits nothing: no force at any current. */
+TEST(the_ends_of_a_ratio)
+{
+    static const struct {
+        int32_t force, cur;
+        int err;
+    } row[] = {{1, 640, 0}, {1, 641, -EXH_E_RANGE}, {2047, 64, 0}, {2048, 64, -EXH_E_RANGE}, {0, 0, -EXH_E_RANGE}};
+    for (size_t i = 0; i < LEN(row); i++) {
+        const struct exh_calib_point p[2] = {{row[i].force, row[i].cur, 1, 0}, {N(10000), A(1000), A(1000), 0}};
+        struct exh_calib_fit fit = {{12345, 1}, 6789};
+        CHECK(exh_calib_fit(&fit, p, 2, EXH_CALIB_CURRENT) == row[i].err, "row %zu", i);
+        if (row[i].err == 0) { continue; }
+        CHECK_EQ_I64(fit.kf_NpA_q20, 0);
+        CHECK_EQ_I64(exh_calib_residual_N_q20(&fit, &p[1], EXH_CALIB_CURRENT), N(10000));
+    }
+}
+
+/* One LSB of force more is enough to go on to, and half of one, rounded up, is one. */
+TEST(the_least_way_on)
+{
+    static const struct {
+        int32_t more;
+        int err;
+    } row[] = {{159, -EXH_E_RANGE}, {161, 0}, {320, 0}, {481, 0}};
+    for (size_t i = 0; i < LEN(row); i++) { /* 1 N at 5 A: 320 to 1 */
+        struct exh_calib_point p = {EXH_Q(1, 1, EXH_Q_FORCE), A(5000), A(5000), 0};
+        struct fixture f;
+        set_up(&f);
+        f.c.point = &p;
+        f.c.points = 1;
+        f.c.end_A_q26 = p.cur_A_q26 + row[i].more;
+        CHECK(exh_calib_valid(&f.c, NULL) == row[i].err, "row %zu: %d", i, exh_calib_valid(&f.c, NULL));
+    }
+}
+
 TEST_MAIN("unit/calibrate", mean_rounds_half_up_once, mean_stops_before_it_overflows,
           tables_meet_every_point_and_go_straight_on, tables_need_room,
           refusals_name_table_and_point, values_out_of_range_are_refused,
           another_device_and_stale_ones_are_refused, image_round_trip,
           any_bit_flipped_any_byte_missing_is_refused,
-          a_sound_image_of_a_bad_table_is_refused, every_name_has_its_text, fit_by_hand, tables_that_cannot_go_on_are_refused, points_that_are_none_are_not_fitted, an_image_needs_room, values_at_the_ends_of_their_ranges, the_least_point_is_fitted);
+          a_sound_image_of_a_bad_table_is_refused, every_name_has_its_text, fit_by_hand,
+          tables_that_cannot_go_on_are_refused, points_that_are_none_are_not_fitted, an_image_needs_room,
+          values_at_the_ends_of_their_ranges, the_least_point_is_fitted, the_ends_of_a_ratio, the_least_way_on);

@@ -94,6 +94,14 @@ TEST(coefficients_by_hand)
         {{1, 16384000}, {1, 20000}, {649480731, 0, 0, 0, 3, 1}},
         /* A hair below half the rate g/(1 + g) is nearer to 1 than to any coefficient. */
         {{1, (1 << 23) - 1}, {(1 << 23) + 1, UINT32_C(1) << 31}, {INT32_MAX, 0, 0, 0, 0, 3}},
+        {{2, (1 << 23) - 1}, {(1 << 23) + 1, UINT32_C(1) << 31}, {0, 0, 0, INT32_MAX, 0, 2}},
+        /* 0.05 and 0.0002 below a power of two, which is one more than fits. */
+        {{1, 65536}, {30648, 299249}, {(1 << 30) - 1, 0, 0, 0, 1, 1}},
+        {{2, 65536}, {127646, 1976091}, {922174212, INT32_MAX, 635195518, 0, 1, 0}},
+        /* tan(pi fc T) times 2^32 is 11 * 2^27 - 0.004, + 0.1 and + 2.1. */
+        {{2, 65536}, {48190, 457249}, {640190372, 1617807560, 1061158912, 0, 0, 0}},
+        {{1, 65536}, {33759, 320321}, {549356282, 0, 0, 0, 0, 1}},
+        {{2, 65536}, {4897, 46465}, {1338579867, 320095186, 661446693, 158172036, 0, 2}},
     };
     for (size_t i = 0; i < LEN(row); i++) {
         const struct exh_filter_cfg *w = &row[i].want;
@@ -357,14 +365,15 @@ TEST(a_high_state_swings_to_32_times)
     static const struct exh_filter_cfg *cfg;
     for (int32_t order = 1; order <= 2; order++) {
         const int64_t full = INT64_C(1) << (31 + 26);
-        struct exh_filter near = {20 * full, 0, 1}, far = {32 * full - 1, 0, 1}, end = {32 * full, 0, 1},
-                          beyond = {40 * full, 0, 1};
+        struct exh_filter near = {20 * full, 0, 1}, far = {32 * full - 1, 0, 1},
+                          end = {32 * full, 0, 1}, beyond = {40 * full, 0, 1};
         cfg = tuned(order, 400 << 16, 1000);
         (void)one(&near, cfg, 0);
         (void)one(&far, cfg, 0);
         (void)one(&end, cfg, 0);
         (void)one(&beyond, cfg, 0);
-        CHECK(near.wide && far.pos != near.pos && far.pos - near.pos != end.pos - near.pos, "order %d", (int)order);
+        CHECK(near.wide && far.pos != near.pos && far.pos - near.pos != end.pos - near.pos,
+              "order %d", (int)order);
         CHECK(beyond.pos == end.pos && beyond.vel == end.vel, "order %d: beyond", (int)order);
     }
 }
@@ -383,6 +392,46 @@ TEST(the_last_state_that_goes_on)
     CHECK(more.pos == fresh.pos, "went on");
 }
 
+/* Where nothing moves: the output's ends, what is told of them, and the last state that stays. */
+TEST(limits_to_the_bit)
+{
+    static const struct exh_filter_cfg still = {0, 0, 0, 0, 0, EXH_FILTER_LOW1};
+    const int64_t full = INT64_C(1) << 62, last = INT64_C(5) << 60;
+    const struct {
+        int64_t pos;
+        int32_t y;
+        int clips, anew;
+    } row[] = {
+        {full - 1, INT32_MAX, 0, 0}, {full, INT32_MAX, 1, 0},      {last, INT32_MAX, 1, 0},
+        {last + 1, INT32_MAX, 1, 1}, {-full, INT32_MIN, 0, 0},     {-full - 1, INT32_MIN, 1, 0},
+        {-last, INT32_MIN, 1, 0},    {-last - 1, INT32_MIN, 1, 1},
+    };
+    for (size_t i = 0; i < LEN(row); i++) {
+        const uint32_t before = check_saturations;
+        struct exh_filter s = {row[i].pos, 0, 0}, fresh;
+        exh_filter_reset(&fresh, &row[i].y, 1);
+        CHECK_EQ_I64(one(&s, &still, 0), row[i].y);
+        CHECK((check_saturations != before) == row[i].clips, "row %zu: told %d", i, !row[i].clips);
+        CHECK_EQ_I64(s.pos, row[i].anew ? fresh.pos : row[i].pos);
+    }
+}
+
+/* What a low kind takes over of a high one's states: full scale of either sign at most. */
+TEST(retune_to_low_limits_both_states)
+{
+    const struct exh_filter_cfg high = *tuned(2, 400 << 16, 1000), low = *tuned(2, 1 << 16, 1000);
+    const int64_t pos = INT64_C(1) << 57, vel = INT64_C(1) << 56;
+    static const int32_t more[] = {-1000, -1, 0, 1, 1000};
+    for (size_t i = 0; i < 2 * LEN(more); i++) {
+        const int64_t by = more[i / 2], sign = i & 1 ? -1 : 1;
+        struct exh_filter s = {sign * (pos + by), sign * (vel + by), 1};
+        exh_filter_retune(&s, 1, &high, &low);
+        CHECK_EQ_I64(s.pos, sign * (pos + (by < 0 ? by : 0)) * 32);
+        CHECK_EQ_I64(s.vel, sign * (vel + (by < 0 ? by : 0)) * 64);
+        CHECK_EQ_I64(s.wide, 0);
+    }
+}
+
 /* 2^-21 of the rate is the lowest cut-off; none is below 2^-16 Hz. */
 TEST(the_lowest_cut_off)
 {
@@ -390,11 +439,13 @@ TEST(the_lowest_cut_off)
         int32_t fc_Hz_q16;
         uint32_t rate_Hz;
         int err;
-    } row[] = {{1, 1, 0}, {0, 1, -EXH_E_RANGE}, {-1, 1, -EXH_E_RANGE}, {1, 32, 0}, {1, 64, -EXH_E_RANGE}, {2, 64, 0}};
+    } row[] = {{1, 1, 0},  {0, 1, -EXH_E_RANGE},  {-1, 1, -EXH_E_RANGE},
+               {1, 32, 0}, {1, 64, -EXH_E_RANGE}, {2, 64, 0}};
     for (size_t i = 0; i < LEN(row); i++) {
         const struct exh_filter_par par = {1, row[i].fc_Hz_q16};
         struct exh_filter_cfg cfg;
-        CHECK(exh_filter_setup(&cfg, &par, (struct exh_period){1, row[i].rate_Hz}) == row[i].err, "row %zu", i);
+        CHECK(exh_filter_setup(&cfg, &par, (struct exh_period){1, row[i].rate_Hz}) == row[i].err,
+              "row %zu", i);
     }
 }
 
@@ -402,4 +453,6 @@ TEST_MAIN("unit/filter", refusals_by_name, coefficients_by_hand, half_the_power_
           a_constant_input_comes_out_exactly, reset_is_settled, a_step_rises_once_and_overshoots,
           full_scale_does_not_latch, channels_do_not_touch, retune_keeps_what_is_settled,
           retune_keeps_every_settled_state, a_change_of_order_drops_the_speed,
-          a_state_beyond_any_input_starts_anew, state_round_trip, recovers_from_any_state, a_high_state_swings_to_32_times, the_last_state_that_goes_on, the_lowest_cut_off);
+          a_state_beyond_any_input_starts_anew, state_round_trip, recovers_from_any_state,
+          a_high_state_swings_to_32_times, the_last_state_that_goes_on, limits_to_the_bit,
+          retune_to_low_limits_both_states, the_lowest_cut_off);

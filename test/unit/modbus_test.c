@@ -563,6 +563,13 @@ TEST(bits_are_the_box)
           0x10, 0, 0, 0);
     ASK(2, 0, 14, 0, 30); /* across two words */
     GIVES(2, 4, 1, 0, 0, 0x10);
+    g.r.box.state = 31; /* none has this number, nor the next */
+    ASK(2, 0, 32 * EXH_BITS_STATE, 0, 32);
+    GIVES(2, 4, 0, 0, 0, 0x80);
+    g.r.box.state = 32;
+    ASK(2, 0, 32 * EXH_BITS_STATE, 0, 32);
+    GIVES(2, 4, 0, 0, 0, 0);
+    g.r.box.state = EXH_STATE_FAULT;
     ASK(4, 0, 2 * EXH_HEAD_TICK, 0, 20);
     GIVES(4, 40, 0xFF, 0xFF, 0xFF, 0xFF, 0, 0, 0, 5, 0, 0, 0x40, 1, 0, 0, 0x40, 0, 1, 2, 3, 4, 0, 0,
           4, 0, 0, 0, 4, 0, 0, 0, 0, 0x10, 0, 0, 0x10, 2, 0, 0, 0, 9);
@@ -610,7 +617,13 @@ TEST(without_tables_the_head_alone_is_there)
     g.r.signals = NULL;
     g.r.params = NULL;
     g.r.name = NULL;
+    g.r.done = 3;
+    g.r.result = -EXH_E_RANGE;
     CHECK_EQ_I64(exh_regs_setup(&g.r), 0);
+    ASK(4, 0, 2 * EXH_HEAD_SIGNALS, 0, 8); /* numbers and CRCs of both */
+    GIVES(4, 16, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0);
+    ASK(4, 0, 2 * EXH_HEAD_DONE, 0, 4); /* and nothing done yet */
+    GIVES(4, 8, 0, 0, 0, 0, 0, 0, 0, 0);
     ASK(4, 0, 2 * EXH_HEAD_NAME_0, 0, 8);
     GIVES(4, 16, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0);
     REFUSES(2, 4, 0x10, 0, 0, 1);

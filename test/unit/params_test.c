@@ -250,6 +250,35 @@ TEST(taken_back)
     CHECK(active[0] == 0 && active[GAIN] == 900 && !p.moving, "%d", (int)active[GAIN]);
 }
 
+/* A keyframe of values that rest takes away what was on its way, and what was to be. */
+TEST(keyframe_at_rest)
+{
+    uint8_t b[8 * VALUES];
+    struct exh_bytes c = exh_bytes_writer(b, sizeof b);
+    start(2);
+    exh_params_bytes(&c, &p);
+    CHECK_EQ_I64(exh_params_stage(&p, 0x7201, 0, 900), 0);
+    (void)exh_params_apply(&p);
+    CHECK_EQ_I64(exh_params_stage(&p, 0x7102, 0, 9), 0);
+    CHECK(p.moving && p.pending, "nothing to take away");
+    c = exh_bytes_reader(b, c.at);
+    exh_params_bytes(&c, &p);
+    CHECK(exh_bytes_ok(&c) && !p.moving && !p.pending, "moving %d, pending %d", p.moving, p.pending);
+    CHECK(active[GAIN] == 100 && staged[GAIN] == 100 && staged[1] == 3, "values");
+}
+
+/* A head alone is long enough to be of another table. */
+TEST(images_of_a_head)
+{
+    uint8_t image[16 + 4 * VALUES];
+    start(0);
+    CHECK_EQ_I64(exh_params_save(&p, image, sizeof image), sizeof image);
+    for (uint32_t n = 0; n < sizeof image; n++) { CHECK_EQ_I64(exh_params_load(&p, image, n, NULL), -EXH_E_SHORT); }
+    image[0] ^= 1u;
+    CHECK_EQ_I64(exh_params_load(&p, image, 11, NULL), -EXH_E_SHORT);
+    CHECK_EQ_I64(exh_params_load(&p, image, 12, NULL), -EXH_E_VERSION);
+}
+
 TEST(a_table_of_none)
 {
     static const struct exh_signal_table none = {groups, 0};
@@ -301,4 +330,4 @@ TEST(what_may_be_staged)
 
 TEST_MAIN("unit/params", steps_worked_out, slewed_and_not, before_the_loop_at_once, shift_of_a_time,
           image_in_mid_way, keyframe_in_mid_way, bad_keyframes, guard_in_mid_way, taken_back,
-          a_table_of_none, a_limit_falls_at_once, what_may_be_staged);
+          keyframe_at_rest, images_of_a_head, a_table_of_none, a_limit_falls_at_once, what_may_be_staged);

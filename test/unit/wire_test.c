@@ -350,6 +350,26 @@ TEST(what_differs_is_said_by_name)
     for (size_t i = 0; i < LEN(c); i++) {
         CHECK_EQ_I64(exh_wire_differs(&ours, &c[i].theirs), c[i].want);
     }
+    for (uint32_t crc = 0; crc < 2; crc++) { /* 0 alone is no table of ours */
+        const struct exh_wire_hello few = {EXH_WIRE_CONTROLLER, 0x100, crc};
+        CHECK_EQ_I64(exh_wire_differs(&few, &c[0].theirs), crc ? EXH_WIRE_TABLE : 0);
+    }
+}
+
+/* Of 64 numbers back it is known what came; a step as wide leaves none of them. */
+TEST(a_step_over_all_that_is_remembered)
+{
+    for (uint32_t step = 63; step <= 65; step++) {
+        struct exh_wire_rx rx = met(9, 0);
+        CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PARAM, 9, step)), EXH_WIRE_PARAM);
+        CHECK_EQ_I64(rx.missing, step - 1);
+        for (uint32_t late = 1; late < 63; late++) {
+            CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PARAM, 9, step - late)), -EXH_E_STALE);
+            CHECK(rx.reordered == late && rx.duplicate == 0, "step %" PRIu32 ": %" PRIu32 " late", step, late);
+        }
+        CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PARAM, 9, step - 63)), -EXH_E_STALE);
+        CHECK(rx.duplicate == (step == 63) && rx.missing == step - rx.reordered - 1, "step %" PRIu32, step);
+    }
 }
 
 TEST(a_restart_is_seen_by_its_hello)
@@ -454,5 +474,6 @@ TEST_MAIN("unit/wire", bytes_are_those_of_the_document, there_and_back,
           every_bit_flipped_and_every_byte_cut_off, values_that_cannot_be,
           a_trace_fits_a_packet_whole_and_no_frame_is_missed_unseen, only_what_is_newer,
           sequence_numbers_wrap, far_ahead_is_not_believed, no_packet_makes_it_deaf_for_good,
-          silence_is_only_what_is_heard_of_nobody, what_differs_is_said_by_name, a_restart_is_seen_by_its_hello, writing_refuses,
+          silence_is_only_what_is_heard_of_nobody, what_differs_is_said_by_name, a_step_over_all_that_is_remembered,
+          a_restart_is_seen_by_its_hello, writing_refuses,
           planes_and_round_trip, parameters_are_staged_and_answered, state_round_trip);
