@@ -853,7 +853,7 @@ bench_scenes := examples/drop/drop.c examples/calib.c examples/glove/cal.c $(wil
 bench_bin := $(B)/bench/kernels $(B)/bench/velocity $(B)/bench/speed
 $(B)/posix/test/bench/kernels.o: PORT_HOSTFLAGS += -DBENCH_FLAGS='"-std=c99 -O$(O)$(if $(CFLAGS), $(CFLAGS))"'
 $(B)/bench/kernels: $(bench_obj) $(bench_scenes:%.c=$(B)/posix/%.o)
-$(B)/bench/velocity: $(B)/posix/test/bench/velocity.o $(B)/posix/test/bench/measure.o
+$(B)/bench/velocity: $(B)/posix/test/bench/velocity.o $(B)/posix/test/bench/measure.o $(B)/posix/test/bench/plain.o
 $(B)/bench/speed: $(B)/posix/test/bench/speed.o $(B)/posix/examples/drop/drop.o $(B)/posix/examples/calib.o $(sim_obj)
 $(bench_bin): $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
@@ -888,6 +888,23 @@ $(peers) $(peers)-i686: $(peers_src) $(wildcard $(cmsis)/.complete test/bench/*.
 	$(Q)$(peers_cc) $(filter-out $(warn) -MMD -MP -g,$(base)) -w $(PORT_HOSTFLAGS) $(CFLAGS) $(peers_def) -Itest \
 	    -Wl,--gc-sections -o $@ $(filter %.c,$^) -lm
 
+# Kernels of ours, of others and in plain floating point, for the report; built alike.
+work     := $(B)/bench/work
+work_src := $(filter-out %/work_cmsis.c,$(wildcard test/bench/work*.c)) $(addprefix test/bench/,plain.c law.c path.c measure.c) \
+            examples/drop/drop.c examples/calib.c $(lib_src)
+ifneq ($(wildcard $(cmsis)/.complete),)
+work_src += test/bench/work_cmsis.c $(wildcard $(cmsis)/Source/ControllerFunctions/arm_pid_*_q31.c \
+            $(cmsis)/Source/ControllerFunctions/arm_pid_*_q15.c $(cmsis)/Source/ControllerFunctions/arm_pid_*_f32.c) \
+            $(cmsis)/Source/CommonTables/arm_common_tables.c $(cmsis)/Source/FastMathFunctions/arm_sin_q31.c \
+            $(cmsis)/Source/FastMathFunctions/arm_cos_q31.c $(cmsis)/Source/InterpolationFunctions/arm_linear_interp_q31.c
+endif
+$(work): work_cc := $(CC)
+$(work)-i686: work_cc := i686-linux-gnu-gcc -static
+$(work) $(work)-i686: $(work_src) $(wildcard $(cmsis)/.complete test/bench/*.h lib/src/*.h lib/include/exhand/*.h) $(stamp)
+	@mkdir -p $(@D)
+	$(Q)$(work_cc) $(filter-out $(warn) -MMD -MP -g,$(base)) -w $(PORT_HOSTFLAGS) $(CFLAGS) $(peers_def) -Itest \
+	    -Wl,--gc-sections -o $@ $(filter %.c,$^) -lm
+
 ## Error and instructions of every kernel, beside test/bench/baseline.csv (ARGS=--update)
 .PHONY: bench
 bench:
@@ -903,8 +920,10 @@ bench:
 # What the report draws of the bench; with SHORT what the last bench has left, if its binaries are no newer.
 .PHONY: bench-csv
 bench-csv:
-	@[ -n "$$SHORT" ] && $(MAKE) --no-print-directory -s $(bench_bin) $(peers) && [ $(B)/bench/velocity.csv -nt $(B)/bench/kernels ] && \
+	@[ -n "$$SHORT" ] && $(MAKE) --no-print-directory -s $(bench_bin) $(peers) && [ $(B)/bench/velocity.csv -nt $(B)/bench/velocity ] && \
 	    [ $(B)/bench/sines.csv -nt $(peers) ] || $(MAKE) --no-print-directory bench ARGS=
+	@$(MAKE) --no-print-directory -s $(work) $(if $(shell command -v i686-linux-gnu-gcc),$(work)-i686)
+	@B=$(B) test/bench/work.sh
 
 ## Error against run time, stability, costs: pictures and one page in build/report (ARGS="--list", "--only NAME", "--short")
 .PHONY: report

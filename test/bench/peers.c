@@ -1,4 +1,4 @@
-/* peers errors | sines | count | ram: ours and others' low-passes and sines in one program,
+/* peers errors | sines | count | time | ram: ours and others' low-passes and sines in one program,
  * on the same inputs; CSV for peers.sh.
  *
  * errors: peer, then for fc/fs 0.1, 0.01, 0.001, 0.0001 in ppm of full scale: worst error at
@@ -6,9 +6,11 @@
  * settled sine of 0.37 at fc; then 1 if a step to 0.98 at 0.01 stays wrong. Reference: the
  * same filter in long double, fed with the input as the peer could take it.
  * count: as kernels count does; each peer by 22 channels of one sample, then by one channel
- * of 64.
+ * of 64. time: peer, ns of one op by 22 channels or of one sine and cosine.
  */
+#define _POSIX_C_SOURCE 200809L
 #include "peers.h"
+#include "clock.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -167,6 +169,13 @@ static void count_filter(const struct filter_peer *p)
     run(p->name, p->block, BLOCK);
 }
 
+static void time_filter(const struct filter_peer *p)
+{
+    const struct butterworth f = design(100);
+    p->setup(&f);
+    printf("%s,%.2f\n", p->name, bench_least_ns(p->tick) - bench_least_ns(empty));
+}
+
 static void inputs(void)
 {
     bench_seed();
@@ -199,23 +208,28 @@ int main(int argc, char **argv)
         each_filter(print_errors);
     } else if (strcmp(mode, "ram") == 0) {
         each_filter(print_ram);
-    } else if (strcmp(mode, "sines") == 0 || strcmp(mode, "count") == 0) {
+    } else if (strcmp(mode, "sines") == 0 || strcmp(mode, "count") == 0 ||
+               strcmp(mode, "time") == 0) {
         if (mode[0] == 'c') {
             run("empty", empty, 1);
             each_filter(count_filter);
+        } else if (mode[0] == 't') {
+            each_filter(time_filter);
         }
         for (size_t g = 0; g < GROUPS; g++) {
             for (size_t i = 0; i < groups[g]->sines; i++) {
                 const struct sine_peer *p = &groups[g]->sine[i];
                 if (mode[0] == 'c') {
                     run(p->name, p->op, 1);
+                } else if (mode[0] == 't') {
+                    printf("%s,%.2f\n", p->name, bench_least_ns(p->op) - bench_least_ns(empty));
                 } else {
                     print_sine(p);
                 }
             }
         }
     } else {
-        fprintf(stderr, "usage: peers errors|sines|count|ram\n");
+        fprintf(stderr, "usage: peers errors|sines|count|time|ram\n");
         return 2;
     }
     return 0;

@@ -69,6 +69,7 @@ instructions()
 
 instructions "$b/bench/peers" >"$tmp/x64"
 "$b/bench/peers" ram >"$tmp/ram"
+"$b/bench/peers" time >"$tmp/ns"
 : >"$tmp/i686"
 if [ -x "$b/bench/peers-i686" ]; then
     instructions "$b/bench/peers-i686" >"$tmp/i686"
@@ -79,7 +80,7 @@ fi
 
 echo "low-pass, second order: 22 channels of one sample (x64, i686), and one channel of 64"
 echo "samples, each (b64); error in ppm of full scale, worst at rest; rms of a step; of a sine at fc."
-awk -F, -v ram="$tmp/ram" -v csv="$b/bench/filters.csv" '
+awk -F, -v ram="$tmp/ram" -v csv="$b/bench/filters.csv" -v times="$tmp/ns" '
     function triple(k) { return sprintf("%s; %s; %s", $k, $(k + 1), $(k + 2)) }
     function line(a, b, c, d, e, f, g, h, i, j) {
         printf "%-29s %6s %6s %6s %6s | %-25s %-25s %-25s %-25s | %-5s %5s\n", \
@@ -87,13 +88,14 @@ awk -F, -v ram="$tmp/ram" -v csv="$b/bench/filters.csv" '
     function field(a, b, c, d, e, k, last) {
         row = a "," b "," c "," d "," e
         for (; k <= last; k++) row = row "," $k
-        print row "," mem > csv }
+        print row "," mem "," ($1 in ns && $1 in ran ? ns[$1] : "-") > csv }
     FILENAME == ram { ram_B[$1] = $2; next }
+    FILENAME == times { ns[$1] = $2; next }
     FILENAME ~ /x64$/ { x64[$1] = $2; x64_b[$1] = $3; next }
     FILENAME ~ /i686$/ { i686[$1] = $2; i686_b[$1] = $3; next }
     !head++ { mem = "RAM B"
               print "name,where,x64,x64_b64,i686,rest_1,step_1,sine_1,rest_2,step_2,sine_2,rest_3,step_3,sine_3," \
-                    "rest_4,step_4,sine_4,latches,ram_B" > csv
+                    "rest_4,step_4,sine_4,latches,ram_B,ns" > csv
               line("", "x64", "b64", "i686", "b64", "fc/fs = 0.1", "0.01", "0.001", "0.0001", "latch") }
     FILENAME ~ /errors$/ {
         ran[$1] = 1
@@ -122,16 +124,17 @@ awk -F, -v ram="$tmp/ram" -v csv="$b/bench/filters.csv" '
                            bad = 1 }
         if (stuck) { printf "FAIL %s: latches\n", ours; bad = 1 }
         exit bad }
-' "$tmp/ram" "$tmp/x64" "$tmp/i686" "$tmp/errors" "$here/peers.csv" || status=1
+' "$tmp/ram" "$tmp/ns" "$tmp/x64" "$tmp/i686" "$tmp/errors" "$here/peers.csv" || status=1
 
 echo
 echo "sine and cosine of one angle, both: 2^20 angles"
 awk -F, -v i686="$tmp/i686" -v csv="$b/bench/sines.csv" '
     FILENAME == i686 { n32[$1] = $2; next }
+    FILENAME ~ /ns$/ { ns[$1] = $2; next }
     FILENAME ~ /x64$/ { n64[$1] = $2; next }
-    !head { print "name,x64,i686,worst_ppm,rms_ppm,table_B" > csv }
-    { print $1 "," n64[$1] "," ($1 in n32 ? n32[$1] : "-") "," $2 "," $3 "," $4 > csv }
+    !head { print "name,x64,i686,worst_ppm,rms_ppm,table_B,ns" > csv }
+    { print $1 "," n64[$1] "," ($1 in n32 ? n32[$1] : "-") "," $2 "," $3 "," $4 "," ns[$1] > csv }
     !head++ { printf "%-29s %6s %6s | %10s %10s | %7s\n", "", "x64", "i686", "worst ppm", "rms ppm", "table B" }
     { printf "%-29s %6s %6s | %10s %10s | %7s\n", $1, n64[$1], $1 in n32 ? n32[$1] : "-", $2, $3, $4 }
-' "$tmp/i686" "$tmp/x64" "$tmp/sines"
+' "$tmp/i686" "$tmp/ns" "$tmp/x64" "$tmp/sines"
 exit ${status:-0}

@@ -59,6 +59,36 @@ static void ours_sine_op(uint32_t i)
     bench_sink = y.sin_q30 + (int64_t)y.cos_q30;
 }
 
+/* The C library's, in radians; both of one angle, which the compiler makes one call. */
+static void double_sine(uint32_t turn_q32, long double *sine, long double *cosine)
+{
+    const double a = turn_q32 * (6.28318530717958647692 / 4294967296.0);
+    *sine = sin(a);
+    *cosine = cos(a);
+}
+
+static void float_sine(uint32_t turn_q32, long double *sine, long double *cosine)
+{
+    const float a = (float)(exh_from_u32(turn_q32) * (6.28318530717958647692 / 4294967296.0));
+    *sine = sinf(a);
+    *cosine = cosf(a);
+}
+
+static volatile double sink_double;
+static volatile float sink_float;
+
+static void double_sine_op(uint32_t i)
+{
+    const double a = peer_x_f64[i] * 3.14159265358979;
+    sink_double = sin(a) + cos(a);
+}
+
+static void float_sine_op(uint32_t i)
+{
+    const float a = peer_x_f32[i] * 3.14159265f;
+    sink_float = sinf(a) + cosf(a);
+}
+
 /* --- plain --- */
 
 #define PLAIN(type, in) \
@@ -112,7 +142,9 @@ static const struct filter_peer filters[] = {
     {"plain float DF2T", float_setup, float_native, float_step, float_tick, float_block,
      sizeof float_biquad[0]},
 };
-static const struct sine_peer sines[] = {{"exhand sincos", ours_sine, ours_sine_op, 0}};
+static const struct sine_peer sines[] = {{"exhand sincos", ours_sine, ours_sine_op, 0},
+                                         {"libm double sin + cos", double_sine, double_sine_op, 0},
+                                         {"libm float sinf + cosf", float_sine, float_sine_op, 0}};
 
 const struct peer_group plain_peers = {filters, sizeof filters / sizeof filters[0], sines,
                                        sizeof sines / sizeof sines[0]};

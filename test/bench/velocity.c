@@ -3,16 +3,17 @@
  * the figures of theory come with it where there are any. bench.sh adds instructions.
  */
 #include "estimators.h"
+#include "estimators_plain.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #define RATE_HZ 2000
-#define SETTLE 400  /* ticks before anything is judged */
-#define TICKS 40000 /* 20 s */
-#define SPEEDS 4
-#define PHASES 16 /* of the encoder's grid: a sine of 5 Hz repeats every 400 ticks */
+#define SETTLE  400 /* ticks before anything is judged */
+#define TICKS   40000 /* 20 s */
+#define SPEEDS  4
+#define PHASES  16 /* of the encoder's grid: a sine of 5 Hz repeats every 400 ticks */
 
 static const double speed_mps[SPEEDS] = {0.001, 0.01, 0.1, 1};
 static const struct exh_period period = {1, RATE_HZ};
@@ -35,25 +36,97 @@ struct estimator {
 
 /* pole_100: the pole of exp(-2 pi 100 Hz T). track_0.9: theta = 0.9. */
 static const struct estimator estimators[] = {
-    {"difference", "velocity_window_1", window_start, window_step, 0, 1,
+    {"difference",
+     "velocity_window_1",
+     window_start,
+     window_step,
+     0,
+     1,
      {{5.5, 14.6, 12.2, 11.3}, {30, 21, 26, 27}, 0.25, 13.1}},
     {"window_2", "velocity_window_2", window_start, window_step, 1, 0, {{0}, {0}, 0, 0}},
-    {"window_4", "velocity_window_2", window_start, window_step, 2, 1,
+    {"window_4",
+     "velocity_window_2",
+     window_start,
+     window_step,
+     2,
+     1,
      {{2.6, 3.5, 3.5, 3.8}, {6.9, 5.7, 5.8, 4.8}, 1.00, 7.7}},
-    {"window_16", "velocity_window_16", window_start, window_step, 4, 1,
+    {"window_16",
+     "velocity_window_16",
+     window_start,
+     window_step,
+     4,
+     1,
      {{1.0, 0.58, 0.41, 0.98}, {1.0, 1.8, 1.9, 1.1}, 4.00, 27.9}},
-    {"pole_100", "velocity_pole", pole_start, pole_step, 1354, 1,
+    {"pole_100",
+     "velocity_pole",
+     pole_start,
+     pole_step,
+     1354,
+     1,
      {{2.0, 2.7, 2.8, 2.7}, {7.5, 4.6, 4.9, 5.1}, 1.61, 11.5}},
-    {"foaw_16", "velocity_foaw_16", foaw_start, foaw_step, 16, 1,
+    {"foaw_16",
+     "velocity_foaw_16",
+     foaw_start,
+     foaw_step,
+     16,
+     1,
      {{1.1, 0.38, 0.28, 0.21}, {1.8, 0.62, 0.72, 0.49}, 1.97, 11.7}},
-    {"track_0.9", "velocity_track", track_start, track_step, 4500, 1,
+    {"track_0.9",
+     "velocity_track",
+     track_start,
+     track_step,
+     4500,
+     1,
      {{0.33, 0.11, 0.10, 0.11}, {0.59, 0.25, 0.23, 0.27}, 9.25, 63}},
+    {"double_window_4",
+     "plain double window",
+     double_window_start,
+     double_window_step,
+     4,
+     0,
+     {{0}, {0}, 0, 0}},
+    {"float_window_4",
+     "plain float window",
+     float_window_start,
+     float_window_step,
+     4,
+     0,
+     {{0}, {0}, 0, 0}},
+    {"double_pole_100",
+     "plain double pole",
+     double_pole_start,
+     double_pole_step,
+     1354,
+     0,
+     {{0}, {0}, 0, 0}},
+    {"float_pole_100",
+     "plain float pole",
+     float_pole_start,
+     float_pole_step,
+     1354,
+     0,
+     {{0}, {0}, 0, 0}},
+    {"double_foaw_16",
+     "plain double foaw",
+     double_foaw_start,
+     double_foaw_step,
+     16,
+     0,
+     {{0}, {0}, 0, 0}},
+    {"float_foaw_16",
+     "plain float foaw",
+     float_foaw_start,
+     float_foaw_step,
+     16,
+     0,
+     {{0}, {0}, 0, 0}},
 };
 
 /* --- the movements --- */
 
 struct movement {
-    double v_mps, a_mps2;       /* constant speed and acceleration              */
+    double v_mps, a_mps2; /* constant speed and acceleration              */
     double sine_m, sine_radps;
 };
 

@@ -37,31 +37,114 @@ def ppm(text):
 
 def judged(points):
     """Our points must be on the front of every panel."""
-    off = [k for k, v in work.on_front(points).items() if not v]
+    on = work.on_front(points)
+    off = [k for k, v in on.items() if not v]
     print("note: ours is on the front of integer code in %d of %d panels%s." % (
-        len(work.on_front(points)) - len(off), len(work.on_front(points)), ", not in: " + "; ".join(off) if off else ""))
+        len(on) - len(off), len(on), ", not in: " + "; ".join(off) if off else ""))
+
+
+COSTS = (("x64", "x86-64", "instructions"), ("i686", "i686", "instructions"), ("ns", "x86-64, this machine", "ns"))
+
+
+def counted(row, cost):
+    return row.get(cost, "") not in ("", "-")
 
 
 def filters():
-    rows, points = rows_of("filters.csv"), []
-    for cpu in ("x64", "i686"):
+    rows, points, labels = rows_of("filters.csv"), [], []
+    for cost, title, unit in COSTS:
         for k, ratio in enumerate(RATIOS):
-            for r in rows:
-                if r[cpu] in ("", "-"):
-                    continue
+            mine = [r for r in rows if counted(r, cost)]
+            for r in mine:
                 worst = max(ppm(r["%s_%d" % (w, k + 1)]) for w in ("rest", "step", "sine") if r["%s_%d" % (w, k + 1)] != "-")
-                points.append(work.Point("%s, fc/fs = %s" % ("x86-64" if cpu == "x64" else cpu, ratio), r["name"], kind_of(r["name"]),
-                                         r[cpu], worst, r["where"] == "here"))
+                points.append(work.Point("%s, fc/fs = %s" % (title.split(",")[0] + (", ns" if cost == "ns" else ""), ratio), r["name"],
+                                         kind_of(r["name"]), r[cost], worst, r["where"] == "here"))
+            labels += [unit + ", 22 channels"] if mine else []
     save("filter", rows[0].keys(), [r.values() for r in rows])
-    work.draw(OUT, "filter", points, 1e-10, "instructions, 22 channels", "largest error, ppm of full scale", 4, True)
+    work.draw(OUT, "filter", points, 1e-10, labels, "largest error, ppm", len(RATIOS))
     judged(points)
+
+
+def sines():
+    rows, points = rows_of("sines.csv"), []
+    for cost, title, unit in COSTS:
+        points += [work.Point(title, r["name"], kind_of(r["name"]), r[cost], r["worst_ppm"]) for r in rows if counted(r, cost)]
+    save("sine", rows[0].keys(), [r.values() for r in rows])
+    work.draw(OUT, "sine", points, 1e-10, [u for c, _, u in COSTS if any(counted(r, c) for r in rows)], "largest error, ppm")
+    judged(points)
+
+
+def kernel(name, of, unit, floor, scale=1, when=(("all", ""),)):
+    """One kernel's diagram: error times scale, in unit; at each time a row of panels."""
+    rows = [r for r in rows_of("work.csv") if r["kernel"] == of]
+    points, labels = [], []
+    for at, said in when:
+        for cost, title, label in COSTS:
+            mine = [r for r in rows if r["when"] == at and counted(r, cost)]
+            points += [work.Point(title + said, r["name"], r["kind"], r[cost], scale * float(r["max"])) for r in mine]
+            labels += [label] if mine else []
+    save(name, rows[0].keys(), [r.values() for r in rows])
+    work.draw(OUT, name, points, floor, labels, "largest error, " + unit, len(labels) // len(when))
+    judged(points)
+
+
+def drift(name, of, floor):
+    """Largest error in the last second, over time."""
+    rows = [r for r in rows_of("work.csv") if r["kernel"] == of and r["when"] not in ("all", "-")]
+    names = list(dict.fromkeys((r["name"], r["kind"]) for r in rows))
+    times = list(dict.fromkeys(r["when"] for r in rows))
+    at = {(r["name"], r["when"]): max(float(r["max"]), floor) for r in rows}
+    save(name, ["seconds"] + [n for n, _ in names], [[t] + ["%.3g" % at[n, t] for n, _ in names] for t in times])
+    with open(os.path.join(OUT, name + ".names"), "w", encoding="utf-8") as f:
+        f.write("unit = '%s'; n_names = %d\n" % (rows[0]["unit"], len(names)))
+        for k, (n, kind) in enumerate(names):
+            f.write("name_%d = '%s'; kind_%d = %d\n" % (k + 1, n, k + 1, work.KINDS.index(kind)))
+
+
+def velocity():
+    """Noise and lag over cost, and over each other."""
+    cost_of = {r["name"]: r for r in rows_of("work.csv") + [dict(r, x64=r["instructions"], i686=r["instructions_i686"])
+                                                             for r in rows_of("bench.csv")]}
+    rows = [r for r in rows_of("velocity.csv") if r["source"] == "measured" and r["step_um"] == "15.7"]
+    points, labels = [], []
+    for title, key, unit in (("noise at 10 mm/s", "rms_10mmps", "mm/s"), ("lag", "lag_ms", "ms"),
+                             ("error on a sine", "sine_rms_mmps", "mm/s")):
+        for cost, cpu in (("x64", "x86-64"), ("i686", "i686")):
+            mine = [r for r in rows if counted(cost_of[r["kernel"]], cost)]
+            points += [work.Point(title + ", " + unit + (" " if cost == "i686" else ""), label_of(r), kind_of(label_of(r)), cost_of[r["kernel"]][cost], r[key])
+                       for r in mine]
+            labels += ["instructions, " + cpu] if mine else []
+    points += [work.Point("noise (mm/s) over lag", label_of(r), kind_of(label_of(r)), r["lag_ms"], r["rms_10mmps"]) for r in rows]
+    labels.append("lag, ms")
+    save("velocity", rows[0].keys(), [r.values() for r in rows])
+    work.draw(OUT, "velocity", points, 1e-3, labels, "error", 4, False)
+    judged(points)
+
+
+def label_of(row):
+    return row["estimator"] if row["estimator"].split("_")[0] in ("double", "float") else "exhand " + row["estimator"]
+
+
+SECTIONS = {
+    "filter": filters,
+    "sine": sines,
+    "law": lambda: kernel("law", "law", "N", 1e-17, 1, (("1", ", after 1 s"), ("3600", ", after 1 h"))),
+    "law_drift": lambda: drift("law_drift", "law", 1e-17),
+    "table": lambda: kernel("table", "table", "ppm", 1e-11),
+    "hand": lambda: kernel("hand", "hand", "m", 1e-17),
+    "precontact": lambda: kernel("precontact", "precontact", "m", 1e-17),
+    "passivity": lambda: kernel("passivity", "passivity", "J", 1e-17, 1, (("1", ", after 1 s"), ("3600", ", after 1 h"))),
+    "passivity_drift": lambda: drift("passivity_drift", "passivity", 1e-17),
+    "velocity": velocity,
+}
 
 
 def main():
     os.makedirs(OUT, exist_ok=True)
-    {"filter": filters}[sys.argv[1]]()
-    if not os.path.exists(os.path.join(os.environ.get("B", "build"), "peers", "cmsisdsp-1.10.3", ".complete")):
-        print("skipped: CMSIS-DSP, which could not be fetched; its points are those measured once elsewhere")
+    SECTIONS[sys.argv[1]]()
+    if sys.argv[1] in ("filter", "sine", "law", "law_drift", "table", "hand") and not os.path.exists(
+            os.path.join(os.environ.get("B", "build"), "peers", "cmsisdsp-1.10.3", ".complete")):
+        print("skipped: CMSIS-DSP, which could not be fetched; of its points those measured once elsewhere stand, if any")
     return 0
 
 

@@ -2,7 +2,7 @@
 stem = data[1:strlen(data) - 4]
 load stem.'.panels'
 width = n_columns*panel_w + legend_px + 30
-height = n_rows*panel_h + 40
+height = n_rows*panel_h + 20
 load here.'/style.gp'
 set multiplot
 set logscale xy
@@ -12,17 +12,17 @@ unset key
 points_of(k, kind, is_here) = (column('panel') == k && column('kind') == kind && column('here') == is_here) ? column('cost') : NaN
 do for [k = 1:n_panels] {
     c = (k - 1) % n_columns; r = (k - 1)/n_columns
-    set lmargin at screen (30. + c*panel_w + 65)/width
+    set lmargin at screen (30. + c*panel_w + 100)/width
     set rmargin at screen (30. + (c + 1)*panel_w - 20)/width
     set tmargin at screen 1 - (r*panel_h + 50)/height
-    set bmargin at screen 1 - ((r + 1)*panel_h - 45)/height
+    set bmargin at screen 1 - ((r + 1)*panel_h - 72)/height
     set xrange [value(sprintf('x0_%d', k)) : value(sprintf('x1_%d', k))]
     set yrange [value(sprintf('y0_%d', k)) : value(sprintf('y1_%d', k))]
     decades = log10(value(sprintf('x1_%d', k))/value(sprintf('x0_%d', k)))
-    if (decades < 1.6) { set xtics (10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000) } else { set xtics auto }
+    if (decades < 2.2) { set xtics (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000) } else { set xtics auto }
     set title value(sprintf('title_%d', k)) font 'DejaVu Sans Bold,17' textcolor rgb ink offset 0,-0.6
-    set xlabel (r == n_rows - 1 ? x_label : '') font ',16' textcolor rgb ink offset 0,0.3
-    set ylabel (c == 0 ? y_label : '') font ',16' textcolor rgb ink offset 0.6,0
+    set xlabel value(sprintf('x_label_%d', k)) font ',16' textcolor rgb ink offset 0,0.3
+    set ylabel (c == 0 ? y_label : '') font ',16' textcolor rgb ink offset 0,0
     plot stem.'_front.csv' using (column('panel') == k ? column('cost') : NaN):'error' with lines lw 2 lc rgb '#9bb8e3', \
          stem.'_points.csv' using (points_of(k, 2, 0)):'error' with points pt 6 ps 1.3 lw 1 lc rgb '#a9d3b0', \
          '' using (points_of(k, 1, 0)):'error' with points pt 5 ps 1.1 lc rgb '#f0c690', \

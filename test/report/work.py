@@ -66,14 +66,14 @@ def place(points, x, y, width, height, em):
     return out
 
 
-def draw(out, name, points, floor, x_label, y_label, columns=0, per_row_share=False):
+def draw(out, name, points, floor, x_labels, y_label, columns=0, share=True):
     """Writes OUT/NAME_points.csv, NAME_front.csv and NAME.panels, which work.gp draws. floor: errors below it are drawn there.
-    per_row_share: panels of one row have one range of errors."""
+    x_labels: of each panel, or one for all; share: panels of one row have one range of errors."""
     panels = list(dict.fromkeys(p.panel for p in points))
     names = list(dict.fromkeys(p.name for p in points))
     columns = columns or len(panels)
     rows = -(-len(panels) // columns)
-    legend_px, panel_w, panel_h = 430, max(330, min(620, 1560 // columns)), 430 if rows > 1 else 620
+    legend_px, panel_w, panel_h = 430, max(400, min(620, 1560 // columns)), 460 if rows > 1 else 620
     for p in points:
         p.error, p.label = max(p.error, floor), str(names.index(p.name) + 1)
     kind_of = {p.name: p.kind for p in points}
@@ -81,7 +81,7 @@ def draw(out, name, points, floor, x_label, y_label, columns=0, per_row_share=Fa
     with open(os.path.join(out, name + ".panels"), "w", encoding="utf-8") as g:
         g.write("n_panels = %d; n_columns = %d; n_rows = %d; panel_w = %d.; panel_h = %d.; legend_px = %d.\n" % (
             len(panels), columns, rows, panel_w, panel_h, legend_px))
-        g.write("x_label = \"%s\"; y_label = \"%s\"; n_names = %d\n" % (x_label, y_label, len(names)))
+        g.write("y_label = \"%s\"; n_names = %d\n" % (y_label, len(names)))
         for k, n in enumerate(names):
             g.write("name_%d = \"%d  %s%s\"; name_kind_%d = %d\n" % (k + 1, k + 1, n, "" if here[n] else " *", k + 1,
                                                                      KINDS.index(kind_of[n])))
@@ -92,11 +92,12 @@ def draw(out, name, points, floor, x_label, y_label, columns=0, per_row_share=Fa
             wf.writerow(["panel", "cost", "error"])
             for k, title in enumerate(panels):
                 mine = [p for p in points if p.panel == title]
-                row = [p for p in points if panels.index(p.panel) // columns == k // columns] if per_row_share else mine
+                row = [p for p in points if panels.index(p.panel) // columns == k // columns] if share else mine
                 x, y = bounds([p.cost for p in mine]), bounds([p.error for p in row])
+                g.write("x_label_%d = \"%s\"\n" % (k + 1, x_labels if isinstance(x_labels, str) else x_labels[k]))
                 g.write("title_%d = \"%s\"; x0_%d = %g; x1_%d = %g; y0_%d = %g; y1_%d = %g\n" % (
                     k + 1, title, k + 1, x[0], k + 1, x[1], k + 1, y[0], k + 1, y[1]))
-                for p, (lx, ly) in zip(mine, place(mine, x, y, panel_w - 85, panel_h - 95, 18)):
+                for p, (lx, ly) in zip(mine, place(mine, x, y, panel_w - 120, panel_h - 122, 18)):
                     wp.writerow([k + 1, KINDS.index(p.kind), int(p.here), "%g" % p.cost, "%g" % p.error,
                                  "%g" % (x[0] * (x[1] / x[0]) ** lx), "%g" % (y[0] * (y[1] / y[0]) ** ly), p.label])
                 step = front(mine)

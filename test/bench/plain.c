@@ -1,0 +1,20 @@
+/* The kernels in double and in float, apart from whoever calls them. */
+#include "plain.h"
+
+#include <math.h>
+
+#define T      double
+#define N(n)   plain_##n##_double
+#define SIN(x) sin(x)
+#define COS(x) cos(x)
+#include "plain_body.h"
+#undef T
+#undef N
+#undef SIN
+#undef COS
+
+#define T      float
+#define N(n)   plain_##n##_float
+#define SIN(x) sinf(x)
+#define COS(x) cosf(x)
+#include "plain_body.h"

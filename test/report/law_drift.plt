@@ -1,0 +1,1 @@
+load here.'/drift.gp'
