@@ -220,9 +220,9 @@ TEST(another_device_and_stale_ones_are_refused)
     CHECK_EQ_I64(exh_calib_check(&f.c, &here, NULL), -EXH_E_STALE);
     here.day = 20000;
     f.c.points = 0; /* nothing was loaded, and nobody looked */
-    bad.what = 99;
+    bad.what = bad.at = 99;
     CHECK_EQ_I64(exh_calib_check(&f.c, &here, &bad), -EXH_E_RANGE);
-    CHECK_EQ_I64(bad.what, EXH_CALIB_VALUE);
+    CHECK(bad.what == EXH_CALIB_VALUE && bad.at == 0, "%d of %d", bad.what, bad.at);
 }
 
 /* --- image --- */
@@ -268,13 +268,13 @@ TEST(any_bit_flipped_any_byte_missing_is_refused)
     len = save(&a, buf);
     for (int32_t i = 0; i < 8 * len; i++) {
         int err;
-        bad.what = 99;
+        bad.what = bad.at = 99;
         buf[i / 8] ^= (uint8_t)(1u << i % 8);
         err = exh_calib_load(&b.c, buf, (size_t)len, &bad);
         buf[i / 8] ^= (uint8_t)(1u << i % 8);
         CHECK(err == (i < 48 ? -EXH_E_VERSION : i >= 64 ? -EXH_E_CRC : err) && err < 0,
               "bit %" PRId32 ": %d", i, err);
-        CHECK(bad.what == EXH_CALIB_IMAGE && b.c.points == 0, "bit %" PRId32, i);
+        CHECK(bad.what == EXH_CALIB_IMAGE && bad.at == 0 && b.c.points == 0, "bit %" PRId32, i);
     }
     for (int k = 0; k < 4 && len >= 4; k++) { /* no CRC is none that fits */
         crc[k] = buf[len - 4 + k];
@@ -406,6 +406,7 @@ TEST(an_image_needs_room)
         CHECK(exh_calib_save(&f.c, image, (size_t)cap, &bad) == -EXH_E_SHORT && bad.what == EXH_CALIB_IMAGE,
               "%" PRId32 " bytes", cap);
     }
+    CHECK_EQ_I64(exh_calib_save(&f.c, NULL, 0, NULL), -EXH_E_SHORT); /* not looked at */
 }
 
 /* Each value at the ends of its range, and one beyond. */
@@ -448,16 +449,81 @@ TEST(the_least_point_is_fitted)
 TEST(the_ends_of_a_ratio)
 {
     static const struct {
-        int32_t force, cur;
+        int32_t force, cur, friction;
         int err;
-    } row[] = {{1, 640, 0}, {1, 641, -EXH_E_RANGE}, {2047, 64, 0}, {2048, 64, -EXH_E_RANGE}, {0, 0, -EXH_E_RANGE}};
+    } row[] = {{1, 640, 0, 0},
+               {1, 641, 0, -EXH_E_RANGE},
+               {2047, 64, 0, 0},
+               {2048, 64, 0, -EXH_E_RANGE},
+               {0, 0, 0, -EXH_E_RANGE},
+               {EXH_Q(100, 1, EXH_Q_FORCE), A(1000), A(6600), 0},
+               {EXH_Q(100, 1, EXH_Q_FORCE) + 1, A(1000), 0, -EXH_E_RANGE},
+               {N(1000), A(6600), 0, 0},
+               {N(1000), A(6600) + 1, 0, -EXH_E_RANGE}};
     for (size_t i = 0; i < LEN(row); i++) {
-        const struct exh_calib_point p[2] = {{row[i].force, row[i].cur, 1, 0}, {N(10000), A(1000), A(1000), 0}};
+        const struct exh_calib_point p[2] = {{row[i].force, row[i].cur, 1, row[i].friction},
+                                             {N(10000), A(1000), A(1000), 0}};
         struct exh_calib_fit fit = {{12345, 1}, 6789};
         CHECK(exh_calib_fit(&fit, p, 2, EXH_CALIB_CURRENT) == row[i].err, "row %zu", i);
         if (row[i].err == 0) { continue; }
         CHECK_EQ_I64(fit.kf_NpA_q20, 0);
         CHECK_EQ_I64(exh_calib_residual_N_q20(&fit, &p[1], EXH_CALIB_CURRENT), N(10000));
+    }
+}
+
+TEST(more_points_than_there_may_be)
+{
+    struct exh_calib_point p[EXH_CALIB_POINTS_MAX + 1];
+    struct exh_calib_fit fit;
+    for (int32_t i = 0; i <= EXH_CALIB_POINTS_MAX; i++) {
+        p[i] = (struct exh_calib_point){N(100) * (i + 1), A(30) * (i + 1), A(31) * (i + 1), 0};
+    }
+    CHECK_EQ_I64(exh_calib_fit(&fit, p, EXH_CALIB_POINTS_MAX, EXH_CALIB_CURRENT), 0);
+    CHECK_EQ_I64(exh_calib_fit(&fit, p, EXH_CALIB_POINTS_MAX + 1, EXH_CALIB_CURRENT), -EXH_E_RANGE);
+}
+
+/* As many points as there may be, and straight on behind them; one point of an LSB of all. */
+TEST(most_and_least_points)
+{
+    struct exh_calib_point p[EXH_CALIB_POINTS_MAX];
+    struct fixture f;
+    for (int32_t i = 0; i < EXH_CALIB_POINTS_MAX; i++) {
+        p[i] = (struct exh_calib_point){N(100) * (i + 1), A(30) * (i + 1), A(31) * (i + 1), 0};
+    }
+    set_up(&f);
+    f.c.point = p;
+    f.c.points = EXH_CALIB_POINTS_MAX;
+    CHECK_EQ_I64(exh_calib_valid(&f.c, NULL), 0);
+    p[0] = (struct exh_calib_point){1, 1, 1, 0};
+    f.c.points = 1;
+    f.c.end_A_q26 = 1;
+    CHECK_EQ_I64(exh_calib_valid(&f.c, NULL), 0);
+}
+
+/* Of two points that cannot go on there is no shorter table either; up to the last force that fits there is one. */
+TEST(no_table_ends_early)
+{
+    static const struct {
+        struct exh_calib_point point[2];
+        int32_t end_A_q26;
+        int err;
+        uint8_t what;
+    } row[] = {
+        {{{N(500), A(2500), A(2500), 0}, {N(1000), A(5000), A(5000), 0}}, A(5000) + 1, -EXH_E_RANGE, EXH_CALIB_FORCE_TABLE},
+        {{{N(5000), A(500), A(3), 0}, {N(10000), A(1000), A(5), 0}}, A(3000), -EXH_E_RANGE, EXH_CALIB_MONITOR_TABLE},
+        {{{94988559, 13330173, 39990519, 0}, {0, 0, 0, 0}}, 301366068, 0, 99}, /* to 2^31 - 1 */
+        {{{94988559, 13330173, 39990519, 0}, {0, 0, 0, 0}}, 301366069, -EXH_E_RANGE, EXH_CALIB_FORCE_TABLE},
+    };
+    for (size_t i = 0; i < LEN(row); i++) {
+        struct exh_calib_bad bad = {99, 99};
+        struct fixture f;
+        set_up(&f);
+        f.point[0] = row[i].point[0];
+        f.point[1] = row[i].point[1];
+        f.c.points = row[i].point[1].force_N_q20 > 0 ? 2 : 1;
+        f.c.end_A_q26 = row[i].end_A_q26;
+        CHECK(exh_calib_valid(&f.c, &bad) == row[i].err && bad.what == row[i].what, "row %zu: %d", i, bad.what);
+        CHECK(row[i].err == 0 || bad.at == f.c.points - 1, "row %zu: point %d", i, bad.at);
     }
 }
 
@@ -486,4 +552,5 @@ TEST_MAIN("unit/calibrate", mean_rounds_half_up_once, mean_stops_before_it_overf
           any_bit_flipped_any_byte_missing_is_refused,
           a_sound_image_of_a_bad_table_is_refused, every_name_has_its_text, fit_by_hand,
           tables_that_cannot_go_on_are_refused, points_that_are_none_are_not_fitted, an_image_needs_room,
-          values_at_the_ends_of_their_ranges, the_least_point_is_fitted, the_ends_of_a_ratio, the_least_way_on);
+          values_at_the_ends_of_their_ranges, the_least_point_is_fitted, the_ends_of_a_ratio,
+          more_points_than_there_may_be, most_and_least_points, no_table_ends_early, the_least_way_on);

@@ -670,6 +670,25 @@ TEST(hostile_bytes_come_into_range)
     }
 }
 
+/* The heat that I2t may reach fits half of 63 bits, or it is refused. */
+TEST(the_greatest_budget)
+{
+    struct exh_knot k[2] = {{0, 0, {0, 1}}, {1 << 20, 1 << 26, {0, 1}}};
+    const int64_t peak_q16 = EXH_Q(66, 10, 26) >> 10, cont_q16 = EXH_Q(33, 10, 26) >> 10;
+    const int64_t excess = peak_q16 * peak_q16 - cont_q16 * cont_q16, most = INT64_MAX / 2 / excess;
+    struct exh_drive_par par;
+    struct exh_drive_cfg cfg;
+    for (unsigned i = 0; i < EXH_DRIVE_ROWS; i++) { ((int32_t *)(void *)&par)[i] = exh_drive_rows[i].dflt; }
+    CHECK_EQ_I64(exh_table_set(k, 2), 0);
+    par.peak_ms = 1000;
+    for (int64_t more = -1; more <= 1; more++) { /* and one tick by itself */
+        const struct exh_period T = {1, (uint32_t)(most - 1 + more)};
+        CHECK_EQ_I64(exh_drive_setup(&cfg, &par, T, (struct exh_table){k, 2}, (struct exh_table){NULL, 0}),
+                     more > 0 ? -EXH_E_RANGE : 0);
+        CHECK(more > 0 || cfg.i2t_budget_q32 == excess * (most + more), "budget");
+    }
+}
+
 /* Where no peak is allowed above the lasting current nothing of an earlier set-up stays. */
 TEST(no_peak_no_budget)
 {
@@ -696,4 +715,4 @@ TEST_MAIN("unit/drive", table_is_exact_at_knots_and_clamps_outside, table_betwee
           slew_both_ways, hostile_bytes_come_into_range,
           slowest_slew_still_moves, peak_limit, i2t_holds_folds_back_and_recovers,
           continuous_current_is_for_ever, bursts_add_up, peak_equal_to_continuous, monitor_by_hand,
-          frames_round_trip, state_round_trip, no_peak_no_budget);
+          frames_round_trip, state_round_trip, no_peak_no_budget, the_greatest_budget);

@@ -665,6 +665,27 @@ TEST(advice)
     CHECK_EQ_I64(exh_precontact_advise(&a, &n, (struct exh_period){1, 0}, -MM(5)), -EXH_E_RANGE);
 }
 
+/* Up to 2^31 - 1 each figure is given, the others far from it. */
+TEST(the_greatest_advice)
+{
+    struct exh_precontact_need n = {125, 2000000, INT32_MAX - 2001, 0, 0, 0, 0}; /* 1 um/s for 2.001 s: 2001 LSB */
+    struct exh_precontact_advice a;
+    const struct exh_period T = {1, 1000};
+    CHECK_EQ_I64(exh_precontact_advise(&a, &n, T, -5), 0);
+    CHECK(a.d_lim_m_q30 == -INT32_MAX && a.ray_m_q30 == INT32_MAX - 2001 + 1 + 5, "d_lim");
+    n.noise_m_q30++;
+    CHECK_EQ_I64(exh_precontact_advise(&a, &n, T, -5), -EXH_E_RANGE);
+    n = (struct exh_precontact_need){0, 0, INT32_MAX - 5, 0, 0, 0, 0};
+    CHECK_EQ_I64(exh_precontact_advise(&a, &n, T, -5), 0);
+    CHECK_EQ_I64(a.ray_m_q30, INT32_MAX);
+    CHECK_EQ_I64(exh_precontact_advise(&a, &n, T, -6), -EXH_E_RANGE);
+    n = (struct exh_precontact_need){0, 0, 0, 125000, 65534, 65535, 1}; /* 65534 and 65535^2 / 2 */
+    CHECK_EQ_I64(exh_precontact_advise(&a, &n, T, -5), 0);
+    CHECK_EQ_I64(a.error_m_q30, INT32_MAX);
+    n.object_mps_q27++;
+    CHECK_EQ_I64(exh_precontact_advise(&a, &n, T, -5), -EXH_E_RANGE);
+}
+
 /* Through the origin all planes have the offset 0: the normal alone tells them apart. */
 TEST(a_plane_that_turned_over_is_another)
 {
@@ -702,4 +723,5 @@ TEST_MAIN("unit/precontact", distance_has_the_sign_of_the_text, rounds_once_and_
           a_stale_plane_is_none, a_message_may_be_old_when_it_comes, a_frozen_plane_does_not_age,
           what_cannot_be_is_refused, material_is_taken_at_the_freeze, scale_and_slope,
           set_up_refuses, state_round_trip, damaged_state_comes_back_into_range,
-          restored_tracking_touches_nothing_at_once, advice, a_plane_that_turned_over_is_another, the_longest_normal);
+          restored_tracking_touches_nothing_at_once, advice, the_greatest_advice,
+          a_plane_that_turned_over_is_another, the_longest_normal);
