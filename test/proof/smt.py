@@ -3,6 +3,8 @@
 Bit vectors where wrapping and shifting are the point, integers where only size is. What is
 written here is the expression, not the source: the sources are judged by eva/ and wp/.
 """
+import sys
+
 import z3
 
 import smt_passivity
@@ -133,3 +135,6 @@ def mean_is_within_32_bits():
 LEMMAS = [shr_is_floor, from_u64_keeps_bits, wrapped_sum_is_the_sum, gain_floor_is_no_more, share_of_limit,
           release_ends, release_step_is_bounded, unit_has_components_of_one, toward_stays_between,
           mean_is_within_32_bits] + smt_passivity.LEMMAS
+
+if __name__ == "__main__":
+    sys.exit(0 if {f.__name__: f for f in LEMMAS}[sys.argv[1]]() else 1)

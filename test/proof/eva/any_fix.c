@@ -1,5 +1,10 @@
 /* PROVES: arithmetic
  * fix.h: the arithmetic that the wp/ proofs take for granted, over its whole documented range.
+ *
+ * WP: contracts of exh_sat32() and exh_clamp().
+ *
+ * PLANT: lib/include/exhand/fix.h: ((int64_t)a * b + (INT64_C(1) << (n - 1))) >> n -> ((int64_t)a * b + (INT64_C(1) << n)) >> n
+ * PLANT: lib/include/exhand/fix.h: const int64_t hi = (a >> 32) * b; -> const int64_t hi = a * b;
  */
 #include "exhand/fix.h"
 

@@ -1,5 +1,8 @@
 /* PROVES: contact law
  * The contact law: any state, position and velocity, parameters in their ranges.
+ *
+ * PLANT: lib/src/contact.c: (int64_t)pos - s->turn_m_q30 -> pos - s->turn_m_q30
+ * PLANT: lib/src/contact.c: (int64_t)in.pos_m_q30 - in.lim_m_q30 -> in.pos_m_q30 - in.lim_m_q30
  */
 #include "contact.c"
 

@@ -3,7 +3,7 @@
  * index, any id; their CRC.
  *
  * EVA: -eva-slevel 200
- * PLANT: lib/src/signal.c: if (i < grp->rows) { -> if (i <= grp->rows) {
+ * PLANT: lib/src/signal.c: for (; i >= grp->rows; k++) -> for (; i > grp->rows; k++)
  * PLANT: lib/src/signal.c: if (instance != NULL) { *instance = k; } -> *instance = k;
  * PLANT: lib/src/signal.c: r < grp->rows && instance < grp->instances -> r <= grp->rows
  * PLANT: lib/src/signal.c: uint8_t buf[16]; -> uint8_t buf[13];

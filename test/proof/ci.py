@@ -1,0 +1,89 @@
+"""What CI runs. The record is whole and of these sources, and the document is of the record; what is cheap is proved again.
+
+Frama-C is large (README.md): where it is not installed, z3 and what goes through every value run, if they are there.
+"""
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+import record
+import table
+import tools
+
+BUDGET_S = 45.0  # seconds of a core, as the record tells
+
+
+def on_record(p, was):
+    """Rows whose text is another than what was proved; what is wrong with the record."""
+    stale, wrong = [], []
+    tree = p.tree("ci.tree")
+    for row in record.rows_wanted():
+        if row not in was:
+            wrong.append(row + ": not in counts.txt")
+        elif was[row].proved < was[row].of:
+            wrong.append("%s: %d of %d" % (row, was[row].proved, was[row].of))
+    for u in tools.units():
+        for row in u.rows():
+            tool = row.split(".")[1]
+            if row not in was:
+                continue
+            if was[row].key != record.sealed(p.keyed(tool, u, tree), was[row].proved, was[row].of):
+                stale.append(row)
+            stated = len(set(tools.re.findall(r"/\*@ assert (\w+):", u.text)))
+            if tool.startswith("eva") and was[row].proved < stated:
+                wrong.append("%s: %d proved, but the unit states %d" % (row, was[row].proved, stated))
+    for name, path, old in tools.planted():
+        if tools.read(p.root + "/" + path).count(old) != 1:
+            wrong.append("%s: an error cannot be planted any more: %s: %s" % (name, path, old))
+    for n in record.lemmas():
+        row = "smt." + n
+        if row in was and was[row].key != record.sealed(p.lemma_key(n), was[row].proved, was[row].of):
+            stale.append(row)
+    wrong += [k + ": in counts.txt, but there is no such unit" for k in was if k not in record.rows_wanted()]
+    wrong += record.unexplained(record.covered(record.reached(), record.sources()), record.not_proved())
+    if not table.is_current():
+        wrong.append("docs/NUMERICS.md: its section of proofs is not of counts.txt: make proof ARGS=--table")
+    return stale, wrong
+
+
+def chosen(was, stale, can):
+    """Rows to prove here: those whose text has changed, then the cheapest."""
+    rows = [r for r in sorted(record.rows_wanted(), key=lambda r: was[r].s if r in was else 0) if r in was]
+    able = [r for r in rows if can[tool_of(r)]]
+    take, left = [r for r in able if r in stale], BUDGET_S
+    for r in able:
+        if r not in take and was[r].s <= left:
+            take.append(r)
+            left -= was[r].s
+    return take
+
+
+def tool_of(row):
+    return "smt" if row.startswith("smt.") else row.split(".")[1].rstrip("0123456789")
+
+
+def check(p, parallel):
+    t, was = time.time(), record.counts()
+    stale, wrong = on_record(p, was)
+    can = {"eva": tools.shutil.which("frama-c") is not None, "wp": False, "smt": tools.has_z3(), "every": True}
+    take = chosen(was, stale, can)
+    wrong += ["%s: the library or the unit is another than what was proved: make proof ARGS=\"--only %s --update\"" %
+              (r, r.split(".")[0]) for r in stale if r not in take]
+    units, s = {u.name: u for u in tools.units()}, 0.0
+
+    def prove(row):
+        name, tool = row.split(".", 1)
+        return p.lemma(tool) if name == "smt" else p.prove(tool, units[name], row)
+
+    with ThreadPoolExecutor(parallel) as pool:
+        for row, r in zip(take, pool.map(prove, take)):
+            s += r["s"]
+            if r["proved"] < was[row].proved or r["proved"] < r["of"]:
+                wrong.append("%s: %d of %d, was %d" % (row, r["proved"], r["of"], was[row].proved))
+    for line in wrong:
+        print("proof: " + line)
+    print("proof: %d rows on record, %d properties, 0 may be less; proved again: %d rows (%s), %d of them since their text has "
+          "changed; %d wrong; %.0f s, %.0f s of a core" %
+          (len(was), sum(r.proved for r in was.values()), len(take),
+           ", ".join("%s %d" % (k, n) for k, n in ((k, sum(tool_of(r) == k for r in take)) for k in can) if n) or "none",
+           len([r for r in stale if r in take]), len(wrong), time.time() - t, s))
+    return 1 if wrong else 0

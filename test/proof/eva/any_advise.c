@@ -1,0 +1,43 @@
+/* PROVES: set-up of pre-contact by figures
+ * Any figures, loop rates of a whole number of Hz and of thousandths of it, any threshold: what is advised is within what is refused beyond.
+ *
+ * EVA: -eva-slevel 20
+ * PLANT: lib/src/advise.c: d > INT32_MAX || ray > INT32_MAX || -> d > INT32_MAX ||
+ * PLANT: lib/src/advise.c: if (need->radius_m_q30 > 0) { -> {
+ */
+#define exh_udiv64 udiv64_by_steps
+#include "fix.c"
+#undef exh_udiv64
+/* Eva knows a quotient's size, but not of one made bit by bit. */
+#define exh_udiv64 udiv64
+static uint64_t udiv64(uint64_t num, uint64_t den, uint64_t *rem)
+{
+    /*@ assert divisor: den != 0; */
+    if (rem) { *rem = num % den; }
+    return num / den;
+}
+#include "advise.c"
+
+#include "any.h"
+
+static void advise(uint32_t num, uint32_t least, uint32_t most)
+{
+    struct exh_precontact_advice advice;
+    struct exh_precontact_need need;
+    const struct exh_period T = {num, Frama_C_unsigned_int_interval(least, most)};
+    ANY(need);
+    if (exh_precontact_advise(&advice, &need, T, any32()) == 0) {
+        /*@ assert outward: advice.d_lim_m_q30 <= 0 && advice.ray_m_q30 >= 0; */
+        /*@ assert sizes: advice.error_m_q30 >= 0 && advice.speed_mps_q27 >= 0; */
+    }
+}
+
+int main(void)
+{
+    advise(1, 1, 20020);
+    advise(1000, 1000, 20020000);
+    advise(any_u32(), 0, 0);
+    advise(0, 1, UINT32_MAX);
+    END();
+    return 0;
+}

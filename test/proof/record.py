@@ -1,0 +1,160 @@
+"""What was proved: counts.txt (how much, of which text, how long it took) and reached.txt (which functions of lib)."""
+import glob
+import hashlib
+import os
+import re
+
+from tools import HERE, WP, read, units
+
+COUNTS = os.path.join(HERE, "counts.txt")
+REACHED = os.path.join(HERE, "reached.txt")
+NOT_PROVED = os.path.join(HERE, "not_proved.txt")
+ROOT = os.path.dirname(os.path.dirname(HERE))
+
+
+def lemmas():
+    """Their names, without z3."""
+    found = []
+    for f in ("smt.py", "smt_passivity.py"):
+        listed = re.search(r"^LEMMAS = \[(.*?)\]", read(os.path.join(HERE, f)), re.M | re.S)
+        found += re.findall(r"\w+", listed.group(1))
+    return found
+
+
+def rows_wanted():
+    """Every row that counts.txt must have."""
+    return [r for u in units() for r in u.rows()] + ["smt." + n for n in lemmas()]
+
+
+class Row:
+    def __init__(self, proved, of, s=10.0, key="-"):
+        self.proved, self.of, self.s, self.key = int(proved), int(of), float(s), key
+
+
+def sealed(key, proved, of):
+    """What stands in counts.txt: a count that is changed by hand does not belong to it."""
+    return hashlib.sha256(("%s %d %d" % (key, proved, of)).encode()).hexdigest()[:12]
+
+
+def counts():
+    if not os.path.exists(COUNTS):
+        return {}
+    lines = [line.split() for line in read(COUNTS).splitlines() if line[:1] not in ("#", "")]
+    return {line[0]: Row(*line[1:]) for line in lines}
+
+
+def write_counts(rows):
+    with open(COUNTS, "w") as f:
+        f.write("# unit.tool, proved, of, seconds of a core, key of what was proved: make proof ARGS=--update. A number may "
+                "not shrink.\n")
+        f.writelines("%s %d %d %.1f %s\n" % (k, r.proved, r.of, r.s, r.key) for k, r in sorted(rows.items()))
+
+
+def sources(root=ROOT):
+    """Files of the library with code in them, by their path."""
+    found = sorted(glob.glob(os.path.join(root, "lib/src/*.[ch]")) + glob.glob(os.path.join(root, "lib/include/exhand/*.h")))
+    return {f: text for f, text in ((os.path.relpath(f, root), read(f)) for f in found) if functions(text)}
+
+
+def functions(text):
+    """Names of the functions defined in it."""
+    text = re.sub(r"/\*.*?\*/", "", text, flags=re.S)
+    return re.findall(r"^(?!#|typedef\b)\w[^;{}()#]*?\b(\w+)\([^;{}]*\)\n\{", text, re.M)
+
+
+def renamed(unit, texts):
+    """What the unit calls the functions of the sources that it includes: name -> file and function."""
+    found = {n: (f, n) for f, text in texts.items() if f.endswith(".h") for n in functions(text)}
+    other = {}
+    for line in unit.text.splitlines():
+        m = re.match(r'#(define|undef|include) +"?([\w./]+)"? *(\w*)', line)
+        if not m:
+            continue
+        if m.group(1) == "define":
+            other[m.group(2)] = m.group(3)
+        elif m.group(1) == "undef":
+            other.pop(m.group(2), None)
+        else:
+            f = "lib/src/" + os.path.basename(m.group(2))
+            found.update({other.get(n, n): (f, n) for n in functions(texts.get(f, ""))})
+    return found
+
+
+def reached():
+    """unit -> {file -> {function -> (statements reached, of)}}"""
+    found = {}
+    for line in read(REACHED).splitlines() if os.path.exists(REACHED) else ():
+        if line[:1] == "#":
+            continue
+        unit, f, *names = line.split()
+        at = found.setdefault(unit, {}).setdefault(f, {})
+        for n in names:
+            name, _, part = n.partition(":")
+            a, _, b = part.partition("/")
+            at[name] = (int(a), int(b or a))
+    return found
+
+
+def write_reached(found):
+    with open(REACHED, "w") as f:
+        f.write("# unit, file, functions that Eva reached there, with their statements, or those reached of all:\n"
+                "# make proof ARGS=--update\n")
+        for unit in sorted(found):
+            for at in sorted(found[unit]):
+                f.write("%s %s %s\n" % (unit, at, " ".join(
+                    "%s:%d" % (n, a) if a == b else "%s:%d/%d" % (n, a, b) for n, (a, b) in sorted(found[unit][at].items()))))
+
+
+def note_reached(found, unit, by_name, texts):
+    """What Eva said of a unit, into what reached() gave."""
+    names = renamed(unit, texts)
+    found[unit.name] = {}
+    for n, (a, b) in by_name.items():
+        if n in names:
+            f, name = names[n]
+            found[unit.name].setdefault(f, {})[name] = (a, b)
+
+
+def covered(found, texts):
+    """file -> {function -> (statements reached, of, units)}: the most that one unit reaches; (0, 1, ()) where none does."""
+    best = {f: {n: (0, 1, ()) for n in functions(text)} for f, text in texts.items()}
+    for unit, files in sorted(found.items()):
+        for f, names in files.items():
+            for n, (a, b) in names.items():
+                c, d, by = best.get(f, {}).get(n, (0, 1, ()))
+                if f in best and n in best[f]:
+                    best[f][n] = (a, b, by + (unit,)) if a * d > c * b else (c, d, by + (unit,))
+    for unit, (f, names) in WP.items():
+        for n in names:
+            if n in best.get(f, {}) and best[f][n][0] == 0:
+                best[f][n] = (1, 1, (unit + " (WP)",))
+    return best
+
+
+def not_proved():
+    """Reasons: (file, function or *) -> why."""
+    found = {}
+    for line in read(NOT_PROVED).splitlines() if os.path.exists(NOT_PROVED) else ():
+        if line[:1] in ("#", ""):
+            continue
+        where, _, why = line.partition(": ")
+        f, names = where.split(None, 1)
+        for n in names.split():
+            found[f, n] = why
+    return found
+
+
+def unexplained(best, reasons):
+    """What is wrong: functions that no unit reaches and not_proved.txt does not name; reasons for what is proved or is not there."""
+    wrong = []
+    used = set()
+    for f, names in sorted(best.items()):
+        for n, (a, _, _) in names.items():
+            if a > 0:
+                continue
+            key = (f, n) if (f, n) in reasons else (f, "*")
+            if key in reasons:
+                used.add(key)
+            else:
+                wrong.append("%s: %s(): no unit reaches it and not_proved.txt does not say why" % (f, n))
+    return wrong + ["not_proved.txt: %s %s: %s" % (f, n, "is reached, or is not there") for f, n in sorted(set(reasons) - used)]
