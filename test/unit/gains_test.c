@@ -168,6 +168,11 @@ TEST(staging_refuses_what_is_outside)
     CHECK_EQ_I64(exh_gains_stage(&params, &rule, 0x9999, 0, 0), -EXH_E_UNKNOWN);
     CHECK_EQ_I64(exh_params_apply(&params), 1);
     CHECK_EQ_I64(active.contact[1].k_Npm_q10, K(20000));
+    /* A pair that is outside already, as of damaged memory: what is wrong with the value comes first, and others go. */
+    staged.contact[1].b_Nspm_q20 = 0;
+    CHECK_EQ_I64(exh_gains_stage(&params, &rule, 0x0401, 1, -1), -EXH_E_RANGE);
+    CHECK_EQ_I64(exh_gains_stage(&params, &rule, 0x0401, 1, K(20000)), -EXH_E_GAINS);
+    CHECK_EQ_I64(exh_gains_stage(&params, &rule, 0x0403, 1, B(2)), 0);
 }
 
 TEST(a_whole_image_is_asked_and_dropped)
@@ -241,6 +246,27 @@ TEST(a_damaged_goal_is_not_gone_to)
     CHECK(told, "never told");
 }
 
+/* The goal damaged while they are on their way: they stay, and are not let go of. */
+TEST(a_goal_that_became_none_is_waited_for)
+{
+    int32_t at;
+    start();
+    exh_gains_lead(&params, 1);
+    params.locked = 1;
+    params.shift = 3;
+    CHECK_EQ_I64(exh_gains_stage(&params, &rule, 0x0401, 0, K(9000)), 0);
+    (void)exh_params_apply(&params);
+    exh_gains_step(&params, &rule);
+    at = active.contact[0].k_Npm_q10;
+    CHECK(at > K(1500) && at < K(9000), "k %" PRId32, at);
+    staged.contact[0].k_Npm_q10 = K(900000);
+    for (int n = 0; n < 3; n++) {
+        (void)exh_params_apply(&params);
+        exh_gains_step(&params, &rule);
+        CHECK_EQ_I64(active.contact[0].k_Npm_q10, at);
+    }
+}
+
 /* Nothing lies between no wall and the rule's least k. */
 TEST(no_wall_is_a_jump_away)
 {
@@ -303,7 +329,9 @@ TEST(without_the_lead_both_go_by_themselves)
 {
     start();
     exh_gains_lead(&params, 1);
+    CHECK(params.led[0] == 0x0401 && params.led[1] == 0x0402, "led");
     exh_gains_lead(&params, 0);
+    CHECK(params.led[0] == 0 && params.led[1] == 0, "led still");
     params.locked = 1;
     params.shift = 3;
     CHECK_EQ_I64(exh_gains_stage(&params, &rule, 0x0401, 0, K(2300)), 0);
@@ -344,5 +372,6 @@ TEST(rows_may_stand_in_any_order)
 TEST_MAIN("gains", pieces_and_ends, setup_refuses, setup_refuses_two_halves,
           setup_asks_for_its_rate, staging_refuses_what_is_outside,
           a_whole_image_is_asked_and_dropped, through_a_valley, a_damaged_goal_is_not_gone_to,
+          a_goal_that_became_none_is_waited_for,
           no_wall_is_a_jump_away, rows_are_of_the_struct, half_a_pair_is_none, without_the_lead_both_go_by_themselves,
           a_damaged_pair_becomes_none, rows_may_stand_in_any_order);

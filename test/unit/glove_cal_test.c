@@ -539,6 +539,12 @@ TEST(the_default_goes_through_its_ends)
             CHECK(near(turn_q32, of[i][2 + e] * (INT64_C(1) << 32) / 360, 1 << 15), "sensor %u, end %u", i, e);
             end[e] = (int16_t)((2 * of[i][e] - 1000) * INT64_C(294912) / 10000);
         }
+        { /* 58982.4 codes times 360 degrees; the last gain below */
+            const int64_t n = (of[i][3] - of[i][2]) * (INT64_C(1) << 38) * 1000;
+            const int64_t d = (of[i][1] > of[i][0] ? of[i][1] - of[i][0] : of[i][0] - of[i][1]) * INT64_C(21233664);
+            const int64_t g = of[i][1] > of[i][0] ? s->gain_turnpraw_q38 : -s->gain_turnpraw_q38;
+            CHECK(g * d <= n && (g + 1) * d > n, "sensor %u: gain", i);
+        }
         CHECK(s->low_raw == (end[0] < end[1] ? end[0] : end[1]), "sensor %u: low", i);
         CHECK(s->high_raw == (end[0] < end[1] ? end[1] : end[0]), "sensor %u: high", i);
         CHECK(s->cross_q30[0] == 0 && s->cross_q30[1] == 0 && s->of[0] == EXH_GLOVE_NONE && s->of[1] == EXH_GLOVE_NONE,

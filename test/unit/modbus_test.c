@@ -669,6 +669,23 @@ TEST(requests_of_nothing)
     GIVES(0x90, 3);
 }
 
+/* 32 values fill a word of bits: the next word is nobody's, whatever is in it. */
+TEST(a_word_full_of_values)
+{
+    static const struct exh_signal_group group[] = {{par_row, 1, 32}};
+    static const struct exh_signal_table full = {group, 1};
+    begin();
+    exh_params_init(&g.p, &full, g.active, g.wanted);
+    g.r.params = &full;
+    CHECK_EQ_I64(exh_regs_setup(&g.r), 0);
+    g.touched[1] = UINT32_MAX;
+    ASK(16, 0x50, 62, 0, 2, 4, 0, 0, 0, 7);
+    GIVES(16, 0x50, 62, 0, 2);
+    CHECK_EQ_I64(g.touched[0], UINT32_C(1) << 31);
+    CHECK_EQ_I64(exh_regs_apply(&g.r, &g.p), 0);
+    CHECK(g.wanted[31] == 7 && g.touched[0] == 0 && g.touched[1] == UINT32_MAX, "%" PRId32, g.wanted[31]);
+}
+
 /* A table of parameters with a row that is computed: it may be written as it reads. */
 TEST(outputs_among_parameters_stay)
 {
@@ -692,4 +709,5 @@ TEST_MAIN("modbus", head_says_what_this_is, a_value_is_high_word_first_and_start
           what_reads_the_same_stays, apply_hands_over_all_or_none,
           what_is_staged_reads_back_and_is_counted, while_apply_is_pending_nothing_changes,
           commands_in_order_of_caution, bits_are_the_box, set_up_refuses,
-          without_tables_the_head_alone_is_there, words_for_people_are_all_there, requests_of_nothing, outputs_among_parameters_stay);
+          without_tables_the_head_alone_is_there, words_for_people_are_all_there, requests_of_nothing,
+          a_word_full_of_values, outputs_among_parameters_stay);

@@ -87,5 +87,42 @@ TEST(products_are_exact_in_64_bits)
     }
 }
 
+/* Quotients that come out even do, and the others are the last below. */
+TEST(quotients_to_the_last_bit)
+{
+    for (uint64_t i = 1; i < 200; i++) {
+        for (uint64_t k = 1; k < 200; k++) {
+            const struct exh_real a = exh_real_of(i), b = exh_real_of(k), q = exh_real_div(exh_real_of(i * k), b);
+            CHECK(same(q, a.m, a.e), "%" PRIu64 " times %" PRIu64, i, k);
+        }
+    }
+    CHECK(same(exh_real_div(exh_real_of(1), exh_real_of(3)), UINT64_C(0x5555555555555555), -64), "1/3");
+    CHECK(same(exh_real_div(exh_real_of(2), exh_real_of(3)), UINT64_C(0x5555555555555555), -63), "2/3");
+}
+
+/* Of 80 digits, beside a flat and a right angle too: within 2^-56. */
+TEST(tangents_near_both_ends)
+{
+    static const struct {
+        uint64_t num, den, m;
+        int32_t e;
+    } row[] = {
+        {1, UINT64_C(1) << 40, UINT64_C(0x6487ED5110B4611A), -101},
+        {1, UINT64_C(1) << 30, UINT64_C(0x6487ED5110B4612F), -91},
+        {1, 8, UINT64_C(0x6A09E667F3BCC909), -64},
+        {1, 5, UINT64_C(0x5CFF587677D50B85), -63},
+        {1, 3, UINT64_C(0x6ED9EBA16132A9CF), -62},
+        {3, 8, UINT64_C(0x4D413CCCFE779921), -61},
+        {(UINT64_C(1) << 29) - 1, UINT64_C(1) << 30, UINT64_C(0x517CC1B727220A84), -34},
+        {(UINT64_C(1) << 45) - 1, UINT64_C(1) << 46, UINT64_C(0x517CC1B727220A95), -18},
+    };
+    for (size_t i = 0; i < sizeof row / sizeof row[0]; i++) {
+        const struct exh_real t = exh_real_tan_pi(row[i].num, row[i].den);
+        const uint64_t off = t.m > row[i].m ? t.m - row[i].m : row[i].m - t.m;
+        CHECK(t.e == row[i].e && off < 64, "row %zu: off by %" PRIu64, i, off);
+    }
+}
+
 TEST_MAIN("unit/real", none_is_none, none_and_very_small, what_is_too_small_to_matter,
-          sums_in_either_order, rounds_half_up_once, products_are_exact_in_64_bits);
+          sums_in_either_order, rounds_half_up_once, products_are_exact_in_64_bits,
+          quotients_to_the_last_bit, tangents_near_both_ends);
