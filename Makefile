@@ -30,7 +30,7 @@ MAKEFLAGS += $(if $(filter 0,$(MAKELEVEL)),-j$(or $(shell nproc 2>/dev/null),1),
 jobs       = $(or $(patsubst -j%,%,$(filter -j%,$(MAKEFLAGS))),1)
 
 # These call make for what they need, or take it away: two at a time would write the same files.
-callers := all test demo run image coverage stress test-i686 matrix matrix-box mutants mcdc mutation fuzz hil hil-built strangers gpio linux-program \
+callers := all test demo run image coverage stress stability test-i686 matrix matrix-box mutants mcdc mutation fuzz hil hil-built strangers gpio linux-program \
            boot boot-built \
            contract contract-built nic nic-built modbus-image modbus world two-computers bench-world bench report size cards install diagrams clean check
 ifneq ($(and $(filter $(callers),$(MAKECMDGOALS)),$(word 2,$(MAKECMDGOALS))),)
@@ -359,6 +359,22 @@ $(B)/test/stress: $(stress_obj) $(filter-out %/main.o %/loop.o,$(cli_obj) $(sim_
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(cli_libs)
 
+# What theory says of the sampled wall, of filters at rest and of drift, against the library's code.
+stability_obj := $(patsubst %.c,$(B)/posix/%.o,$(wildcard test/stability/*.c) ports/posix/sim/eigen.c ports/posix/sim/linear.c)
+$(B)/test/stability: $(stability_obj) $(B)/posix/libexhand.a
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ -lm
+
+.PHONY: stability-built
+stability-built: $(B)/test/stability
+
+## Stability against theory: maps, the plane of steps and friction, filters at rest, drift (ARGS="--full map", CSV in build/stability)
+.PHONY: stability
+stability:
+	@$(MAKE) --no-print-directory $(if $(V),,-s) $(B)/test/stability
+	@mkdir -p $(B)/stability
+	@$(B)/test/stability --out $(B)/stability $(ARGS)
+
 STRESS_TICKS ?= 1000000
 STRESS_CASES ?= 100000000
 STRESS_PARTS := 8
@@ -369,6 +385,9 @@ prop_bin     := $(filter $(B)/test/prop/%,$(test_bin))
 stress:
 	@$(MAKE) --no-print-directory B=$(B)/san CFLAGS="$(san)" LDFLAGS="$(san)" $(if $(V),,-s) $(B)/san/test/stress
 	@$(B)/san/test/stress $(STRESS_TICKS)
+	@$(MAKE) --no-print-directory B=$(B)/san CFLAGS="$(san)" LDFLAGS="$(san)" $(if $(V),,-s) $(B)/san/test/stability
+	@$(B)/san/test/stability --short
+	@$(MAKE) --no-print-directory stability ARGS=--full
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(prop_bin)
 	@echo "laws at $(STRESS_CASES) random cases each, under sanitizers, dealt to $(STRESS_PARTS) processes:"
 	@LIMIT=86400 EXH_CASES=$(STRESS_CASES) PARTS=$(STRESS_PARTS) JOBS=$$(nproc) test/run.sh $(prop_bin)
@@ -378,6 +397,7 @@ stress:
 stress-short:
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(B)/test/stress
 	@$(B)/test/stress 10000 > $(B)/stress.txt || { grep -A 1 FAIL $(B)/stress.txt; tail -n 1 $(B)/stress.txt; exit 1; }
+	@$(MAKE) --no-print-directory stability ARGS=--short >> $(B)/stress.txt || { grep FAIL $(B)/stress.txt; exit 1; }
 	@echo "stress, short: $$(grep -c '| ok$$' $(B)/stress.txt) cases ok"
 
 ## Make the golden vectors anew from the model of docs/NUMERICS.md (ARGS=--check: compare only)
