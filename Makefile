@@ -925,6 +925,20 @@ $(work) $(work)-i686: $(work_src) $(wildcard $(cmsis)/.complete test/bench/*.h l
 	$(Q)$(work_cc) $(filter-out $(warn) -MMD -MP -g,$(base)) -w $(PORT_HOSTFLAGS) $(CFLAGS) $(peers_def) -Itest \
 	    -Wl,--gc-sections -o $@ $(filter %.c,$^) -lm
 
+# Whole ticks of the scenes, beside the same in double and float.
+scenes     := $(B)/bench/scenes
+scenes_src := $(wildcard test/bench/scenes*.c) $(addprefix test/bench/,pipe.c measure.c) examples/drop/drop.c examples/guarded/guarded.c \
+              $(wildcard examples/glove/*.c examples/bilateral/*.c) examples/calib.c $(lib_src)
+$(scenes): scenes_cc := $(CC)
+$(scenes)-i686: scenes_cc := i686-linux-gnu-gcc -static
+$(scenes) $(scenes)-i686: $(scenes_src) $(wildcard test/bench/*.h examples/*/*.h examples/*.h lib/src/*.h lib/include/exhand/*.h) $(stamp)
+	@mkdir -p $(@D)
+	$(Q)$(scenes_cc) $(filter-out -MMD -MP -g -Wdouble-promotion,$(base)) $(PORT_HOSTFLAGS) $(CFLAGS) -Itest \
+	    -Wl,--gc-sections -o $@ $(filter %.c,$^) -lm
+.PHONY: scenes-csv
+scenes-csv: $(scenes) $(if $(shell command -v i686-linux-gnu-gcc),$(scenes)-i686)
+	@B=$(B) test/bench/scenes.sh
+
 ## Error and instructions of every kernel, beside test/bench/baseline.csv (ARGS=--update)
 .PHONY: bench
 bench:

@@ -30,3 +30,16 @@ counts()
         echo "$name,$ops,$n"
     done <"$tmp/order"
 }
+
+# per_op BINARY: kernel,name,instructions of one op, the empty one subtracted; of programs whose ops have both
+per_op()
+{
+    rm -f "$tmp"/cg*
+    profile bench_measure --dump-after=bench_measure "$1" count >"$tmp/order"
+    k=0
+    while IFS=, read -r kernel name ops; do
+        k=$((k + 1))
+        echo "$kernel,$name,$ops,$(total "$tmp/cg.$k")"
+    done <"$tmp/order" |
+        awk -F, -v OFS=, 'NR == 1 { empty = $4 / $3; next } { print $1, $2, sprintf("%.1f", $4 / $3 - empty) }'
+}

@@ -17,18 +17,6 @@ trap 'rm -rf "$tmp"' EXIT
 trap 'exit 1' HUP INT TERM
 . test/bench/callgrind.sh
 
-# counts() takes a name for what is before the first comma, and the ops for the rest.
-per_op()
-{
-    rm -f "$tmp"/cg*
-    profile bench_measure --dump-after=bench_measure "$1" count >"$tmp/order"
-    k=0
-    while IFS=, read -r kernel name ops; do
-        k=$((k + 1))
-        echo "$kernel,$name,$ops,$(total "$tmp/cg.$k")"
-    done <"$tmp/order" | awk -F, -v OFS=, 'NR == 1 { empty = $4 / $3; next } { print $1, $2, sprintf("%.1f", $4 / $3 - empty) }'
-}
-
 per_op "$b/work" >"$tmp/x64"
 : >"$tmp/i686"
 [ ! -x "$b/work-i686" ] || per_op "$b/work-i686" >"$tmp/i686"
