@@ -32,7 +32,7 @@ jobs       = $(or $(patsubst -j%,%,$(filter -j%,$(MAKEFLAGS))),1)
 # These call make for what they need, or take it away: two at a time would write the same files.
 callers := all test demo run image coverage stress stability test-i686 matrix matrix-box mutants mcdc mutation fuzz hil hil-built strangers gpio linux-program \
            boot boot-built \
-           contract contract-built nic nic-built modbus-image modbus world two-computers bench-world bench report size cards install diagrams clean check
+           contract contract-built nic nic-built modbus-image modbus world two-computers bench-world bench report size costs cards install diagrams clean check
 ifneq ($(and $(filter $(callers),$(MAKECMDGOALS)),$(word 2,$(MAKECMDGOALS))),)
 .NOTPARALLEL:
 endif
@@ -865,6 +865,12 @@ undef-emu: $(out)/libemu.a
 .PHONY: size
 size:
 	$(Q)MAKE="$(MAKE)" B=$(B) test/size/size.sh
+
+## Which modules a scene links and why, what a finger, glove, link, log, ... add: build/size/costs (ARGS=--update)
+.PHONY: costs
+costs:
+	@.ci/deps "the costs" python3 python3 || exit 3
+	$(Q)B=$(B) test/size/costs.py $(ARGS)
 
 # Objects as they are shipped: no sanitizer, no audit hook. Linked without debug information,
 # which not every valgrind reads of every compiler; its profile needs the symbols alone.
