@@ -628,8 +628,35 @@ TEST(residual_has_two_sides)
     }
 }
 
+/* Zero at the very ends of its format, and an LSB beyond: 90 degrees over 4096 codes, exactly. */
+TEST(a_zero_at_the_end)
+{
+    static const struct {
+        int32_t code_q16, angle_turn_q32, zero_q15;
+    } row[] = {{INT32_MAX - (1 << 28), -(1 << 30), INT32_MAX / 2},
+               {INT32_MAX - (1 << 28), -(1 << 30) - 4, 0},
+               {INT32_MIN, 0, -(1 << 30)},
+               {INT32_MIN, 4, 0}};
+    for (size_t i = 0; i < sizeof row / sizeof row[0]; i++) {
+        struct fixture f;
+        int err;
+        set_up(&f);
+        for (unsigned p = 0; p < POSES; p++) {
+            f.pose[p].mean_raw_q16[5] = row[i].code_q16 + (p == 1 ? 1 << 28 : 0);
+            f.pose[p].angle_turn_q32[5] = row[i].angle_turn_q32 + (p == 1 ? 1 << 30 : 0);
+        }
+        err = fit(&f);
+        if (row[i].zero_q15 != 0) {
+            CHECK(err == 0 && f.cal.sensor[5].zero_raw_q15 == row[i].zero_q15, "row %zu: %d, %" PRId32, i, err, f.cal.sensor[5].zero_raw_q15);
+        } else {
+            CHECK(err == -EXH_E_RANGE && f.bad.what == EXH_GLOVE_ZERO && f.bad.at == 5, "row %zu: %d of %d", i, f.bad.what, f.bad.at);
+        }
+    }
+}
+
 TEST_MAIN("unit/glove_cal", valid_names_the_culprit, present_and_absent, check_tells_whose_and_when,
           every_word_is_there, image_round_trip, every_flipped_bit_is_seen, every_cut_is_seen,
           an_image_of_nonsense_is_refused, poses_give_gain_zero_and_cross_terms,
           residual_is_the_worst_pose, limits_of_poses_are_allowed, poses_are_refused_by_name,
-          absent_sensors_need_no_pose, a_line_as_good_as_level_is_refused, the_default_goes_through_its_ends, no_cross_term_of_what_is_no_sensor, a_fit_begins_anew, two_poses_five_degrees_apart, residual_has_two_sides);
+          absent_sensors_need_no_pose, a_line_as_good_as_level_is_refused, the_default_goes_through_its_ends, no_cross_term_of_what_is_no_sensor, a_fit_begins_anew, two_poses_five_degrees_apart, residual_has_two_sides,
+          a_zero_at_the_end);

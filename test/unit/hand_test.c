@@ -347,9 +347,38 @@ TEST(what_a_hand_does_not_use_is_zero)
     for (unsigned f = EXH_INDEX; f < EXH_HAND_FINGERS; f++) { /* fingers bend about an axis of the palm */
         const int32_t(*r)[3] = exh_hit2_bones[f].rot_q30;
         CHECK(r[0][0] == 0 && r[1][0] == 0 && r[2][0] == 1 << 30 && r[2][1] == 0 && r[2][2] == 0, "finger %u", f);
+        CHECK(r[0][1] == r[1][2] && r[0][2] == -r[1][1], "finger %u: an angle and its complement", f);
+    }
+}
+
+/* The last value that is allowed, and the first that is not. */
+TEST(ends_to_the_bit)
+{
+    const struct exh_hand_par par = defaults();
+    struct exh_hand_map m = exh_hit2_map;
+    struct exh_hand_joint *j = &m.joint[EXH_THUMB][1];
+    for (int32_t more = 0; more < 2; more++) {
+        struct exh_hand_bones b = exh_hit2_bones[EXH_INDEX];
+        struct exh_hand_finger f;
+        for (unsigned r = 0; r < 9; r++) { b.rot_q30[r / 3][r % 3] = r % 4 == 0 ? 1 << 30 : 0; }
+        b.rot_q30[2][2] -= 512 + more; /* 2^-20 of its square, a little less, and more */
+        CHECK_EQ_I64(exh_hand_setup(&f, &b, &par), more ? -EXH_E_RANGE : 0);
+        for (int sign = -1; sign <= 1; sign += 2) {
+            m = exh_hit2_map;
+            j->gain_q24[0] = sign * (EXH_HAND_GAIN_MAX_Q24 + more);
+            CHECK_EQ_I64(exh_hand_map_check(&m), more ? -EXH_E_RANGE : 0);
+            f = finger(EXH_THUMB);
+            f.pull_radpm_q20[0] = EXH_Q(250, 1, 20) + more;
+            for (unsigned t = 0; t < EXH_HAND_TERMS; t++) { j->gain_q24[t] = 0; }
+            j->gain_q24[0] = sign * (1 << 24);
+            j->sensor[0] = m.bent[EXH_THUMB][0];
+            CHECK_EQ_I64(exh_hand_follow(&f, &m, EXH_THUMB), more ? -EXH_E_RANGE : 0);
+            CHECK(more || f.pull_radpm_q20[0] == sign * EXH_Q(250, 1, 20), "sign %d", sign);
+        }
     }
 }
 
 TEST_MAIN("unit/hand", published_vectors, turns_are_turns, slope_on_paper, setup_refuses,
           map_of_the_hand_is_sound, a_finger_follows_its_own_sensors, spans_end_at_the_limits,
-          map_check_refuses, slope_is_that_of_the_string_through_the_map, follow_by_hand, mirror_images_are_no_turns, what_a_hand_does_not_use_is_zero);
+          map_check_refuses, slope_is_that_of_the_string_through_the_map, follow_by_hand, mirror_images_are_no_turns, what_a_hand_does_not_use_is_zero,
+          ends_to_the_bit);

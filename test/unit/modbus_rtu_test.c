@@ -204,7 +204,16 @@ TEST(a_byte_that_came_damaged_drops_its_frame)
     CHECK_EQ_I64(hear(req, sizeof req), 1);
 }
 
+TEST(however_much_room_is_told)
+{
+    static const uint8_t req[] = {17, 3, 0x50, 0, 0, 2};
+    begin(17, 9600);
+    CHECK_EQ_I64(hear(req, sizeof req), 1);
+    CHECK_EQ_I64(exh_modbus_rtu_answer(&g.u, &g.r, g.resp, SIZE_MAX), 9);
+}
+
 TEST_MAIN("modbus_rtu", crc_is_the_known_one, silence_by_baud, a_request_is_answered_once,
           an_exception_is_an_answer, what_is_said_to_all_is_done_and_not_answered,
           somebody_elses_is_left_alone, every_damaged_bit_is_dropped, frames_have_an_end,
-          silence_is_added_up_and_a_byte_ends_it, a_byte_that_came_damaged_drops_its_frame);
+          silence_is_added_up_and_a_byte_ends_it, a_byte_that_came_damaged_drops_its_frame,
+          however_much_room_is_told);

@@ -189,6 +189,7 @@ TEST(says_who_it_is)
     ASK(43, 14, 4, 2);
     GIVES(43, 14, 4, 0x81, 0, 0, 1, 2, 5, '0' + EXH_VERSION_MAJOR, '.', '0' + EXH_VERSION_MINOR,
           '.', '0' + EXH_VERSION_PATCH);
+    for (int i = g.len; i < EXH_MODBUS_PDU_B; i++) { CHECK(g.resp[i] == 0xA5, "behind the answer, at %d", i); }
     ASK(43, 14, 3, 2);
     CHECK_EQ_I64(g.len, 14);
     ASK(43, 14, 1, 77); /* unknown: from the first on */

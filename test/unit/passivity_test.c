@@ -366,8 +366,29 @@ TEST(energies_and_ways_at_their_ends)
     CHECK(rig.cfg.way_cnt == 1 && rig.cfg.shift == 0, "way %" PRId32 ", shift %d", rig.cfg.way_cnt, rig.cfg.shift);
 }
 
+/* A table of one knot is none, and nothing of an earlier set-up stays. */
+TEST(set_up_anew)
+{
+    struct exh_velocity_scale scale;
+    struct exh_passivity_cfg first;
+    start(1);
+    scale = (struct exh_velocity_scale){STEP, rig.T};
+    for (uint8_t n = 0; n < 2; n++) {
+        const struct exh_table few = {rig.held, n};
+        CHECK_EQ_I64(exh_passivity_setup(&rig.cfg, &rig.par, &rig.drive, few, scale, SPEED), -EXH_E_RANGE);
+    }
+    CHECK_EQ_I64(setup(), 0);
+    first = rig.cfg;
+    memset(&rig.cfg, 0x0F, sizeof rig.cfg);
+    CHECK_EQ_I64(setup(), 0);
+    CHECK(rig.cfg.shift == first.shift && rig.cfg.way_cnt == first.way_cnt && rig.cfg.share.mant == first.share.mant &&
+              rig.cfg.share.shift == first.share.shift,
+          "shift %d", rig.cfg.shift);
+}
+
 TEST_MAIN("passivity", what_is_held_times_what_moves, what_is_owed_lowers_the_limit,
           the_bit_says_when_and_the_term_what, the_pull_back_is_not_the_contacts,
           contacts_are_reckoned_one_by_one, late_outputs_count_for_the_worse, counts_wrap,
           what_cannot_be_proved_is_refused, force_has_to_be_able_to_fall_in_one_tick,
-          bytes_come_back, damaged_bytes_do_no_harm, what_has_to_fall_is_no_more_than_the_highest_limit, the_least_energy_is_forgotten_and_the_first_tick_moves_nothing, energies_and_ways_at_their_ends);
+          bytes_come_back, damaged_bytes_do_no_harm, what_has_to_fall_is_no_more_than_the_highest_limit, the_least_energy_is_forgotten_and_the_first_tick_moves_nothing, energies_and_ways_at_their_ends,
+          set_up_anew);

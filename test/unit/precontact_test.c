@@ -567,6 +567,16 @@ TEST(damaged_state_comes_back_into_range)
         exh_precontact_bytes(&c, &back);
         CHECK(back.phase == EXH_PRECONTACT_IDLE && back.held.normal_q30.z == 0, "held, %d", i);
     }
+    for (int sign = -1; sign <= 1; sign += 2) { /* that far may be */
+        frozen_at_116();
+        s.held.offset_m_q60 = sign < 0 ? -(INT64_C(1) << 62) : INT64_C(1) << 62;
+        c = exh_bytes_writer(buf, sizeof buf);
+        exh_precontact_bytes(&c, &s);
+        c = exh_bytes_reader(buf, sizeof buf);
+        exh_precontact_bytes(&c, &back);
+        CHECK(back.phase == EXH_PRECONTACT_FROZEN && back.held.offset_m_q60 == s.held.offset_m_q60, "sign %d", sign);
+    }
+    frozen_at_116();
     s.newest = s.held;
     tell(floor_plane);
     s.phase = 200;

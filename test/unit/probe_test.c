@@ -524,9 +524,39 @@ TEST(holding_stays_within_the_way)
     CHECK_EQ_I64(cfg.down.end_A_q26, 0);
 }
 
+/* The current at the end is tried too, from either side; a dwell has a tick; steps of a count may be as fine as they are told. */
+TEST(ends_to_the_bit)
+{
+    struct exh_probe_par p = par;
+    struct exh_probe_cfg cfg;
+    CHECK_EQ_I64(exh_probe_ticks(1, (struct exh_period){1, 90}), 1);
+    p.move_m_q30 = 1;
+    p.travel_m_q30 = 2;
+    CHECK_EQ_I64(exh_probe_setup(&cfg, &p, (struct exh_probe_scale){1, scale.T}), 0);
+    CHECK(cfg.move_cnt == 4096 && cfg.travel_cnt == 8192, "%" PRId32, cfg.travel_cnt);
+    CHECK_EQ_I64(exh_probe_setup(&cfg, &p, (struct exh_probe_scale){0, scale.T}), -EXH_E_RANGE);
+    for (int sign = -1; sign <= 1; sign += 2) {
+        const int32_t from = INT32_C(1) << 22, step = sign * (INT32_C(1) << 20);
+        int32_t last = from;
+        unsigned tried = 0;
+        struct exh_probe s;
+        p = par;
+        p.step_A_q26 = step;
+        p.end_A_q26 = from + 3 * step;
+        CHECK_EQ_I64(exh_probe_setup(&cfg, &p, scale), 0);
+        exh_probe_start(&s, 0, from);
+        while (exh_probe_step(&s, &cfg, 0) == EXH_PROBE_BUSY && tried < 9) {
+            tried += s.cur_A_q26 != last;
+            last = s.cur_A_q26;
+        }
+        CHECK(s.result == EXH_PROBE_STILL && tried == 3 && last == from + 3 * step, "%u, last %" PRId32, tried, last);
+    }
+}
+
 TEST_MAIN("unit/probe", finds_the_current_that_moves_within_a_step,
           falling_finds_the_current_that_lets_go, slack_is_taken_up_first, what_stops_a_probe,
           set_up_refuses_what_is_out_of_range, home_is_the_end_of_the_string, what_stops_homing,
           homing_takes_no_longer_than_allowed, weighing_brackets_friction, what_stops_weighing,
           travel_is_of_all_phases_together, a_mass_that_swings_is_not_waited_for,
-          means_begin_anew_after_a_movement, any_counts_stay_within_the_bounds, every_result_has_its_text, creeping_out_ends_at_the_travel, homing_from_the_end_and_all_the_way, holding_stays_within_the_way);
+          means_begin_anew_after_a_movement, any_counts_stay_within_the_bounds, every_result_has_its_text, creeping_out_ends_at_the_travel, homing_from_the_end_and_all_the_way, holding_stays_within_the_way,
+          ends_to_the_bit);

@@ -346,8 +346,35 @@ TEST(a_calibration_comes_back)
     }
 }
 
+/* What stands behind the image, in either place, is not of it. */
+TEST(the_byte_behind_the_image_says_nothing)
+{
+    unsigned to = 9, at;
+    begin();
+    at = save(5) & 1u;
+    memset(buf, 0, sizeof buf);
+    memset(buf + EXH_SLOT_HEAD_B, 5, IMAGE_B);
+    for (uint32_t more = 0; more < 2; more++) {
+        buf[EXH_SLOT_HEAD_B + IMAGE_B] = (uint8_t)(slot[at][EXH_SLOT_HEAD_B + IMAGE_B] + more);
+        CHECK_EQ_I64(exh_slots_next(&to, slot[0], slot[1], SLOT, buf, sizeof buf, IMAGE_B), 0);
+        CHECK_EQ_I64(to, at);
+    }
+}
+
+/* A slot is at most as long as a length can say. */
+TEST(the_longest_slot)
+{
+    unsigned to = 9;
+    begin();
+    memset(buf, 1, sizeof buf);
+    CHECK_EQ_I64(exh_slots_next(&to, slot[0], slot[1], INT32_MAX, buf, INT32_MAX, IMAGE_B), WHOLE);
+    CHECK_EQ_I64(exh_slots_next(&to, slot[0], slot[1], (size_t)INT32_MAX + 1, buf, (size_t)INT32_MAX + 1, IMAGE_B),
+                 -EXH_E_SHORT);
+}
+
 TEST_MAIN("slots", a_worked_example, blank_slots_have_nothing, each_goes_to_the_other,
           what_stands_there_is_not_saved_again, the_sequence_goes_round, the_one_ahead_counts,
           two_sequences_are_none, each_bit_of_one_slot, cut_off_at_every_byte,
           cut_off_in_the_erasure, what_does_not_fit_is_refused, parameters_come_back,
-          a_calibration_comes_back);
+          a_calibration_comes_back,
+          the_byte_behind_the_image_says_nothing, the_longest_slot);

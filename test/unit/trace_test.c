@@ -282,6 +282,26 @@ TEST(a_frame_is_passed_on_once)
     holds(&shown, 4, 4, 0);
 }
 
+/* The number behind the last signal is none, wherever it comes from. */
+TEST(the_signal_behind_the_last)
+{
+    static const struct exh_trace_what end = {1, {SIGNALS - 1, 0, 0, 0}}, behind = {1, {SIGNALS, 0, 0, 0}};
+    uint8_t bytes[36 + 24 * 2];
+    struct exh_bytes c = exh_bytes_writer(bytes, sizeof bytes);
+    begin(2);
+    CHECK_EQ_I64(exh_trace_start(&t, &end), 0);
+    CHECK_EQ_I64(exh_trace_start(&t, &behind), -EXH_E_RANGE);
+    t.signals++;
+    CHECK_EQ_I64(exh_trace_start(&t, &behind), 0);
+    exh_trace_bytes(&c, &t);
+    CHECK(exh_bytes_ok(&c), "written");
+    t.signals--;
+    c = exh_bytes_reader(bytes, c.at);
+    exh_trace_bytes(&c, &t);
+    CHECK(exh_bytes_ok(&c) && t.what.index[0] == 0, "%" PRIu32, t.what.index[0]);
+}
+
 TEST_MAIN("trace", what_cannot_be_is_refused, every_nth_tick_from_the_next_on, the_newest_are_held,
           numbers_go_on_and_wrap, a_frame_that_never_was_has_another_number, passed_on_whole,
-          state_there_and_back_and_brought_into_range, set_and_read_by_registers, halves_and_edges_of_its_registers, the_least_ring, a_frame_is_passed_on_once);
+          state_there_and_back_and_brought_into_range, set_and_read_by_registers, halves_and_edges_of_its_registers, the_least_ring, a_frame_is_passed_on_once,
+          the_signal_behind_the_last);

@@ -320,8 +320,37 @@ TEST(sums_beyond_32_bits_are_exact)
     }
 }
 
+/* The least share of a pole is an LSB; and what bytes may leave in a state, to the bit. */
+TEST(ends_to_the_bit)
+{
+    const int64_t most = INT64_C(16) << 55;
+    struct exh_velocity_pole_cfg cfg;
+    CHECK_EQ_I64(exh_velocity_pole_setup(&cfg, (struct exh_velocity_scale){1, {1, UINT32_MAX}}, 1000000), 0);
+    CHECK_EQ_I64(cfg.a_q31, 1);
+    for (int64_t more = -1; more <= 1; more++) {
+        for (int sign = -1; sign <= 1; sign += 2) {
+            struct exh_velocity_pole s = {sign * (most + more), 5, 1};
+            uint8_t buf[13];
+            struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
+            exh_bytes_i64(&c, &s.v_mps_q55);
+            c = exh_bytes_reader(buf, sizeof buf);
+            exh_velocity_pole_bytes(&c, &s);
+            CHECK_EQ_I64(s.v_mps_q55, sign * (most + (more < 0 ? more : 0)));
+        }
+    }
+    for (unsigned at = EXH_VELOCITY_N - 1; at <= EXH_VELOCITY_N + 1; at++) {
+        struct exh_velocity_foaw s = {{0}, 0, 0};
+        uint8_t buf[4 * (EXH_VELOCITY_N + 1) + 2] = {0};
+        struct exh_bytes c = exh_bytes_reader(buf, sizeof buf);
+        buf[sizeof buf - 2] = (uint8_t)at;
+        exh_velocity_foaw_bytes(&c, &s);
+        CHECK(s.at == (at < EXH_VELOCITY_N ? at : EXH_VELOCITY_N), "%u: %u", at, (unsigned)s.at);
+    }
+}
+
 TEST_MAIN("unit/velocity", first_call_returns_zero, constant_velocity_is_exact_across_the_wrap,
           quantisation_error_stays_in_its_bound, lag_is_the_documented_one,
           saturates_with_the_right_sign, rest_returns_to_zero,
           slow_observer_rests_within_its_residual, foaw_acceptance_by_hand, setup_refuses,
-          state_survives_a_round_trip, damaged_state_is_harmless, sums_beyond_32_bits_are_exact);
+          state_survives_a_round_trip, damaged_state_is_harmless, sums_beyond_32_bits_are_exact,
+          ends_to_the_bit);
