@@ -906,13 +906,17 @@ ifneq ($(wildcard $(cmsis)/.complete),)
 peers_src += test/bench/peers_cmsis.c $(cmsis_src)
 peers_def := -DPEERS_CMSIS -D__GNUC_PYTHON__ -isystem $(cmsis)/Include -isystem $(cmsis)/PrivateInclude
 endif
+# The crate idsp, where cargo could build it; for this CPU alone.
+rust      := $(wildcard $(B)/peers/rust/release/libpeers.a)
 peers     := $(B)/bench/peers
+$(peers): peers_rust := $(if $(rust),-DPEERS_RUST test/bench/peers_rust.c $(rust) -lpthread -ldl)
+$(peers): $(rust)
 $(peers): peers_cc := $(CC)
 $(peers)-i686: peers_cc := i686-linux-gnu-gcc -static
 $(peers) $(peers)-i686: $(peers_src) $(wildcard $(cmsis)/.complete test/bench/*.h lib/src/*.h lib/include/exhand/*.h) $(stamp)
 	@mkdir -p $(@D)
 	$(Q)$(peers_cc) $(filter-out $(warn) -MMD -MP -g,$(base)) -w $(PORT_HOSTFLAGS) $(CFLAGS) $(peers_def) -Itest \
-	    -Wl,--gc-sections -o $@ $(filter %.c,$^) -lm
+	    -Wl,--gc-sections -o $@ $(filter %.c,$^) $(peers_rust) -lm
 
 # Kernels of ours, of others and in plain floating point, for the report; built alike.
 work     := $(B)/bench/work
@@ -951,6 +955,7 @@ bench:
 	@.ci/deps "the benches" valgrind valgrind || exit 3
 	@$(MAKE) --no-print-directory $(bench_bin)
 	@B=$(B) test/bench/peers.sh fetch || true
+	@B=$(B) test/bench/peers.sh rust || true
 	@$(MAKE) --no-print-directory $(peers)
 	@if .ci/deps "the i686 counts" i686-linux-gnu-gcc gcc-i686-linux-gnu libc6-dev-i386-cross; then \
 	    $(MAKE) --no-print-directory $(bench_i686) $(peers)-i686; else rm -f $(bench_i686) $(peers)-i686; fi

@@ -1,13 +1,14 @@
 #!/bin/sh
-# Low-passes and sines of others beside ours: peers.sh fetch | table
+# Low-passes and sines of others beside ours: peers.sh fetch | rust | table
 #
 # fetch: CMSIS-DSP's C sources, as its package on PyPI holds them, into $B/peers, checked by
 # their sum; never committed. When that cannot be had it says why and the table does without.
+# rust: builds the crate idsp, version and sums as peers_rust/Cargo.lock has them, into $B/peers/rust.
 # table: runs $B/bench/peers and, where built, peers-i686; prints both tables, what is not run
 # from peers.csv; both as CSV in $B/bench/filters.csv and sines.csv. Instructions above the requirement are shown as "over", never fatal.
 #
 # Environment: B (build).
-# Exit status: 0 ok; table: 1 an error of ours above its bound; fetch: 1 not there; 2 bad
+# Exit status: 0 ok; table: 1 an error of ours above its bound; fetch, rust: 1 not there; 2 bad
 # usage, 3 valgrind or a binary missing.
 set -eu
 
@@ -28,7 +29,7 @@ fetch()
 {
     [ ! -r "$b/peers/$name/.complete" ] || exit 0
     [ "${DEPS:-yes}" != no ] || missing "DEPS=no"
-    rm -rf "$b/peers"
+    rm -rf "$b/peers/$name" "$b/peers/$name.tar.gz"
     mkdir -p "$b/peers"
     command -v python3 >/dev/null || missing "python3 is missing"
     python3 -m pip --version >/dev/null 2>&1 || missing "pip is missing (python3-pip)"
@@ -42,12 +43,25 @@ fetch()
     touch "$b/peers/$name/.complete"
 }
 
-[ $# = 1 ] || { echo "usage: peers.sh fetch|table" >&2; exit 2; }
+# The crate idsp, by cargo; for this CPU alone.
+rust()
+{
+    [ ! -r "$b/peers/rust/release/libpeers.a" ] || exit 0
+    [ "${DEPS:-yes}" != no ] || { echo "peers: idsp: not fetched: DEPS=no; its rows are those measured elsewhere" >&2; exit 1; }
+    command -v cargo >/dev/null || { echo "peers: idsp: not fetched: cargo is missing; its rows are those measured elsewhere" >&2; exit 1; }
+    mkdir -p "$b/peers"
+    target=$(cd "$b/peers" && pwd)/rust
+    (cd "$here/peers_rust" && CARGO_TARGET_DIR=$target timeout 600 cargo build -q --release --locked) >"$b/peers/cargo.log" 2>&1 ||
+        { echo "peers: idsp: not built ($b/peers/cargo.log): $(tail -n 1 "$b/peers/cargo.log"); its rows are those measured elsewhere" >&2; exit 1; }
+}
+
+[ $# = 1 ] || { echo "usage: peers.sh fetch|rust|table" >&2; exit 2; }
 [ -r "$here/peers.sh" ] || { echo "peers: run it at the top of the tree" >&2; exit 2; }
 case $1 in
 fetch) fetch; exit 0 ;;
+rust) rust; exit 0 ;;
 table) ;;
-*) echo "usage: peers.sh fetch|table" >&2; exit 2 ;;
+*) echo "usage: peers.sh fetch|rust|table" >&2; exit 2 ;;
 esac
 
 [ -x "$b/bench/peers" ] || { echo "peers: $b/bench/peers: not there" >&2; exit 3; }
@@ -85,10 +99,10 @@ awk -F, -v ram="$tmp/ram" -v csv="$b/bench/filters.csv" -v times="$tmp/ns" '
     function line(a, b, c, d, e, f, g, h, i, j) {
         printf "%-29s %6s %6s %6s %6s | %-25s %-25s %-25s %-25s | %-5s %5s\n", \
                a, b, c, d, e, f, g, h, i, j, mem }
-    function field(a, b, c, d, e, k, last) {
+    function field(a, b, c, d, e, k, last, row) {
         row = a "," b "," c "," d "," e
         for (; k <= last; k++) row = row "," $k
-        print row "," mem "," ($1 in ns && $1 in ran ? ns[$1] : "-") > csv }
+        print row "," mem "," (a in ns ? ns[a] : "-") > csv }
     FILENAME == ram { ram_B[$1] = $2; next }
     FILENAME == times { ns[$1] = $2; next }
     FILENAME ~ /x64$/ { x64[$1] = $2; x64_b[$1] = $3; next }
@@ -109,7 +123,8 @@ awk -F, -v ram="$tmp/ram" -v csv="$b/bench/filters.csv" -v times="$tmp/ns" '
         if (FNR == 1) { ours = $1; stuck = $14 }
         next }
     /^#/ { next }
-    ($1 in ran) { next }
+    ($1 in ran) { if (!($1 in i686)) { mem = $17; field($1 " (in C)", "elsewhere", "-", "-", $3, 4, 16) }
+                  next }
     { if (!elsewhere++) print "measured once elsewhere, NOT in this run:"
       mem = $17
       field($1, "elsewhere", $2, "-", $3, 4, 16)

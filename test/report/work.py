@@ -73,7 +73,7 @@ def draw(out, name, points, floor, x_labels, y_label, columns=0, share=True):
     names = list(dict.fromkeys(p.name for p in points))
     columns = columns or len(panels)
     rows = -(-len(panels) // columns)
-    legend_px, panel_w, panel_h = 430, max(400, min(620, 1560 // columns)), 460 if rows > 1 else 620
+    legend_px, panel_w, panel_h = 480, max(400, min(620, 1560 // columns)), 460 if rows > 1 else 620
     for p in points:
         p.error, p.label = max(p.error, floor), str(names.index(p.name) + 1)
     kind_of = {p.name: p.kind for p in points}
