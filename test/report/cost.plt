@@ -6,12 +6,12 @@ set multiplot
 set logscale y
 set style fill solid 1.0 noborder
 set boxwidth 0.26
-set xrange [0.5:6.5]
+set xrange [0.5:7.5]
 unset grid
 set grid ytics lc rgb '#dddddd' lw 0.6
-set xtics ('minimal' 1, 'drop' 2, 'guarded' 3, 'glove' 4, 'bilateral' 5, 'bringup' 6) font ',15' scale 0
+set xtics ('minimal' 1, 'drop' 2, 'guarded' 3, 'glove' 4, 'bilateral' 5, 'bringup' 6, 'calibrate' 7) font ',14' scale 0
 set ytics font ',14'
-place(s) = s eq 'minimal' ? 1 : s eq 'drop' ? 2 : s eq 'guarded' ? 3 : s eq 'glove' ? 4 : s eq 'bilateral' ? 5 : s eq 'bringup' ? 6 : NaN
+place(s) = s eq 'minimal' ? 1 : s eq 'drop' ? 2 : s eq 'guarded' ? 3 : s eq 'glove' ? 4 : s eq 'bilateral' ? 5 : s eq 'bringup' ? 6 : s eq 'calibrate' ? 7 : NaN
 array port[3] = ['posix', 'pc104', 'mps2']
 array colour[3] = ['#9bb8e3', '#1f5fbf', '#d07800']
 array what[4] = ['code and constants, B', 'memory, B', 'worst stack, B', 'instructions per tick']

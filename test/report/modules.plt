@@ -13,9 +13,9 @@ set tics scale 0
 unset ytics
 set palette defined (0 '#f2f6fc', 1 '#dce8f7', 2 '#b6d0ee', 3 '#5f93d3', 4.3 '#1f5fbf')
 set cbrange [0:4.3]
-set xrange [0.5:6.5]
+set xrange [0.5:7.5]
 set yrange [0.4:n + 0.6]
-set xtics ('minimal' 1, 'drop' 2, 'guarded' 3, 'glove' 4, 'bilateral' 5, 'bringup' 6) font ',15' offset 0,0.3
+set xtics ('minimal' 1, 'drop' 2, 'guarded' 3, 'glove' 4, 'bilateral' 5, 'bringup' 6, 'calibrate' 7) font ',14' offset 0,0.3
 set style fill solid 1.0 noborder
 do for [k = 1:2] {
     set lmargin at screen (k == 1 ? 0.115 : 0.585)

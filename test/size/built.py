@@ -8,7 +8,7 @@ import linked
 
 B = os.environ.get("B", "build")
 AT = B + "/size"
-SCENES = ("minimal", "drop", "guarded", "glove", "bilateral", "bringup")
+SCENES = ("minimal", "drop", "guarded", "glove", "bilateral", "bringup", "calibrate")
 PORTS = {"posix": ("template", ""), "pc104": ("pc104", "i686-linux-gnu-"), "mps2": ("mps2", "arm-none-eabi-")}
 SOURCES = ("lib", "examples", "ports", "ldscripts", "Makefile") + tuple("test/size/" + f for f in ("size.sh", "stack.py", "ticks.c", "world.c", "world.h"))
 OWN = "scene itself"

@@ -7,7 +7,8 @@ function pointers of this project stand in constant tables (struct exh_scene, st
 exh_loop_hooks), so an indirect call is taken to reach any function whose address is in the data
 of any object; but one in the log (exh_log_*, examples/log.c) only what a scene's own table or a tap's
 (struct exh_log_tap tap) points to: it calls the scene's state() and the tap, while the loop's hooks
-call the log; and likewise one in pc104's modbus, which asks the scene what is allowed. A function whose address is taken only by code is not seen: give it a table.
+call the log; and likewise one in pc104's modbus, which asks the scene what is allowed; and one in
+calibrate_tick() only what its own table of steps points to. A function whose address is taken only by code is not seen: give it a table.
 Functions without a graph (assembler, the C library) count as nothing and are named.
 
 Exit status: 0 bounded, 1 not (recursion, a frame of unknown size), 2 bad usage, 3 no objdump.
@@ -24,7 +25,8 @@ SECTION = re.compile(r'RELOCATION RECORDS FOR \[([^]]*)\]')
 RELOCATION = re.compile(r'^[0-9a-f]+ +R_\S+ +(\S+)')
 INDIRECT = '__indirect_call'
 LOG = re.compile(r'(^|:)(exh_log_|pc104_modbus_)|(^|/)(log|pc104/modbus)\.c:')
-FOR_LOG = re.compile(r'exh_scene_|\.tap(\.\d+)?$')
+# Callers that call by some tables only: (caller, the tables' sections). The first that fits is taken.
+ONLY = ((LOG, re.compile(r'exh_scene_|\.tap(\.\d+)?$')), (re.compile(r'(^|:)calibrate_tick$'), re.compile(r'\.steps$')))
 
 
 class Unbounded(Exception):
@@ -48,24 +50,24 @@ def read_graph(obj, frames, calls):
 
 
 def addresses_in_data(obj, objdump):
-    """(Name, whether a table that the log calls has it) of what the data of an object points to."""
+    """(Name, section that has its address) of what the data of an object points to."""
     text = subprocess.run([objdump, '-r', obj], check=True, capture_output=True, text=True).stdout
-    names, is_data, for_log = set(), False, False
+    names, is_data, where = set(), False, ''
     for line in text.splitlines():
         section = SECTION.match(line)
         relocation = RELOCATION.match(line)
         if section:
             is_data = re.match(r'\.(data|rodata)', section.group(1)) is not None
-            for_log = FOR_LOG.search(section.group(1)) is not None
+            where = section.group(1)
         elif relocation and is_data:
-            names.add((re.sub(r'^\.text\.|[+-]0x[0-9a-f]+$', '', relocation.group(1)), for_log))
+            names.add((re.sub(r'^\.text\.|[+-]0x[0-9a-f]+$', '', relocation.group(1)), where))
     return names
 
 
 def reached(caller, tables):
     """Titles that an indirect call of this caller may reach."""
-    in_log = LOG.search(caller) is not None
-    return sorted(title for title, for_log in tables.items() if for_log or not in_log)
+    only = next((where for who, where in ONLY if who.search(caller)), re.compile(''))
+    return sorted(title for title, sections in tables.items() if any(only.search(at) for at in sections))
 
 
 def deepest(title, graph, done, path):
@@ -100,10 +102,10 @@ def main():
         for _, titles in per_object:
             names.update((t, t) for t in titles.values())
         for obj, titles in per_object:
-            for name, for_log in addresses_in_data(obj, args.objdump):
+            for name, where in addresses_in_data(obj, args.objdump):
                 title = titles.get(name, names.get(name))
                 if title:
-                    tables[title] = tables.get(title, False) or for_log
+                    tables.setdefault(title, set()).add(where)
     except FileNotFoundError as missing:
         print(f'{missing.filename}: not found: compile with -fcallgraph-info=su, '
               'or install the binutils', file=sys.stderr)

@@ -5,12 +5,12 @@
  *     contact   RUN or LIMIT, and the tick before coded a current for finger 0
  *     run       RUN or LIMIT
  *     all       all: a scene without safety
- * Their number goes to stdout. Usage: ticks N contact|run|all [WORD...]. With any word a tick is what the loop makes of it:
- * parameters applied, and with
+ * Their number goes to stdout. Usage: ticks N contact|run|all [WORD...]
+ *     0xID=RAW    a parameter, of every finger or whatever there are several of; 0xID.N=RAW: of one
+ * With any other word a tick is what the loop makes of it, parameters applied, and with
  *     link=0|1|2  the link not called, its packets written and nobody there, or a world (world.h) that answers with planes
  *     log=1       examples/log.c, to a board that takes every record
- *     glove=0     no glove frame ever came
- *     0xID=RAW    a parameter, of every finger or whatever there are several of */
+ *     glove=0     no glove frame ever came */
 #include "world.h"
 
 #include "log.h"
@@ -78,28 +78,40 @@ uint32_t exh_board_cycles(void)
     return 1;
 }
 
+/* Of every instance, or of one. */
+static int stage(unsigned id, int one, int raw)
+{
+    struct exh_params *p = EXH_SCENE.params;
+    if (one >= 0) { return exh_params_stage(p, (uint16_t)id, (uint16_t)one, raw); }
+    for (uint16_t n = 0; exh_signal_find(p->table, (uint16_t)id, n) >= 0; n++) {
+        const int err = exh_params_stage(p, (uint16_t)id, n, raw);
+        if (err < 0) { return err; }
+    }
+    return 0;
+}
+
+static int word(const char *text)
+{
+    unsigned id;
+    int one = -1, raw;
+    if (sscanf(text, "%x.%d=%d", &id, &one, &raw) == 3 || sscanf(text, "%x=%d", &id, &raw) == 2) {
+        return EXH_SCENE.params ? stage(id, one, raw) : -EXH_E_UNKNOWN;
+    }
+    as.whole = 1;
+    if (strcmp(text, "glove=0") == 0) {
+        as.no_glove = 1;
+        return 0;
+    }
+    return sscanf(text, "link=%d", &as.link) == 1 || sscanf(text, "log=%d", &as.log) == 1
+               ? 0
+               : -EXH_E_UNKNOWN;
+}
+
 static int words(int argc, char **argv)
 {
-    for (int k = 0; k < argc; k++) {
-        unsigned id;
-        int raw;
-        if (sscanf(argv[k], "link=%d", &as.link) == 1 || sscanf(argv[k], "log=%d", &as.log) == 1) {
-            continue;
-        }
-        if (strcmp(argv[k], "glove=0") == 0) {
-            as.no_glove = 1;
-            continue;
-        }
-        if (sscanf(argv[k], "%x=%d", &id, &raw) != 2 || EXH_SCENE.params == NULL) {
-            return -EXH_E_UNKNOWN;
-        }
-        for (uint16_t n = 0; exh_signal_find(EXH_SCENE.params->table, (uint16_t)id, n) >= 0; n++) {
-            const int err = exh_params_stage(EXH_SCENE.params, (uint16_t)id, n, raw);
-            if (err < 0) { return err; }
-        }
-    }
-    as.whole = argc > 0;
-    return 0;
+    int err = 0;
+    for (int k = 0; err == 0 && k < argc; k++) { err = word(argv[k]); }
+    return err;
 }
 
 /* As the loop does it. */
