@@ -21,6 +21,8 @@
  *              ticks rounded up, and one tick more
  *   signals    c is 0 or 1 and agrees with q and q_lim, enums and bit sets are known ones,
  *              the monitored force lies on its table
+ *
+ * ends.c: other scenes, of which less is asked, and the signs of what saturates.
  */
 #include "stress.h"
 
@@ -45,6 +47,7 @@ int main(int argc, char **argv)
     random_parameters();
     heats();
     wraps();
+    all_at_their_ends();
     failed = failures() + every_angle(cases < 1000000 ? (uint32_t)(1000000 / cases) : 1);
     printf("%d failed\n", failed);
     return failed != 0;

@@ -104,6 +104,7 @@ void open_loops(void);
 void random_parameters(void);
 void heats(void);
 void wraps(void);
+void all_at_their_ends(void);
 /* 1 if any angle is wrong; of the stretches of 1024, one in so many. */
 int every_angle(uint32_t thin);
 
