@@ -25,15 +25,26 @@ def size_of(elf, cross):
     return [int(v) for v in run([cross + "size", elf]).splitlines()[1].split()[:3]]
 
 
-def ticks(scene, *words):
-    """Instructions of a whole tick of a variant on this machine, or None."""
-    tool = AT + "/ticks-" + scene
-    if not shutil.which("valgrind"):
+def i686_tool(scene):
+    """ticks.c around the pc104 image's own objects, for this machine's kernel."""
+    at, tool = AT + "/pc104", "%s/ticks-%s-i686" % (AT, scene)
+    own = [os.path.join(d, f) for d, _, files in os.walk("%s/examples/%s" % (at, scene)) for f in files if f.endswith(".o")]
+    own += [at + "/examples/calib.o"] + ([at + "/examples/glove/cal.o"] if scene == "bilateral" else [])
+    run(["i686-linux-gnu-gcc", "-std=c99", "-O2", "-g", "-static", "-no-pie", "-Ilib/include", "-Iexamples", "-DEXH_SCENE=exh_scene_" + scene,
+         "test/size/ticks.c", "test/size/world.c", "examples/log.c", *own, at + "/libexhand.a", "-o", tool])
+    return tool
+
+
+def ticks(port, scene, *words):
+    """Instructions of a whole tick of a variant, the mean of 3000, by callgrind; None where that cannot be."""
+    if port == "mps2" or not shutil.which("valgrind"):
         return None
+    tool = "%s/ticks-%s" % (AT, scene) + ("-i686" if port == "pc104" else "")
     n = int(run([tool, "3000", "run", *words]))
     p = subprocess.run(["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", "--toggle-collect=counted_whole_tick", tool,
-                        "3000", "run", *words], text=True, capture_output=True, check=True)
-    return int(re.search(r"Collected : (\d+)", p.stderr)[1]) / n
+                        "3000", "run", *words], text=True, capture_output=True, check=False)
+    m = re.search(r"Collected : (\d+)", p.stderr)
+    return int(m[1]) / n if m else None
 
 
 def on_mps2(elf, shift=6):
@@ -41,12 +52,6 @@ def on_mps2(elf, shift=6):
     out = run(["ports/mps2/run.sh", elf], check=False, QEMU_FLAGS="-icount shift=%d,sleep=off" % shift, TIMEOUT_s="300")
     m = re.search(r"cycles per tick \d+ \.\. (\d+)", out)
     return int(m[1]) * 40 / 2 ** shift if m else None
-
-
-def on_pc104(elf, *words):
-    out = run(["ports/pc104/run.sh", elf, "ticks=2000", "uncalibrated=1", *words], check=False, QEMU_FLAGS="-icount shift=0,sleep=off", TIMEOUT_s="300")
-    m = re.search(r"cycles per tick .* (\d+)\r?$", out, re.M)
-    return int(m[1]) if m else None
 
 
 def shares(port):
@@ -86,45 +91,49 @@ class Adds:
 
     def full_box(self, has):
         """Fingers, glove and link are in every image of the full box: what they take there, and what a tick without them does not."""
-        f = {n: ticks("bilateral", "link=2", "0x8610=%d" % ((1 << n) - 1)) for n in range(1, 6)}
-        glove = ticks("bilateral", "link=1"), ticks("bilateral", "link=1", "glove=0", "0x8615=0")
-        link = ticks("bilateral", "link=0"), glove[0], ticks("bilateral", "link=2")
         for port in has:
             costs, share = self.costs["bilateral", port], shares(port)
-            if port == "posix":
-                one, how = f[5] and (f[5] - f[1]) / 4, "run with 1 .. 5 fingers: " + ", ".join("%.0f" % f[n] for n in f if f[n])
-            else:
-                one, how = self.fingers_on(port)
-            self.add("one more finger of the full box", port, [0, 0, 0], share["finger"], one, how + "; memory for five is always there")
-            here = port == "posix" and glove[0]
-            self.add("glove: 22 angles", port, costs.without(FEATURES[0][1]), share["glove"], here and glove[0] - glove[1] or None,
+            if port == "pc104":
+                i686_tool("bilateral")
+            none, off, on, world = (ticks(port, "bilateral", *words) for words in (
+                ("link=0",), ("link=1", "glove=0", "0x8615=0"), ("link=1",), ("link=2",)))
+            self.add("one more finger of the full box", port, [0, 0, 0], share["finger"], *self.fingers_on(port))
+            self.add("glove: 22 angles", port, costs.without(FEATURES[0][1]), share["glove"], on and on - off,
                      "its modules, its share of memory; run with a frame in every tick, and with none")
-            self.add("link to a world with nobody there", port, costs.without(FEATURES[3][1]), share["link"], here and link[1] - link[0] or None,
+            self.add("link to a world with nobody there", port, costs.without(FEATURES[3][1]), share["link"], on and on - none,
                      "its modules, its share of memory; run with states written every fifth tick, and with none")
-            if here:
-                self.add("link: a world that answers", port, [0, 0, 0], 0, link[2] - link[1], "planes, and contacts with them; beside nobody there")
+            if on:
+                self.add("link: a world that answers", port, [0, 0, 0], 0, world - on, "planes, and contacts with them; beside nobody there")
 
     def fingers_on(self, port):
+        """(Instructions of one more, how they were seen)."""
         if port == "mps2":
-            n = [on_mps2(image("bilateral", port, "-f%d" % m, "SCENE_MAIN=test/size/variant.c examples/deadman.c examples/loop.c", "TICKS=500",
-                               "SCENE_CFLAGS=-DVARIANT_FINGERS=%d" % m)[0], 4) for m in (1, 31)]
+            main = "SCENE_MAIN=test/size/variant.c examples/deadman.c examples/loop.c"
+            n = [on_mps2(image("bilateral", port, "-f%d" % m, main, "TICKS=500", "SCENE_CFLAGS=-DVARIANT_FINGERS=%d" % m)[0], 4) for m in (1, 31)]
+            how = "dearest tick with 1 and 5 fingers"
         else:
-            n = [on_pc104("%s/pc104/bilateral.elf" % AT, "fingers=%d" % m) for m in (1, 31)]
-        ok = all(v is not None for v in n)
-        return (n[1] - n[0]) / 4 if ok else None, "dearest tick with 1 and 5 fingers: " + (", ".join("%.0f" % v for v in n) if ok else "did not run")
+            n = [ticks(port, "bilateral", "link=2", "0x8610=%d" % ((1 << k) - 1)) for k in range(1, 6)]
+            how = "run with 1 .. 5 fingers"
+        if None in n:
+            return None, how + ": did not run"
+        return (n[-1] - n[0]) / 4, "%s: %s; memory for five is always there" % (how, ", ".join("%.0f" % v for v in n))
 
     def log(self, has):
-        main = "test/size/variant.c examples/deadman.c examples/log.c examples/loop.c"
-        for scene in ("drop", "bilateral"):
+        main = "SCENE_MAIN=test/size/variant.c examples/deadman.c examples/log.c examples/loop.c"
+        for scene, words in (("drop", ("link=0",)), ("bilateral", ("link=2",))):
             for port in has:
-                if port == "pc104":
-                    continue
-                with_log = image(scene, port, "-log", "SCENE_MAIN=" + main, "TICKS=2000", "SCENE_CFLAGS=-DVARIANT_LOG")[1]
-                plain = image(scene, port, "-plain", "SCENE_MAIN=" + main, "TICKS=2000", "SCENE_CFLAGS=")[1]
-                words = ("link=2",) if scene == "bilateral" else ("link=0",)
-                insn = (ticks(scene, *words, "log=1"), ticks(scene, *words)) if port == "posix" else (None, None)
-                self.add("log of every tick (%s)" % scene, port, less(with_log, plain), None, insn[0] and insn[0] - insn[1],
-                         "image and run with and without examples/log.c" if port == "posix" else "image with and without examples/log.c")
+                bytes_ = None
+                if port == "pc104":  # its main() has the log in all images but those of constants
+                    i686_tool(scene)
+                    bytes_ = self.costs[scene, port].without(FEATURES[5][1])
+                    how = "its modules"
+                else:
+                    bytes_ = less(*(image(scene, port, suffix, main, "TICKS=500", "SCENE_CFLAGS=" + flag)[1]
+                                    for suffix, flag in (("-log", "-DVARIANT_LOG"), ("-plain", ""))))
+                    how = "image with and without examples/log.c"
+                insn = ticks(port, scene, *words, "log=1"), ticks(port, scene, *words)
+                self.add("log of every tick (%s)" % scene, port, bytes_, None, insn[0] and insn[0] - insn[1],
+                         how + ("; run with and without it" if insn[0] else ""))
 
     def of_pc104(self):
         base = self.of_table("drop", "pc104")[0]
