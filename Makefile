@@ -14,7 +14,7 @@ $(error B="$(B)": the place to build in must be named, and without blanks)
 endif
 
 include ports/$(PORT)/port.mk
-scene_mk := $(or $(wildcard $(addsuffix /$(SCENE)/scene.mk,examples test/hil test/board)),examples/$(SCENE)/scene.mk)
+scene_mk := $(or $(wildcard $(addsuffix /$(SCENE)/scene.mk,examples test/hil test/board test/bench)),examples/$(SCENE)/scene.mk)
 include $(scene_mk)
 
 ifeq ($(origin CC),default)

@@ -1,7 +1,9 @@
 /* The kernels in double and in float, apart from whoever calls them. */
 #include "plain.h"
 
+#if __STDC_HOSTED__ /* else there is no C library, and no sine */
 #include <math.h>
+#endif
 
 #define T      double
 #define N(n)   plain_##n##_double

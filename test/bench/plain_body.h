@@ -10,6 +10,7 @@ T N(table)(const struct N(table) * t, T x)
     return t->y[k] + (x - t->x[k]) * t->slope[k];
 }
 
+#if __STDC_HOSTED__
 /* Sines of sums out of those of the joints: three calls of each a finger. */
 void N(tip)(const struct N(bones) *b, const T q[3], T tip[3])
 {
@@ -26,6 +27,7 @@ void N(tip)(const struct N(bones) *b, const T q[3], T tip[3])
         tip[i] = b->base[i] + (b->rot[i][0] * cosine0 + b->rot[i][1] * sine0) * out + b->rot[i][2] * up;
     }
 }
+#endif
 
 /* Distance to the plane; the virtual contact moves along until d_lim, then stands until the finger has left. */
 void N(freeze)(struct N(freeze) * s, const T tip[3], T pos, int touching)

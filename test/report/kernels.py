@@ -121,6 +121,25 @@ def velocity():
     judged(points)
 
 
+def soft():
+    """Where floating point is software: errors are those of this machine, which has the same formats."""
+    names = {"fixed": ("exhand", "ours"), "double": ("plain double, by software", "float"), "float": ("plain float, by software", "float")}
+    of = {"fixed": "exhand", "double": "plain double", "float": "plain float"}
+    wrong = {("filter", w): max(ppm(r["%s_2" % k]) for k in ("rest", "step", "sine")) for r in rows_of("filters.csv")
+             for w, n in of.items() if r["name"].startswith(n)}
+    wrong.update({(r["kernel"], w): float(r["max"]) for r in rows_of("work.csv") for w, n in of.items()
+                  if r["name"].startswith(n) and r["when"] == ("3600" if r["kernel"] == "law" else "all")})
+    title = {"filter": "22 low-passes, fc/fs = 0.01 (ppm)", "law": "5 laws, after 1 h (N)", "table": "table (ppm)",
+             "precontact": "5 distances, freeze (m)"}
+    rows = [dict(r, error=wrong[r["kernel"], r["way"]]) for r in rows_of("soft.csv")]
+    points = [work.Point(title[r["kernel"]], *names[r["way"]], r["instructions"], r["error"]) for r in rows]
+    save("soft", rows[0].keys(), [r.values() for r in rows])
+    work.draw(OUT, "soft", points, 1e-17, "instructions, Cortex-M3", "largest error", 4, False)
+    cost = {(r["kernel"], r["way"]): float(r["instructions"]) for r in rows}
+    print("note: what double and float cost against ours: " + "; ".join("%s %.1f, %.1f" % (
+        k, cost[k, "double"] / cost[k, "fixed"], cost[k, "float"] / cost[k, "fixed"]) for k in title) + " times.")
+
+
 def label_of(row):
     return row["estimator"] if row["estimator"].split("_")[0] in ("double", "float") else "exhand " + row["estimator"]
 
@@ -136,6 +155,7 @@ SECTIONS = {
     "passivity": lambda: kernel("passivity", "passivity", "J", 1e-17, 1, (("1", ", after 1 s"), ("3600", ", after 1 h"))),
     "passivity_drift": lambda: drift("passivity_drift", "passivity", 1e-17),
     "velocity": velocity,
+    "soft": soft,
 }
 
 

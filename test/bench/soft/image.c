@@ -1,0 +1,250 @@
+/* main() of an image that counts kernels: one line each, kernel,name,cycles of 1024 ops, an empty op subtracted. Where
+ * virtual time is instructions, so are these. No sines: they would need a C library. */
+#include "law.h"
+#include "plain.h"
+
+#include "exhand/board.h"
+#include "exhand/error.h"
+#include "exhand/exhand.h"
+
+#define OPS      1024u
+#define CHANNELS 22u
+#define FINGERS  5u
+
+void mps2_say(const char *s);
+
+static uint32_t seed = 1;
+static volatile int64_t sink;
+static volatile double sink_double;
+static volatile float sink_float;
+
+static int32_t any(void)
+{
+    seed = seed * 1664525u + 1013904223u;
+    return (int32_t)(seed >> 3) - (1 << 28);
+}
+
+/* --- low-pass --- */
+
+static struct exh_filter_cfg filter_cfg;
+static struct exh_filter filter[CHANNELS];
+static int32_t x[OPS + CHANNELS], y[CHANNELS];
+static double b_double[5], s_double[CHANNELS][2];
+static float b_float[5], s_float[CHANNELS][2];
+
+static void filter_op(uint32_t i)
+{
+    exh_filter_step(filter, &filter_cfg, &x[i], y, CHANNELS);
+}
+
+#define FILTER(T) \
+    static void filter_##T##_op(uint32_t i) \
+    { \
+        for (uint32_t k = 0; k < CHANNELS; k++) { \
+            const T in = (T)x[i + k], out = b_##T[0] * in + s_##T[k][0]; \
+            s_##T[k][0] = b_##T[1] * in - b_##T[3] * out + s_##T[k][1]; \
+            s_##T[k][1] = b_##T[2] * in - b_##T[4] * out; \
+            sink_##T = out; \
+        } \
+    }
+FILTER(double)
+FILTER(float)
+
+static void filter_start(void)
+{
+    /* fc/fs = 0.01 */
+    static const double b[5] = {0.000944691843840, 0.00188938368768, 0.000944691843840,
+                                -1.911197067426073, 0.914975834801433};
+    static const struct exh_filter_par par = {2, EXH_Q(20, 1, 16)};
+    EXH_ASSERT(exh_filter_setup(&filter_cfg, &par, (struct exh_period){1, 2000}) == 0);
+    for (uint32_t i = 0; i < OPS + CHANNELS; i++) { x[i] = any(); }
+    for (int k = 0; k < 5; k++) { b_float[k] = (float)(b_double[k] = b[k]); }
+}
+
+/* --- law --- */
+
+static const struct exh_contact_par wall = {EXH_Q(7989, 4, EXH_Q_K), EXH_Q(395, 64, EXH_Q_B), 0, 0,
+                                            0};
+static const struct law_double wall_double = {1997.25, 6.171875, 0, 0, 100};
+static const struct law_float wall_float = {1997.25f, 6.171875f, 0, 0, 100};
+static struct exh_contact contact[FINGERS];
+
+static void law_op(uint32_t i)
+{
+    for (uint32_t f = 0; f < FINGERS; f++) {
+        struct exh_force_ledger l;
+        (void)exh_contact_law(&contact[f], &wall,
+                              (struct exh_contact_in){x[i + f] >> 6, x[i + f + 1] >> 4, 0}, &l);
+        sink = l.spring_N_q20 + l.damper_N_q20;
+    }
+}
+
+static void law_double_op(uint32_t i)
+{
+    for (uint32_t f = 0; f < FINGERS; f++) {
+        sink_double = law_double(&wall_double, b_double[3] + i, b_double[2]);
+    }
+}
+
+static void law_float_op(uint32_t i)
+{
+    for (uint32_t f = 0; f < FINGERS; f++) {
+        sink_float = law_float(&wall_float, b_float[3] + (float)i, b_float[2]);
+    }
+}
+
+/* --- table --- */
+
+static struct exh_knot knot[16];
+static struct plain_table_double table_double;
+static struct plain_table_float table_float;
+
+static void table_start(void)
+{
+    for (int k = 0; k < 16; k++) {
+        knot[k].x = k << 26;
+        knot[k].y = k * (1 << 25) + k * k * 1000003;
+        table_float.x[k] = (float)(table_double.x[k] = knot[k].x);
+        table_float.y[k] = (float)(table_double.y[k] = knot[k].y);
+        table_float.slope[k] = (float)(table_double.slope[k] = 0.5 + k * 0.03);
+    }
+    EXH_ASSERT(exh_table_set(knot, 16) == 0);
+}
+
+static void table_op(uint32_t i)
+{
+    sink = exh_table_at((struct exh_table){knot, 16}, (int32_t)(i << 20));
+}
+
+static void table_double_op(uint32_t i)
+{
+    sink_double = plain_table_double(&table_double, (double)(int32_t)(i << 20));
+}
+
+static void table_float_op(uint32_t i)
+{
+    sink_float = plain_table_float(&table_float, (float)(int32_t)(i << 20));
+}
+
+/* --- precontact --- */
+
+static const struct exh_material_par material = {1 << 24, 1 << 24, 1 << 22};
+static const struct exh_precontact_par freeze = {
+    -EXH_Q(5, 1000, 30), EXH_Q(1, 1000, 30), 1 << 24, 0, 0, 60000, EXH_Q(5, 1000, 30), 100, 50};
+static struct exh_precontact_cfg freeze_cfg;
+static struct exh_precontact plane[FINGERS];
+static struct plain_freeze_double plane_double[FINGERS];
+static struct plain_freeze_float plane_float[FINGERS];
+
+static void plane_start(void)
+{
+    static const struct exh_plane p = {EXH_PLANE_HIT,
+                                       0,
+                                       1,
+                                       {644245094, 0, 858993459},
+                                       {EXH_Q(60, 1000, 30), 0, EXH_Q(80, 1000, 30)}};
+    EXH_ASSERT(exh_precontact_setup(&freeze_cfg, &freeze, &material, 1, EXH_Q(7, 1000, 30),
+                                    (struct exh_period){1, 2000}) == 0);
+    for (uint32_t f = 0; f < FINGERS; f++) {
+        EXH_ASSERT(exh_precontact_tell(&plane[f], &freeze_cfg, &p, 0) == 0);
+        plane_double[f] =
+            (struct plain_freeze_double){{0.6, 0.1, 0.8}, 0.1, -0.005, 0.001, 0, 1, 0};
+        plane_float[f] =
+            (struct plain_freeze_float){{0.6f, 0.1f, 0.8f}, 0.1f, -0.005f, 0.001f, 0, 1, 0};
+    }
+}
+
+static void plane_op(uint32_t i)
+{
+    for (uint32_t f = 0; f < FINGERS; f++) {
+        const struct exh_precontact_in in = {
+            {x[i] >> 2, x[i + 1] >> 2, x[i + 2] >> 2}, {0, 0, 0}, x[i + 3] >> 2, 0, 0};
+        sink = exh_precontact_step(&plane[f], &freeze_cfg, &in);
+    }
+}
+
+static void plane_double_op(uint32_t i)
+{
+    for (uint32_t f = 0; f < FINGERS; f++) {
+        const double tip[3] = {b_double[3] * s_double[0][1], b_double[4], b_double[2]};
+        plain_freeze_double(&plane_double[f], tip, b_double[3], (int)(i & 1));
+    }
+}
+
+static void plane_float_op(uint32_t i)
+{
+    for (uint32_t f = 0; f < FINGERS; f++) {
+        const float tip[3] = {b_float[3] * s_float[0][1], b_float[4], b_float[2]};
+        plain_freeze_float(&plane_float[f], tip, b_float[3], (int)(i & 1));
+    }
+}
+
+/* --- all --- */
+
+static void empty(uint32_t i)
+{
+    (void)i;
+}
+
+static uint32_t counted(void (*volatile op)(uint32_t i))
+{
+    const uint32_t begin = exh_board_cycles();
+    for (uint32_t i = 0; i < OPS; i++) { op(i); }
+    return exh_board_cycles() - begin;
+}
+
+static void say_number(uint32_t n)
+{
+    char text[12];
+    unsigned at = sizeof text - 1;
+    text[at] = 0;
+    do {
+        text[--at] = (char)('0' + n % 10);
+        n /= 10;
+    } while (n > 0);
+    mps2_say(&text[at]);
+}
+
+static const struct {
+    const char *name;
+    void (*op)(uint32_t i);
+} ops[] = {
+    {"filter,fixed", filter_op},
+    {"filter,double", filter_double_op},
+    {"filter,float", filter_float_op},
+    {"law,fixed", law_op},
+    {"law,double", law_double_op},
+    {"law,float", law_float_op},
+    {"table,fixed", table_op},
+    {"table,double", table_double_op},
+    {"table,float", table_float_op},
+    {"precontact,fixed", plane_op},
+    {"precontact,double", plane_double_op},
+    {"precontact,float", plane_float_op},
+};
+
+void exh_assert_failed(const char *file, int line)
+{
+    (void)line;
+    exh_board_halt(file);
+}
+
+int main(void)
+{
+    struct exh_period T;
+    uint32_t none;
+    (void)exh_board_init(1000, &T); /* starts the clock */
+    filter_start();
+    table_start();
+    plane_start();
+    none = counted(empty);
+    for (unsigned k = 0; k < sizeof ops / sizeof ops[0]; k++) {
+        mps2_say("soft,");
+        mps2_say(ops[k].name);
+        mps2_say(",");
+        say_number(counted(ops[k].op) - none);
+        mps2_say("\n");
+    }
+    exh_board_halt("done");
+    return 0;
+}

@@ -1,0 +1,1 @@
+load here.'/work.gp'
