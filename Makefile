@@ -766,6 +766,7 @@ check:
 	@$(timed) stress-short
 	@$(timed) size
 	@$(timed) bench
+	@$(timed) report-test
 	@$(timed) report ARGS=--short
 
 # What runs built images and programs, one core each: as many at a time as there are cores.
@@ -975,6 +976,10 @@ bench-csv:
 report:
 	@.ci/deps "the report's pictures" gnuplot gnuplot-nox fonts-dejavu-core || true
 	@test/report/report.py --build $(B) $(ARGS)
+
+.PHONY: report-test
+report-test:
+	@PYTHONDONTWRITEBYTECODE=1 test/report/report_test.py
 
 ## Make the table of docs/CARDS.md anew: every misbehaviour of a card in every phase of its driver
 .PHONY: cards
