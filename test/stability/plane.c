@@ -155,8 +155,8 @@ int quantized_plane(enum size size)
     failed += must(t.star >= 0.98 * t.star_of,
                    "plane: below, grows exactly where 20 steps are more than A*: 98 %", "%d of %d",
                    t.star, t.star_of);
-    return failed +
-           must(t.amplitude <= 1,
-                "plane: sigma = 0, beta >= 1.2 (1 + d): amplitude within (2 / pi) (1 + d) / beta",
-                "%.2f of it", t.amplitude);
+    return failed + must(t.amplitude <= 1.05,
+                         "plane: sigma = 0, beta >= 1.2 (1 + d): amplitude (2 / pi) (1 + d) / beta "
+                         "at most, 5 %",
+                         "%.2f of it", t.amplitude);
 }
