@@ -922,7 +922,7 @@ $(peers) $(peers)-i686: $(peers_src) $(wildcard $(cmsis)/.complete test/bench/*.
 # Kernels of ours, of others and in plain floating point, for the report; built alike.
 work     := $(B)/bench/work
 work_src := $(filter-out %/work_cmsis.c,$(wildcard test/bench/work*.c)) $(addprefix test/bench/,plain.c law.c path.c measure.c) \
-            examples/drop/drop.c examples/calib.c $(lib_src)
+            examples/drop/drop.c examples/calib.c
 ifneq ($(wildcard $(cmsis)/.complete),)
 work_src += test/bench/work_cmsis.c $(wildcard $(cmsis)/Source/ControllerFunctions/arm_pid_*_q31.c \
             $(cmsis)/Source/ControllerFunctions/arm_pid_*_q15.c $(cmsis)/Source/ControllerFunctions/arm_pid_*_f32.c) \
@@ -931,21 +931,25 @@ work_src += test/bench/work_cmsis.c $(wildcard $(cmsis)/Source/ControllerFunctio
 endif
 $(work): work_cc := $(CC)
 $(work)-i686: work_cc := i686-linux-gnu-gcc -static
+$(work): $(B)/posix/libexhand.a
+$(work)-i686: $(lib_src)
 $(work) $(work)-i686: $(work_src) $(wildcard $(cmsis)/.complete test/bench/*.h lib/src/*.h lib/include/exhand/*.h) $(stamp)
 	@mkdir -p $(@D)
 	$(Q)$(work_cc) $(filter-out $(warn) -MMD -MP -g,$(base)) -w $(PORT_HOSTFLAGS) $(CFLAGS) $(peers_def) -Itest \
-	    -Wl,--gc-sections -o $@ $(filter %.c,$^) -lm
+	    -Wl,--gc-sections -o $@ $(filter %.c,$^) $(filter %.a,$^) -lm
 
 # Whole ticks of the scenes, beside the same in double and float.
 scenes     := $(B)/bench/scenes
 scenes_src := $(wildcard test/bench/scenes*.c) $(addprefix test/bench/,pipe.c measure.c) examples/drop/drop.c examples/guarded/guarded.c \
-              $(wildcard examples/glove/*.c examples/bilateral/*.c) examples/calib.c $(lib_src)
+              $(wildcard examples/glove/*.c examples/bilateral/*.c) examples/calib.c
 $(scenes): scenes_cc := $(CC)
 $(scenes)-i686: scenes_cc := i686-linux-gnu-gcc -static
+$(scenes): $(B)/posix/libexhand.a
+$(scenes)-i686: $(lib_src)
 $(scenes) $(scenes)-i686: $(scenes_src) $(wildcard test/bench/*.h examples/*/*.h examples/*.h lib/src/*.h lib/include/exhand/*.h) $(stamp)
 	@mkdir -p $(@D)
 	$(Q)$(scenes_cc) $(filter-out -MMD -MP -g -Wdouble-promotion,$(base)) $(PORT_HOSTFLAGS) $(CFLAGS) -Itest \
-	    -Wl,--gc-sections -o $@ $(filter %.c,$^) -lm
+	    -Wl,--gc-sections -o $@ $(filter %.c,$^) $(filter %.a,$^) -lm
 .PHONY: scenes-csv
 scenes-csv: $(scenes) $(if $(shell command -v i686-linux-gnu-gcc),$(scenes)-i686)
 	@B=$(B) test/bench/scenes.sh
