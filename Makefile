@@ -565,10 +565,17 @@ endif
 fuzz-corpus: $(B)/fuzz/plain
 	@$(B)/fuzz/plain --write test/fuzz/corpus
 
-## Prove the gate, force and current, tracking, state of the box (ARGS="--only gate", --update; test/proof)
+## Prove the tick path, module by module (ARGS="--only gate", --update, --table; test/proof)
 .PHONY: proof
 proof:
 	@test/proof/proof.py --out $(B)/proof $(ARGS)
+
+# That the record is whole and of these sources, and what is cheap of it once more; by what can be had here.
+.PHONY: proof-ci
+proof-ci:
+	@.ci/deps "proofs by Frama-C" frama-c frama-c-base || true
+	@.ci/deps "proofs by z3" 'python3 -c "import z3"' python3-z3 || true
+	@test/proof/proof.py --out $(B)/proof --ci
 
 # --- every condition of the library and of the drivers of the cards -------------------------
 
@@ -752,6 +759,7 @@ check:
 	@$(timed) golden ARGS="--check --every 40"
 	@$(timed) mutants ARGS="--some 4"
 	@$(timed) mcdc
+	@$(timed) proof-ci
 	@$(timed) fuzz
 	@$(timed) demo > $(B)/demo.txt && tail -n 40 $(B)/demo.txt
 	@$(timed) $(variants:%=variant-%)

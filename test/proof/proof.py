@@ -122,7 +122,9 @@ def update(got, was, shrink, everything):
     for k, r in got.items():
         if r.get("reached") and k.endswith(".eva64"):
             record.note_reached(found, names[k.split(".")[0]], r["reached"], texts)
-    record.write_reached({u: f for u, f in found.items() if u in names})
+    found = {u: f for u, f in found.items() if u in names}
+    record.write_reached(found)
+    record.drop_reasons(record.covered(found, texts))
     return was
 
 

@@ -124,6 +124,11 @@ def covered(found, texts):
                 c, d, by = best.get(f, {}).get(n, (0, 1, ()))
                 if f in best and n in best[f]:
                     best[f][n] = (a, b, by + (unit,)) if a * d > c * b else (c, d, by + (unit,))
+    for u in units():
+        for names in best.values() if u.every else ():
+            for n in names:
+                if names[n][0] == 0 and re.search(r"\b%s\(" % n, u.body):
+                    names[n] = (1, 1, (u.name + " (every value)",))
     for unit, (f, names) in WP.items():
         for n in names:
             if n in best.get(f, {}) and best[f][n][0] == 0:
@@ -142,6 +147,21 @@ def not_proved():
         for n in names.split():
             found[f, n] = why
     return found
+
+
+def drop_reasons(best):
+    """Takes out of not_proved.txt what is reached now."""
+    lines = []
+    for line in read(NOT_PROVED).splitlines():
+        where, _, why = line.partition(": ")
+        f, _, names = where.partition(" ")
+        left = [n for n in names.split() if best.get(f, {}).get(n, (0,))[0] == 0]
+        if line[:1] in ("#", "") or names == "*" and not all(v[0] for v in best.get(f, {}).values()):
+            lines.append(line)
+        elif names != "*" and left:
+            lines.append("%s %s: %s" % (f, " ".join(left), why))
+    with open(NOT_PROVED, "w") as o:
+        o.write("\n".join(lines) + "\n")
 
 
 def unexplained(best, reasons):

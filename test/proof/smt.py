@@ -132,9 +132,18 @@ def mean_is_within_32_bits():
     return holds(z3.Implies(z3.And(sums, divides), z3.And(quot >= 0, quot <= 1 << 32)))
 
 
+def excess_is_a_square_at_most():
+    """In setup_i2t(): of 0 <= i_cont <= i_peak <= 6.6 A, q16, the squares' difference is within 0 .. (6.6 A)^2."""
+    peak, cont, more = z3.Ints("peak cont more")
+    most = 432537
+    box = z3.And(cont >= 0, more >= 0, peak == cont + more, peak <= most)
+    at_least = holds(z3.Implies(z3.And(cont >= 0, more >= 0), (cont + more) * (cont + more) - cont * cont >= 0))
+    return at_least and holds(z3.Implies(box, peak * peak - cont * cont <= most * most))
+
+
 LEMMAS = [shr_is_floor, from_u64_keeps_bits, wrapped_sum_is_the_sum, gain_floor_is_no_more, share_of_limit,
           release_ends, release_step_is_bounded, unit_has_components_of_one, toward_stays_between,
-          mean_is_within_32_bits] + smt_passivity.LEMMAS
+          mean_is_within_32_bits, excess_is_a_square_at_most] + smt_passivity.LEMMAS
 
 if __name__ == "__main__":
     sys.exit(0 if {f.__name__: f for f in LEMMAS}[sys.argv[1]]() else 1)

@@ -41,7 +41,7 @@ WP_PLANTS = [
      "dac_zero_raw + spanned, 0, 2 * UINT16_MAX)"),
     ("gate", "any_gate@falls", "lib/src/gate.c", "falls ? s->off_raw[k] : UINT16_MAX", "UINT16_MAX"),
     ("gate", "any_gate@shut", "lib/src/gate.c", "= open ? exh_sat32(asked) : 0;", "= exh_sat32(asked);"),
-    ("gate", "any_gate@unused", "lib/src/gate.c", "cfg[k < n ? k : 0].par->dac_zero_raw", "out->dac_raw[k]"),
+    ("gate", "any_gate@@invariant", "lib/src/gate.c", "cfg[k < n ? k : 0].par->dac_zero_raw", "out->dac_raw[k]"),
     ("drive", "exh_drive_force", "lib/src/drive.c", "exh_clamp(asked, 0, most)", "exh_clamp(asked, -most, most)"),
     ("drive", "exh_drive_force", "lib/src/drive.c", "exh_clamp(asked, 0, most)", "exh_clamp(asked, 0, INT32_MAX)"),
     ("drive", "release", "lib/src/drive.c", "rest > 0 ? (int32_t)rest : 0", "(int32_t)rest"),
@@ -185,6 +185,11 @@ def read(path):
         return f.read()
 
 
+def helpers(parts, listed):
+    """Functions of a file of lemmas that are none."""
+    return [n for n in re.findall(r"^def (\w+)", "\n".join(parts), re.M) if n not in listed]
+
+
 class Proof:
     def __init__(self, root, out, fresh=False):
         self.root, self.out, self.fresh = root, out, fresh
@@ -321,8 +326,15 @@ class Proof:
         return dict(ran=bool(by), proved=int(total.group(1)), of=int(total.group(2)), s=s, names=bad, by=by)
 
     def lemma_key(self, lemma):
-        text = read(os.path.join(HERE, "smt.py")) + read(os.path.join(HERE, "smt_passivity.py"))
-        return hashlib.sha256((text + lemma).encode()).hexdigest()[:16]
+        """Of itself and what its file has beside lemmas."""
+        for f in ("smt.py", "smt_passivity.py"):
+            text = read(os.path.join(HERE, f))
+            if "\ndef %s(" % lemma in text:
+                parts = re.split(r"\n(?=def |LEMMAS = )", text)
+                listed = re.findall(r"\w+", parts[-1].split("]")[0])
+                kept = [t for t in parts[:-1] if re.match(r"def (\w+)|", t).group(1) in [None, lemma] + helpers(parts, listed)]
+                return hashlib.sha256("\n".join(kept).encode()).hexdigest()[:16]
+        raise SystemExit(lemma + ": no such lemma")
 
     def lemma(self, lemma):
         def ask():

@@ -1,10 +1,23 @@
 /* PROVES: texts
- * Names and texts of any number: of states, triggers, faults, limits, steps of arming, errors.
+ * Names and texts of any number: of states, triggers, faults, limits, steps of arming, errors, what is wrong with a sensor or with a
+ * calibration.
  *
  * PLANT: lib/src/safety_names.c: k < EXH_LIMITS ? -> k <= EXH_LIMITS ?
  * PLANT: lib/src/error.c: code <= -EXH_E_COUNT || -> code < -EXH_E_COUNT ||
+ * PLANT: lib/src/glove_cal.c: sensor < EXH_GLOVE_SENSORS ? text[sensor] -> sensor <= EXH_GLOVE_SENSORS ? text[sensor]
  */
+#include "calibrate.c"
 #include "error.c"
+#define limits glove_limits
+#include "glove.c"
+#undef limits
+#undef IMAGE_MAGIC
+#define body_bytes cal_body_bytes /* calibrate.c has its own of these */
+#define head cal_head
+#define head_bytes cal_head_bytes
+#define load cal_load
+#define refuse cal_refuse
+#include "glove_cal.c"
 #include "safety_names.c"
 
 #include "any.h"
@@ -24,6 +37,10 @@ int main(void)
     text(exh_limit_name(any_u32()));
     text(exh_arm_name(any_u32()));
     text(exh_error_text(any32()));
+    text(exh_glove_cause_text(any_u32()));
+    text(exh_glove_sensor_text(any_u32()));
+    text(exh_glove_what_text(any_u32()));
+    text(exh_calib_what_text(any_u32()));
     END();
     return 0;
 }

@@ -59,6 +59,8 @@ static void use(void)
     ANY(ours);
     ANY(theirs);
     (void)exh_wire_differs(&ours, &theirs);
+    (void)exh_wire_trip_us(any_u32(), &p.u.planes);
+    (void)exh_wire_trace_missed(any_u32(), &p.u.trace);
 }
 
 int main(void)

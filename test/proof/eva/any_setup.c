@@ -1,0 +1,170 @@
+/* PROVES: set-up and bytes of the output path
+ * Set-up of force and current, passivity, state of the box, tracking, speed: any parameters, loop rates in
+ * thousandths of Hz; tables of up to three knots with anything in them, judged and inverted. States of any bytes, and what
+ * they become is within what the ticks are proved for. Frames of any bytes; the monitor by any table that is taken.
+ *
+ * EVA: -eva-slevel 12 -eva-slevel-function setup_i2t:60,exh_passivity_setup:60
+ * PLANT: lib/src/drive.c: s->i2t_q32 > INT64_MAX / 2) { s->i2t_q32 = INT64_MAX / 2; } -> 0) { s->i2t_q32 = 0; }
+ * PLANT: lib/src/drive.c: if (n < 2 || n > 255) { return -EXH_E_RANGE; } -> (void)0;
+ * PLANT: lib/src/drive.c: const int64_t dy = (int64_t)knot[i + 1].y - knot[i].y; -> const int64_t dy = knot[i + 1].y - knot[i].y;
+ * PLANT: lib/src/passivity.c: if (way > WAY_MAX_CNT) { return -EXH_E_RANGE; } -> (void)0;
+ * PLANT: lib/src/passivity.c: s->energy_Ncnt_q20 = limited(s->energy_Ncnt_q20); -> (void)0;
+ * PLANT: lib/src/safety.c: cfg->arm_ticks = exh_ticks_in(par->arm_ms, T) + 1; -> cfg->arm_ticks = exh_ticks_in(par->arm_ms, T) - 1;
+ * PLANT: lib/src/contact.c: s->inward = s->inward != 0; -> (void)0;
+ */
+#include "bytes.c"
+#define exh_udiv64 udiv64_by_steps
+#include "fix.c"
+#undef exh_udiv64
+/* Eva knows a quotient's size, but not of one made bit by bit. */
+#define exh_udiv64 udiv64
+static uint64_t udiv64(uint64_t num, uint64_t den, uint64_t *rem)
+{
+    /*@ assert divisor: den != 0; */
+    if (rem) { *rem = num % den; }
+    return num / den;
+}
+#include "contact.c"
+#include "drive.c"
+#include "passivity.c"
+#undef SPEED_MIN_MPS_Q27
+#include "gate.c"
+#include "safety.c"
+#include "track.c"
+#undef CUR_MIN_A_Q26
+#include "watch.c"
+
+#include "any.h"
+
+#define KNOTS 3
+
+static struct exh_knot knot[KNOTS], inverse[KNOTS];
+static struct exh_drive_par par;
+static struct exh_drive_cfg cfg;
+
+static void tables(unsigned n)
+{
+    ANY(knot);
+    (void)exh_table_set(knot, n);
+    if (n > KNOTS) { return; } /* these are all there */
+    ANY(knot);
+    (void)exh_table_invert(inverse, knot, n);
+}
+
+static void any_table(unsigned n)
+{
+    ANY(knot);
+    for (unsigned k = 0; k < n; k++) {
+        ANY_GAIN(knot[k].slope);
+        knot[k].x = Frama_C_interval(-1073741823, 1073741823);
+    }
+}
+
+static void drive(struct exh_period T, uint8_t forces, uint8_t currents)
+{
+    const struct exh_table force_to_cur = {knot, forces}, cur_to_force = {knot, currents};
+    ANY(par);
+    any_table(KNOTS);
+    if (exh_drive_setup(&cfg, &par, T, force_to_cur, cur_to_force) == 0) {
+        (void)exh_drive_monitor_N_q20(&cfg, (int16_t)Frama_C_interval(INT16_MIN, INT16_MAX));
+    }
+    /* Set, or as they were. */
+    /*@ assert budget: 0 <= cfg.i2t_budget_q32 <= 1 << 60; */
+    /*@ assert shift: cfg.i2t_shift <= 62; */
+}
+
+static void passivity(struct exh_period T)
+{
+    struct exh_passivity_par own;
+    static struct exh_passivity_cfg taken;
+    struct exh_drive_cfg drives;
+    const struct exh_table held = {knot, KNOTS};
+    const struct exh_velocity_scale scale = {any32(), T};
+    ANY(own);
+    ANY(par);
+    ANY(drives);
+    any_table(KNOTS);
+    drives.par = &par;
+    ANY_GAIN(drives.tick_N_q20);
+    (void)exh_passivity_setup(&taken, &own, &drives, held, scale, any32());
+    /*@ assert taken: taken.shift <= 20 && 0 <= taken.step_m_q42; */
+}
+
+static void rest(struct exh_period T)
+{
+    static struct exh_safety_cfg safety;
+    static struct exh_track_cfg track;
+    struct exh_safety_par safety_par;
+    struct exh_track_par track_par;
+    struct exh_watch_par watch_par;
+    struct exh_watch_cfg watch;
+    ANY(safety_par);
+    ANY(track_par);
+    ANY(watch_par);
+    safety.release_ticks = 3; /* set, or as they were */
+    safety.arm_ticks = 2;
+    safety.ramp_q30 = 1;
+    track.ticks = 5;
+    (void)exh_safety_setup(&safety, &safety_par, T);
+    /*@ assert release: 3 <= safety.release_ticks <= 1023 && 2 <= safety.arm_ticks <= 65536; */
+    /*@ assert ramp: 1 <= safety.ramp_q30 <= 1 << 30; */
+    (void)exh_track_setup(&track, &track_par, T);
+    /*@ assert track: 5 <= track.ticks <= 4100; */
+    (void)exh_watch_setup(&watch, &watch_par, T);
+}
+
+static void states(void)
+{
+    static struct exh_contact contact;
+    static struct exh_drive drives;
+    static struct exh_passivity passive;
+    static struct exh_safety safety;
+    static struct exh_track track;
+    static struct exh_watch watch;
+    FROM_BYTES(contact, exh_contact_bytes);
+    /*@ assert factors: contact.inward <= 1 && contact.touching <= 1; */
+    FROM_BYTES(drives, exh_drive_bytes);
+    /*@ assert force: 0 <= drives.force_N_q20 <= 104857600 && 0 <= drives.fall_N_q20 <= 104857601; */
+    /*@ assert heat: 0 <= drives.i2t_q32 <= 4611686018427387903; */
+    FROM_BYTES(passive, exh_passivity_bytes);
+    /*@ assert energy: -1152921504606846976 <= passive.energy_Ncnt_q20 <= 1152921504606846976; */
+    /*@ assert held: 0 <= passive.held_N_q20 && 0 <= passive.late_N_q20; */
+    FROM_BYTES(safety, exh_safety_bytes);
+    /*@ assert share: 0 <= safety.share_q30 <= 1 << 30; */
+    (void)exh_safety_arm(&safety);
+    FROM_BYTES(track, exh_track_bytes);
+    FROM_BYTES(watch, exh_watch_bytes);
+}
+
+static void frames(void)
+{
+    static uint8_t frame_B[64];
+    struct exh_drive_in in;
+    struct exh_drive_out out;
+    struct exh_bytes c;
+    for (unsigned n = 1; n <= EXH_FINGERS; n++) {
+        ANY(frame_B);
+        c = exh_bytes_reader(frame_B, Frama_C_unsigned_int_interval(0, sizeof frame_B));
+        ANY(in);
+        ANY(out);
+        exh_drive_in_bytes(&c, &in, n);
+        exh_drive_out_bytes(&c, &out, n);
+    }
+}
+
+int main(void)
+{
+    const struct exh_period whole = {1, Frama_C_unsigned_int_interval(1, 20020)};
+    const struct exh_period fine = {1000, Frama_C_unsigned_int_interval(1000, 20020000)};
+    states();
+    frames();
+    for (unsigned n = 0; n <= KNOTS; n++) { tables(n); }
+    tables(Frama_C_unsigned_int_interval(256, UINT32_MAX));
+    rest(whole);
+    rest(fine);
+    drive(fine, 1, 0);
+    drive(fine, KNOTS, KNOTS);
+    passivity(fine);
+    END();
+    return 0;
+}

@@ -1,0 +1,72 @@
+/* PROVES: staging of gains
+ * Any rule that set-up takes, a table of four groups with anything in its rows and in both arrays, any id, instance and value: staged
+ * or refused, looked for, led, dropped, and a step of all walls on their way.
+ *
+ * EVA: -eva-slevel 10 -eva-min-loop-unroll 8
+ * PLANT: lib/src/gains.c: k < 0 || b < 0 || exh_gains_ok -> k < 0 || exh_gains_ok
+ * PLANT: lib/src/gains.c: i >= 0 ? p->staged[i] : 0; -> p->staged[i];
+ * PLANT: lib/src/gains.c: if (instance != NULL) { *instance = n; } -> *instance = n;
+ * PLANT: lib/src/gains.c: if (b < 0) { continue; } -> (void)0;
+ */
+#include "bytes.c"
+#include "fix.c"
+#include "gains.c"
+#include "params.c"
+#include "../src/signal.c" /* not that of Frama-C */
+
+#include "table.h"
+
+static struct exh_params p;
+static int32_t active[TABLE_VALUES], staged[TABLE_VALUES];
+static struct exh_gains_par rule;
+
+static void any_params(void)
+{
+    any_rows();
+    exh_params_init(&p, &table, active, staged);
+    ANY(active);
+    ANY(staged);
+    p.locked = any8();
+    p.pending = any8();
+    p.moving = any8();
+    p.shift = any8();
+    p.sum = any_u32();
+    p.passed = any_u32();
+    p.at = any_u32();
+}
+
+static void any_rule(void)
+{
+    ANY(rule);
+    rule.knots = EXH_GAINS_KNOTS;
+    rule.k_min_Npm_q10 = Frama_C_interval(0, K_MAX);
+    for (int32_t i = 0; i < EXH_GAINS_KNOTS; i++) {
+        rule.b_Nspm_q20[i] = Frama_C_interval(0, B_MAX);
+        rule.k_Npm_q10[i] = Frama_C_interval(0, K_MAX);
+    }
+}
+
+/* What is staged and active of walls is within their rows, or the guard tells. */
+static void any_pairs(void)
+{
+    for (unsigned i = 0; i < TABLE_VALUES; i++) {
+        active[i] = Frama_C_interval(0, B_MAX);
+        staged[i] = Frama_C_interval(0, B_MAX);
+    }
+}
+
+int main(void)
+{
+    uint16_t instance = 0;
+    any_rule();
+    any_params();
+    (void)exh_gains_stage(&p, &rule, (uint16_t)any_u32(), (uint16_t)any_u32(), any32());
+    (void)exh_gains_staged(&p, &rule, &instance);
+    (void)exh_gains_staged(&p, &rule, NULL);
+    exh_gains_lead(&p, any32());
+    any_pairs();
+    exh_gains_step(&p, &rule);
+    exh_gains_drop(&p);
+    END();
+    return 0;
+}
