@@ -96,11 +96,11 @@ class Report:
             if s.make != "-" and s.make not in done:
                 self.say("make " + s.make)
                 status, text = run("make --no-print-directory -s B='%s' %s" % (self.args.build, s.make), self.env, 900)
-                done[s.make] = "" if status == 0 else "make %s: %s" % (s.make, last_line(text))
+                done[s.make] = made(s.make, status, text)
                 if status:
                     sys.stdout.write(text)
-            if done.get(s.make):
-                s.state, s.why = "failed", done[s.make]
+            if s.make in done and done[s.make][0] != "ok":
+                s.state, s.why = done[s.make]
 
     def measure(self, sections):
         """One command, for all sections that have it."""
@@ -178,6 +178,14 @@ class Report:
             f.write(page)
         with open(os.path.join(self.out, "REPORT.html"), "w", encoding="utf-8") as f:
             f.write(page_of(page))
+
+
+def made(target, status, text):
+    """What came of make: .ci/deps says which tool is missing."""
+    lacks = re.findall(r"^.*: missing: .*$", text, re.M)
+    if status and lacks:
+        return "skipped", lacks[0].strip()
+    return ("failed", "make %s: %s" % (target, last_line(text))) if status else ("ok", "")
 
 
 def last_line(text):

@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tempfile
 
+import report
 import work
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -79,7 +80,15 @@ def diagrams():
     expect("labels that cover each other", near, [])
 
 
+def made():
+    lacks = "the benches: missing: valgrind: install by: apt\nmake[1]: *** [Makefile:1: bench] Error 3\n"
+    expect("a tool that make misses", report.made("bench", 2, lacks), ("skipped", "the benches: missing: valgrind: install by: apt"))
+    expect("what make cannot", report.made("bench", 2, "cc: broken\nmake: Error 1\n"), ("failed", "make bench: make: Error 1"))
+    expect("what make can", report.made("bench", 0, lacks), ("ok", ""))
+
+
 sections()
+made()
 diagrams()
 print("report_test: %s" % ("ok" if not wrong else "%d wrong" % len(wrong)))
 sys.exit(1 if wrong else 0)
