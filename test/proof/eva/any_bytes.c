@@ -3,9 +3,9 @@
  * touched beyond the buffer, and no value is lost on the way. Cursors of a buffer of any size; CRC of any bytes.
  *
  * EVA: -eva-slevel 200
- * PLANT: lib/src/bytes.c: c->at <= c->cap && n <= c->cap - c->at -> n <= c->cap - c->at
- * PLANT: lib/src/bytes.c: c->at <= c->cap && n <= c->cap - c->at -> c->at <= c->cap
- * PLANT: lib/src/bytes.c: for (size_t i = 0; i < len_B; i++) -> for (size_t i = 0; i <= len_B; i++)
+ * PLANT: lib/src/bytes.c: at <= c->cap && n <= c->cap - at -> n <= c->cap - at
+ * PLANT: lib/src/bytes.c: at <= c->cap && n <= c->cap - at -> at <= c->cap
+ * PLANT: lib/src/bytes.c: for (; len_B >= 4; -> for (; len_B >= 3;
  * PLANT: lib/src/bytes.c: (int32_t)u - 0x10000 -> (int32_t)u
  * PLANT: lib/src/bytes.c: nibble[16] -> nibble[15]
  * PLANT: lib/src/bytes.c: (uint32_t)B : UINT32_MAX - 1 -> (uint32_t)B : UINT32_MAX
