@@ -121,32 +121,24 @@ static int is_slewed(const struct exh_signal *row)
     return row->when == EXH_WHEN_SLEWED || row->when == EXH_WHEN_LIMIT;
 }
 
-/* The values of one row go all the way; the first of them is at i. As put(), but in one go: it is most of the
- * dearest tick. */
-static void copy_row(struct exh_params *p, const struct exh_signal_group *g, uint32_t i)
+/* A step, or none where somebody else moves it. */
+static void slew(struct exh_params *p, const struct exh_signal *row, uint32_t i)
 {
-    uint32_t sum = 0, passed = 0, odd = 4 * i + 1;
-    for (uint16_t k = 0; k < g->instances; k++, i += g->rows, odd += UINT32_C(4) * g->rows) {
-        const uint32_t more = odd * ((uint32_t)p->staged[i] - (uint32_t)p->active[i]);
-        sum += more;
-        passed += i < p->at ? more : 0;
-        p->active[i] = p->staged[i];
+    const int falls = row->when == EXH_WHEN_LIMIT && p->staged[i] < p->active[i];
+    const unsigned shift = falls ? 0 : p->shift & 31u;
+    if (row->id != p->led[0] && row->id != p->led[1]) {
+        put(p, p->active, i, exh_params_toward(p->active[i], p->staged[i], shift));
     }
-    p->sum += sum;
-    p->passed += passed;
+    p->moving |= p->active[i] != p->staged[i];
 }
 
-/* They go a step, or stand where somebody else moves them. */
-static void slew_row(struct exh_params *p, const struct exh_signal_group *g,
-                     const struct exh_signal *row, uint32_t i)
+/* One whose two values differ; `all`: something was staged. */
+static void apply_value(struct exh_params *p, const struct exh_signal *row, uint32_t i, int all)
 {
-    const int limit = row->when == EXH_WHEN_LIMIT;
-    const int led = row->id == p->led[0] || row->id == p->led[1];
-    for (uint16_t k = 0; k < g->instances; k++, i += g->rows) {
-        const int falls = limit && p->staged[i] < p->active[i];
-        const unsigned shift = falls ? 0 : p->shift & 31u;
-        if (!led) { put(p, p->active, i, exh_params_toward(p->active[i], p->staged[i], shift)); }
-        p->moving |= p->active[i] != p->staged[i];
+    if (p->locked && is_slewed(row)) {
+        slew(p, row, i);
+    } else if (all || is_slewed(row)) {
+        put(p, p->active, i, p->staged[i]);
     }
 }
 
@@ -156,22 +148,33 @@ void exh_params_put(struct exh_params *p, uint32_t i, int32_t raw)
     p->moving |= raw != p->staged[i];
 }
 
+/* The first from i on whose two values differ, or end. */
+static uint32_t next_other(const struct exh_params *p, uint32_t i, uint32_t end)
+{
+    const int32_t *const active = p->active, *const staged = p->staged;
+    while (i < end && active[i] == staged[i]) { i++; }
+    return i;
+}
+
+/* Values from `first` on, of one group: few differ, and of the others there is nothing to do. */
+static void apply_group(struct exh_params *p, const struct exh_signal_group *g, uint32_t first, int all)
+{
+    const uint32_t end = first + (uint32_t)g->rows * g->instances;
+    for (uint32_t i = next_other(p, first, end); i < end; i = next_other(p, i + 1, end)) {
+        while (i - first >= g->rows) { first += g->rows; } /* of its instance */
+        apply_value(p, &g->row[i - first], i, all);
+    }
+}
+
 int exh_params_apply(struct exh_params *p)
 {
     const int all = p->pending;
-    uint32_t first = 0; /* value of this group */
+    uint32_t first = 0;
     if (!p->pending && !p->moving) { return 0; }
     p->pending = p->moving = 0;
     for (uint16_t n = 0; n < p->table->groups; n++) {
         const struct exh_signal_group *g = &p->table->group[n];
-        for (uint16_t r = 0; r < g->rows; r++) {
-            const struct exh_signal *row = &g->row[r];
-            if (p->locked && is_slewed(row)) {
-                slew_row(p, g, row, first + r);
-            } else if (all || is_slewed(row)) {
-                copy_row(p, g, first + r);
-            }
-        }
+        apply_group(p, g, first, all);
         first += (uint32_t)g->rows * g->instances;
     }
     return 1;
