@@ -65,13 +65,15 @@ static void age_glove(struct bilateral *s, const struct exh_scene_in *in)
 
 static void see(struct bilateral *s, const struct bilateral_cfg *cfg, const struct exh_scene_in *in)
 {
+    const unsigned n = bilateral_n(cfg);
     int32_t angle_turn_q32[EXH_GLOVE_SENSORS];
     if (!in->glove_new) { return; }
     s->worn = 1;
     age_glove(s, in);
     s->glove_faults = exh_glove_step(&s->glove, &cfg->glove, &in->glove, angle_turn_q32);
-    for (unsigned k = 0; k < bilateral_n(cfg); k++) {
-        bilateral_finger_see(&s->finger[bilateral_at(cfg, k)], cfg, bilateral_at(cfg, k), angle_turn_q32);
+    for (unsigned k = 0; k < n; k++) {
+        const unsigned f = bilateral_at(cfg, k);
+        bilateral_finger_see(&s->finger[f], cfg, f, angle_turn_q32);
     }
 }
 
@@ -81,8 +83,9 @@ static uint32_t sense(struct bilateral *s, const struct bilateral_cfg *cfg,
                       const struct exh_drive_in *in, struct bilateral_paper *p, int32_t *cnt,
                       uint32_t *limits)
 {
+    const unsigned n = bilateral_n(cfg);
     uint32_t raised = 0;
-    for (unsigned k = 0; k < bilateral_n(cfg); k++) {
+    for (unsigned k = 0; k < n; k++) {
         const unsigned f = bilateral_at(cfg, k);
         struct bilateral_finger *now = &s->finger[f];
         const struct bilateral_finger_cfg *c = &cfg->finger[f];
@@ -105,8 +108,9 @@ static uint32_t sense(struct bilateral *s, const struct bilateral_cfg *cfg,
 /* The drives' inputs by place. */
 static uint32_t din_by_place(const struct bilateral_cfg *cfg, uint32_t din)
 {
+    const unsigned n = bilateral_n(cfg);
     uint32_t placed = din & (EXH_DIN_DRIVE0 - 1u);
-    for (unsigned k = 0; k < bilateral_n(cfg); k++) {
+    for (unsigned k = 0; k < n; k++) {
         if (din & (uint32_t)EXH_DIN_DRIVE0 << bilateral_at(cfg, k)) { placed |= (uint32_t)EXH_DIN_DRIVE0 << k; }
     }
     return placed;
@@ -119,8 +123,9 @@ static void out_by_finger(const struct bilateral_cfg *cfg, const struct exh_driv
     out->enable = 0;
     out->alive = placed->alive;
     for (unsigned k = 0; k < BILATERAL_FINGERS; k++) {
-        out->dac_raw[bilateral_at(cfg, k)] = placed->dac_raw[k];
-        out->enable = (uint8_t)(out->enable | (placed->enable >> k & 1u) << bilateral_at(cfg, k));
+        const unsigned f = bilateral_at(cfg, k);
+        out->dac_raw[f] = placed->dac_raw[k];
+        out->enable = (uint8_t)(out->enable | (placed->enable >> k & 1u) << f);
     }
 }
 
@@ -184,31 +189,32 @@ void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,
                     struct exh_params *params, struct exh_drive_out *out,
                     struct bilateral_signals *sig)
 {
+    const unsigned n = bilateral_n(cfg);
     int32_t cnt[BILATERAL_FINGERS];
     uint32_t limits[BILATERAL_FINGERS];
     const uint32_t fingers = sense(s, cfg, &in->drive, sig->paper, cnt, limits);
     struct exh_safety_in box = {din_by_place(cfg, in->drive.din), fingers, in->missed,
-                                in->command, (uint8_t)bilateral_n(cfg), steps_held(cfg, fingers)};
+                                in->command, (uint8_t)n, steps_held(cfg, fingers)};
     struct exh_permit permit;
     struct exh_current_ledger i[BILATERAL_FINGERS];
     struct exh_drive_out placed;
 
     age_glove(s, in);
-    for (unsigned k = 0; k < bilateral_n(cfg); k++) {
+    for (unsigned k = 0; k < n; k++) {
         exh_precontact_skip(&s->finger[bilateral_at(cfg, k)].precontact, in->missed);
     }
     bilateral_wire_take(s, cfg, mail, in->missed, params);
     see(s, cfg, in);
     box.raised |= bilateral_causes(s, cfg, in);
     permit = exh_safety_step(&s->safety, &cfg->safety, box);
-    for (unsigned k = 0; k < bilateral_n(cfg); k++) {
+    for (unsigned k = 0; k < n; k++) {
         const unsigned f = bilateral_at(cfg, k);
         limits[k] |=
             bilateral_finger_feel(s, cfg, k, &permit, &i[k], &sig->paper[f], &sig->more[f].bits);
     }
-    exh_gate(&s->safety, cfg->drive, bilateral_n(cfg), i, limits, &placed);
+    exh_gate(&s->safety, cfg->drive, n, i, limits, &placed);
     out_by_finger(cfg, &placed, out);
-    for (unsigned k = 0; k < bilateral_n(cfg); k++) {
+    for (unsigned k = 0; k < n; k++) {
         const unsigned f = bilateral_at(cfg, k);
         sig->paper[f].i_des_A_q26 = i[k].coded_A_q26;
         exh_track_coded(&s->finger[f].track, i[k].coded_A_q26);

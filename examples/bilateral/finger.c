@@ -64,18 +64,17 @@ void bilateral_finger_see(struct bilateral_finger *s, const struct bilateral_cfg
 }
 
 /* The law and the drive with the material of the plane that is frozen. Else there is no contact,
- * and the drive's own limit holds. */
+ * and the drive's own limit holds: it is there since the tick's beginning, with all others. */
 static struct exh_contact_par touch(struct bilateral *s, const struct bilateral_cfg *cfg,
                                     unsigned f)
 {
     const struct exh_precontact *p = &s->finger[f].precontact;
-    const int32_t f_max_N_q20 = cfg->par->drive[f].f_max_N_q20;
-    struct exh_contact_par law = cfg->par->contact[f];
-    law.k_Npm_q10 = p->taken.k_Npm_q10;
-    law.b_Nspm_q20 = p->taken.b_Nspm_q20;
-    s->drive_now[f] = cfg->par->drive[f];
-    if (p->phase == EXH_PRECONTACT_FROZEN && p->taken.f_max_N_q20 < f_max_N_q20) {
-        s->drive_now[f].f_max_N_q20 = p->taken.f_max_N_q20;
+    const struct exh_contact_par *own = &cfg->par->contact[f];
+    const struct exh_contact_par law = {p->taken.k_Npm_q10, p->taken.b_Nspm_q20, own->f0_N_q20,
+                                        own->f0_band_m_q30, own->hyst_m_q30};
+    struct exh_drive_par *drive = &s->drive_now[f];
+    if (p->phase == EXH_PRECONTACT_FROZEN && p->taken.f_max_N_q20 < drive->f_max_N_q20) {
+        drive->f_max_N_q20 = p->taken.f_max_N_q20;
     }
     return law;
 }
