@@ -16,46 +16,45 @@ const struct exh_signal exh_contact_rows[EXH_CONTACT_ROWS] = {
      "contact ends this far before q_lim"},
 };
 
-/* Two states: the farthest point since the last reversal moves along; a return of
- * more than the band from it is the next reversal. */
+/* Two states: the farthest point since the last reversal moves along; a return of more than the band from it is
+ * the next reversal. Either way is one that 32 bits without a sign hold. */
 static void follow_reversals(struct exh_contact *s, int32_t pos, int32_t band)
 {
-    int64_t back;
+    const int32_t turn = s->turn_m_q30;
     if (!s->started) {
         s->turn_m_q30 = pos;
         s->started = 1;
-    }
-    back = s->inward ? (int64_t)pos - s->turn_m_q30 : (int64_t)s->turn_m_q30 - pos;
-    if (back > band) {
+    } else if (s->inward ? pos < turn : pos > turn) {
+        s->turn_m_q30 = pos;
+    } else if ((s->inward ? (uint32_t)pos - (uint32_t)turn : (uint32_t)turn - (uint32_t)pos) > (uint32_t)band) {
+        s->turn_m_q30 = pos;
         s->inward = !s->inward;
-        s->turn_m_q30 = pos;
-    } else if (back < 0) {
-        s->turn_m_q30 = pos;
     }
 }
 
 int exh_contact_law(struct exh_contact *s, const struct exh_contact_par *par,
                     struct exh_contact_in in, struct exh_force_ledger *out)
 {
-    const int64_t past = (int64_t)in.pos_m_q30 - in.lim_m_q30;
-    const int32_t pen = exh_sat32(past);
+    const int32_t pen = exh_diff_sat32(in.pos_m_q30, in.lim_m_q30);
+    int touching;
+    int32_t on;
 
     follow_reversals(s, in.pos_m_q30, par->f0_band_m_q30);
-    s->touching = past >= 0 || (s->touching && past >= -(int64_t)par->hyst_m_q30);
+    touching = pen >= 0 || (s->touching && pen > ~par->hyst_m_q30); /* ~h is -h - 1, which fits for any h */
+    s->touching = (uint8_t)touching;
 
     /* Both products in every tick: the cost must not depend on contact. */
-    out->spring_N_q20 = exh_mul_shr(par->k_Npm_q10, pen, EXH_Q_K + EXH_Q_POS - EXH_Q_FORCE) *
-                        s->touching;
+    on = -(int32_t)touching;
+    out->spring_N_q20 = exh_mul_shr(par->k_Npm_q10 & on, pen, EXH_Q_K + EXH_Q_POS - EXH_Q_FORCE);
     out->damper_N_q20 =
-        exh_mul_shr(par->b_Nspm_q20, in.vel_mps_q27, EXH_Q_B + EXH_Q_VEL - EXH_Q_FORCE) *
-        s->touching;
-    out->pullback_N_q20 = (int64_t)par->f0_N_q20 * s->inward;
+        exh_mul_shr(par->b_Nspm_q20 & on, in.vel_mps_q27, EXH_Q_B + EXH_Q_VEL - EXH_Q_FORCE);
+    out->pullback_N_q20 = par->f0_N_q20 & -(int32_t)s->inward;
     out->passivity_N_q20 = 0;
     out->clamp_N_q20 = 0;
     out->slew_N_q20 = 0;
     out->release_N_q20 = 0;
     out->force_N_q20 = 0;
-    return s->touching;
+    return touching;
 }
 
 void exh_contact_bytes(struct exh_bytes *c, struct exh_contact *s)

@@ -88,7 +88,7 @@ int exh_table_invert(struct exh_knot *dst, const struct exh_knot *src, unsigned 
 int32_t exh_table_at(struct exh_table t, int32_t x)
 {
     const unsigned last = (uint8_t)(t.n - 1u); /* an n of damaged memory ends somewhere */
-    const int32_t in = exh_clamp(x, t.knot[0].x, t.knot[last].x);
+    const int32_t in = exh_clamp32(x, t.knot[0].x, t.knot[last].x);
     unsigned i = 0;
     /* Every knot is looked at: the cost must not depend on the force. */
     for (unsigned k = 1; k <= last; k++) { i += in >= t.knot[k].x; }
@@ -249,12 +249,12 @@ uint32_t exh_drive_current(struct exh_drive *s, const struct exh_drive_cfg *cfg,
                            const struct exh_force_ledger *f, struct exh_current_ledger *i)
 {
     const int32_t table = exh_table_at(cfg->force_to_cur, f->force_N_q20);
-    const int32_t peak = exh_clamp(table, -cfg->par->i_peak_A_q26, cfg->par->i_peak_A_q26);
+    const int32_t peak = exh_clamp32(table, -cfg->par->i_peak_A_q26, cfg->par->i_peak_A_q26);
     const int32_t hot = i2t_limit(s, cfg);
-    const int32_t now = exh_clamp(peak, -hot, hot);
-    const int64_t now_A_q16 = now >> (EXH_Q_CUR - 16);
-    const int64_t cont_A_q16 = cfg->par->i_cont_A_q26 >> (EXH_Q_CUR - 16);
-    const int64_t heat = s->i2t_q32 + now_A_q16 * now_A_q16 - cont_A_q16 * cont_A_q16;
+    const int32_t now = exh_clamp32(peak, -hot, hot);
+    const int32_t now_A_q16 = now >> (EXH_Q_CUR - 16);
+    const int32_t cont_A_q16 = cfg->par->i_cont_A_q26 >> (EXH_Q_CUR - 16);
+    const int64_t heat = s->i2t_q32 + (int64_t)now_A_q16 * now_A_q16 - (int64_t)cont_A_q16 * cont_A_q16;
     const int64_t most = exh_wrap_add64(cfg->i2t_budget_q32, cfg->i2t_budget_q32);
 
     /* One tick may overshoot the budget, by no more than that again; it is not forgotten. */

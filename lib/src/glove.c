@@ -3,6 +3,8 @@
 #include "exhand/error.h"
 #include "exhand/fix.h"
 
+#include "quantizer_tick.h"
+
 #define FC_MIN_HZ_Q16    EXH_Q(1, 10, 16)
 #define FC_MAX_HZ_Q16    EXH_Q(10000, 1, 16)
 #define HYST_MAX_RAW_Q16 EXH_Q(4096, 1, 16)
@@ -187,7 +189,7 @@ uint32_t exh_glove_step(struct exh_glove *s, const struct exh_glove_cfg *cfg,
     }
     if (cfg->order > 0) { exh_filter_step(s->filter, &cfg->filter, x, x, EXH_GLOVE_SENSORS); }
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++, cal++) {
-        const int32_t code = exh_quantizer_step(&s->quantizer[i], &cfg->quantizer, x[i]);
+        const int32_t code = quantizer_in_place(&s->quantizer[i], &cfg->quantizer, x[i]);
         /* Half the code: the difference to a zero at the far end fits. */
         angle_turn_q32[i] =
             exh_sat32(exh_mul_shr(exh_wrap_diff(code >> 1, cal->zero_raw_q15), cal->gain_turnpraw_q38,

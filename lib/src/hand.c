@@ -59,13 +59,13 @@ uint32_t exh_hand_joints(const struct exh_hand_map *map, unsigned finger,
     uint32_t limited = 0;
     for (unsigned i = 0; i < EXH_HAND_JOINTS; i++) {
         const struct exh_hand_joint *j = &map->joint[finger][i];
-        int64_t sum_q56 = (int64_t)j->bias_turn_q32 * (INT32_C(1) << 24); /* |sum| < 2^60 */
+        int64_t sum_q56 = (int64_t)j->bias_turn_q32 * (INT32_C(1) << 24) + (INT32_C(1) << 23); /* |sum| < 2^60 */
         int64_t want;
         for (unsigned t = 0; t < EXH_HAND_TERMS; t++) {
             sum_q56 += (int64_t)j->gain_q24[t] * sensor_turn_q32[j->sensor[t]];
         }
-        want = exh_shr_round(sum_q56, 56 - 32);
-        joint_turn_q32[i] = exh_clamp(want, j->lo_turn_q32, j->hi_turn_q32);
+        want = sum_q56 >> (56 - 32); /* half of an LSB is in it */
+        joint_turn_q32[i] = exh_clamp32(exh_limit32(want), j->lo_turn_q32, j->hi_turn_q32);
         limited |= (uint32_t)(want != joint_turn_q32[i]) << i;
     }
     return limited;

@@ -4,6 +4,8 @@
 #include "exhand/fix.h"
 #include "exhand/units.h"
 
+#include "quantizer_tick.h"
+
 const struct exh_signal exh_quantizer_rows[EXH_QUANTIZER_ROWS] = {
     {0x0801, 0, EXH_WHEN_SETUP, 1, 24, 14, "bits", "", "stable bits"},
     {0x0802, 16, EXH_WHEN_SETUP, 0, INT32_MAX, EXH_Q(4, 1, 16), "hyst", "raw",
@@ -23,15 +25,7 @@ int exh_quantizer_setup(struct exh_quantizer_cfg *cfg, const struct exh_quantize
 
 int32_t exh_quantizer_step(struct exh_quantizer *s, const struct exh_quantizer_cfg *cfg, int32_t x)
 {
-    /* Beyond most there is no code to round to. */
-    const int32_t most = exh_from_u32((uint32_t)INT32_MAX - cfg->half);
-    const uint32_t up = (uint32_t)(x < most ? x : most) + cfg->half;
-    const int32_t near = exh_from_u32(up & (0u - 2 * cfg->half));
-    const uint32_t off =
-        x > s->value ? (uint32_t)x - (uint32_t)s->value : (uint32_t)s->value - (uint32_t)x;
-    if (!s->started || off > cfg->keep) { s->value = near; }
-    s->started = 1;
-    return s->value;
+    return quantizer_in_place(s, cfg, x);
 }
 
 void exh_quantizer_bytes(struct exh_bytes *c, struct exh_quantizer *s)

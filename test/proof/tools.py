@@ -33,9 +33,9 @@ WP = {
 
 # Planted errors that WP must tell: unit, in which function and by which of its properties, file, text, what it becomes.
 WP_PLANTS = [
-    ("gate", "code_of", "lib/src/gate.c", "exh_clamp(asked, -span, span)",
+    ("gate", "code_of", "lib/src/gate.c", "exh_clamp32(asked, -span, span)",
      "exh_clamp(asked, INT32_MIN, INT32_MAX)"),
-    ("gate", "code_of", "lib/src/gate.c", "exh_clamp(asked, -span, span)",
+    ("gate", "code_of", "lib/src/gate.c", "exh_clamp32(asked, -span, span)",
      "exh_clamp(asked, -span - 1, span)"),
     ("gate", "code_of", "lib/src/gate.c", "dac_zero_raw + spanned, 0, UINT16_MAX)",
      "dac_zero_raw + spanned, 0, 2 * UINT16_MAX)"),
@@ -45,7 +45,7 @@ WP_PLANTS = [
     ("drive", "exh_drive_force", "lib/src/drive.c", "exh_clamp(asked, 0, most)", "exh_clamp(asked, -most, most)"),
     ("drive", "exh_drive_force", "lib/src/drive.c", "exh_clamp(asked, 0, most)", "exh_clamp(asked, 0, INT32_MAX)"),
     ("drive", "release", "lib/src/drive.c", "rest > 0 ? (int32_t)rest : 0", "(int32_t)rest"),
-    ("drive", "exh_drive_current", "lib/src/drive.c", "exh_clamp(peak, -hot, hot)", "exh_clamp(2 * (int64_t)peak, -2 * hot, 2 * hot)"),
+    ("drive", "exh_drive_current", "lib/src/drive.c", "exh_clamp32(peak, -hot, hot)", "exh_clamp(2 * (int64_t)peak, -2 * hot, 2 * hot)"),
     ("track", "exh_track_step", "lib/src/track.c", "s->off_ticks >= cfg->ticks", "s->off_ticks > cfg->ticks"),
 ]
 

@@ -28,6 +28,20 @@ typedef char exh_needs_arithmetic_shift[((-3) >> 1) == -2 ? 1 : -1];
 
 /* int may have 16 bits: a constant or product that needs more says so (INT32_C(1) << 30, one factor cast). */
 
+/* The value of a 32-bit pattern read as two's complement, by arithmetic alone. */
+static inline int32_t exh_from_u32(uint32_t u)
+{
+    return u <= INT32_MAX ? (int32_t)u : -(int32_t)(UINT32_MAX - u) - 1;
+}
+
+/* v limited to int32_t, not audited. Asked of the low word: behind two comparisons of 64 bits compilers for 32 go on
+ * with 64. */
+static inline int32_t exh_limit32(int64_t v)
+{
+    const int32_t low = exh_from_u32((uint32_t)((uint64_t)v & UINT32_MAX));
+    return low == v ? low : INT32_MAX ^ (int32_t)(v >> 32) >> 31;
+}
+
 /* v limited to int32_t; the sign is always kept. */
 static inline int32_t exh_sat32(int64_t v)
 {
@@ -46,6 +60,12 @@ static inline int32_t exh_sat32(int64_t v)
 static inline int32_t exh_clamp(int64_t v, int32_t lo, int32_t hi)
 {
     return v < lo ? lo : v > hi ? hi : (int32_t)v;
+}
+
+/* The same of 32 bits, in which a small CPU needs a third of the work. */
+static inline int32_t exh_clamp32(int32_t v, int32_t lo, int32_t hi)
+{
+    return v < lo ? lo : v > hi ? hi : v;
 }
 
 /* 1 if lo <= v <= hi. */
@@ -84,13 +104,7 @@ static inline int64_t exh_mul64_q31(int64_t a, int32_t b)
     return 2 * hi + ((lo + (INT64_C(1) << 30)) >> 31);
 }
 
-/* The value of a 32-bit pattern read as two's complement, by arithmetic alone. */
-static inline int32_t exh_from_u32(uint32_t u)
-{
-    return u <= INT32_MAX ? (int32_t)u : -(int32_t)(UINT32_MAX - u) - 1;
-}
-
-/* The same of 64 bits. */
+/* The value of a 64-bit pattern likewise. */
 static inline int64_t exh_from_u64(uint64_t u)
 {
     return u <= INT64_MAX ? (int64_t)u : -(int64_t)(UINT64_MAX - u) - 1;
@@ -106,6 +120,15 @@ static inline int32_t exh_wrap_diff(int32_t now, int32_t before)
 static inline int32_t exh_wrap_add(int32_t a, int32_t b)
 {
     return exh_from_u32((uint32_t)a + (uint32_t)b);
+}
+
+/* a - b limited to int32_t. By masks: of a choice of constants a compiler makes 64 bits in the products behind it. */
+static inline int32_t exh_diff_sat32(int32_t a, int32_t b)
+{
+    const int32_t d = exh_wrap_diff(a, b);
+    const int32_t over = ((a ^ b) & (a ^ d)) >> 31;
+    if (over) { EXH_SATURATED(); }
+    return (d & ~over) | ((INT32_MAX ^ a >> 31) & over);
 }
 
 /* a + b modulo 2^64, where only damaged values can leave 64 bits. */
@@ -132,8 +155,9 @@ struct exh_gain {
  * damaged is a wrong one, and no more. */
 static inline int64_t exh_gain_mul(struct exh_gain g, int32_t x)
 {
-    const unsigned n = g.shift & 63u;
-    return ((int64_t)x * g.mant + (int64_t)((UINT64_C(1) << n) >> 1)) >> n;
+    const int64_t v = (int64_t)x * g.mant;
+    /* Of twice v: one shift of 64 bits by a variable, where half of 2^n costs two. */
+    return ((exh_wrap_add64(v, v) >> (g.shift & 63u)) + 1) >> 1;
 }
 
 /* x times the gain, rounded down. */

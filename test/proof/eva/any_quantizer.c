@@ -2,7 +2,7 @@
  * Any parameters into set-up; what it takes, in any state, of any input.
  *
  * PLANT: lib/src/quantizer.c: par->bits > 24 -> par->bits > 32
- * PLANT: lib/src/quantizer.c: (uint32_t)x - (uint32_t)s->value : -> (uint32_t)(x - s->value) :
+ * PLANT: lib/src/quantizer_tick.h: (uint32_t)x - (uint32_t)value : -> (uint32_t)(x - value) :
  */
 #include "bytes.c"
 #include "quantizer.c"
