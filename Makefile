@@ -894,6 +894,17 @@ $(bench_bin): $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $(filter %.o,$^) $(filter %.a,$^) -Wl,--strip-debug -lm
 
+# Ways to integrate the simulator's plant; the second has the whole simulator, with its plant from there.
+sim_bench_obj := $(patsubst %,$(B)/posix/test/bench/sim/%.o,method semi flow wide)
+$(B)/bench/sim_work: $(B)/posix/test/bench/sim/work.o $(sim_bench_obj) $(B)/posix/ports/posix/sim/device.o
+$(B)/bench/sim_statistics: $(B)/posix/test/bench/sim/statistics.o $(sim_bench_obj) \
+                           $(filter-out %/main.o %/sim/plant.o,$(cli_obj) $(sim_obj)) $(B)/posix/libexhand.a
+$(B)/bench/sim_work $(B)/bench/sim_statistics:
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $(filter %.o,$^) $(filter %.a,$^) $(cli_libs) -Wl,--strip-debug
+.PHONY: sim-built
+sim-built: $(B)/bench/sim_work $(B)/bench/sim_statistics
+
 # The kernels again for a 32-bit CPU, where only instructions are counted: the same flags, static.
 bench_i686 := $(B)/bench/kernels-i686
 i686_src   := $(patsubst $(B)/posix/%.o,%.c,$(filter-out %/velocity.o,$(bench_obj))) $(bench_scenes) $(lib_src)

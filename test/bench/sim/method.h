@@ -1,0 +1,37 @@
+/* Method: ways to integrate the simulator's plant (sim/plant.h), to be compared with the one it has.
+ *
+ * The same equations for all, and the lags of current and monitor exact in all. Explicit Euler treats
+ * friction as the simulator does, as an impulse that only shrinks a velocity. Midpoint and RK4 hold
+ * its direction, and whether a body is stuck, for a step; a velocity that has turned within it and
+ * would stick is zero then. Slackness is looked at in every stage, and located by the exact flow alone.
+ */
+#ifndef BENCH_METHOD_H
+#define BENCH_METHOD_H
+
+#include "sim/plant.h"
+
+enum method {
+    METHOD_EXPLICIT, /* Euler: positions by the old speeds                     */
+    METHOD_SEMI, /* Euler: positions by the new speeds; sim/plant.c itself */
+    METHOD_MIDPOINT, /* implicit, its two velocities solved for               */
+    METHOD_RK4, /* the classical one                                     */
+    METHOD_FLOW, /* e^(At) of each mode, changes of mode located           */
+    METHODS,
+    METHOD_REFERENCE = METHODS /* the flow in 113 bits                           */
+};
+extern const char *const method_name[METHODS];
+
+/* As plant_advance_hand(), or, hand being NULL, plant_advance(); by steps of at most d->substep_s.
+ * The flow wants a hand whose target stands, and knows no end of a finger's way. */
+void method_advance(enum method m, struct plant *p, const struct sim_device *d, double dt_s,
+                    double ref_A, const struct plant_hand *hand);
+
+/* Each in a source of its own: sim/plant.c, flow_body.h twice. */
+void semi_advance(struct plant *p, const struct sim_device *d, double dt_s, double ref_A,
+                  const struct plant_hand *hand);
+void flow_advance(struct plant *p, const struct sim_device *d, double dt_s, double ref_A,
+                  const struct plant_hand *hand);
+void wide_advance(struct plant *p, const struct sim_device *d, double dt_s, double ref_A,
+                  const struct plant_hand *hand);
+
+#endif
