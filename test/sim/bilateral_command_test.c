@@ -330,6 +330,7 @@ TEST(bad_usage_is_refused_by_name)
         {"--link", "colour=3", "colour"},    {"--link", "loss=2", "0..1"},
         {"--link", "trace=/none", "/none"},  {"--set", "d_lim=1", "d_lim"},
         {"--set", "fingers=3", "--fingers"}, {"--device", "speed=1", "--speed"},
+        {"--device", "rotor=0.0001", "substep=1e-05"},
         {"--device", "tail=1", "tail"},      {"--scene", "/none.world", "/none.world"},
         {"--at", "1", "--at"},               {"--rate", "0", "--rate"},
         {"--nonsense", "1", "--nonsense"},

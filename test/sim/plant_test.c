@@ -410,9 +410,92 @@ TEST(error_halves_with_the_substep)
     }
 }
 
+/* ---- Steps that are short enough ------------------------------------------------ */
+
+/* By how many times its first deviation a taut string's stretch is off after 2000 steps; the motor
+ * carries the mass's weight, or the mass is held by a hand that stands still. */
+static double grown(const struct sim_device *d, double hand_npm, double step_s)
+{
+    const double weight_N = d->mass_kg * SIM_GRAVITY, rest_m = weight_N / d->cable_npm;
+    const struct plant_hand hand = {hand_npm, 0, weight_N / (hand_npm > 0 ? hand_npm : 1), 0, -1};
+    struct sim_device fixed = *d;
+    struct plant p = {1.1 * rest_m, 0, 0, 0, weight_N / d->kf_npa, 0};
+    double most = 0;
+    fixed.substep_s = step_s * 1.0001;
+    p.x_m -= hand_npm > 0 ? 0.1 * rest_m : 0;
+    p.q_m -= hand_npm > 0 ? 0.1 * rest_m : 0;
+    for (int i = 0; i < 200; i++) {
+        if (hand_npm > 0) {
+            struct plant_hand h = hand;
+            h.x_m += rest_m; /* so that it is at rest where x = rest, q = 0 */
+            plant_advance_hand(&p, &fixed, 10 * step_s, weight_N / d->kf_npa, &h);
+        } else {
+            plant_advance(&p, &fixed, 10 * step_s, weight_N / d->kf_npa, 0);
+        }
+        if (!(size_of(p.x_m - p.q_m - rest_m) < 1e6 * rest_m)) { return 1e6; }
+        if (i > 150 && size_of(p.x_m - p.q_m - rest_m) > most) {
+            most = size_of(p.x_m - p.q_m - rest_m);
+        }
+    }
+    return most / (0.1 * rest_m);
+}
+
+/* The longest that will do, to 1 %. */
+static double longest_s(struct sim_device d, double hand_npm)
+{
+    d.substep_s = 1;
+    while (!plant_step_will_do(&d, hand_npm)) { d.substep_s /= 1.01; }
+    return d.substep_s;
+}
+
+TEST(steps_that_will_do_are_stable)
+{
+    for (int i = 0; i < 300; i++) {
+        const double hand_npm = i % 2 ? between(1, 4) * between(1, 2500) : 0;
+        struct sim_device d = smooth();
+        double step_s, bad, good;
+        d.cable_npm = between(1, 10) * between(100, 100000);
+        d.cable_nspm = below(2) ? 0 : between(0, 1000) * between(0, 1);
+        d.rotor_kg = between(0.01, 1) * between(0.01, 1);
+        d.mass_kg = between(0.001, 5) * between(0.1, 1);
+        step_s = longest_s(d, hand_npm);
+        good = grown(&d, hand_npm, step_s);
+        CHECK(good <= 1.3,
+              "string %g N/m %g Ns/m, rotor %g, mass %g kg, hand %g: grows by %g at %g s",
+              d.cable_npm, d.cable_nspm, d.rotor_kg, d.mass_kg, hand_npm, good, step_s);
+        if (hand_npm > 0 || d.cable_nspm > 0) { continue; } /* slack bounds what damping does wrong */
+        bad = grown(&d, 0, 2.05 * step_s);
+        CHECK(bad >= 1.5, "string %g N/m, rotor %g, mass %g kg: %g at %g s", d.cable_npm, d.rotor_kg, d.mass_kg,
+              bad, 2.05 * step_s);
+    }
+}
+
+TEST(the_step_that_is_named_will_do)
+{
+    struct sim_device d = sim_device_default();
+    CHECK(plant_step_will_do(&d, 0) && plant_step_that_will_do(&d, 0) == 1e-3,
+          "of the device itself");
+    d.cable_npm = 1e6;
+    d.rotor_kg = 1e-3;
+    for (int i = 0; i < 60; i++) {
+        const double limit_s = longest_s(d, 0), named_s = plant_step_that_will_do(&d, 0);
+        if (limit_s < 0.99e-7) {
+            CHECK(named_s == 0, "%g s is named where %g is the limit", named_s, limit_s);
+        } else {
+            CHECK((named_s == 0 && limit_s < 1.01e-7) ||
+                      (named_s <= 1.02 * limit_s && (named_s > limit_s / 2.6 || named_s == 1e-3)),
+                  "%g s, limit %g", named_s, limit_s);
+        }
+        d.rotor_kg *= 0.93;
+        d.cable_nspm *= 1.05;
+        d.mu_motor = i % 3;
+    }
+}
+
 TEST_MAIN("plant", impact_speed_is_that_of_a_free_fall, a_rotor_slows_the_fall_by_its_share,
           what_is_held_does_not_move, stiction_holds_without_creep, stiction_lets_go_at_its_limit,
           friction_stops_in_closed_form, the_string_only_pulls_and_pulls_both_ends_alike,
           current_loop_is_exact_at_any_substep, monitor_lags_behind_the_current,
           exp_neg_is_good_to_1e_12, energy_never_grows_with_the_motor_off,
-          error_halves_with_the_substep);
+          error_halves_with_the_substep, steps_that_will_do_are_stable,
+          the_step_that_is_named_will_do);

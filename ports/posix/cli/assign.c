@@ -2,6 +2,8 @@
 
 #include "option.h"
 
+#include "sim/plant.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -28,6 +30,21 @@ int assign_refused(const char *command, const char *name, double value, const st
     } else {
         cli_complain("--device: %s: no such value of the device: `exhand %s --params` lists them", name,
                      command);
+    }
+    return 2;
+}
+
+int assign_step(const struct sim_device *d, double hand_npm)
+{
+    const double enough_s = plant_step_that_will_do(d, hand_npm);
+    if (plant_step_will_do(d, hand_npm)) { return 0; }
+    if (enough_s > 0) {
+        cli_complain("--device: substep: %.6g s is too long for this string, rotor and mass, whose oscillation it "
+                     "would not follow: give --device substep=%g",
+                     d->substep_s, enough_s);
+    } else {
+        cli_complain("--device: substep: none is short enough for this string, rotor and mass: a heavier rotor, or "
+                     "less of cable_k and cable_b");
     }
     return 2;
 }

@@ -1,6 +1,7 @@
 /* exhand bilateral: the paper's second experiment. */
 #include "bilateral.h"
 
+#include "assign.h"
 #include "cli.h"
 #include "option.h"
 #include "param.h"
@@ -125,9 +126,22 @@ static int load_record(struct bilateral_options *o)
     return 0;
 }
 
+/* Each finger is the mass on its string, and held by the hand. */
+static int steps_too_long(const struct bilateral_options *o)
+{
+    struct sim_device d = o->run.board.device;
+    int err = 0;
+    for (unsigned f = 0; err == 0 && f < BILATERAL_FINGERS; f++) {
+        d.mass_kg = o->run.board.exo.finger[f].mass_kg;
+        err = assign_step(&d, o->run.board.exo.finger[f].k_Npm);
+    }
+    return err;
+}
+
 static int go(struct bilateral_options *o, double rate_Hz)
 {
-    int err = load_scene(o);
+    int err = steps_too_long(o);
+    if (err == 0) { err = load_scene(o); }
     if (err == 0) { err = load_record(o); }
     if (err == 0) { err = load_params(o); }
     if (err) { return err; }

@@ -156,7 +156,7 @@ static void work(const void *ctx, int i, void *result)
     switch_parts(&c, variant[x.variant].parts, set);
     if (x.start == LET_GO) { let_go(&c, set); }
     if (x.agreement) {
-        c.board.device.substep_s = 10e-6;
+        if (c.board.device.substep_s > 10e-6) { c.board.device.substep_s = 10e-6; }
         c.board.device.servo_hz = 100000; /* no phase of chance: the delay is the test's */
         c.board.device.delay_s += 0.5 / p->o->base.board.device.servo_hz - 0.5 / 100000;
     }

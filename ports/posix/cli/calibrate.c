@@ -382,6 +382,18 @@ static int calibrate(const struct calibrate_options *o)
     return judge(o, &r);
 }
 
+/* The lightest of what will hang on the string decides. */
+static int steps_too_long(const struct calibrate_options *o)
+{
+    struct sim_device d = o->device;
+    int err = assign_step(&d, 0);
+    for (int i = 0; err == 0 && i < o->masses; i++) {
+        d.mass_kg = o->mass_kg[i];
+        err = assign_step(&d, 0);
+    }
+    return err;
+}
+
 int cli_calibrate(int argc, char **argv)
 {
     static struct calibrate_options o;
@@ -441,5 +453,5 @@ int cli_calibrate(int argc, char **argv)
         cli_complain("--hung: %d masses (as many as --mass: %d): give that many", o.hung, o.masses);
         return 2;
     }
-    return o.check ? check_image(&o) : calibrate(&o);
+    return o.check ? check_image(&o) : steps_too_long(&o) ? 2 : calibrate(&o);
 }

@@ -389,7 +389,8 @@ static int load_params(struct drop_options *o)
 /* Whether what was asked for can be run at all: 0, or 2 after a line on stderr. */
 static int refuse(struct drop_options *o)
 {
-    int err;
+    int err = assign_step(&o->device, 0);
+    if (err) { return err; }
     if (o->T.num != 0 && o->rates_given) {
         cli_complain("--period and --rate: a period is a rate: give one of them");
         return 2;

@@ -80,6 +80,30 @@ void plant_advance(struct plant *p, const struct sim_device *d, double dt_s, dou
     }
 }
 
+/* Of the stretch s of a taut string, friction with its motion: s'' = -w2 s - c s'. Positions by the new
+ * speeds, c explicit: stable while h^2 w2 + 2 h c < 4. Viscous friction and the hand's are implicit. */
+static int step_ok(const struct sim_device *d, double hand_npm, double h_s)
+{
+    const double per_kg = (1 + d->mu_mass) / d->mass_kg + (1 + d->mu_motor) / d->rotor_kg;
+    const double w2 = d->cable_npm * per_kg + hand_npm / d->mass_kg, c = d->cable_nspm * per_kg;
+    const double twice_s = 2 * h_s;
+    return twice_s * twice_s * w2 + 2 * twice_s * c <= 4;
+}
+
+int plant_step_will_do(const struct sim_device *d, double hand_npm)
+{
+    return step_ok(d, hand_npm, d->substep_s);
+}
+
+double plant_step_that_will_do(const struct sim_device *d, double hand_npm)
+{
+    static const double step_s[] = {1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5, 1e-5, 5e-6, 2e-6, 1e-6, 5e-7, 2e-7, 1e-7};
+    for (unsigned i = 0; i < sizeof step_s / sizeof step_s[0]; i++) {
+        if (step_ok(d, hand_npm, step_s[i])) { return step_s[i]; }
+    }
+    return 0;
+}
+
 static inline void stop(double *x_m, double *v_mps, double end_m)
 {
     if (*x_m >= end_m) { return; }

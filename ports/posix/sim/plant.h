@@ -40,6 +40,14 @@ struct plant_hand {
 void plant_advance_hand(struct plant *p, const struct sim_device *d, double dt_s, double ref_A,
                         const struct plant_hand *hand);
 
+/* Whether sub-steps of substep_s are short enough: half of what keeps them stable, that is, at least
+ * six of them a period of string and rotor, which then come 4 % too soon. hand_npm: the stiffness of a
+ * hand at the mass, 0 without. */
+int plant_step_will_do(const struct sim_device *d, double hand_npm);
+
+/* A round number that will, at most the device's longest; 0: none that it may have. */
+double plant_step_that_will_do(const struct sim_device *d, double hand_npm);
+
 /* exp(-x) for x >= 0, from + - x /; relative error < 1e-12. */
 double sim_exp_neg(double x);
 
