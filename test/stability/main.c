@@ -91,7 +91,7 @@ static const char usage[] = "usage: stability [--short|--full] [--ticks N] [--ou
                             "[map|device|plane|filters|drift ...]\n"
                             "  --short, --full  fewer cells, for CI; more\n"
                             "  --ticks N        of each law of drift, 2000000 or more (short "
-                            "2000000, usual 10^8, full 10^9)\n"
+                            "2000000, usual 2*10^7, full 10^9)\n"
                             "  --out DIR        CSV files go there\n"
                             "Exit status: 0 ok, 1 a rule does not hold, 2 bad usage.\n";
 
