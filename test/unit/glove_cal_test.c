@@ -2,6 +2,7 @@
 #include "exhand/glove.h"
 
 #include "exhand/error.h"
+#include "exhand/fix.h"
 
 #include "check.h"
 
@@ -77,6 +78,11 @@ TEST(present_and_absent)
     cal.present = ALL | 1u << 22;
     CHECK_EQ_I64(exh_glove_cal_valid(&cal, &bad), -EXH_E_RANGE);
     CHECK_EQ_I64(bad.what, EXH_GLOVE_PRESENT);
+    cal = (struct exh_glove_cal){7, 3, 20000, 30, 1u << 22, {{0}}}; /* that bit alone, of no sensor that is */
+    for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) { cal.sensor[i].of[0] = cal.sensor[i].of[1] = EXH_GLOVE_NONE; }
+    CHECK_EQ_I64(exh_glove_cal_valid(&cal, &bad), -EXH_E_RANGE);
+    CHECK_EQ_I64(bad.what, EXH_GLOVE_PRESENT);
+    cal = sound();
     cal.present = ALL & ~(1u << 6);
     CHECK_EQ_I64(exh_glove_cal_valid(&cal, &bad), -EXH_E_RANGE); /* absent with a gain */
     CHECK(bad.what == EXH_GLOVE_GAIN && bad.at == 6, "%d of %d", bad.what, bad.at);
@@ -631,12 +637,14 @@ TEST(residual_has_two_sides)
 /* Zero at the very ends of its format, and an LSB beyond: 90 degrees over 4096 codes, exactly. */
 TEST(a_zero_at_the_end)
 {
+    const struct exh_glove_fit_par *const usual = &exh_glove_fit_default;
     static const struct {
         int32_t code_q16, angle_turn_q32, zero_q15;
     } row[] = {{INT32_MAX - (1 << 28), -(1 << 30), INT32_MAX / 2},
                {INT32_MAX - (1 << 28), -(1 << 30) - 4, 0},
                {INT32_MIN, 0, -(1 << 30)},
                {INT32_MIN, 4, 0}};
+    CHECK(usual->move_min_raw == 256 && usual->noise_max_raw == 128 && usual->residual_max_turn_q32 == 71582788, "usual");
     for (size_t i = 0; i < sizeof row / sizeof row[0]; i++) {
         struct fixture f;
         int err;
@@ -654,9 +662,47 @@ TEST(a_zero_at_the_end)
     }
 }
 
+/* A knuckle that moves in one pose of five, by 2^-8 turn to the bit: four times the square of that is the least that counts. */
+TEST(a_knuckle_that_just_moved_enough)
+{
+    static const int8_t deg[5] = {-20, 20, -20, 20, 0}; /* its own way has nothing of the knuckle's */
+    struct fixture f;
+    struct exh_glove_sensor s;
+    int32_t raw_q16 = code_q16(4, 0), flat, moved;
+    for (unsigned run = 0; run < 3; run++) {
+        set_up(&f);
+        f.cal.sensor[10].of[1] = EXH_GLOVE_NONE;
+        for (unsigned p = 0; p < POSES; p++) {
+            f.pose[p].known = (p < 2 ? ALL & ~(1u << 4 | 1u << 10) : 1u << 7) | (p < 5 ? 1u << 10 : 1u << 4);
+            f.pose[p].angle_turn_q32[10] = DEG(p < 5 ? deg[p] : 0);
+            f.pose[p].mean_raw_q16[10] = code_q16(10, p < 5 ? deg[p] : 0);
+            f.pose[p].angle_turn_q32[4] = DEG(p == 6 ? 80 : 0);
+            f.pose[p].mean_raw_q16[4] = p == 4 ? raw_q16 : code_q16(4, p == 6 ? 80 : 0);
+        }
+        if (run == 0) { /* for the knuckle alone: of its line comes the code where it is so far */
+            (void)fit(&f);
+            s = f.cal.sensor[4];
+            flat = (int32_t)(exh_mul_shr((raw_q16 >> 1) - s.zero_raw_q15, s.gain_turnpraw_q38, 21) >> 4);
+            raw_q16 += 98 * 65536;
+            do {
+                raw_q16++;
+                moved = (int32_t)(exh_mul_shr((raw_q16 >> 1) - s.zero_raw_q15, s.gain_turnpraw_q38, 21) >> 4) - flat;
+            } while (moved < 1 << 20);
+            CHECK_EQ_I64(moved, 1 << 20);
+        } else if (run == 1) {
+            CHECK(fit(&f) == 0, "%s of %d", exh_glove_what_text(f.bad.what), f.bad.at);
+            raw_q16--;
+        } else {
+            CHECK_EQ_I64(fit(&f), -EXH_E_RANGE);
+            CHECK(f.bad.what == EXH_GLOVE_POSES && f.bad.at == 10, "%s of %d", exh_glove_what_text(f.bad.what), f.bad.at);
+        }
+    }
+}
+
 TEST_MAIN("unit/glove_cal", valid_names_the_culprit, present_and_absent, check_tells_whose_and_when,
           every_word_is_there, image_round_trip, every_flipped_bit_is_seen, every_cut_is_seen,
           an_image_of_nonsense_is_refused, poses_give_gain_zero_and_cross_terms,
           residual_is_the_worst_pose, limits_of_poses_are_allowed, poses_are_refused_by_name,
           absent_sensors_need_no_pose, a_line_as_good_as_level_is_refused, the_default_goes_through_its_ends, no_cross_term_of_what_is_no_sensor, a_fit_begins_anew, two_poses_five_degrees_apart, residual_has_two_sides,
-          a_zero_at_the_end);
+          a_zero_at_the_end,
+          a_knuckle_that_just_moved_enough);

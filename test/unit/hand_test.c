@@ -361,6 +361,9 @@ TEST(ends_to_the_bit)
         struct exh_hand_bones b = exh_hit2_bones[EXH_INDEX];
         struct exh_hand_finger f;
         for (unsigned r = 0; r < 9; r++) { b.rot_q30[r / 3][r % 3] = r % 4 == 0 ? 1 << 30 : 0; }
+        b.len_m_q34[0] = EXH_Q(120, 1000, 34) - b.len_m_q34[1] - b.len_m_q34[2] + more;
+        CHECK_EQ_I64(exh_hand_setup(&f, &b, &par), more ? -EXH_E_RANGE : 0);
+        b.len_m_q34[0] -= more;
         b.rot_q30[2][2] -= 512 + more; /* 2^-20 of its square, a little less, and more */
         CHECK_EQ_I64(exh_hand_setup(&f, &b, &par), more ? -EXH_E_RANGE : 0);
         for (int sign = -1; sign <= 1; sign += 2) {

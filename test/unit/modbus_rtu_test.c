@@ -204,6 +204,29 @@ TEST(a_byte_that_came_damaged_drops_its_frame)
     CHECK_EQ_I64(hear(req, sizeof req), 1);
 }
 
+/* A request behind 2^16 bytes without a silence is the end of one that is too long. */
+TEST(a_frame_of_65536_bytes_is_none)
+{
+    static const uint8_t req[] = {17, 3, 0x50, 0, 0, 2};
+    begin(17, 9600);
+    for (uint32_t n = 0; n < 65536; n++) { exh_modbus_rtu_byte(&g.u, 17); }
+    CHECK_EQ_I64(hear(req, sizeof req), 0);
+    CHECK(g.u.damaged == 1 && g.u.taken == 0, "taken %" PRIu32, g.u.taken);
+    CHECK_EQ_I64(hear(req, sizeof req), 1);
+}
+
+TEST(short_silences_are_added_up)
+{
+    begin(17, 9600);
+    exh_modbus_rtu_byte(&g.u, 17);
+    for (uint32_t n = 1; n <= 4; n++) {
+        CHECK_EQ_I64(exh_modbus_rtu_pass(&g.u, 1000), 0);
+        CHECK(g.u.quiet_us == 1000 * n && g.u.len_B == 1, "%" PRIu32 " ms", n);
+    }
+    CHECK_EQ_I64(exh_modbus_rtu_pass(&g.u, 11), 0);
+    CHECK(g.u.len_B == 0 && g.u.damaged == 1, "4.011 ms are the end");
+}
+
 TEST(however_much_room_is_told)
 {
     static const uint8_t req[] = {17, 3, 0x50, 0, 0, 2};
@@ -216,4 +239,4 @@ TEST_MAIN("modbus_rtu", crc_is_the_known_one, silence_by_baud, a_request_is_answ
           an_exception_is_an_answer, what_is_said_to_all_is_done_and_not_answered,
           somebody_elses_is_left_alone, every_damaged_bit_is_dropped, frames_have_an_end,
           silence_is_added_up_and_a_byte_ends_it, a_byte_that_came_damaged_drops_its_frame,
-          however_much_room_is_told);
+          a_frame_of_65536_bytes_is_none, short_silences_are_added_up, however_much_room_is_told);

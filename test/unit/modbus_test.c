@@ -658,6 +658,7 @@ TEST(requests_of_nothing)
     CHECK_EQ_I64(exh_regs_read(&g.r, EXH_REGS_INPUT, 0, 0, g.resp), 0);
     CHECK_EQ_I64(g.resp[0], 0x97); /* stands */
     CHECK_EQ_I64(exh_regs_judge(&g.r, 0x5000, 0, bytes), 0);
+    CHECK_EQ_I64(exh_regs_judge(&g.r, 0x1000, 1, bytes), EXH_MODBUS_ADDRESS);
     CHECK_EQ_I64(exh_regs_write(&g.r, 0x5000, 0, bytes), 0);
     CHECK_EQ_I64(exh_regs_read(&g.r, EXH_REGS_INPUT, 0x4000, 0, g.resp), EXH_MODBUS_ADDRESS);
     ask(longest, 10);

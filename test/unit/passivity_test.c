@@ -254,6 +254,10 @@ TEST(what_cannot_be_proved_is_refused)
     CHECK_EQ_I64(SETUP(held(), ((struct exh_velocity_scale){EXH_Q(1, 2000000, 42), {1, 1}}),
                        EXH_Q(10, 1, EXH_Q_VEL)),
                  -EXH_E_RANGE);
+    /* A count a tick is 2^-27 m/s: the longest way, and one count more. */
+    CHECK_EQ_I64(SETUP(held(), ((struct exh_velocity_scale){1 << 15, {1, 1}}), (1 << 24) - 1), 0);
+    CHECK_EQ_I64(rig.cfg.way_cnt, 1 << 24);
+    CHECK_EQ_I64(SETUP(held(), ((struct exh_velocity_scale){1 << 15, {1, 1}}), 1 << 24), -EXH_E_RANGE);
     rig.held[0].y = 1; /* a force without a current */
     CHECK_EQ_I64(exh_table_set(rig.held, 2), 0);
     CHECK_EQ_I64(setup(), -EXH_E_RANGE);
