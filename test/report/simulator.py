@@ -3,6 +3,7 @@
 
 import csv
 import glob
+import math
 import os
 import re
 import shutil
@@ -34,14 +35,7 @@ def key_of(row):
 
 def counted():
     """Instructions of a second of each problem, method and step, by callgrind; short steps from the last counted."""
-    with tempfile.TemporaryDirectory() as tmp:
-        order = lines("valgrind", "-q", "--tool=callgrind", "--callgrind-out-file=%s/cg" % tmp, "--collect-atstart=no",
-                      "--toggle-collect=work_run", "--dump-after=work_run", WORK, "count", *SHORT)
-        total = {}
-        for path in glob.glob(tmp + "/cg.*"):
-            with open(path, encoding="utf-8", errors="replace") as f:
-                m = re.search(r"^totals: (\d+)", f.read(), re.M)
-            total[int(path.rsplit(".", 1)[1])] = int(m[1]) if m else 0
+    order, total = profile("work_run", "work_run", WORK, "count", *SHORT)
     out = {}
     for i, line in enumerate(order):
         problem, method, step, seconds = line.split(",")
@@ -57,11 +51,62 @@ def cost_of(count, key):
     return count[last] * float(last[2]) / float(key[2])
 
 
+def profile(fn, dump, *command):
+    """What the command prints, and the instructions inside fn of each call of dump."""
+    with tempfile.TemporaryDirectory() as tmp:
+        said = lines("valgrind", "-q", "--tool=callgrind", "--callgrind-out-file=%s/cg" % tmp, "--collect-atstart=no",
+                     "--toggle-collect=" + fn, "--dump-after=" + dump, *command)
+        total = {}
+        for path in glob.glob(tmp + "/cg.*"):
+            with open(path, encoding="utf-8", errors="replace") as f:
+                m = re.search(r"^totals: (\d+)", f.read(), re.M)
+            total[int(path.rsplit(".", 1)[1])] = int(m[1]) if m else 0
+    return said, total
+
+
+def apart(row, exact, what, error):
+    """How far from the exact flow's mean, as a share of it and in standard errors of the difference."""
+    a, b = float(row[what]), float(exact[what])
+    se = math.hypot(float(row[error]), float(exact[error]))
+    return a / b - 1, (a - b) / se if se else 0.0
+
+
+def statistics():
+    """simulator_rest: what becomes of Table II and of the time until rest, over what the plant costs."""
+    program = os.path.join(B, "bench", "sim_statistics")
+    said, total = profile("plant_advance", "one_fall", program, *SHORT, "count")
+    cost = {}
+    for i, line in enumerate(said):
+        method, step, seconds = line.split(",")
+        cost[method, step] = total[i + 1] / float(seconds) # the second of two is kept
+    rows = list(csv.DictReader(lines(program, *SHORT)))
+    exact = {r["rate_Hz"]: r for r in rows if r["method"] == "flow"}
+    with open(os.path.join(OUT, "simulator_rest_rows.csv"), "w", encoding="utf-8", newline="") as f:
+        w = csv.DictWriter(f, rows[0].keys())
+        w.writeheader()
+        w.writerows(rows)
+    with open(os.path.join(OUT, "simulator_rest.csv"), "w", encoding="utf-8", newline="") as f:
+        w = csv.writer(f)
+        w.writerow(["method", "step_us", "plant_instructions_per_s", "rest_time_off_percent", "standard_errors", "at_Hz",
+                    "B_off_percent", "standard_errors", "at_Hz", "at_rest_percent_least", "oscillate_percent_least"])
+        for key in sorted(cost, key=lambda k: (k[0], -float(k[1]))):
+            mine = [r for r in rows if (r["method"], r["step_s"]) == key]
+            out = [key[0], "%g" % (1e6 * float(key[1])), "%.0f" % cost[key]]
+            for what, error, by in (("rest_s", "rest_se", 0), ("b_Npm", "b_se", 1)):
+                off = [(apart(r, exact[r["rate_Hz"]], what, error), r["rate_Hz"]) for r in mine]
+                (share, sigma), rate = max(off, key=lambda o: abs(o[0][by]))
+                out += ["%.2f" % (100 * share), "%.1f" % sigma, rate]
+            w.writerow(out + ["%.0f" % (100 * min(float(r[k]) for r in mine)) for k in ("rest", "oscillates")])
+
+
 def main():
     os.makedirs(OUT, exist_ok=True)
     if not shutil.which("valgrind"):
         print("simulator: valgrind is missing")
         return 3
+    if sys.argv[1:] == ["statistics"]:
+        statistics()
+        return 0
     print("\n".join(lines(WORK, "check")))
     count, ns = counted(), {key_of(r): r["ns_per_s"] for r in table("ns")}
     with open(os.path.join(OUT, "simulator.csv"), "w", encoding="utf-8", newline="") as f:
