@@ -113,7 +113,7 @@ def update(got, was, shrink, everything):
         if old and r["proved"] < old.proved and not shrink:
             print("counts: %s: %d, was %d: not written (--shrink)" % (k, r["proved"], old.proved))
             continue
-        was[k] = record.Row(r["proved"], r["of"], r["s"], record.sealed(r["key"], r["proved"], r["of"]))
+        was[k] = record.Row(r["proved"], r["of"], r["s"], r["key"], record.sealed(r["key"], r["proved"], r["of"]))
     if everything:
         was = {k: r for k, r in was.items() if k in record.rows_wanted()}
     record.write_counts(was)

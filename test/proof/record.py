@@ -26,14 +26,17 @@ def rows_wanted():
     return [r for u in units() for r in u.rows()] + ["smt." + n for n in lemmas()]
 
 
-class Row:
-    def __init__(self, proved, of, s=10.0, key="-"):
-        self.proved, self.of, self.s, self.key = int(proved), int(of), float(s), key
-
-
 def sealed(key, proved, of):
-    """What stands in counts.txt: a count that is changed by hand does not belong to it."""
-    return hashlib.sha256(("%s %d %d" % (key, proved, of)).encode()).hexdigest()[:12]
+    """So that a count changed by hand is seen."""
+    return hashlib.sha256(("%s %d %d" % (key, proved, of)).encode()).hexdigest()[:4]
+
+
+class Row:
+    def __init__(self, proved, of, s=10.0, key="-", seal="-"):
+        self.proved, self.of, self.s, self.key, self.seal = int(proved), int(of), float(s), key, seal
+
+    def is_whole(self):
+        return self.seal == sealed(self.key, self.proved, self.of)
 
 
 def counts():
@@ -45,9 +48,9 @@ def counts():
 
 def write_counts(rows):
     with open(COUNTS, "w") as f:
-        f.write("# unit.tool, proved, of, seconds of a core, key of what was proved: make proof ARGS=--update. A number may "
+        f.write("# unit.tool, proved, of, seconds of a core, key of what was proved, seal: make proof ARGS=--update. A number may "
                 "not shrink.\n")
-        f.writelines("%s %d %d %.1f %s\n" % (k, r.proved, r.of, r.s, r.key) for k, r in sorted(rows.items()))
+        f.writelines("%s %d %d %.1f %s %s\n" % (k, r.proved, r.of, r.s, r.key, r.seal) for k, r in sorted(rows.items()))
 
 
 def sources(root=ROOT):

@@ -17,6 +17,7 @@ import time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 WIDTHS = ("64", "32")
+EVERY = os.path.join(HERE, "eva", "every.acsl")  # for every unit
 MACHDEP = {"64": "gcc_x86_64", "32": "gcc_x86_32"}
 EVA = ["-eva", "-eva-precision", "6", "-eva-split-return", "auto", "-warn-signed-downcast", "-eva-no-show-progress",
        "-eva-msg-key=-initial-state,-final-states"]
@@ -236,8 +237,8 @@ class Proof:
         """What a row of counts.txt is of."""
         if tool.startswith("eva"):
             beside = [read(os.path.join(HERE, "eva", h)) for h in ("any.h", "table.h") if h in unit.text]
-            return self.key(unit.harness, tree, [MACHDEP[tool[3:]]] + EVA + unit.options + [unit.body] + beside +
-                            ([read(unit.spec)] if unit.spec else []))
+            beside += [read(spec) for spec in (EVERY, unit.spec) if spec]
+            return self.key(unit.harness, tree, [MACHDEP[tool[3:]]] + EVA + unit.options + [unit.body] + beside)
         if tool == "every":
             return self.key(unit.harness, tree, GONE_THROUGH + [unit.body])
         source, functions = WP[unit.name]
@@ -272,8 +273,9 @@ class Proof:
             shutil.rmtree(tree)
 
     def eva(self, unit, width, tree, name, change):
-        if unit.spec:
-            annotate(unit.spec, tree)
+        for spec in (EVERY, unit.spec):
+            if spec:
+                annotate(spec, tree)
         flags = "-I%s/lib/src -I%s/lib/include -I%s/eva" % (tree, tree, HERE)
         # One alarm tells an error that is planted; of a unit that is proved, what it reaches is wanted.
         more = ["-eva-stop-at-nth-alarm", "1"] if change else ["-metrics", "-metrics-eva-cover"]
