@@ -87,6 +87,17 @@ TEST(measuring_needs_no_buffer)
     CHECK(same(&v, &before), "measuring changed a value");
 }
 
+/* One that somebody made by hand, with room. */
+TEST(measuring_leaves_a_buffer)
+{
+    uint8_t buf[ALL_B] = {0};
+    struct all v = {1, 2, 3, 4, 5, 6};
+    struct exh_bytes c = {buf, ALL_B, 0, EXH_BYTES_MEASURE};
+    all_bytes(&c, &v);
+    CHECK(c.at == ALL_B, "at %" PRIu32, c.at);
+    for (unsigned i = 0; i < ALL_B; i++) { CHECK(buf[i] == 0, "byte %u", i); }
+}
+
 TEST(short_buffers_at_every_length)
 {
     for (uint32_t cap = 0; cap <= ALL_B; cap++) {
@@ -198,5 +209,5 @@ TEST(the_largest_buffer)
 }
 
 TEST_MAIN("unit/bytes", layout_is_little_endian, round_trip_of_extremes_and_random,
-          measuring_needs_no_buffer, short_buffers_at_every_length, short_reads_are_zeros,
+          measuring_needs_no_buffer, measuring_leaves_a_buffer, short_buffers_at_every_length, short_reads_are_zeros,
           a_failed_cursor_stays_failed, crc_check_value_and_definition, counting_does_not_wrap, the_largest_buffer);

@@ -79,6 +79,20 @@ TEST(slewed_and_not)
     CHECK_EQ_I64(exh_params_apply(&p), 0);
 }
 
+/* A value that is not staged and differs is a damaged one: while another moves it stays, for the guard to tell. */
+TEST(damaged_while_another_moves)
+{
+    start(2);
+    CHECK_EQ_I64(exh_params_stage(&p, 0x7201, 0, 900), 0);
+    (void)exh_params_apply(&p);
+    active[1] = 9;
+    CHECK_EQ_I64(exh_params_apply(&p), 1);
+    CHECK(active[1] == 9 && staged[1] == 3 && active[GAIN] == 450, "%d", (int)active[GAIN]);
+    CHECK_EQ_I64(exh_params_stage(&p, 0x7102, 1, 7), 0);
+    CHECK_EQ_I64(exh_params_apply(&p), 1);
+    CHECK(active[1] == 3 && active[4] == 7, "%d", (int)active[1]);
+}
+
 TEST(before_the_loop_at_once)
 {
     start(5);
@@ -328,6 +342,6 @@ TEST(what_may_be_staged)
     CHECK_EQ_I64(staged[0], 4);
 }
 
-TEST_MAIN("unit/params", steps_worked_out, slewed_and_not, before_the_loop_at_once, shift_of_a_time,
+TEST_MAIN("unit/params", steps_worked_out, slewed_and_not, damaged_while_another_moves, before_the_loop_at_once, shift_of_a_time,
           image_in_mid_way, keyframe_in_mid_way, bad_keyframes, guard_in_mid_way, taken_back,
           keyframe_at_rest, images_of_a_head, a_table_of_none, a_limit_falls_at_once, what_may_be_staged);
