@@ -288,6 +288,7 @@ TEST(images_of_a_head)
     start(0);
     CHECK_EQ_I64(exh_params_save(&p, image, sizeof image), sizeof image);
     for (uint32_t n = 0; n < sizeof image; n++) { CHECK_EQ_I64(exh_params_load(&p, image, n, NULL), -EXH_E_SHORT); }
+    CHECK_EQ_I64(exh_params_save(&p, NULL, 0), -EXH_E_SHORT); /* not looked at */
     image[0] ^= 1u;
     CHECK_EQ_I64(exh_params_load(&p, image, 11, NULL), -EXH_E_SHORT);
     CHECK_EQ_I64(exh_params_load(&p, image, 12, NULL), -EXH_E_VERSION);
@@ -342,6 +343,20 @@ TEST(what_may_be_staged)
     CHECK_EQ_I64(staged[0], 4);
 }
 
-TEST_MAIN("unit/params", steps_worked_out, slewed_and_not, damaged_while_another_moves, before_the_loop_at_once, shift_of_a_time,
+/* What the guard's sum is of: each value of either array by a factor of its own (NUMERICS.md). */
+TEST(the_sum_is_of_both_arrays)
+{
+    uint32_t sum = 0;
+    start(2);
+    CHECK_EQ_I64(exh_params_stage(&p, 0x7201, 0, 900), 0);
+    for (uint32_t i = 0; i < VALUES; i++) {
+        sum += (4 * i + 1) * (uint32_t)active[i] + (4 * i + 3) * (uint32_t)staged[i];
+    }
+    CHECK_EQ_I64(p.sum, sum);
+}
+
+TEST_MAIN("unit/params", steps_worked_out, slewed_and_not, damaged_while_another_moves, before_the_loop_at_once,
+          shift_of_a_time,
           image_in_mid_way, keyframe_in_mid_way, bad_keyframes, guard_in_mid_way, taken_back,
-          keyframe_at_rest, images_of_a_head, a_table_of_none, a_limit_falls_at_once, what_may_be_staged);
+          keyframe_at_rest, images_of_a_head, a_table_of_none, a_limit_falls_at_once, what_may_be_staged,
+          the_sum_is_of_both_arrays);
