@@ -131,12 +131,12 @@ static int straight_on(const struct exh_calib *c, enum exh_calib_which which,
     const struct exh_calib_point *last = &c->point[c->points - 1];
     const int64_t more = (int64_t)c->end_A_q26 - last->cur_A_q26;
     struct exh_calib_fit fit;
-    int64_t rise;
+    int64_t force;
     if (more <= 0) { return 0; }
     if (exh_calib_fit(&fit, c->point, c->points, which) < 0) { return -EXH_E_RANGE; }
-    rise = exh_gain_mul(fit.gain, (int32_t)more);
-    if (rise <= 0 || rise > INT32_MAX - last->force_N_q20) { return -EXH_E_RANGE; }
-    knot->x = (int32_t)(last->force_N_q20 + rise);
+    force = last->force_N_q20 + exh_gain_mul(fit.gain, (int32_t)more);
+    if (force <= last->force_N_q20 || force > INT32_MAX) { return -EXH_E_RANGE; }
+    knot->x = (int32_t)force;
     knot->y = (int32_t)(current_of(last, which) + more); /* <= 10 + 6.6 A */
     return 1;
 }

@@ -194,6 +194,27 @@ TEST(header_and_event_round_trip)
     CHECK_EQ_I64(e2.value, INT32_MIN);
 }
 
+/* Whether char has a sign or not. */
+TEST(every_byte_of_a_name)
+{
+    for (unsigned first = 0; first < 256; first += 16) {
+        struct exh_record_header h, h2;
+        uint8_t buf[54];
+        struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
+        memset(&h, 0, sizeof h);
+        memset(&h2, 0, sizeof h2);
+        for (unsigned i = 0; i < 16; i++) {
+            const uint8_t u = (uint8_t)(first + i);
+            memcpy(&h.scene[i], &u, 1);
+        }
+        exh_record_header_bytes(&c, &h);
+        for (unsigned i = 0; i < 16; i++) { CHECK(buf[i] == first + i, "written %u: %u", first + i, buf[i]); }
+        c = exh_bytes_reader(buf, sizeof buf);
+        exh_record_header_bytes(&c, &h2);
+        CHECK(memcmp(h.scene, h2.scene, 16) == 0, "read from %u", first);
+    }
+}
+
 /* A cursor that only measures tells the size of a record, too. */
 TEST(measuring_a_record)
 {
@@ -230,4 +251,4 @@ TEST(begins_at_the_beginning)
 TEST_MAIN("unit/record", layout_by_hand, round_trip_of_every_type_and_size,
           largest_payload_and_one_more, does_not_fit_at_any_size, truncated_at_every_byte,
           every_flipped_bit_is_detected, another_version_is_named, resync_after_damage,
-          any_bytes_are_safe_to_read, header_and_event_round_trip, measuring_a_record, what_was_not_begun_does_not_end, begins_at_the_beginning);
+          any_bytes_are_safe_to_read, header_and_event_round_trip, measuring_a_record, what_was_not_begun_does_not_end, begins_at_the_beginning, every_byte_of_a_name);
