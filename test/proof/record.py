@@ -12,10 +12,13 @@ NOT_PROVED = os.path.join(HERE, "not_proved.txt")
 ROOT = os.path.dirname(os.path.dirname(HERE))
 
 
+LEMMA_FILES = ("smt.py", "smt_passivity.py", "smt_hand.py")
+
+
 def lemmas():
     """Their names, without z3."""
     found = []
-    for f in ("smt.py", "smt_passivity.py"):
+    for f in LEMMA_FILES:
         listed = re.search(r"^LEMMAS = \[(.*?)\]", read(os.path.join(HERE, f)), re.M | re.S)
         found += re.findall(r"\w+", listed.group(1))
     return found

@@ -7,6 +7,7 @@ import sys
 
 import z3
 
+import smt_hand
 import smt_passivity
 
 MS = 60000
@@ -141,9 +142,17 @@ def excess_is_a_square_at_most():
     return at_least and holds(z3.Implies(box, peak * peak - cont * cont <= most * most))
 
 
+def line_is_below_32():
+    """exh_calib_fit() of points with force <= 2047 / 64 of current, raw: so is sum(c f) / sum(c^2), by induction."""
+    f, c, fi, ii = z3.Reals("f c fi ii")
+    most = z3.RealVal(2047) / 64
+    return holds(z3.Implies(z3.And(c > 0, f <= most * c, fi <= most * ii),
+                            fi + c * f <= most * (ii + c * c)))
+
+
 LEMMAS = [shr_is_floor, from_u64_keeps_bits, wrapped_sum_is_the_sum, gain_floor_is_no_more, share_of_limit,
           release_ends, release_step_is_bounded, unit_has_components_of_one, toward_stays_between,
-          mean_is_within_32_bits, excess_is_a_square_at_most] + smt_passivity.LEMMAS
+          mean_is_within_32_bits, excess_is_a_square_at_most, line_is_below_32] + smt_passivity.LEMMAS + smt_hand.LEMMAS
 
 if __name__ == "__main__":
     sys.exit(0 if {f.__name__: f for f in LEMMAS}[sys.argv[1]]() else 1)

@@ -29,7 +29,7 @@ def told(unit):
 
 
 def lemma_lines(counts):
-    for f in ("smt.py", "smt_passivity.py"):
+    for f in record.LEMMA_FILES:
         for name, text in re.findall(r'^def (\w+)\(\):\n    """(.*?)"""', read(os.path.join(HERE, f)), re.M | re.S):
             if "smt." + name in counts:
                 yield name, text.split("\n\n")[0].replace("\n    ", " ")

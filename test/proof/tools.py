@@ -329,7 +329,7 @@ class Proof:
 
     def lemma_key(self, lemma):
         """Of itself and what its file has beside lemmas."""
-        for f in ("smt.py", "smt_passivity.py"):
+        for f in ("smt.py", "smt_passivity.py", "smt_hand.py"):
             text = read(os.path.join(HERE, f))
             if "\ndef %s(" % lemma in text:
                 parts = re.split(r"\n(?=def |LEMMAS = )", text)
