@@ -153,9 +153,9 @@ static void tell_box(struct bilateral_box *b, const struct bilateral *s,
 {
     const struct exh_wire_rx *rx = &s->wire.rx;
     b->state = s->safety.state;
-    b->faults = (int32_t)s->safety.faults;
+    b->faults = exh_from_u32(s->safety.faults);
     b->present = (int32_t)s->safety.present;
-    b->glove_faults = (int32_t)s->glove_faults;
+    b->glove_faults = exh_from_u32(s->glove_faults);
     b->glove_age = in->glove.age_ticks;
     b->age = at_most(s->wire.age_ticks);
     b->trip_us = at_most(s->wire.trip_us);

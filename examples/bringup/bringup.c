@@ -182,7 +182,7 @@ static void signals(const struct bringup *s, const struct bringup_par *par, stru
     sig->result = s->result;
     sig->limits = (int32_t)limits;
     sig->state = s->safety.state;
-    sig->faults = (int32_t)s->safety.faults;
+    sig->faults = exh_from_u32(s->safety.faults);
     sig->present = (int32_t)s->safety.present;
 }
 

@@ -359,7 +359,7 @@ void calibrate_tick(struct calibrate *s, const struct calibrate_cfg *cfg,
     sig->result = s->result;
     sig->limits = (int32_t)limits;
     sig->state = s->safety.state;
-    sig->faults = (int32_t)s->safety.faults;
+    sig->faults = exh_from_u32(s->safety.faults);
     sig->present = (int32_t)s->safety.present;
 }
 

@@ -112,7 +112,7 @@ void drop_out(struct drop *s, const struct drop_cfg *cfg, struct drop_now *now,
     sig->i_des_A_q26 = now->i.coded_A_q26;
     sig->limits = (int32_t)now->limits;
     sig->state = s->safety.state;
-    sig->faults = (int32_t)s->safety.faults;
+    sig->faults = exh_from_u32(s->safety.faults);
     sig->present = (int32_t)s->safety.present;
     sig->arm_step = exh_safety_arm(&s->safety);
 }
