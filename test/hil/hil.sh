@@ -106,7 +106,7 @@ show_box()
     # shellcheck disable=SC2086
     for r in 500 1000; do run "the full box, $r Hz" bilateral $box --rate "$r" --ticks "$few"; done
     # shellcheck disable=SC2086
-    run "the full box, 8.5 kHz" bilateral $parts --rate 8500 --ticks 10000 --options "$sparing scan_slice=4 headroom=15"
+    run "the full box, 10 kHz" bilateral $parts --rate 10000 --ticks 10000 --options "$sparing scan_slice=4 headroom=15"
 }
 show_wild()
 {

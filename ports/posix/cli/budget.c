@@ -18,11 +18,11 @@ static const struct load {
     int parts;           /* ticks in which a glove scan is taken; 0: no glove     */
     const char *counted;
 } load[] = {
-    {"drop", 20000, 14, 0, 9495, 2, 0, "make hil ARGS=rates, all in every tick"},
-    {"drop, in turn", 20000, 11, 0, 9388, 1, 0, "make hil ARGS=rates, turns=1"},
-    {"bilateral, a frame at once", 10000, 44, 49, 51443, 4, 1, "accesses: test/cards; instructions as below"},
-    {"bilateral, in turn, frame", 10000, 30, 1, 51443, 1, 6, "make hil ARGS=box, turns=1 scan_slice=4: frame and packet"},
-    {"bilateral, in turn, part", 10000, 30, 10, 40029, 1, 6, "the same less a frame's 11414: packet, and 4 samples"},
+    {"drop", 20000, 14, 0, 8051, 2, 0, "make hil ARGS=rates, all in every tick"},
+    {"drop, in turn", 20000, 11, 0, 7952, 1, 0, "make hil ARGS=rates, turns=1"},
+    {"bilateral, a frame at once", 10000, 44, 49, 36887, 4, 1, "accesses: test/cards; instructions as below"},
+    {"bilateral, in turn, frame", 10000, 30, 1, 36887, 1, 6, "make hil ARGS=box, turns=1 scan_slice=4: frame and packet"},
+    {"bilateral, in turn, part", 10000, 30, 10, 26375, 1, 6, "the same less a frame's 10512: packet, and 4 samples"},
 };
 #define LOADS ((int)(sizeof load / sizeof load[0]))
 #define TIMER_READS 5 /* and one access to the interrupt controller, in every tick */
