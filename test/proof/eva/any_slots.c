@@ -33,7 +33,7 @@ static void read(size_t slot_B)
     }
 }
 
-static void next(size_t slot_B, size_t cap_B, size_t image_B)
+static void image_next(size_t slot_B, size_t cap_B, size_t image_B)
 {
     unsigned to = 0;
     int32_t n;
@@ -52,13 +52,13 @@ int main(void)
     for (size_t B = 19; B <= 22; B++) { read(B); }
     read(SLOT_MAX_B);
     for (size_t image_B = 0; image_B <= SLOT_MAX_B - EXH_SLOT_B(0); image_B += 10) {
-        next(SLOT_MAX_B, SLOT_MAX_B, image_B);
-        next(EXH_SLOT_B(4), SLOT_MAX_B, image_B);
-        next(SLOT_MAX_B, EXH_SLOT_B(4), image_B);
+        image_next(SLOT_MAX_B, SLOT_MAX_B, image_B);
+        image_next(EXH_SLOT_B(4), SLOT_MAX_B, image_B);
+        image_next(SLOT_MAX_B, EXH_SLOT_B(4), image_B);
     }
-    next(SLOT_MAX_B, SLOT_MAX_B, any_u32());
-    next(12, SLOT_MAX_B, 0);
-    next(SLOT_MAX_B, 12, 0);
+    image_next(SLOT_MAX_B, SLOT_MAX_B, any_u32());
+    image_next(12, SLOT_MAX_B, 0);
+    image_next(SLOT_MAX_B, 12, 0);
     END();
     return 0;
 }
