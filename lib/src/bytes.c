@@ -35,7 +35,7 @@ struct exh_bytes exh_bytes_measure(void)
 
 /* Where the next n bytes are, or NULL if nothing goes to or comes from there: there is no room, or sizes are all
  * that is asked for. Counting past cap tells the size needed; saturates instead of wrapping. */
-static uint8_t *next(struct exh_bytes *c, uint32_t n)
+static uint8_t *move_past(struct exh_bytes *c, uint32_t n)
 {
     const uint32_t at = c->at;
     const int fits = at <= c->cap && n <= c->cap - at;
@@ -65,7 +65,7 @@ static void put_word(uint8_t *p, uint32_t v)
 
 void exh_bytes_u8(struct exh_bytes *c, uint8_t *v)
 {
-    uint8_t *const p = next(c, 1);
+    uint8_t *const p = move_past(c, 1);
     if (!stays(c)) {
         *v = (uint8_t)(p != NULL ? *p : 0);
     } else if (p != NULL) {
@@ -75,7 +75,7 @@ void exh_bytes_u8(struct exh_bytes *c, uint8_t *v)
 
 void exh_bytes_u16(struct exh_bytes *c, uint16_t *v)
 {
-    uint8_t *const p = next(c, 2);
+    uint8_t *const p = move_past(c, 2);
     if (!stays(c)) {
         *v = (uint16_t)(p != NULL ? p[0] | (uint32_t)p[1] << 8 : 0);
     } else if (p != NULL) {
@@ -93,7 +93,7 @@ void exh_bytes_i16(struct exh_bytes *c, int16_t *v)
 
 void exh_bytes_i32(struct exh_bytes *c, int32_t *v)
 {
-    uint8_t *const p = next(c, 4);
+    uint8_t *const p = move_past(c, 4);
     if (!stays(c)) {
         *v = p != NULL ? exh_from_u32(word_at(p)) : 0;
     } else if (p != NULL) {
@@ -110,7 +110,7 @@ void exh_bytes_u32(struct exh_bytes *c, uint32_t *v)
 
 void exh_bytes_i64(struct exh_bytes *c, int64_t *v)
 {
-    uint8_t *const p = next(c, 8);
+    uint8_t *const p = move_past(c, 8);
     const uint64_t u = (uint64_t)*v;
     if (!stays(c)) {
         *v = p != NULL ? exh_from_u64(word_at(p) | (uint64_t)word_at(p + 4) << 32) : 0;

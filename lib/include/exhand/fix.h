@@ -156,8 +156,8 @@ struct exh_gain {
 static inline int64_t exh_gain_mul(struct exh_gain g, int32_t x)
 {
     const int64_t v = (int64_t)x * g.mant;
-    /* Of twice v: one shift of 64 bits by a variable, where half of 2^n costs two. */
-    return ((exh_wrap_add64(v, v) >> (g.shift & 63u)) + 1) >> 1;
+    /* Of twice v: one shift of 64 bits by a variable, where half of 2^n costs two. Nothing wraps but of damaged gains. */
+    return exh_wrap_add64(exh_wrap_add64(v, v) >> (g.shift & 63u), 1) >> 1;
 }
 
 /* x times the gain, rounded down. */
