@@ -191,8 +191,8 @@ def added(tables, path, table):
 
 
 def done(job, a, w):
-    """Is this row what the job would make?"""
-    return w is not None and w[2] == "%d..%d:%d" % job.rates and not w[8] and (int(w[6]) > 0 or a.golden or job.target["metal"] == "avr")
+    """Does this row say what the job would, or more?"""
+    return w is not None and w[2] in ("%d..%d:%d" % job.rates, "1..2000:1") and not w[8] and (int(w[6]) > 0 or a.golden or job.target["metal"] == "avr")
 
 
 def main():
