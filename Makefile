@@ -887,7 +887,7 @@ bench_obj := $(patsubst %,$(B)/posix/test/bench/%.o,kernels measure number estim
 bench_scenes := examples/drop/drop.c examples/calib.c examples/glove/cal.c $(wildcard examples/bilateral/*.c)
 bench_bin := $(B)/bench/kernels $(B)/bench/velocity $(B)/bench/speed
 $(B)/posix/test/bench/kernels.o: PORT_HOSTFLAGS += -DBENCH_FLAGS='"-std=c99 -O$(O)$(if $(CFLAGS), $(CFLAGS))"'
-$(B)/bench/kernels: $(bench_obj) $(bench_scenes:%.c=$(B)/posix/%.o)
+$(B)/bench/kernels: $(bench_obj) $(B)/posix/test/no_board.o $(bench_scenes:%.c=$(B)/posix/%.o)
 $(B)/bench/velocity: $(B)/posix/test/bench/velocity.o $(B)/posix/test/bench/measure.o $(B)/posix/test/bench/plain.o
 $(B)/bench/speed: $(B)/posix/test/bench/speed.o $(B)/posix/examples/drop/drop.o $(B)/posix/examples/calib.o $(sim_obj)
 $(bench_bin): $(B)/posix/libexhand.a
@@ -907,7 +907,7 @@ sim-built: $(B)/bench/sim_work $(B)/bench/sim_statistics
 
 # The kernels again for a 32-bit CPU, where only instructions are counted: the same flags, static.
 bench_i686 := $(B)/bench/kernels-i686
-i686_src   := $(patsubst $(B)/posix/%.o,%.c,$(filter-out %/velocity.o,$(bench_obj))) $(bench_scenes) $(lib_src)
+i686_src   := $(patsubst $(B)/posix/%.o,%.c,$(filter-out %/velocity.o,$(bench_obj))) test/no_board.c $(bench_scenes) $(lib_src)
 $(bench_i686): $(i686_src) $(wildcard test/bench/*.h lib/src/*.h lib/include/exhand/*.h test/wide.h) $(stamp)
 	@mkdir -p $(@D)
 	$(Q)i686-linux-gnu-gcc -static $(filter-out -MMD -MP -g,$(base)) $(PORT_HOSTFLAGS) $(CFLAGS) -Itest \
@@ -959,7 +959,7 @@ $(work) $(work)-i686: $(work_src) $(wildcard $(cmsis)/.complete test/bench/*.h l
 
 # Whole ticks of the scenes, beside the same in double and float.
 scenes     := $(B)/bench/scenes
-scenes_src := $(wildcard test/bench/scenes*.c) $(addprefix test/bench/,pipe.c measure.c) examples/drop/drop.c examples/guarded/guarded.c \
+scenes_src := $(wildcard test/bench/scenes*.c) test/no_board.c $(addprefix test/bench/,pipe.c measure.c) examples/drop/drop.c examples/guarded/guarded.c \
               $(wildcard examples/glove/*.c examples/bilateral/*.c) examples/calib.c
 $(scenes): scenes_cc := $(CC)
 $(scenes)-i686: scenes_cc := i686-linux-gnu-gcc -static

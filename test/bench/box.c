@@ -51,34 +51,6 @@ static int32_t packet_B[PLANES];
 static struct exh_wire_tx world;
 static uint32_t ticks, next;
 
-/* What the scene names of a board; nobody calls it. */
-const struct exh_board_info exh_board_info;
-
-int exh_board_read_glove(struct exh_glove_in *glove)
-{
-    (void)glove;
-    return 0;
-}
-
-int exh_board_link_send(const void *buf, size_t len_B)
-{
-    (void)buf;
-    (void)len_B;
-    return 0;
-}
-
-int exh_board_link_recv(void *buf, size_t cap_B)
-{
-    (void)buf;
-    (void)cap_B;
-    return 0;
-}
-
-uint32_t exh_board_cycles(void)
-{
-    return 1;
-}
-
 /* As the loop does it, link and all. */
 static void box_tick(void)
 {

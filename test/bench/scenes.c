@@ -19,34 +19,6 @@ static const uint32_t rates_Hz[] = {90, 100, 200, 500, 1000, 2000, 5000, 10000, 
 static const char *const wall_scene[] = {"minimal", "drop", "guarded"};
 static const char *const hand_scene[] = {"glove", "bilateral"};
 
-/* What the scenes name of a board; nobody calls it. */
-const struct exh_board_info exh_board_info;
-
-int exh_board_read_glove(struct exh_glove_in *in)
-{
-    (void)in;
-    return 0;
-}
-
-int exh_board_link_send(const void *buf, size_t len_B)
-{
-    (void)buf;
-    (void)len_B;
-    return 0;
-}
-
-int exh_board_link_recv(void *buf, size_t cap_B)
-{
-    (void)buf;
-    (void)cap_B;
-    return 0;
-}
-
-uint32_t exh_board_cycles(void)
-{
-    return 1;
-}
-
 void scenes_gains(uint32_t rate_Hz, int32_t *k_Npm, int32_t *b_Nspm)
 {
     static const int32_t row[][3] = {{90, 1500, 0},   {100, 2000, 0},    {200, 2000, 15},

@@ -31,7 +31,7 @@ def i686_tool(scene):
     own = [os.path.join(d, f) for d, _, files in os.walk("%s/examples/%s" % (at, scene)) for f in files if f.endswith(".o")]
     own += [at + "/examples/calib.o"] + ([at + "/examples/glove/cal.o"] if scene == "bilateral" else [])
     run(["i686-linux-gnu-gcc", "-std=c99", "-O2", "-g", "-static", "-no-pie", "-Ilib/include", "-Iexamples", "-DEXH_SCENE=exh_scene_" + scene,
-         "test/size/ticks.c", "test/size/world.c", "examples/log.c", *own, at + "/libexhand.a", "-o", tool])
+         "test/size/ticks.c", "test/size/world.c", "test/no_board.c", "examples/log.c", *own, at + "/libexhand.a", "-o", tool])
     return tool
 
 

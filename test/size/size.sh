@@ -139,7 +139,7 @@ callgrind()
 {
     tool=$b/ticks-$1
     # shellcheck disable=SC2046 # the names of our objects have no blanks
-    "$cc" -std=c99 -O2 -g -Ilib/include -Iexamples "-DEXH_SCENE=exh_scene_$1" "$here/ticks.c" "$here/world.c" \
+    "$cc" -std=c99 -O2 -g -Ilib/include -Iexamples "-DEXH_SCENE=exh_scene_$1" "$here/ticks.c" "$here/world.c" test/no_board.c \
         $(find "$b/template/examples/$1" -name '*.o') $(shared template "$1" o) "$b/template/examples/log.o" \
         "$b/template/libexhand.a" -o "$tool"
     needs=

@@ -32,7 +32,6 @@
 enum which { ALL, RUN, CONTACT, NONE };
 
 extern const struct exh_scene EXH_SCENE;
-const struct exh_board_info exh_board_info = {.name = "ticks"};
 
 static struct variant {
     int whole, link, log, no_glove;
@@ -45,37 +44,11 @@ void exh_assert_failed(const char *file, int line)
     exit(1);
 }
 
-/* For scenes that name it; nobody calls it here. */
-int exh_board_read_glove(struct exh_glove_in *in)
-{
-    (void)in;
-    return 0;
-}
-
-/* Nor is anybody at a link. These are no port's, so that what is counted holds nothing of one. */
-int exh_board_link_send(const void *buf, size_t len_B)
-{
-    (void)buf;
-    (void)len_B;
-    return 0;
-}
-
-int exh_board_link_recv(void *buf, size_t cap_B)
-{
-    (void)buf;
-    (void)cap_B;
-    return 0;
-}
-
+/* The rest of a board: test/no_board.c. */
 int exh_board_log(const void *rec, size_t len_B)
 {
     (void)rec;
     return (int)len_B;
-}
-
-uint32_t exh_board_cycles(void)
-{
-    return 1;
 }
 
 /* Of every instance, or of one. */
