@@ -926,6 +926,13 @@ ifneq ($(wildcard $(cmsis)/.complete),)
 peers_src += test/bench/peers_cmsis.c $(cmsis_src)
 peers_def := -DPEERS_CMSIS -D__GNUC_PYTHON__ -isystem $(cmsis)/Include -isystem $(cmsis)/PrivateInclude
 endif
+# libfixmath, out of Debian's sources: its package holds a library built without optimisation, and for one CPU.
+fixmath     := $(B)/peers/libfixmath-20220222
+fixmath_src := test/bench/peers_fixmath_lut.c $(patsubst %,$(fixmath)/libfixmath/%.c,fix16 fix16_trig fix16_sqrt)
+ifneq ($(wildcard $(fixmath)/.complete),)
+peers_src += test/bench/peers_fixmath.c $(fixmath_src)
+peers_def += -DPEERS_FIXMATH -DFIXMATH_NO_CACHE -isystem $(fixmath)/libfixmath
+endif
 # The crate idsp, where cargo could build it; for this CPU alone.
 rust      := $(wildcard $(B)/peers/rust/release/libpeers.a)
 peers     := $(B)/bench/peers
@@ -933,14 +940,14 @@ $(peers): peers_rust := $(if $(rust),-DPEERS_RUST test/bench/peers_rust.c $(rust
 $(peers): $(rust)
 $(peers): peers_cc := $(CC)
 $(peers)-i686: peers_cc := i686-linux-gnu-gcc -static
-$(peers) $(peers)-i686: $(peers_src) $(wildcard $(cmsis)/.complete test/bench/*.h lib/src/*.h lib/include/exhand/*.h) $(stamp)
+$(peers) $(peers)-i686: $(peers_src) $(wildcard $(cmsis)/.complete $(fixmath)/.complete test/bench/*.h lib/src/*.h lib/include/exhand/*.h) $(stamp)
 	@mkdir -p $(@D)
 	$(Q)$(peers_cc) $(filter-out $(warn) -MMD -MP -g,$(base)) -w $(PORT_HOSTFLAGS) $(CFLAGS) $(peers_def) -Itest \
 	    -Wl,--gc-sections -o $@ $(filter %.c,$^) $(peers_rust) -lm
 
 # Kernels of ours, of others and in plain floating point, for the report; built alike.
 work     := $(B)/bench/work
-work_src := $(filter-out %/work_cmsis.c,$(wildcard test/bench/work*.c)) $(addprefix test/bench/,plain.c law.c path.c measure.c) \
+work_src := $(filter-out %/work_cmsis.c %/work_fixmath.c,$(wildcard test/bench/work*.c)) $(addprefix test/bench/,plain.c law.c path.c measure.c) \
             examples/drop/drop.c examples/calib.c
 ifneq ($(wildcard $(cmsis)/.complete),)
 work_src += test/bench/work_cmsis.c $(wildcard $(cmsis)/Source/ControllerFunctions/arm_pid_*_q31.c \
@@ -948,11 +955,14 @@ work_src += test/bench/work_cmsis.c $(wildcard $(cmsis)/Source/ControllerFunctio
             $(cmsis)/Source/CommonTables/arm_common_tables.c $(cmsis)/Source/FastMathFunctions/arm_sin_q31.c \
             $(cmsis)/Source/FastMathFunctions/arm_cos_q31.c $(cmsis)/Source/InterpolationFunctions/arm_linear_interp_q31.c
 endif
+ifneq ($(wildcard $(fixmath)/.complete),)
+work_src += test/bench/work_fixmath.c $(fixmath_src)
+endif
 $(work): work_cc := $(CC)
 $(work)-i686: work_cc := i686-linux-gnu-gcc -static
 $(work): $(B)/posix/libexhand.a
 $(work)-i686: $(lib_src)
-$(work) $(work)-i686: $(work_src) $(wildcard $(cmsis)/.complete test/bench/*.h lib/src/*.h lib/include/exhand/*.h) $(stamp)
+$(work) $(work)-i686: $(work_src) $(wildcard $(cmsis)/.complete $(fixmath)/.complete test/bench/*.h lib/src/*.h lib/include/exhand/*.h) $(stamp)
 	@mkdir -p $(@D)
 	$(Q)$(work_cc) $(filter-out $(warn) -MMD -MP -g,$(base)) -w $(PORT_HOSTFLAGS) $(CFLAGS) $(peers_def) -Itest \
 	    -Wl,--gc-sections -o $@ $(filter %.c,$^) $(filter %.a,$^) -lm
@@ -979,6 +989,7 @@ bench:
 	@.ci/deps "the benches" valgrind valgrind || exit 3
 	@$(MAKE) --no-print-directory $(bench_bin)
 	@B=$(B) test/bench/peers.sh fetch || true
+	@B=$(B) test/bench/peers.sh fixmath || true
 	@B=$(B) test/bench/peers.sh rust || true
 	@$(MAKE) --no-print-directory $(peers)
 	@if .ci/deps "the i686 counts" i686-linux-gnu-gcc gcc-i686-linux-gnu libc6-dev-i386-cross; then \

@@ -30,6 +30,9 @@ static const struct peer_group *const groups[] = {
 #ifdef PEERS_CMSIS
     &cmsis_peers,
 #endif
+#ifdef PEERS_FIXMATH
+    &fixmath_peers,
+#endif
 #ifdef PEERS_RUST
     &rust_peers,
 #endif

@@ -37,7 +37,7 @@ struct peer_group {
     const struct sine_peer *sine;
     size_t sines;
 };
-extern const struct peer_group plain_peers, cmsis_peers, rust_peers;
+extern const struct peer_group plain_peers, cmsis_peers, fixmath_peers, rust_peers;
 
 /* Inputs of the ops: 0.37 of full scale, in every format. */
 extern int32_t peer_x_q31[BENCH_OPS + BLOCK];

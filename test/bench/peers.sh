@@ -1,14 +1,16 @@
 #!/bin/sh
-# Low-passes and sines of others beside ours: peers.sh fetch | rust | table
+# Low-passes and sines of others beside ours: peers.sh fetch | fixmath | rust | table
 #
 # fetch: CMSIS-DSP's C sources, as its package on PyPI holds them, into $B/peers, checked by
 # their sum; never committed. When that cannot be had it says why and the table does without.
+# fixmath: libfixmath's C sources, as Debian has them, by apt into $B/peers, checked likewise: the library in its
+# package is compiled without optimisation.
 # rust: builds the crate idsp, version and sums as peers_rust/Cargo.lock has them, into $B/peers/rust.
 # table: runs $B/bench/peers and, where built, peers-i686; prints both tables, what is not run
 # from peers.csv; both as CSV in $B/bench/filters.csv and sines.csv. Instructions above the requirement are shown as "over", never fatal.
 #
 # Environment: B (build).
-# Exit status: 0 ok; table: 1 an error of ours above its bound; fetch, rust: 1 not there; 2 bad
+# Exit status: 0 ok; table: 1 an error of ours above its bound; fetch, fixmath, rust: 1 not there; 2 bad
 # usage, 3 valgrind or a binary missing.
 set -eu
 
@@ -25,6 +27,11 @@ missing()
     exit 1
 }
 
+sum_is() # SHA-256 FILE
+{
+    echo "$1  $2" | sha256sum -c --quiet >/dev/null 2>&1 || missing "its SHA-256 is not $1"
+}
+
 fetch()
 {
     [ ! -r "$b/peers/$name/.complete" ] || exit 0
@@ -36,11 +43,37 @@ fetch()
     timeout 300 python3 -m pip download -q --disable-pip-version-check --no-deps --no-binary \
         cmsisdsp -d "$b/peers" "cmsisdsp==${name#*-}" >"$b/peers/log" 2>&1 ||
         missing "pip download failed ($b/peers/log): $(tail -n 1 "$b/peers/log")"
-    echo "$sum  $b/peers/$name.tar.gz" | sha256sum -c --quiet >/dev/null 2>&1 ||
-        missing "its SHA-256 is not $sum"
+    sum_is $sum "$b/peers/$name.tar.gz"
     tar -xzf "$b/peers/$name.tar.gz" -C "$b/peers" "$name/Include" "$name/PrivateInclude" \
         "$name/Source" "$name/LICENSE" || missing "the archive does not unpack"
     touch "$b/peers/$name/.complete"
+}
+
+# Debian's sources, with lists of apt's own beside the system's, which may have none of sources.
+fixmath()
+{
+    name=libfixmath-20220222
+    [ ! -r "$b/peers/$name/.complete" ] || exit 0
+    [ "${DEPS:-yes}" != no ] || missing "DEPS=no"
+    command -v apt-get >/dev/null || missing "apt-get is missing"
+    from=$(apt-cache madison libfixmath-dev 2>/dev/null | awk '{ split($6, a, "/"); print $5, a[1], a[2]; exit }')
+    [ -n "$from" ] || missing "apt knows no libfixmath-dev (apt-get update)"
+    rm -rf "$b/peers/apt" "$b/peers/$name"
+    mkdir -p "$b/peers/apt/lists/partial" "$b/peers/$name"
+    apt=$(cd "$b/peers/apt" && pwd)
+    echo "deb-src $from" >"$apt/sources.list"
+    { apt_get update && (cd "$apt" && apt_get source --tar-only --download-only libfixmath); } >"$b/peers/apt.log" 2>&1 ||
+        missing "apt-get failed ($b/peers/apt.log): $(tail -n 1 "$b/peers/apt.log")"
+    sum_is 38a93f38bcf2b6fbc00bfc4e10905f8f012cc72943ec5eed69a459c3bc0349e0 "$apt/libfixmath_0~20220222.orig.tar.xz"
+    tar -xJf "$apt/libfixmath_0~20220222.orig.tar.xz" -C "$b/peers/$name" ./libfixmath ./LICENSE || missing "the archive does not unpack"
+    rm -rf "$apt"
+    touch "$b/peers/$name/.complete"
+}
+
+apt_get()
+{
+    timeout 120 apt-get -q -o "Dir::Etc::SourceList=$apt/sources.list" -o Dir::Etc::SourceParts=/dev/null \
+        -o "Dir::State::Lists=$apt/lists" -o "Dir::Cache=$apt" "$@"
 }
 
 # The crate idsp, by cargo; for this CPU alone.
@@ -55,13 +88,14 @@ rust()
         { echo "peers: idsp: not built ($b/peers/cargo.log): $(tail -n 1 "$b/peers/cargo.log"); its rows are those measured elsewhere" >&2; exit 1; }
 }
 
-[ $# = 1 ] || { echo "usage: peers.sh fetch|rust|table" >&2; exit 2; }
+[ $# = 1 ] || { echo "usage: peers.sh fetch|fixmath|rust|table" >&2; exit 2; }
 [ -r "$here/peers.sh" ] || { echo "peers: run it at the top of the tree" >&2; exit 2; }
 case $1 in
 fetch) fetch; exit 0 ;;
+fixmath) fixmath; exit 0 ;;
 rust) rust; exit 0 ;;
 table) ;;
-*) echo "usage: peers.sh fetch|rust|table" >&2; exit 2 ;;
+*) echo "usage: peers.sh fetch|fixmath|rust|table" >&2; exit 2 ;;
 esac
 
 [ -x "$b/bench/peers" ] || { echo "peers: $b/bench/peers: not there" >&2; exit 3; }

@@ -54,4 +54,23 @@ extern int32_t curve_at[BENCH_OPS];
 void curve_seed(void);
 long double curve_exact(int32_t x);
 
+/* A plane, a fingertip (and the string) before it: on the way down and up again of op i, and anywhere within half a metre, of
+ * which the exact distance comes back. */
+struct freeze_case {
+    long double normal[3], offset_m, tip_m[3], pos_m;
+    int touching;
+};
+void freeze_path(uint32_t i, uint32_t f, struct freeze_case *c);
+long double freeze_any(struct freeze_case *c);
+
+/* The contact of an hour: energy_next() moves it by a tick and tells the exact energy, J, the count, and the force that is
+ * asked for next; what the bench can hold of that is told by energy_hold(). energy_cnt: the counts of the ops. */
+#define ENERGY_F_MOST_N 22
+#define ENERGY_WAY_M    (3.0 / 2000)
+extern int32_t energy_cnt[BENCH_OPS];
+void energy_seed(void);
+double energy_step_m(void);
+long double energy_next(int32_t *cnt, int32_t *asked_N_q20);
+void energy_hold(int32_t force_N_q20);
+
 #endif

@@ -45,20 +45,24 @@ static void tell(uint32_t f, const struct exh_plane *p)
 }
 
 /* 64 mm down and up again over 1024 ticks, onto (0.6, 0, 0.8). */
+static struct exh_precontact_in on_path(uint32_t i, uint32_t f)
+{
+    const int32_t u = (int32_t)((i + 205 * f) % BENCH_OPS);
+    const int32_t off = MM(60) - MM(70) / 512 * (u < 512 ? u : 1024 - u);
+    return (struct exh_precontact_in){{MM(60) + off / 10 * 6, MM(3), MM(80) + off / 10 * 8},
+                                      {0, 0, 0},
+                                      MM(100) - off,
+                                      0,
+                                      off < -MM(7)};
+}
+
 static void setup(void)
 {
     EXH_ASSERT(exh_precontact_setup(&cfg, &par, material, 1, MM(7), (struct exh_period){1, 2000}) ==
                0);
     for (uint32_t f = 0; f < WORK_FINGERS; f++) {
         for (uint32_t i = 0; i < BENCH_OPS; i++) {
-            const int32_t u = (int32_t)((i + 205 * f) % BENCH_OPS);
-            const int32_t off = MM(60) - MM(70) / 512 * (u < 512 ? u : 1024 - u);
-            const struct exh_precontact_in in = {
-                {MM(60) + off / 10 * 6, MM(3), MM(80) + off / 10 * 8},
-                {0, 0, 0},
-                MM(100) - off,
-                0,
-                off < -MM(7)};
+            const struct exh_precontact_in in = on_path(i, f);
             const int32_t raw[4] = {in.tip_m_q30.x, in.tip_m_q30.y, in.tip_m_q30.z, in.pos_m_q30};
             at[i][f] = in;
             for (int k = 0; k < 4; k++) { tip_f[i][f][k] = (float)(tip[i][f][k] = si(raw[k])); }
@@ -116,16 +120,56 @@ static long double dot(const struct exh_vec3 *a, const struct exh_vec3 *b)
            (long double)((int64_t)a->z * b->z);
 }
 
-/* The exact d, m; the plane is told, the tip in *p. */
+/* n P_C + t, m */
+static long double offset_of(const struct exh_plane *p)
+{
+    return dot(&p->normal_q30, &p->point_m_q30) * 0x1p-60L + bench_q(MM(7), 30);
+}
+
+/* A plane and a fingertip; the exact d, m. */
+static long double any_case(struct exh_plane *any, struct exh_vec3 *p)
+{
+    *any = plane;
+    any->normal_q30 = any_unit();
+    any->point_m_q30 = any_vec();
+    *p = any_vec();
+    return offset_of(any) - dot(&any->normal_q30, p) * 0x1p-60L;
+}
+
+/* The same; the plane is told, the tip in *p. */
 static long double next(struct exh_vec3 *p)
 {
-    struct exh_plane any = plane;
-    any.normal_q30 = any_unit();
-    any.point_m_q30 = any_vec();
-    *p = any_vec();
+    struct exh_plane any;
+    const long double d = any_case(&any, p);
     tell(0, &any);
-    return (dot(&any.normal_q30, &any.point_m_q30) - dot(&any.normal_q30, p)) * 0x1p-60L +
-           bench_q(MM(7), 30);
+    return d;
+}
+
+static void as_case(struct freeze_case *c, const struct exh_plane *p,
+                    const struct exh_precontact_in *in)
+{
+    for (int k = 0; k < 3; k++) {
+        c->normal[k] = bench_q((&p->normal_q30.x)[k], 30);
+        c->tip_m[k] = bench_q((&in->tip_m_q30.x)[k], 30);
+    }
+    c->offset_m = offset_of(p);
+    c->pos_m = bench_q(in->pos_m_q30, 30);
+    c->touching = (int)in->touching;
+}
+
+void freeze_path(uint32_t i, uint32_t f, struct freeze_case *c)
+{
+    const struct exh_precontact_in in = on_path(i, f);
+    as_case(c, &plane, &in);
+}
+
+long double freeze_any(struct freeze_case *c)
+{
+    struct exh_precontact_in in = {{0, 0, 0}, {0, 0, 0}, 0, 0, 0};
+    struct exh_plane any;
+    const long double d = any_case(&any, &in.tip_m_q30);
+    as_case(c, &any, &in);
+    return d;
 }
 
 static long double ours_off(uint32_t i)

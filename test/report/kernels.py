@@ -36,11 +36,12 @@ def ppm(text):
 
 
 def judged(points):
-    """Our points must be on the front of every panel."""
+    """Our points must be on the front of every panel; whose else are?"""
     on = work.on_front(points)
     off = [k for k, v in on.items() if not v]
-    print("note: ours is on the front of integer code in %d of %d panels%s." % (
-        len(on) - len(off), len(on), ", not in: " + "; ".join(off) if off else ""))
+    alone = [k for k in on if all(p.kind == "ours" for p in work.front([q for q in points if q.panel == k]))]
+    print("note: ours is on the front of integer code in %d of %d panels, in %d alone%s." % (
+        len(on) - len(off), len(on), len(alone), "; not in: " + "; ".join(off) if off else ""))
 
 
 COSTS = (("x64", "x86-64", "instructions"), ("i686", "i686", "instructions"), ("ns", "x86-64, this machine", "ns"))
@@ -129,15 +130,17 @@ def soft():
              for w, n in of.items() if r["name"].startswith(n)}
     wrong.update({(r["kernel"], w): float(r["max"]) for r in rows_of("work.csv") for w, n in of.items()
                   if r["name"].startswith(n) and r["when"] == ("3600" if r["kernel"] == "law" else "all")})
-    title = {"filter": "22 low-passes, fc/fs = 0.01 (ppm)", "law": "5 laws, after 1 h (N)", "table": "table (ppm)",
+    title = {"filter": "22 low-passes (ppm)", "law": "5 laws, after 1 h (N)", "table": "table (ppm)",
              "precontact": "5 distances, freeze (m)"}
-    rows = [dict(r, error=wrong[r["kernel"], r["way"]]) for r in rows_of("soft.csv")]
-    points = [work.Point(title[r["kernel"]], *names[r["way"]], r["instructions"], r["error"]) for r in rows]
+    rows = [dict(r, error=wrong.get((r["kernel"], r["way"]), "-")) for r in rows_of("soft.csv")]
+    points = [work.Point(title[r["kernel"]], *names[r["way"]], r["instructions"], r["error"]) for r in rows if r["kernel"] in title]
     save("soft", rows[0].keys(), [r.values() for r in rows])
     work.draw(OUT, "soft", points, 1e-17, "instructions, Cortex-M3", "largest error", 4, False)
     cost = {(r["kernel"], r["way"]): float(r["instructions"]) for r in rows}
     print("note: what double and float cost against ours: " + "; ".join("%s %.1f, %.1f" % (
         k, cost[k, "double"] / cost[k, "fixed"], cost[k, "float"] / cost[k, "fixed"]) for k in title) + " times.")
+    print("note: all integer kernels of a tick in one (22 low-passes, five fingertips, distances with the freeze rule, laws): "
+          "%.0f instructions." % cost["tick", "fixed"])
 
 
 def label_of(row):
@@ -159,15 +162,22 @@ SECTIONS = {
 }
 
 
+# Others' code: the sections that draw it, the file that says it is there, what is said if not.
+PEERS = (
+    (("filter", "sine", "law", "law_drift", "table", "hand"), "cmsisdsp-1.10.3/.complete", "CMSIS-DSP, which could not be fetched"),
+    (("filter", "sine", "law", "law_drift", "table", "hand", "precontact", "passivity", "passivity_drift"),
+     "libfixmath-20220222/.complete", "libfixmath, which could not be fetched"),
+    (("filter", "sine"), "rust/release/libpeers.a", "idsp, which could not be built"),
+    (("filter", "sine"), None, "fpm (C++), which no package registry in use here offers"),
+)
+
+
 def main():
     os.makedirs(OUT, exist_ok=True)
     SECTIONS[sys.argv[1]]()
-    if sys.argv[1] in ("filter", "sine", "law", "law_drift", "table", "hand") and not os.path.exists(
-            os.path.join(os.environ.get("B", "build"), "peers", "cmsisdsp-1.10.3", ".complete")):
-        print("skipped: CMSIS-DSP, which could not be fetched; of its points those measured once elsewhere stand, if any")
-    if sys.argv[1] in ("filter", "sine") and not os.path.exists(
-            os.path.join(os.environ.get("B", "build"), "peers", "rust", "release", "libpeers.a")):
-        print("skipped: idsp, which could not be built; of its points those measured once elsewhere stand, if any")
+    for sections, there, name in PEERS:
+        if sys.argv[1] in sections and not (there and os.path.exists(os.path.join(os.environ.get("B", "build"), "peers", there))):
+            print("skipped: %s; of its points those measured once elsewhere stand, if any" % name)
     return 0
 
 

@@ -41,11 +41,23 @@ def bounds(values):
     return 10 ** (lo - more), 10 ** (hi + more)
 
 
-def place(points, x, y, width, height, em):
-    """Where the numbers go, pixels from the panel's lower left: each beside its mark, none over another one or a mark."""
-    at = [(math.log(p.cost / x[0]) / math.log(x[1] / x[0]) * width, math.log(p.error / y[0]) / math.log(y[1] / y[0]) * height)
-          for p in points]
+def stairs(step, x, y):
+    """The front's line: down to each of its points, and on to the right end."""
+    line = [(step[0].cost, y[1])] if step else []
+    for a, b in zip(step, step[1:] + [None]):
+        line += [(a.cost, a.error), (b.cost if b else x[1], a.error)]
+    return line
+
+
+def place(points, x, y, width, height, em, line=()):
+    """Where the numbers go, shares of the panel from its lower left: each beside its mark, none over another one, a mark or the line."""
+    def pixel(cost, error):
+        return math.log(cost / x[0]) / math.log(x[1] / x[0]) * width, math.log(error / y[0]) / math.log(y[1] / y[0]) * height
+
+    at = [pixel(p.cost, p.error) for p in points]
     boxes = [(a - 6, b - 6, a + 6, b + 6) for a, b in at]
+    corners = [pixel(*c) for c in line]
+    boxes += [(min(a, c) - 2, min(b, d) - 2, max(a, c) + 2, max(b, d) + 2) for (a, b), (c, d) in zip(corners, corners[1:])]
     out = []
     for k, (a, b) in enumerate(at):
         best = None
@@ -97,12 +109,9 @@ def draw(out, name, points, floor, x_labels, y_label, columns=0, share=True):
                 g.write("x_label_%d = \"%s\"\n" % (k + 1, x_labels if isinstance(x_labels, str) else x_labels[k]))
                 g.write("title_%d = \"%s\"; x0_%d = %g; x1_%d = %g; y0_%d = %g; y1_%d = %g\n" % (
                     k + 1, title, k + 1, x[0], k + 1, x[1], k + 1, y[0], k + 1, y[1]))
-                for p, (lx, ly) in zip(mine, place(mine, x, y, panel_w - 120, panel_h - 122, 18)):
+                line = stairs(front(mine), x, y)
+                for p, (lx, ly) in zip(mine, place(mine, x, y, panel_w - 120, panel_h - 122, 18, line)):
                     wp.writerow([k + 1, KINDS.index(p.kind), int(p.here), "%g" % p.cost, "%g" % p.error,
                                  "%g" % (x[0] * (x[1] / x[0]) ** lx), "%g" % (y[0] * (y[1] / y[0]) ** ly), p.label])
-                step = front(mine)
-                if step:
-                    wf.writerow([k + 1, "%g" % step[0].cost, "%g" % y[1]])
-                for a, b in zip(step, step[1:] + [None]):
-                    wf.writerow([k + 1, "%g" % a.cost, "%g" % a.error])
-                    wf.writerow([k + 1, "%g" % (b.cost if b else x[1]), "%g" % a.error])
+                for cost, error in line:
+                    wf.writerow([k + 1, "%g" % cost, "%g" % error])

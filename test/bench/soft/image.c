@@ -2,6 +2,7 @@
  * virtual time is instructions, so are these. No sines: they would need a C library. */
 #include "law.h"
 #include "plain.h"
+#include "tick.h"
 
 #include "exhand/board.h"
 #include "exhand/error.h"
@@ -179,6 +180,22 @@ static void plane_float_op(uint32_t i)
     }
 }
 
+/* --- the integer kernels of the paper's controller in one, as kernel integer_tick_x5 of the bench --- */
+
+static struct tick_box box;
+static struct tick_in box_in[OPS];
+
+static void tick_start(void)
+{
+    EXH_ASSERT(tick_setup(&box) == 0);
+    for (uint32_t i = 0; i < OPS; i++) { tick_input(&box_in[i], i); }
+}
+
+static void tick_op(uint32_t i)
+{
+    sink = tick_once(&box, &box_in[i]);
+}
+
 /* --- all --- */
 
 static void empty(uint32_t i)
@@ -221,6 +238,7 @@ static const struct {
     {"precontact,fixed", plane_op},
     {"precontact,double", plane_double_op},
     {"precontact,float", plane_float_op},
+    {"tick,fixed", tick_op},
 };
 
 void exh_assert_failed(const char *file, int line)
@@ -237,6 +255,7 @@ int main(void)
     filter_start();
     table_start();
     plane_start();
+    tick_start();
     none = counted(empty);
     for (unsigned k = 0; k < sizeof ops / sizeof ops[0]; k++) {
         mps2_say("soft,");
