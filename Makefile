@@ -30,7 +30,7 @@ MAKEFLAGS += $(if $(filter 0,$(MAKELEVEL)),-j$(or $(shell nproc 2>/dev/null),1),
 jobs       = $(or $(patsubst -j%,%,$(filter -j%,$(MAKEFLAGS))),1)
 
 # These call make for what they need, or take it away: two at a time would write the same files.
-callers := all test demo run image coverage stress stability test-i686 matrix matrix-box mutants mcdc mutation fuzz hil hil-built strangers gpio linux-program \
+callers := all test demo run image coverage stress stability test-i686 matrix matrix-box mutants mcdc mutation fuzz hil hil-built strangers gpio linux-program link \
            boot boot-built \
            contract contract-built nic nic-built modbus-image modbus world two-computers bench-world bench report size costs cards install diagrams clean check
 ifneq ($(and $(filter $(callers),$(MAKECMDGOALS)),$(word 2,$(MAKECMDGOALS))),)
@@ -764,6 +764,7 @@ check:
 	@$(timed) demo > $(B)/demo.txt && tail -n 40 $(B)/demo.txt
 	@$(timed) $(variants:%=variant-%)
 	@$(timed) linux-program
+	@$(timed) link
 	@$(timed) $(patsubst %,golden-%,$(filter-out i686%,$(variants)))
 	@$(timed) bits
 	@$(timed) undef undef-cortex-m3 undef-cortex-m0
@@ -980,7 +981,7 @@ $(scenes) $(scenes)-i686: $(scenes_src) $(wildcard test/bench/*.h examples/*/*.h
 	$(Q)$(scenes_cc) $(filter-out -MMD -MP -g -Wdouble-promotion,$(base)) $(PORT_HOSTFLAGS) $(CFLAGS) -Itest \
 	    -Wl,--gc-sections -o $@ $(filter %.c,$^) $(filter %.a,$^) -lm
 .PHONY: scenes-csv
-scenes-csv: $(scenes) $(if $(shell command -v i686-linux-gnu-gcc),$(scenes)-i686)
+scenes-csv: $(scenes) $(if $(notdir $(shell command -v i686-linux-gnu-gcc)),$(scenes)-i686)
 	@B=$(B) test/bench/scenes.sh
 
 ## Error and instructions of every kernel, beside test/bench/baseline.csv (ARGS=--update)
@@ -1002,7 +1003,7 @@ bench:
 bench-csv:
 	@[ -n "$$SHORT" ] && $(MAKE) --no-print-directory -s $(bench_bin) $(peers) && [ $(B)/bench/velocity.csv -nt $(B)/bench/velocity ] && \
 	    [ $(B)/bench/sines.csv -nt $(peers) ] || $(MAKE) --no-print-directory bench ARGS=
-	@$(MAKE) --no-print-directory -s $(work) $(if $(shell command -v i686-linux-gnu-gcc),$(work)-i686)
+	@$(MAKE) --no-print-directory -s $(work) $(if $(notdir $(shell command -v i686-linux-gnu-gcc)),$(work)-i686)
 	@B=$(B) test/bench/work.sh
 
 ## Error against run time, stability, costs: pictures and one page in build/report (ARGS="--list", "--only NAME", "--short")
@@ -1039,17 +1040,47 @@ faults: all
 
 # --- keeping house ------------------------------------------------------------------
 
-PREFIX  ?= /usr/local
-DESTDIR ?=
+PREFIX     ?= /usr/local
+LIBDIR     ?= $(PREFIX)/lib
+INCLUDEDIR ?= $(PREFIX)/include
+DESTDIR    ?=
 
-## Install library, headers, host program and exhand.pc under DESTDIR/PREFIX
-.PHONY: install
-install: all
-	install -d $(DESTDIR)$(PREFIX)/lib/pkgconfig $(DESTDIR)$(PREFIX)/include/exhand $(DESTDIR)$(PREFIX)/bin
-	install -m 644 $(lib) $(DESTDIR)$(PREFIX)/lib
-	install -m 644 lib/include/exhand/*.h $(DESTDIR)$(PREFIX)/include/exhand
-	sed 's|@prefix@|$(PREFIX)|; s|@version@|$(version)|' lib/exhand.pc.in > $(DESTDIR)$(PREFIX)/lib/pkgconfig/exhand.pc
-	$(if $(filter posix,$(PORT)),install -m 755 $(exhand) $(DESTDIR)$(PREFIX)/bin)
+# The library as a shared one: all that lib/exhand.map names. Until 1.0 each minor version is an interface of its own.
+soname := libexhand.so.$(word 1,$(subst ., ,$(version))).$(word 2,$(subst ., ,$(version)))
+shared := $(out)/libexhand.so.$(version)
+pic    := $(lib_src:%.c=$(out)/pic/%.o)
+$(out)/pic/%.o: %.c $(stamp)
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(base) $(PORT_CFLAGS) $(CFLAGS) -fPIC -c $< -o $@
+$(shared): $(pic) lib/exhand.map
+	$(Q)$(CC) $(PORT_CFLAGS) $(CFLAGS) -shared -Wl,-soname,$(soname) -Wl,--version-script=lib/exhand.map $(LDFLAGS) $(pic) -o $@
+
+# What a program that links the library finds: libraries, headers, exhand.pc and the CMake package.
+packages := $(DESTDIR)$(LIBDIR)/pkgconfig/exhand.pc $(patsubst %,$(DESTDIR)$(LIBDIR)/cmake/exhand/exhand-%.cmake,config config-version)
+fill_in  := sed 's|@prefix@|$(PREFIX)|; s|@libdir@|$(LIBDIR:$(PREFIX)/%=$${prefix}/%)|; s|@includedir@|$(INCLUDEDIR:$(PREFIX)/%=$${prefix}/%)|; s|@version@|$(version)|; \
+            s|@includedir_from_package@|'"$$(realpath -m --relative-to=$(LIBDIR)/cmake/exhand $(INCLUDEDIR))"'|'
+
+## Each way of examples/link/README.md to link the library to a program: commands, seconds, bytes; and its ABI
+.PHONY: link
+link: $(lib)
+	@.ci/deps "the ways to link" "command -v cmake && command -v pkg-config && command -v clang && command -v tcc && command -v g++ && python3 -m pip --version" \
+	    cmake pkg-config clang tcc g++ python3-pip || :
+	@test/link/abi.py $(lib) gcc $(notdir $(shell command -v i686-linux-gnu-gcc))
+	@test/link/link.py $(B)/link $(ARGS)
+
+## Install library (static; shared on posix), headers, exhand.pc and CMake package, host program under DESTDIR/PREFIX
+.PHONY: install install-lib
+install: all install-lib
+	$(if $(filter posix,$(PORT)),install -d $(DESTDIR)$(PREFIX)/bin && install -m 755 $(exhand) $(DESTDIR)$(PREFIX)/bin)
+
+## The same without the host program
+install-lib: $(lib) $(if $(filter posix,$(PORT)),$(shared))
+	install -d $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(LIBDIR)/cmake/exhand $(DESTDIR)$(INCLUDEDIR)/exhand
+	install -m 644 $(lib) $(DESTDIR)$(LIBDIR)
+	install -m 644 lib/include/exhand/*.h $(DESTDIR)$(INCLUDEDIR)/exhand
+	$(Q)for f in $(packages); do $(fill_in) lib/$$(basename $$f).in > $$f && chmod 644 $$f || exit 1; done
+	$(if $(filter posix,$(PORT)),install -m 755 $(shared) $(DESTDIR)$(LIBDIR) && cd $(DESTDIR)$(LIBDIR) && \
+	    ln -sf libexhand.so.$(version) $(soname) && ln -sf $(soname) libexhand.so)
 
 ## Both README commands in a fresh Debian 12 with only git, make and a C compiler (root)
 .PHONY: fresh
