@@ -896,7 +896,7 @@ $(bench_bin): $(B)/posix/libexhand.a
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $(filter %.o,$^) $(filter %.a,$^) -Wl,--strip-debug -lm
 
 # Ways to integrate the simulator's plant; the second has the whole simulator, with its plant from there.
-sim_bench_obj := $(patsubst %,$(B)/posix/test/bench/sim/%.o,method semi flow wide)
+sim_bench_obj := $(patsubst %,$(B)/posix/test/bench/sim/%.o,method semi leapfrog flow wide)
 $(B)/bench/sim_work: $(B)/posix/test/bench/sim/work.o $(sim_bench_obj) $(B)/posix/ports/posix/sim/device.o
 $(B)/bench/sim_statistics: $(B)/posix/test/bench/sim/statistics.o $(sim_bench_obj) \
                            $(filter-out %/main.o %/sim/plant.o,$(cli_obj) $(sim_obj)) $(B)/posix/libexhand.a

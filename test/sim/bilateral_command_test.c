@@ -330,7 +330,6 @@ TEST(bad_usage_is_refused_by_name)
         {"--link", "colour=3", "colour"},    {"--link", "loss=2", "0..1"},
         {"--link", "trace=/none", "/none"},  {"--set", "d_lim=1", "d_lim"},
         {"--set", "fingers=3", "--fingers"}, {"--device", "speed=1", "--speed"},
-        {"--device", "rotor=0.0001", "substep=1e-05"},
         {"--device", "tail=1", "tail"},      {"--scene", "/none.world", "/none.world"},
         {"--at", "1", "--at"},               {"--rate", "0", "--rate"},
         {"--nonsense", "1", "--nonsense"},
@@ -342,6 +341,8 @@ TEST(bad_usage_is_refused_by_name)
         CHECK(s.status == 2 && strstr(s.err, bad[i].says), "%s %s: %d: %s", bad[i].option, bad[i].value,
               s.status, s.err);
     }
+    said(&s, dir, cli_bilateral, WORDS("bilateral", "--device", "rotor=0.0001", "--device", "substep=0.0001"));
+    CHECK(s.status == 2 && strstr(s.err, "give --device substep=1e-05"), "%d: %s", s.status, s.err);
     said(&s, dir, cli_bilateral, WORDS("bilateral", "--help"));
     CHECK(s.status == 0 && strstr(s.out, "--sweep") && strstr(s.out, "--udp"), "%d: %s", s.status, s.err);
     said(&s, dir, cli_bilateral, WORDS("bilateral", "--params"));

@@ -110,7 +110,7 @@ TEST(what_is_refused_is_named)
     SAYS(dir, 2, "--mass: two of them are the same", "--mass", "0.1,0.1000000001");
     SAYS(dir, 2, "--mass: 0.01 (slack_cur", "--mass", "0.01,0.5");
     SAYS(dir, 2, "(allowed up to i_max: ", "--set", "i_max=0.2");
-    SAYS(dir, 2, "give --device substep=1e-05", "--device", "rotor=0.0001");
+    SAYS(dir, 2, "give --device substep=1e-05", "--device", "rotor=0.0001", "--device", "substep=1e-4");
     SAYS(dir, 2, "--set: go:", "--set", "go=1");
     SAYS(dir, 1, "mass 0.1 kg: did not move", "--wrong", "fixed_mass");
     SAYS(dir, 1, "mass 0.1 kg: a limit of the drive acts (peak: i_peak)", "--set", "i_cont=0.15", "--set",

@@ -52,7 +52,7 @@ TEST(bad_usage_is_refused_by_name)
         {{"--set", "q_lim=9"}, "q_lim: 9 (allowed"},
         {{"--device", "mass=9"}, "--device: mass: 9 (allowed"},
         {{"--device", "none=9"}, "--device: none: no such value"},
-        {{"--device", "cable_k=1e6", "--device", "rotor=0.0001"}, "give --device substep=5e-06"},
+        {{"--device", "rotor=0.0001", "--device", "substep=1e-4"}, "give --device substep=1e-05"},
         {{"--device", "cable_k=1e6", "--device", "substep=0.001"}, "give --device substep=0.0002"},
         {{"--device", "cable_b=1000", "--device", "rotor=0.0001"}, "substep: none is short enough"},
         {{"--blackbox", "/nowhere/at/all", "--rate", "90"}, "--blackbox: /nowhere/at/all: No such file"},
@@ -72,6 +72,23 @@ TEST(bad_usage_is_refused_by_name)
         CHECK(strchr(s.err, '\n') == s.err + strlen(s.err) - 1, "row %zu: %s", i, s.err);
         CHECK(s.out[0] == '\0', "row %zu: %s", i, s.out);
     }
+    said_clean(dir);
+}
+
+/* The table's step is shortened to the one that a longer one's refusal names. */
+TEST(a_stiff_device_is_integrated_in_shorter_steps)
+{
+    static const char *const given[] = {"observe=0.6", "substep=0.0002", "substep=0.0001"};
+    const char *dir = said_dir();
+    static struct said s[3];
+    for (int i = 0; i < 3; i++) {
+        said(&s[i], dir, cli_drop,
+             WORDS("drop", "--rate", "500", "--falls", "1", "--device", "observe=0.6", "--device", "cable_k=1e6",
+                   "--device", given[i]));
+        CHECK(s[i].status == 0, "%s: %d %s", given[i], s[i].status, s[i].err);
+    }
+    CHECK(strcmp(s[0].out, s[1].out) == 0, "by itself %s, as named %s", s[0].out, s[1].out);
+    CHECK(strcmp(s[0].out, s[2].out) != 0, "the step changes nothing: %s", s[0].out);
     said_clean(dir);
 }
 
@@ -345,7 +362,7 @@ TEST(a_job_that_dies_is_an_error)
     }
 }
 
-TEST_MAIN("cli", bad_usage_is_refused_by_name, what_ends_the_ramp_is_named, printed_ranges_are_the_true_ones,
+TEST_MAIN("cli", bad_usage_is_refused_by_name, a_stiff_device_is_integrated_in_shorter_steps, what_ends_the_ramp_is_named, printed_ranges_are_the_true_ones,
           gains_are_the_nearest_rows, the_paper_stands_beside_its_own_gains_alone,
           no_line_is_no_number, medians_are_of_runs_with_a_line,
           the_judge_observes_as_long_as_the_device, any_directory_name_will_do,

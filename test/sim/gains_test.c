@@ -266,7 +266,7 @@ TEST(bad_usage_is_named)
         {{"--k", "500"}, 2, "give both"},
         {{"--window", "3"}, 2, "1, 2, 4, 8 or 16"},
         {{"--device", "mas=3"}, 2, "mas: no such value"},
-        {{"--device", "cable_k=1e6", "--device", "rotor=0.0001"}, 2, "substep=5e-06"},
+        {{"--device", "cable_k=1e6", "--device", "substep=0.001"}, 2, "substep=0.0002"},
         {{"--grid", "9"}, 2, "--grid"},
         {{"--judge", "no/file"}, 3, "no/file"},
         {{"--judge", "/dev/null"}, 2, "no cell in it"},

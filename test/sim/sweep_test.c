@@ -11,7 +11,7 @@
 /* A sweep of the smallest size: two rates, one fall a cell, watched for 1 s. */
 #define SMALL(dir)                                                                            \
     "drop", "--sweep", "--rate", "90,500", "--falls", "1", "--grid", "3x3", "--jobs", "2",    \
-        "--device", "observe=1", "--out", dir
+        "--device", "observe=0.9", "--out", dir
 
 static char whole[SAID_B], again[SAID_B];
 
@@ -231,7 +231,7 @@ TEST(a_file_of_other_settings_is_refused_by_name)
         {{"--device", "mu_motor=0"}, "made with mu_motor=0.1297, not with mu_motor=0:"},
         {{"--seed", "12"}, "made with seed=1, not with seed=12:"},
         {{"--set", "f0=0"}, "made with nothing further, not with f0=0: "},
-        {{"--device", "substep=0.000026"}, "made with substep=2.5e-05, not with substep=2.6e-05:"},
+        {{"--device", "substep=0.000026"}, "made with substep=0.00025, not with substep=2.6e-05:"},
         {{"--set", "f0=0"}, "not with f0=0: choose another --out"},
     };
     const char *dir = said_dir();

@@ -126,15 +126,20 @@ static int load_record(struct bilateral_options *o)
     return 0;
 }
 
-/* Each finger is the mass on its string, and held by the hand. */
-static int steps_too_long(const struct bilateral_options *o)
+/* Each finger is the mass on its string, and held by the hand: the lightest and the stiffest decide. */
+static int steps_too_long(struct bilateral_options *o)
 {
+    const struct sim_finger_par *const p = o->run.board.exo.finger;
     struct sim_device d = o->run.board.device;
-    int err = 0;
-    for (unsigned f = 0; err == 0 && f < BILATERAL_FINGERS; f++) {
-        d.mass_kg = o->run.board.exo.finger[f].mass_kg;
-        err = assign_step(&d, o->run.board.exo.finger[f].k_Npm);
+    double hand_npm = 0;
+    int err;
+    d.mass_kg = p[0].mass_kg;
+    for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
+        if (p[f].mass_kg < d.mass_kg) { d.mass_kg = p[f].mass_kg; }
+        if (p[f].k_Npm > hand_npm) { hand_npm = p[f].k_Npm; }
     }
+    err = assign_step(&d, hand_npm);
+    o->run.board.device.substep_s = d.substep_s;
     return err;
 }
 

@@ -383,14 +383,15 @@ static int calibrate(const struct calibrate_options *o)
 }
 
 /* The lightest of what will hang on the string decides. */
-static int steps_too_long(const struct calibrate_options *o)
+static int steps_too_long(struct calibrate_options *o)
 {
     struct sim_device d = o->device;
-    int err = assign_step(&d, 0);
-    for (int i = 0; err == 0 && i < o->masses; i++) {
-        d.mass_kg = o->mass_kg[i];
-        err = assign_step(&d, 0);
+    int err;
+    for (int i = 0; i < o->masses; i++) {
+        if (o->mass_kg[i] < d.mass_kg) { d.mass_kg = o->mass_kg[i]; }
     }
+    err = assign_step(&d, 0);
+    o->device.substep_s = d.substep_s;
     return err;
 }
 

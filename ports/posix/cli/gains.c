@@ -82,7 +82,7 @@ static void defaults(struct asked *a)
 
 static int refuse(struct asked *a)
 {
-    const struct sim_device *d = &a->o.device;
+    struct sim_device *d = &a->o.device;
     if (assign_step(d, 0)) { return 2; }
     if (sweep_take_grid(a->grid ? a->grid : "64x48", &a->o.columns, &a->o.rows)) { return 2; }
     if ((a->k_Npm >= 0) != (a->b_Nspm >= 0)) {

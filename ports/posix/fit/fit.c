@@ -185,8 +185,8 @@ static int rounds(const struct fit_options *o, struct search *s, struct journal 
 static int searched(struct fit_options *o, FILE *progress)
 {
     /* Shorter and coarser than the experiment, which is what judges in the end. */
-    const struct score_plan first = {1, 4, 3, 5, 50e-6, SEED_FIRST, o->search.fixed_wall};
-    const struct score_plan second = {3, 8, 3, 5, 50e-6, SEED_SECOND, o->search.fixed_wall};
+    const struct score_plan first = {1, 4, 3, 5, SEED_FIRST, o->search.fixed_wall};
+    const struct score_plan second = {3, 8, 3, 5, SEED_SECOND, o->search.fixed_wall};
     static struct plant_point some[SEARCH_STARTS];
     const int64_t turn = o->budget * 2 / 3;
     const int starts = o->budget < 3 * SEARCH_STARTS ? (int)(o->budget / 3) : SEARCH_STARTS;

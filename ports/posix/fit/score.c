@@ -1,5 +1,6 @@
 #include "score.h"
 
+#include "sim/plant.h"
 #include "sim/random.h"
 
 #include <string.h>
@@ -43,7 +44,9 @@ int score_run(const struct plant_point *p, const struct score_plan *plan, struct
     c.board.falls = at.falls;
     c.board.seed = at.seed;
     c.board.device.observe_s = score_observe_s(plan, at.row);
-    c.board.device.substep_s = plan->substep_s;
+    if (!plant_step_will_do(&c.board.device, 0)) {
+        c.board.device.substep_s = plant_step_that_will_do(&c.board.device, 0);
+    }
     return run_drop(&c, r) < 0 ? -1 : 0;
 }
 

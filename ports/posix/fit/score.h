@@ -12,7 +12,6 @@ struct score_plan {
     int runs;          /* of ten falls a row, at the gains                      */
     int falls_at_15;   /* one run of so many at 1.5 times both                  */
     double observe_s, observe_slow_s; /* the latter at 100 Hz and below         */
-    double substep_s;
     uint64_t seed;
     int fixed_wall;    /* 0: the wall lies anywhere between two encoder counts,
                           elsewhere in each run; 1: where q_lim and step put it */

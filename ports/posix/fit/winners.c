@@ -34,7 +34,7 @@ struct trial {
 
 static struct score_plan plan_of(const struct search *s)
 {
-    return (struct score_plan){0, 0, 5, 5, 25e-6, 0, s->fixed_wall};
+    return (struct score_plan){0, 0, 5, 5, 0, s->fixed_wall};
 }
 
 /* Of n values, share 0..1; zeros are no line. */

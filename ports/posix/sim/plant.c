@@ -1,5 +1,7 @@
 #include "plant.h"
 
+#include <stddef.h>
+
 #define TWO_PI 6.283185307179586
 
 double sim_exp_neg(double x)
@@ -29,65 +31,102 @@ static double shrink(double v, double most)
 
 /* What stays the same from sub-step to sub-step of h_s. */
 struct step {
-    double h_s, ref_A, kf_npa;
-    double keep_cur, keep_mon;
+    double h_s, half_s, ref_A;
+    double keep_cur, keep_mon, cur_to_mon, mean_cur; /* shares of what was off the reference */
     double h_mass, h_rotor; /* of a force, the change of speed                     */
-    double viscous; /* implicit                                            */
+    double damp_mass, damp_rotor; /* what linear friction leaves in half a step, implicit */
 };
 
-static struct step step_of(const struct sim_device *d, double h_s, double ref_A)
+/* What a deviation of the current adds to the monitor's: y (e^-x - e^-y) / (y - x). */
+static double through(double x, double y, double keep_x, double keep_y)
 {
+    const double apart = y - x;
+    if (apart < 1e-4 * y && apart > -1e-4 * y) { return y * sim_exp_neg((x + y) / 2); }
+    return y * (keep_x - keep_y) / apart;
+}
+
+static struct step step_of(const struct sim_device *d, double h_s, double ref_A, double hand_nspm)
+{
+    const double x = TWO_PI * d->current_hz * h_s;
     struct step s;
     s.h_s = h_s;
+    s.half_s = h_s / 2;
     s.ref_A = ref_A;
-    s.kf_npa = d->kf_npa;
-    s.keep_cur = sim_exp_neg(TWO_PI * d->current_hz * h_s);
-    s.keep_mon = d->mon_lag_s > 0 ? sim_exp_neg(h_s / d->mon_lag_s) : 0;
+    s.keep_cur = s.cur_to_mon = sim_exp_neg(x);
+    s.keep_mon = 0;
+    if (d->mon_lag_s > 0) {
+        s.keep_mon = sim_exp_neg(h_s / d->mon_lag_s);
+        s.cur_to_mon = through(x, h_s / d->mon_lag_s, s.keep_cur, s.keep_mon);
+    }
+    s.mean_cur = (1 - s.keep_cur) / x;
     s.h_mass = h_s / d->mass_kg;
     s.h_rotor = h_s / d->rotor_kg;
-    s.viscous = 1 / (1 + s.h_rotor * d->viscous_nspm);
+    s.damp_mass = 1 / (1 + s.h_mass / 2 * hand_nspm);
+    s.damp_rotor = 1 / (1 + s.h_rotor / 2 * d->viscous_nspm);
     return s;
 }
 
 static void step_current(struct plant *p, const struct step *s)
 {
-    p->cur_A = s->ref_A + (p->cur_A - s->ref_A) * s->keep_cur;
-    p->mon_A = p->cur_A + (p->mon_A - p->cur_A) * s->keep_mon;
+    const double off_A = p->cur_A - s->ref_A;
+    p->mon_A = s->ref_A + (p->mon_A - s->ref_A) * s->keep_mon + off_A * s->cur_to_mon;
+    p->cur_A = s->ref_A + off_A * s->keep_cur;
 }
 
-/* push_mps: what a force besides the string adds to the mass's speed; damp: what that force's
- * own damping leaves of it (implicit). */
-static inline void step_string(struct plant *p, const struct sim_device *d, const struct step *s,
-                               double push_mps, double damp)
+static double tension(const struct sim_device *d, double stretch_m, double opening_mps)
 {
-    const double stretch = p->x_m - p->q_m;
-    double T = d->cable_npm * stretch + d->cable_nspm * (p->v_mps - p->w_mps);
-    if (stretch < 0 || T < 0) { T = 0; }
-    p->v_mps = shrink((p->v_mps + push_mps - s->h_mass * T) * damp, s->h_mass * d->mu_mass * T);
-    p->w_mps = shrink((p->w_mps + s->h_rotor * (T - s->kf_npa * p->cur_A)) * s->viscous,
+    const double T = d->cable_npm * stretch_m + d->cable_nspm * opening_mps;
+    return stretch_m < 0 || T < 0 ? 0 : T;
+}
+
+/* The hand NULL: there is none, and the mass has its weight; t_s: the middle of the step. */
+static inline void step_string(struct plant *p, const struct sim_device *d, const struct step *s,
+                               const struct plant_hand *hand, double t_s)
+{
+    const double x = p->x_m + s->half_s * p->v_mps, q = p->q_m + s->half_s * p->w_mps;
+    const double half_mass = s->h_mass / 2, half_rotor = s->h_rotor / 2;
+    const double pull_N = d->kf_npa * (s->ref_A + (p->cur_A - s->ref_A) * s->mean_cur);
+    double push_N = d->mass_kg * SIM_GRAVITY, T = tension(d, x - q, p->v_mps - p->w_mps), v, w;
+    if (hand) {
+        push_N = hand->k_Npm * (hand->x_m + t_s * hand->v_mps - x) + hand->b_Nspm * hand->v_mps;
+    }
+    v = shrink((p->v_mps + half_mass * (push_N - T)) * s->damp_mass, half_mass * d->mu_mass * T);
+    w = shrink((p->w_mps + half_rotor * (T - pull_N)) * s->damp_rotor,
+               half_rotor * (d->coulomb_n + d->mu_motor * T));
+    T = tension(d, x - q, v - w);
+    if (hand) { push_N -= hand->b_Nspm * v; }
+    p->v_mps = shrink(p->v_mps + s->h_mass * (push_N - T), s->h_mass * d->mu_mass * T);
+    p->w_mps = shrink(p->w_mps + s->h_rotor * (T - pull_N - d->viscous_nspm * w),
                       s->h_rotor * (d->coulomb_n + d->mu_motor * T));
-    p->x_m += s->h_s * p->v_mps;
-    p->q_m += s->h_s * p->w_mps;
+    p->x_m = x + s->half_s * p->v_mps;
+    p->q_m = q + s->half_s * p->w_mps;
+}
+
+/* Times are differences of sums: a millionth over a step is none. */
+static int steps_in(const struct sim_device *d, double dt_s)
+{
+    return (int)(0.999999 * dt_s / d->substep_s) + 1;
 }
 
 void plant_advance(struct plant *p, const struct sim_device *d, double dt_s, double ref_A, int held)
 {
-    const int n = (int)(dt_s / d->substep_s) + 1;
-    const struct step s = step_of(d, dt_s / n, ref_A);
+    const int n = held ? 1 : steps_in(d, dt_s);
+    const struct step s = step_of(d, dt_s / n, ref_A, 0);
     for (int i = 0; i < n; i++) {
+        if (!held) { step_string(p, d, &s, NULL, 0); }
         step_current(p, &s);
-        if (!held) { step_string(p, d, &s, s.h_s * SIM_GRAVITY, 1); }
     }
 }
 
-/* Of the stretch s of a taut string, friction with its motion: s'' = -w2 s - c s'. Positions by the new
- * speeds, c explicit: stable while h^2 w2 + 2 h c < 4. Viscous friction and the hand's are implicit. */
+/* Of the stretch s of a taut string, friction with its motion: s'' = -w2 s - c s'. With g = 1 - h c / 2
+ * a step has determinant 1 - g h c and trace 2 - g h c - g h^2 w2: stable where h c < 2 and
+ * g (h^2 w2 + 2 h c) < 4, so wherever h^2 w2 < 4 and h c < 2. Viscous friction and the hand's are implicit. */
 static int step_ok(const struct sim_device *d, double hand_npm, double h_s)
 {
     const double per_kg = (1 + d->mu_mass) / d->mass_kg + (1 + d->mu_motor) / d->rotor_kg;
     const double w2 = d->cable_npm * per_kg + hand_npm / d->mass_kg, c = d->cable_nspm * per_kg;
     const double twice_s = 2 * h_s;
-    return twice_s * twice_s * w2 + 2 * twice_s * c <= 4;
+    return twice_s * twice_s * w2 <= 4 && twice_s * c <= 2;
 }
 
 int plant_step_will_do(const struct sim_device *d, double hand_npm)
@@ -114,14 +153,11 @@ static inline void stop(double *x_m, double *v_mps, double end_m)
 void plant_advance_hand(struct plant *p, const struct sim_device *d, double dt_s, double ref_A,
                         const struct plant_hand *hand)
 {
-    const int n = (int)(dt_s / d->substep_s) + 1;
-    const struct step s = step_of(d, dt_s / n, ref_A);
-    const double damp = 1 / (1 + s.h_mass * hand->b_Nspm);
+    const int n = steps_in(d, dt_s);
+    const struct step s = step_of(d, dt_s / n, ref_A, hand->b_Nspm);
     for (int i = 0; i < n; i++) {
-        const double ahead_m = hand->x_m + (i + 1) * s.h_s * hand->v_mps - p->x_m;
+        step_string(p, d, &s, hand, (i + 0.5) * s.h_s);
         step_current(p, &s);
-        step_string(p, d, &s, s.h_mass * (hand->k_Npm * ahead_m + hand->b_Nspm * hand->v_mps),
-                    damp);
         stop(&p->x_m, &p->v_mps, hand->end_m);
         stop(&p->q_m, &p->w_mps, hand->end_m);
     }

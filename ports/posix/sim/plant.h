@@ -5,9 +5,10 @@
  *   mr q'' = T - kf i - bv q' - dry(fc + mu_motor T)
  *   i'   = 2 pi fbw (iref - i)            monitor' = (i - monitor) / lag
  *
- * dry() is Coulomb friction with stiction. Semi-implicit Euler, friction as an
- * impulse that can only shrink a velocity towards zero (it cannot chatter), the two
- * first-order lags exactly. + - x / only: the same digits on every machine.
+ * dry() is Coulomb friction with stiction. Leapfrog: half a step by the old speeds, the forces there,
+ * half a step by the new speeds; friction is an impulse that can only shrink a velocity towards zero
+ * (it cannot chatter), the damped forces are taken at the mean speed, the two first-order lags exactly.
+ * Second order where nothing begins or ends. + - x / only: the same digits on every machine.
  */
 #ifndef SIM_PLANT_H
 #define SIM_PLANT_H
@@ -29,8 +30,8 @@ void plant_advance(struct plant *p, const struct sim_device *d, double dt_s, dou
                    int held);
 
 /* A hand moves the mass, which is then a finger: instead of its weight the force
- *   k (target - x) + b (target' - x'),
- * the damping implicit. The target is at x_m when the piece begins and moves at v_mps. Neither
+ *   k (target - x) + b (target' - x').
+ * The target is at x_m when the piece begins and moves at v_mps. Neither
  * finger nor string goes beyond end_m, the straight finger: they stop there. */
 struct plant_hand {
     double k_Npm, b_Nspm;
@@ -41,7 +42,8 @@ void plant_advance_hand(struct plant *p, const struct sim_device *d, double dt_s
                         const struct plant_hand *hand);
 
 /* Whether sub-steps of substep_s are short enough: half of what keeps them stable, that is, at least
- * six of them a period of string and rotor, which then come 4 % too soon. hand_npm: the stiffness of a
+ * six of them a period of string and rotor, which then come 5 % too soon, and at least one in
+ * the time in which the string's damping takes 1/e off a speed. hand_npm: the stiffness of a
  * hand at the mass, 0 without. */
 int plant_step_will_do(const struct sim_device *d, double hand_npm);
 

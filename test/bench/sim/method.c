@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-const char *const method_name[METHODS] = {"explicit", "semi-implicit", "midpoint", "rk4", "flow"};
+const char *const method_name[METHODS] = {"explicit", "semi-implicit", "leapfrog", "midpoint", "rk4", "flow"};
 
 #define TWO_PI 6.283185307179586
 
@@ -11,7 +11,7 @@ struct part {
     const struct sim_device *d;
     const struct plant_hand *hand;
     double h_s, ref_A;
-    double keep, keep_half, keep_mon;
+    double keep, keep_half, keep_mon, cur_to_mon;
     double per_mass, per_rotor;
     /* midpoint: 1 / of the determinant, by the ways of mass and rotor, taut */
     double m2, w2, join, inverse[3][3];
@@ -53,7 +53,12 @@ static struct part part_of(const struct sim_device *d, double h_s, double ref_A,
     s.ref_A = ref_A;
     s.keep = sim_exp_neg(TWO_PI * d->current_hz * h_s);
     s.keep_half = sim_exp_neg(TWO_PI * d->current_hz * h_s / 2);
-    s.keep_mon = d->mon_lag_s > 0 ? sim_exp_neg(h_s / d->mon_lag_s) : 0;
+    s.cur_to_mon = s.keep;
+    if (d->mon_lag_s > 0) { /* and is not that of the current: no device here has it so */
+        const double y = h_s / d->mon_lag_s;
+        s.keep_mon = sim_exp_neg(y);
+        s.cur_to_mon = y * (s.keep - s.keep_mon) / (y - TWO_PI * d->current_hz * h_s);
+    }
     s.per_mass = 1 / d->mass_kg;
     s.per_rotor = 1 / d->rotor_kg;
     return s;
@@ -61,8 +66,9 @@ static struct part part_of(const struct sim_device *d, double h_s, double ref_A,
 
 static void step_current(struct plant *p, const struct part *s)
 {
-    p->cur_A = s->ref_A + (p->cur_A - s->ref_A) * s->keep;
-    p->mon_A = p->cur_A + (p->mon_A - p->cur_A) * s->keep_mon;
+    const double off_A = p->cur_A - s->ref_A;
+    p->cur_A = s->ref_A + off_A * s->keep;
+    p->mon_A = s->ref_A + (p->mon_A - s->ref_A) * s->keep_mon + off_A * s->cur_to_mon;
 }
 
 /* --- explicit Euler --- */
@@ -220,10 +226,14 @@ static void step_rk4(struct plant *p, const struct part *s, double t_s)
 void method_advance(enum method m, struct plant *p, const struct sim_device *d, double dt_s,
                     double ref_A, const struct plant_hand *hand)
 {
-    const int n = (int)(dt_s / d->substep_s) + 1;
+    const int n = method_steps(d, dt_s);
     struct part s;
     if (m == METHOD_SEMI) {
         semi_advance(p, d, dt_s, ref_A, hand);
+        return;
+    }
+    if (m == METHOD_LEAPFROG) {
+        leapfrog_advance(p, d, dt_s, ref_A, hand);
         return;
     }
     if (m == METHOD_FLOW) {

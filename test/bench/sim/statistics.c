@@ -38,15 +38,8 @@ static enum method now;
 
 void plant_advance(struct plant *p, const struct sim_device *d, double dt_s, double ref_A, int held)
 {
-    if (held) { /* nothing but the current moves: by any method the same */
-        struct sim_device still = *d;
-        const struct plant was = *p;
-        still.substep_s = 1;
-        semi_advance(p, &still, dt_s, ref_A, NULL);
-        p->x_m = was.x_m;
-        p->v_mps = was.v_mps;
-        p->q_m = was.q_m;
-        p->w_mps = was.w_mps;
+    if (held) {
+        leapfrog_hold(p, d, dt_s, ref_A);
         return;
     }
     method_advance(now, p, d, dt_s, ref_A, NULL);
@@ -203,15 +196,18 @@ static int line(const struct plan *p, const struct cell *at, int row, const stru
     return bad;
 }
 
-static void cells_of(int every)
+/* In short the first of each method. */
+static void cells_of(int brief)
 {
-    static const double step_s[] = {250e-6, 125e-6, 62.5e-6, 25e-6, 12.5e-6, 5e-6};
-    for (int i = 0; i < (int)(sizeof step_s / sizeof step_s[0]); i += every) {
-        for (int m = 0; m < METHODS; m++) {
-            if (m != METHOD_SEMI && i > 2) { continue; }
-            if (m == METHOD_FLOW && i > 0) { continue; }
-            cell[cells++] = (struct cell){(enum method)m, step_s[i]};
-        }
+    static const struct cell all[] = {
+        {METHOD_EXPLICIT, 125e-6}, {METHOD_EXPLICIT, 62.5e-6}, {METHOD_SEMI, 250e-6},     {METHOD_SEMI, 62.5e-6},
+        {METHOD_SEMI, 25e-6},      {METHOD_SEMI, 12.5e-6},     {METHOD_SEMI, 5e-6},       {METHOD_LEAPFROG, 250e-6},
+        {METHOD_LEAPFROG, 125e-6}, {METHOD_MIDPOINT, 250e-6},  {METHOD_MIDPOINT, 125e-6}, {METHOD_RK4, 250e-6},
+        {METHOD_RK4, 125e-6},      {METHOD_FLOW, 250e-6},
+    };
+    for (int i = 0; i < (int)(sizeof all / sizeof all[0]); i++) {
+        if (brief && i > 0 && all[i].method == all[i - 1].method) { continue; }
+        cell[cells++] = all[i];
     }
 }
 
@@ -247,12 +243,12 @@ static void count(void)
 int main(int argc, char **argv)
 {
     const int brief = argc > 1 && strcmp(argv[1], "--short") == 0;
-    const long runs = argc > 1 + brief ? strtol(argv[1 + brief], NULL, 10) : brief ? 2 : 10;
+    const long runs = argc > 1 + brief ? strtol(argv[1 + brief], NULL, 10) : brief ? 2 : 30;
     struct plan p;
     struct result *r;
     int n, warm = 0, err = 0;
     if (argc > 1 + brief && strcmp(argv[1 + brief], "count") == 0) {
-        cells_of(brief ? 3 : 1);
+        cells_of(brief);
         count();
         return 0;
     }
@@ -261,7 +257,7 @@ int main(int argc, char **argv)
         return 2;
     }
     p = (struct plan){(int)runs, (int)runs / 2};
-    cells_of(brief ? 3 : 1);
+    cells_of(brief);
     n = cells * TABLE2_ROWS * per_row(&p);
     r = calloc((size_t)n, sizeof *r);
     if (r == NULL) { return 1; }

@@ -152,7 +152,7 @@ static int every = 1;
 static int next_of(int m, int bit)
 {
     if (bit + every <= SHORTEST) { return bit + every; }
-    return m == METHOD_SEMI && bit < OWN ? OWN : OWN + 1;
+    return m == METHOD_LEAPFROG && bit < OWN ? OWN : OWN + 1;
 }
 
 static void errors(void)
