@@ -79,11 +79,40 @@ $(lib): $(lib_obj)
 	$(Q)rm -f $@ && $(CROSS)ar rcD $@ $^
 
 
+# --- a controller of your own, in scene custom: MODEL is the folder that a generator wrote ------------------------------
+
+# MODEL_NAME: as its functions begin. MODEL_RATE: Hz, of a model made for one. MODEL_MAP="THEIRS=OURS ...": ports named otherwise.
+MODEL        ?= examples/custom/wall_ert_rtw
+model_name    = $(patsubst %_ert_rtw,%,$(notdir $(patsubst %/,%,$(1))))
+MODEL_NAME   ?= $(call model_name,$(MODEL))
+# Its objects, but for the generator's example of a main program; and what plugs it in.
+model_objects = $(patsubst %,$(2)/%.o,adapter $(filter-out ert_main,$(notdir $(basename $(wildcard $(1)/*.c)))))
+model_obj     = $(call model_objects,$(MODEL),$(out)/model/$(MODEL_NAME))
+# No FPU register is an image's but where a scene reckons in floats. Others' code, others' warnings.
+float_cflags  = $(filter-out -mgeneral-regs-only,$(PORT_CFLAGS)) $(PORT_FLOAT)
+model_base   := $(filter-out $(warn),$(base))
+$(out)/examples/custom/slot_real.o: PORT_CFLAGS := $(float_cflags)
+
+# 1: folder, 2: name, 3: rate, 4: names of ports, 5: where it is built
+define model
+$(5)/made_of: FORCE
+	@mkdir -p $$(@D)
+	@printf '%s\n' "$(abspath $(1)) $(3) $(4) $$(MODEL_CFLAGS)" | cmp -s - $$@ || printf '%s\n' "$(abspath $(1)) $(3) $(4) $$(MODEL_CFLAGS)" > $$@
+$(5)/adapter.c: $(1)/$(2).h examples/custom/adapter.awk $(5)/made_of
+	$$(Q)awk -v model=$(2) -v rate=$(3) -v map="$(4)" -f examples/custom/adapter.awk $$< > $$@.new && mv $$@.new $$@
+$(5)/adapter.o: $(5)/adapter.c $(stamp)
+	$$(Q)$$(CC) $$(base) $$(float_cflags) $$(PORT_HOSTFLAGS) $$(CFLAGS) -Iexamples/custom -I$(1) $$(MODEL_CFLAGS) -c $$< -o $$@
+$(5)/%.o: $(1)/%.c $(stamp) $(5)/made_of
+	$$(Q)$$(CC) $$(model_base) $$(float_cflags) $$(PORT_HOSTFLAGS) $$(CFLAGS) -I$(1) $$(MODEL_CFLAGS) -c $$< -o $$@
+endef
+$(eval $(call model,$(patsubst %/,%,$(MODEL)),$(MODEL_NAME),$(MODEL_RATE),$(MODEL_MAP),$(out)/model/$(MODEL_NAME)))
+
+
 # --- what is linked -----------------------------------------------------------
 
-image     := $(out)/$(SCENE)$(PORT_SUFFIX).elf
+image     := $(out)/$(SCENE)$(if $(filter custom,$(SCENE)),$(filter-out -wall,-$(MODEL_NAME)))$(PORT_SUFFIX).elf
 image_obj := $(patsubst %,$(out)/$(SCENE)/%.o,$(basename $(or $(SCENE_MAIN),$(PORT_MAIN),examples/image.c examples/deadman.c) \
-             $(PORT_SRC))) $(if $(SCENE_MAIN),,$(out)/examples/loop.o) $(SCENE_SRC:%.c=$(out)/%.o)
+             $(PORT_SRC))) $(if $(SCENE_MAIN),,$(out)/examples/loop.o) $(SCENE_SRC:%.c=$(out)/%.o) $(if $(filter custom,$(SCENE)),$(model_obj))
 
 # These know which scene they serve: one set of objects per scene.
 $(out)/$(SCENE)/%.o: %.c $(stamp)
@@ -124,7 +153,7 @@ gives     = $(if $(call have,$(1)),$(shell t=$$(mktemp) && echo 'int main(void){
               $(filter -m% --target% -static,$(CFLAGS) $(LDFLAGS)) -include $(1) -xc - -o $$t -l$(2) 2>/dev/null && echo yes; rm -f $$t))
 
 modbus   := $(if $(call gives,modbus/modbus.h,modbus,modbus_reply),libmodbus,none)
-cli_src  := $(filter-out ports/posix/cli/modbus_%.c,$(cli_src)) ports/posix/cli/modbus_mail.c $(wildcard ports/posix/cli/modbus_$(modbus)*.c)
+cli_src  := $(filter-out ports/posix/cli/modbus_%.c ports/posix/cli/scene_custom.c,$(cli_src)) ports/posix/cli/modbus_mail.c $(wildcard ports/posix/cli/modbus_$(modbus)*.c)
 cli_obj  := $(cli_src:%.c=$(B)/posix/%.o) $(world_core:%.c=$(B)/posix/%.o) $(world_mesh)
 cli_libs := $(if $(world_rays),-ldl) $(if $(filter libmodbus,$(modbus)),-lmodbus) -pthread -lm
 # Lines of a GPIO chip, by the package's version. The program alone has them: tests and benches must be the same on every machine.
@@ -144,8 +173,15 @@ exhand  := $(B)/posix/exhand
 $(exhand): $(cli_obj) $(dev_obj) $(gpio_obj) $(B)/posix/libexhand.a
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(cli_libs) $(gpio_libs)
 
+# The host program with a model in it.
+exhand_custom := $(B)/posix/exhand-$(MODEL_NAME)
+custom_obj    := $(patsubst %.c,$(B)/posix/%.o,ports/posix/cli/scene_custom.c examples/custom/custom.c examples/custom/slot_real.c)
+$(exhand_custom): $(filter-out %/scene_none.o,$(cli_obj)) $(custom_obj) $(model_obj) $(dev_obj) $(gpio_obj) $(B)/posix/libexhand.a
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(cli_libs) $(gpio_libs)
+
+program := $(if $(filter custom,$(SCENE)),$(exhand_custom),$(exhand))
 ifeq ($(PORT),posix)
-products := $(exhand)
+products := $(program)
 else
 products := $(image)
 endif
@@ -186,7 +222,7 @@ image: $(image) $(boot)
 .PHONY: run
 run: all
 ifeq ($(PORT),posix)
-	$(Q)$(exhand) $(ARGS)
+	$(Q)$(program) $(ARGS)
 else
 	$(Q)$(or $(PORT_RUN),$(error PORT=$(PORT) cannot run images)) $(image) $(ARGS)
 endif
@@ -249,7 +285,7 @@ fit: all
 # --- tests ----------------------------------------------------------------------
 
 san       := -fsanitize=address,undefined -fno-sanitize-recover=all
-test_dirs := golden sim prop world gpio cards emu pc104 board unit # in this order: long ones first
+test_dirs := golden sim prop world slot gpio cards emu pc104 board unit # in this order: long ones first
 test_src  := $(foreach d,$(test_dirs),$(wildcard test/$(d)/*_test.c))
 test_bin  := $(test_src:test/%_test.c=$(B)/test/%_test)
 tflags     = $(base) $(CFLAGS) -Itest -DEXH_FIX_AUDIT
@@ -272,6 +308,18 @@ emu_src := $(wildcard ports/posix/emu/[!b]*.c)
 $(B)/test/emu/%_test: $(B)/test/san/test/emu/%_test.o $(B)/test/san/test/support.o $(emu_src:%.c=$(B)/test/san/%.o)
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(san) -o $@ $^ -lcmocka
+
+# Scene custom with generated folders, as they are: those of the example, and others.
+slot_rate_count := 500
+slot_map_count  := position=q pull=f steps=f_not
+slot_models     := $(wildcard examples/custom/*_ert_rtw test/slot/*_ert_rtw)
+slot_built       = $(B)/test/model/$(call model_name,$(1))
+$(foreach m,$(slot_models),$(eval $(call model,$m,$(call model_name,$m),$(slot_rate_$(call model_name,$m)),$(slot_map_$(call model_name,$m)),$(call slot_built,$m))))
+$(foreach m,$(slot_models),$(eval $(B)/test/slot/$(call model_name,$m)_test: $(call model_objects,$m,$(call slot_built,$m))))
+$(filter $(B)/test/slot/%,$(test_bin)): $(B)/test/slot/%_test: $(B)/posix/test/slot/%_test.o $(B)/posix/test/support.o $(custom_obj) \
+                      $(filter-out %/main.o %/loop.o %/scene_none.o,$(cli_obj) $(sim_obj)) $(B)/test/loop.o $(B)/posix/libexhand.a
+	@mkdir -p $(@D)
+	$(Q)$(CC) -o $@ $^ -lcmocka $(cli_libs)
 
 # What of the pc104 port knows no machine.
 pc104_net := $(patsubst %.c,$(B)/test/san/%.o,test/pc104/frames.c ports/pc104/net.c ports/pc104/stream.c)
@@ -793,7 +841,7 @@ bits:
 # A make of its own, and what it took.
 timed = +bash -c 'TIMEFORMAT="took: %0R s, %0U + %0S s of a core: $$*"; time "$$@"' make $(MAKE) --no-print-directory -s
 
-boot_scenes := minimal drop glove bilateral calibrate bringup
+boot_scenes := minimal drop glove bilateral calibrate bringup custom
 
 ## Boot images of PORT=pc104 under QEMU, from an ISO too: what must end well, safe or refused
 .PHONY: boot boot-built boot-run
@@ -803,6 +851,8 @@ boot-built: all
 	@.ci/deps "booting" qemu-system-i386 qemu-system-x86 || exit 3
 	@for c in real none; do for s in $(boot_scenes); do \
 	    $(MAKE) --no-print-directory $(if $(V),,-s) PORT=pc104 SCENE=$$s CARDS=$$c all || exit; done; done
+	@$(MAKE) --no-print-directory $(if $(V),,-s) PORT=pc104 SCENE=custom MODEL=test/slot/rude_ert_rtw CARDS=none all
+	@$(MAKE) --no-print-directory $(if $(V),,-s) SCENE=custom all
 	@$(MAKE) --no-print-directory -s PORT=pc104 SCENE=drop CARDS=none image ARGS="ticks=500 k=1000 uncalibrated=1 idle=spin"
 boot_run = EXHAND=$(exhand) test/pc104/boot.sh $(B)/pc104
 boot-run:

@@ -129,6 +129,7 @@ int exh_loop(const struct exh_scene *sc, uint32_t rate_Hz, const struct exh_loop
         if (err < 0) { last_tick(sc, h, tick, &in); }
     }
     exh_board_safe();
+    if (sc->end) { sc->end(); }
     return err;
 }
 

@@ -95,6 +95,11 @@ struct exh_scene {
     /* May all that is staged be applied together: 0, or -EXH_E… by a rule of the scene, and whoever staged it takes it
      * back. NULL: the rows' ranges are enough. */
     int (*allowed)(void);
+    /* Of a scene that asks what is not ours (custom): its answer in the coming tick is the one in these signals, as
+     * a log has them; it is not asked. NULL: all that decides is in inputs and state. */
+    void (*answered)(const int32_t *signal);
+    /* The loop has ended and the outputs are safe. Or NULL. */
+    void (*end)(void);
 };
 
 #endif

@@ -85,7 +85,7 @@ void drop_law(struct drop *s, const struct drop_cfg *cfg, const struct exh_scene
     const uint32_t raised = (s->quad.lost ? EXH_FAULT_ENCODER : 0u) |
                             (astray ? EXH_FAULT_TRACKING : 0u) |
                             (starved ? EXH_FAULT_SUPPLY : 0u) |
-                            (s->broken ? EXH_FAULT_CONFIG : 0u) |
+                            (s->broken ? EXH_FAULT_CONFIG : 0u) | s->more |
                             exh_watch_step(&s->watch, &cfg->watch, &q.vel_mps_q27, &limits);
     const struct exh_safety_in box = {in->drive.din, raised, in->missed, in->command, 1,
                                       steps_held(s, cfg)};

@@ -86,6 +86,7 @@ struct drop {
     struct exh_safety safety;
     struct exh_supply supply;
     uint8_t broken; /* 1: the guard found a change in configuration; not saved */
+    uint32_t more;  /* enum exh_fault: what a scene around this one raises; not saved */
 };
 
 /* Configuration from parameters, and of a calibration of finger 0 if calib has one (NULL: none). 0 or

@@ -4,6 +4,7 @@ PORT_SRC       := $(addprefix ports/mps2/,start.c board.c box.c say.c mem.c)
 PORT_CFLAGS    := -mcpu=cortex-m3 -mthumb -ffreestanding
 PORT_LDFLAGS   := -mcpu=cortex-m3 -mthumb -nostdlib -static -Wl,--build-id=none
 PORT_LDSCRIPT  := ldscripts/mps2.ld
+PORT_FLOAT_LIBS := -lgcc
 PORT_RUN       := ports/mps2/run.sh
 PORT_SAY       := mps2_say
 PORT_CYCLES_HZ := 25000000

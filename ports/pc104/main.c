@@ -59,6 +59,7 @@ int main(void)
     int err;
 
     banner(sc);
+    pc104_fpu_open();
     if (sc->defaults) { sc->defaults(); }
     pc104_options(sc);
     pc104_board_for(sc);

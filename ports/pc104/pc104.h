@@ -217,6 +217,9 @@ void pc104_modbus_report(void);
 /* --- trap.c: interrupts, and processor exceptions that say their name. Opened, as
  * the UART, before main() --- */
 void pc104_trap_open(void);
+
+/* For a scene in floats: the FPU, or a halt without one that can; for all others nothing. */
+void pc104_fpu_open(void);
 struct pc104_frame {
     uint32_t vector, error, eip, cs, eflags;
 };

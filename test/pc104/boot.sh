@@ -213,6 +213,24 @@ says ', enable 0x00000000$'
 boots 0 '^STOP in rest: the stage before was not shown' ticks=100 stage=2
 boots 2 '^option stage=6: allowed 1..5$' stage=6
 boots 2 '^option f_finger=2.5: allowed 0.5..2 n$' f_finger=2.5
+
+# A controller in floats: 2000 N/m times 0.4 mm in every tick, and its records replay. Another that is none: no number, and
+# one that does not come back.
+image=$1/custom-none.elf
+boots 0 '^ticks 3000 run, 0 missed$' ticks=3000 uncalibrated=1 q_lim=-0.0004 k=2000 track_tol=0.9 log=debug idle=spin
+says ', enable 0x00000001$'
+custom=${exhand%/*}/exhand-wall
+if [ -x "$custom" ]; then
+    "$custom" csv "$out/records" --all --out "$out/csv" >"$out/replay" || { fail "csv"; cat "$out/replay" >&2; }
+    awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "ask_n") at = i; next }
+             at { n++; off += ($at - 0.8) ^ 2 > 1e-11 } END { exit !(n == 3000 && !off) }' "$out/csv" || fail "ask is not 0.8 N"
+    "$custom" replay "$out/records" >"$out/replay" 2>&1 || { fail "replay"; cat "$out/replay" >&2; }
+fi
+image=$1/custom-rude-none.elf
+boots 0 '^arming refused at deadman$' ticks=3000 uncalibrated=1 q_lim=-0.0004 k=1 idle=spin # a cause is present
+says ', enable 0x00000000$'
+safe 7 '^tick does not end, vector 32, error 0x00000015, ' ticks=6000 uncalibrated=1 q_lim=-0.0004 k=8 idle=spin
+
 image=$1/drop-none.iso
 boots 0 '^ticks 500 run, 0 missed$'
 says '^set k 1000$'

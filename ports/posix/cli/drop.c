@@ -10,6 +10,7 @@
 #include "jobs.h"
 #include "names.h"
 #include "option.h"
+#include "scene_more.h"
 #include "outdir.h"
 #include "param.h"
 #include "params_file.h"
@@ -34,7 +35,7 @@ struct drop_options {
     int rates, rates_given;
     double k_Npm, b_Nspm, scale; /* < 0: the paper's at that rate                 */
     int64_t falls, seed, jobs, spread, friction;
-    int pace, cards, sweep, check, readings, guarded;
+    int pace, cards, sweep, check, readings, guarded, custom;
     const char *out, *grid, *shard, *blackbox;
     double let_go_s;
     struct run_setting setting[SETTINGS_MAX];
@@ -44,6 +45,11 @@ struct drop_options {
     struct exh_period T;
     struct contacts gpio;
 };
+
+static const struct exh_scene *scene_of(const struct drop_options *o)
+{
+    return o->custom ? cli_scene_more : o->guarded ? &exh_scene_guarded : &exh_scene_drop;
+}
 
 /* --- options with a syntax of their own --- */
 
@@ -157,7 +163,7 @@ static struct run_cfg job_cfg(const struct drop_options *o, int rate_i, double s
     c.rate_Hz = (uint32_t)(o->rate_Hz[rate_i] + 0.5);
     c.k_Npm = (o->k_Npm < 0 ? g->k_Npm : o->k_Npm) * o->scale * scale;
     c.b_Nspm = (o->b_Nspm < 0 ? g->b_Nspm : o->b_Nspm) * o->scale * scale;
-    c.scene = o->guarded ? &exh_scene_guarded : &exh_scene_drop;
+    c.scene = scene_of(o);
     c.setting = o->setting;
     c.settings = o->settings;
     c.images = &o->images;
@@ -371,7 +377,7 @@ static int can_write(const char *path)
 /* The image's k and b are those of the table's rows, unless they are given. */
 static int load_params(struct drop_options *o)
 {
-    const struct exh_scene *sc = o->guarded ? &exh_scene_guarded : &exh_scene_drop;
+    const struct exh_scene *sc = scene_of(o);
     const int err = params_file_read(&o->params);
     uint32_t k, b;
     if (err || o->params.load == NULL) { return err; }
@@ -498,6 +504,7 @@ int cli_drop(int argc, char **argv)
         {"border-check", CLI_FLAG, &o.check, 0, 0, NULL, "the simulated border beside that of the linear test"},
         {"friction", CLI_INT, &o.friction, 2, FRICTION_POINTS_MAX, "N", "the border against N amounts of friction, 0..2 times"},
         {"guarded", CLI_FLAG, &o.guarded, 0, 0, NULL, "the scene with passivity, and what that takes away"},
+        {"custom", CLI_FLAG, &o.custom, 0, 0, NULL, "the scene with a controller of your own (examples/custom)"},
         {"readings", CLI_FLAG, &o.readings, 0, 0, NULL, "the stiffness by every reading of the paper's analysis"},
         {"params", CLI_FLAG, &list, 0, 0, NULL, "list both, with units and ranges"},
     };
@@ -521,8 +528,13 @@ int cli_drop(int argc, char **argv)
     }
     err = cli_parse(&c, argc, argv, NULL);
     if (err) { return err == 1 ? 0 : err; }
+    if (o.custom && (o.guarded || cli_scene_more == NULL)) {
+        cli_complain(o.guarded ? "--custom and --guarded: one scene at a time"
+                               : "--custom: no controller in this program: make SCENE=custom MODEL=FOLDER links one");
+        return 2;
+    }
     if (list) {
-        print_params(o.guarded ? &exh_scene_guarded : &exh_scene_drop);
+        print_params(scene_of(&o));
         return 0;
     }
     err = refuse(&o);

@@ -7,6 +7,7 @@
 #include "option.h"
 #include "outfile.h"
 #include "param.h"
+#include "scene_more.h"
 #include "words.h"
 
 #include "guarded/guarded.h"
@@ -43,7 +44,8 @@ static const struct exh_scene *scene_of(const struct live_options *o)
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
         if (strcmp(o->scene, all[i]->name) == 0) { return all[i]; }
     }
-    cli_complain("--scene: %s: give drop, guarded or bilateral", o->scene);
+    if (cli_scene_more && strcmp(o->scene, cli_scene_more->name) == 0) { return cli_scene_more; }
+    cli_complain("--scene: %s: give drop, guarded or bilateral%s", o->scene, cli_scene_more ? ", or custom" : "");
     return NULL;
 }
 

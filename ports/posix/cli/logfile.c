@@ -1,6 +1,7 @@
 #include "logfile.h"
 
 #include "option.h"
+#include "scene_more.h"
 
 #include "bilateral/bilateral.h"
 #include "drop/drop.h"
@@ -24,7 +25,7 @@ static const struct exh_scene *scene_by_name(const char *name)
     for (size_t i = 0; i < sizeof scenes / sizeof scenes[0]; i++) {
         if (strncmp(scenes[i]->name, name, 16) == 0) { return scenes[i]; }
     }
-    return NULL;
+    return cli_scene_more && strncmp(cli_scene_more->name, name, 16) == 0 ? cli_scene_more : NULL;
 }
 
 static int complain(const struct logfile *l, const char *what)

@@ -128,6 +128,7 @@ static int on_frame(struct replay *p, const struct exh_record *r)
         return differs(p, "frame length", r->len_B, c.at);
     }
     if (sc->params != NULL) { exh_params_apply(sc->params); }
+    if (sc->answered) { sc->answered(p->recorded); }
     sc->tick(&p->in, &p->out);
     if (sc->link) {
         sc->link->write();

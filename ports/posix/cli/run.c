@@ -5,6 +5,7 @@
 #include "option.h"
 #include "param.h"
 #include "params_file.h"
+#include "scene_more.h"
 
 #include "drop/drop.h"
 #include "log.h"
@@ -128,6 +129,17 @@ int run_image(const struct run_live *l, struct exh_params *p)
     return l->image ? params_take(l->name, p, l->image, l->image_B) : 0;
 }
 
+/* Why set-up refused, as far as the scene can tell; 1: that was told. */
+static int complain(const struct run_cfg *c, const struct exh_scene *sc)
+{
+    if (sc == cli_scene_more && cli_scene_more_unknown()) {
+        cli_complain("%s: no input of the slot or parameter is named so (--custom --params lists them): name the "
+                     "model's port otherwise, or MODEL_MAP=%s=NAME", cli_scene_more_unknown(), cli_scene_more_unknown());
+        return 1;
+    }
+    return images_complain(c->images, sc);
+}
+
 static int set_parameters(const struct run_cfg *c)
 {
     const struct sim_device *d = &c->board.device;
@@ -164,7 +176,7 @@ int run_check(const struct run_cfg *c)
     if (err < 0) { return err; }
     exh_params_apply(scene_of(c)->params);
     err = scene_of(c)->setup((struct exh_scene_board){T, exh_board_info.enc_bits});
-    if (err < 0 && !images_complain(c->images, scene_of(c))) { cli_complain("these parameters together: %s", exh_error_text(err)); }
+    if (err < 0 && !complain(c, scene_of(c))) { cli_complain("these parameters together: %s", exh_error_text(err)); }
     return err;
 }
 
@@ -195,7 +207,7 @@ int run_drop(const struct run_cfg *c, struct run *r)
         } else if (err == -EXH_E_RATE) {
             cli_complain("rate: %lu Hz (allowed 1..%lu): choose one in that range",
                          (unsigned long)c->rate_Hz, (unsigned long)exh_board_info.rate_max_Hz);
-        } else if (err < 0 && !images_complain(c->images, run.scene)) {
+        } else if (err < 0 && !complain(c, run.scene)) {
             cli_complain("%lu Hz: %s", (unsigned long)c->rate_Hz, exh_error_text(err));
         }
         if (run.logged && r->T.num != 0) { r->lost = exh_log_end(run.last_tick + 1); } /* it was started */

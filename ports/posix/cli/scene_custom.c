@@ -1,0 +1,10 @@
+#include "scene_more.h"
+
+#include "custom/custom.h"
+
+const struct exh_scene *const cli_scene_more = &exh_scene_custom;
+
+const char *cli_scene_more_unknown(void)
+{
+    return custom_unknown();
+}

@@ -1,0 +1,10 @@
+#include "scene_more.h"
+
+#include <stddef.h>
+
+const struct exh_scene *const cli_scene_more = NULL;
+
+const char *cli_scene_more_unknown(void)
+{
+    return NULL;
+}
