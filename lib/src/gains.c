@@ -96,14 +96,20 @@ static int is_none(struct pair at)
     return at.k == 0 && at.b == 0;
 }
 
+/* (a - b) times (c - d) of what lies within 0 .. 2^30, exact. Other values wrap, and lie outside the pieces anyway. */
+static inline int64_t area(int32_t a, int32_t b, int32_t c, int32_t d)
+{
+    return (int64_t)exh_wrap_diff(a, b) * exh_wrap_diff(c, d);
+}
+
 /* Under the pieces, no wall only if it is there too. */
 static int is_under(const struct exh_gains_par *rule, struct pair at)
 {
     int under = 0;
     for (int32_t i = 1; i < rule->knots; i++) {
-        const int64_t b0 = rule->b_Nspm_q20[i - 1], b1 = rule->b_Nspm_q20[i];
-        const int64_t k0 = rule->k_Npm_q10[i - 1], k1 = rule->k_Npm_q10[i];
-        under |= at.b >= b0 && at.b <= b1 && (at.k - k0) * (b1 - b0) <= (k1 - k0) * (at.b - b0);
+        const int32_t b0 = rule->b_Nspm_q20[i - 1], b1 = rule->b_Nspm_q20[i];
+        const int32_t k0 = rule->k_Npm_q10[i - 1], k1 = rule->k_Npm_q10[i];
+        under |= at.b >= b0 && at.b <= b1 && area(at.k, k0, b1, b0) <= area(k1, k0, at.b, b0);
     }
     return under && at.k >= rule->k_min_Npm_q10;
 }
@@ -163,18 +169,18 @@ void exh_gains_lead(struct exh_params *p, int on)
 }
 
 /* The k to go for: the goal's if no knot between is below the straight line there; else what passes below all
- * of them. Both pairs are under the pieces; products below 2^61. */
+ * of them. Both pairs are under the pieces. */
 static int32_t aim(const struct exh_gains_par *rule, struct pair at, struct pair goal)
 {
-    const int64_t db = (int64_t)goal.b - at.b, dk = (int64_t)goal.k - at.k;
     int32_t low = at.k;
     int straight = 1;
     for (int32_t i = 0; i < rule->knots; i++) {
-        const int64_t b = (int64_t)rule->b_Nspm_q20[i] - at.b, k = rule->k_Npm_q10[i];
-        const int64_t over = (at.k - k) * db + dk * b; /* line above knot, times db */
-        if (db > 0 ? b <= 0 || b >= db : b >= 0 || b <= db) { continue; }
-        straight &= db > 0 ? over <= 0 : over >= 0;
-        low = k < low ? (int32_t)k : low;
+        const int32_t b = rule->b_Nspm_q20[i], k = rule->k_Npm_q10[i];
+        const int64_t line = area(goal.k, at.k, b, at.b); /* there, above at, times the way of b */
+        const int64_t knot = area(k, at.k, goal.b, at.b);
+        if (at.b < goal.b ? b <= at.b || b >= goal.b : b >= at.b || b <= goal.b) { continue; }
+        straight &= at.b < goal.b ? line <= knot : line >= knot;
+        low = k < low ? k : low;
     }
     return straight ? goal.k : low;
 }

@@ -5,7 +5,7 @@
  * PLANT: lib/src/gains.c: for (int32_t i = 1; i < rule->knots; i++) -> for (int32_t i = 1; i <= rule->knots; i++)
  * PLANT: lib/src/gains.c: !exh_inside(rule->knots, 2, EXH_GAINS_KNOTS) -> !exh_inside(rule->knots, 2, EXH_GAINS_KNOTS + 1)
  * PLANT: lib/src/gains.c: (off < 0 ? -off : off) * 100 <= want -> (off < 0 ? -off : off) * 10000000 <= want
- * PLANT: lib/src/gains.c: const int64_t over = (at.k - k) * db + dk * b; -> const int64_t over = (at.k - (int32_t)k) * (int32_t)db + dk * b;
+ * PLANT: lib/src/gains.c: return (int64_t)exh_wrap_diff(a, b) * exh_wrap_diff(c, d); -> return exh_wrap_diff(a, b) * exh_wrap_diff(c, d);
  */
 #include "bytes.c"
 #include "gains.c"
