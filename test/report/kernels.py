@@ -40,7 +40,7 @@ def judged(points):
     on = work.on_front(points)
     off = [k for k, v in on.items() if not v]
     alone = [k for k in on if all(p.kind == "ours" for p in work.front([q for q in points if q.panel == k]))]
-    print("note: ours is on the front of integer code in %d of %d panels, in %d alone%s." % (
+    print("note: Ours is on the front of integer code in %d of %d panels, alone on it in %d%s." % (
         len(on) - len(off), len(on), len(alone), "; not in: " + "; ".join(off) if off else ""))
 
 
@@ -137,9 +137,9 @@ def soft():
     save("soft", rows[0].keys(), [r.values() for r in rows])
     work.draw(OUT, "soft", points, 1e-17, "instructions, Cortex-M3", "largest error", 4, False)
     cost = {(r["kernel"], r["way"]): float(r["instructions"]) for r in rows}
-    print("note: what double and float cost against ours: " + "; ".join("%s %.1f, %.1f" % (
+    print("note: What double and float cost against ours: " + "; ".join("%s %.1f, %.1f" % (
         k, cost[k, "double"] / cost[k, "fixed"], cost[k, "float"] / cost[k, "fixed"]) for k in title) + " times.")
-    print("note: all integer kernels of a tick in one (22 low-passes, five fingertips, distances with the freeze rule, laws): "
+    print("note: All integer kernels of a tick in one (22 low-passes, five fingertips, distances with the freeze rule, laws): "
           "%.0f instructions." % cost["tick", "fixed"])
 
 

@@ -24,8 +24,8 @@ do for [k = 1:2] {
     set bmargin at screen 45./height
     set title (k == 1 ? 'bytes of code and constants, Cortex-M3' : 'instructions per tick, x86-64, in contact') font 'DejaVu Sans Bold,17' offset 0,-0.4
     plot 'modules_cells.csv' using (column('panel') == k ? column('x') : NaN):'y':(0.47):(0.44):'log10' with boxxyerror lc palette, \
-         '' using (column('panel') == k && column('log10') < 3 ? column('x') : NaN):'y':(stringcolumn('label')) with labels font ',14' textcolor rgb ink, \
-         '' using (column('panel') == k && column('log10') >= 3 ? column('x') : NaN):'y':(stringcolumn('label')) with labels font ',14' textcolor rgb '#ffffff'
+         '' using (column('panel') == k && column('log10') < 2.6 ? column('x') : NaN):'y':(stringcolumn('label')) with labels font ',14' textcolor rgb ink, \
+         '' using (column('panel') == k && column('log10') >= 2.6 ? column('x') : NaN):'y':(stringcolumn('label')) with labels font ',14' textcolor rgb '#ffffff'
 }
 unset title; unset xtics
 set lmargin at screen 0; set rmargin at screen 1

@@ -47,7 +47,7 @@ def rates():
             cells = ["; ".join("%.2g" % float(at[scene, quantity, k, w]["max"]) for w in ("fixed", "double", "float")) for k in some]
             f.write("| %s | %s | %s | %s |\n" % (scene, quantity, unit, " | ".join(cells)))
     worse = [l for l in out if float(l["fixed"]) > float(l["float"])]
-    print("note: fixed point is more exact than float in %d of %d (scene, quantity, rate)%s." % (
+    print("note: Fixed point is more exact than float in %d of %d (scene, quantity, rate)%s." % (
         len(out) - len(worse), len(out), "; not in: " + ", ".join("%s %s %s Hz" % (l["scene"], l["quantity"], l["rate_hz"]) for l in worse)
         if worse else ""))
 
@@ -78,7 +78,7 @@ def goals():
               " 3854; peers' parts sum to 5202, the cheapest double and float parts to 2231)." % rows["integer_tick_x5"])
     if rows.get("full_box_tick", "-") != "-":
         share = 100 * float(rows["full_box_tick"]) * 2 / 1.6e9 / 500e-6
-        print("note: the full box: %s i686 instructions a tick, %.1f %% of 500 us at 1.6 GHz and two cycles an instruction (goal 1.5 %%)."
+        print("note: The full box: %s i686 instructions a tick, %.1f %% of 500 us at 1.6 GHz and two cycles an instruction (goal 1.5 %%)."
               % (rows["full_box_tick"], share))
 
 

@@ -22,7 +22,7 @@ do for [k = 1:n_panels] {
     rises = log10(value(sprintf('y1_%d', k))/value(sprintf('y0_%d', k)))
     set xtics auto; set ytics auto; set format y '10^{%T}'
     if (decades < 2.2) { set xtics (1, 3, 10, 30, 100, 300, 1000, 3000, 10000, 30000) }
-    if (decades < 2.2*panel_w/800) { set xtics (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000) }
+    if (decades < 2.2*panel_w/700) { set xtics (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000) }
     if (decades < 0.8) { set xtics (1, 2, 3, 5, 7, 10, 20, 30, 50, 70, 100, 200, 300, 500, 700, 1000, 2000, 3000, 5000, 7000, 10000, 20000) }
     if (rises < 1.5) { set format y '%g'; set ytics (1, 2, 5, 10, 20, 50, 100) }
     set title value(sprintf('title_%d', k)) font 'DejaVu Sans Bold,17' textcolor rgb ink offset 0,-0.6
