@@ -30,7 +30,7 @@ MAKEFLAGS += $(if $(filter 0,$(MAKELEVEL)),-j$(or $(shell nproc 2>/dev/null),1),
 jobs       = $(or $(patsubst -j%,%,$(filter -j%,$(MAKEFLAGS))),1)
 
 # These call make for what they need, or take it away: two at a time would write the same files.
-callers := all test demo run image coverage stress stability test-i686 matrix matrix-box mutants mcdc mutation fuzz hil hil-built strangers gpio linux-program link \
+callers := all test demo run image coverage stress stability test-i686 matrix matrix-box mutants mcdc mutation fuzz hil hil-built strangers gpio linux-program link porting \
            boot boot-built \
            contract contract-built nic nic-built modbus-image modbus world two-computers bench-world bench report size costs cards install diagrams clean check
 ifneq ($(and $(filter $(callers),$(MAKECMDGOALS)),$(word 2,$(MAKECMDGOALS))),)
@@ -224,7 +224,7 @@ run: all
 ifeq ($(PORT),posix)
 	$(Q)$(program) $(ARGS)
 else
-	$(Q)$(or $(PORT_RUN),$(error PORT=$(PORT) cannot run images)) $(image) $(ARGS)
+	$(Q)$(or $(PORT_RUN),$(error PORT=$(PORT) cannot run images: PORT_RUN in ports/$(PORT)/port.mk names what does)) $(image) $(ARGS)
 endif
 
 # --- the world simulator ----------------------------------------------------------------
@@ -812,7 +812,7 @@ check:
 	@$(timed) demo > $(B)/demo.txt && tail -n 40 $(B)/demo.txt
 	@$(timed) $(variants:%=variant-%)
 	@$(timed) linux-program
-	@$(timed) link
+	@$(timed) link porting
 	@$(timed) $(patsubst %,golden-%,$(filter-out i686%,$(variants)))
 	@$(timed) bits
 	@$(timed) undef undef-cortex-m3 undef-cortex-m0
@@ -1109,6 +1109,12 @@ $(shared): $(pic) lib/exhand.map
 packages := $(DESTDIR)$(LIBDIR)/pkgconfig/exhand.pc $(patsubst %,$(DESTDIR)$(LIBDIR)/cmake/exhand/exhand-%.cmake,config config-version)
 fill_in  := sed 's|@prefix@|$(PREFIX)|; s|@libdir@|$(LIBDIR:$(PREFIX)/%=$${prefix}/%)|; s|@includedir@|$(INCLUDEDIR:$(PREFIX)/%=$${prefix}/%)|; s|@version@|$(version)|; \
             s|@includedir_from_package@|'"$$(realpath -m --relative-to=$(LIBDIR)/cmake/exhand $(INCLUDEDIR))"'|'
+
+## docs/PORTING.md typed anew: a port from the template to a contract test that passes
+.PHONY: porting
+porting:
+	@.ci/deps "a walk of docs/PORTING.md" "command -v arm-none-eabi-gcc && command -v qemu-system-arm" gcc-arm-none-eabi qemu-system-arm || exit 3
+	@test/porting/walk.py $(B)/porting
 
 ## Each way of examples/link/README.md to link the library to a program: commands, seconds, bytes; and its ABI
 .PHONY: link
