@@ -822,6 +822,7 @@ check:
 	@$(timed) $(check_runs)
 	@$(timed) stress-short
 	@$(timed) size
+	@$(timed) doc
 	@$(timed) bench
 	@$(timed) report-test
 	@$(timed) report ARGS=--short
@@ -1142,6 +1143,15 @@ install-lib: $(lib) $(if $(filter posix,$(PORT)),$(shared))
 .PHONY: fresh
 fresh:
 	test/fresh/fresh.sh
+
+## The public headers as pages, build/doc/html: every symbol documented
+.PHONY: doc
+doc:
+	@.ci/deps "$@" doxygen doxygen || exit 3
+	@rm -rf $(B)/doc && mkdir -p $(B)/doc
+	@{ cat docs/Doxyfile; echo 'OUTPUT_DIRECTORY = $(B)/doc'; echo 'PROJECT_NUMBER = $(version)'; } | doxygen - 2> $(B)/doc/warnings || true
+	@if [ -s $(B)/doc/warnings ] || ! [ -s $(B)/doc/html/index.html ]; then cat $(B)/doc/warnings; echo "doc: not documented, or no pages" >&2; exit 1; fi
+	@echo "$(B)/doc/html/index.html"
 
 ## Lay out all C sources by .clang-format
 .PHONY: fmt

@@ -18,6 +18,7 @@ extern "C" {
 #define EXH_DEG(num, den) ((int32_t)((num) * (INT64_C(1) << 32) / (INT64_C(360) * (den))))
 #define EXH_URAD(num)     ((int32_t)((num)*INT64_C(683565275576) / INT64_C(1000000000)))
 
+/* Sine and cosine of one angle. */
 struct exh_sincos {
     int32_t sin_q30, cos_q30; /* -2^30 .. 2^30                                 */
 };

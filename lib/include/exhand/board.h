@@ -18,8 +18,10 @@
 extern "C" {
 #endif
 
+/* Of these functions and frames: the loop refuses a port that was written against another. */
 #define EXH_BOARD_VERSION 1
 
+/* What a port is, constant: the loop asks it before anything else. */
 struct exh_board_info {
     const char *name;     /* at most 15 characters                             */
     uint16_t version;     /* EXH_BOARD_VERSION it was written against          */

@@ -16,8 +16,14 @@
 extern "C" {
 #endif
 
-enum exh_bytes_mode { EXH_BYTES_WRITE, EXH_BYTES_READ, EXH_BYTES_MEASURE };
+/* Which way a cursor goes. */
+enum exh_bytes_mode {
+    EXH_BYTES_WRITE,  /* from the fields into the buffer                       */
+    EXH_BYTES_READ,   /* from the buffer into the fields                       */
+    EXH_BYTES_MEASURE /* nowhere: the bytes are counted                        */
+};
 
+/* A cursor: made by the three functions below, on the caller's stack. */
 struct exh_bytes {
     uint8_t *p;   /* the caller's buffer; may be NULL when only measuring     */
     uint32_t cap; /* its size, B                                              */

@@ -31,13 +31,15 @@ struct exh_contact_par {
 #define EXH_CONTACT_ROWS 5
 extern const struct exh_signal exh_contact_rows[EXH_CONTACT_ROWS];
 
+/* What one finger's law remembers. A state of zeros is a string not yet seen: the first tick's position is its first turn. */
 struct exh_contact {
     int32_t turn_m_q30; /* farthest position since the last reversal          */
     uint8_t inward;     /* 1: string runs in, F0 acts                          */
     uint8_t touching;   /* 1: the contact condition applies (the paper's c)    */
-    uint8_t started;
+    uint8_t started;    /* 1: turn is of a position that was seen              */
 };
 
+/* What the law goes by in a tick. */
 struct exh_contact_in {
     int32_t pos_m_q30;   /* string position q, any int32_t                      */
     int32_t vel_mps_q27; /* its velocity, any int32_t                          */
@@ -49,12 +51,12 @@ struct exh_contact_in {
  * + release, exactly, always. N, q20; the terms of the law are int64_t so that none of them
  * ever saturates. */
 struct exh_force_ledger {
-    int64_t spring_N_q20;
-    int64_t damper_N_q20;
-    int64_t pullback_N_q20;
+    int64_t spring_N_q20;    /* k (q - q_lim) while it touches, below 0 within hyst; else 0 */
+    int64_t damper_N_q20;    /* b qd while it touches, negative as the string runs in; else 0 */
+    int64_t pullback_N_q20;  /* F0: f0 while the string runs in, else 0       */
     int64_t passivity_N_q20; /* 0 where that module is not linked             */
     int64_t clamp_N_q20;     /* pull only, and the force limit                */
-    int64_t slew_N_q20;
+    int64_t slew_N_q20;      /* what its rise or fall is held back by         */
     int64_t release_N_q20;   /* from what was asked to what the release law gives */
     int32_t force_N_q20;     /* the force commanded                           */
 };
@@ -66,6 +68,7 @@ struct exh_force_ledger {
 int exh_contact_law(struct exh_contact *s, const struct exh_contact_par *par,
                     struct exh_contact_in in, struct exh_force_ledger *out);
 
+/* State through a cursor (bytes.h). */
 void exh_contact_bytes(struct exh_bytes *c, struct exh_contact *s);
 
 #ifdef __cplusplus

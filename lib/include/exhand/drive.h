@@ -31,6 +31,7 @@ enum exh_din { /* digital inputs; every contact is normally closed: 1 = healthy 
     EXH_DIN_DRIVE0 = 1u << 8   /* drive of finger i ready: EXH_DIN_DRIVE0 << i */
 };
 
+/* What a board reads in a tick, latched together. */
 struct exh_drive_in {
     uint32_t enc_raw[EXH_FINGERS]; /* counter value, the board's width, low bits */
     int16_t mon_raw[EXH_FINGERS];  /* current monitor, two's complement        */
@@ -38,6 +39,7 @@ struct exh_drive_in {
     uint32_t din;                  /* enum exh_din                             */
 };
 
+/* What it writes in a tick; made by exh_gate() alone. */
 struct exh_drive_out {
     uint16_t dac_raw[EXH_FINGERS]; /* offset binary                            */
     uint8_t enable;                /* bit i: drive of finger i enabled         */
@@ -50,26 +52,33 @@ void exh_drive_out_bytes(struct exh_bytes *c, struct exh_drive_out *out, unsigne
 
 /* --- limits: a limit acts and is reported, it is not a fault --- */
 
+/* Bits of what a step returns, collected over a tick; names by exh_limit_name(). */
 enum exh_limit {
     EXH_LIMIT_PULL = 1u << 0,  /* law asked to push: a string only pulls       */
     EXH_LIMIT_FORCE = 1u << 1, /* above f_max, or the end of the table; closed: above small_N_q20,
                                 * without passivity, which may take the wall away for a while */
-    EXH_LIMIT_SLEW = 1u << 2,
+    EXH_LIMIT_SLEW = 1u << 2, /* rise or fall of force above slew_up, slew_down */
     EXH_LIMIT_PEAK = 1u << 3, /* above i_peak                                  */
-    EXH_LIMIT_I2T = 1u << 4,
+    EXH_LIMIT_I2T = 1u << 4,  /* held back by heat: more than 3/4 of its budget is used */
     EXH_LIMIT_DAC = 1u << 5, /* code at the end of its span                    */
     EXH_LIMIT_GATE = 1u << 6, /* closed: force and current held at zero        */
     EXH_LIMIT_RAMP = 1u << 7, /* above the share of f_max that arming allows yet */
     EXH_LIMIT_RELEASE = 1u << 8,  /* the release law has the force             */
     EXH_LIMIT_SPEED = 1u << 9,    /* velocity into the law (watch.h)           */
-    EXH_LIMIT_PASSIVITY = 1u << 10
+    EXH_LIMIT_PASSIVITY = 1u << 10 /* contact gave out more than it took (passivity.h) */
 };
-#define EXH_LIMITS 11
+#define EXH_LIMITS 11 /* bits of enum exh_limit, from 0 on */
 
 /* --- permit: what the state of the box (safety.h) lets the force do in this tick --- */
 
-enum exh_permit_mode { EXH_PERMIT_CLOSED, EXH_PERMIT_OPEN, EXH_PERMIT_RELEASE };
+/* Which of the three rules of exh_drive_force() holds. */
+enum exh_permit_mode {
+    EXH_PERMIT_CLOSED, /* no force                                             */
+    EXH_PERMIT_OPEN,   /* what the law asks for, within limits                 */
+    EXH_PERMIT_RELEASE /* what was held goes, whatever the law asks for        */
+};
 
+/* Made by exh_safety_step(), one for all fingers. */
 struct exh_permit {
     uint8_t mode;         /* enum exh_permit_mode                              */
     int32_t share_q30;    /* open: of the force limit, 0 .. 2^30               */
@@ -80,10 +89,12 @@ struct exh_permit {
 
 /* --- conversion tables: strictly rising, linear between knots --- */
 
+/* One knot; units and formats are the table's, any int32_t. */
 struct exh_knot {
-    int32_t x, y;
+    int32_t x, y;          /* both above those of the knot before              */
     struct exh_gain slope; /* to the next knot; exh_table_set() fills it       */
 };
+/* A table; passed by value. */
 struct exh_table {
     const struct exh_knot *knot; /* n of them, the caller's; may live in ROM   */
     uint8_t n;                   /* >= 2                                       */
@@ -105,6 +116,7 @@ int32_t exh_table_at(struct exh_table t, int32_t x);
 
 /* --- one axis --- */
 
+/* Parameters of one axis; rows in exh_drive_rows[]. */
 struct exh_drive_par {
     int32_t f_max_N_q20;   /* force limit, N, 0 .. 100                         */
     int32_t slew_up_Nps;   /* rise of force, N/s, 1 .. 10^7                    */
@@ -121,6 +133,7 @@ struct exh_drive_par {
 #define EXH_DRIVE_ROWS 11
 extern const struct exh_signal exh_drive_rows[EXH_DRIVE_ROWS];
 
+/* One axis as it is set up; constant in the tick. */
 struct exh_drive_cfg {
     const struct exh_drive_par *par; /* read at every tick                     */
     struct exh_table force_to_cur;   /* N q20 -> A q26                         */
@@ -129,10 +142,11 @@ struct exh_drive_cfg {
     struct exh_gain tick_N_q20;      /* N q20 per tick, per N/s                */
     int64_t i2t_budget_q32;          /* A^2 ticks above i_cont^2               */
     struct exh_gain i2t_fold;        /* A q26 per (budget left >> i2t_shift)   */
-    uint8_t i2t_shift;
-    struct exh_gain dac_A_q26; /* A per code                                   */
+    uint8_t i2t_shift;               /* brings the budget below 2^31           */
+    struct exh_gain dac_A_q26;       /* A per code                             */
 };
 
+/* One axis from tick to tick. */
 struct exh_drive {
     int32_t force_N_q20; /* last commanded                                     */
     int32_t fall_N_q20;  /* release: taken away a tick; else 0                 */
@@ -196,6 +210,7 @@ void exh_drive_bytes(struct exh_bytes *c, struct exh_drive *s);
  * A scene that moves a motor calls both functions for each finger; one whose port has no
  * monitor names EXH_UNTRACKED instead (safety.h). */
 
+/* Parameters of one axis; rows in exh_track_rows[]. */
 struct exh_track_par {
     int32_t tol_A_q26; /* monitor off by no more, A, 0.1 .. 1                  */
     int32_t time_ms;   /* for no longer, ms, 1 .. 100, and 4 ticks             */
@@ -203,13 +218,15 @@ struct exh_track_par {
 #define EXH_TRACK_ROWS 2
 extern const struct exh_signal exh_track_rows[EXH_TRACK_ROWS];
 
+/* One axis as it is set up. */
 struct exh_track_cfg {
-    int32_t tol_A_q26;
-    uint32_t ticks; /* time + 4 ticks, rounded up                              */
+    int32_t tol_A_q26; /* the parameter                                        */
+    uint32_t ticks;    /* time + 4 ticks, rounded up                           */
 };
 
+/* One axis from tick to tick. */
 struct exh_track {
-    int32_t lo_A_q26, hi_A_q26; /* coded since the monitor met it              */
+    int32_t lo_A_q26, hi_A_q26; /* least and most that was coded since the monitor met it */
     uint32_t off_ticks;         /* since when it does not, 0 .. ticks          */
 };
 
@@ -232,6 +249,7 @@ void exh_track_bytes(struct exh_bytes *c, struct exh_track *s);
 
 /* --- the drives' supply (supply.c) --- */
 
+/* Parameters of the box; rows in exh_supply_rows[]. */
 struct exh_supply_par {
     int32_t min_V_q20;   /* V, 0 .. 100; 0: the box has no monitor of it, it is not judged */
     int32_t max_V_q20;   /* V, min .. 100                                      */
@@ -241,11 +259,13 @@ struct exh_supply_par {
 #define EXH_SUPPLY_ROWS 4
 extern const struct exh_signal exh_supply_rows[EXH_SUPPLY_ROWS];
 
+/* The limits as they are set up, in codes: no product in the tick. */
 struct exh_supply_cfg {
     int16_t min_raw, max_raw; /* codes within the limits, both included         */
     uint32_t ticks;           /* the time, rounded down, and one more           */
 };
 
+/* From tick to tick. */
 struct exh_supply {
     uint32_t off_ticks; /* outside on end, 0 .. ticks                           */
 };

@@ -11,8 +11,9 @@
 extern "C" {
 #endif
 
+/* Codes; a call returns them with a minus before, also over wire and registers. */
 enum exh_error {
-    EXH_OK = 0,
+    EXH_OK = 0,         /* done                                                */
     EXH_E_RANGE = 1,    /* a value lies outside its documented range           */
     EXH_E_UNKNOWN = 2,  /* no such signal, record or command                   */
     EXH_E_STATE = 3,    /* right call, wrong time (a set-up value while locked) */

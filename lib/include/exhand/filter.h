@@ -27,15 +27,15 @@ struct exh_filter_par {
 extern const struct exh_signal exh_filter_rows[EXH_FILTER_ROWS];
 
 enum exh_filter_kind { /* docs/NUMERICS.md, "low-pass" */
-                       EXH_FILTER_LOW2,
-                       EXH_FILTER_LOW1,
-                       EXH_FILTER_HIGH2,
-                       EXH_FILTER_HIGH1
+                       EXH_FILTER_LOW2,  /* low fc, order 2             */
+                       EXH_FILTER_LOW1,  /* low fc, order 1             */
+                       EXH_FILTER_HIGH2, /* high fc, order 2            */
+                       EXH_FILTER_HIGH1  /* high fc, order 1            */
 };
 
 /* Coefficients; what each means depends on the kind. */
 struct exh_filter_cfg {
-    int32_t a, b, c, d;
+    int32_t a, b, c, d; /* docs/NUMERICS.md, "low-pass" has what is rounded to them; 0 where unused */
     uint8_t shift; /* 0 .. 31                                                 */
     uint8_t kind; /* enum exh_filter_kind: low is fc up to 0.105 of the rate */
 };

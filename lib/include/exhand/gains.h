@@ -19,7 +19,7 @@
 extern "C" {
 #endif
 
-#define EXH_GAINS_KNOTS 8
+#define EXH_GAINS_KNOTS 8 /* of a rule, at most */
 
 /* The rule; rows in exh_gains_rows[], all set-up values. Knots from `knots` on are not looked at. */
 struct exh_gains_par {

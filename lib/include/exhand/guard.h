@@ -39,14 +39,15 @@ int exh_guard_step(struct exh_guard *g);
 
 /* --- self-test: known answers, at set-up; what is reckoned depends on nothing --- */
 
+/* What did not come out as it must. */
 enum exh_selftest {
-    EXH_SELFTEST_OK,
+    EXH_SELFTEST_OK,       /* all did                                           */
     EXH_SELFTEST_SHIFT,    /* shifts, roundings, saturation                     */
     EXH_SELFTEST_PRODUCT,  /* 64-bit products                                   */
     EXH_SELFTEST_DIVISION, /* of set-up, and gains                              */
-    EXH_SELFTEST_CRC,
-    EXH_SELFTEST_SINE,
-    EXH_SELFTEST_FILTER
+    EXH_SELFTEST_CRC,      /* CRC-32 of "123456789"                             */
+    EXH_SELFTEST_SINE,     /* one angle's sine and cosine, bit for bit          */
+    EXH_SELFTEST_FILTER    /* a low-pass's first answers to a step, bit for bit  */
 };
 
 /* enum exh_selftest: the first that failed, or 0. The second also tests what scenes with a glove use,

@@ -20,29 +20,34 @@
 extern "C" {
 #endif
 
-#define EXH_HAND_FINGERS 5
+#define EXH_HAND_FINGERS 5 /* thumb, index, middle, ring, little */
 #define EXH_HAND_JOINTS  3 /* driven, of one finger: q0, q1, q2 */
 #define EXH_HAND_SENSORS 22 /* of the glove, in the order of glove.h */
 #define EXH_HAND_TERMS   2 /* sensors that move one joint, at most */
 
-enum exh_hand_finger_id { EXH_THUMB, EXH_INDEX, EXH_MIDDLE, EXH_RING, EXH_LITTLE };
+/* A finger's number, in every array and mask by finger. */
+enum exh_hand_finger_id {
+    EXH_THUMB, EXH_INDEX, EXH_MIDDLE, EXH_RING, EXH_LITTLE /* 0 .. 4 */
+};
 
 /* --- sensors to joints --- */
 
-#define EXH_HAND_GAIN_MAX_Q24 (8 * (INT32_C(1) << 24))
+#define EXH_HAND_GAIN_MAX_Q24 (8 * (INT32_C(1) << 24)) /* 8: no gain of a joint is larger, either way */
 
+/* How one joint follows the sensors. */
 struct exh_hand_joint {
     int32_t bias_turn_q32; /* the joint's angle when all sensors are at 0 */
     int32_t gain_q24[EXH_HAND_TERMS]; /* -8 .. 8; 0: no term */
     uint8_t sensor[EXH_HAND_TERMS]; /* below EXH_HAND_SENSORS */
     int32_t lo_turn_q32, hi_turn_q32; /* the joint's limits, lo <= hi */
 };
+/* How all of a hand's joints follow them; data, in ROM or the caller's. */
 struct exh_hand_map {
-    struct exh_hand_joint joint[EXH_HAND_FINGERS][EXH_HAND_JOINTS];
+    struct exh_hand_joint joint[EXH_HAND_FINGERS][EXH_HAND_JOINTS]; /* q0, q1, q2 of each */
     /* Sensors of the wearer's own joints that the string bends: arm1's, and the two beyond it. */
     uint8_t bent[EXH_HAND_FINGERS][3]; /* below EXH_HAND_SENSORS; a thumb has one beyond, twice */
 };
-extern const struct exh_hand_map exh_hit2_map;
+extern const struct exh_hand_map exh_hit2_map; /* of the DLR/HIT Hand II, right */
 
 /* 0 if every sensor, also those bent, gain and pair of limits is as said above, -EXH_E_RANGE otherwise: for
  * maps that come from outside. Set-up. */
@@ -75,8 +80,9 @@ struct exh_hand_par {
 #define EXH_HAND_ROWS 4
 extern const struct exh_signal exh_hand_rows[EXH_HAND_ROWS];
 
+/* One finger as it is set up; constant in the tick. */
 struct exh_hand_finger {
-    const struct exh_hand_bones *bones;
+    const struct exh_hand_bones *bones; /* the caller's */
     int32_t pull_radpm_q20[2]; /* turning of q1 and of q2 per metre of string, +-250 rad/m */
 };
 

@@ -30,10 +30,10 @@ extern "C" {
                                       * minor adds                             */
 
 enum exh_regs_kind { /* the function that reads it                             */
-                     EXH_REGS_COIL = 1,
-                     EXH_REGS_DISCRETE = 2,
-                     EXH_REGS_HOLDING = 3,
-                     EXH_REGS_INPUT = 4
+                     EXH_REGS_COIL = 1, /* bits that command */
+                     EXH_REGS_DISCRETE = 2, /* bits that tell */
+                     EXH_REGS_HOLDING = 3, /* registers that can be written, too */
+                     EXH_REGS_INPUT = 4 /* registers that can be read alone */
 };
 
 /* First registers. Value i of a table is in registers first + 2 i and first + 2 i + 1. */
@@ -47,37 +47,37 @@ enum exh_regs_kind { /* the function that reads it                             *
 #define EXH_REGS_VALUES          4096u /* of one table at most               */
 
 enum exh_regs_head { /* values of the head, two input registers each           */
-                     EXH_HEAD_MAGIC,
-                     EXH_HEAD_VERSION,
+                     EXH_HEAD_MAGIC, /* EXH_REGS_MAGIC */
+                     EXH_HEAD_VERSION, /* EXH_REGS_VERSION */
                      EXH_HEAD_TEST_INT, /* 0x12345678                                         */
                      EXH_HEAD_TEST_FLOAT, /* binary32 1.0                                       */
-                     EXH_HEAD_TICK,
-                     EXH_HEAD_STATE,
-                     EXH_HEAD_FAULTS,
-                     EXH_HEAD_FIRST,
-                     EXH_HEAD_FIRST_TICK,
-                     EXH_HEAD_PRESENT,
-                     EXH_HEAD_LIMITS,
-                     EXH_HEAD_ARM_STEP,
-                     EXH_HEAD_DIN,
-                     EXH_HEAD_MISSED,
-                     EXH_HEAD_SIGNALS,
-                     EXH_HEAD_PARAMS,
-                     EXH_HEAD_SIGNALS_CRC,
-                     EXH_HEAD_PARAMS_CRC,
-                     EXH_HEAD_PERIOD_NUM,
-                     EXH_HEAD_PERIOD_DEN,
-                     EXH_HEAD_LIB_VERSION,
-                     EXH_HEAD_FINGERS,
+                     EXH_HEAD_TICK, /* of exh_regs_box, as all up to MISSED */
+                     EXH_HEAD_STATE, /* enum exh_state */
+                     EXH_HEAD_FAULTS, /* enum exh_fault, latched */
+                     EXH_HEAD_FIRST, /* the first of them; stays after CLEAR */
+                     EXH_HEAD_FIRST_TICK, /* and when */
+                     EXH_HEAD_PRESENT, /* enum exh_fault, in the last tick */
+                     EXH_HEAD_LIMITS, /* enum exh_limit, in the last tick */
+                     EXH_HEAD_ARM_STEP, /* enum exh_arm, on which arming is or was refused */
+                     EXH_HEAD_DIN, /* enum exh_din */
+                     EXH_HEAD_MISSED, /* ticks since set-up, saturating */
+                     EXH_HEAD_SIGNALS, /* values in the table of outputs */
+                     EXH_HEAD_PARAMS, /* values in that of parameters */
+                     EXH_HEAD_SIGNALS_CRC, /* exh_signal_crc() of the table of outputs */
+                     EXH_HEAD_PARAMS_CRC, /* of that of parameters */
+                     EXH_HEAD_PERIOD_NUM, /* the loop's period in seconds: num / den */
+                     EXH_HEAD_PERIOD_DEN, /* likewise */
+                     EXH_HEAD_LIB_VERSION, /* EXH_VERSION_NUMBER */
+                     EXH_HEAD_FINGERS, /* drives in use */
                      EXH_HEAD_STAGED, /* values staged that differ from what is wanted         */
                      EXH_HEAD_PENDING, /* coils commanded and not yet carried out, bit k: coil k */
                      EXH_HEAD_DONE, /* commands carried out since set-up, modulo 2^32        */
                      EXH_HEAD_RESULT, /* of the last of them: 0 or -EXH_E…                     */
                      EXH_HEAD_NAME_0, /* of the scene, four characters a value, the first highest */
-                     EXH_HEAD_NAME_1,
-                     EXH_HEAD_NAME_2,
-                     EXH_HEAD_NAME_3,
-                     EXH_HEADS
+                     EXH_HEAD_NAME_1, /* the next four */
+                     EXH_HEAD_NAME_2, /* the next */
+                     EXH_HEAD_NAME_3, /* the last; zeros behind the end */
+                     EXH_HEADS /* how many there are */
 };
 
 /* Discrete inputs: 32 each, bit k at first + k. */
@@ -88,7 +88,7 @@ enum exh_regs_bits {
     EXH_BITS_STATE, /* 96: enum exh_state k: one of them is 1                */
     EXH_BITS_LIMITS, /* 128: enum exh_limit, in the last tick                 */
     EXH_BITS_ARM, /* 160: enum exh_arm, on which arming is or was refused  */
-    EXH_BITS
+    EXH_BITS /* how many there are */
 };
 
 /* Coils: a 1 commands, a 0 does nothing; each reads as 1 while it is pending. */
@@ -96,10 +96,10 @@ enum exh_regs_coil {
     EXH_COIL_APPLY, /* all that is staged, at once, between two ticks        */
     EXH_COIL_DISCARD, /* nothing is staged any more                            */
     EXH_COIL_SAVE, /* the parameters as they are wanted, to where the port keeps them */
-    EXH_COIL_OFF,
-    EXH_COIL_RUN,
-    EXH_COIL_CLEAR,
-    EXH_COILS
+    EXH_COIL_OFF, /* EXH_CMD_OFF */
+    EXH_COIL_RUN, /* EXH_CMD_RUN */
+    EXH_COIL_CLEAR, /* EXH_CMD_CLEAR */
+    EXH_COILS /* how many there are */
 };
 
 /* The trace, two registers each; holding registers begin with EVERY at EXH_REGS_TRACE_AT. Whoever writes
@@ -110,11 +110,11 @@ enum exh_regs_trace {
     EXH_TRACE_HEAD_OLDEST, /* number of the oldest held; that of the next: none */
     EXH_TRACE_HEAD_RUN, /* traces started, modulo 2^32                        */
     EXH_TRACE_HEAD_EVERY, /* ticks from frame to frame; 0: none               */
-    EXH_TRACE_HEAD_SIGNAL_0, /* indices in the table of outputs               */
-    EXH_TRACE_HEAD_SIGNAL_1,
-    EXH_TRACE_HEAD_SIGNAL_2,
-    EXH_TRACE_HEAD_SIGNAL_3,
-    EXH_TRACE_HEADS
+    EXH_TRACE_HEAD_SIGNAL_0, /* index in the table of outputs of the first    */
+    EXH_TRACE_HEAD_SIGNAL_1, /* of the second */
+    EXH_TRACE_HEAD_SIGNAL_2, /* of the third */
+    EXH_TRACE_HEAD_SIGNAL_3, /* of the fourth */
+    EXH_TRACE_HEADS /* how many there are */
 };
 #define EXH_REGS_TRACE_SET    (EXH_TRACE_HEADS - EXH_TRACE_HEAD_EVERY) /* values that can be written */
 /* Frame k is in the values FRAME_VALUES * (k modulo frames) and following: number, tick, four raw. */
@@ -122,17 +122,19 @@ enum exh_regs_trace {
 
 /* One line of a table for people (regs_names.c): a value of the head, 32 bits, a coil, a block. */
 struct exh_regs_row {
-    const char *name, *format, *help;
+    const char *name, *format, *help; /* [a-z0-9_.]+ or, of a coil, capitals; "u32", "i32", "f32", "text", of bits the enum, of a
+                                       * coil ""; one line, "": as the row before */
 };
 extern const struct exh_regs_row exh_regs_head_row[EXH_HEADS];
 extern const struct exh_regs_row exh_regs_bits_row[EXH_BITS];
 extern const struct exh_regs_row exh_regs_coil_row[EXH_COILS];
 extern const struct exh_regs_row exh_regs_trace_row[EXH_TRACE_HEADS];
 
+/* One block of the map, for people likewise. */
 struct exh_regs_block {
     uint8_t kind; /* enum exh_regs_kind                                        */
-    uint16_t at;
-    const char *name, *help;
+    uint16_t at;  /* first register, coil or input                             */
+    const char *name, *help; /* a word or two; one line                        */
 };
 #define EXH_REGS_BLOCKS 12
 extern const struct exh_regs_block exh_regs_blocks[EXH_REGS_BLOCKS];
@@ -141,10 +143,10 @@ extern const struct exh_regs_block exh_regs_blocks[EXH_REGS_BLOCKS];
 
 /* What changes from tick to tick aside from the tables. */
 struct exh_regs_box {
-    uint32_t tick, missed;
-    uint32_t faults, first, first_tick, present;
-    uint32_t limits, din;
-    uint8_t state, arm_step;
+    uint32_t tick, missed;   /* since set-up: modulo 2^32; saturating          */
+    uint32_t faults, first, first_tick, present; /* enum exh_fault: latched; the first of them, and when; in the last tick */
+    uint32_t limits, din;    /* enum exh_limit, in the last tick; enum exh_din */
+    uint8_t state, arm_step; /* enum exh_state; what exh_safety_arm() says     */
 };
 
 /* The words of `touched` for n parameters. */
@@ -154,22 +156,22 @@ struct exh_regs_box {
  * caller's; a table that is NULL has no registers. Nothing may change what they point to while a
  * request is answered: then no answer mixes two ticks. */
 struct exh_regs {
-    const char *name; /* of the scene; or NULL    */
-    const struct exh_signal_table *signals, *params;
+    const char *name; /* of the scene, 16 characters shown; or NULL       */
+    const struct exh_signal_table *signals, *params; /* outputs; parameters */
     const int32_t *signal; /* exh_signal_count(signals) values                 */
     const int32_t *active; /* of params: in effect, exh_params.active          */
     const int32_t *wanted; /* of params: exh_params.staged                     */
     int32_t *staged; /* the map's own, exh_signal_count(params) of them  */
     uint32_t *touched; /* bit i: staged[i] counts; EXH_REGS_WORDS() of them */
-    struct exh_period T;
+    struct exh_period T; /* of the loop                                    */
     uint32_t may; /* bit k: coil k can be commanded here              */
     uint8_t locked; /* exh_params.locked: set-up values are refused     */
-    uint8_t fingers;
+    uint8_t fingers; /* drives in use                                       */
     struct exh_trace *trace; /* set up; its frames are read and it is started here; or NULL */
-    struct exh_regs_box box;
+    struct exh_regs_box box; /* by exh_regs_see()                              */
 
     /* Filled by exh_regs_setup() and what follows. */
-    uint32_t signals_n, params_n, signals_crc, params_crc;
+    uint32_t signals_n, params_n, signals_crc, params_crc; /* values in the tables; exh_signal_crc() of them; 0: no table */
     uint32_t asked; /* bit k: coil k was commanded, and exh_regs_take() has not been called */
     uint32_t done; /* commands carried out                                   */
     int32_t result; /* of the last of them                                    */
@@ -239,6 +241,7 @@ int exh_float_raw(uint32_t bits, unsigned frac, int32_t *raw);
 
 /* --- one request --- */
 
+/* Codes of an exception, as the protocol has them. */
 enum exh_modbus_exception {
     EXH_MODBUS_FUNCTION = 1, /* no such function                               */
     EXH_MODBUS_ADDRESS = 2, /* nothing there, or not all of it                */
@@ -258,6 +261,7 @@ int exh_modbus_answer(struct exh_regs *r, const uint8_t *req, size_t len_B, uint
 
 #define EXH_MODBUS_ADU_B 256 /* address, PDU, CRC                              */
 
+/* A slave on a serial line, one for a line. */
 struct exh_modbus_rtu {
     uint8_t address; /* ours, 1 .. 247                                    */
     uint8_t ready; /* 1: a whole request for us waits in frame          */
@@ -267,7 +271,7 @@ struct exh_modbus_rtu {
     uint32_t taken; /* requests for us, since set-up                     */
     uint32_t others; /* undamaged frames for somebody else                */
     uint32_t damaged; /* frames too short, too long or with a wrong CRC    */
-    uint8_t frame[EXH_MODBUS_ADU_B];
+    uint8_t frame[EXH_MODBUS_ADU_B]; /* address, PDU, CRC as they came         */
 };
 
 /* -EXH_E_RANGE: address not 1 .. 247, or baud not 300 .. 10^7. Divides. */

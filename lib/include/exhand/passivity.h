@@ -42,30 +42,33 @@
 extern "C" {
 #endif
 
+/* Parameter of one finger; row in exh_passivity_rows[]. */
 struct exh_passivity_par {
     int32_t on; /* 0: observes only; 1: outputs act in their tick; 2: or up to one tick later */
 };
 #define EXH_PASSIVITY_ROWS 1
 extern const struct exh_signal exh_passivity_rows[EXH_PASSIVITY_ROWS];
 
+/* One finger as it is set up. */
 struct exh_passivity_cfg {
     const struct exh_passivity_par *par; /* read at every tick                 */
     const struct exh_drive_par *drive; /* likewise: f_max                    */
     int32_t f_top_N_q20; /* end of the force table             */
     struct exh_table held; /* what a coded current holds: A q26 -> N q20 */
-    int32_t step_m_q42;
+    int32_t step_m_q42; /* string per count, for energy in J */
     int32_t way_cnt; /* of one tick at the speed limit, rounded up */
     uint8_t shift; /* f_max 100 N * way >> shift fits a word */
     struct exh_gain share; /* 2^shift / way                      */
 };
 
+/* One finger from tick to tick. */
 struct exh_passivity {
     int64_t energy_Ncnt_q20; /* taken up since the contact began; negative: owed */
     int32_t held_N_q20; /* held since the last tick, the pull-back aside  */
     int32_t late_N_q20; /* held before that, where it may still act       */
     int32_t cnt; /* position at the last tick                      */
     uint8_t touching; /* the contact condition then                     */
-    uint8_t started;
+    uint8_t started; /* 1: cnt is of a tick that was                   */
 };
 
 /* Set-up (divides). `held` is the inverse of the drive's force_to_cur (exh_table_invert), gives 0 N at

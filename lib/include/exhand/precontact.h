@@ -44,10 +44,11 @@ extern "C" {
 
 /* --- what the world tells --- */
 
+/* What is told of one finger. */
 enum exh_plane_kind {
     EXH_PLANE_UNTOLD, /* nothing about this finger                             */
     EXH_PLANE_NONE,   /* the ray hit nothing                                   */
-    EXH_PLANE_HIT
+    EXH_PLANE_HIT     /* it hit the surface that the plane touches             */
 };
 
 /* For one finger, in the frame of the palm, which is the paper's {R}. Canonical is the plane
@@ -90,12 +91,14 @@ struct exh_precontact_par {
 #define EXH_PRECONTACT_ROWS 9
 extern const struct exh_signal exh_precontact_rows[EXH_PRECONTACT_ROWS];
 
+/* One finger as it is set up. */
 struct exh_precontact_cfg {
     const struct exh_precontact_par *par; /* read at every tick                */
-    const struct exh_material_par *material;
+    const struct exh_material_par *material; /* the caller's, materials of them */
     int64_t pad_m_q60; /* t with its sign                                      */
-    uint32_t age_ticks, doubt_ticks, tip_ticks;
-    uint8_t materials;
+    uint32_t age_ticks, doubt_ticks, tip_ticks; /* age_max, doubt_ms, tip_age_max, rounded down, and one: a plane so old is
+                                                 * too old; more than so long in doubt, let go; a tip so old is unknown */
+    uint8_t materials; /* 1 .. 255                                             */
 };
 
 /* --- one finger --- */
@@ -104,10 +107,11 @@ struct exh_precontact_cfg {
 struct exh_precontact_plane {
     int64_t offset_m_q60;       /* and half an LSB of d                        */
     struct exh_vec3 normal_q30; /* (0, 0, 0): no plane                         */
-    uint16_t object;
-    uint8_t material;
+    uint16_t object;            /* of the plane told                           */
+    uint8_t material;           /* index, below materials                      */
 };
 
+/* Where a finger is with its plane. */
 enum exh_precontact_phase {
     EXH_PRECONTACT_IDLE,   /* no plane, or too old                             */
     EXH_PRECONTACT_INSIDE, /* born at d >= d_lim                               */
@@ -134,6 +138,7 @@ struct exh_precontact {
     uint8_t resumed;     /* read from bytes, no step yet; not in the bytes      */
 };
 
+/* What a tick goes by. */
 struct exh_precontact_in {
     struct exh_vec3 tip_m_q30; /* P_F, of exh_hand_tip(); any values            */
     struct exh_vec3 slope_q24; /* of exh_hand_tip_slope(); read with from_slope only */
@@ -188,6 +193,7 @@ void exh_precontact_bytes(struct exh_bytes *c, struct exh_precontact *s);
 
 /* --- how far off to freeze, how far to look --- */
 
+/* What moves how fast, and is known how late. */
 struct exh_precontact_need {
     int32_t speed_mps_q27;  /* fastest approach, m/s, 0 .. 16                   */
     int32_t lag_us;         /* of the fingertip behind the string: glove frame, filter */
@@ -197,6 +203,7 @@ struct exh_precontact_need {
     int32_t slide_m_q30;    /* tangential way from where the plane was taken to the contact, m */
     int32_t radius_m_q30;   /* of the object's surface, m; 0: plane              */
 };
+/* What d_lim, ray and error come of it. */
 struct exh_precontact_advice {
     int32_t d_lim_m_q30;   /* freeze no nearer than this: -(v*(T + lag) + noise) */
     int32_t ray_m_q30;     /* look at least this far: |d_lim| + v*(T + age) + noise */

@@ -38,9 +38,9 @@ struct exh_quad_ab {
 /* What each transition adds, index previous<<2 | now: count << 16 (two's
  * complement), edge << 8, illegal. Only the modes that are used are linked. */
 struct exh_quad_mode {
-    uint32_t adds[16];
+    uint32_t adds[16]; /* one for each pair of samples                           */
 };
-extern const struct exh_quad_mode exh_quad_x1, exh_quad_x2, exh_quad_x4;
+extern const struct exh_quad_mode exh_quad_x1, exh_quad_x2, exh_quad_x4; /* A edges at B = 1; all A edges; all edges */
 
 /* One sample. */
 void exh_quad_ab_step(struct exh_quad_ab *s, const struct exh_quad_mode *mode, unsigned ab);
@@ -68,7 +68,7 @@ void exh_quad_index_step(struct exh_quad_index *s, int32_t cnt, unsigned level);
 
 /* Extension of a hardware counter of 16 to 32 bits across its wrap. */
 struct exh_quad_cfg {
-    const struct exh_quad_par *par;
+    const struct exh_quad_par *par; /* the caller's                             */
     int32_t jump_cnt; /* what speed_max moves in one tick, rounded, plus 1; a
                          smaller error of the encoder is not seen              */
     uint8_t unused;   /* 32 less the counter's width                           */

@@ -20,10 +20,12 @@ struct exh_quantizer_par {
 #define EXH_QUANTIZER_ROWS 2
 extern const struct exh_signal exh_quantizer_rows[EXH_QUANTIZER_ROWS];
 
+/* Set up; one for any number of channels. */
 struct exh_quantizer_cfg {
     uint32_t keep; /* a code is kept while the input is within this of its value */
     uint32_t half; /* half a code, LSB of the input                           */
 };
+/* One channel. A state of zeros has seen nothing. */
 struct exh_quantizer {
     int32_t value; /* of the code kept, in units of the input               */
     uint8_t started; /* the first call takes the nearest code                 */

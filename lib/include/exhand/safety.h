@@ -17,6 +17,7 @@
 extern "C" {
 #endif
 
+/* The state of the box; over wire and registers it is this number. */
 enum exh_state {
     EXH_STATE_OFF,     /* closed: no current, drives disabled                  */
     EXH_STATE_ARM,     /* closed while the law must ask for little; then open, the limit rises */
@@ -25,16 +26,18 @@ enum exh_state {
                         * string cannot push)                                  */
     EXH_STATE_RELEASE, /* open: the force held goes, in equal steps            */
     EXH_STATE_FAULT,   /* closed, until cleared                                */
-    EXH_STATES
+    EXH_STATES         /* how many there are                                   */
 };
 
+/* What is asked of the box in a tick. */
 enum exh_command {
-    EXH_CMD_NONE,
+    EXH_CMD_NONE, /* nothing                                                   */
     EXH_CMD_RUN,  /* OFF -> ARM when every step of arming holds                */
     EXH_CMD_OFF,  /* to OFF, by way of RELEASE where there may be a force      */
     EXH_CMD_CLEAR /* FAULT -> OFF when no cause is present, and the dead-man was open since any was */
 };
 
+/* Causes, as bits; names by exh_fault_name(). */
 enum exh_fault {
     EXH_FAULT_ESTOP = 1u << 0,     /* emergency-stop loop open                 */
     EXH_FAULT_DRIVE = 1u << 1,     /* a drive in use is not ready              */
@@ -52,7 +55,7 @@ enum exh_fault {
     EXH_FAULT_CONFIG = 1u << 13,   /* CRC of parameters or calibration         */
     EXH_FAULT_LOGIC = 1u << 14     /* a state of the box that cannot be        */
 };
-#define EXH_FAULTS 15
+#define EXH_FAULTS 15 /* bits of enum exh_fault, from 0 on */
 /* Causes that close the gate in the tick that sees them: either the drives are off anyway, or what
  * is coded cannot be trusted to do what it says. All others let the force go by the release law. */
 #define EXH_FAULT_CUT \
@@ -73,7 +76,7 @@ enum exh_arm { /* steps of arming, in their order                              *
     EXH_ARM_SMALL_FORCE = 1u << 5, /* the law asks for less than arm_force, for arm_time */
     EXH_ARM_RAMP = 1u << 6         /* the force limit rises to f_max in ramp_time */
 };
-#define EXH_ARMS 7
+#define EXH_ARMS 7 /* bits of enum exh_arm, from 0 on */
 /* The first four are vouched for by the scene. One that has no such thing says so by a name in its
  * source, as with EXH_UNTRACKED. */
 #define EXH_UNTESTED     EXH_ARM_SELFTEST
@@ -92,14 +95,16 @@ enum exh_trigger { /* in order of priority: the first that applies decides      
     EXH_ON_LIMITED,  /* while it runs: a limit acted in the last tick          */
     EXH_ON_RUN,      /* command                                                */
     EXH_ON_CLEAR,    /* command, in FAULT, and it may                          */
-    EXH_ON_NONE,
-    EXH_TRIGGERS
+    EXH_ON_NONE,     /* none of them: the state stays, but LIMIT is RUN again   */
+    EXH_TRIGGERS     /* how many there are                                     */
 };
 /* The state machine. A cell that cannot be reached leads to FAULT. */
 extern const uint8_t exh_safety_next[EXH_STATES][EXH_TRIGGERS];
 
+/* Ticks in time that make up for one that was missed. */
 #define EXH_LATE_TICKS 64
 
+/* Parameters of the box; rows in exh_safety_rows[]. */
 struct exh_safety_par {
     /* Missed ticks tolerated, 0 or 1: one in EXH_LATE_TICKS. What a tick believes of
      * time is wrong in it: velocity over n ticks reads up to (n+1)/n too much,
@@ -113,9 +118,10 @@ struct exh_safety_par {
 #define EXH_SAFETY_ROWS 5
 extern const struct exh_signal exh_safety_rows[EXH_SAFETY_ROWS];
 
+/* The box as it is set up. */
 struct exh_safety_cfg {
-    uint32_t late_max;      /* of `late`                                       */
-    int32_t small_N_q20;
+    uint32_t late_max;      /* of `late`: above it, EXH_FAULT_OVERRUN          */
+    int32_t small_N_q20;    /* arm_force                                       */
     uint32_t arm_ticks;     /* arm_time, rounded up, 2 at least                */
     int32_t ramp_q30;       /* share of the force limit gained a tick          */
     uint32_t release_ticks; /* release_time, rounded down, 3 at least, below 500 Hz 4 at most */
@@ -126,6 +132,8 @@ struct exh_safety_cfg {
 int exh_safety_setup(struct exh_safety_cfg *cfg, const struct exh_safety_par *par,
                      struct exh_period T);
 
+/* The box from tick to tick. A state of zeros is OFF. For everybody to read, for the functions below
+ * alone to write. */
 struct exh_safety {
     uint32_t present;    /* causes seen in the last tick: why RUN or CLEAR is refused */
     uint32_t faults;     /* latched causes                                     */
@@ -148,6 +156,7 @@ struct exh_safety {
     uint8_t fingers;     /* drives seen ready in this tick: the gate opens no other */
 };
 
+/* What the box goes by in a tick. */
 struct exh_safety_in {
     uint32_t din;     /* enum exh_din                                          */
     uint32_t raised;  /* enum exh_fault: causes other modules see now          */
@@ -177,9 +186,10 @@ int exh_safety_open(const struct exh_safety *s);
 /* Last thing of a tick (gate.c): the currents of fingers 0..n-1 into codes. Completes
  * each ledger (gate, dac, coded); fingers not in use, and all of them while it is closed,
  * get dac_zero and are disabled. No input makes a code beyond dac_zero +-
- * dac_span, and in RELEASE none that is further from dac_zero than in the tick before. 1 <= n <= the fingers of exh_safety_step(); cfg, i and limits are arrays of n. Adds
- * EXH_LIMIT_DAC and EXH_LIMIT_GATE (current held back) to limits, and keeps all of them for the
- * next exh_safety_step(), which counts them. */
+ * dac_span, and in RELEASE none that is further from dac_zero than in the tick before. 1 <= n <= the
+ * fingers of exh_safety_step(); cfg, i and limits are arrays of n. Adds EXH_LIMIT_DAC and
+ * EXH_LIMIT_GATE (current held back) to limits, and keeps all of them for the next
+ * exh_safety_step(), which counts them. */
 void exh_gate(struct exh_safety *s, const struct exh_drive_cfg *cfg, unsigned n,
               struct exh_current_ledger *i, uint32_t *limits, struct exh_drive_out *out);
 

@@ -22,6 +22,7 @@
 extern "C" {
 #endif
 
+/* When a value may be changed. */
 enum exh_signal_when {
     EXH_WHEN_OUTPUT, /* not a parameter: read only                            */
     EXH_WHEN_SETUP,  /* before the loop starts; refused once locked           */
@@ -30,6 +31,7 @@ enum exh_signal_when {
     EXH_WHEN_LIMIT   /* likewise, a limit of force: it rises little by little and falls at once */
 };
 
+/* One row: what a value is. Constant, in ROM. */
 struct exh_signal {
     uint16_t id;      /* stable for ever, unique in the library; 0xMMNN: module, row */
     uint8_t frac;     /* fraction bits: value = raw * 2^-frac                  */
@@ -43,15 +45,15 @@ struct exh_signal {
 
 /* The rows of one module, once per instance (per finger). */
 struct exh_signal_group {
-    const struct exh_signal *row;
-    uint16_t rows;
-    uint16_t instances; /* >= 1; instance-major in the value array            */
+    const struct exh_signal *row; /* rows of them, in the order of the struct's fields */
+    uint16_t rows;                /* how many                                  */
+    uint16_t instances;           /* >= 1; instance-major in the value array   */
 };
 
 /* A scene's values: the groups in order, one int32_t a row and instance. */
 struct exh_signal_table {
-    const struct exh_signal_group *group;
-    uint16_t groups;
+    const struct exh_signal_group *group; /* groups of them                    */
+    uint16_t groups;                      /* how many                          */
 };
 
 /* How many values the table describes. */
@@ -73,9 +75,9 @@ uint32_t exh_signal_crc(const struct exh_signal_table *t);
  * scene's parameter struct, the staged one what is wanted. Zero, or as exh_params_init() leaves it; both
  * arrays are written by the functions below only, or before exh_params_seal(). */
 struct exh_params {
-    const struct exh_signal_table *table;
-    int32_t *active;
-    int32_t *staged;
+    const struct exh_signal_table *table; /* of what the values are            */
+    int32_t *active; /* raw values in effect                                   */
+    int32_t *staged; /* raw values wanted                                      */
     uint8_t locked;  /* set-up values are refused from now on                 */
     uint8_t pending; /* something was staged since the last apply             */
     uint8_t moving;  /* a slewed value is not yet where it is wanted          */
@@ -85,7 +87,7 @@ struct exh_params {
     uint32_t sum, passed, at; /* exh_params_look(): of all, of those looked at, the next */
 };
 
-#define EXH_PARAMS_VERSION 1
+#define EXH_PARAMS_VERSION 1 /* of the image */
 
 /* How fast slewed values go. Set-up only. */
 struct exh_tune_par {
@@ -93,7 +95,7 @@ struct exh_tune_par {
 };
 #define EXH_TUNE_ROWS 1
 extern const struct exh_signal exh_tune_rows[EXH_TUNE_ROWS];
-#define EXH_TUNE_SHIFT_MAX 15
+#define EXH_TUNE_SHIFT_MAX 15 /* 2^15 ticks are more than 1 s at 20 kHz     */
 
 /* Defaults into both arrays, unlocked, shift 0. */
 void exh_params_init(struct exh_params *p, const struct exh_signal_table *table, int32_t *active,

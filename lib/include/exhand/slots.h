@@ -39,13 +39,14 @@ extern "C" {
 
 #define EXH_SLOT_HEAD_B     12u /* before the image                           */
 #define EXH_SLOT_TAIL_B     8u /* behind it                                  */
+/* Bytes of a slot that holds an image of image_B bytes: a constant expression if that is one. */
 #define EXH_SLOT_B(image_B) (EXH_SLOT_HEAD_B + (image_B) + EXH_SLOT_TAIL_B)
 
 /* What is in a slot. */
 struct exh_slot {
     const uint8_t *image; /* in the slot itself                                */
-    uint32_t len_B;
-    uint32_t sequence; /* 1 .. 2^32 - 2                                        */
+    uint32_t len_B;       /* of the image                                      */
+    uint32_t sequence;    /* 1 .. 2^32 - 2                                     */
 };
 
 /* What is in the slot_B bytes of a slot, blank, damaged or anything. 0; -EXH_E_UNKNOWN: nothing was ever saved there

@@ -16,25 +16,28 @@
 extern "C" {
 #endif
 
-#define EXH_TRACE_SIGNALS 4
+#define EXH_TRACE_SIGNALS 4    /* values in a frame, always; who wants fewer names one again */
 #define EXH_TRACE_FRAMES  128u /* in memory, at most                            */
 
+/* What is kept of one tick. */
 struct exh_trace_frame {
     uint32_t number; /* modulo 2^32                                            */
-    uint32_t tick;
-    int32_t raw[EXH_TRACE_SIGNALS];
+    uint32_t tick;   /* of the loop, as exh_trace_tick() was told it           */
+    int32_t raw[EXH_TRACE_SIGNALS]; /* the signals asked for, in their order and rows' formats */
 };
 
+/* What is to be traced. */
 struct exh_trace_what {
     uint32_t every; /* ticks from frame to frame; 0: none                      */
     uint32_t index[EXH_TRACE_SIGNALS]; /* of values in the scene's table of outputs */
 };
 
+/* A trace; all but frame, mask and signals is its state. */
 struct exh_trace {
     struct exh_trace_frame *frame; /* the caller's; number k is in frame[k & mask] */
     uint32_t mask; /* frames - 1                                               */
     uint32_t signals; /* values in the table                                   */
-    struct exh_trace_what what;
+    struct exh_trace_what what; /* what is traced now                          */
     uint32_t first; /* number of this trace's first frame                      */
     uint32_t head; /* number of the next frame, modulo 2^32                    */
     uint32_t run; /* traces started, modulo 2^32                               */

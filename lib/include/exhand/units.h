@@ -55,7 +55,7 @@ struct exh_period {
 
 /* A point or a direction; which, and its unit and format, is in the name of the value. */
 struct exh_vec3 {
-    int32_t x, y, z;
+    int32_t x, y, z; /* in the frame that whoever has it says                  */
 };
 
 /* 1 if it is within that range, but for the 1000 ppm by which a timer may miss it: what

@@ -17,6 +17,7 @@
 extern "C" {
 #endif
 
+/* Parameters of one finger; rows in exh_watch_rows[]. */
 struct exh_watch_par {
     int32_t speed_mps_q27;   /* velocity into the law is no more, m/s, 0.1 .. 10 */
     int32_t speed_ms;        /* beyond it for longer: fault, ms, 1 .. 1000     */
@@ -26,12 +27,14 @@ struct exh_watch_par {
 #define EXH_WATCH_ROWS 4
 extern const struct exh_signal exh_watch_rows[EXH_WATCH_ROWS];
 
+/* One finger as it is set up. */
 struct exh_watch_cfg {
-    const struct exh_watch_par *par;
+    const struct exh_watch_par *par; /* read at every tick                     */
     uint32_t speed_ticks; /* times, rounded up                                 */
     uint32_t stuck_ticks; /* 0: never                                          */
 };
 
+/* One finger from tick to tick. */
 struct exh_watch {
     uint32_t fast_ticks;  /* beyond the limit since, 0 .. speed_ticks          */
     uint32_t stuck_ticks; /* pulled, and not a count since, 0 .. stuck_ticks   */
