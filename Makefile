@@ -31,7 +31,7 @@ jobs       = $(or $(patsubst -j%,%,$(filter -j%,$(MAKEFLAGS))),1)
 
 # These call make for what they need, or take it away: two at a time would write the same files.
 callers := all test demo run image coverage stress stability test-i686 matrix matrix-box mutants mcdc mutation fuzz hil hil-built strangers gpio linux-program link porting \
-           boot boot-built \
+           fmi boot boot-built \
            contract contract-built nic nic-built modbus-image modbus world two-computers bench-world bench report size costs cards install diagrams clean check
 ifneq ($(and $(filter $(callers),$(MAKECMDGOALS)),$(word 2,$(MAKECMDGOALS))),)
 .NOTPARALLEL:
@@ -281,6 +281,48 @@ FIT_BUDGET ?= 6000
 fit: all
 	$(Q)$(exhand) fit --budget $(FIT_BUDGET) --out $(B)/fit $(ARGS) > $(B)/fit.txt.new
 	@mv $(B)/fit.txt.new $(B)/fit.txt && cat $(B)/fit.txt
+
+# --- FMI ------------------------------------------------------------------------------------------------
+
+# Source FMUs: what is in them is what is built here; a program of each prints its description from its own tables.
+fmi_src        := ports/fmi/fmi3.c ports/fmi/absent.c
+fmi_controller := ports/fmi/controller.c examples/drop/drop.c examples/calib.c $(lib_src)
+fmi_device     := ports/fmi/device.c $(patsubst %,ports/posix/sim/%.c,mass plant device fall bench lag)
+fmi_folders    := lib/include/exhand=exhand lib/src=lib examples= examples/drop=drop ports/posix/sim=sim ports/fmi=fmi
+$(B)/fmi/describe-controller: $(patsubst %.c,$(B)/posix/%.o,ports/fmi/describe.c $(fmi_controller))
+$(B)/fmi/describe-device: $(patsubst %.c,$(B)/posix/%.o,ports/fmi/describe.c $(fmi_device)) $(B)/posix/libexhand.a
+$(B)/fmi/describe-%:
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^
+fmi_pack = $(Q)ports/fmi/pack.py $@ $< $(fmi_folders) -- $(fmi_src)
+$(B)/fmu/ExhandController.fmu: $(B)/fmi/describe-controller $(fmi_controller) $(fmi_src) ports/fmi/pack.py
+	@mkdir -p $(@D)
+	$(fmi_pack) $(fmi_controller)
+$(B)/fmu/ExhandDevice.fmu: $(B)/fmi/describe-device $(fmi_device) $(fmi_src) ports/fmi/pack.py
+	@mkdir -p $(@D)
+	$(fmi_pack) $(fmi_device) lib/src/bytes.c
+
+$(B)/fmi/native: $(B)/posix/test/fmi/native.o $(filter-out %/main.o,$(cli_obj)) $(sim_obj) $(B)/posix/libexhand.a
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(cli_libs)
+
+## FMI 3.0 source FMUs of the controller and of the simulated device: build/fmu
+.PHONY: fmu
+fmu: $(B)/fmu/ExhandController.fmu $(B)/fmu/ExhandDevice.fmu
+	@ls -l $^ | awk '{print $$NF ": " $$5 " bytes"}'
+
+FMI_RATES ?= 90 500 2000
+
+## FMPy validates, compiles and runs the FMUs, another importer too: the native outputs, bit for bit (FMI_RATES="90 500 2000")
+.PHONY: fmi fmi-run
+fmi:
+	@.ci/deps "the FMUs" "command -v cmake && command -v python3 && python3 -c 'import ensurepip'" cmake make python3 python3-venv || exit 3
+	@$(MAKE) --no-print-directory $(if $(V),,-s) fmu $(B)/fmi/native
+	@$(fmi_run)
+fmi_run = B=$(B) test/fmi/fmi.sh $(FMI_RATES)
+# What of it CI has; nothing where the packages cannot be had.
+fmi-run:
+	@B=$(B) test/fmi/fmi.sh 500 > $(B)/fmi/said 2>&1; s=$$?; tail -n 1 $(B)/fmi/said; [ $$s = 0 ] || [ $$s = 3 ] || { cat $(B)/fmi/said; exit 1; }
 
 # --- tests ----------------------------------------------------------------------
 
@@ -818,6 +860,7 @@ check:
 	@$(timed) undef undef-cortex-m3 undef-cortex-m0
 	@$(timed) PORT=pc104 SCENE=minimal undef undef-emu
 	@$(timed) PORT=template SCENE=minimal all
+	@$(timed) fmu $(B)/fmi/native
 	@$(timed) world boot-built contract-built nic-built hil-built
 	@$(timed) $(check_runs)
 	@$(timed) stress-short
@@ -828,7 +871,7 @@ check:
 	@$(timed) report ARGS=--short
 
 # What runs built images and programs, one core each: as many at a time as there are cores.
-check_runs := boot-run hil-short nic-run contract-run two-run picture
+check_runs := boot-run hil-short nic-run contract-run two-run fmi-run picture
 .PHONY: hil-short picture bits
 hil-short:
 	@$(MAKE) --no-print-directory hil-run HIL_TICKS=2000 HIL_FEW=500 HIL_QEMU=2000 > $(B)/hil.txt || { cat $(B)/hil.txt; exit 1; }

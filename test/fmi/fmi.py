@@ -1,0 +1,251 @@
+#!/usr/bin/env python3
+"""The FMUs against the native run: fmi.py FMU-FOLDER NATIVE FALLS RATE...: FMPy validates and compiles them and runs them alone
+and together; fmuloader, another importer, runs them together, too. Every output of every step is the native one, bit for bit."""
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import zipfile
+
+import fmpy
+import fmuloader.fmi3
+from fmpy.build import build_platform_binary
+from fmpy.fmi3 import FMU3Slave
+from fmpy.validation import validate_fmu
+
+failed = 0
+
+
+def say(ok, text):
+    global failed
+    failed += not ok
+    print(f"  {'ok' if ok else 'FAILED'} {text}", flush=True)
+
+
+class Native:
+    """A run as native.c tells it: parameters, and a dictionary a tick."""
+
+    def __init__(self, program, rate, falls):
+        self.rate, self.falls, self.param, self.tick = rate, falls, {}, []
+        for line in subprocess.run([program, str(rate), str(falls), "1"], check=True, capture_output=True, text=True).stdout.splitlines():
+            word = line.split()
+            if word[0] == "param":
+                self.param[word[1]] = int(word[2]) / 2 ** int(word[3])
+            elif word[0] == "columns":
+                column = [w.split(":") for w in word[1:]]
+            else:
+                self.tick.append({n: int(v) / 2 ** int(f) for (n, f), v in zip(column, word)})
+        self.inputs = [n for n, _ in column[:6]]
+        self.outputs = [n for n, _ in column[6:]]
+
+
+class Described:
+    """An FMU's variables by name, for any importer that has get and set by type."""
+
+    def __init__(self, folder):
+        self.description = fmpy.read_model_description(str(folder))
+        self.variable = {v.name: v for v in self.description.modelVariables}
+
+    def reference(self, name):
+        v = self.variable[name]
+        return v.valueReference, v.type
+
+
+class ByFmpy(Described):
+    name = "FMPy"
+
+    def __init__(self, folder):
+        super().__init__(folder)
+        d = self.description
+        self.said = []
+        self.fmu = FMU3Slave(guid=d.guid, unzipDirectory=str(folder), modelIdentifier=d.coSimulation.modelIdentifier, instanceName="a")
+        self.fmu.instantiate(loggingOn=True)
+
+    def put(self, name, value):
+        vr, kind = self.reference(name)
+        self.fmu.setInt32([vr], [int(value)]) if kind == "Int32" else self.fmu.setFloat64([vr], [value])
+
+    def get(self, name):
+        vr, kind = self.reference(name)
+        return self.fmu.getInt32([vr])[0] if kind == "Int32" else self.fmu.getFloat64([vr])[0]
+
+    def start(self):
+        self.fmu.enterInitializationMode()
+        self.fmu.exitInitializationMode()
+
+    def step(self, t, h):
+        self.fmu.doStep(t, h)
+
+    def end(self):
+        self.fmu.terminate()
+        self.fmu.freeInstance()
+
+    def state(self):
+        return self.fmu.serializeFMUState(self.fmu.getFMUState())
+
+    def restore(self, data):
+        self.fmu.setFMUState(self.fmu.deserializeFMUState(data))
+
+
+class ByFmuloader(Described):
+    name = "fmuloader"
+
+    def __init__(self, folder):
+        super().__init__(folder)
+        d = self.description
+        self.fmu = fmuloader.fmi3.Fmi3Slave(str(folder), model_identifier=d.coSimulation.modelIdentifier)
+        self.fmu.instantiate_co_simulation("b", instantiation_token=d.guid)
+
+    def put(self, name, value):
+        vr, kind = self.reference(name)
+        self.fmu.set_int32([vr], [int(value)]) if kind == "Int32" else self.fmu.set_float64([vr], [value])
+
+    def get(self, name):
+        vr, kind = self.reference(name)
+        return (self.fmu.get_int32([vr]) if kind == "Int32" else self.fmu.get_float64([vr]))[0]
+
+    def start(self):
+        self.fmu.enter_initialization_mode()
+        self.fmu.exit_initialization_mode()
+
+    def step(self, t, h):
+        self.fmu.do_step(t, h)
+
+    def end(self):
+        self.fmu.terminate()
+        self.fmu.free_instance()
+
+
+def controller(importer, folder, native):
+    c = importer(folder["ExhandController"])
+    c.put("period_den", native.rate)
+    for name, value in native.param.items():
+        c.put(name, value)
+    c.start()
+    return c
+
+
+def device(importer, folder, native):
+    d = importer(folder["ExhandDevice"])
+    for name, value in (("period_den", native.rate), ("falls", native.falls)):
+        d.put(name, value)
+    d.start()
+    return d
+
+
+def differs(native, n, unit, names, what):
+    """The first of these outputs in tick n that is not the native run's."""
+    for name in names:
+        ours = unit.get(name)
+        if ours != native.tick[n][name]:
+            print(f"  {what}: step {n}: {name}: {ours!r}, native {native.tick[n][name]!r}")
+            return True
+    return False
+
+
+def alone_controller(importer, folder, native):
+    """By the inputs that the native one had; in mid-run kept as bytes, led astray, and put back."""
+    c, h, bad = controller(importer, folder, native), 1 / native.rate, False
+    kept = len(native.tick) // 2
+    for n, tick in enumerate(native.tick):
+        if n == kept and hasattr(c, "state"):
+            data = c.state()
+            c.put("din", 0)
+            for k in range(50):
+                c.step(n * h, h)
+            bad = bad or c.get("faults") == 0
+            c.restore(data)
+        for name in native.inputs:
+            c.put(name, tick[name])
+        c.step(n * h, h)
+        bad = bad or differs(native, n, c, native.outputs, "controller")
+    c.end()
+    return not bad
+
+
+def alone_device(importer, folder, native):
+    d, h, bad = device(importer, folder, native), 1 / native.rate, False
+    for n, tick in enumerate(native.tick):
+        bad = bad or differs(native, n, d, native.inputs[:4], "device")
+        for name in ("dac_raw", "enable", "state"):
+            d.put(name, tick[name])
+        d.step(n * h, h)
+    bad = bad or d.get("done") != 1
+    d.end()
+    return not bad
+
+
+def together(importer, folder, native):
+    """Controller first, then the device, a period at a time: as many steps as the native run had ticks."""
+    c, d, h, bad, n = controller(importer, folder, native), device(importer, folder, native), 1 / native.rate, False, 0
+    while not d.get("done") and not bad and n < len(native.tick):
+        for name in ("enc_raw", "mon_raw", "supply_raw", "din"):
+            c.put(name, d.get(name))
+        c.step(n * h, h)
+        bad = differs(native, n, c, native.outputs, "together")
+        for name in ("dac_raw", "enable", "state"):
+            d.put(name, c.get(name))
+        d.step(n * h, h)
+        n += 1
+    done = d.get("done") == 1
+    c.end()
+    d.end()
+    return not bad and done and n == len(native.tick)
+
+
+def refused(call):
+    try:
+        call()
+    except Exception:
+        return True
+    return False
+
+
+def refusals(folder):
+    c = ByFmpy(folder["ExhandController"])
+    say(refused(lambda: c.put("k", 1e9)) and refused(lambda: c.put("f_des", 1.0)), "a value out of range, and an output that is set, are refused")
+    c.start()
+    say(refused(lambda: c.put("period_den", 1000)), "a fixed parameter is refused once it runs")
+    say(refused(lambda: c.step(0, 0.0003)), "a step that is no period is refused")
+    say(refused(lambda: c.fmu.setFloat32([1], [1.0])), "a variable of another type is refused")
+    c.end()
+
+
+def main(fmus, native_program, falls, *rates):
+    folder, fmus = {}, pathlib.Path(fmus).resolve()
+    for name in ("ExhandController", "ExhandDevice"):
+        fmu = fmus / f"{name}.fmu"
+        problems = validate_fmu(str(fmu))
+        say(not problems, f"FMPy {fmpy.__version__}: validate {name}: {len(problems)} problems" + "".join(f"\n    {p}" for p in problems))
+        folder[name] = fmus / name
+        shutil.rmtree(folder[name], ignore_errors=True)
+        with zipfile.ZipFile(fmu) as archive:
+            archive.extractall(folder[name])
+        build = fmus / f"{name}-cmake"
+        shutil.rmtree(build, ignore_errors=True)
+        build.mkdir()
+        out = os.dup(1)
+        with open(build / "said", "w") as said:
+            os.dup2(said.fileno(), 1)
+            try:
+                build_platform_binary(folder[name], build_dir=build)
+            finally:
+                os.dup2(out, 1)
+        say((folder[name] / "binaries" / fmpy.platform_tuple).is_dir(), f"FMPy compiled {name} from its sources")
+        result = fmpy.simulate_fmu(str(folder[name]), stop_time=1.0, step_size=0.0005, output_interval=0.0005)
+        say(len(result) == 2001, f"FMPy simulated {name} for 1 s: {len(result)} rows of {len(result.dtype.names)} variables")
+    for rate in rates:
+        native = Native(native_program, int(rate), int(falls))
+        say(len(native.tick) > int(rate) and any(t["c"] for t in native.tick), f"native at {rate} Hz: {len(native.tick)} ticks")
+        say(alone_controller(ByFmpy, folder, native), f"controller at {rate} Hz: the native outputs, bit for bit; its state goes out and in")
+        say(alone_device(ByFmpy, folder, native), f"device at {rate} Hz: the native codes, bit for bit")
+        for importer in (ByFmpy, ByFmuloader):
+            say(together(importer, folder, native), f"both at {rate} Hz in {importer.name}: the native run, bit for bit")
+    refusals(folder)
+    print(f"fmi: {failed} failed" if failed else "fmi: all ok")
+    return failed > 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))
