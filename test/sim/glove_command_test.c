@@ -257,6 +257,7 @@ TEST(bad_usage_is_refused_by_name)
         {{"--selftest", "--device", "noise=9"}, "noise: 9 (allowed 0..1 v)"},
         {{"--selftest", "--device", "mass=9"}, "mass: 9 (allowed"},
         {{"--selftest", "--device", "none=9"}, "none: no such value"},
+        {{"--selftest", "--device", "rotor=0.0001", "--device", "substep=1e-4"}, "give --device substep=1e-05"},
         {{"--record", "/nowhere/x"}, "/nowhere/x: No such file"},
         {{"--record", "x", "--pose", "none"}, "--pose: none: no such pose"},
         {{"--record", "x", "--does", "none"}, "--does: none"},

@@ -48,10 +48,8 @@ static struct posix_config device_of(const struct closed *c)
     if (c->tweak == NO_FRICTION || c->tweak == FREE) {
         p.device.mu_motor = p.device.mu_mass = p.device.coulomb_n = p.device.viscous_nspm = 0;
     }
-    if (c->tweak == STIFF_CABLE) {
-        p.device.cable_npm = 1e6;
-        p.device.substep_s = 5e-6;
-    }
+    if (c->tweak == STIFF_CABLE) { p.device.cable_npm = 1e6; }
+    if (!plant_step_will_do(&p.device, 0)) { p.device.substep_s = plant_step_that_will_do(&p.device, 0); }
     return p;
 }
 
