@@ -327,7 +327,7 @@ fmi-run:
 # --- tests ----------------------------------------------------------------------
 
 san       := -fsanitize=address,undefined -fno-sanitize-recover=all
-test_dirs := golden sim prop world slot gpio cards emu pc104 board unit # in this order: long ones first
+test_dirs := golden sim prop world slot gpio serial cards emu pc104 board unit # in this order: long ones first
 test_src  := $(foreach d,$(test_dirs),$(wildcard test/$(d)/*_test.c))
 test_bin  := $(test_src:test/%_test.c=$(B)/test/%_test)
 tflags     = $(base) $(CFLAGS) -Itest -DEXH_FIX_AUDIT
@@ -401,6 +401,12 @@ $(B)/test/gpio/v%_test: $(B)/posix/test/gpio/v%_test.o $(B)/test/gpio/v%.o $(B)/
                         $(B)/posix/test/support.o $(filter-out %/main.o %/loop.o,$(cli_obj) $(dev_obj)) $(B)/test/loop.o $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) -o $@ $^ -lcmocka $(cli_libs)
+# The bytes of a stock glove's line, and the glove at its other end.
+serial_obj := $(patsubst %.c,$(B)/test/san/%.o,ports/posix/cyberglove.c ports/posix/emu/cyber.c test/support.c)
+$(B)/test/san/test/serial/%.o $(serial_obj): tflags += -Iports/posix
+$(B)/test/serial/%_test: $(B)/test/san/test/serial/%_test.o $(serial_obj)
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(san) -o $@ $^ -lcmocka
 gpio_fake = $(Q)mkdir -p $(@D) && $(CC) $(base) $(PORT_HOSTFLAGS) $(CFLAGS) -Itest/gpio/v$* -Itest/gpio -c $< -o $@
 $(B)/test/gpio/v%.o: ports/posix/gpio_v%.c $(stamp)
 	$(gpio_fake)

@@ -4,6 +4,7 @@
 #include "posix.h"
 
 #include "cards.h"
+#include "glove_tty.h"
 #include "gpio.h"
 #include "line.h"
 #include "pace.h"
@@ -219,6 +220,16 @@ static void advance_device(double until_s)
     }
 }
 
+/* What the line has brought, at this tick. */
+static void take_serial(void)
+{
+    struct glove_tty *t = sim.cfg.glove_tty;
+    if (t == NULL || !glove_tty_poll(t, sim.now_s)) { return; }
+    for (unsigned i = 0; i < SIM_GLOVE_SENSORS; i++) { sim.frame[i] = t->in.sample[i]; }
+    sim.frame_tick = sim.tick;
+    sim.frame_s = sim.now_s;
+}
+
 /* Everything that happens up to and at end_s: outputs on their instants, whatever the device
  * does between on its own. */
 static void advance_to(double end_s)
@@ -270,6 +281,7 @@ int exh_board_wait(void)
     if (sim.cfg.cards.how) { cards_at(sim.now_s); }
     if (time_is_up()) { return -1; }
     sim.tick++;
+    take_serial();
     return stop || interrupted || done() ? -1 : (int)missed;
 }
 
@@ -390,20 +402,31 @@ static void next_frame(void)
 }
 
 /* A scan that ends at this tick, if it could begin after the last had ended. */
-int exh_board_read_glove(struct exh_glove_in *in)
+static int scan(void)
 {
     const double scan_s = SIM_GLOVE_SENSORS * sim.cfg.glove_par.interval_s;
+    if (sim.frame_s >= 0 && sim.now_s < sim.frame_s + scan_s * 0.999999) { return 0; }
+    next_frame();
+    return sim.cfg.cards.how ? cards_read_glove(sim.frame) : 0;
+}
+
+/* On a line it was on its way for whole ticks, and before the first there is none. */
+static uint64_t frame_age(void)
+{
+    const uint64_t age = sim.tick - sim.frame_tick;
+    const double way = GLOVE_TTY_FRAME_S * sim.T.den / sim.T.num;
+    if (sim.cfg.glove_tty == NULL) { return age; }
+    return sim.frame_s < 0 ? UINT16_MAX : age + (uint64_t)way + 1;
+}
+
+int exh_board_read_glove(struct exh_glove_in *in)
+{
+    const int serial = sim.cfg.glove_tty != NULL;
+    const int err = !sim.cfg.glove ? -EXH_E_ABSENT : serial ? 0 : scan();
     uint64_t age;
-    if (!sim.cfg.glove) { return -EXH_E_ABSENT; }
-    if (sim.frame_s < 0 || sim.now_s >= sim.frame_s + scan_s * 0.999999) {
-        next_frame();
-        if (sim.cfg.cards.how) {
-            const int err = cards_read_glove(sim.frame);
-            if (err < 0) { return err; }
-        }
-    }
+    if (err < 0) { return err; }
     memcpy(in->raw, sim.frame, sizeof sim.frame);
-    age = sim.tick - sim.frame_tick;
+    age = frame_age();
     in->age_ticks = (uint16_t)(age < UINT16_MAX ? age : UINT16_MAX);
     return 0;
 }

@@ -4,6 +4,7 @@
 #define POSIX_H
 
 #include "cards.h"
+#include "glove_tty.h"
 #include "line.h"
 
 #include "sim/bench.h"
@@ -49,6 +50,8 @@ struct posix_config {
     struct sim_operator_par hand;
     const int16_t (*frame)[SIM_GLOVE_SENSORS]; /* recorded frames instead, the caller's, */
     long frames;             /* one a read, the last for ever; NULL: none        */
+    struct glove_tty *glove_tty; /* or those of a stock glove on a serial line, the caller's, open;
+                              * codes 1 .. 255. Real time: with pace           */
     /* Between box and device, for who rehearses faults; NULL: nothing. What the device gets, and
      * what it shows the box, cards included. */
     void (*wires_out)(struct exh_drive_out *out);

@@ -1,9 +1,10 @@
-/* exhand glove: the glove's Table I, recordings as stable angles, the scan's skew, logs. */
+/* exhand glove: the glove's Table I, recordings as stable angles, the scan's skew, logs, a stock glove. */
 #include "glove.h"
 
 #include "assign.h"
 #include "cli.h"
 #include "glove_image.h"
+#include "glove_tty.h"
 #include "option.h"
 #include "outfile.h"
 #include "param.h"
@@ -17,6 +18,7 @@
 
 #define IMAGE_B  (EXH_GLOVE_CAL_IMAGE_B + 1)
 #define RATE_TOP 20000
+#define GLOVE_HZ 90 /* a stock glove's                                           */
 
 /* --- options with a syntax of their own --- */
 
@@ -32,7 +34,14 @@ static int take_setting(void *ctx, const char *text)
         return 2;
     }
     if (strcmp(name, "glove_fc") == 0) { o->fc_given = 1; }
-    return cli_param_set(exh_scene_glove.params, name, value) < 0 ? 2 : 0;
+    if (cli_param_set(exh_scene_glove.params, name, value) < 0) { return 2; }
+    if (o->settings == GLOVE_SETTINGS) {
+        cli_complain("--set: at most %d", GLOVE_SETTINGS);
+        return 2;
+    }
+    o->setting[o->settings++] =
+        (struct run_setting){cli_signal_find(exh_scene_glove.params->table, name, NULL)->name, value};
+    return 0;
 }
 
 /* One of the motor's device or of the glove's chain: no name is in both. */
@@ -78,7 +87,7 @@ static int complain_cal(const char *path, int err, struct exh_glove_bad bad)
     return 2;
 }
 
-static int load_calibration(const char *path)
+int glove_load_calibration(const char *path)
 {
     static struct exh_glove_cal cal;
     struct exh_glove_bad bad = {0, 0};
@@ -120,6 +129,9 @@ static int check_rest(const struct glove_options *o)
         const char *why;
     } row[] = {
         {o->play && !o->record, "--play: goes with --record"},
+        {o->serial && (o->play || o->does || o->pose || o->cards),
+         "--serial: a hand is in that glove: leave --play, --does, --pose and --cards out"},
+        {o->glove_Hz > 0 && !o->serial, "--glove-rate: goes with --serial"},
         {(o->does || o->pose) && !o->record, "--does and --pose: go with --record"},
         {(o->does || o->pose) && o->play, "--play: says what the hand does: leave --does and --pose out"},
         {(o->from_s > 0 || o->to_s > 0) && !recorded, "--from and --to: go with --selftest of a recording"},
@@ -135,11 +147,11 @@ static int check_rest(const struct glove_options *o)
 
 static int check(const struct glove_options *o)
 {
-    if (!o->selftest && !o->csv && !o->skew && !o->record) {
-        return bad_combination("what to do is missing: --selftest, --csv, --skew or --record");
+    if (!o->selftest && !o->csv && !o->skew && !o->record && !o->serial) {
+        return bad_combination("what to do is missing: --selftest, --csv, --skew, --record or --serial");
     }
-    if ((o->skew != 0) + (o->record != NULL) + (o->selftest || o->csv) > 1) {
-        return bad_combination("--skew, --record, and --selftest or --csv: one at a time");
+    if ((o->skew != 0) + (o->record || o->serial) + (o->selftest || o->csv) > 1) {
+        return bad_combination("--skew, --record or --serial, and --selftest or --csv: one at a time");
     }
     if (o->log && !o->selftest) { return bad_combination("--log: goes with --selftest"); }
     if (o->csv && o->log) { return bad_combination("--csv and --log: one of them"); }
@@ -148,8 +160,8 @@ static int check(const struct glove_options *o)
     if (o->unit && recording_unit_of(o->unit) == RECORDING_GUESS) {
         return bad_combination("--unit: codes, rad, deg or turn");
     }
-    if ((o->tips || o->deg) && (!o->csv || o->selftest)) {
-        return bad_combination("--tips and --deg: go with --csv");
+    if ((o->tips || o->deg) && (!(o->csv || (o->serial && !o->record)) || o->selftest)) {
+        return bad_combination("--tips and --deg: go with --csv, or with --serial without --record");
     }
     return check_rest(o);
 }
@@ -157,12 +169,14 @@ static int check(const struct glove_options *o)
 static int run(struct glove_options *o)
 {
     int err = check(o);
-    if (err == 0 && o->calibration) { err = load_calibration(o->calibration); }
+    if (err == 0 && o->calibration) { err = glove_load_calibration(o->calibration); }
     if (err) { return err; }
-    if (o->record) {
-        if (o->rate_Hz <= 0) { o->rate_Hz = exh_scene_glove.rate_Hz; }
-        return glove_record(o);
+    if ((o->record || o->serial) && o->rate_Hz <= 0) { o->rate_Hz = exh_scene_glove.rate_Hz; }
+    if (o->serial) {
+        if (o->glove_Hz <= 0) { o->glove_Hz = GLOVE_HZ; }
+        return glove_serial(o);
     }
+    if (o->record) { return glove_record(o); }
     return o->skew ? glove_skew(o) : o->selftest ? glove_table1(o) : glove_csv(o);
 }
 
@@ -185,11 +199,13 @@ int cli_glove(int argc, char **argv)
         {"unit", CLI_TEXT, &o.unit, 0, 0, "UNIT", "of the rows: codes, rad, deg, turn; else guessed"},
         {"calibration", CLI_TEXT, &o.calibration, 0, 0, "FILE", "instead of nobody's"},
         {"skew", CLI_FLAG, &o.skew, 0, 0, NULL, "what the scan's skew does to the fingertips"},
-        {"record", CLI_TEXT, &o.record, 0, 0, "FILE", "run the scene on the simulated glove, log it there"},
+        {"record", CLI_TEXT, &o.record, 0, 0, "FILE", "run the scene on the simulated glove, or --serial, log it there"},
+        {"serial", CLI_TEXT, &o.serial, 0, 0, "DEVICE", "a stock glove of 22 sensors on this line; rows like --csv's, or --record"},
+        {"glove-rate", CLI_REAL, &o.glove_Hz, GLOVE_TTY_RATE_MIN_HZ, GLOVE_TTY_RATE_MAX_HZ, "HZ", "with --serial: its frames (90)"},
         {"play", CLI_TEXT, &o.play, 0, 0, "FILE", "with --record: the hand does what this recording says"},
         {"does", CLI_TEXT, &o.does, 0, 0, "WHAT", "with --record: rest, poses, grasp or wave"},
         {"pose", CLI_TEXT, &o.pose, 0, 0, "NAME", "with --record: begin in this pose"},
-        {"seconds", CLI_REAL, &o.seconds, 0.001, 100000, "S", "how long the board is asked (10, or all of --play)"},
+        {"seconds", CLI_REAL, &o.seconds, 0.001, 100000, "S", "how long the board is asked (10, or all of --play; --serial: until Ctrl-C)"},
         {"from", CLI_REAL, &o.from_s, 0, 1e6, "S", "selftest: a recording is at rest from here"},
         {"to", CLI_REAL, &o.to_s, 0, 1e6, "S", "to here"},
         {"span", CLI_REAL, &o.span_V, 0.001, 20, "V", "all that a joint's signal can be (20)"},
@@ -201,7 +217,7 @@ int cli_glove(int argc, char **argv)
         {"device", CLI_CALL, u[1].to, 0, 0, "NAME=VALUE", "one of the simulation"},
         {"params", CLI_FLAG, &params, 0, 0, NULL, "list both"},
     };
-    const struct cli_command c = {"glove", "--selftest | --csv FILE --rate HZ | --skew | --record FILE",
+    const struct cli_command c = {"glove", "--selftest | --csv FILE --rate HZ | --skew | --record FILE | --serial DEVICE",
                                   "Glove codes to stable angles and fingertips.", option,
                                   (int)(sizeof option / sizeof option[0]), 0};
     int err;

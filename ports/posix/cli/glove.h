@@ -5,15 +5,19 @@
 #include "recording.h"
 
 #include "posix.h"
+#include "run.h"
 
 #include "glove/glove.h"
 
 #include <stdint.h>
 
+#define GLOVE_SETTINGS 64
+
 struct glove_options {
     int selftest, skew, tips, deg, cards;
-    const char *csv, *log, *record, *play, *calibration, *unit, *does, *pose;
+    const char *serial, *csv, *log, *record, *play, *calibration, *unit, *does, *pose;
     double rate_Hz;             /* 0: not said                                  */
+    double glove_Hz;            /* of --serial                                  */
     double seconds;             /* 0: not said                                  */
     double from_s, to_s;
     double travel_m, span_A, span_V;
@@ -21,6 +25,8 @@ struct glove_options {
     struct sim_device device;
     struct sim_glove_par chain;
     int fc_given;
+    struct run_setting setting[GLOVE_SETTINGS]; /* as they were given              */
+    int settings;
 };
 
 /* Frames of codes as they came. */
@@ -61,10 +67,23 @@ int glove_ready(const struct glove_options *o, struct glove_par *par, struct glo
  * 0, or an exit status after a line on stderr. Free raw. */
 int glove_frames_of(struct glove_frames *f, const struct glove_options *o, const char *path);
 
+/* Rows as --csv writes them. */
+void glove_header(const struct glove_options *o);
+void glove_line(const struct glove_options *o, double t_s, const struct glove_signals *s);
+
+/* Nobody's hand, as exh_glove_cal_default, in codes 1 .. 255 of a stock glove; and in parameters of scene
+ * glove or bilateral, with all else that suits one. 0 or -EXH_E... after a line on stderr. */
+void glove_serial_cal(struct exh_glove_cal *cal);
+int glove_serial_stage(const struct exh_scene *sc, double rate_Hz, double glove_Hz);
+
+/* The calibration of a file, staged. 0, or 2 after a line on stderr. */
+int glove_load_calibration(const char *path);
+
 /* The modes: exit status. */
 int glove_table1(const struct glove_options *o);
 int glove_csv(const struct glove_options *o);
 int glove_skew(const struct glove_options *o);
 int glove_record(const struct glove_options *o);
+int glove_serial(const struct glove_options *o);
 
 #endif

@@ -119,7 +119,7 @@ int glove_frames_of(struct glove_frames *f, const struct glove_options *o, const
 
 /* --- out --- */
 
-static void header(const struct glove_options *o)
+void glove_header(const struct glove_options *o)
 {
     const struct exh_signal_table *t = exh_scene_glove.signals;
     const uint32_t n = exh_signal_count(t);
@@ -132,7 +132,7 @@ static void header(const struct glove_options *o)
     putchar('\n');
 }
 
-static void line(const struct glove_options *o, double t_s, const struct glove_signals *s)
+void glove_line(const struct glove_options *o, double t_s, const struct glove_signals *s)
 {
     const double turn = (o->deg ? 360 : 2 * PI) / 4294967296.0;
     printf("%.9g", t_s);
@@ -165,12 +165,12 @@ int glove_csv(const struct glove_options *o)
         return err;
     }
     memset(&s, 0, sizeof s);
-    header(o);
+    glove_header(o);
     for (long n = 0; n < f.n; n++) {
         struct exh_glove_in in = {.age_ticks = 0};
         memcpy(in.raw, f.raw[n], sizeof in.raw);
         glove_frame(&s, &cfg, &in);
-        line(o, (double)n * T.num / T.den, &s.sig);
+        glove_line(o, (double)n * T.num / T.den, &s.sig);
     }
     free(f.raw);
     return 0;
