@@ -1,6 +1,5 @@
 #!/bin/bash
-# fmi.sh RATE...: FMPy and other importers at the FMUs, in an environment of their own (build/fmi/venv). B: the build. FALLS: of a run (1).
-# fmi-sim, a third importer, where it is built (cargo install fmi-sim --root build/fmi). Exit status: 0, 1 a difference, 3 what is missing.
+# fmi.sh RATE...: FMPy and other importers at the FMUs, in an environment of their own (build/fmi/venv). B: the build. FALLS: of a run (1). Exit status: 0, 1 a difference, 3 what is missing.
 set -eu
 B=${B:-build}
 venv=$B/fmi/venv

@@ -52,15 +52,21 @@ shared()
     case $2 in
     bilateral) echo "$b/$1/examples/glove/cal.$3 $b/$1/examples/calib.$3" ;;
     drop) echo "$b/$1/examples/calib.$3" ;;
-    guarded) echo "$b/$1/examples/drop/drop.$3 $b/$1/examples/calib.$3" ;;
+    guarded | custom) echo "$b/$1/examples/drop/drop.$3 $b/$1/examples/calib.$3" ;;
     esac
+}
+
+# model PORT SCENE: where the controller in the scene's slot is
+model()
+{
+    case $2 in custom) echo "$b/$1/model/wall" ;; esac
 }
 
 # objects PORT SCENE: everything compiled from C for that image
 objects()
 {
     # shellcheck disable=SC2046 # the names of our objects have no blanks
-    find "$b/$1/lib" "$b/$1/examples/loop.ci" "$b/$1/examples/$2" "$b/$1/$2" $(shared "$1" "$2" ci) -name '*.ci' |
+    find "$b/$1/lib" "$b/$1/examples/loop.ci" "$b/$1/examples/$2" "$b/$1/$2" $(shared "$1" "$2" ci) $(model "$1" "$2") -name '*.ci' |
         sed 's/\.ci$/.o/' | sort
 }
 
@@ -140,7 +146,7 @@ callgrind()
     tool=$b/ticks-$1
     # shellcheck disable=SC2046 # the names of our objects have no blanks
     "$cc" -std=c99 -O2 -g -Ilib/include -Iexamples "-DEXH_SCENE=exh_scene_$1" "$here/ticks.c" "$here/world.c" test/no_board.c \
-        $(find "$b/template/examples/$1" -name '*.o') $(shared template "$1" o) "$b/template/examples/log.o" \
+        $(find "$b/template/examples/$1" $(model template "$1") -name '*.o') $(shared template "$1" o) "$b/template/examples/log.o" \
         "$b/template/libexhand.a" -o "$tool"
     needs=
     [ "$1" = calibrate ] && needs=0x8220.0=524288 # one mass, 0.5 kg
@@ -166,7 +172,7 @@ callgrind()
 # without SCENE: what lets it arm, if it would want a calibration
 without()
 {
-    case $1 in drop | guarded | bilateral) echo uncalibrated=1 ;; esac
+    case $1 in drop | guarded | custom | bilateral) echo uncalibrated=1 ;; esac
 }
 
 # counted SCENE: most instructions of one tick on pc104, or -
@@ -242,7 +248,7 @@ mps2_row()
 }
 
 mkdir -p "$b"
-[ $# -gt 0 ] || set -- minimal drop guarded glove bilateral bringup calibrate
+[ $# -gt 0 ] || set -- minimal drop guarded custom glove bilateral bringup calibrate
 : >"$b/table.txt"
 for scene in "$@"; do
     [ -r "examples/$scene/scene.mk" ] || { note "$scene: no examples/$scene/scene.mk"; continue; }

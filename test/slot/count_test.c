@@ -3,6 +3,8 @@
 
 #include "exhand/error.h"
 
+#include <sys/wait.h>
+
 static uint32_t ticks;
 static int64_t off;
 
@@ -54,4 +56,64 @@ TEST(another_rate_is_refused)
     CHECK_EQ_I64(exh_scene_custom.setup((struct exh_scene_board){{1, 1000}, 24}), -EXH_E_RATE);
 }
 
-TEST_MAIN("slot/count", a_step_a_tick, another_rate_is_refused);
+/* --- headers that the adapter does not understand: a line on stderr, status 2, and no adapter --- */
+
+static int adapt(const char *header, const char *options, char *said, size_t cap)
+{
+    const char *path = log_path();
+    char command[512];
+    FILE *f = fopen(path, "wb");
+    size_t n;
+    int status;
+    CHECK(f != NULL, "%s", path);
+    fputs(header, f);
+    CHECK_EQ_I64(fclose(f), 0);
+    snprintf(command, sizeof command, "awk -v model=m %s -f examples/custom/adapter.awk %s 2>&1", options, path);
+    f = popen(command, "r");
+    CHECK(f != NULL, "%s", command);
+    n = fread(said, 1, cap - 1, f);
+    said[n] = '\0';
+    status = pclose(f);
+    CHECK_EQ_I64(remove(path), 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+#define INPUTS  "typedef struct { real_T q; } ExtU_m_T;\nextern ExtU_m_T m_U;\n"
+#define OUTPUTS "typedef struct { real_T f; } ExtY_m_T;\nextern ExtY_m_T m_Y;\n"
+#define ENTRIES "extern void m_initialize(void);\nextern void m_step(void);\n"
+#define STATES  "typedef struct { real_T x; } DW_m_T;\nextern DW_m_T m_DW;\n"
+
+TEST(what_is_not_understood_is_named)
+{
+    static const struct {
+        const char *header, *options, *told;
+    } bad[] = {
+        {"extern void other_step(void);", "", "m.h: no m_step(): "},
+        {"extern void m_step(void);", "", "m.h: no m_initialize()"},
+        {"extern void m_initialize(void);\nextern void m_step(int_T tid);", "", "m.h: m_step(int_T tid): not understood"},
+        {INPUTS ENTRIES, "", "m.h: no m_Y: "},
+        {INPUTS "typedef struct { real_T g; } ExtY_m_T;\nextern ExtY_m_T m_Y;\n" ENTRIES, "", "m.h: no outport f, "},
+        {"typedef struct { real_T q[5]; } ExtU_m_T;\nextern ExtU_m_T m_U;\n" OUTPUTS ENTRIES, "", "ExtU_m_T: \"real_T q[5]\": only scalars"},
+        {INPUTS OUTPUTS STATES ENTRIES, "", "m.h: it remembers, so it was made for one rate"},
+    };
+    static const struct {
+        const char *header, *options, *told;
+    } good[] = {
+        {INPUTS OUTPUTS ENTRIES, "", "slot = {\"m\", 0u, 1, "},
+        {INPUTS OUTPUTS STATES ENTRIES, "-v rate=250", "slot = {\"m\", 250u, 1, "},
+        {"typedef struct { real_T T; } ExtU_m_T;\nextern ExtU_m_T m_U;\n" OUTPUTS STATES ENTRIES, "", "slot = {\"m\", 0u, 0, "},
+        {INPUTS "typedef struct { real_T g; /* a \"comment\" ; } */ } ExtY_m_T;\nextern ExtY_m_T m_Y;\n" ENTRIES, "-v map=g=f", "m_Y.g"},
+        {"#ifdef __cplusplus\nextern \"C\" {\n#endif\n" INPUTS OUTPUTS ENTRIES "#ifdef __cplusplus\n}\n#endif\n", "", "m_U.q = (real_T)real_in(0);"},
+    };
+    char said[8192];
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        CHECK_EQ_I64(adapt(bad[i].header, bad[i].options, said, sizeof said), 2);
+        CHECK(strstr(said, bad[i].told) != NULL && strstr(said, "slot = ") == NULL, "wanted \"%s\", said: %s", bad[i].told, said);
+    }
+    for (size_t i = 0; i < sizeof good / sizeof good[0]; i++) {
+        CHECK_EQ_I64(adapt(good[i].header, good[i].options, said, sizeof said), 0);
+        CHECK(strstr(said, good[i].told) != NULL, "wanted \"%s\", said: %s", good[i].told, said);
+    }
+}
+
+TEST_MAIN("slot/count", a_step_a_tick, another_rate_is_refused, what_is_not_understood_is_named);
