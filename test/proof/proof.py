@@ -6,6 +6,7 @@ A unit is a file eva/any_UNIT.c, whose first comment says what has to be known o
     PROVES: what it is about, a few words            (then what is shown, for docs/NUMERICS.md)
     WP: what WP shows of it                          (may be missing)
     EVA: more options for Eva                        (may be missing)
+    WITH: files besides, that it cannot include      (may be missing)
     PLANT: file: text -> what it becomes             (an error that Eva has to tell; any number)
 
 A unit of every/ is a program with the same comment that goes through every argument there is, built

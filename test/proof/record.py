@@ -56,9 +56,15 @@ def write_counts(rows):
         f.writelines("%s %d %d %.1f %s %s\n" % (k, r.proved, r.of, r.s, r.key, r.seal) for k, r in sorted(rows.items()))
 
 
+# What runs in a tick: the library, and of the examples the scenes that run fingers and gloves, and the loop.
+SOURCES = ("lib/src/*.[ch]", "lib/include/exhand/*.h", "examples/minimal/*.[ch]", "examples/drop/*.[ch]",
+           "examples/guarded/*.[ch]", "examples/glove/*.[ch]", "examples/bilateral/*.[ch]", "examples/deadman.c",
+           "examples/loop.c")
+
+
 def sources(root=ROOT):
-    """Files of the library with code in them, by their path."""
-    found = sorted(glob.glob(os.path.join(root, "lib/src/*.[ch]")) + glob.glob(os.path.join(root, "lib/include/exhand/*.h")))
+    """These files, as far as there is code in them, by their path."""
+    found = sorted(f for part in SOURCES for f in glob.glob(os.path.join(root, part)))
     return {f: text for f, text in ((os.path.relpath(f, root), read(f)) for f in found) if functions(text)}
 
 
@@ -71,6 +77,8 @@ def functions(text):
 def renamed(unit, texts):
     """What the unit calls the functions of the sources that it includes: name -> file and function."""
     found = {n: (f, n) for f, text in texts.items() if f.endswith(".h") for n in functions(text)}
+    for f in unit.beside:
+        found.update({n: (f, n) for n in functions(texts.get(f, ""))})
     other = {}
     for line in unit.text.splitlines():
         m = re.match(r'#(define|undef|include) +"?([\w./]+)"? *(\w*)', line)
@@ -81,7 +89,9 @@ def renamed(unit, texts):
         elif m.group(1) == "undef":
             other.pop(m.group(2), None)
         else:
-            f = "lib/src/" + os.path.basename(m.group(2))
+            f = "examples/" + m.group(2)
+            if f not in texts:
+                f = "lib/src/" + os.path.basename(m.group(2))
             found.update({other.get(n, n): (f, n) for n in functions(texts.get(f, ""))})
     return found
 

@@ -15,7 +15,7 @@ def told(unit):
     lines, wp, into = [], "", None
     for line in (h.lstrip("/* ").rstrip() for h in head):
         key, _, rest = line.partition(": ")
-        if key in ("EVA", "PLANT"):
+        if key in ("EVA", "WITH", "PLANT"):
             into = None
         elif key == "WP":
             into, wp = "wp", rest
@@ -65,7 +65,7 @@ def text():
     best = record.covered(record.reached(), texts)
     rows = [r for k, r in counts.items() if k in record.rows_wanted()]
     functions = [v for names in best.values() for v in names.values()]
-    out = ["%d properties proved, %d open; %d of %d functions of `lib/` are reached by at least one unit without an alarm."
+    out = ["%d properties proved, %d open; %d of %d functions of the library and the scenes are reached by at least one unit without an alarm."
            % (sum(r.proved for r in rows), sum(r.of - r.proved for r in rows), sum(v[0] > 0 for v in functions), len(functions)),
            "Eva: no undefined behaviour, no overflow, no conversion that loses, in all that the unit gives, and the assertions and contracts counted;",
            "64 and 32 are the width of `long` and of a pointer. Planted: errors put into a copy of the code, all told.", "",

@@ -101,7 +101,7 @@ class Unit:
         self.harness = harness
         self.every = os.path.basename(os.path.dirname(harness)) == "every"
         self.name = os.path.basename(harness)[0 if self.every else 4:-2]
-        self.about, self.options, self.plants = "", [], []
+        self.about, self.options, self.plants, self.beside = "", [], [], []
         with open(self.harness) as f:
             self.text = f.read()
         head, self.body = self.text.split("*/", 1)
@@ -111,6 +111,8 @@ class Unit:
                 self.about = rest.strip()
             elif key == "EVA":
                 self.options = rest.split()
+            elif key == "WITH":
+                self.beside = rest.split()
             elif key == "PLANT":
                 path, text = rest.split(": ", 1)
                 old, new = text.split(" -> ", 1)
@@ -191,6 +193,17 @@ def helpers(parts, listed):
     return [n for n in re.findall(r"^def (\w+)", "\n".join(parts), re.M) if n not in listed]
 
 
+ANNOTATED = ("any.h", "table.h", "contract.h", "contract_box.h", "called.h", "called_params.h", "called_box.h")
+
+
+def annotated(text):
+    """Headers of eva/ whose annotations the preprocessor takes away: what a unit includes, and what stubs include."""
+    found = [h for h in ANNOTATED if '#include "%s"' % h in text]
+    for h in [h for h in found if h.startswith("c")]:
+        found += [g for g in annotated(read(os.path.join(HERE, "eva", h))) if g not in found + [h]]
+    return found
+
+
 class Proof:
     def __init__(self, root, out, fresh=False):
         self.root, self.out, self.fresh = root, out, fresh
@@ -215,10 +228,14 @@ class Proof:
             f.write(text)
 
     def tree(self, name, change=None):
-        """A copy of lib to work on, with one text changed."""
+        """A copy of lib and of the scenes to work on, with one text changed."""
         at = os.path.join(self.out, name)
         shutil.rmtree(at, ignore_errors=True)
         shutil.copytree(os.path.join(self.root, "lib"), os.path.join(at, "lib"))
+        for f in sorted(glob.glob(os.path.join(self.root, "examples/**/*.[ch]"), recursive=True)):
+            to = os.path.join(at, os.path.relpath(f, self.root))
+            os.makedirs(os.path.dirname(to), exist_ok=True)
+            shutil.copyfile(f, to)
         if change:
             path, old, new = change
             put(os.path.join(at, path), lambda s: once(path, s, old).replace(old, new))
@@ -227,7 +244,7 @@ class Proof:
     def key(self, source, tree, more):
         """A hash of the source as the preprocessor leaves it, without comments and spaces, and of what is beside it."""
         code, said, _ = run(["gcc", "-std=c99", "-E", "-P", "-nostdinc", "-I" + self.stubs, "-I%s/lib/src" % tree,
-                             "-I%s/lib/include" % tree, "-I%s/eva" % HERE, source], 60)
+                             "-I%s/lib/include" % tree, "-I%s/examples" % tree, "-I%s/eva" % HERE, source], 60)
         if code != 0:
             raise SystemExit("%s: not preprocessed:\n%s" % (source, said))
         said = said.replace(tree, "").replace(HERE, "") # __FILE__ of an assertion
@@ -236,8 +253,9 @@ class Proof:
     def keyed(self, tool, unit, tree):
         """What a row of counts.txt is of."""
         if tool.startswith("eva"):
-            beside = [read(os.path.join(HERE, "eva", h)) for h in ("any.h", "table.h") if h in unit.text]
+            beside = [read(os.path.join(HERE, "eva", h)) for h in annotated(unit.text)]
             beside += [read(spec) for spec in (EVERY, unit.spec) if spec]
+            beside += [self.key(os.path.join(tree, f), tree, []) for f in unit.beside]
             return self.key(unit.harness, tree, [MACHDEP[tool[3:]]] + EVA + unit.options + [unit.body] + beside)
         if tool == "every":
             return self.key(unit.harness, tree, GONE_THROUGH + [unit.body])
@@ -276,11 +294,11 @@ class Proof:
         for spec in (EVERY, unit.spec):
             if spec:
                 annotate(spec, tree)
-        flags = "-I%s/lib/src -I%s/lib/include -I%s/eva" % (tree, tree, HERE)
+        flags = "-I%s/lib/src -I%s/lib/include -I%s/examples -I%s/eva" % (tree, tree, tree, HERE)
         # One alarm tells an error that is planted; of a unit that is proved, what it reaches is wanted.
         more = ["-eva-stop-at-nth-alarm", "1"] if change else ["-metrics", "-metrics-eva-cover"]
         code, said, s = run(["frama-c", "-cpp-extra-args=" + flags, "-machdep", MACHDEP[width]] + EVA + unit.options +
-                            more + [unit.harness], 600, self.env)
+                            more + [unit.harness] + [os.path.join(tree, f) for f in unit.beside], 600, self.env)
         self.log(name + ".txt", said)
         if change and "Stopping at nth alarm" in said:
             return dict(ran=True, proved=0, of=1, s=s, reached={})

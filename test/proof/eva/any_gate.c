@@ -40,6 +40,9 @@ int main(void)
     }
     exh_gate(&s, cfg, n, i, limits, &out);
     /*@ assert no_other_drive: out.enable == 0 || out.enable == (1 << n) - 1; */
+    for (unsigned k = 0; k < EXH_FINGERS; k++) { limits[k] = Frama_C_unsigned_int_interval(0, (1u << EXH_LIMITS) - 1); }
+    exh_gate(&s, cfg, 1, i, limits, &out);
+    /*@ assert bits_of_limits: limits[0] < 1 << 11; */
     END();
     return 0;
 }

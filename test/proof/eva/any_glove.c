@@ -65,10 +65,12 @@ static void any_cfg(uint8_t kind)
 
 static void one_frame(uint8_t kind)
 {
+    uint32_t faulty;
     any_cfg(kind);
     FROM_BYTES(s, exh_glove_bytes);
     ANY(in);
-    (void)exh_glove_step(&s, &cfg, &in, angle_turn_q32);
+    faulty = exh_glove_step(&s, &cfg, &in, angle_turn_q32);
+    /*@ assert sensors: faulty < 4194304; */
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
         const uint8_t cause = s.cause[i];
         /*@ assert a_cause: cause < 4; */

@@ -14,7 +14,7 @@
 #include "bytes.c"
 #include "fix.c"
 
-#include "any.h"
+#include "contract_box.h"
 
 /* The reciprocal's own proof is eva/any_recip.c. */
 static int32_t recip(int32_t x)
@@ -65,20 +65,20 @@ static void any_cfg(unsigned materials)
 
 static void ticks(unsigned materials)
 {
+    uint32_t bits;
     any_cfg(materials);
+    /*@ assert rows: precontact_par(&par) && material(&material[2]); */
+    ANY(par);
+    /*@ admit precontact_par(&par); */
     FROM_BYTES(s, exh_precontact_bytes);
-    /*@ assert phase_read: s.phase <= 3; */
+    /*@ assert read: precontact(&s); */
+    s = any_precontact();
     ANY(plane);
     (void)exh_precontact_tell(&s, &cfg, &plane, any_u32());
     exh_precontact_skip(&s, any_u32());
     ANY(in);
-    (void)exh_precontact_step(&s, &cfg, &in);
-    /*@ assert phase: s.phase <= 3; */
-    /*@ assert newest: -1073750016 <= s.newest.normal_q30.x <= 1073750016; */
-    /*@ assert held: -1073750016 <= s.held.normal_q30.x <= 1073750016; */
-    s.newest.offset_m_q60 = any64(); /* what a tick leaves is any, as sums and differences of it wrap */
-    s.held.offset_m_q60 = any64();
-    (void)exh_precontact_step(&s, &cfg, &in);
+    bits = exh_precontact_step(&s, &cfg, &in);
+    /*@ assert next: precontact(&s) && precontact_bits(bits); */
 }
 
 static void set_up(void)
@@ -86,7 +86,9 @@ static void set_up(void)
     const struct exh_period T = {any_u32(), any_u32()};
     ANY(par);
     ANY(material);
-    (void)exh_precontact_setup(&cfg, &par, material, Frama_C_unsigned_int_interval(0, 3), any32(), T);
+    if (exh_precontact_setup(&cfg, &par, material, Frama_C_unsigned_int_interval(0, 3), any32(), T) == 0) {
+        /*@ assert made: precontact_made(&cfg); */
+    }
 }
 
 int main(void)

@@ -27,7 +27,7 @@
 #undef CUR_MIN_A_Q26
 #include "watch.c"
 
-#include "any.h"
+#include "contract.h"
 
 #define KNOTS 3
 
@@ -59,6 +59,7 @@ static void drive(struct exh_period T, uint8_t forces, uint8_t currents)
     ANY(par);
     any_table(KNOTS);
     if (exh_drive_setup(&cfg, &par, T, force_to_cur, cur_to_force) == 0) {
+        /*@ assert drive_taken: drive_cfg(&cfg); */
         (void)exh_drive_monitor_N_q20(&cfg, (int16_t)Frama_C_interval(INT16_MIN, INT16_MAX));
     }
     /* Set, or as they were. */
@@ -78,9 +79,11 @@ static void passivity(struct exh_period T)
     ANY(drives);
     any_table(KNOTS);
     drives.par = &par;
+    drives.f_top_N_q20 = Frama_C_interval(1, INT32_MAX);
     ANY_GAIN(drives.tick_N_q20);
-    (void)exh_passivity_setup(&taken, &own, &drives, held, scale, any32());
-    /*@ assert taken: taken.shift <= 20 && 0 <= taken.step_m_q42; */
+    if (exh_passivity_setup(&taken, &own, &drives, held, scale, any32()) == 0) {
+        /*@ assert passivity_taken: passivity_made(&taken) && table(&taken.held); */
+    }
 }
 
 static void rest(struct exh_period T)
@@ -98,12 +101,18 @@ static void rest(struct exh_period T)
     safety.arm_ticks = 2;
     safety.ramp_q30 = 1;
     track.ticks = 5;
-    (void)exh_safety_setup(&safety, &safety_par, T);
+    if (exh_safety_setup(&safety, &safety_par, T) == 0) {
+        /*@ assert safety_taken: safety_cfg(&safety); */
+    }
     /*@ assert release: 3 <= safety.release_ticks <= 1023 && 2 <= safety.arm_ticks <= 65536; */
     /*@ assert ramp: 1 <= safety.ramp_q30 <= 1 << 30; */
-    (void)exh_track_setup(&track, &track_par, T);
+    if (exh_track_setup(&track, &track_par, T) == 0) {
+        /*@ assert track_taken: track_cfg(&track); */
+    }
     /*@ assert track: 5 <= track.ticks <= 4100; */
-    (void)exh_watch_setup(&watch, &watch_par, T);
+    if (exh_watch_setup(&watch, &watch_par, T) == 0) {
+        /*@ assert watch_taken: watch_cfg(&watch); */
+    }
 }
 
 static void states(void)
@@ -115,15 +124,13 @@ static void states(void)
     static struct exh_track track;
     static struct exh_watch watch;
     FROM_BYTES(contact, exh_contact_bytes);
-    /*@ assert factors: contact.inward <= 1 && contact.touching <= 1; */
+    /*@ assert factors: contact(&contact); */
     FROM_BYTES(drives, exh_drive_bytes);
-    /*@ assert force: 0 <= drives.force_N_q20 <= 104857600 && 0 <= drives.fall_N_q20 <= 104857601; */
-    /*@ assert heat: 0 <= drives.i2t_q32 <= 4611686018427387903; */
+    /*@ assert force: drive(&drives); */
     FROM_BYTES(passive, exh_passivity_bytes);
-    /*@ assert energy: -1152921504606846976 <= passive.energy_Ncnt_q20 <= 1152921504606846976; */
-    /*@ assert held: 0 <= passive.held_N_q20 && 0 <= passive.late_N_q20; */
+    /*@ assert energy: passivity(&passive); */
     FROM_BYTES(safety, exh_safety_bytes);
-    /*@ assert share: 0 <= safety.share_q30 <= 1 << 30; */
+    /*@ assert share: safety(&safety); */
     (void)exh_safety_arm(&safety);
     FROM_BYTES(track, exh_track_bytes);
     FROM_BYTES(watch, exh_watch_bytes);

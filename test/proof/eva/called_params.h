@@ -1,0 +1,127 @@
+/* Parameters, guard, self-test and calibrations, as called.h. The table's rows are the library's; how many there are is counted. */
+#ifndef PROOF_CALLED_PARAMS_H
+#define PROOF_CALLED_PARAMS_H
+
+#include "called.h"
+
+#include "../src/signal.c" /* not that of Frama-C */
+
+#include "calib.h"
+
+void exh_params_init(struct exh_params *p, const struct exh_signal_table *t, int32_t *active, int32_t *staged)
+{
+    static const struct exh_params none;
+    *p = none;
+    p->table = t;
+    p->active = active;
+    p->staged = staged;
+    p->count = exh_signal_count(t);
+    /*@ assert params_init: params(p); */
+    Frama_C_make_unknown((char *)active, p->count * sizeof *active);
+    Frama_C_make_unknown((char *)staged, p->count * sizeof *staged);
+}
+
+void exh_params_slew(struct exh_params *p, const struct exh_tune_par *par, struct exh_period T)
+{
+    (void)T;
+    /*@ assert params_slew: params(p) && \valid_read(par); */
+    p->shift = (uint8_t)Frama_C_unsigned_int_interval(0, EXH_TUNE_SHIFT_MAX);
+}
+
+/* Values stay any within what set-ups have taken: the rows' ranges are theirs. */
+int exh_params_stage(struct exh_params *p, uint16_t id, uint16_t instance, int32_t raw)
+{
+    (void)id;
+    (void)instance;
+    (void)raw;
+    /*@ assert params_stage: params(p); */
+    p->pending = any8();
+    return REFUSED() ? -EXH_E_RANGE : 0;
+}
+
+/* --- a rule of gains --- */
+
+int exh_gains_setup(const struct exh_gains_par *r, struct exh_period T)
+{
+    (void)T;
+    /*@ assert gains_setup: \valid_read(r); */
+    if (REFUSED()) { return -EXH_E_RANGE; }
+    /*@ admit rule(r); */
+    return 0;
+}
+
+int exh_gains_ok(const struct exh_gains_par *r, int32_t k_Npm_q10, int32_t b_Nspm_q20)
+{
+    (void)k_Npm_q10;
+    (void)b_Nspm_q20;
+    /*@ assert gains_ok: rule(r); */
+    return any8() & 1;
+}
+
+int exh_gains_stage(struct exh_params *p, const struct exh_gains_par *r, uint16_t id, uint16_t instance, int32_t raw)
+{
+    /*@ assert gains_stage: params(p) && rule(r); */
+    return exh_params_stage(p, id, instance, raw);
+}
+
+int exh_gains_staged(const struct exh_params *p, const struct exh_gains_par *r, uint16_t *instance)
+{
+    /*@ assert gains_staged: params(p) && rule(r) && (instance == \null || \valid(instance)); */
+    return REFUSED() ? -EXH_E_GAINS : 0;
+}
+
+void exh_gains_lead(struct exh_params *p, int on)
+{
+    (void)on;
+    /*@ assert gains_lead: params(p); */
+    ANY(p->led);
+}
+
+void exh_gains_step(struct exh_params *p, const struct exh_gains_par *r)
+{
+    /*@ assert gains_step: params(p) && rule(r); */
+    p->moving = any8();
+}
+
+/* --- guard, self-test, calibrations --- */
+
+void exh_guard_seal(struct exh_guard *g, const void *area, size_t len_B, struct exh_params *p)
+{
+    const struct exh_guard sealed = {area, (uint32_t)len_B, 0, any_u32(), 0, p, 0};
+    *g = sealed;
+    /*@ assert guard_seal: guard(g); */
+}
+
+int exh_guard_step(struct exh_guard *g)
+{
+    /*@ assert guard_step: guard(g); */
+    g->at = g->len_B > 0 ? Frama_C_unsigned_int_interval(0, g->len_B - 1) : 0;
+    g->crc = any_u32();
+    g->broken |= any8() & 1;
+    return g->broken;
+}
+
+int exh_selftest(void)
+{
+    return any8();
+}
+
+int calib_take(struct exh_scene_calib *k, struct exh_params *p, const struct calib_par *par, uint32_t fingers)
+{
+    (void)fingers;
+    /*@ assert calib_take: \valid(k) && params(p) && \valid_read(par); */
+    return REFUSED() ? -EXH_E_VERSION : 0;
+}
+
+int calib_setup(struct calib_tables *t, struct exh_scene_calib *k, const struct calib_par *par, const struct calib_finger *of)
+{
+    (void)k;
+    /*@ assert calib_setup: \valid(t) && \valid_read(par) && of->f < 5 && \valid_read(of->drive); */
+    if (REFUSED()) { return -EXH_E_STALE; }
+    ANY(*t);
+    t->to_cur_n = (uint8_t)Frama_C_unsigned_int_interval(2, EXH_CALIB_POINTS_MAX + 2);
+    t->to_force_n = (uint8_t)Frama_C_unsigned_int_interval(2, 2 * EXH_CALIB_POINTS_MAX + 3);
+    return 0;
+}
+
+#endif
