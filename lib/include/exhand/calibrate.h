@@ -70,7 +70,7 @@ int32_t exh_calib_residual_N_q20(const struct exh_calib_fit *fit, const struct e
 
 /* --- a calibration of one finger --- */
 
-/* Formats are those of the image; what is out of range is refused, never limited. */
+/* A calibration of one finger. What is out of range is refused, never limited. */
 struct exh_calib {
     uint32_t device_id; /* of the box, given by whoever calibrates            */
     uint32_t finger;    /* 0 .. EXH_FINGERS - 1                                */
@@ -103,7 +103,7 @@ enum exh_calib_what {
     EXH_CALIB_MONITOR_TABLE, /* monitor -> force; at: the point               */
     EXH_CALIB_WHATS    /* how many there are                                   */
 };
-/* The culprit. */
+/* The culprit: why a calibration was refused. */
 struct exh_calib_bad {
     uint8_t what; /* enum exh_calib_what                                       */
     uint8_t at;   /* point, from 0, for the tables                             */

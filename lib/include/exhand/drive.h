@@ -210,7 +210,7 @@ void exh_drive_bytes(struct exh_bytes *c, struct exh_drive *s);
  * A scene that moves a motor calls both functions for each finger; one whose port has no
  * monitor names EXH_UNTRACKED instead (safety.h). */
 
-/* Parameters of one axis; rows in exh_track_rows[]. */
+/* Parameters of one axis's tracking; rows in exh_track_rows[]. */
 struct exh_track_par {
     int32_t tol_A_q26; /* monitor off by no more, A, 0.1 .. 1                  */
     int32_t time_ms;   /* for no longer, ms, 1 .. 100, and 4 ticks             */
@@ -218,13 +218,13 @@ struct exh_track_par {
 #define EXH_TRACK_ROWS 2
 extern const struct exh_signal exh_track_rows[EXH_TRACK_ROWS];
 
-/* One axis as it is set up. */
+/* One axis's tracking as it is set up. */
 struct exh_track_cfg {
     int32_t tol_A_q26; /* the parameter                                        */
     uint32_t ticks;    /* time + 4 ticks, rounded up                           */
 };
 
-/* One axis from tick to tick. */
+/* One axis's tracking from tick to tick. */
 struct exh_track {
     int32_t lo_A_q26, hi_A_q26; /* least and most that was coded since the monitor met it */
     uint32_t off_ticks;         /* since when it does not, 0 .. ticks          */
@@ -249,7 +249,7 @@ void exh_track_bytes(struct exh_bytes *c, struct exh_track *s);
 
 /* --- the drives' supply (supply.c) --- */
 
-/* Parameters of the box; rows in exh_supply_rows[]. */
+/* Parameters of the supply; rows in exh_supply_rows[]. */
 struct exh_supply_par {
     int32_t min_V_q20;   /* V, 0 .. 100; 0: the box has no monitor of it, it is not judged */
     int32_t max_V_q20;   /* V, min .. 100                                      */
@@ -259,13 +259,13 @@ struct exh_supply_par {
 #define EXH_SUPPLY_ROWS 4
 extern const struct exh_signal exh_supply_rows[EXH_SUPPLY_ROWS];
 
-/* The limits as they are set up, in codes: no product in the tick. */
+/* The supply's limits as they are set up, in codes: no product in the tick. */
 struct exh_supply_cfg {
     int16_t min_raw, max_raw; /* codes within the limits, both included         */
     uint32_t ticks;           /* the time, rounded down, and one more           */
 };
 
-/* From tick to tick. */
+/* The supply from tick to tick. */
 struct exh_supply {
     uint32_t off_ticks; /* outside on end, 0 .. ticks                           */
 };

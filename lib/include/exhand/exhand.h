@@ -16,6 +16,7 @@
  *   wire                         packets between controller and world
  *   calibrate, probe             tables of the box, and the motions that measure them
  *   record                       log and replay
+ *   trace                        a few signals of every n-th tick, until somebody fetches them
  *   slots                        images in flash that outlive a power cut
  *   modbus                       the box as registers; a Modbus slave
  *   board                        what a port provides; only the loop calls it

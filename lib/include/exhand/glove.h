@@ -112,7 +112,7 @@ enum exh_glove_what {
     EXH_GLOVE_RESIDUAL, /* a pose lies too far off the line through all        */
     EXH_GLOVE_WHATS     /* how many there are; of a sensor: nothing is wrong   */
 };
-/* The culprit. */
+/* The culprit: why a calibration was refused. */
 struct exh_glove_bad {
     uint8_t what; /* enum exh_glove_what                                       */
     uint8_t at;   /* sensor, where it is about one                             */

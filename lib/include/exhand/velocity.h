@@ -44,13 +44,13 @@ struct exh_velocity_par {
 #define EXH_VELOCITY_ROWS 1
 extern const struct exh_signal exh_velocity_rows[EXH_VELOCITY_ROWS];
 
-/* Set up; one for any number of fingers of one scale. */
+/* The window as it is set up; one for any number of fingers of one scale. */
 struct exh_velocity_window_cfg {
     struct exh_gain gain; /* m/s q27 per count over the window                 */
     uint8_t n;            /* 1, 2, 4, 8 or 16                                  */
 };
 
-/* One finger. A state of zeros has seen no count, of this and of the estimators below. */
+/* One finger's window. A state of zeros has seen no count, of this and of the estimators below. */
 struct exh_velocity_window {
     int32_t cnt[EXH_VELOCITY_N]; /* the last n counts                          */
     uint8_t at;                  /* oldest of them                             */
@@ -66,13 +66,13 @@ int32_t exh_velocity_window_mps_q27(struct exh_velocity_window *s,
 void exh_velocity_window_bytes(struct exh_bytes *c, struct exh_velocity_window *s);
 
 /* --- pole: v += (diff - v) * T/(T + tau) --- */
-/* Set up likewise. */
+/* The pole as it is set up, likewise. */
 struct exh_velocity_pole_cfg {
     struct exh_gain gain; /* m/s q27 per count                                 */
     int32_t a_q31;        /* T/(T + tau), > 0 .. 1-2^-31                       */
 };
 
-/* One finger. */
+/* One finger's pole. */
 struct exh_velocity_pole {
     int64_t v_mps_q55; /* q27 plus 28 bits, so that it settles exactly         */
     int32_t cnt;       /* of the last tick                                     */
@@ -90,14 +90,14 @@ void exh_velocity_pole_bytes(struct exh_bytes *c, struct exh_velocity_pole *s);
  * stay within tol counts of the line of that slope through the newest one; at
  * least n = 1. The test is exact in integers; all windows are always tried, so the
  * cost does not depend on the signal. --- */
-/* Set up likewise. */
+/* FOAW as it is set up, likewise. */
 struct exh_velocity_foaw_cfg {
     struct exh_gain gain[EXH_VELOCITY_N]; /* [n-1]: m/s q27 per unit of n*S0-2*S1 */
     uint8_t n;                            /* longest window, 1 .. 16            */
     uint8_t tol_cnt;                      /* 1 .. 255, usually 1                */
 };
 
-/* One finger. */
+/* One finger's FOAW. */
 struct exh_velocity_foaw {
     int32_t cnt[EXH_VELOCITY_N + 1]; /* the last n + 1 counts, a ring           */
     uint8_t at;   /* newest                                                    */
@@ -114,14 +114,14 @@ void exh_velocity_foaw_bytes(struct exh_bytes *c, struct exh_velocity_foaw *s);
 /* --- track: alpha-beta observer with a double pole theta = T_f/(T_f + T):
  * alpha = 1-theta^2, beta = (1-theta)^2. At rest it ends within (T_f/T + 1) * 2^-32
  * counts a tick of 0; movements beyond 2^28 counts a tick read as that. --- */
-/* Set up likewise. */
+/* The observer as it is set up, likewise. */
 struct exh_velocity_track_cfg {
     struct exh_gain gain; /* m/s q27 per count and tick                        */
     int32_t alpha_q31;    /* share of the error that position takes, > 0 .. 1  */
     int32_t beta_q31;     /* that velocity takes a tick, likewise              */
 };
 
-/* One finger. */
+/* One finger's observer. */
 struct exh_velocity_track {
     int64_t err_cnt_q32; /* estimated position minus the last count            */
     int64_t vel_cnt_q32; /* counts per tick; both saturate at +-2^28 counts    */
