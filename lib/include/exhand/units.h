@@ -58,7 +58,7 @@ struct exh_vec3 {
     int32_t x, y, z; /* in the frame that whoever has it says                  */
 };
 
-/* 1 if it is within that range, but for the 1000 ppm by which a timer may miss it: what
+/* 1 if T is within 50 us .. 1 s, but for the 1000 ppm by which a timer may miss it: what
  * the loop and a replay ask before they start. */
 static inline int exh_period_ok(struct exh_period T)
 {
