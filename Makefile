@@ -450,7 +450,8 @@ coverage:
 
 # Stiff and extreme cases, under sanitizers: a build of its own.
 stress_obj := $(patsubst %.c,$(B)/posix/%.o,$(wildcard test/stress/*.c))
-$(B)/test/stress: $(stress_obj) $(filter-out %/main.o %/loop.o,$(cli_obj) $(sim_obj)) \
+$(B)/test/stress: $(stress_obj) $(filter-out %/main.o %/loop.o %/scene_none.o,$(cli_obj) $(sim_obj)) $(custom_obj) \
+                  $(call model_objects,examples/custom/wall_ert_rtw,$(call slot_built,examples/custom/wall_ert_rtw)) \
                   $(B)/test/loop.o $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(cli_libs)

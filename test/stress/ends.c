@@ -11,7 +11,7 @@
 #define ID_MON_ZERO 0x050A
 #define ROUND       2400 /* ticks: calm until the gate is open, then the ends       */
 
-extern const struct exh_scene exh_scene_guarded, exh_scene_glove, exh_scene_bilateral,
+extern const struct exh_scene exh_scene_guarded, exh_scene_custom, exh_scene_glove, exh_scene_bilateral,
     exh_scene_bringup;
 
 /* --- scenes --- */
@@ -309,8 +309,9 @@ static void signs(void)
 
 void all_at_their_ends(void)
 {
-    static const struct exh_scene *const scene[] = {&exh_scene_drop, &exh_scene_guarded,
-                                                    &exh_scene_glove, &exh_scene_bilateral,
+    static const struct exh_scene *const scene[] = {&exh_scene_drop,  &exh_scene_guarded,
+                                                    &exh_scene_custom, &exh_scene_glove,
+                                                    &exh_scene_bilateral,
                                                     &exh_scene_bringup};
     for (size_t i = 0; i < LEN(scene); i++) {
         scene_at_its_ends(scene[i], cases < 200000 ? 20000 : cases / 10,
