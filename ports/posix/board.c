@@ -16,6 +16,7 @@
 #include "exhand/board.h"
 #include "exhand/error.h"
 
+#include <math.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -42,6 +43,9 @@ static struct {
     uint64_t frame_tick;              /* converted for this tick */
     double frame_s;                   /* at this time; < 0: none yet */
     long frames;                      /* read of a recording */
+    int16_t line[SIM_GLOVE_SENSORS];  /* of a stock glove: on its way, */
+    uint64_t line_tick;               /* converted for this tick, */
+    int on_line;                      /* if there is one */
     uint64_t tick;
     double now_s;
     struct output queue[OUTPUTS_MAX];
@@ -175,6 +179,7 @@ int exh_board_init(uint32_t rate_Hz, struct exh_period *achieved)
     sim.head = sim.queued = 0;
     sim.frame_s = -1;
     sim.frames = 0;
+    sim.on_line = 0;
     sim.exo.fingers = 0;
     sim.drives = sim.cfg.drives;
     if (sim.cfg.exo.fingers) {
@@ -401,12 +406,34 @@ static void next_frame(void)
     sim.frame_s = sim.now_s;
 }
 
+/* A sample of 8 bits, 1 .. 255 at -9 .. 9 V, as the code of its middle. */
+static int16_t coarse(int16_t code)
+{
+    const double step = 2 * 29491.2 / 254;
+    const double sample = floor((code + 29491.2) / step + 0.5);
+    return (int16_t)floor((sample < 0 ? 0 : sample > 254 ? 254 : sample) * step - 29491.2 + 0.5);
+}
+
+/* The frame before, if there is one: this one is still on its line. */
+static void as_stock(void)
+{
+    const uint64_t tick = sim.frame_tick;
+    int16_t now[SIM_GLOVE_SENSORS];
+    for (unsigned i = 0; i < SIM_GLOVE_SENSORS; i++) { now[i] = coarse(sim.frame[i]); }
+    memcpy(sim.frame, sim.on_line ? sim.line : now, sizeof now);
+    sim.frame_tick = sim.on_line ? sim.line_tick : tick;
+    memcpy(sim.line, now, sizeof now);
+    sim.line_tick = tick;
+    sim.on_line = 1;
+}
+
 /* A scan that ends at this tick, if it could begin after the last had ended. */
 static int scan(void)
 {
     const double scan_s = SIM_GLOVE_SENSORS * sim.cfg.glove_par.interval_s;
     if (sim.frame_s >= 0 && sim.now_s < sim.frame_s + scan_s * 0.999999) { return 0; }
     next_frame();
+    if (sim.cfg.stock) { as_stock(); }
     return sim.cfg.cards.how ? cards_read_glove(sim.frame) : 0;
 }
 

@@ -47,6 +47,8 @@ struct posix_config {
                               * between two counts                             */
     int glove;               /* 1: there is a glove, and a hand in it           */
     struct sim_glove_par glove_par;
+    int stock;               /* 1: simulated as a stock glove's: samples of 8 bits, 1 .. 255 at -9 .. 9 V, a
+                              * frame late                                    */
     struct sim_operator_par hand;
     const int16_t (*frame)[SIM_GLOVE_SENSORS]; /* recorded frames instead, the caller's, */
     long frames;             /* one a read, the last for ever; NULL: none        */

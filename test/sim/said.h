@@ -115,7 +115,7 @@ static inline long said_size(const char *path)
  * is what was said on standard output. */
 static inline void said_as_document(const struct said *s, const char *doc, const char *begins)
 {
-    static char text[65536];
+    static char text[262144];
     char mark[80], *from, *to;
     FILE *f = fopen(doc, "r");
     CHECK(f != NULL, "%s: not there", doc);

@@ -4,6 +4,7 @@
 #include "assign.h"
 #include "cli.h"
 #include "option.h"
+#include "original.h"
 #include "param.h"
 
 #include "world/world.h"
@@ -143,9 +144,25 @@ static int steps_too_long(struct bilateral_options *o)
     return err;
 }
 
+/* What says otherwise how the two are to be. */
+static int take_preset(const struct bilateral_options *o, double rate_Hz)
+{
+    int err = o->preset ? original_take(o->preset) : 0;
+    if (o->preset == NULL || err) { return err; }
+    if (rate_Hz != ORIGINAL_BOX_HZ || o->run.k_Npm >= 0 || o->run.b_Nspm >= 0 || o->scene || o->record || o->udp || o->params.load ||
+        o->params.save || o->run.trace_every || o->run.blackbox || o->sweep || o->check || o->hands || o->crisp ||
+        2 * o->speeds > ORIGINAL_COLUMNS) {
+        cli_complain("--preset: goes with up to three --speed, --fingers, --approaches, --at, --pose, --link, --fps, --set, --device, "
+                     "--calibration, --cards, --seed and --out alone");
+        err = 2;
+    }
+    return err;
+}
+
 static int go(struct bilateral_options *o, double rate_Hz)
 {
-    int err = steps_too_long(o);
+    int err = take_preset(o, rate_Hz);
+    if (err == 0) { err = steps_too_long(o); }
     if (err == 0) { err = load_scene(o); }
     if (err == 0) { err = load_record(o); }
     if (err == 0) { err = load_params(o); }
@@ -180,7 +197,8 @@ static int go(struct bilateral_options *o, double rate_Hz)
           : o->check ? bilateral_check(o)
           : o->hands ? bilateral_hands(o)
           : o->crisp ? bilateral_crisp(o)
-                     : bilateral_experiment(o);
+          : o->preset ? bilateral_original(o)
+                      : bilateral_experiment(o);
     world_free(o->run.scene);
     sim_trace_free(&o->trace);
     hand_record_free(&o->hand);
@@ -227,6 +245,7 @@ int cli_bilateral(int argc, char **argv)
         {"device", CLI_CALL, u[4].to, 0, 0, "NAME=VALUE", "a value of the simulated hand, glove or motors"},
         PARAMS_FILE_OPTIONS(o.params),
         {"calibration", CLI_CALL, u[6].to, 0, 0, "FILE[,FILE...]", "of the fingers, or a directory of them (none: the simulated device as it is, uncalibrated=1)"},
+        {"preset", CLI_TEXT, &o.preset, 0, 0, "NAME", "original: the commercial system at 90 Hz, beside this box at 2 kHz"},
         {"sweep", CLI_FLAG, &o.sweep, 0, 0, NULL, "stiffness and missed contacts over delay, jitter and loss"},
         {"check", CLI_INT, &o.check, 1, 1e6, "N", "random approaches: none may be felt before its freeze"},
         {"hands", CLI_FLAG, &o.hands, 0, 0, NULL, "80 fingers and hands: settling and stiffness of each"},

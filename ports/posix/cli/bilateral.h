@@ -24,7 +24,7 @@ struct bilateral_options {
     int speeds;
     int64_t approaches, seed, jobs, check;
     int sweep, hands, crisp, cards, own_scale;  /* own_scale: s was set, it is not fitted      */
-    const char *scene, *out, *udp, *link, *record;
+    const char *scene, *out, *udp, *link, *record, *preset;
     double record_Hz;
     struct run_setting setting[BILATERAL_SETTINGS_MAX];
     int settings;
@@ -51,6 +51,9 @@ void bilateral_print_params(void);
 
 /* bilateral_experiment.c: exit status. */
 int bilateral_experiment(const struct bilateral_options *o);
+
+/* bilateral_original.c: exit status. */
+int bilateral_original(const struct bilateral_options *o);
 
 /* The run of one speed. */
 struct bilateral_run_cfg bilateral_at_speed(const struct bilateral_options *o, double mps);

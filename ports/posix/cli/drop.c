@@ -5,15 +5,17 @@
 #include "border.h"
 #include "contacts.h"
 #include "csv.h"
+#include "drop_original.h"
 #include "friction.h"
 #include "images.h"
 #include "jobs.h"
 #include "names.h"
 #include "option.h"
-#include "scene_more.h"
+#include "original.h"
 #include "outdir.h"
 #include "param.h"
 #include "params_file.h"
+#include "scene_more.h"
 #include "sweep.h"
 #include "words.h"
 
@@ -36,7 +38,7 @@ struct drop_options {
     double k_Npm, b_Nspm, scale; /* < 0: the paper's at that rate                 */
     int64_t falls, seed, jobs, spread, friction;
     int pace, cards, sweep, check, readings, guarded, custom;
-    const char *out, *grid, *shard, *blackbox;
+    const char *out, *grid, *shard, *blackbox, *preset;
     double let_go_s;
     struct run_setting setting[SETTINGS_MAX];
     int settings;
@@ -396,10 +398,21 @@ static int load_params(struct drop_options *o)
 static int refuse(struct drop_options *o)
 {
     int err = assign_step(&o->device, 0);
+    if (err == 0 && o->preset) { err = original_take(o->preset); }
     if (err) { return err; }
     if (o->T.num != 0 && o->rates_given) {
         cli_complain("--period and --rate: a period is a rate: give one of them");
         return 2;
+    }
+    if (o->preset && (o->T.num != 0 || o->rates_given || o->k_Npm >= 0 || o->b_Nspm >= 0 || o->scale != 1 || o->spread > 0 ||
+                      o->pace || o->blackbox || o->gpio.given || o->params.load || o->params.save || o->readings || o->guarded || o->custom || in_plane(o))) {
+        cli_complain("--preset: goes with --falls, --seed, --out, --set, --device, --calibration, --cards and --let-go alone");
+        return 2;
+    }
+    if (o->preset) {
+        o->rate_Hz[0] = ORIGINAL_RATE_HZ;
+        o->rate_Hz[1] = ORIGINAL_BOX_HZ;
+        o->rates = 2;
     }
     if (o->T.num != 0) {
         o->rate_Hz[0] = (double)o->T.den / o->T.num;
@@ -439,6 +452,14 @@ static int refuse(struct drop_options *o)
     }
     if (err) { return err; }
     return o->out && !in_plane(o) ? outdir_open(o->out) : 0;
+}
+
+/* --- the system before, beside this one --- */
+
+static int beside_original(const struct drop_options *o)
+{
+    const struct run_cfg original = job_cfg(o, 0, 1, (uint64_t)o->seed), box = job_cfg(o, 1, 1, (uint64_t)o->seed);
+    return drop_original(&original, &box, o->out);
 }
 
 /* --- the plane of gains instead of the table's points --- */
@@ -503,6 +524,7 @@ int cli_drop(int argc, char **argv)
         {"shard", CLI_TEXT, &o.shard, 0, 0, "I/N", "the I-th of N parts of the sweep, in a file of its own"},
         {"border-check", CLI_FLAG, &o.check, 0, 0, NULL, "the simulated border beside that of the linear test"},
         {"friction", CLI_INT, &o.friction, 2, FRICTION_POINTS_MAX, "N", "the border against N amounts of friction, 0..2 times"},
+        {"preset", CLI_TEXT, &o.preset, 0, 0, "NAME", "original: the commercial system at 90 Hz, beside this box at 2 kHz"},
         {"guarded", CLI_FLAG, &o.guarded, 0, 0, NULL, "the scene with passivity, and what that takes away"},
         {"custom", CLI_FLAG, &o.custom, 0, 0, NULL, "the scene with a controller of your own (examples/custom)"},
         {"readings", CLI_FLAG, &o.readings, 0, 0, NULL, "the stiffness by every reading of the paper's analysis"},
@@ -540,7 +562,7 @@ int cli_drop(int argc, char **argv)
     err = refuse(&o);
     if (err == 0) { err = contacts_begin(&o.gpio); }
     if (o.gpio.given && err == 0) { words_begin(1); }
-    if (err == 0) { err = in_plane(&o) ? plane(&o) : experiment(&o); }
+    if (err == 0) { err = in_plane(&o) ? plane(&o) : o.preset ? beside_original(&o) : experiment(&o); }
     words_end();
     contacts_end();
     return err;
