@@ -10,6 +10,7 @@ import zipfile
 
 import fmpy
 import fmuloader.fmi3
+import numpy
 from fmpy.build import build_platform_binary
 from fmpy.fmi3 import FMU3Slave
 from fmpy.validation import validate_fmu
@@ -194,6 +195,15 @@ def together(importer, folder, native):
     return not bad and done and n == len(native.tick)
 
 
+def simulated(folder, native, name, inputs, outputs, values, first):
+    """By FMPy's own simulate_fmu(), whose row n is the instant n: inputs of the native run in, its outputs `first` rows later."""
+    table = numpy.array([(n / native.rate, *(int(t[i]) for i in inputs)) for n, t in enumerate(native.tick)],
+                        dtype=[("time", float)] + [(i, numpy.int32) for i in inputs])
+    row = fmpy.simulate_fmu(str(folder[name]), input=table, output=outputs, start_values={**values, "period_den": native.rate},
+                            output_interval=1 / native.rate, stop_time=len(native.tick) / native.rate)
+    return len(row) == len(native.tick) + 1 and all(row[o][n + first] == t[o] for n, t in enumerate(native.tick) for o in outputs)
+
+
 def refused(call):
     try:
         call()
@@ -240,6 +250,10 @@ def main(fmus, native_program, falls, *rates):
         say(len(native.tick) > int(rate) and any(t["c"] for t in native.tick), f"native at {rate} Hz: {len(native.tick)} ticks")
         say(alone_controller(ByFmpy, folder, native), f"controller at {rate} Hz: the native outputs, bit for bit; its state goes out and in")
         say(alone_device(ByFmpy, folder, native), f"device at {rate} Hz: the native codes, bit for bit")
+        say(simulated(folder, native, "ExhandController", native.inputs, native.outputs, native.param, 1),
+            f"controller at {rate} Hz by simulate_fmu: the native outputs, bit for bit")
+        say(simulated(folder, native, "ExhandDevice", ["dac_raw", "enable", "state"], native.inputs[:4], {"falls": native.falls}, 0),
+            f"device at {rate} Hz by simulate_fmu: the native codes, bit for bit")
         for importer in (ByFmpy, ByFmuloader):
             say(together(importer, folder, native), f"both at {rate} Hz in {importer.name}: the native run, bit for bit")
     refusals(folder)
