@@ -14,7 +14,7 @@ struct exh_mm32xat_par {
     uint8_t channels;      /* 0 .. channels-1 are scanned, 1 .. 31                */
     uint8_t interval;      /* SCINT: 0 20 us, 1 15, 2 10, 3 5 (-AT) or 4 (X) a sample */
     uint8_t words;         /* 1: a sample is one 16-bit read                      */
-    uint8_t slice;         /* samples taken a call of exh_mm32xat_some(), 1 .. 32 */
+    uint8_t slice;         /* samples taken a call of exh_mm32xat_some(), 1 .. 32; 0: not in parts, by exh_mm32xat_read() */
     uint8_t lost_limit;    /* so many scans lost in a row are a fault, 1 .. 255   */
     uint16_t reset_us;     /* after a reset of the card                           */
     uint16_t set_us;       /* after its registers were set                        */
