@@ -16,7 +16,6 @@
 #include "exhand/board.h"
 #include "exhand/error.h"
 
-#include <math.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -410,8 +409,8 @@ static void next_frame(void)
 static int16_t coarse(int16_t code)
 {
     const double step = 2 * 29491.2 / 254;
-    const double sample = floor((code + 29491.2) / step + 0.5);
-    return (int16_t)floor((sample < 0 ? 0 : sample > 254 ? 254 : sample) * step - 29491.2 + 0.5);
+    const double sample = (double)sim_floor((code + 29491.2) / step + 0.5);
+    return (int16_t)sim_floor((sample < 0 ? 0 : sample > 254 ? 254 : sample) * step - 29491.2 + 0.5);
 }
 
 /* The frame before, if there is one: this one is still on its line. */
