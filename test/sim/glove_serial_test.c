@@ -329,9 +329,9 @@ static uint64_t clock_ns(void)
 }
 
 /* In a process of its own, this one being the glove until it ends. */
-static void command(struct said *s, const char *dir, const char *const *word)
+static void command_of(struct said *s, const char *dir, int (*run_it)(int, char **), const char *const *word)
 {
-    const pid_t pid = said_start(dir, cli_glove, word);
+    const pid_t pid = said_start(dir, run_it, word);
     const uint64_t from_ns = clock_ns();
     siginfo_t info = {.si_pid = 0};
     while (waitid(P_PID, (id_t)pid, &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == 0) {
@@ -346,6 +346,11 @@ static void command(struct said *s, const char *dir, const char *const *word)
         if (n > 0 && write(far.tty.master, byte, (size_t)n) != n) { break; } /* nobody reads it any more */
     }
     said_end(s, dir, pid);
+}
+
+static void command(struct said *s, const char *dir, const char *const *word)
+{
+    command_of(s, dir, cli_glove, word);
 }
 
 static int lines(const char *text)
@@ -372,6 +377,29 @@ TEST(the_command_writes_rows_or_a_log)
     said(&s, dir, cli_csv, WORDS("csv", log, "--all"));
     CHECK(s.status == 0 && strstr(s.out, ",raw21\n"), "%s", s.err);
     end();
+    said_clean(dir);
+}
+
+/* The glove is the box's; that no frame comes is the box's fault, and told. */
+TEST(a_box_that_goes_on_has_it_for_its_glove)
+{
+    static struct said s;
+    char *dir = said_dir();
+    for (int silent = 0; silent < 2; silent++) {
+        const char *log = said_path(dir, "a.exh");
+        if (begin() < 0) { return; }
+        far.glove.kind = silent ? EMU_CYBER_SILENT : EMU_CYBER_WELL;
+        command_of(&s, dir, cli_run, WORDS("run", "--scene", "bilateral", "--pace", "--slack", "1", "--rate", "200", "--seconds", "3",
+                                           "--glove-serial", far.link, "--log", log));
+        CHECK(s.status == 0 && strstr(s.out, silent ? "glove" : "faults none"), "%d: %s%s", s.status, s.out, s.err);
+        said(&s, dir, cli_replay, WORDS("replay", log));
+        CHECK(s.status == 0, "%s", s.err);
+        end();
+    }
+    said(&s, dir, cli_run, WORDS("run", "--glove-serial", "/dev/null", "--seconds", "1"));
+    CHECK(s.status == 2 && strstr(s.err, "--glove-serial: goes with --scene bilateral and --pace"), "%d: %s", s.status, s.err);
+    said(&s, dir, cli_run, WORDS("run", "--scene", "bilateral", "--pace", "--glove-serial", "/dev/null", "--seconds", "1"));
+    CHECK(s.status == 3 && strstr(s.err, "--glove-serial: /dev/null: is no serial line"), "%d: %s", s.status, s.err);
     said_clean(dir);
 }
 
@@ -432,5 +460,5 @@ TEST_MAIN("sim/glove_serial", frames_come_at_the_rate_that_was_asked_for,
           a_glove_that_takes_no_command_is_heard_all_the_same,
           whatever_it_does_no_wrong_frame_comes_and_the_next_good_ones_do,
           a_device_that_is_pulled_out_ages_and_comes_back, a_name_that_is_no_serial_line_is_refused,
-          the_box_takes_its_silence_for_a_lost_glove, the_command_writes_rows_or_a_log,
+          the_box_takes_its_silence_for_a_lost_glove, the_command_writes_rows_or_a_log, a_box_that_goes_on_has_it_for_its_glove,
           its_nominal_calibration_is_the_published_one, what_it_cannot_use_it_names);

@@ -2,6 +2,7 @@
 
 #include "arming.h"
 #include "dumpfile.h"
+#include "glove_serial.h"
 #include "option.h"
 #include "param.h"
 
@@ -196,7 +197,8 @@ static int set_parameters(const struct bilateral_run_cfg *c)
     int err = 0;
     exh_scene_bilateral.defaults();
     bilateral_cal_of(&cal, &c->board.glove_par);
-    err = bilateral_stage_cal(&cal, NULL);
+    err = c->board.glove_tty ? glove_serial_stage(&exh_scene_bilateral, c->rate_Hz, c->board.glove_tty->rate_Hz)
+                             : bilateral_stage_cal(&cal, NULL);
     if (err == 0) { err = images_give(c->images, &exh_scene_bilateral); }
     for (size_t i = 0; err == 0 && i < sizeof known / sizeof known[0]; i++) {
         err = cli_param_set(p, known[i].name, known[i].value);

@@ -18,7 +18,6 @@
 
 #define IMAGE_B  (EXH_GLOVE_CAL_IMAGE_B + 1)
 #define RATE_TOP 20000
-#define GLOVE_HZ 90 /* a stock glove's                                           */
 
 /* --- options with a syntax of their own --- */
 
@@ -173,7 +172,7 @@ static int run(struct glove_options *o)
     if (err) { return err; }
     if ((o->record || o->serial) && o->rate_Hz <= 0) { o->rate_Hz = exh_scene_glove.rate_Hz; }
     if (o->serial) {
-        if (o->glove_Hz <= 0) { o->glove_Hz = GLOVE_HZ; }
+        if (o->glove_Hz <= 0) { o->glove_Hz = GLOVE_SERIAL_HZ; }
         return glove_serial(o);
     }
     if (o->record) { return glove_record(o); }

@@ -4,6 +4,7 @@
 
 #include "recording.h"
 
+#include "glove_serial.h"
 #include "posix.h"
 #include "run.h"
 
@@ -70,11 +71,6 @@ int glove_frames_of(struct glove_frames *f, const struct glove_options *o, const
 /* Rows as --csv writes them. */
 void glove_header(const struct glove_options *o);
 void glove_line(const struct glove_options *o, double t_s, const struct glove_signals *s);
-
-/* Nobody's hand, as exh_glove_cal_default, in codes 1 .. 255 of a stock glove; and in parameters of scene
- * glove or bilateral, with all else that suits one. 0 or -EXH_E... after a line on stderr. */
-void glove_serial_cal(struct exh_glove_cal *cal);
-int glove_serial_stage(const struct exh_scene *sc, double rate_Hz, double glove_Hz);
 
 /* The calibration of a file, staged. 0, or 2 after a line on stderr. */
 int glove_load_calibration(const char *path);

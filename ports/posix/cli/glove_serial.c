@@ -75,15 +75,16 @@ static int stage(const struct glove_options *o)
     return err < 0 ? 2 : o->calibration ? glove_load_calibration(o->calibration) : 0;
 }
 
-static int complain_open(const char *path)
+int glove_serial_open(struct glove_tty *t, const char *option, const char *path, double glove_Hz)
 {
-    const int err = errno;
+    const int err = glove_tty_open(t, path, glove_Hz) < 0 ? errno : 0;
     const char *what = err == ENOENT || err == ENXIO || err == ENODEV ? "is it plugged in? `ls /dev/tty*` lists what there is"
                        : err == EACCES ? "join the group that owns it (`ls -l` says which)"
                        : err == ENOTTY ? "give a serial line, e.g. /dev/ttyUSB0"
                        : err == EBUSY  ? "another program has it"
                                        : "give a serial line that can be opened";
-    cli_complain("--serial: %s: %s: %s", path, err == ENOTTY ? "is no serial line" : strerror(err), what);
+    if (err == 0) { return 0; }
+    cli_complain("--%s: %s: %s: %s", option, path, err == ENOTTY ? "is no serial line" : strerror(err), what);
     return 3;
 }
 
@@ -192,7 +193,8 @@ int glove_serial(const struct glove_options *o)
     memset(&run, 0, sizeof run);
     run.o = o;
     run.rate_Hz = o->rate_Hz;
-    if (glove_tty_open(&run.tty, o->serial, o->glove_Hz) < 0) { return complain_open(o->serial); }
+    err = glove_serial_open(&run.tty, "serial", o->serial, o->glove_Hz);
+    if (err) { return err; }
     err = stage(o);
     if (err == 0 && o->record && (log = fopen(o->record, "wb")) == NULL) {
         cli_complain("--record: %s: %s: give a file that can be written", o->record, strerror(errno));

@@ -2,6 +2,7 @@
 #include "cli.h"
 
 #include "assign.h"
+#include "glove_serial.h"
 #include "live.h"
 #include "modbus.h"
 #include "option.h"
@@ -139,11 +140,16 @@ static int prepare(struct live_options *o, const struct exh_scene *sc)
         cli_complain("--slack: not with --gpio: a real output has no time to make up for");
         err = 2;
     }
+    if (err == 0 && o->glove && (sc != &exh_scene_bilateral || !o->pace || o->params)) {
+        cli_complain("--glove-serial: goes with --scene bilateral and --pace, without --load-params");
+        err = 2;
+    }
     if (err == 0) { err = contacts_check(&o->gpio, o->pace); }
     if (err == 0) { err = read_params(o); }
     if (err == 0) { err = live_log_open(o->log, o->pace, o->seconds > 0); }
     if (err == 0) { err = contacts_begin(&o->gpio); }
     if (err == 0) { err = open_modbus(o); }
+    if (err == 0 && o->glove) { err = glove_serial_open(&o->tty, "glove-serial", o->glove, GLOVE_SERIAL_HZ); }
     return err;
 }
 
@@ -201,6 +207,8 @@ int cli_run(int argc, char **argv)
          "clients may save the parameters there, for --load-params"},
         {"remote", CLI_FLAG, &o.remote, 0, 0, NULL,
          "clients may command RUN and CLEAR; the dead-man holds all the same"},
+        {"glove-serial", CLI_TEXT, &o.glove, 0, 0, "DEVICE",
+         "of bilateral: a stock glove there instead of the simulated one; fingers stay simulated"},
         {"gpio", CLI_CALL, u[3].to, 0, 0, CONTACTS_ARG, CONTACTS_HELP},
         {"log", CLI_TEXT, &o.log, 0, 0, "FILE", "for `exhand replay` and `exhand csv`"},
         {"blackbox", CLI_TEXT, &o.blackbox, 0, 0, "FILE", "the last seconds before a fault, a log"},

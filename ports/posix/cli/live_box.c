@@ -114,10 +114,12 @@ static int run_hand(struct live_options *o)
     c.blackbox = o->blackbox;
     if (o->live.image) { c.fit_scale = 0; } /* it was, when that was saved */
     board(o, &c.board);
+    c.board.glove_tty = o->glove ? &o->tty : NULL;
     live_status(lowest(c.board.exo.fingers));
     err = bilateral_run(&c, &r);
     err = dumped(err, r.dumps);
     bilateral_run_free(&r);
+    if (o->glove) { glove_tty_close(&o->tty); }
     return err;
 }
 
