@@ -59,7 +59,6 @@ static int ended(struct cyberglove *g)
 static int frame(struct cyberglove *g)
 {
     const uint32_t samples = g->n - 1;
-    if (g->n > sizeof g->held) { return lose(g, CYBERGLOVE_LENGTH); }
     if (samples >= SAMPLES) { return ended(g); }
     if (samples == 18 || (samples == 19 && g->held[19] <= STATUS_TOP)) { return lose(g, CYBERGLOVE_EIGHTEEN); }
     return lose(g, CYBERGLOVE_ZERO);

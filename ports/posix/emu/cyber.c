@@ -58,7 +58,7 @@ static void say_frame(struct emu_cyber *g, unsigned header, unsigned kind)
     if (kind != EMU_CYBER_HEADLESS) { say(g, header); }
     say_samples(g, kind);
     if (kind == EMU_CYBER_CUT) { return; }
-    if (has_status(g)) { say(g, kind == EMU_CYBER_OFF ? 0 : 1u | (noise(g) & SWITCH_BITS)); }
+    if (has_status(g)) { say(g, (unsigned)(kind != EMU_CYBER_OFF) | (noise(g) & SWITCH_BITS)); }
     if (kind == EMU_CYBER_FAST || (kind == EMU_CYBER_OFF && !has_status(g))) {
         say(g, 'e');
         say(g, kind == EMU_CYBER_FAST ? 's' : 'g');
