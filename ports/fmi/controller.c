@@ -139,12 +139,13 @@ int unit_set(uint32_t i, double value)
 void unit_reset(void)
 {
     static const struct exh_scene_in no_in;
-    static const struct exh_drive_out no_out;
+    static const struct exh_drive_out no_out = {.dac_raw = {32768}}; /* 0 V: what is there before the first tick */
     in = no_in;
     out = no_out;
     T = (struct exh_period){1, scene->rate_Hz};
     started = 0;
     scene->defaults();
+    for (uint32_t i = 0; i < exh_signal_count(scene->signals); i++) { scene->signal[i] = 0; } /* of an instance before */
     for (uint32_t i = 0; i < OWN; i++) {
         if (own_var[i].role == UNIT_INPUT || i == ENC_BITS) { (void)set_own(i, own_var[i].start); }
     }

@@ -9,4 +9,6 @@ command -v cmake >/dev/null || { echo "fmi: missing: cmake: sudo apt-get install
 "$venv/bin/python" -c 'import fmpy, fmuloader' 2>/dev/null ||
     { python3 -m venv "$venv" && "$venv/bin/pip" install -q --disable-pip-version-check fmpy fmuloader; } >"$B/fmi/pip" 2>&1 ||
     { echo "fmi: missing: python3-venv, or fmpy and fmuloader: pip install fmpy fmuloader" >&2; exit 3; }
-"$venv/bin/python" test/fmi/fmi.py "$B/fmu" "$B/fmi/native" "${FALLS:-1}" "$@"
+"$venv/bin/python" -c 'import importlib.util as u, sys; sys.exit(u.find_spec("ecospy") is None)' ||
+    "$venv/bin/pip" install -q --disable-pip-version-check ecospy tbb >"$B/fmi/pip" 2>&1 || true # one more, where it can be had
+LD_LIBRARY_PATH=$venv/lib "$venv/bin/python" test/fmi/fmi.py "$B/fmu" "$B/fmi/native" "${FALLS:-1}" "$@"
