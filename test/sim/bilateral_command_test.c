@@ -332,6 +332,7 @@ TEST(bad_usage_is_refused_by_name)
         {"--set", "fingers=3", "--fingers"}, {"--device", "speed=1", "--speed"},
         {"--device", "tail=1", "tail"},      {"--scene", "/none.world", "/none.world"},
         {"--at", "1", "--at"},               {"--rate", "0", "--rate"},
+        {"--rate", "90", "glove_fc: 200 Hz (below half the rate of 90 Hz): --set glove_fc=22.5 would do"},
         {"--nonsense", "1", "--nonsense"},
     };
     const char *dir = said_dir();

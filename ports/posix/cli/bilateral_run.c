@@ -316,7 +316,7 @@ int bilateral_run(const struct bilateral_run_cfg *c, struct bilateral_run *r)
     if (err == 0 && r->unarmed) {
         err = -EXH_E_STATE; /* that was told */
     } else if (err < 0 && !c->board.cards.quiet && !images_complain(c->images, &exh_scene_bilateral)) {
-        cli_complain("%lu Hz: %s", (unsigned long)c->rate_Hz, exh_error_text(err));
+        cli_setup_complain(exh_scene_bilateral.params, (double)c->rate_Hz, err);
     }
     if (run.logged && r->T.num != 0) { r->lost = exh_log_end(run.last_tick + 1); }
     if (err == 0) {

@@ -2,11 +2,11 @@
 #include "glove.h"
 
 #include "option.h"
+#include "param.h"
 
 #include "log.h"
 #include "loop.h"
 
-#include "exhand/error.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -47,7 +47,7 @@ static int find_motion(const struct glove_options *o, struct sim_operator_par *h
 
 static int complain_loop(const struct glove_options *o, int err)
 {
-    if (err < 0) { cli_complain("%.6g Hz: %s: see --rate and --set", o->rate_Hz, exh_error_text(err)); }
+    if (err < 0) { cli_setup_complain(exh_scene_glove.params, o->rate_Hz, err); }
     return err < 0 ? 2 : 0;
 }
 

@@ -3,6 +3,7 @@
 
 #include "logfile.h"
 #include "option.h"
+#include "param.h"
 
 #include "log.h"
 #include "loop.h"
@@ -86,7 +87,7 @@ int glove_rest_board(struct glove_rest *r, const struct glove_options *o)
     glove_catch();
     err = exh_loop(&exh_scene_glove, 0, &hooks);
     if (err < 0) {
-        cli_complain("%s: %.6g Hz: %s: see --rate and --set", exh_board_info.name, rate_Hz, exh_error_text(err));
+        cli_setup_complain(exh_scene_glove.params, rate_Hz, err);
         return err == -EXH_E_ABSENT ? 3 : 2;
     }
     return posix_interrupted() ? 130 : settle_rate(r);

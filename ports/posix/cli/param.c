@@ -25,6 +25,21 @@ const struct exh_signal *cli_signal_find(const struct exh_signal_table *t, const
     return NULL;
 }
 
+void cli_setup_complain(const struct exh_params *p, double rate_Hz, int err)
+{
+    const uint32_t n = exh_signal_count(p->table);
+    int named = 0;
+    for (uint32_t i = 0; err == -EXH_E_CUTOFF && i < n; i++) {
+        const struct exh_signal *row = exh_signal_at(p->table, i, NULL);
+        const double fc_Hz = cli_signal_value(row, p->staged[i]);
+        const char *end = strstr(row->name, "fc");
+        if (end == NULL || end[2] != '\0' || fc_Hz < rate_Hz / 2) { continue; }
+        cli_complain("%s: %.6g Hz (below half the rate of %.6g Hz): --set %s=%.4g would do", row->name, fc_Hz, rate_Hz, row->name, rate_Hz / 4);
+        named = 1;
+    }
+    if (!named) { cli_complain("%.6g Hz: %s: see --rate and --set", rate_Hz, exh_error_text(err)); }
+}
+
 /* Of every finger, material or whatever there are several of. */
 static int stage_all(struct exh_params *p, uint16_t id, int32_t raw)
 {

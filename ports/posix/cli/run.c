@@ -208,7 +208,7 @@ int run_drop(const struct run_cfg *c, struct run *r)
             cli_complain("rate: %lu Hz (allowed 1..%lu): choose one in that range",
                          (unsigned long)c->rate_Hz, (unsigned long)exh_board_info.rate_max_Hz);
         } else if (err < 0 && !complain(c, run.scene)) {
-            cli_complain("%lu Hz: %s", (unsigned long)c->rate_Hz, exh_error_text(err));
+            cli_setup_complain(run.scene->params, (double)c->rate_Hz, err);
         }
         if (run.logged && r->T.num != 0) { r->lost = exh_log_end(run.last_tick + 1); } /* it was started */
     }
