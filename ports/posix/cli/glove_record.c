@@ -7,7 +7,6 @@
 #include "log.h"
 #include "loop.h"
 
-
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -49,7 +49,7 @@ void glove_serial_cal(struct exh_glove_cal *cal)
 
 int glove_serial_stage(const struct exh_scene *sc, double rate_Hz, double glove_Hz)
 {
-    const double every = (long)(rate_Hz / glove_Hz);
+    const double every = (double)(long)(rate_Hz / glove_Hz);
     const struct run_setting own[] = {
         {"glove_low", 0},  {"glove_high", 256}, {"glove_bits", 16},
         {"glove_hyst", 1}, {"every", every < 1 ? 1 : every > 1000 ? 1000 : every},
