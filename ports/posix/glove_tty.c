@@ -49,7 +49,7 @@ int glove_tty_open(struct glove_tty *t, const char *path, double rate_Hz)
 {
     memset(t, 0, sizeof *t);
     t->path = path;
-    t->rate_Hz = 115200.0 / (long)(115200.0 / rate_Hz + 0.5);
+    t->rate_Hz = 115200.0 / (double)(long)(115200.0 / rate_Hz + 0.5);
     t->said_s = -ANSWER_S;
     t->fd = -1;
     return try_open(t);
