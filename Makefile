@@ -1178,7 +1178,7 @@ link: $(lib)
 ## Install library (static; shared on posix), headers, exhand.pc and CMake package, host program under DESTDIR/PREFIX
 .PHONY: install install-lib
 install: all install-lib
-	$(if $(filter posix,$(PORT)),install -d $(DESTDIR)$(PREFIX)/bin && install -m 755 $(exhand) $(DESTDIR)$(PREFIX)/bin)
+	$(if $(filter posix,$(PORT)),install -d $(DESTDIR)$(PREFIX)/bin && install -m 755 $(program) $(DESTDIR)$(PREFIX)/bin)
 
 ## The same without the host program
 install-lib: $(lib) $(if $(filter posix,$(PORT)),$(shared))

@@ -151,9 +151,10 @@ void unit_reset(void)
     }
 }
 
-int unit_start(void)
+int unit_start(const char **which)
 {
     int err;
+    *which = "these parameters together";
     if (!exh_period_ok(T)) { return -EXH_E_RATE; }
     exh_params_apply(scene->params);
     err = scene->setup((struct exh_scene_board){T, (uint8_t)enc_bits});

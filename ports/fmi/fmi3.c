@@ -91,11 +91,12 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean tolera
 
 fmi3Status fmi3ExitInitializationMode(fmi3Instance instance)
 {
-    const int err = unit_start();
+    const char *which;
+    const int err = unit_start(&which);
     (void)instance;
     fmu.initialising = 0;
     fmu.running = err == 0;
-    return err < 0 ? fail("these parameters together, period %lu/%lu s: refused, %d", (unsigned long)unit_period().num,
+    return err < 0 ? fail("%s, period %lu/%lu s: refused, %d", which, (unsigned long)unit_period().num,
                           (unsigned long)unit_period().den, err)
                    : fmi3OK;
 }

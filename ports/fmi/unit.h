@@ -40,8 +40,8 @@ void unit_var(uint32_t i, struct unit_var *v);
 double unit_get(uint32_t i);
 /* 0, or -EXH_E_…: out of its range, or not now. Parameters act with the next step. */
 int unit_set(uint32_t i, double value);
-/* Parameters are given: outputs of time 0. 0 or -EXH_E_…. */
-int unit_start(void);
+/* Parameters are given: outputs of time 0. 0 or -EXH_E_…, and then *which is those that do not go together. */
+int unit_start(const char **which);
 /* The period that it was started with. */
 struct exh_period unit_period(void);
 /* One period, from the inputs as they are now. 0, or -EXH_E_…. */

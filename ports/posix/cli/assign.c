@@ -37,11 +37,7 @@ int assign_refused(const char *command, const char *name, double value, const st
 int assign_step(struct sim_device *d, double hand_npm)
 {
     const double enough_s = plant_step_that_will_do(d, hand_npm);
-    if (plant_step_will_do(d, hand_npm)) { return 0; }
-    if (enough_s > 0 && d->substep_s == sim_device_default().substep_s) {
-        d->substep_s = enough_s;
-        return 0;
-    }
+    if (plant_take_step(d, hand_npm) == 0) { return 0; }
     if (enough_s > 0) {
         cli_complain("--device: substep: %.6g s is too long for this string, rotor and mass, whose oscillation it "
                      "would not follow: give --device substep=%g",

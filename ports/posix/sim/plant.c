@@ -143,6 +143,15 @@ double plant_step_that_will_do(const struct sim_device *d, double hand_npm)
     return 0;
 }
 
+int plant_take_step(struct sim_device *d, double hand_npm)
+{
+    const double enough_s = plant_step_that_will_do(d, hand_npm);
+    if (plant_step_will_do(d, hand_npm)) { return 0; }
+    if (enough_s == 0 || d->substep_s != sim_device_default().substep_s) { return -1; }
+    d->substep_s = enough_s;
+    return 0;
+}
+
 static inline void stop(double *x_m, double *v_mps, double end_m)
 {
     if (*x_m >= end_m) { return; }

@@ -50,6 +50,9 @@ int plant_step_will_do(const struct sim_device *d, double hand_npm);
 /* A round number that will, at most the device's longest; 0: none that it may have. */
 double plant_step_that_will_do(const struct sim_device *d, double hand_npm);
 
+/* The table's own step becomes one that will do. 0; -1: the step is another, or none will do. */
+int plant_take_step(struct sim_device *d, double hand_npm);
+
 /* exp(-x) for x >= 0, from + - x /; relative error < 1e-12. */
 double sim_exp_neg(double x);
 
