@@ -45,7 +45,7 @@ base := -std=c99 -O$(O) -g $(warn) -ffunction-sections -fdata-sections -Ilib/inc
 
 # What objects are compiled with, of every kind of them: another text, and all are compiled anew.
 stamp      := $(out)/flags
-flags_text := $(CC) | $(base) | $(PORT_CFLAGS) | $(PORT_HOSTFLAGS) | $(CFLAGS) | $(LDFLAGS)
+flags_text := $(CC) | $(base) | $(PORT_CFLAGS) | $(PORT_FLOAT) | $(PORT_HOSTFLAGS) | $(CFLAGS) | $(LDFLAGS)
 
 lib_src := $(sort $(wildcard lib/src/*.c))
 lib_obj := $(lib_src:%.c=$(out)/%.o)
@@ -88,8 +88,9 @@ MODEL_NAME   ?= $(call model_name,$(MODEL))
 # Its objects, but for the generator's example of a main program; and what plugs it in.
 model_objects = $(patsubst %,$(2)/%.o,adapter $(filter-out ert_main,$(notdir $(basename $(wildcard $(1)/*.c)))))
 model_obj     = $(call model_objects,$(MODEL),$(out)/model/$(MODEL_NAME))
-# No FPU register is an image's but where a scene reckons in floats. Others' code, others' warnings.
-float_cflags  = $(filter-out -mgeneral-regs-only,$(PORT_CFLAGS)) $(PORT_FLOAT)
+# No FPU register is an image's but where a scene reckons in floats; and fabs() or sqrt() are what the compiler makes of
+# them, where no libm is. Others' code, others' warnings.
+float_cflags  = $(filter-out -mgeneral-regs-only -ffreestanding,$(PORT_CFLAGS)) $(PORT_FLOAT)
 model_base   := $(filter-out $(warn),$(base))
 $(out)/examples/custom/slot_real.o: PORT_CFLAGS := $(float_cflags)
 

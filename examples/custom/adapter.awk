@@ -5,7 +5,7 @@
 #   reusable function, root-level I/O   part of model data structure   NAME_step(RT_MODEL *)
 #                                       structure reference            NAME_step(RT_MODEL *, ExtU *, ExtY *)
 #                                       individual arguments           NAME_step(RT_MODEL *, real_T U_q, ..., real_T *Y_f)
-# rate: the model's fixed step, as Hz; 0 where it knows none. map: "theirs=ours ..." for ports that are named otherwise.
+# rate: the model's fixed step, as Hz, a whole number; empty where it knows none. map: "theirs=ours ..." for ports that are named otherwise.
 # Exit status 2, after a line that says which model, what, and what to do.
 
 function fail(text) { print model ".h: " text > "/dev/stderr"; failed = 1; exit 2 }
@@ -18,9 +18,11 @@ function ours(port) { return port in other ? other[port] : port }
 BEGIN {
     n = split(map, pair, " ")
     for (i = 1; i <= n; i++) { split(pair[i], side, "="); other[side[1]] = side[2] }
+    if (rate != "" && rate !~ /^[1-9][0-9]*$/) { fail("MODEL_RATE=" rate ": give a whole number of Hz, or leave it out") }
 }
 
-{ sub(/\r$/, ""); if ($0 !~ /^[ \t]*#/) { text = text " " $0 } }
+# A macro goes on behind a backslash.
+{ sub(/\r$/, ""); macro = macro || $0 ~ /^[ \t]*#/; if (!macro) { text = text " " $0 } macro = macro && $0 ~ /\\$/ }
 
 # "typedef struct { fields } TYPE;", "struct TAG { fields };" and declarations, which end in ";".
 END {
@@ -63,38 +65,49 @@ function declare(s,    f, args, at) {
     }
 }
 
-# The fields of a struct type into field[], kind[]: their number.
-function take_fields(type,    n, i, part, count, f) {
+# The fields of a struct type into field[], kind[]: their number. Of outputs only f is wired: others may be anything.
+function take_fields(type, outputs,    n, i, part, count, f) {
     if (!(type in fields)) { fail("no struct " type) }
     n = split(fields[type], part, ";")
     count = 0
     for (i = 1; i <= n; i++) {
         f = trim(part[i])
         if (f == "") { continue }
-        if (f ~ /[\[{}(]/) { fail(type ": \"" f "\": only scalars can be wired: one finger, one value a port") }
+        if (outputs && sub(/ *\[.*$/, "", f) && ours(name_of(f)) != "f") { continue }
+        if (trim(part[i]) ~ /[\[{}(]/) { fail(type ": \"" trim(part[i]) "\": only scalars can be wired: one finger, one value a port") }
         field[++count] = name_of(f); kind[count] = type_of(f)
     }
     return count
 }
 
+# A quantity in an integer would lose its fraction, or is scaled by what no header says.
+function want_real(port, type) {
+    if (type ~ /^(const )?(u?int[0-9]*_T|u?int[0-9]+_t|s?u?fix.*_T|byte_T|boolean_T|char_T|.*(char|short|int|long))$/) {
+        fail(port ": " type ": wanted is real_T or real32_T, the value in SI; c and on alone may be integers")
+    }
+}
+
 # One input; t and T are the adapter's own.
 function wire(target, type, port,    value) {
     port = ours(port)
+    if (port != "c" && port != "on" && type != "boolean_T") { want_real(port, type) }
     if (port == "t") { value = "real_t_s()" }
     else if (port == "T") { value = "real_T_s()"; timed = 1 }
     else { value = "real_in(" ins + 0 ")"; input[ins++] = port }
     sets = sets "    " target " = " (type == "boolean_T" ? value " != 0" : "(" type ")" value) ";\n"
 }
 
-function forced(source, port) {
+function forced(source, port, type) {
     if (ours(port) != "f") { return }
+    want_real(port, type)
+    if (force != "" && force != source) { fail(port ": a second outport for f: one force a finger") }
     force = source
 }
 
 function wire_struct(in_type, in_name, out_type, out_name,    n, i) {
-    if (in_type != "") { n = take_fields(in_type); for (i = 1; i <= n; i++) { wire(in_name field[i], kind[i], field[i]) } }
-    n = take_fields(out_type)
-    for (i = 1; i <= n; i++) { forced(out_name field[i], field[i]) }
+    if (in_type != "") { n = take_fields(in_type, 0); for (i = 1; i <= n; i++) { wire(in_name field[i], kind[i], field[i]) } }
+    n = take_fields(out_type, 1)
+    for (i = 1; i <= n; i++) { forced(out_name field[i], field[i], kind[i]) }
 }
 
 # The port's own name, without what the generator puts before it.
@@ -104,9 +117,11 @@ function port_of(s) { sub("^(" model "_|rt|arg_)?[UY]_", "", s); sub(/^arg_/, ""
 function own_memory(rtm,    n, i, part, f, type) {
     statics = "static " rtm " rtm;\n"
     clears = "    memset(&rtm, 0, sizeof rtm);\n"
+    memory = keeps_time(tag_of(rtm))
     n = split(fields[tag_of(rtm)], part, ";")
     for (i = 1; i <= n; i++) {
         f = trim(part[i]); gsub(/\*/, " * ", f); gsub(/ +/, " ", f)
+        memory = memory || (f != "" && type_of(f) in fields)
         if (f !~ /\*/ || f ~ /[\[{}(]/ || f ~ /char_T/) { continue }
         type = type_of(f); sub(/ \*.*$/, "", type); sub(/^const /, "", type)
         f = name_of(f)
@@ -119,6 +134,9 @@ function own_memory(rtm,    n, i, part, f, type) {
         memory = memory || f !~ /^(inputs|outputs)$/
     }
 }
+
+# The model counts its steps, as time.
+function keeps_time(tag) { return fields[tag] ~ /[^A-Za-z_0-9](Timing|clockTick[A-Z0-9]*) *;/ }
 
 function tag_of(rtm) { if (rtm in fields) { return rtm } sub(/^RT_MODEL_/, "tag_RTM_", rtm); return rtm }
 
@@ -134,11 +152,12 @@ function pass(args,    n, i, arg, call, type, name) {
         if (!(type in fields)) { # a scalar that comes out
             if (!(name in declared)) { statics = statics "static " type " out_" name ";\n" }
             declared[name] = 1
-            forced("out_" name, port_of(name)); call = call ", &out_" name
+            forced("out_" name, port_of(name), type); call = call ", &out_" name
             continue
         }
         if (!(type in of_type)) {
             of_type[type] = "its_" name
+            memory = memory || type !~ /^(ExtU|ExtY|ExternalInputs|ExternalOutputs|P|Parameters)_/
             statics = statics "static " type " its_" name ";\n"
             clears = clears "    memset(&its_" name ", 0, sizeof its_" name ");\n"
         }
@@ -159,6 +178,7 @@ function write(    args, i, n, u, y, call, start, stop, error, ins_struct, outs_
     if (args == "void" || args == "") {
         if (!(model "_Y" in global)) { fail("no " model "_Y: root-level I/O wanted is a structure") }
         wire_struct(global[model "_U"], model "_U.", global[model "_Y"], model "_Y.")
+        memory = keeps_time("tag_RTM_" model "_T") || keeps_time("tag_RTM_" model)
         n = split("B X DW DWork PrevZCX U Y", kind, " ")
         for (i = 1; i <= n; i++) {
             y = model "_" kind[i]
@@ -181,6 +201,7 @@ function write(    args, i, n, u, y, call, start, stop, error, ins_struct, outs_
     }
     if (error != "" && fields["tag_RTM_" model "_T"] fields["tag_RTM_" model] !~ /errorStatus/) { error = "" }
     if (force == "") { fail("no outport f, the force asked for in N: name it so, or MODEL_MAP=\"THEIRS=f\"") }
+    if (ins > 32) { fail(ins " inports: at most 32") }
     if (rate == "" && memory && !timed) { fail("it remembers, so it was made for one rate: say which, MODEL_RATE=HZ, or give it an inport T, the period in s") }
 
     print "/* " model " in the slot, made from its header. */"
@@ -195,8 +216,7 @@ function write(    args, i, n, u, y, call, start, stop, error, ins_struct, outs_
     print "static int32_t step(void)\n{"
     printf "%s", sets
     print "    " model "_step(" call ");"
-    if (error != "") { print "    if (" error ") { return SLOT_NONE; }" }
-    print "    return real_out((double)" force ");\n}\n"
+    print "    return " (error == "" ? "" : error " ? real_none() : ") "real_out((double)" force ");\n}\n"
     print "static void terminate(void)\n{"
     if ((model "_terminate") in proto) { print "    " model "_terminate(" stop ");" }
     print "}\n"

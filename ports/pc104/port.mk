@@ -21,7 +21,7 @@ PORT_HOSTFLAGS := -Iports
 # No FPU, MMX or SSE register is ever touched, so none has to be set up or saved; PORT_FLOAT is for a controller in floats alone.
 PORT_CFLAGS   := -m32 -march=i686 -ffreestanding -fno-pic -fno-pie -fno-stack-protector \
                  -fcf-protection=none -fno-asynchronous-unwind-tables -mgeneral-regs-only
-PORT_FLOAT    := -msse2 -mfpmath=sse
+PORT_FLOAT    := -msse2 -mfpmath=sse -fno-math-errno
 comma         := ,
 PORT_LDFLAGS   = -m32 -nostdlib -static -no-pie -Wl,--build-id=none,-z,noexecstack,-z,max-page-size=4096 \
                  $(if $(SCENE_BOX_B),-Wl$(comma)--defsym=BLACKBOX_B=$(SCENE_BOX_B))

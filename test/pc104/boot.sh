@@ -229,6 +229,7 @@ fi
 image=$1/custom-rude-none.elf
 boots 0 '^arming refused at deadman$' ticks=3000 uncalibrated=1 q_lim=-0.0004 k=1 idle=spin # a cause is present
 says ', enable 0x00000000$'
+boots 0 '^arming refused at small_force$' ticks=3000 uncalibrated=1 q_lim=-0.0004 k=9 idle=spin # 5 N: a root, without libm
 safe 7 '^tick does not end, vector 32, error 0x00000015, ' ticks=6000 uncalibrated=1 q_lim=-0.0004 k=8 idle=spin
 
 image=$1/drop-none.iso

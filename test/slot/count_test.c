@@ -1,6 +1,8 @@
 /* A model made for one rate, whose ports are named otherwise; init, step and terminate are called when they should be. */
 #include "rig.h"
 
+#include "custom/slot_real.h"
+
 #include "exhand/error.h"
 
 #include <sys/wait.h>
@@ -56,6 +58,17 @@ TEST(another_rate_is_refused)
     CHECK_EQ_I64(exh_scene_custom.setup((struct exh_scene_board){{1, 1000}, 24}), -EXH_E_RATE);
 }
 
+/* A step without an answer is one, too. */
+TEST(time_goes_on_without_an_answer)
+{
+    const volatile double zero = 0;
+    real_wire(NULL, 0, (struct exh_period){1, 500});
+    CHECK_EQ_I64(real_out(-1), -EXH_Q(1, 1, EXH_Q_FORCE));
+    CHECK_EQ_I64(real_none(), SLOT_NONE);
+    CHECK_EQ_I64(real_out(zero / zero), SLOT_NONE);
+    CHECK(real_t_s() == 3 / 500.0, "%.17g s", real_t_s());
+}
+
 /* --- headers that the adapter does not understand: a line on stderr, status 2, and no adapter --- */
 
 static int adapt(const char *header, const char *options, char *said, size_t cap)
@@ -82,6 +95,11 @@ static int adapt(const char *header, const char *options, char *said, size_t cap
 #define OUTPUTS "typedef struct { real_T f; } ExtY_m_T;\nextern ExtY_m_T m_Y;\n"
 #define ENTRIES "extern void m_initialize(void);\nextern void m_step(void);\n"
 #define STATES  "typedef struct { real_T x; } DW_m_T;\nextern DW_m_T m_DW;\n"
+#define TIMED   "struct tag_RTM_m_T { struct { uint32_T clockTick0; } Timing; };\n"
+#define TYPES   "typedef struct { real_T x; } DW_m_T;\ntypedef struct { real_T q; } ExtU_m_T;\ntypedef struct { real_T f; } ExtY_m_T;\n"
+#define REUSABLE(keeps, more) \
+    "struct tag_RTM_m_T { const char_T *errorStatus; " keeps " };\nextern void m_initialize(RT_MODEL_m_T *const m_M);\n" \
+    "extern void m_step(RT_MODEL_m_T *const m_M" more ", ExtU_m_T *m_U, ExtY_m_T *m_Y);\n"
 
 TEST(what_is_not_understood_is_named)
 {
@@ -95,6 +113,15 @@ TEST(what_is_not_understood_is_named)
         {INPUTS "typedef struct { real_T g; } ExtY_m_T;\nextern ExtY_m_T m_Y;\n" ENTRIES, "", "m.h: no outport f, "},
         {"typedef struct { real_T q[5]; } ExtU_m_T;\nextern ExtU_m_T m_U;\n" OUTPUTS ENTRIES, "", "ExtU_m_T: \"real_T q[5]\": only scalars"},
         {INPUTS OUTPUTS STATES ENTRIES, "", "m.h: it remembers, so it was made for one rate"},
+        {INPUTS OUTPUTS TIMED ENTRIES, "", "m.h: it remembers, so it was made for one rate"},
+        {TYPES REUSABLE("real_T x; DW_m_T dwork;", ""), "", "m.h: it remembers, so it was made for one rate"},
+        {TYPES REUSABLE("", ", DW_m_T *m_DW"), "", "m.h: it remembers, so it was made for one rate"},
+        {INPUTS OUTPUTS STATES ENTRIES, "-v rate=1kHz", "m.h: MODEL_RATE=1kHz: give a whole number of Hz"},
+        {INPUTS OUTPUTS STATES ENTRIES, "-v rate=0", "m.h: MODEL_RATE=0: give a whole number of Hz"},
+        {INPUTS "typedef struct { int16_T f; } ExtY_m_T;\nextern ExtY_m_T m_Y;\n" ENTRIES, "", "m.h: f: int16_T: wanted is real_T"},
+        {"typedef struct { int32_T q; } ExtU_m_T;\nextern ExtU_m_T m_U;\n" OUTPUTS ENTRIES, "", "m.h: q: int32_T: wanted is real_T"},
+        {INPUTS "typedef struct { real_T f[5]; } ExtY_m_T;\nextern ExtY_m_T m_Y;\n" ENTRIES, "", "ExtY_m_T: \"real_T f[5]\": only scalars"},
+        {INPUTS "typedef struct { real_T f; real_T g; } ExtY_m_T;\nextern ExtY_m_T m_Y;\n" ENTRIES, "-v map=g=f", "m.h: g: a second outport for f"},
     };
     static const struct {
         const char *header, *options, *told;
@@ -104,6 +131,9 @@ TEST(what_is_not_understood_is_named)
         {"typedef struct { real_T T; } ExtU_m_T;\nextern ExtU_m_T m_U;\n" OUTPUTS STATES ENTRIES, "", "slot = {\"m\", 0u, 0, "},
         {INPUTS "typedef struct { real_T g; /* a \"comment\" ; } */ } ExtY_m_T;\nextern ExtY_m_T m_Y;\n" ENTRIES, "-v map=g=f", "m_Y.g"},
         {"#ifdef __cplusplus\nextern \"C\" {\n#endif\n" INPUTS OUTPUTS ENTRIES "#ifdef __cplusplus\n}\n#endif\n", "", "m_U.q = (real_T)real_in(0);"},
+        {INPUTS "typedef struct { real_T v[5]; real_T f; } ExtY_m_T;\nextern ExtY_m_T m_Y;\n" ENTRIES, "", "real_out((double)m_Y.f)"},
+        {"#define M(a) \\\n  ((a)->b; { \\\n  )\n" INPUTS OUTPUTS ENTRIES, "", "real_out((double)m_Y.f)"},
+        {TYPES REUSABLE("", ""), "", "rtm.errorStatus ? real_none() : real_out((double)its_m_Y.f)"},
     };
     char said[8192];
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
@@ -116,4 +146,4 @@ TEST(what_is_not_understood_is_named)
     }
 }
 
-TEST_MAIN("slot/count", a_step_a_tick, another_rate_is_refused, what_is_not_understood_is_named);
+TEST_MAIN("slot/count", a_step_a_tick, another_rate_is_refused, time_goes_on_without_an_answer, what_is_not_understood_is_named);

@@ -3,7 +3,7 @@
 
 #include "exhand/safety.h"
 
-enum { GOOD, NOT_A_NUMBER, INFINITE, MINUS_INFINITE, HUGE_PULL, HUGE_PUSH, SAYS_FAILED, LATE };
+enum { GOOD, NOT_A_NUMBER, INFINITE, MINUS_INFINITE, HUGE_PULL, HUGE_PUSH, SAYS_FAILED, LATE, ROOT = 9 };
 
 static struct {
     int code_min, code_max; /* of all ticks, from the code of 0 A                */
@@ -70,9 +70,12 @@ static int32_t f_limit(void)
 
 TEST(good_answers_go_out)
 {
-    run_rude(GOOD, 0);
-    CHECK(seen.faults == 0 && seen.dumb_at < 0 && seen.code_max > 0, "faults %lx", (unsigned long)seen.faults);
-    CHECK_EQ_I64(seen.f_max_N_q20, EXH_Q(5, 1, EXH_Q_FORCE));
+    static const int what[] = {GOOD, ROOT};
+    for (size_t i = 0; i < sizeof what / sizeof what[0]; i++) {
+        run_rude(what[i], 0);
+        CHECK(seen.faults == 0 && seen.dumb_at < 0 && seen.code_max > 0, "faults %lx", (unsigned long)seen.faults);
+        CHECK_EQ_I64(seen.f_max_N_q20, EXH_Q(5, 1, EXH_Q_FORCE));
+    }
 }
 
 /* No force from the tick that got none; the tick after it cuts. */
