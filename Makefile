@@ -346,8 +346,8 @@ $(B)/test/prop/%_test: $(B)/test/san/test/prop/%_test.o
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(san) -o $@ $^ -lcmocka
 
-# The emulated cards, at their registers.
-emu_src := $(wildcard ports/posix/emu/[!b]*.c)
+# The emulated cards, at their registers: without the bus, and the glove on its line.
+emu_src := $(wildcard ports/posix/emu/[!bc]*.c)
 $(B)/test/emu/%_test: $(B)/test/san/test/emu/%_test.o $(B)/test/san/test/support.o $(emu_src:%.c=$(B)/test/san/%.o)
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(san) -o $@ $^ -lcmocka
