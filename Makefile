@@ -1174,6 +1174,7 @@ link: $(lib)
 	@.ci/deps "the ways to link" "command -v cmake && command -v pkg-config && command -v clang && command -v tcc && command -v g++ && python3 -m pip --version" \
 	    cmake pkg-config clang tcc g++ python3-pip || :
 	@test/link/abi.py $(lib) gcc $(notdir $(shell command -v i686-linux-gnu-gcc))
+	@test/link/package.sh $(B)/link/package
 	@test/link/link.py $(B)/link $(ARGS)
 
 ## Install library (static; shared on posix), headers, exhand.pc and CMake package, host program under DESTDIR/PREFIX
