@@ -75,7 +75,9 @@ static void ticks(unsigned materials)
     s = any_precontact();
     ANY(plane);
     (void)exh_precontact_tell(&s, &cfg, &plane, any_u32());
+    /*@ assert told: precontact(&s); */
     exh_precontact_skip(&s, any_u32());
+    /*@ assert skipped: precontact(&s); */
     ANY(in);
     bits = exh_precontact_step(&s, &cfg, &in);
     /*@ assert next: precontact(&s) && precontact_bits(bits); */
