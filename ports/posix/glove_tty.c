@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/ioctl.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -38,6 +39,7 @@ static int try_open(struct glove_tty *t)
         errno = err == EINVAL ? ENOTTY : err;
         return -1;
     }
+    (void)ioctl(fd, TIOCEXCL); /* two that read it would each have parts of frames */
     (void)tcflush(fd, TCIOFLUSH);
     t->fd = fd;
     t->step = 0;
@@ -128,6 +130,7 @@ void glove_tty_close(struct glove_tty *t)
 {
     if (t->fd < 0) { return; }
     say(t, STOP);
+    (void)ioctl(t->fd, TIOCNXCL);
     close(t->fd);
     t->fd = -1;
 }

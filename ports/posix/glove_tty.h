@@ -4,7 +4,7 @@
  * it is told all of it again, and after a second without the device that is opened again: a glove
  * that was switched off or unplugged comes back by itself.
  *
- * Never waits. Times are the caller's, s, and rise.
+ * While it is open no other program may open it. Never waits. Times are the caller's, s, and rise.
  */
 #ifndef GLOVE_TTY_H
 #define GLOVE_TTY_H

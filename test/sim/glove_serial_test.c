@@ -217,6 +217,20 @@ TEST(a_glove_that_takes_no_command_is_heard_all_the_same)
     end();
 }
 
+/* Two readers would each have parts of frames, and parts of two can look like one. */
+TEST(the_line_is_its_own_while_it_is_open)
+{
+    if (begin() < 0) { return; }
+    for (int k = 0; k < 2; k++) {
+        int own = -1;
+        CHECK_EQ_I64(glove_tty_open(&tty, far.link, 90), 0);
+        CHECK(ioctl(far.tty.slave, TIOCGEXCL, &own) == 0 && own == 1, "%d", own);
+        glove_tty_close(&tty);
+        CHECK(ioctl(far.tty.slave, TIOCGEXCL, &own) == 0 && own == 0, "%d", own);
+    }
+    end();
+}
+
 /* ---- Misbehaviour -------------------------------------------------------------------------- */
 
 static uint8_t kind;
@@ -456,7 +470,7 @@ TEST(a_name_that_is_no_serial_line_is_refused)
     CHECK(glove_tty_open(&tty, "/dev/null", 90) < 0 && errno == ENOTTY, "%s", strerror(errno));
 }
 
-TEST_MAIN("sim/glove_serial", frames_come_at_the_rate_that_was_asked_for,
+TEST_MAIN("sim/glove_serial", frames_come_at_the_rate_that_was_asked_for, the_line_is_its_own_while_it_is_open,
           a_glove_that_takes_no_command_is_heard_all_the_same,
           whatever_it_does_no_wrong_frame_comes_and_the_next_good_ones_do,
           a_device_that_is_pulled_out_ages_and_comes_back, a_name_that_is_no_serial_line_is_refused,
