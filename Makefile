@@ -30,7 +30,7 @@ MAKEFLAGS += $(if $(filter 0,$(MAKELEVEL)),-j$(or $(shell nproc 2>/dev/null),1),
 jobs       = $(or $(patsubst -j%,%,$(filter -j%,$(MAKEFLAGS))),1)
 
 # These call make for what they need, or take it away: two at a time would write the same files.
-callers := all test demo run image coverage stress stability test-i686 matrix matrix-box mutants mcdc mutation fuzz hil hil-built strangers gpio linux-program link porting \
+callers := all test demo run image coverage stress stability test-i686 matrix matrix-box mutants mcdc mutation fuzz hil hil-built strangers gpio linux-program link porting scale \
            fmi boot boot-built \
            contract contract-built nic nic-built modbus-image modbus world two-computers bench-world bench report size costs cards install diagrams clean check
 ifneq ($(and $(filter $(callers),$(MAKECMDGOALS)),$(word 2,$(MAKECMDGOALS))),)
@@ -236,7 +236,7 @@ world_pkgs := libsdl2-dev libsdl2-ttf-dev libgl-dev libegl-dev libgl1-mesa-dri l
 world      := $(B)/posix/world
 
 world_part := main live alone bench solo link link_param link_trace view $(if $(world_gl),gl gl_form gl_batch gl_solid gl_layer gl_text,picture_none)
-world_core_obj := $(patsubst %.c,$(B)/posix/%.o,$(world_core) ports/posix/sim/lag.c ports/posix/sim/plant.c)
+world_core_obj := $(patsubst %.c,$(B)/posix/%.o,$(world_core) ports/posix/sim/lag.c ports/posix/sim/plant.c ports/posix/sim/device.c)
 world_obj  := $(world_core_obj) $(world_mesh) $(world_part:%=$(B)/posix/examples/world/%.o) \
               $(B)/posix/ports/posix/cli/option.o $(B)/posix/examples/bilateral/tables.o $(B)/posix/examples/glove/cal.o \
               $(B)/posix/examples/calib.o
@@ -1161,6 +1161,14 @@ $(shared): $(pic) lib/exhand.map
 packages := $(DESTDIR)$(LIBDIR)/pkgconfig/exhand.pc $(patsubst %,$(DESTDIR)$(LIBDIR)/cmake/exhand/exhand-%.cmake,config config-version)
 fill_in  := sed 's|@prefix@|$(PREFIX)|; s|@libdir@|$(LIBDIR:$(PREFIX)/%=$${prefix}/%)|; s|@includedir@|$(INCLUDEDIR:$(PREFIX)/%=$${prefix}/%)|; s|@version@|$(version)|; \
             s|@includedir_from_package@|'"$$(realpath -m --relative-to=$(LIBDIR)/cmake/exhand $(INCLUDEDIR))"'|'
+
+## Sweeps of examples/sweep by GNU parallel, by ssh and by Slurm on this machine, against one process (nightly)
+.PHONY: scale
+scale: all
+	@.ci/deps "GNU parallel" "command -v parallel && command -v rsync" parallel rsync || :
+	@.ci/deps "ssh to this machine" "ls /usr/sbin/sshd" openssh-server openssh-client || :
+	@.ci/deps "Slurm" "command -v sbatch && command -v slurmctld && command -v slurmd && command -v munged" slurm-client slurmctld slurmd munge || :
+	@test/sweep/scale.sh $(B)/sweep
 
 ## docs/PORTING.md typed anew: a port from the template to a contract test that passes
 .PHONY: porting
