@@ -176,6 +176,15 @@ int unit_step(void)
     return 0;
 }
 
+/* What is set up from period and parameters is in no state: it is made of what came with it. */
+static void set_up_anew(struct exh_bytes *c)
+{
+    const struct exh_scene_board board = {T, (uint8_t)enc_bits};
+    const int fits = exh_period_ok(T) && enc_bits >= own_var[ENC_BITS].min && enc_bits <= own_var[ENC_BITS].max;
+    if (!exh_bytes_ok(c) || !started) { return; }
+    if (!fits || scene->setup(board) < 0) { exh_bytes_fail(c); }
+}
+
 void unit_bytes(struct exh_bytes *c)
 {
     const uint32_t n = exh_signal_count(scene->signals);
@@ -188,7 +197,10 @@ void unit_bytes(struct exh_bytes *c)
     exh_drive_in_bytes(c, &in.drive, EXH_FINGERS);
     exh_drive_out_bytes(c, &out, EXH_FINGERS);
     for (uint32_t i = 0; i < n; i++) { exh_bytes_i32(c, &scene->signal[i]); }
+    if (c->mode == EXH_BYTES_READ) { scene->params->locked = 0; }
     exh_params_bytes(c, scene->params);
+    if (c->mode == EXH_BYTES_READ) { set_up_anew(c); }
+    scene->params->locked = started;
     scene->state(c);
 }
 

@@ -178,4 +178,5 @@ void unit_bytes(struct exh_bytes *c)
 {
     uint8_t *byte = (uint8_t *)&u;
     for (size_t i = 0; i < sizeof u; i++) { exh_bytes_u8(c, &byte[i]); }
+    if (u.head >= OUTPUTS_MAX || u.queued > OUTPUTS_MAX || !exh_period_ok(u.T)) { exh_bytes_fail(c); }
 }

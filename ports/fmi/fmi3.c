@@ -209,7 +209,7 @@ fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 currentCommunicationPoi
 struct kept {
     uint64_t step;
     double start_s;
-    uint32_t len_B;
+    uint32_t len_B, running;
     uint8_t byte[];
 };
 
@@ -232,6 +232,7 @@ fmi3Status fmi3GetFMUState(fmi3Instance instance, fmi3FMUState *state)
     k->step = fmu.step;
     k->start_s = fmu.start_s;
     k->len_B = n;
+    k->running = (uint32_t)fmu.running;
     *state = k;
     return exh_bytes_ok(&c) ? fmi3OK : fail("state: too long");
 }
@@ -244,7 +245,8 @@ fmi3Status fmi3SetFMUState(fmi3Instance instance, fmi3FMUState state)
     unit_bytes(&c);
     fmu.step = k->step;
     fmu.start_s = k->start_s;
-    return exh_bytes_ok(&c) && c.at == k->len_B ? fmi3OK : fail("state: not one of this unit");
+    fmu.running = k->running && exh_bytes_ok(&c) && c.at == k->len_B;
+    return exh_bytes_ok(&c) && c.at == k->len_B ? fmi3OK : fail("state: not one of this unit: it is of no more use without a reset");
 }
 
 fmi3Status fmi3FreeFMUState(fmi3Instance instance, fmi3FMUState *state)

@@ -201,6 +201,27 @@ def together(importer, folder, native):
     return not bad and done and n == len(native.tick)
 
 
+def moved(folder, native, unit, inputs, outputs, late):
+    """In mid-fall into an instance that was told nothing, neither period nor parameters: what it still gives. late: outputs behind the step."""
+    h, kept, bad = 1 / native.rate, [t["c"] for t in native.tick].index(1) - 3, False
+    u = (controller if late else device)(ByFmpy, folder, native)
+    for n, tick in enumerate(native.tick):
+        if n == kept:
+            data = u.state()
+            u.end()
+            u = ByFmpy(folder[unit])
+            u.restore(data)
+        if not late:
+            bad = bad or differs(native, n, u, outputs, "device, moved")
+        for name in inputs:
+            u.put(name, tick[name])
+        u.step(n * h, h)
+        if late:
+            bad = bad or differs(native, n, u, outputs, "controller, moved")
+    u.end()
+    return not bad
+
+
 def simulated(folder, native, name, inputs, outputs, values, first):
     """By FMPy's own simulate_fmu(), whose row n is the instant n: inputs of the native run in, its outputs `first` rows later."""
     table = numpy.array([(n / native.rate, *(int(t[i]) for i in inputs)) for n, t in enumerate(native.tick)],
@@ -269,6 +290,10 @@ def refusals(folder):
     c.start()
     say(refused(lambda: c.put("period_den", 1000)), "a fixed parameter is refused once it runs")
     say(refused(lambda: c.step(0, 0.0003)), "a step that is no period is refused")
+    data = c.state()
+    say(refused(lambda: c.restore(bytes([255]) * len(data))) and refused(lambda: c.step(0, 0.0005)), "a state that is none is refused, then steps too")
+    c.restore(data)
+    say(not refused(lambda: c.step(0, 0.0005)), "a state that is one brings it back")
     say(refused(lambda: c.fmu.setFloat32([1], [1.0])), "a variable of another type is refused")
     c.end()
 
@@ -301,6 +326,10 @@ def main(fmus, native_program, falls, *rates):
         say(len(native.tick) > int(rate) and any(t["c"] for t in native.tick), f"native at {rate} Hz: {len(native.tick)} ticks")
         say(alone_controller(ByFmpy, folder, native), f"controller at {rate} Hz: the native outputs, bit for bit; its state goes out and in")
         say(alone_device(ByFmpy, folder, native), f"device at {rate} Hz: the native codes, bit for bit")
+        say(moved(folder, native, "ExhandController", native.inputs, native.outputs, True),
+            f"controller at {rate} Hz: its state in another instance: the native outputs, bit for bit")
+        say(moved(folder, native, "ExhandDevice", INTO_DEVICE, native.inputs[:4], False),
+            f"device at {rate} Hz: its state in another instance: the native codes, bit for bit")
         say(simulated(folder, native, "ExhandController", native.inputs, native.outputs, native.param, 1),
             f"controller at {rate} Hz by simulate_fmu: the native outputs, bit for bit")
         say(simulated(folder, native, "ExhandDevice", ["dac_raw", "enable", "state"], native.inputs[:4], {"falls": native.falls}, 0),
