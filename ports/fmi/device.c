@@ -129,7 +129,7 @@ int unit_start(const char **which)
     if (!exh_period_ok(u.T)) { return -EXH_E_RATE; }
     *which = "substep: too long for this string, rotor and mass (mass, rotor, cable_k, cable_b): give a shorter one, "
              "or a heavier rotor";
-    if (plant_take_step(&u.device, 0) < 0) { return -EXH_E_RANGE; }
+    if (plant_take_step(&u.device, 0, 0) < 0) { return -EXH_E_RANGE; }
     sim_mass_fall(&u.mass, &u.device, (uint64_t)u.seed, u.falls, (double)u.T.num / (double)u.T.den);
     u.mass.fall.waits = u.waits;
     u.started = 1;

@@ -40,7 +40,7 @@ TEST(a_stiff_device_is_as_steady_as_the_programs)
         unit_reset();
         CHECK(put_in(row[i].name, row[i].value) == 0 && put_in("waits", 0) == 0, "%s", row[i].name);
         CHECK(unit_start(&which) == 0, "%s: refused: %s", row[i].name, which);
-        CHECK(sim_device_set(&d, row[i].name, row[i].value, &named) == 0 && assign_step(&d, 0) == 0, "%s", row[i].name);
+        CHECK(sim_device_set(&d, row[i].name, row[i].value, &named) == 0 && assign_step(&d, 0, 0) == 0, "%s", row[i].name);
         CHECK(unit_get(place_of("substep")) == d.substep_s, "%s: steps of %g s, the program's %g s", row[i].name,
               unit_get(place_of("substep")), d.substep_s);
         for (int k = 0; k < 3000; k++) {

@@ -475,10 +475,10 @@ static double grown(const struct sim_device *d, double hand_npm, double hand_nsp
 }
 
 /* The longest that will do, to 1 %. */
-static double longest_s(struct sim_device d, double hand_npm)
+static double longest_s(struct sim_device d, double hand_npm, double hand_nspm)
 {
     d.substep_s = 1;
-    while (!plant_step_will_do(&d, hand_npm)) { d.substep_s /= 1.01; }
+    while (!plant_step_will_do(&d, hand_npm, hand_nspm)) { d.substep_s /= 1.01; }
     return d.substep_s;
 }
 
@@ -495,7 +495,7 @@ TEST(steps_that_will_do_are_stable)
         d.rotor_kg = between(0.01, 1) * between(0.01, 1);
         d.viscous_nspm = i % 3 ? 0 : between(0, 100);
         d.mass_kg = between(0.001, 5) * between(0.1, 1);
-        step_s = longest_s(d, hand_npm);
+        step_s = longest_s(d, hand_npm, hand_nspm);
         good = grown(&d, hand_npm, hand_nspm, step_s);
         CHECK(good <= 1.3,
               "string %g N/m %g Ns/m, rotor %g, mass %g kg, hand %g: grows by %g at %g s",
@@ -511,15 +511,50 @@ TEST(steps_that_will_do_are_stable)
     CHECK(tried[0] > 20 && tried[1] > 20, "%d by the spring, %d by its damping", tried[0], tried[1]);
 }
 
+/* Where what is damped goes at a steady speed, dry friction takes its share of the force. */
+static double off_steady(struct sim_device d, double hand_nspm, double step_s)
+{
+    const struct plant free = {0};
+    struct plant p[2] = {free, free};
+    double most = 0;
+    for (int i = 0; i < 40; i++) {
+        const double at_s = 250e-6 * i;
+        const struct plant_hand hand = {300, hand_nspm, 0.1 * at_s, 0.1, -1};
+        for (int k = 0; k < 2; k++) {
+            d.substep_s = k ? 1e-6 : step_s;
+            plant_advance_hand(&p[k], &d, 250e-6, 1, &hand);
+        }
+        if (i < 8) { continue; } /* what the beginning took */
+        if (size_of(p[0].v_mps - p[1].v_mps) > most) { most = size_of(p[0].v_mps - p[1].v_mps); }
+        if (size_of(p[0].w_mps - p[1].w_mps) > most) { most = size_of(p[0].w_mps - p[1].w_mps); }
+    }
+    return most;
+}
+
+TEST(friction_beside_strong_damping_takes_what_it_takes)
+{
+    struct sim_device finger = sim_device_default(), rotor = sim_device_default();
+    double good, bad;
+    finger.mass_kg = 0.005;
+    good = off_steady(finger, 100, longest_s(finger, 300, 100));
+    bad = off_steady(finger, 100, 250e-6);
+    CHECK(good < 0.004 && bad > 0.01, "finger: off by %g m/s, by %g in steps that are too long", good, bad);
+    rotor.rotor_kg = 0.001;
+    rotor.viscous_nspm = 100;
+    good = off_steady(rotor, 5, longest_s(rotor, 300, 5));
+    bad = off_steady(rotor, 5, 250e-6);
+    CHECK(good < 0.004 && bad > 0.01, "rotor: off by %g m/s, by %g in steps that are too long", good, bad);
+}
+
 TEST(the_step_that_is_named_will_do)
 {
     struct sim_device d = sim_device_default();
-    CHECK(plant_step_will_do(&d, 0) && plant_step_that_will_do(&d, 0) == 1e-3,
+    CHECK(plant_step_will_do(&d, 0, 0) && plant_step_that_will_do(&d, 0, 0) == 1e-3,
           "of the device itself");
     d.cable_npm = 1e6;
     d.rotor_kg = 1e-3;
     for (int i = 0; i < 60; i++) {
-        const double limit_s = longest_s(d, 0), named_s = plant_step_that_will_do(&d, 0);
+        const double limit_s = longest_s(d, 0, 0), named_s = plant_step_that_will_do(&d, 0, 0);
         if (limit_s < 0.99e-7) {
             CHECK(named_s == 0, "%g s is named where %g is the limit", named_s, limit_s);
         } else {
@@ -539,4 +574,5 @@ TEST_MAIN("plant", impact_speed_is_that_of_a_free_fall, a_rotor_slows_the_fall_b
           current_loop_is_exact_at_any_substep, monitor_lags_behind_the_current, a_monitor_as_fast_as_the_current,
           exp_neg_is_good_to_1e_12, energy_never_grows_with_the_motor_off,
           a_quarter_of_the_error_with_half_the_substep, steps_that_will_do_are_stable,
+          friction_beside_strong_damping_takes_what_it_takes,
           the_step_that_is_named_will_do);

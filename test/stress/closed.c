@@ -49,7 +49,7 @@ static struct posix_config device_of(const struct closed *c)
         p.device.mu_motor = p.device.mu_mass = p.device.coulomb_n = p.device.viscous_nspm = 0;
     }
     if (c->tweak == STIFF_CABLE) { p.device.cable_npm = 1e6; }
-    if (!plant_step_will_do(&p.device, 0)) { p.device.substep_s = plant_step_that_will_do(&p.device, 0); }
+    if (!plant_step_will_do(&p.device, 0, 0)) { p.device.substep_s = plant_step_that_will_do(&p.device, 0, 0); }
     return p;
 }
 

@@ -34,10 +34,10 @@ int assign_refused(const char *command, const char *name, double value, const st
     return 2;
 }
 
-int assign_step(struct sim_device *d, double hand_npm)
+int assign_step(struct sim_device *d, double hand_npm, double hand_nspm)
 {
-    const double enough_s = plant_step_that_will_do(d, hand_npm);
-    if (plant_take_step(d, hand_npm) == 0) { return 0; }
+    const double enough_s = plant_step_that_will_do(d, hand_npm, hand_nspm);
+    if (plant_take_step(d, hand_npm, hand_nspm) == 0) { return 0; }
     if (enough_s > 0) {
         cli_complain("--device: substep: %.6g s is too long for this string, rotor and mass, whose oscillation it "
                      "would not follow: give --device substep=%g",

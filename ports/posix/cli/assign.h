@@ -16,6 +16,6 @@ int assign_refused(const char *command, const char *name, double value, const st
 /* That the device is integrated in steps that are short enough (plant.h), hand_npm being the stiffness of
  * a hand, 0 without. The table's own step is shortened to one that will do; another is refused: 0, or 2
  * after a line on stderr with the step that would do. */
-int assign_step(struct sim_device *d, double hand_npm);
+int assign_step(struct sim_device *d, double hand_npm, double hand_nspm);
 
 #endif

@@ -132,14 +132,15 @@ static int steps_too_long(struct bilateral_options *o)
 {
     const struct sim_finger_par *const p = o->run.board.exo.finger;
     struct sim_device d = o->run.board.device;
-    double hand_npm = 0;
+    double hand_npm = 0, hand_nspm = 0;
     int err;
     d.mass_kg = p[0].mass_kg;
     for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
         if (p[f].mass_kg < d.mass_kg) { d.mass_kg = p[f].mass_kg; }
         if (p[f].k_Npm > hand_npm) { hand_npm = p[f].k_Npm; }
+        if (p[f].b_Nspm > hand_nspm) { hand_nspm = p[f].b_Nspm; }
     }
-    err = assign_step(&d, hand_npm);
+    err = assign_step(&d, hand_npm, hand_nspm);
     o->run.board.device.substep_s = d.substep_s;
     return err;
 }

@@ -390,7 +390,7 @@ static int steps_too_long(struct calibrate_options *o)
     for (int i = 0; i < o->masses; i++) {
         if (o->mass_kg[i] < d.mass_kg) { d.mass_kg = o->mass_kg[i]; }
     }
-    err = assign_step(&d, 0);
+    err = assign_step(&d, 0, 0);
     o->device.substep_s = d.substep_s;
     return err;
 }

@@ -397,7 +397,7 @@ static int load_params(struct drop_options *o)
 /* Whether what was asked for can be run at all: 0, or 2 after a line on stderr. */
 static int refuse(struct drop_options *o)
 {
-    int err = assign_step(&o->device, 0);
+    int err = assign_step(&o->device, 0, 0);
     if (err == 0 && o->preset) { err = original_take(o->preset); }
     if (err) { return err; }
     if (o->T.num != 0 && o->rates_given) {

@@ -83,7 +83,7 @@ static void defaults(struct asked *a)
 static int refuse(struct asked *a)
 {
     struct sim_device *d = &a->o.device;
-    if (assign_step(d, 0)) { return 2; }
+    if (assign_step(d, 0, 0)) { return 2; }
     if (sweep_take_grid(a->grid ? a->grid : "64x48", &a->o.columns, &a->o.rows)) { return 2; }
     if ((a->k_Npm >= 0) != (a->b_Nspm >= 0)) {
         cli_complain("--k and --b: a pair is judged: give both");

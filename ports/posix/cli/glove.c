@@ -234,6 +234,6 @@ int cli_glove(int argc, char **argv)
         print_params();
         return 0;
     }
-    if (assign_step(&o.device, 0)) { return 2; }
+    if (assign_step(&o.device, 0, 0)) { return 2; }
     return run(&o);
 }

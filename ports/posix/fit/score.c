@@ -44,8 +44,8 @@ int score_run(const struct plant_point *p, const struct score_plan *plan, struct
     c.board.falls = at.falls;
     c.board.seed = at.seed;
     c.board.device.observe_s = score_observe_s(plan, at.row);
-    if (!plant_step_will_do(&c.board.device, 0)) {
-        c.board.device.substep_s = plant_step_that_will_do(&c.board.device, 0);
+    if (!plant_step_will_do(&c.board.device, 0, 0)) {
+        c.board.device.substep_s = plant_step_that_will_do(&c.board.device, 0, 0);
     }
     return run_drop(&c, r) < 0 ? -1 : 0;
 }

@@ -120,33 +120,35 @@ void plant_advance(struct plant *p, const struct sim_device *d, double dt_s, dou
 
 /* Of the stretch s of a taut string, friction with its motion: s'' = -w2 s - c s'. With g = 1 - h c / 2
  * a step has determinant 1 - g h c and trace 2 - g h c - g h^2 w2: stable where h c < 2 and
- * g (h^2 w2 + 2 h c) < 4, so wherever h^2 w2 < 4 and h c < 2. Viscous friction and the hand's are implicit. */
-static int step_ok(const struct sim_device *d, double hand_npm, double h_s)
+ * g (h^2 w2 + 2 h c) < 4, so wherever h^2 w2 < 4 and h c < 2. Viscous friction and the hand's damping are implicit,
+ * stable at any step; yet where one would stop what it acts on within a step, dry friction beside it is taken for less. */
+static int step_ok(const struct sim_device *d, double hand_npm, double hand_nspm, double h_s)
 {
     const double per_kg = (1 + d->mu_mass) / d->mass_kg + (1 + d->mu_motor) / d->rotor_kg;
     const double w2 = d->cable_npm * per_kg + hand_npm / d->mass_kg, c = d->cable_nspm * per_kg;
     const double twice_s = 2 * h_s;
-    return twice_s * twice_s * w2 <= 4 && twice_s * c <= 2;
+    return twice_s * twice_s * w2 <= 4 && twice_s * c <= 2 && h_s * hand_nspm <= d->mass_kg &&
+           h_s * d->viscous_nspm <= d->rotor_kg;
 }
 
-int plant_step_will_do(const struct sim_device *d, double hand_npm)
+int plant_step_will_do(const struct sim_device *d, double hand_npm, double hand_nspm)
 {
-    return step_ok(d, hand_npm, d->substep_s);
+    return step_ok(d, hand_npm, hand_nspm, d->substep_s);
 }
 
-double plant_step_that_will_do(const struct sim_device *d, double hand_npm)
+double plant_step_that_will_do(const struct sim_device *d, double hand_npm, double hand_nspm)
 {
     static const double step_s[] = {1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5, 1e-5, 5e-6, 2e-6, 1e-6, 5e-7, 2e-7, 1e-7};
     for (unsigned i = 0; i < sizeof step_s / sizeof step_s[0]; i++) {
-        if (step_ok(d, hand_npm, step_s[i])) { return step_s[i]; }
+        if (step_ok(d, hand_npm, hand_nspm, step_s[i])) { return step_s[i]; }
     }
     return 0;
 }
 
-int plant_take_step(struct sim_device *d, double hand_npm)
+int plant_take_step(struct sim_device *d, double hand_npm, double hand_nspm)
 {
-    const double enough_s = plant_step_that_will_do(d, hand_npm);
-    if (plant_step_will_do(d, hand_npm)) { return 0; }
+    const double enough_s = plant_step_that_will_do(d, hand_npm, hand_nspm);
+    if (plant_step_will_do(d, hand_npm, hand_nspm)) { return 0; }
     if (enough_s == 0 || d->substep_s != sim_device_default().substep_s) { return -1; }
     d->substep_s = enough_s;
     return 0;

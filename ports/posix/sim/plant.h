@@ -43,15 +43,15 @@ void plant_advance_hand(struct plant *p, const struct sim_device *d, double dt_s
 
 /* Whether sub-steps of substep_s are short enough: half of what keeps them stable, that is, at least
  * six of them a period of string and rotor, which then come 5 % too soon, and at least one in
- * the time in which the string's damping takes 1/e off a speed. hand_npm: the stiffness of a
- * hand at the mass, 0 without. */
-int plant_step_will_do(const struct sim_device *d, double hand_npm);
+ * the time in which the string's damping, the motor's or the hand's takes 1/e off a speed. hand_npm, hand_nspm:
+ * stiffness and damping of a hand at the mass, 0 without. */
+int plant_step_will_do(const struct sim_device *d, double hand_npm, double hand_nspm);
 
 /* A round number that will, at most the device's longest; 0: none that it may have. */
-double plant_step_that_will_do(const struct sim_device *d, double hand_npm);
+double plant_step_that_will_do(const struct sim_device *d, double hand_npm, double hand_nspm);
 
 /* The table's own step becomes one that will do. 0; -1: the step is another, or none will do. */
-int plant_take_step(struct sim_device *d, double hand_npm);
+int plant_take_step(struct sim_device *d, double hand_npm, double hand_nspm);
 
 /* exp(-x) for x >= 0, from + - x /; relative error < 1e-12. */
 double sim_exp_neg(double x);
