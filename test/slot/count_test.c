@@ -1,5 +1,6 @@
 /* A model made for one rate, whose ports are named otherwise; init, step and terminate are called when they should be. */
 #include "rig.h"
+#include "sim/said.h"
 
 #include "custom/slot_real.h"
 
@@ -50,12 +51,19 @@ TEST(a_step_a_tick)
 
 TEST(another_rate_is_refused)
 {
+    static struct said s;
+    char *dir = said_dir();
     exh_scene_custom.defaults();
     exh_params_apply(exh_scene_custom.params);
     CHECK_EQ_I64(exh_scene_custom.setup((struct exh_scene_board){{1, 500}, 24}), 0);
     CHECK_EQ_I64(exh_scene_custom.setup((struct exh_scene_board){{2, 1000}, 24}), 0);
     CHECK_EQ_I64(exh_scene_custom.setup((struct exh_scene_board){{1, 501}, 24}), -EXH_E_RATE);
     CHECK_EQ_I64(exh_scene_custom.setup((struct exh_scene_board){{1, 1000}, 24}), -EXH_E_RATE);
+    for (int i = 0; i < 2; i++) {
+        said(&s, dir, i ? cli_run : cli_drop, i ? WORDS("run", "--scene", "custom", "--seconds", "1") : WORDS("drop", "--custom", "--rate", "1000"));
+        CHECK(s.status == 2 && strstr(s.err, "this controller was made for 500 Hz"), "%d: %s", s.status, s.err);
+    }
+    said_clean(dir);
 }
 
 /* A step without an answer is one, too. */

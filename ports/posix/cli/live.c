@@ -183,7 +183,7 @@ int cli_run(int argc, char **argv)
         void *to;
     } u[4] = {{&set}, {&fingers}, {&speed}, {&gpio}};
     const struct cli_option option[] = {
-        {"scene", CLI_TEXT, &o.scene, 0, 0, "NAME", "drop, guarded or bilateral (drop)"},
+        {"scene", CLI_TEXT, &o.scene, 0, 0, "NAME", "drop, guarded or bilateral (drop); custom where the program has one"},
         {"rate", CLI_REAL, &o.rate_Hz, 1, 20000, "HZ", "of the loop (2000)"},
         {"pace", CLI_FLAG, &o.pace, 0, 0, NULL,
          "follow the wall clock, by which ticks may be missed; else as fast as it goes"},

@@ -129,6 +129,18 @@ int run_image(const struct run_live *l, struct exh_params *p)
     return l->image ? params_take(l->name, p, l->image, l->image_B) : 0;
 }
 
+/* 1: the rate is not the controller's own, and that was told. */
+static int other_rate(const struct run_cfg *c, const struct exh_scene *sc)
+{
+    const uint32_t only_Hz = sc == cli_scene_more ? cli_scene_more_rate_Hz() : 0;
+    if (only_Hz && c->rate_Hz != only_Hz) {
+        cli_complain("rate: %lu Hz: this controller was made for %lu Hz (MODEL_RATE): give --rate %lu, or one made for another",
+                     (unsigned long)c->rate_Hz, (unsigned long)only_Hz, (unsigned long)only_Hz);
+        return 1;
+    }
+    return 0;
+}
+
 /* Why set-up refused, as far as the scene can tell; 1: that was told. */
 static int complain(const struct run_cfg *c, const struct exh_scene *sc)
 {
@@ -176,6 +188,7 @@ int run_check(const struct run_cfg *c)
     if (err < 0) { return err; }
     exh_params_apply(scene_of(c)->params);
     err = scene_of(c)->setup((struct exh_scene_board){T, exh_board_info.enc_bits});
+    if (err == -EXH_E_RATE && other_rate(c, scene_of(c))) { return err; }
     if (err < 0 && !complain(c, scene_of(c))) { cli_complain("these parameters together: %s", exh_error_text(err)); }
     return err;
 }
@@ -205,8 +218,10 @@ int run_drop(const struct run_cfg *c, struct run *r)
         if (err == 0 && r->refused) {
             err = -EXH_E_STATE; /* that was told */
         } else if (err == -EXH_E_RATE) {
-            cli_complain("rate: %lu Hz (allowed 1..%lu): choose one in that range",
-                         (unsigned long)c->rate_Hz, (unsigned long)exh_board_info.rate_max_Hz);
+            if (!other_rate(c, run.scene)) {
+                cli_complain("rate: %lu Hz (allowed 1..%lu): choose one in that range",
+                             (unsigned long)c->rate_Hz, (unsigned long)exh_board_info.rate_max_Hz);
+            }
         } else if (err < 0 && !complain(c, run.scene)) {
             cli_setup_complain(run.scene->params, (double)c->rate_Hz, err);
         }

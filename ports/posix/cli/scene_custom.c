@@ -8,3 +8,8 @@ const char *cli_scene_more_unknown(void)
 {
     return custom_unknown();
 }
+
+uint32_t cli_scene_more_rate_Hz(void)
+{
+    return slot.rate_Hz;
+}
