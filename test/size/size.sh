@@ -119,7 +119,7 @@ stack_fits()
 # of the linker's map. Long section names stand on a line of their own.
 linked_bytes()
 {
-    awk -v ours="libexhand\\.a\\(|/examples/$1/|/examples/glove/cal\\.o|/examples/drop/drop\\.o|/examples/calib\\.o" '
+    awk -v ours="libexhand[.]a[(]|/examples/$1/|/examples/glove/cal[.]o|/examples/drop/drop[.]o|/examples/calib[.]o" '
         function number(hex,  i, v) {
             for (i = 3; i <= length(hex); i++) {
                 v = v * 16 + index("0123456789abcdef", substr(hex, i, 1)) - 1
