@@ -88,7 +88,7 @@ TEST(a_record_is_as_long_as_it_should_be)
     CHECK(s.status == 0 && strstr(s.out, ": 1 ticks "), "%s%s", s.out, s.err);
     size = size_of_file(log);
     said(&s, dir, cli_glove, WORDS("glove", "--record", log, "--set", "glove_fc=5000"));
-    CHECK(s.status == 2 && strstr(s.err, "cut-off at or above half the rate: see"), "%d: %s", s.status, s.err);
+    CHECK(s.status == 2 && strstr(s.err, "glove_fc: 5000 Hz (below half the rate of 2000 Hz): --set glove_fc=500"), "%d: %s", s.status, s.err);
     CHECK_EQ_I64(size_of_file(log), size);
     for (int n = 0; n < 150; n++) { strcat(text, ROW_A "\n"); }
     write_text(csv, text);
