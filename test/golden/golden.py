@@ -27,7 +27,7 @@ PER_LINE = 8
 CHUNK = 40
 BEYOND = range(2001, 20001)
 HUNDRED = 100
-THINNED = 10  # beyond, one of so many rates of these, where the generator takes 7 to 18 minutes of a core a module
+THINNED = 10  # beyond, one of so many rates of these, where the generator would take 7 to 18 minutes of a core
 THIN = frozenset("bilateral gains modbus precontact".split())
 
 

@@ -13,6 +13,10 @@ import subprocess
 import sys
 import time
 
+sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+sys.dont_write_bytecode = True
+from clone import clone  # noqa: E402
+
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(HERE))
 README = os.path.join(ROOT, "examples", "link", "README.md")
@@ -50,14 +54,6 @@ def pio(where):
         with open(os.path.join(tool, name), "w") as f:
             f.write(text)
     return env
-
-
-def clone(where):
-    """What git knows of, as it is now, in where/exhand."""
-    shutil.rmtree(where, ignore_errors=True)
-    os.makedirs(os.path.join(where, "exhand"))
-    files = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, check=True, stdout=subprocess.PIPE).stdout
-    subprocess.run(["xargs", "-0", "cp", "--parents", "-t", os.path.join(where, "exhand")], cwd=ROOT, input=files, check=True)
 
 
 def run(commands, where, want, more):

@@ -7,9 +7,12 @@ status: 0 all as told, 1 not. Standard library only.
 
 import os
 import re
-import shutil
 import subprocess
 import sys
+
+sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+sys.dont_write_bytecode = True
+from clone import clone  # noqa: E402
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 DOC = os.path.join(ROOT, "docs", "PORTING.md")
@@ -60,11 +63,7 @@ def main():
     if len(sys.argv) != 2 or sys.argv[1].startswith("-"):
         print(__doc__)
         return 0 if "--help" in sys.argv else 2
-    where = os.path.join(os.path.abspath(sys.argv[1]), "exhand")
-    shutil.rmtree(where, ignore_errors=True)
-    os.makedirs(where)
-    files = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, check=True, stdout=subprocess.PIPE).stdout
-    subprocess.run(["xargs", "-0", "cp", "--parents", "-t", where], cwd=ROOT, input=files, check=True)
+    where = clone(os.path.abspath(sys.argv[1]))
     env = {k: v for k, v in os.environ.items() if k not in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL", "WERROR", "B")}
     names, passed, failed = set(), 0, 0
     for kind, what, *rest in list(steps()):
