@@ -228,7 +228,7 @@ TEST(a_terminal_is_drawn_over)
           count(text, "\033[H"));
     CHECK(count(text, "\033[?25l") == 1 && count(text, "\033[?25h") == 1, "the cursor");
     CHECK(strstr(text, "drop, 2000 Hz   ") && strstr(text, "state   run: ") && strstr(text, "faults  none"), "%s", text);
-    CHECK(strstr(text, "SILENT for 1."), "it does not tell of silence");
+    CHECK(strstr(text, "SILENT for "), "it does not tell of silence");
     CHECK(strstr(text, "Ctrl-C ends it\033[J"), "what stood below stays");
     terminal_close(&tty);
     said_clean(dir);
@@ -240,7 +240,7 @@ TEST(silence_is_told_with_its_age)
     start("--seconds", "3");
     end();
     CHECK(s.status == 1 && strstr(s.err, "nothing was heard"), "%d %s", s.status, s.err);
-    CHECK(strstr(s.out, "silent for 2."), "%s", s.out);
+    CHECK(strstr(s.out, "silent for 2.") || strstr(s.out, "silent for 3."), "%s", s.out); /* a busy machine draws late */
     said_clean(dir);
 }
 
