@@ -301,7 +301,7 @@ static void compare(struct scenes_sum *angle, struct scenes_sum *tip, struct sce
         for (int k = 0; k < 3; k++) {
             add(angle, 2 * PI * bench_q(joint[k], 32), glove_double.joint[f][k],
                 glove_float.joint[f][k], glove_exact.joint[f][k]);
-            add(tip, bench_q((&p->x)[k], EXH_Q_POS), glove_double.tip[f][k], glove_float.tip[f][k],
+            add(tip, bench_q(((const int32_t *)p)[k], EXH_Q_POS), glove_double.tip[f][k], glove_float.tip[f][k],
                 glove_exact.tip[f][k]);
         }
         if (box && wall_exact[f].touching) {

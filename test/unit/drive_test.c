@@ -200,7 +200,7 @@ TEST(setup_rejections)
     CHECK_EQ_I64(axis_setup(&a, (struct exh_period){1, 2000}), 0);
     for (size_t i = 0; i < LEN(row); i++) {
         axis_par(&a.par);
-        (&a.par.f_max_N_q20)[row[i].field] = row[i].v;
+        ((int32_t *)&a.par)[row[i].field] = row[i].v;
         CHECK(axis_setup(&a, (struct exh_period){1, 2000}) == -EXH_E_RANGE, "%s", row[i].what);
     }
     axis_par(&a.par);

@@ -495,7 +495,7 @@ TEST(set_up_refuses)
     struct exh_material_par odd[2];
     start();
     for (int i = 0; i < EXH_PRECONTACT_ROWS; i++) {
-        int32_t *v = &par.d_lim_m_q30 + i;
+        int32_t *v = (int32_t *)&par + i;
         const int32_t was = *v;
         *v = exh_precontact_rows[i].min - 1;
         CHECK(exh_precontact_setup(&cfg, &par, material, 2, 0, TICK) == -EXH_E_RANGE, "row %d", i);
@@ -505,11 +505,11 @@ TEST(set_up_refuses)
     }
     for (int i = 0; i < EXH_MATERIAL_ROWS; i++) {
         memcpy(odd, material, sizeof odd);
-        *(&odd[1].k_Npm_q10 + i) = exh_material_rows[i].max + 1;
+        ((int32_t *)&odd[1])[i] = exh_material_rows[i].max + 1;
         CHECK(exh_precontact_setup(&cfg, &par, odd, 2, 0, TICK) == -EXH_E_RANGE, "row %d", i);
         CHECK(exh_precontact_setup(&cfg, &par, odd, 1, 0, TICK) == 0, "row %d unused", i);
         memcpy(odd, material, sizeof odd);
-        *(&odd[0].k_Npm_q10 + i) = exh_material_rows[i].max + 1;
+        ((int32_t *)&odd[0])[i] = exh_material_rows[i].max + 1;
         CHECK(exh_precontact_setup(&cfg, &par, odd, 2, 0, TICK) == -EXH_E_RANGE, "row %d of the first", i);
     }
     CHECK_EQ_I64(exh_precontact_setup(&cfg, &par, material, 0, 0, TICK), -EXH_E_RANGE);

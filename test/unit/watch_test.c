@@ -99,7 +99,7 @@ TEST(setup_refuses_what_is_out_of_range)
         for (size_t k = 0; k < LEN(v); k++) {
             struct exh_watch_par p = par;
             struct exh_watch_cfg cfg;
-            (&p.speed_mps_q27)[r] = v[k];
+            ((int32_t *)&p)[r] = v[k];
             CHECK_EQ_I64(exh_watch_setup(&cfg, &p, T), k < 3 ? 0 : -EXH_E_RANGE);
             CHECK_EQ_I64(exh_watch_setup(&cfg, &p, none), k < 3 ? -EXH_E_RATE : -EXH_E_RANGE);
         }
