@@ -14,16 +14,6 @@ struct m3 rpy_turn(struct v3 rpy_rad)
     return m;
 }
 
-int frame_from(struct m3 *m, struct v3 x, struct v3 z)
-{
-    const struct v3 y = v3_cross(z, x);
-    if (!(v3_len(y) > 1e-6 * v3_len(x) * v3_len(z))) { return 1; }
-    m->x = v3_unit(x);
-    m->y = v3_unit(y);
-    m->z = v3_cross(m->x, m->y);
-    return 0;
-}
-
 int frame_from_z(struct m3 *m, struct v3 z, struct v3 x)
 {
     const struct v3 y = v3_cross(z, x);

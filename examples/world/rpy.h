@@ -10,11 +10,8 @@
 /* rpy.x is roll, rpy.y pitch, rpy.z yaw, in radians. */
 struct m3 rpy_turn(struct v3 rpy_rad);
 
-/* The frame whose x axis points along x, and whose z axis as near to z as is square to it.
+/* The frame whose z axis points along z, and whose x axis as near to x as is square to it.
  * 0, or 1 if the two are parallel or one has no length. */
-int frame_from(struct m3 *m, struct v3 x, struct v3 z);
-
-/* The same with z first: z along z, x as near as can be. */
 int frame_from_z(struct m3 *m, struct v3 z, struct v3 x);
 
 #endif

@@ -169,7 +169,6 @@ int pc104_timer_wait(uint32_t *missed, uint32_t *late);
 uint32_t pc104_timer_now(void); /* counts, modulo 2^32                         */
 uint32_t pc104_timer_counts(void); /* in a period                                 */
 uint32_t pc104_timer_Hz(void);
-uint32_t pc104_timer_us(uint32_t counts);
 void pc104_timer_kill(void); /* stops it behind everybody's back: a test */
 
 /* --- module.c: calibrations of fingers that the loader brought, into the scene --- */

@@ -267,11 +267,6 @@ uint32_t pc104_timer_now(void)
     return ticks * counts + (counts - count);
 }
 
-uint32_t pc104_timer_us(uint32_t n)
-{
-    return (uint32_t)((uint64_t)n * us_per_count_q32 >> 32);
-}
-
 /* For the drivers' time-outs: free-running; stands at 0 until there is a timer. */
 uint32_t exh_io_time_us(void)
 {

@@ -27,7 +27,7 @@ struct hil;
 typedef void hil_watch_fn(struct hil *h, uint32_t address);
 #define HIL_WATCHES 8
 
-enum hil_end { HIL_RUNS, HIL_EXIT, HIL_STOPPED, HIL_HUNG, HIL_BROKEN };
+enum hil_end { HIL_RUNS, HIL_EXIT, HIL_HUNG, HIL_BROKEN };
 
 struct hil {
     uc_engine *uc;
@@ -82,9 +82,8 @@ int hil_open(struct hil *h, const char *image);
 void hil_command(struct hil *h, const char *image, const char *options);
 #define HIL_COMMAND_B 1024u
 void hil_close(struct hil *h);
-/* Until the image exits, hangs or breaks, or hil_stop(). */
+/* Until the image exits, hangs or breaks. */
 enum hil_end hil_run(struct hil *h);
-void hil_stop(struct hil *h);
 /* Calls fn whenever control comes to that address, which must be a function or a return address. */
 void hil_watch_at(struct hil *h, uint32_t address, hil_watch_fn *fn);
 /* From a watch at a function: it is not run, the harness has done it, and gives this back. */

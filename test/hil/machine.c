@@ -34,12 +34,6 @@ uint32_t hil_word(const struct hil *h, uint32_t address)
     return v;
 }
 
-void hil_stop(struct hil *h)
-{
-    if (h->end == HIL_RUNS) { h->end = HIL_STOPPED; }
-    uc_emu_stop(h->uc);
-}
-
 void hil_broke(struct hil *h, const char *format, ...)
 {
     va_list args;

@@ -55,7 +55,6 @@ static int how_it_ended(const struct hil *h)
     case HIL_EXIT: printf("  it ended with status 0x%" PRIx32 "\n", h->status); break;
     case HIL_HUNG: printf("  it hangs\n"); break;
     case HIL_BROKEN: printf("  it broke: %s\n", h->why); break;
-    case HIL_STOPPED:
     case HIL_RUNS: break;
     }
     return check(h->end == HIL_EXIT && h->status == (uint32_t)status,

@@ -2,7 +2,8 @@
 
 #define FULL ((int64_t)1 << 30)
 
-uint64_t ticks_in(int32_t ms, struct exh_period T)
+/* Ticks of so many ms, rounded down. */
+static uint64_t ticks_in(int32_t ms, struct exh_period T)
 {
     return (uint64_t)ms * T.den / (1000 * (uint64_t)T.num);
 }

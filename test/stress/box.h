@@ -28,8 +28,6 @@ struct box_times { /* in ticks                                                */
     int32_t small_N_q20;
 };
 
-/* Ticks of so many ms, rounded down. */
-uint64_t ticks_in(int32_t ms, struct exh_period T);
 struct box_times box_times(const struct exh_safety_par *par, const struct exh_watch_par *watch,
                            struct exh_period T);
 

@@ -169,7 +169,8 @@ static const uint32_t enc_extreme[] = {
     0, 0x7FFF, 0x8000, 0xFFFF, 0x7FFFFF, 0x800000, 0xFFFFFF, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF, 1};
 static const int16_t mon_extreme[] = {INT16_MIN, INT16_MAX, 0, -1};
 
-struct exh_scene_in wild_in(uint64_t n)
+/* idle_in() with encoder and monitor at their ends or anywhere, turn and turn about. */
+static struct exh_scene_in wild_in(uint64_t n)
 {
     struct exh_scene_in in =
         idle_in(n, enc_extreme[n % 2 ? n / 2 % LEN(enc_extreme) : any(LEN(enc_extreme))]);

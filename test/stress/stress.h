@@ -92,9 +92,7 @@ uint64_t any_u64(void);
 uint32_t any(uint32_t n);
 /* A healthy box; tick 0 has the command to run. */
 struct exh_scene_in idle_in(uint64_t n, uint32_t enc_raw);
-/* The same with encoder and monitor at their ends or anywhere, turn and turn about. */
-struct exh_scene_in wild_in(uint64_t n);
-/* wild_in() while the gate is open; else mostly a string far in and a person who clears, lets go and arms. */
+/* With encoder and monitor at their ends or anywhere, turn and turn about, while the gate is open; else mostly a string far in and a person who clears, lets go and arms. */
 struct exh_scene_in handled_in(uint64_t n);
 
 /* --- the cases, a file each --- */

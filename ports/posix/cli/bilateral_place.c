@@ -50,8 +50,9 @@ void bilateral_cal_of(struct exh_glove_cal *cal, const struct sim_glove_par *p)
 static const signed char bends[BILATERAL_FINGERS][3] = {
     {1, 2, -1}, {4, 5, 6}, {7, 8, 9}, {11, 12, 13}, {15, 16, 17}};
 
-void bilateral_finger_at(const struct bilateral_finger_is *w, double x_m,
-                         int32_t joint_turn_q32[EXH_HAND_JOINTS], struct exh_vec3 *tip_m_q30)
+/* Joints and tip when it has drawn so much string out. */
+static void finger_at(const struct bilateral_finger_is *w, double x_m,
+                      int32_t joint_turn_q32[EXH_HAND_JOINTS], struct exh_vec3 *tip_m_q30)
 {
     const double rest = w->arm_m[1] + w->arm_m[2], square = w->arm_m[0] * w->arm_m[0] + rest * rest;
     int32_t turn_q32[SENSORS];
@@ -73,13 +74,13 @@ void bilateral_wall(struct exh_wire_plane *to, const struct bilateral_finger_is 
     int32_t joint[EXH_HAND_JOINTS];
     struct exh_vec3 a, b;
     double n[3], length, offset;
-    bilateral_finger_at(w, x_m - STEP_M, joint, &a);
-    bilateral_finger_at(w, x_m + STEP_M, joint, &b);
+    finger_at(w, x_m - STEP_M, joint, &a);
+    finger_at(w, x_m + STEP_M, joint, &b);
     n[0] = (double)a.x - b.x;
     n[1] = (double)a.y - b.y;
     n[2] = (double)a.z - b.z;
     length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-    bilateral_finger_at(w, x_m, joint, &a);
+    finger_at(w, x_m, joint, &a);
     offset = (n[0] * a.x + n[1] * a.y + n[2] * a.z) / length - exh_hand_rows[3].dflt;
     memset(to, 0, sizeof *to);
     to->kind = EXH_PLANE_HIT;
@@ -97,7 +98,7 @@ double bilateral_gap_m(const struct peer_world *world, const struct bilateral_fi
     struct exh_wire_state in = {.fingers = (uint8_t)(1u << w->f)};
     struct exh_wire_planes out;
     struct exh_vec3 tip;
-    bilateral_finger_at(w, x_m, in.joint_turn_q32[w->f], &tip);
+    finger_at(w, x_m, in.joint_turn_q32[w->f], &tip);
     in.tip_m_q30[w->f][0] = tip.x;
     in.tip_m_q30[w->f][1] = tip.y;
     in.tip_m_q30[w->f][2] = tip.z;

@@ -90,10 +90,6 @@ struct bilateral_finger_is {
     int pose;
 };
 
-/* Joints and tip when it has drawn so much string out. */
-void bilateral_finger_at(const struct bilateral_finger_is *w, double x_m,
-                         int32_t joint_turn_q32[EXH_HAND_JOINTS], struct exh_vec3 *tip_m_q30);
-
 /* A wall across its way where it has drawn x_m out. */
 void bilateral_wall(struct exh_wire_plane *to, const struct bilateral_finger_is *w, double x_m);
 

@@ -333,7 +333,8 @@ static int begins(enum bringup_wrong w, int stage)
     return from_start ? -1 : busy[stage - 1];
 }
 
-int bringup_wrong_is_of(enum bringup_wrong w, int stage)
+/* Can a stage meet it? One without motor has none that is reversed. */
+static int wrong_is_of(enum bringup_wrong w, int stage)
 {
     switch (w) {
     case BRINGUP_MOTOR_REVERSED:
@@ -399,7 +400,7 @@ int bringup_faults(FILE *f, const struct bringup_run_cfg *cfg)
         for (int stage = 1; stage <= BRINGUP_STAGES; stage++) {
             c.wrong = (enum bringup_wrong)w;
             c.wrong_phase = begins(c.wrong, stage);
-            if (!bringup_wrong_is_of(c.wrong, stage)) {
+            if (!wrong_is_of(c.wrong, stage)) {
                 fprintf(f, " |");
                 continue;
             }

@@ -30,9 +30,6 @@ struct bringup_wrong_row {
 };
 extern const struct bringup_wrong_row bringup_wrong_row[BRINGUP_WRONGS];
 
-/* Can a stage meet it? One without motor has none that is reversed. */
-int bringup_wrong_is_of(enum bringup_wrong w, int stage);
-
 struct bringup_run_cfg {
     uint32_t rate_Hz;
     const char *boot; /* "name=value ...", as on the image's command line        */

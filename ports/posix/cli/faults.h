@@ -137,7 +137,6 @@ int faults_run(const struct faults_base *b, faults_at *at, void *ctx);
 
 uint32_t faults_run_tick(void); /* in which the base commands RUN                       */
 unsigned faults_finger(uint8_t scene); /* 0 or FAULTS_FINGER                         */
-void faults_look(uint8_t scene, struct faults_view *v);
 
 /* The memory of the scene's one instance. */
 struct faults_memory {

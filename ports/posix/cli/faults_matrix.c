@@ -35,7 +35,6 @@ struct plan {
     uint8_t source;
     int pass;
     uint32_t press_for; /* ticks on end in the state that the finger presses in      */
-    uint32_t ramp_for;
     int32_t latency[FAULTS_INS]; /* < 0: not known                                      */
     uint32_t small_at, ramp_at; /* of the pass before; 0: not known                     */
     uint32_t press_at[2]; /* likewise: a limit holds, none does                          */

@@ -54,7 +54,7 @@ static void look_at_bilateral(struct faults_view *v)
     }
 }
 
-void faults_look(uint8_t scene, struct faults_view *v)
+static void look_at(uint8_t scene, struct faults_view *v)
 {
     const struct exh_safety *s = faults_memory(scene).safety;
     memset(v, 0, sizeof *v);
@@ -157,7 +157,7 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
 {
     struct faults_view v;
     (void)in;
-    faults_look(own.base->scene, &v);
+    look_at(own.base->scene, &v);
     if (faults_after(tick, &v, out)) { return; }
     own.at(own.ctx, tick, &v);
 }

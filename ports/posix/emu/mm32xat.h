@@ -12,9 +12,8 @@
 
 #include <stdint.h>
 
-#define EMU_MM_PORTS    16
-#define EMU_MM_FIFO     1024
-#define EMU_MM_CHANNELS 32
+#define EMU_MM_PORTS 16
+#define EMU_MM_FIFO  1024
 
 enum emu_latch {
     EMU_LATCH_READ, /* a sample is what stands on the pin when it is read, whenever converted */

@@ -20,7 +20,7 @@ double score_step_m(const struct plant_point *p)
     return space_value(space_find("step"), p->u[space_find("step")]);
 }
 
-double score_observe_s(const struct score_plan *plan, int row)
+static double observe_s(const struct score_plan *plan, int row)
 {
     return table2_paper[row].rate_Hz <= 100 ? plan->observe_slow_s : plan->observe_s;
 }
@@ -43,7 +43,7 @@ int score_run(const struct plant_point *p, const struct score_plan *plan, struct
     c.b_Nspm = at.b_Nspm;
     c.board.falls = at.falls;
     c.board.seed = at.seed;
-    c.board.device.observe_s = score_observe_s(plan, at.row);
+    c.board.device.observe_s = observe_s(plan, at.row);
     if (!plant_step_will_do(&c.board.device, 0, 0)) {
         c.board.device.substep_s = plant_step_that_will_do(&c.board.device, 0, 0);
     }
@@ -100,7 +100,7 @@ static int at_the_gains(const struct plant_point *p, const struct score_plan *pl
         const uint64_t seed = plan->seed + (uint64_t)(i * TABLE2_ROWS + row);
         const int err = score_run(p, plan, gains(row, 1, FALLS, seed), &r);
         const int n =
-            err ? -1 : score_oscillating(&r, score_step_m(p), score_observe_s(plan, row), 0, &soft);
+            err ? -1 : score_oscillating(&r, score_step_m(p), observe_s(plan, row), 0, &soft);
         if (n < 0 || reading_all(&r.log, score_step_m(p), S) != FALL_OK) {
             run_free(&r);
             return -1;
@@ -129,7 +129,7 @@ static int at_15(const struct plant_point *p, const struct score_plan *plan, int
     const uint64_t seed = plan->seed + 500 + (uint64_t)row;
     const int err = score_run(p, plan, gains(row, 1.5, plan->falls_at_15, seed), &r);
     const int n =
-        err ? -1 : score_oscillating(&r, score_step_m(p), score_observe_s(plan, row), 1, &soft);
+        err ? -1 : score_oscillating(&r, score_step_m(p), observe_s(plan, row), 1, &soft);
     run_free(&r);
     if (n < 0) { return -1; }
     soft /= plan->falls_at_15;

@@ -42,7 +42,6 @@ struct score_gains {
 };
 int score_run(const struct plant_point *p, const struct score_plan *plan, struct score_gains at,
               struct run *r);
-double score_observe_s(const struct score_plan *plan, int row);
 double score_step_m(const struct plant_point *p);
 
 /* Falls of the run that oscillate; *soft is their sum judged by how far. */
