@@ -873,7 +873,7 @@ check:
 	@$(timed) $(check_runs)
 	@$(timed) stress-short
 	@$(timed) size
-	@$(timed) doc
+	@$(timed) doc doc-names
 	@$(timed) bench
 	@$(timed) report-test
 	@$(timed) report ARGS=--short
@@ -1212,6 +1212,11 @@ doc:
 	@{ cat docs/Doxyfile; echo 'OUTPUT_DIRECTORY = $(B)/doc'; echo 'PROJECT_NUMBER = $(version)'; } | doxygen - 2> $(B)/doc/warnings || true
 	@if [ -s $(B)/doc/warnings ] || ! [ -s $(B)/doc/html/index.html ]; then cat $(B)/doc/warnings; echo "doc: not documented, or no pages" >&2; exit 1; fi
 	@echo "$(B)/doc/html/index.html"
+
+## Every command, option, file and test that the documents name is there, and every document, port, scene and test folder is listed
+.PHONY: doc-names
+doc-names: $(exhand)
+	@PYTHONDONTWRITEBYTECODE=1 test/docs/docs.py $(exhand) $(world)
 
 ## Lay out all C sources by .clang-format
 .PHONY: fmt
