@@ -2,8 +2,8 @@
 """docs.py EXHAND WORLD: what the documents of the tree name is there. In code, that is between backticks or in a block: every make
 target, variable, port and scene, every command of these programs and every option that stands behind one, options alone (some
 program or script has them), names of functions, signals and tests; anywhere: files, documents and links. And the other way: every
-document, port, scene and folder of tests has its place in the page that lists them, every picture is shown. WORLD need not be
-there. Exit status: 0 all as told, 1 not. Standard library only.
+document, port, scene and folder of tests has its place in the page that lists them, every picture is shown, the bench's table is that
+of its baseline. WORLD need not be there. Exit status: 0 all as told, 1 not. Standard library only.
 """
 
 import functools
@@ -186,6 +186,13 @@ def lists():
         yield os.path.basename(path) in told, "no page shows " + path
 
 
+def bench():
+    """docs/REPORT.md has the instructions of each kernel that `make bench` goes by."""
+    told = {m.group(1): m.groups()[1:] for m in re.finditer(r"^    (\w+) +(\d+\.\d\d) .*?(\d+\.\d\d) \|", read("docs/REPORT.md"), re.M)}
+    for name, count, _, _, i686 in (line.split(",") for line in read("test/bench/baseline.csv").splitlines()[2:]):
+        yield told.get(name) == (count, i686), "docs/REPORT.md: %s is %s and %s on i686" % (name, count, i686)
+
+
 def main():
     if len(sys.argv) != 3:
         sys.exit(__doc__)
@@ -195,9 +202,9 @@ def main():
     if len(planted.wrong) != PLANTED_FAULTS:
         sys.exit("docs.py: of %d planted faults these were told:\n%s" % (PLANTED_FAULTS, "\n".join(planted.wrong)))
     pages = [Page(p, read(p), program, world).all() for p in documents()]
-    listed = list(lists())
+    listed = list(lists()) + list(bench())
     wrong = [w for p in pages for w in p.wrong] + [what for ok, what in listed if not ok]
-    print("\n".join(wrong + ["docs: %d pages, %d names and %d lists: %d wrong" %
+    print("\n".join(wrong + ["docs: %d pages, %d names in them, %d of the tree: %d wrong" %
                              (len(pages), sum(p.checked for p in pages), len(listed), len(wrong))]))
     sys.exit(1 if wrong else 0)
 
