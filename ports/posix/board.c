@@ -229,7 +229,7 @@ static void take_serial(void)
 {
     struct glove_tty *t = sim.cfg.glove_tty;
     if (t == NULL || !glove_tty_poll(t, sim.now_s)) { return; }
-    for (unsigned i = 0; i < SIM_GLOVE_SENSORS; i++) { sim.frame[i] = t->in.sample[i]; }
+    for (unsigned i = 0; i < SIM_GLOVE_SENSORS; i++) { sim.frame[i] = cyberglove_raw(t->in.sample[i]); }
     sim.frame_tick = sim.tick;
     sim.frame_s = sim.now_s;
 }

@@ -104,6 +104,12 @@ int cyberglove_take(struct cyberglove *g, uint8_t byte)
     return came;
 }
 
+int16_t cyberglove_raw(uint8_t sample)
+{
+    const int32_t tenths = (sample - 128) * 294912 / 127; /* 18 V of 20 V are 58982.4 codes */
+    return (int16_t)((tenths + (tenths < 0 ? -5 : 5)) / 10);
+}
+
 const char *cyberglove_cause_text(unsigned cause)
 {
     static const char *const text[CYBERGLOVE_CAUSES] = {"zero sample", "18 samples", "wrong length",

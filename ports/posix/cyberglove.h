@@ -51,6 +51,11 @@ struct cyberglove {
 /* The next byte: 1, a whole frame ended with it; 0. */
 int cyberglove_take(struct cyberglove *g, uint8_t byte);
 
+/* A sample 1 .. 255 as the code that the paper's card has where its bridge stands: 1 is -9 V, 255 is 9 V,
+ * -29491 .. 29491; 232.2 codes a step, rounded to the nearest. So one calibration's units, parameters
+ * and limits are those of both. */
+int16_t cyberglove_raw(uint8_t sample);
+
 /* "zero sample", ...; never NULL. */
 const char *cyberglove_cause_text(unsigned cause);
 

@@ -268,8 +268,19 @@ TEST(each_cause_has_its_word)
     CHECK(strcmp(cyberglove_cause_text(CYBERGLOVE_CAUSES), "unknown") == 0, "beyond");
 }
 
+TEST(a_sample_is_a_code_of_the_card)
+{
+    CHECK_EQ_I64(cyberglove_raw(1), -29491);
+    CHECK_EQ_I64(cyberglove_raw(128), 0);
+    CHECK_EQ_I64(cyberglove_raw(255), 29491);
+    for (int i = 1; i <= 255; i++) { /* 18 V of 20 V over 254 steps, to half a code */
+        const double off = cyberglove_raw((uint8_t)i) - (i - 128) * 58982.4 / 254;
+        CHECK(off >= -0.5 && off <= 0.5, "%d: %g", i, off);
+    }
+}
+
 TEST_MAIN("serial/parser", each_frame_comes_as_it_was_sent, a_frame_that_is_asked_for_is_one,
           the_form_is_learned_or_told, a_form_that_changes_is_taken_when_it_is_sure_unless_told,
           what_goes_wrong_is_counted_and_does_not_get_in, noise_between_frames_is_counted,
           all_frames_wrong_and_then_well_again, any_bytes_give_only_what_has_the_form_of_a_frame,
-          each_cause_has_its_word);
+          each_cause_has_its_word, a_sample_is_a_code_of_the_card);

@@ -6,6 +6,7 @@
 #include "terminal.h"
 
 #include "cli/glove.h"
+#include "cli/glove_poses.h"
 #include "emu/cyber.h"
 #include "posix.h"
 
@@ -32,6 +33,8 @@ static struct {
     int open;
     unsigned told, rounds; /* bytes of commands it has had; what the other end had told before it */
     void (*at)(uint64_t tick); /* what happens; NULL: nothing                      */
+    int fixed;                 /* its samples stay as they are                     */
+    uint64_t from_ns;          /* its clock's 0, where it has this machine's       */
 } far;
 
 static struct glove_tty tty;
@@ -39,17 +42,26 @@ static struct glove_tty tty;
 /* Samples of a frame are all known from the first. */
 static void sample(void)
 {
-    for (unsigned i = 0; i < SENSORS; i++) {
+    for (unsigned i = 0; i < SENSORS && !far.fixed; i++) {
         far.glove.sample[i] = (uint8_t)(1 + (7 * far.glove.frames + 11 * i) % 255);
     }
 }
 
 static int is_one(const int16_t *raw)
 {
-    for (int i = 0; i < SENSORS; i++) {
-        if (raw[i] != 1 + (raw[0] - 1 + 11 * i) % 255) { return 0; }
+    unsigned first = 1;
+    while (first < 255 && cyberglove_raw((uint8_t)first) != raw[0]) { first++; }
+    for (unsigned i = 0; i < SENSORS; i++) {
+        if (raw[i] != cyberglove_raw((uint8_t)(1 + (first - 1 + 11 * i) % 255))) { return 0; }
     }
-    return raw[0] >= 1;
+    return 1;
+}
+
+static uint64_t clock_ns(void)
+{
+    struct timespec t;
+    (void)clock_gettime(CLOCK_MONOTONIC, &t);
+    return (uint64_t)t.tv_sec * 1000000000u + (uint64_t)t.tv_nsec;
 }
 
 static int plug_in(void)
@@ -75,6 +87,7 @@ static int begin(void)
     memset(&tty, 0, sizeof tty);
     snprintf(far.link, sizeof far.link, "/tmp/exhand-glove-%ld", (long)getpid());
     emu_cyber_open(&far.glove);
+    far.from_ns = clock_ns();
     return plug_in();
 }
 
@@ -321,7 +334,7 @@ TEST(the_box_takes_its_silence_for_a_lost_glove)
     c.T = (struct exh_period){1, RATE_HZ};
     c.drives = 31;
     exh_scene_bilateral.defaults();
-    CHECK_EQ_I64(glove_serial_stage(&exh_scene_bilateral, RATE_HZ, 90), 0);
+    CHECK_EQ_I64(glove_serial_stage(&exh_scene_bilateral, NULL, RATE_HZ, 90), 0);
     CHECK_EQ_I64(glove_tty_open(&tty, far.link, 90), 0);
     posix_configure(&c);
     CHECK_EQ_I64(exh_loop(&exh_scene_bilateral, 0, &hooks), 0);
@@ -335,25 +348,19 @@ TEST(the_box_takes_its_silence_for_a_lost_glove)
 
 /* ---- The command -------------------------------------------------------------------------------- */
 
-static uint64_t clock_ns(void)
-{
-    struct timespec t;
-    (void)clock_gettime(CLOCK_MONOTONIC, &t);
-    return (uint64_t)t.tv_sec * 1000000000u + (uint64_t)t.tv_nsec;
-}
-
 /* In a process of its own, this one being the glove until it ends. */
 static void command_of(struct said *s, const char *dir, int (*run_it)(int, char **), const char *const *word)
 {
-    const pid_t pid = said_start(dir, run_it, word);
-    const uint64_t from_ns = clock_ns();
+    pid_t pid;
     siginfo_t info = {.si_pid = 0};
+    far.glove.streams = far.glove.out_n = 0; /* what it had to say to the command before is gone */
+    pid = said_start(dir, run_it, word);
     while (waitid(P_PID, (id_t)pid, &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == 0) {
         uint8_t byte[256];
         int n = 0, b;
         hear(1);
         sample();
-        while (n < (int)sizeof byte && (b = emu_cyber_get(&far.glove, clock_ns() - from_ns)) >= 0) {
+        while (n < (int)sizeof byte && (b = emu_cyber_get(&far.glove, clock_ns() - far.from_ns)) >= 0) {
             byte[n++] = (uint8_t)b;
             sample();
         }
@@ -383,9 +390,9 @@ TEST(the_command_writes_rows_or_a_log)
     command(&s, dir, WORDS("glove", "--serial", far.link, "--seconds", "2", "--deg", "--tips"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     CHECK(strncmp(s.out, "t_s,thumb_rotate_deg,", 21) == 0 && strstr(s.out, "little_z_m") && lines(s.out) > 3, "%s", s.out);
-    CHECK(strstr(s.err, " frames at 90 Hz, discarded: zero sample 0,"), "%s", s.err);
+    CHECK(strstr(s.err, " frames at 90 Hz, discarded: zero sample 0,") && !strstr(s.err, "silent"), "%s", s.err);
     command(&s, dir, WORDS("glove", "--serial", far.link, "--seconds", "2", "--record", log));
-    CHECK(s.status == 0 && strstr(s.out, " frames at 90 Hz") && s.err[0] == '\0', "%d: %s", s.status, s.err);
+    CHECK(s.status == 0 && strstr(s.out, " frames at 90 Hz") && !strstr(s.out, ": 0 frames") && s.err[0] == '\0', "%d: %s", s.status, s.err);
     said(&s, dir, cli_replay, WORDS("replay", log));
     CHECK(s.status == 0, "%s", s.err);
     said(&s, dir, cli_csv, WORDS("csv", log, "--all"));
@@ -417,22 +424,87 @@ TEST(a_box_that_goes_on_has_it_for_its_glove)
     said_clean(dir);
 }
 
-/* One degree a code or so: what an angle must be, by the table of nominal ends. */
+/* A hand holds this pose (where it leaves a joint free, as in the flat hand), in a glove of which 90 degrees are 90 samples. */
+static void hand_in(const char *pose)
+{
+    const int p = glove_pose_find(pose);
+    for (unsigned i = 0; i < SENSORS; i++) {
+        int deg = 0;
+        (void)glove_pose_says((unsigned)p, i, &deg);
+        far.glove.sample[i] = (uint8_t)(100 + (int)i + deg);
+    }
+}
+
+/* Column `at` of the last row, its time being column -1. */
+static int last_is_near(const char *text, unsigned at, double deg, double by)
+{
+    const char *row = strrchr(text, ',');
+    double got;
+    while (row > text && row[-1] != '\n') { row--; }
+    for (unsigned i = 0; i <= at; i++) { row = strchr(row, ',') + 1; }
+    got = strtod(row, NULL);
+    return got > deg - by && got < deg + by;
+}
+
+/* What an angle must be, by the published file, to half a sample. */
 TEST(its_nominal_calibration_is_the_published_one)
 {
-    static const struct { int at, code; double deg; } row[] = {
+    static const struct { int at, sample; double deg; } row[] = {
         {4, 1 + 109 /* .429 */, 0}, {4, 1 + 166 /* .654 */, 90}, {3, 1 + 201 /* .791 */, 0}, {3, 1 + 89 /* .350 */, 50}, {9, 1, 0},
         {21, 1 + 235 /* .925 */, -30}, {21, 1 + 60 /* .236 */, 10}, {20, 1 + 39, -30}, {20, 1 + 158, 40}};
-    struct exh_glove_cal cal;
-    glove_serial_cal(&cal);
-    CHECK_EQ_I64(exh_glove_cal_valid(&cal, NULL), 0);
     for (size_t i = 0; i < LEN(row); i++) {
-        const struct exh_glove_sensor *c = &cal.sensor[row[i].at];
-        const double step_deg = 360.0 * c->gain_turnpraw_q38 / 274877906944.0;
-        const double deg = (row[i].code - c->zero_raw_q15 / 32768.0) * step_deg;
+        const struct exh_glove_sensor *c = &exh_glove_cal_default.sensor[row[i].at];
+        const double step_deg = 58982.4 / 254 * 360.0 * c->gain_turnpraw_q38 / 274877906944.0;
+        const double deg = (cyberglove_raw((uint8_t)row[i].sample) - c->zero_raw_q15 / 32768.0) * 360.0 * c->gain_turnpraw_q38 / 274877906944.0;
         const double off = deg < row[i].deg ? row[i].deg - deg : deg - row[i].deg;
         CHECK(off <= (step_deg < 0 ? -step_deg : step_deg) / 2 + 0.01, "%zu: %g deg", i, deg);
     }
+}
+
+/* A hand in each of the poses, as this glove samples them: the calibration of it says them again. */
+TEST(a_user_calibrates_it_by_poses)
+{
+    static const char *const pose[] = {"flat", "spread", "knuckles", "hook", "index", "middle", "ring", "little",
+                                       "thumb", "across", "opposed", "cup", "up", "down", "side"};
+    static struct said s;
+    char *dir = said_dir();
+    const char *csv = said_path(dir, "poses.csv"), *image = said_path(dir, "glove.bin"), *none = said_path(dir, "none.bin");
+    FILE *f = fopen(csv, "wb");
+    if (begin() < 0) { return; }
+    far.fixed = 1;
+    for (size_t p = 0; p < LEN(pose); p++) {
+        int16_t raw[SENSORS];
+        hand_in(pose[p]);
+        for (unsigned i = 0; i < SENSORS; i++) { raw[i] = cyberglove_raw(far.glove.sample[i]); }
+        if (p > 1) {
+            glove_poses_row(f, pose[p], raw); /* the others would be as these, two seconds each */
+            continue;
+        }
+        command(&s, dir, WORDS("glove", "--serial", far.link, "--pose", pose[p], "--glove-rate", "20", "--seconds", "2"));
+        CHECK(s.status == 0 && strncmp(s.out, pose[p], strlen(pose[p])) == 0 && lines(s.out) > 3, "%d: %s%s", s.status, s.out, s.err);
+        fputs(s.out, f);
+    }
+    fclose(f);
+    said(&s, dir, cli_calibrate, WORDS("calibrate", "--glove", "--poses", csv, "--out", dir));
+    CHECK(s.status == 0, "%d: %s", s.status, s.err);
+    hand_in("knuckles");
+    command(&s, dir, WORDS("glove", "--serial", far.link, "--calibration", image, "--deg", "--seconds", "2"));
+    CHECK(s.status == 0 && last_is_near(s.out, EXH_GLOVE_INDEX_MPJ, 80, 1.5) && last_is_near(s.out, EXH_GLOVE_PINKIE_PIJ, 0, 1.5), "%d: %s%s",
+          s.status, s.out, s.err);
+    command(&s, dir, WORDS("glove", "--serial", far.link, "--calibration", csv, "--seconds", "0.5"));
+    CHECK(s.status == 2 && strstr(s.err, "--calibration: ") && strstr(s.err, ": give the glove.bin"), "%d: %s", s.status, s.err);
+    command(&s, dir, WORDS("glove", "--serial", far.link, "--pose", "fist"));
+    CHECK(s.status == 2 && strstr(s.err, "--pose: fist: no such pose"), "%d: %s", s.status, s.err);
+    command_of(&s, dir, cli_run, WORDS("run", "--scene", "bilateral", "--pace", "--slack", "1", "--rate", "200", "--seconds", "1",
+                                       "--glove-serial", far.link, "--glove-calibration", image));
+    CHECK(s.status == 0 && strstr(s.out, "faults none"), "%d: %s%s", s.status, s.out, s.err);
+    said(&s, dir, cli_run, WORDS("run", "--scene", "bilateral", "--pace", "--glove-serial", far.link, "--glove-calibration", none, "--seconds", "1"));
+    CHECK(s.status == 3 && strstr(s.err, "--glove-calibration: "), "%d: %s", s.status, s.err);
+    said(&s, dir, cli_run, WORDS("run", "--scene", "bilateral", "--glove-calibration", image, "--seconds", "1"));
+    CHECK(s.status == 2 && strstr(s.err, "--glove-calibration: the simulated glove is calibrated"), "%d: %s", s.status, s.err);
+    far.fixed = 0;
+    end();
+    said_clean(dir);
 }
 
 TEST(what_it_cannot_use_it_names)
@@ -475,4 +547,4 @@ TEST_MAIN("sim/glove_serial", frames_come_at_the_rate_that_was_asked_for, the_li
           whatever_it_does_no_wrong_frame_comes_and_the_next_good_ones_do,
           a_device_that_is_pulled_out_ages_and_comes_back, a_name_that_is_no_serial_line_is_refused,
           the_box_takes_its_silence_for_a_lost_glove, the_command_writes_rows_or_a_log, a_box_that_goes_on_has_it_for_its_glove,
-          its_nominal_calibration_is_the_published_one, what_it_cannot_use_it_names);
+          its_nominal_calibration_is_the_published_one, a_user_calibrates_it_by_poses, what_it_cannot_use_it_names);

@@ -197,7 +197,7 @@ static int set_parameters(const struct bilateral_run_cfg *c)
     int err = 0;
     exh_scene_bilateral.defaults();
     bilateral_cal_of(&cal, &c->board.glove_par);
-    err = c->board.glove_tty ? glove_serial_stage(&exh_scene_bilateral, c->rate_Hz, c->board.glove_tty->rate_Hz)
+    err = c->board.glove_tty ? glove_serial_stage(&exh_scene_bilateral, c->glove_cal, c->rate_Hz, c->board.glove_tty->rate_Hz)
                              : bilateral_stage_cal(&cal, NULL);
     if (err == 0) { err = images_give(c->images, &exh_scene_bilateral); }
     for (size_t i = 0; err == 0 && i < sizeof known / sizeof known[0]; i++) {

@@ -28,6 +28,7 @@ struct bilateral_run_cfg {
     int32_t session;           /* of the controller; 0: of the seed, over UDP of the clock */
     int fit_scale;             /* s of each finger: as it fits, not as the scene has it */
     int keep;                  /* keep samples                                  */
+    const struct exh_glove_cal *glove_cal; /* of board.glove_tty; NULL: nobody's   */
     const struct images *images; /* calibrations of fingers; NULL, or none: uncalibrated */
     const char *blackbox;      /* dumps go there (dumpfile.h); NULL: no black box */
     const struct exh_loop_hooks *more; /* behind the run's own; NULL: none      */

@@ -6,17 +6,13 @@
 #include "glove_image.h"
 #include "glove_tty.h"
 #include "option.h"
-#include "outfile.h"
 #include "param.h"
-
-#include "exhand/error.h"
 
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define IMAGE_B  (EXH_GLOVE_CAL_IMAGE_B + 1)
 #define RATE_TOP 20000
 
 /* --- options with a syntax of their own --- */
@@ -75,28 +71,11 @@ static void print_params(void)
 
 /* --- calibration --- */
 
-static int complain_cal(const char *path, int err, struct exh_glove_bad bad)
-{
-    if (err == -EXH_E_RANGE) {
-        cli_complain("--calibration: %s: %s of %s: outside its range: calibrate again", path,
-                     exh_glove_what_text(bad.what), exh_glove_sensor_text(bad.at));
-    } else {
-        cli_complain("--calibration: %s: %s: give the " IMAGE_WANTED, path, exh_error_text(err));
-    }
-    return 2;
-}
-
 int glove_load_calibration(const char *path)
 {
     static struct exh_glove_cal cal;
-    struct exh_glove_bad bad = {0, 0};
-    uint8_t image[IMAGE_B];
-    const long len = outfile_read("calibration", path, IMAGE_WANTED, image, sizeof image);
-    int err;
-    if (len < 0) { return (int)-len; }
-    err = exh_glove_cal_load(&cal, image, (size_t)len, &bad);
-    if (err == 0) { err = glove_stage_cal(&cal, &bad); }
-    return err < 0 ? complain_cal(path, err, bad) : 0;
+    const int err = glove_image_read(&cal, "calibration", path);
+    return err ? err : glove_stage_cal(&cal, NULL) < 0 ? 2 : 0; /* one that was read is taken */
 }
 
 /* --- the command --- */
@@ -128,10 +107,12 @@ static int check_rest(const struct glove_options *o)
         const char *why;
     } row[] = {
         {o->play && !o->record, "--play: goes with --record"},
-        {o->serial && (o->play || o->does || o->pose || o->cards),
-         "--serial: a hand is in that glove: leave --play, --does, --pose and --cards out"},
+        {o->serial && (o->play || o->does || o->cards),
+         "--serial: a hand is in that glove: leave --play, --does and --cards out"},
+        {o->serial && o->pose && (o->record || o->tips || o->deg),
+         "--pose: with --serial its rows are codes for a calibration: leave --record, --tips and --deg out"},
         {o->glove_Hz > 0 && !o->serial, "--glove-rate: goes with --serial"},
-        {(o->does || o->pose) && !o->record, "--does and --pose: go with --record"},
+        {(o->does && !o->record) || (o->pose && !o->record && !o->serial), "--does and --pose: go with --record"},
         {(o->does || o->pose) && o->play, "--play: says what the hand does: leave --does and --pose out"},
         {(o->from_s > 0 || o->to_s > 0) && !recorded, "--from and --to: go with --selftest of a recording"},
         {o->seconds > 0 && (o->csv || o->log), "--seconds: a recording is as long as it is"},
@@ -168,7 +149,7 @@ static int check(const struct glove_options *o)
 static int run(struct glove_options *o)
 {
     int err = check(o);
-    if (err == 0 && o->calibration) { err = glove_load_calibration(o->calibration); }
+    if (err == 0 && o->calibration && !o->serial) { err = glove_load_calibration(o->calibration); }
     if (err) { return err; }
     if ((o->record || o->serial) && o->rate_Hz <= 0) { o->rate_Hz = exh_scene_glove.rate_Hz; }
     if (o->serial) {
@@ -203,7 +184,7 @@ int cli_glove(int argc, char **argv)
         {"glove-rate", CLI_REAL, &o.glove_Hz, GLOVE_TTY_RATE_MIN_HZ, GLOVE_TTY_RATE_MAX_HZ, "HZ", "with --serial: its frames (90)"},
         {"play", CLI_TEXT, &o.play, 0, 0, "FILE", "with --record: the hand does what this recording says"},
         {"does", CLI_TEXT, &o.does, 0, 0, "WHAT", "with --record: rest, poses, grasp or wave"},
-        {"pose", CLI_TEXT, &o.pose, 0, 0, "NAME", "with --record: begin in this pose"},
+        {"pose", CLI_TEXT, &o.pose, 0, 0, "NAME", "with --record: begin in this pose; with --serial: rows of codes for `exhand calibrate --glove`, named so"},
         {"seconds", CLI_REAL, &o.seconds, 0.001, 100000, "S", "how long the board is asked (10, or all of --play; --serial: until Ctrl-C)"},
         {"from", CLI_REAL, &o.from_s, 0, 1e6, "S", "selftest: a recording is at rest from here"},
         {"to", CLI_REAL, &o.to_s, 0, 1e6, "S", "to here"},

@@ -133,7 +133,7 @@ void glove_poses_take(struct glove_taken *t, const struct glove_bench *b, FILE *
 
 /* --- recorded --- */
 
-static int pose_of(const char *name)
+int glove_pose_find(const char *name)
 {
     for (int p = 0; p < GLOVE_POSES; p++) {
         if (strcmp(text[p].name, name) == 0) { return p; }
@@ -164,7 +164,7 @@ static int take_line(struct glove_taken *t, char *line, const char *path, unsign
     if (line[0] == '\0' || line[0] == '#') { return 0; }
     if (comma != NULL) { *comma = '\0'; }
     if (strcmp(line, "pose") == 0) { return 0; } /* the header */
-    pose = pose_of(line);
+    pose = glove_pose_find(line);
     if (pose < 0) {
         cli_complain("--poses: %s: line %lu: %.40s: no such pose: `exhand calibrate --glove "
                      "--list` lists them",
@@ -185,6 +185,13 @@ static int take_line(struct glove_taken *t, char *line, const char *path, unsign
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) { take_code(&t->code[pose][i], code[i]); }
     t->frames[pose]++;
     return 0;
+}
+
+void glove_poses_row(FILE *f, const char *pose, const int16_t raw[EXH_GLOVE_SENSORS])
+{
+    fputs(pose, f);
+    for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) { fprintf(f, ",%d", raw[i]); }
+    fputc('\n', f);
 }
 
 int glove_poses_read(struct glove_taken *t, const char *path)

@@ -38,6 +38,9 @@ const char *glove_pose_name(unsigned pose);
 /* What to do, one pose after the other. */
 void glove_poses_print(FILE *f);
 
+/* Its number by that name; -1: none has it. */
+int glove_pose_find(const char *name);
+
 /* What a pose says of a sensor. 1: *deg; 0: nothing. */
 int glove_pose_says(unsigned pose, unsigned sensor, int *deg);
 
@@ -51,6 +54,9 @@ int glove_poses_read(struct glove_taken *t, const char *path);
 /* For the fit: those that were taken. Their number; which[] says which they are. */
 unsigned glove_poses_fit(struct exh_glove_pose *pose, uint8_t which[GLOVE_POSES],
                          const struct glove_taken *t);
+
+/* A frame as glove_poses_read() reads it. */
+void glove_poses_row(FILE *f, const char *pose, const int16_t raw[EXH_GLOVE_SENSORS]);
 
 /* As glove_poses_read() reads it, one line a pose: its means. */
 void glove_poses_csv(FILE *f, const struct glove_taken *t);

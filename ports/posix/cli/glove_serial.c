@@ -1,6 +1,8 @@
 /* exhand glove --serial: the sensing scene on a stock glove at a serial line. */
 #include "glove.h"
 
+#include "glove_image.h"
+#include "glove_poses.h"
 #include "glove_tty.h"
 #include "option.h"
 #include "param.h"
@@ -18,8 +20,6 @@
 #define SENSORS   EXH_GLOVE_SENSORS
 #define SILENT_S  1.0
 #define NEVER_S   3.0 /* without a frame since the start: something is wrong      */
-#define CARD_CODES 58982.4 /* the default calibration: 0 .. 1 at -9 .. 9 V of the card, */
-#define CODES      254.0   /* and at 1 .. 255 of this glove                        */
 
 static struct {
     const struct glove_options *o;
@@ -27,38 +27,33 @@ static struct {
     double rate_Hz;
     uint32_t last_tick;
     uint64_t missed;
-    int silent, never;
+    int heard, silent, never;
 } run;
 
 /* --- set-up --- */
 
-/* Every code is believed: one that is 0 never comes here, and an open wire has no code of its own. */
-void glove_serial_cal(struct exh_glove_cal *cal)
+/* Nobody knows how far this hand goes. */
+static void nobody(struct exh_glove_cal *cal)
 {
     *cal = exh_glove_cal_default;
     for (int i = 0; i < SENSORS; i++) {
-        struct exh_glove_sensor *s = &cal->sensor[i];
-        const double zero = 1 + CODES * (s->zero_raw_q15 / 32768.0 / CARD_CODES + 0.5);
-        const double gain = s->gain_turnpraw_q38 * (CARD_CODES / CODES);
-        s->zero_raw_q15 = (int32_t)(zero * 32768 + (zero < 0 ? -0.5 : 0.5));
-        s->gain_turnpraw_q38 = (int32_t)(gain + (gain < 0 ? -0.5 : 0.5));
-        s->low_raw = 1;
-        s->high_raw = 255;
+        cal->sensor[i].low_raw = cyberglove_raw(1);
+        cal->sensor[i].high_raw = cyberglove_raw(255);
     }
 }
 
-int glove_serial_stage(const struct exh_scene *sc, double rate_Hz, double glove_Hz)
+int glove_serial_stage(const struct exh_scene *sc, const struct exh_glove_cal *cal, double rate_Hz, double glove_Hz)
 {
     const double every = (double)(long)(rate_Hz / glove_Hz);
     const struct run_setting own[] = {
-        {"glove_low", 0},  {"glove_high", 256}, {"glove_bits", 16},
-        {"glove_hyst", 1}, {"every", every < 1 ? 1 : every > 1000 ? 1000 : every},
+        {"every", every < 1 ? 1 : every > 1000 ? 1000 : every},
         {"glove_fc", glove_Hz > 66 ? 30 : glove_Hz / 4},
     };
-    static struct exh_glove_cal cal;
+    static struct exh_glove_cal none;
     int err;
-    glove_serial_cal(&cal);
-    err = sc == &exh_scene_glove ? glove_stage_cal(&cal, NULL) : bilateral_stage_cal(&cal, NULL);
+    nobody(&none);
+    if (cal == NULL) { cal = &none; }
+    err = sc == &exh_scene_glove ? glove_stage_cal(cal, NULL) : bilateral_stage_cal(cal, NULL);
     for (size_t i = 0; err == 0 && i < sizeof own / sizeof own[0]; i++) {
         err = cli_param_set(sc->params, own[i].name, own[i].value);
     }
@@ -68,11 +63,14 @@ int glove_serial_stage(const struct exh_scene *sc, double rate_Hz, double glove_
 /* What was asked for stands above it. */
 static int stage(const struct glove_options *o)
 {
-    int err = glove_serial_stage(&exh_scene_glove, run.rate_Hz, run.tty.rate_Hz);
+    static struct exh_glove_cal cal;
+    int err = o->calibration ? glove_image_read(&cal, "calibration", o->calibration) : 0;
+    if (err) { return err; }
+    err = glove_serial_stage(&exh_scene_glove, o->calibration ? &cal : NULL, run.rate_Hz, run.tty.rate_Hz);
     for (int i = 0; err == 0 && i < o->settings; i++) {
         err = cli_param_set(exh_scene_glove.params, o->setting[i].name, o->setting[i].value);
     }
-    return err < 0 ? 2 : o->calibration ? glove_load_calibration(o->calibration) : 0;
+    return err < 0 ? 2 : 0;
 }
 
 int glove_serial_open(struct glove_tty *t, const char *option, const char *path, double glove_Hz)
@@ -114,7 +112,8 @@ static void complain_never(void)
 static void watch_silence(double age_s)
 {
     const int silent = age_s >= SILENT_S;
-    if (silent == run.silent || run.tty.in.frames == 0) { return; }
+    run.heard |= !silent; /* the scene has its first frame a tick after the line */
+    if (silent == run.silent || !run.heard) { return; }
     run.silent = silent;
     cli_complain("--serial: %s: %s", path(),
                  !silent ? "frames again" : run.tty.fd < 0 ? "was unplugged: waits for it" : "silent: asks again");
@@ -131,7 +130,9 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
     const double t_s = posix_time_s();
     run.last_tick = tick;
     if (run.o->record) { exh_log_after(tick, in, out); }
-    if (!run.o->record && in->glove_new) {
+    if (run.o->pose && in->glove_new) {
+        glove_poses_row(stdout, run.o->pose, in->glove.raw);
+    } else if (!run.o->record && in->glove_new) {
         glove_line(run.o, t_s, (const struct glove_signals *)exh_scene_glove.signal);
     }
     watch_silence(in->glove.age_ticks / run.rate_Hz);
@@ -145,7 +146,7 @@ static void started(const struct exh_scene *sc, struct exh_scene_board board)
 {
     if (run.o->record) {
         exh_log_start(sc, board);
-    } else {
+    } else if (!run.o->pose) {
         glove_header(run.o);
     }
 }
@@ -193,6 +194,10 @@ int glove_serial(const struct glove_options *o)
     memset(&run, 0, sizeof run);
     run.o = o;
     run.rate_Hz = o->rate_Hz;
+    if (o->pose && glove_pose_find(o->pose) < 0) {
+        cli_complain("--pose: %s: no such pose: `exhand calibrate --glove --list` lists them", o->pose);
+        return 2;
+    }
     err = glove_serial_open(&run.tty, "serial", o->serial, o->glove_Hz);
     if (err) { return err; }
     err = stage(o);

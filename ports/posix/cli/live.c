@@ -2,6 +2,7 @@
 #include "cli.h"
 
 #include "assign.h"
+#include "glove_image.h"
 #include "glove_serial.h"
 #include "live.h"
 #include "modbus.h"
@@ -144,6 +145,11 @@ static int prepare(struct live_options *o, const struct exh_scene *sc)
         cli_complain("--glove-serial: goes with --scene bilateral and --pace, without --load-params");
         err = 2;
     }
+    if (err == 0 && o->glove_image && !o->glove) {
+        cli_complain("--glove-calibration: the simulated glove is calibrated: goes with --glove-serial");
+        err = 2;
+    }
+    if (err == 0 && o->glove_image) { err = glove_image_read(&o->glove_cal, "glove-calibration", o->glove_image); }
     if (err == 0) { err = contacts_check(&o->gpio, o->pace); }
     if (err == 0) { err = read_params(o); }
     if (err == 0) { err = live_log_open(o->log, o->pace, o->seconds > 0); }
@@ -209,6 +215,7 @@ int cli_run(int argc, char **argv)
          "clients may command RUN and CLEAR; the dead-man holds all the same"},
         {"glove-serial", CLI_TEXT, &o.glove, 0, 0, "DEVICE",
          "of bilateral: a stock glove there instead of the simulated one; fingers stay simulated"},
+        {"glove-calibration", CLI_TEXT, &o.glove_image, 0, 0, "FILE", "its user's, of `exhand calibrate --glove` (nobody's)"},
         {"gpio", CLI_CALL, u[3].to, 0, 0, CONTACTS_ARG, CONTACTS_HELP},
         {"log", CLI_TEXT, &o.log, 0, 0, "FILE", "for `exhand replay` and `exhand csv`"},
         {"blackbox", CLI_TEXT, &o.blackbox, 0, 0, "FILE", "the last seconds before a fault, a log"},

@@ -15,7 +15,7 @@
 #define LIVE_SETTINGS_MAX 64
 
 struct live_options {
-    const char *scene, *params, *log, *blackbox, *modbus, *save, *glove;
+    const char *scene, *params, *log, *blackbox, *modbus, *save, *glove, *glove_image;
     double rate_Hz, seconds, let_go_s, slack_s;
     int64_t seed;
     int pace, grip, list, remote;
@@ -26,6 +26,7 @@ struct live_options {
     struct bilateral_options hand;
     struct run_live live;
     struct glove_tty tty; /* of --glove-serial, while it runs                     */
+    struct exh_glove_cal glove_cal;
 };
 
 /* live_box.c. The box of this scene, until it ends: 0, or the -EXH_E... of board or scene. */

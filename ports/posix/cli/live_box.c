@@ -115,6 +115,7 @@ static int run_hand(struct live_options *o)
     if (o->live.image) { c.fit_scale = 0; } /* it was, when that was saved */
     board(o, &c.board);
     c.board.glove_tty = o->glove ? &o->tty : NULL;
+    c.glove_cal = o->glove_image ? &o->glove_cal : NULL;
     live_status(lowest(c.board.exo.fingers));
     err = bilateral_run(&c, &r);
     err = dumped(err, r.dumps);
