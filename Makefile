@@ -1,5 +1,5 @@
 # exhand: haptic-glove controller library, its ports, its experiments.
-# Variables for you: PORT SCENE B O V CC CROSS CFLAGS LDFLAGS DEPS ARGS. `make help` lists the targets.
+# Variables for you: PORT SCENE FROZEN B O V CC CROSS CFLAGS LDFLAGS DEPS ARGS. `make help` lists the targets.
 
 PORT   ?= posix
 SCENE  ?= drop
@@ -109,11 +109,61 @@ endef
 $(eval $(call model,$(patsubst %/,%,$(MODEL)),$(MODEL_NAME),$(MODEL_RATE),$(MODEL_MAP),$(out)/model/$(MODEL_NAME)))
 
 
+# --- set-up when the image is built (examples/frozen.h): FROZEN=HZ, or the period N/D in seconds as PORT's timer makes it ---
+
+FROZEN    ?=
+# Width of the board's counters: what its table says. The image refuses any other.
+ENC_BITS  ?= $(shell sed -n 's/.*\.enc_bits = \([0-9]*\).*/\1/p' ports/$(PORT)/board.c)
+# Scene and library as one small program, so that the constants reach every branch. WHOLE= leaves that out.
+WHOLE     ?= -Os -flto -ffat-lto-objects
+HOSTCC    ?= cc
+
+# SCENE:RATE:WIDTH of all that may be asked for; those of the tests are beside that of an image.
+test_rates := 90 1000 20000 1193/1193182
+frozen_all := $(sort $(if $(FROZEN),$(SCENE):$(FROZEN):$(ENC_BITS)) $(test_rates:%=minimal:%:24))
+frozen_h    = $(B)/frozen/$(subst /,_,$(subst :,_,$(1))).h
+define freeze
+$(call frozen_h,$(1)): $(B)/freeze-$(firstword $(subst :, ,$(1)))
+	@mkdir -p $$(@D)
+	$$(Q)$$< $(wordlist 2,3,$(subst :, ,$(1))) > $$@.new && mv $$@.new $$@
+endef
+$(foreach f,$(frozen_all),$(eval $(call freeze,$f)))
+$(B)/freeze-%: examples/freeze.c examples/%/freeze.c $(lib_src) $(wildcard lib/include/exhand/*.h lib/src/*.h examples/*.h examples/*/*.[ch])
+	@mkdir -p $(@D)
+	$(Q)$(HOSTCC) -std=c99 $(warn) -Ilib/include -Iexamples -o $@ examples/freeze.c examples/$*/freeze.c $(lib_src)
+# What set-up alone reads is not read there.
+frozen_flags = -Wno-unused-const-variable -I$(B)/frozen
+
+ifneq ($(FROZEN),)
+$(if $(wildcard examples/$(SCENE)/freeze.c),,$(error FROZEN=$(FROZEN): no examples/$(SCENE)/freeze.c: examples/freeze.h says what is in it))
+frozen     := $(call frozen_h,$(SCENE):$(FROZEN):$(ENC_BITS))
+frozen_out := $(out)/frozen/$(if $(WHOLE),whole,parts)
+frozen_lib := $(frozen_out)/libexhand.a
+frozen_obj := $(SCENE_SRC:%.c=$(frozen_out)/$(basename $(notdir $(frozen)))/%.o)
+$(frozen_out)/lib/%.o: lib/%.c $(stamp)
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(base) $(PORT_CFLAGS) $(WHOLE) $(CFLAGS) -c $< -o $@
+$(frozen_lib): $(lib_src:%.c=$(frozen_out)/%.o)
+	$(Q)rm -f $@ && $(CROSS)ar rcD $@ $^
+$(frozen_obj): $(frozen_out)/$(basename $(notdir $(frozen)))/%.o: %.c $(frozen) $(stamp)
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(base) $(PORT_CFLAGS) $(PORT_HOSTFLAGS) $(WHOLE) $(SCENE_CFLAGS) $(frozen_flags) -DEXH_FROZEN='"$(notdir $(frozen))"' $(CFLAGS) -c $< -o $@
+endif
+
+## The set-up of SCENE as constants, for FROZEN=HZ (or N/D s) and the counters of PORT: build/frozen
+.PHONY: frozen
+frozen: $(frozen)
+	$(if $(FROZEN),,$(error FROZEN= says no rate: FROZEN=1000, or a period N/D in seconds))
+	@echo $<
+
+
 # --- what is linked -----------------------------------------------------------
 
-image     := $(out)/$(SCENE)$(if $(filter custom,$(SCENE)),$(filter-out -wall,-$(MODEL_NAME)))$(PORT_SUFFIX).elf
-image_obj := $(patsubst %,$(out)/$(SCENE)/%.o,$(basename $(or $(SCENE_MAIN),$(PORT_MAIN),examples/image.c examples/deadman.c) \
-             $(PORT_SRC))) $(if $(SCENE_MAIN),,$(out)/examples/loop.o) $(SCENE_SRC:%.c=$(out)/%.o) $(if $(filter custom,$(SCENE)),$(model_obj))
+image     := $(out)/$(SCENE)$(if $(FROZEN),-frozen-$(subst /,_,$(FROZEN)))$(if $(filter custom,$(SCENE)),$(filter-out -wall,-$(MODEL_NAME)))$(PORT_SUFFIX).elf
+# What is frozen comes first, so that its library gives it all it needs, and nobody else what he could have from the other.
+image_obj := $(if $(FROZEN),$(frozen_obj) $(frozen_lib)) \
+             $(patsubst %,$(out)/$(SCENE)/%.o,$(basename $(or $(SCENE_MAIN),$(PORT_MAIN),examples/image.c examples/deadman.c) \
+             $(PORT_SRC))) $(if $(SCENE_MAIN),,$(out)/examples/loop.o) $(if $(FROZEN),,$(SCENE_SRC:%.c=$(out)/%.o)) $(if $(filter custom,$(SCENE)),$(model_obj))
 
 # These know which scene they serve: one set of objects per scene.
 $(out)/$(SCENE)/%.o: %.c $(stamp)
@@ -124,7 +174,7 @@ $(out)/$(SCENE)/%.o: %.S $(stamp)
 	$(Q)$(CC) -Ilib/include $(PORT_CFLAGS) -g -c $< -o $@
 
 $(image): $(image_obj) $(lib) $(PORT_LDSCRIPT)
-	$(Q)$(CC) $(PORT_LDFLAGS) $(LDFLAGS) -Wl,--gc-sections,-Map=$(@:.elf=.map) \
+	$(Q)$(CC) $(if $(FROZEN),$(if $(WHOLE),$(base) $(PORT_CFLAGS) $(WHOLE) -flto-partition=one $(CFLAGS))) $(PORT_LDFLAGS) $(LDFLAGS) -Wl,--gc-sections,-Map=$(@:.elf=.map) \
 	    $(PORT_LDSCRIPT:%=-T %) $(image_obj) $(lib) $(SCENE_LIBS) -o $@
 
 # What the machine boots from, where that is not the image itself.
@@ -328,7 +378,7 @@ fmi-run:
 # --- tests ----------------------------------------------------------------------
 
 san       := -fsanitize=address,undefined -fno-sanitize-recover=all
-test_dirs := golden sim prop world slot gpio serial cards emu pc104 board unit # in this order: long ones first
+test_dirs := golden sim prop world slot gpio serial cards emu pc104 board frozen unit # in this order: long ones first
 test_src  := $(foreach d,$(test_dirs),$(wildcard test/$(d)/*_test.c))
 test_bin  := $(test_src:test/%_test.c=$(B)/test/%_test)
 tflags     = $(base) $(CFLAGS) -Itest -DEXH_FIX_AUDIT
@@ -349,6 +399,17 @@ $(B)/test/prop/%_test: $(B)/test/san/test/prop/%_test.o
 # The emulated cards, at their registers: without the bus, and the glove on its line.
 emu_src := $(wildcard ports/posix/emu/[!bc]*.c)
 $(B)/test/emu/%_test: $(B)/test/san/test/emu/%_test.o $(B)/test/san/test/support.o $(emu_src:%.c=$(B)/test/san/%.o)
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(san) -o $@ $^ -lcmocka
+
+# Scene minimal with the set-up of its own, and frozen: a side each.
+frozen_sides := live $(subst /,_,$(test_rates))
+$(frozen_sides:%=$(B)/test/frozen/side_%.o): $(B)/test/frozen/side_%.o: test/frozen/side.c $(stamp) $(foreach r,$(test_rates),$(call frozen_h,minimal:$r:24))
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(tflags) $(san) $(frozen_flags) -DSIDE=side_$* $(if $(filter live,$*),,-DEXH_FROZEN='"minimal_$*_24.h"') -c $< -o $@
+$(B)/test/san/test/frozen/%.o: tflags += -DFREEZE='"$(B)/freeze-minimal"'
+$(B)/test/frozen/%_test: $(B)/test/san/test/frozen/%_test.o $(B)/test/san/test/support.o $(frozen_sides:%=$(B)/test/frozen/side_%.o) \
+                         $(lib_src:%.c=$(B)/test/san/%.o) | $(B)/freeze-minimal
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(san) -o $@ $^ -lcmocka
 
@@ -912,6 +973,9 @@ boot-run:
 
 contract_images := mps2/minimal mps2/contract mps2/contract_slow mps2/contract_fast mps2/overflow \
                    pc104/contract pc104/contract_slow pc104/overflow template/contract
+# Scene minimal frozen, and frozen for another rate than it runs at; and what it codes, frozen and not.
+contract_frozen := FROZEN=1000 FROZEN=2000
+frozen_digest   := PORT_SUFFIX=-digest SCENE_MAIN="test/frozen/digest.c examples/loop.c" SCENE_CFLAGS=-DSAY=mps2_say
 
 ## The port contract (test/board) and fault handlers on images under QEMU; `test` and `hil` run it too
 .PHONY: contract contract-built contract-run
@@ -922,6 +986,8 @@ contract-built:
 	    gcc-arm-none-eabi qemu-system-arm gcc-i686-linux-gnu qemu-system-x86 || exit 3; done
 	@for i in $(contract_images); do \
 	    $(MAKE) --no-print-directory $(if $(V),,-s) PORT=$${i%/*} SCENE=$${i#*/} CARDS=none all || exit; done
+	@for i in $(contract_frozen); do $(MAKE) --no-print-directory $(if $(V),,-s) PORT=mps2 SCENE=minimal $$i all || exit; done
+	@for i in FROZEN= FROZEN=1000; do $(MAKE) --no-print-directory $(if $(V),,-s) PORT=mps2 SCENE=minimal $$i $(frozen_digest) all || exit; done
 contract_run = test/board/contract.sh $(B)
 contract-run:
 	@$(contract_run)

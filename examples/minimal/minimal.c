@@ -18,12 +18,16 @@ static const struct exh_safety_par safety_par = {1, EXH_Q(1, 1, EXH_Q_FORCE), 50
 #define vouched (EXH_UNTESTED | EXH_UNCALIBRATED | EXH_UNPOLARISED | EXH_ARM_ENCODER)
 static const int32_t wall_m_q30 = EXH_Q(2, 100, EXH_Q_POS);
 
+#ifdef EXH_FROZEN /* what set-up makes of one period and counter, as constants: ../frozen.h */
+#include EXH_FROZEN
+#else
 static struct exh_quad_cfg quad_cfg;
 static struct exh_velocity_window_cfg vel_cfg;
 static struct exh_drive_cfg drive_cfg;
 static struct exh_track_cfg track_cfg;
 static struct exh_safety_cfg safety_cfg;
 static struct exh_knot knot[2] = {{0, 0, {0, 0}}, {EXH_Q(22, 1, EXH_Q_FORCE), EXH_Q(66, 10, EXH_Q_CUR), {0, 0}}};
+#endif
 static struct state {
     struct exh_quad quad;
     struct exh_velocity_window vel;
@@ -33,6 +37,13 @@ static struct state {
     struct exh_safety safety;
 } s;
 
+#ifdef EXH_FROZEN
+static int setup(struct exh_scene_board board)
+{
+    s = (struct state){0};
+    return exh_frozen_for(frozen_board, board);
+}
+#else
 static int setup(struct exh_scene_board board)
 {
     const struct exh_velocity_scale scale = {quad_par.step_m_q42, board.T};
@@ -46,6 +57,7 @@ static int setup(struct exh_scene_board board)
     if (err == 0) { err = exh_safety_setup(&safety_cfg, &safety_par, board.T); }
     return err;
 }
+#endif
 
 static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
 {

@@ -35,6 +35,11 @@ run mps2/contract_slow 0 "$passed"
 # 16 ns an instruction: the checks between two ticks are more than 780 instructions
 QEMU_FLAGS="-icount shift=4,sleep=off" run mps2/contract_fast 0 "$passed"
 run mps2/minimal 0 '^ticks 2000 run, 0 missed, 1[0-9]{3} with a drive on$'
+# Set up when it was built: as small as that, the same codes, and at no other rate.
+run mps2/minimal-frozen-1000 0 '^ticks 2000 run, 0 missed, 1[0-9]{3} with a drive on$'
+run mps2/minimal-frozen-2000 1 '^loop rate not possible$'
+run mps2/minimal-digest 0 '^digest [0-9a-f]{8}$'
+run mps2/minimal-frozen-1000-digest 0 "^$(grep -a '^digest' "$out" | tr -d '\r')\$"
 run mps2/contract 0 "$off"
 run mps2/overflow 5 "$off"
 run mps2/overflow 5 '^processor exception 3$'
