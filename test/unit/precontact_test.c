@@ -629,73 +629,6 @@ TEST(restored_tracking_touches_nothing_at_once)
     CHECK(bits & EXH_PRECONTACT_FREEZE, "frozen");
 }
 
-/* um, rounded. */
-static int64_t um(int32_t m_q30)
-{
-    return ((int64_t)m_q30 * 1000000 + (1 << 29)) >> 30;
-}
-
-TEST(advice)
-{
-    struct exh_precontact_need n = {EXH_Q(87, 100, EXH_Q_VEL), 0, 0, 16000, 0, 0, 0};
-    struct exh_precontact_advice a;
-    const struct exh_period slow = {1, 90}, fast = {1, 2000};
-    CHECK_EQ_I64(exh_precontact_advise(&a, &n, fast, -MM(5)), 0);
-    CHECK_EQ_I64(um(a.d_lim_m_q30), -435); /* one sample at 0.87 m/s and 2 kHz */
-    CHECK_EQ_I64(um(a.ray_m_q30), 5000 + 13920 + 435); /* 100 frames a second, 1 + 5 ms */
-    CHECK_EQ_I64(um(a.error_m_q30), 0);
-    CHECK_EQ_I64(a.speed_mps_q27, INT64_C(250) * MM(5)); /* 5 mm in 0.5 ms */
-    CHECK_EQ_I64(exh_precontact_advise(&a, &n, slow, -MM(5)), 0);
-    CHECK_EQ_I64(um(a.d_lim_m_q30), -9667);
-    n.lag_us = 4000;
-    n.noise_m_q30 = MM(1);
-    n.object_mps_q27 = EXH_Q(1, 2, EXH_Q_VEL);
-    n.slide_m_q30 = MM(10);
-    n.radius_m_q30 = MM(20);
-    CHECK_EQ_I64(exh_precontact_advise(&a, &n, fast, -MM(1) / 2), 0);
-    CHECK_EQ_I64(um(a.d_lim_m_q30), -4915); /* 0.87 m/s in 4.5 ms, and 1 mm */
-    CHECK_EQ_I64(um(a.error_m_q30), 8000 + 2500);
-    CHECK_EQ_I64(a.speed_mps_q27, 0);
-    n.noise_m_q30 = 0;
-    n.lag_us = 0;
-    CHECK_EQ_I64(exh_precontact_advise(&a, &n, fast, INT32_MIN + 1), -EXH_E_RANGE); /* ray */
-    CHECK_EQ_I64(exh_precontact_advise(&a, &n, fast, -EXH_Q(1, 1, EXH_Q_POS)), 0);
-    CHECK_EQ_I64(a.speed_mps_q27, INT32_MAX);
-    CHECK_EQ_I64(exh_precontact_advise(&a, &n, fast, 0), -EXH_E_RANGE);
-    n = (struct exh_precontact_need){1, 0, 0, 1, 1, 1, MM(20)};
-    CHECK_EQ_I64(exh_precontact_advise(&a, &n, fast, -MM(5)), 0);
-    CHECK(a.d_lim_m_q30 == -1 && a.ray_m_q30 == MM(5) + 1 && a.error_m_q30 == 2, "rounded up");
-    n.speed_mps_q27 = INT32_MAX;
-    n.lag_us = 2000000;
-    CHECK_EQ_I64(exh_precontact_advise(&a, &n, fast, -MM(5)), -EXH_E_RANGE);
-    n.speed_mps_q27 = -1;
-    CHECK_EQ_I64(exh_precontact_advise(&a, &n, fast, -MM(5)), -EXH_E_RANGE);
-    n = (struct exh_precontact_need){1, 0, 0, 1, 1, 1, MM(20)};
-    CHECK_EQ_I64(exh_precontact_advise(&a, &n, (struct exh_period){0, 1000}, -MM(5)), -EXH_E_RANGE);
-    CHECK_EQ_I64(exh_precontact_advise(&a, &n, (struct exh_period){1, 0}, -MM(5)), -EXH_E_RANGE);
-}
-
-/* Up to 2^31 - 1 each figure is given, the others far from it. */
-TEST(the_greatest_advice)
-{
-    struct exh_precontact_need n = {125, 2000000, INT32_MAX - 2001, 0, 0, 0, 0}; /* 1 um/s for 2.001 s: 2001 LSB */
-    struct exh_precontact_advice a;
-    const struct exh_period T = {1, 1000};
-    CHECK_EQ_I64(exh_precontact_advise(&a, &n, T, -5), 0);
-    CHECK(a.d_lim_m_q30 == -INT32_MAX && a.ray_m_q30 == INT32_MAX - 2001 + 1 + 5, "d_lim");
-    n.noise_m_q30++;
-    CHECK_EQ_I64(exh_precontact_advise(&a, &n, T, -5), -EXH_E_RANGE);
-    n = (struct exh_precontact_need){0, 0, INT32_MAX - 5, 0, 0, 0, 0};
-    CHECK_EQ_I64(exh_precontact_advise(&a, &n, T, -5), 0);
-    CHECK_EQ_I64(a.ray_m_q30, INT32_MAX);
-    CHECK_EQ_I64(exh_precontact_advise(&a, &n, T, -6), -EXH_E_RANGE);
-    n = (struct exh_precontact_need){0, 0, 0, 125000, 65534, 65535, 1}; /* 65534 and 65535^2 / 2 */
-    CHECK_EQ_I64(exh_precontact_advise(&a, &n, T, -5), 0);
-    CHECK_EQ_I64(a.error_m_q30, INT32_MAX);
-    n.object_mps_q27++;
-    CHECK_EQ_I64(exh_precontact_advise(&a, &n, T, -5), -EXH_E_RANGE);
-}
-
 /* Through the origin all planes have the offset 0: the normal alone tells them apart. */
 TEST(a_plane_that_turned_over_is_another)
 {
@@ -725,13 +658,13 @@ TEST(the_longest_normal)
 
 TEST_MAIN("unit/precontact", distance_has_the_sign_of_the_text, rounds_once_and_half_up,
           no_plane_means_no_contact, tracks_freezes_and_releases, the_boundary_is_d_lim_itself,
-          a_touching_finger_is_not_released,
-          a_contact_that_the_glove_denies_is_let_go, a_doubt_hangs_on_no_message,
-          an_unknown_fingertip, missed_ticks_age_a_plane_and_a_doubt, what_comes_while_frozen_is_ignored_and_counted,
+          a_touching_finger_is_not_released, a_contact_that_the_glove_denies_is_let_go,
+          a_doubt_hangs_on_no_message, an_unknown_fingertip, missed_ticks_age_a_plane_and_a_doubt,
+          what_comes_while_frozen_is_ignored_and_counted,
           what_came_while_frozen_is_new_at_the_release, born_inside_gives_no_contact_until_left,
           another_object_has_to_be_left_first, the_same_object_may_come_to_the_finger,
           a_stale_plane_is_none, a_message_may_be_old_when_it_comes, a_frozen_plane_does_not_age,
           what_cannot_be_is_refused, material_is_taken_at_the_freeze, scale_and_slope,
           set_up_refuses, state_round_trip, damaged_state_comes_back_into_range,
-          restored_tracking_touches_nothing_at_once, advice, the_greatest_advice,
-          a_plane_that_turned_over_is_another, the_longest_normal);
+          restored_tracking_touches_nothing_at_once, a_plane_that_turned_over_is_another,
+          the_longest_normal);
