@@ -10,17 +10,13 @@
 #include "exhand/error.h"
 #include "exhand/exhand.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
-static double size_of(double v)
-{
-    return v < 0 ? -v : v;
-}
 
 static struct exh_period start(const struct posix_config *c, uint32_t rate_Hz)
 {
@@ -112,7 +108,7 @@ TEST(a_step_acts_at_the_first_sample_after_its_delay)
         double got_s;
         while (want_s < due_s) { want_s += servo_s; }
         got_s = respond(row[i]);
-        CHECK(size_of(got_s - want_s) < 1e-9, "row %zu: due %.9f s, taken %.9f, want %.9f", i,
+        CHECK(fabs(got_s - want_s) < 1e-9, "row %zu: due %.9f s, taken %.9f, want %.9f", i,
               due_s, got_s, want_s);
     }
 }
@@ -134,7 +130,7 @@ TEST(the_edge_between_two_servo_samples_is_sharp)
             const struct step s = {(uint32_t)rate, 0, share * delay_s * rate,
                                    (1 - share) * delay_s};
             const double got_s = respond(s), want_s = due_s + i * servo_s;
-            CHECK(size_of(got_s - want_s) < 1e-9, "%d: due %.9f s, %s: taken at %.9f", k, due_s,
+            CHECK(fabs(got_s - want_s) < 1e-9, "%d: due %.9f s, %s: taken at %.9f", k, due_s,
                   i ? "late" : "early", got_s);
         }
     }
@@ -153,7 +149,7 @@ TEST(a_disabled_drive_gives_no_current)
         CHECK_EQ_I64(exh_board_wait(), 0);
         write_code(12184, 1);
     }
-    CHECK(size_of(posix_plant()->cur_A - 6.6) < 1e-3, "enabled: %.6f A", posix_plant()->cur_A);
+    CHECK(fabs(posix_plant()->cur_A - 6.6) < 1e-3, "enabled: %.6f A", posix_plant()->cur_A);
     exh_board_safe(); /* drops what is on its way, too */
     for (int n = 0; n < 200; n++) { CHECK_EQ_I64(exh_board_wait(), 0); }
     CHECK(posix_plant()->cur_A < 1e-6, "safe: %.3g A", posix_plant()->cur_A);
@@ -169,7 +165,7 @@ TEST(the_drive_limits_at_its_own_peak)
             CHECK_EQ_I64(exh_board_wait(), 0);
             write_code(sign * 12184, 1);
         }
-        CHECK(size_of(posix_plant()->cur_A - sign * 2) < 1e-6, "%.6f A", posix_plant()->cur_A);
+        CHECK(fabs(posix_plant()->cur_A - sign * 2) < 1e-6, "%.6f A", posix_plant()->cur_A);
     }
 }
 
@@ -193,7 +189,7 @@ TEST(monitor_noise_is_bounded_on_both_sides)
     CHECK((hi - lo) * lsb_A > 0.6 * 0.0472, "%.4f A peak to peak", (hi - lo) * lsb_A);
     CHECK(hi * lsb_A <= 0.0236 + lsb_A && lo * lsb_A >= -0.0236 - lsb_A, "%d..%d codes", lo, hi);
     /* 13 codes of deviation over 1e5 draws: 5 sigma of the mean is 0.21 codes */
-    CHECK(size_of(sum / 100000) < 0.21, "mean %.3f codes", sum / 100000);
+    CHECK(fabs(sum / 100000) < 0.21, "mean %.3f codes", sum / 100000);
 }
 
 TEST(monitor_code_is_the_nearest)
@@ -212,7 +208,7 @@ TEST(monitor_code_is_the_nearest)
             code = read_codes().mon_raw[0];
             codes = posix_plant()->mon_A / scale_A[i];
             codes = codes > 32767 ? 32767 : codes < -32768 ? -32768 : codes;
-            CHECK(size_of(code - codes) <= 0.5 + 1e-9, "scale %.3g: %d, want %.6f", scale_A[i],
+            CHECK(fabs(code - codes) <= 0.5 + 1e-9, "scale %.3g: %d, want %.6f", scale_A[i],
                   code, codes);
             moved |= 1 << (code < 0) | 4 << (code > 100);
             write_code((n / 300 % 3 - 1) * 12000, 1);

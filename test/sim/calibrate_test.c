@@ -13,14 +13,11 @@
 
 #include "exhand/error.h"
 
+#include <math.h>
+
 #define LEN(a) (sizeof(a) / sizeof((a)[0]))
 
 static const double mass_kg[] = {0.1, 0.2, 0.3, 0.5, 0.7};
-
-static double size_of(double v)
-{
-    return v < 0 ? -v : v;
-}
 
 static struct calibration_cfg config(uint64_t seed)
 {
@@ -75,18 +72,18 @@ static void check_found(const struct calibration_cfg *c, double kf_share)
     struct calibration_lines l;
     const struct calibration *r = calibrated(c, &l);
     const double kf = si(l.cur.kf_NpA_q20, EXH_Q_FORCE), mon = si(l.mon.kf_NpA_q20, EXH_Q_FORCE);
-    CHECK(size_of(kf / want - 1) < kf_share, "kf %.4f, want %.4f", kf, want);
-    CHECK(size_of(mon / want - 1) < kf_share + 0.004, "by monitor %.4f, want %.4f", mon, want);
+    CHECK(fabs(kf / want - 1) < kf_share, "kf %.4f, want %.4f", kf, want);
+    CHECK(fabs(mon / want - 1) < kf_share + 0.004, "by monitor %.4f, want %.4f", mon, want);
     for (int i = 0; i < c->masses; i++) { /* each point: within a step of its place */
         const double at_A = c->mass_kg[i] * SIM_GRAVITY / want;
-        CHECK(size_of(si(r->point[i].cur_A_q26, EXH_Q_CUR) - at_A) < 1.2 * step_A,
+        CHECK(fabs(si(r->point[i].cur_A_q26, EXH_Q_CUR) - at_A) < 1.2 * step_A,
               "%g kg: %.4f A, want %.4f", c->mass_kg[i], si(r->point[i].cur_A_q26, EXH_Q_CUR),
               at_A);
     }
     CHECK(si(r->c.f0_A_q26, EXH_Q_CUR) > f0_A - step_A &&
               si(r->c.f0_A_q26, EXH_Q_CUR) < f0_A + 2.5 * step_A,
           "F0 %.4f A, want %.4f", si(r->c.f0_A_q26, EXH_Q_CUR), f0_A);
-    CHECK(size_of(r->home_m + 0.15) < 1.5 * d->step_m / d->decode, "home %.6f m", r->home_m);
+    CHECK(fabs(r->home_m + 0.15) < 1.5 * d->step_m / d->decode, "home %.6f m", r->home_m);
     CHECK(r->most_A < 3.3003, "%.4f A", r->most_A);
 }
 
@@ -132,7 +129,7 @@ TEST(the_monitors_zero_is_found)
     c.setting = zero;
     c.settings = LEN(zero);
     check_found(&c, 0.003);
-    CHECK(size_of(out.c.mon_zero_raw) <= 2, "%d codes", (int)out.c.mon_zero_raw);
+    CHECK(abs(out.c.mon_zero_raw) <= 2, "%d codes", (int)out.c.mon_zero_raw);
 }
 
 /* Without friction at the mass the middle is exact: kf itself, within 0.3 %. */
@@ -142,7 +139,7 @@ TEST(kf_itself_where_the_mass_has_no_friction)
     struct calibration_lines l;
     c.board.device.mu_mass = 0;
     calibrated(&c, &l);
-    CHECK(size_of(si(l.cur.kf_NpA_q20, EXH_Q_FORCE) / c.board.device.kf_npa - 1) < 0.003, "%.4f",
+    CHECK(fabs(si(l.cur.kf_NpA_q20, EXH_Q_FORCE) / c.board.device.kf_npa - 1) < 0.003, "%.4f",
           si(l.cur.kf_NpA_q20, EXH_Q_FORCE));
 }
 
@@ -230,7 +227,7 @@ TEST(nobody_after_a_finished_step_is_no_calibration)
               calibrate_step_text(r->step), calibrate_result_text(r->result));
         CHECK(r->c.points == (i ? 2 : 0) && r->last_most_A == 0, "row %zu: %d points", i,
               r->c.points);
-        CHECK(size_of(r->last_s - row[i].wait_ms / 1000) < 0.002, "row %zu: %.4f s", i, r->last_s);
+        CHECK(fabs(r->last_s - row[i].wait_ms / 1000) < 0.002, "row %zu: %.4f s", i, r->last_s);
     }
 }
 
@@ -550,7 +547,7 @@ TEST(either_residual_counts)
         int monitor;
         calibrated(&c, &l);
         monitor = l.mon_worst_N > l.cur_worst_N;
-        if (seen[monitor] || size_of(l.mon_worst_N - l.cur_worst_N) < 1e-6) { continue; }
+        if (seen[monitor] || fabs(l.mon_worst_N - l.cur_worst_N) < 1e-6) { continue; }
         seen[monitor] = 1;
         snprintf(limit, sizeof limit, "%.9f", (l.mon_worst_N + l.cur_worst_N) / 2);
         snprintf(text, sizeof text, "%u", seed);

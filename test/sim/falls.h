@@ -6,6 +6,7 @@
 
 #include "cli/analysis.h"
 
+#include <math.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -67,14 +68,9 @@ static inline double normal(uint64_t *rng)
     return sum;
 }
 
-static inline double size_of(double x)
-{
-    return x < 0.0 ? -x : x;
-}
-
 static inline int near(double got, double want, double relative)
 {
-    return size_of(got - want) <= relative * size_of(want);
+    return fabs(got - want) <= relative * fabs(want);
 }
 
 /* Three falls onto a line without noise. */

@@ -9,15 +9,11 @@
 #include "exhand/board.h"
 #include "exhand/error.h"
 
+#include <math.h>
 #include <string.h>
 
 #define FINGERS SIM_FINGERS
 #define ALL     0x1Fu
-
-static double size_of(double v)
-{
-    return v < 0 ? -v : v;
-}
 
 static struct posix_config with(unsigned fingers)
 {
@@ -90,7 +86,7 @@ TEST(axes_are_not_mixed_up)
             for (unsigned i = 0; i < FINGERS; i++) {
                 const double A = code[i] / c.device.dac_perA;
                 const double want = mask & enable & 1u << i ? A / c.device.mon_apc : 0;
-                CHECK(size_of(in.mon_raw[i] - want) < 1,
+                CHECK(fabs(in.mon_raw[i] - want) < 1,
                       "mask %#x, enable %#x, finger %u: %d, want %.1f", mask, enable, i,
                       in.mon_raw[i], want);
             }
@@ -121,7 +117,7 @@ TEST(encoders_count_the_string)
     CHECK(most > 600 && most < 1000, "45 mm of string are %u counts", (unsigned)most);
     for (unsigned i = 0; i < FINGERS; i++) {
         CHECK(hi[i] - lo[i] < 0.1, "finger %u: too few edges to tell", i);
-        CHECK(i == 0 || size_of(lo[i] - lo[0]) > 1e-3, "finger %u has the thumb's phase", i);
+        CHECK(i == 0 || fabs(lo[i] - lo[0]) > 1e-3, "finger %u has the thumb's phase", i);
     }
 }
 
@@ -282,17 +278,17 @@ static void follow_glove(unsigned mask, double interval_s)
             const double ago_s = (22 - bend[b].sensor) * interval_s;
             const int ticks = (int)(ago_s / h);
             const double rad = lag_ago(&at[(n - ticks) % 400][b], ago_s - ticks * h);
-            const double off = size_of(in.raw[bend[b].sensor] - code_of(bend[b].sensor, rad));
+            const double off = fabs(in.raw[bend[b].sensor] - code_of(bend[b].sensor, rad));
             CHECK(off < 1.0, "mask %#x, tick %d, %s: %d, want %.2f", mask, n,
                   sim_glove_sensor[bend[b].sensor].name, in.raw[bend[b].sensor],
                   code_of(bend[b].sensor, rad));
             worst = off > worst ? off : worst;
-            span = size_of(rad) > span ? size_of(rad) : span;
+            span = fabs(rad) > span ? fabs(rad) : span;
         }
-        CHECK(size_of(in.raw[20] - code_of(20, 40 / 57.29577951308232)) <= 0.501,
+        CHECK(fabs(in.raw[20] - code_of(20, 40 / 57.29577951308232)) <= 0.501,
               "the wrist moved");
-        CHECK(size_of(in.raw[0] - code_of(0, 0)) <= 0.501 &&
-                  size_of(in.raw[10] - code_of(10, 0)) <= 0.501,
+        CHECK(fabs(in.raw[0] - code_of(0, 0)) <= 0.501 &&
+                  fabs(in.raw[10] - code_of(10, 0)) <= 0.501,
               "thumb_rotate or abduction moved");
     }
     CHECK(span > 0.8, "bent by %.3f rad only", span);
@@ -320,7 +316,7 @@ TEST(a_glove_that_nobody_read_is_right_at_once)
     for (unsigned b = 0; b < BENDS; b++) {
         const struct sim_finger *f = posix_finger(bend[b].finger);
         const double want = code_of(bend[b].sensor, f->bend_radpm[bend[b].joint] * f->plant.x_m);
-        CHECK(size_of(in.raw[bend[b].sensor] - want) < 1.5, "%s: %d, want %.2f",
+        CHECK(fabs(in.raw[bend[b].sensor] - want) < 1.5, "%s: %d, want %.2f",
               sim_glove_sensor[bend[b].sensor].name, in.raw[bend[b].sensor], want);
     }
 }
@@ -385,16 +381,16 @@ TEST(a_wall_stops_five_fingers_at_once)
             const struct sim_finger *f = posix_finger(i);
             const double force_N = c.device.kf_npa * f->plant.cur_A;
             const double most_N = f->par.k_Npm * c.exo.path[i].push_m; /* were all of it stiff */
-            CHECK(size_of(f->plant.w_mps) < 0.02, "%s, %u: moves at %.3f m/s", name[s], i,
+            CHECK(fabs(f->plant.w_mps) < 0.02, "%s, %u: moves at %.3f m/s", name[s], i,
                   f->plant.w_mps);
             CHECK(force_N > 0.6 * most_N && force_N < 1.15 * most_N, "%s, %u: %.3f N of %.3f",
                   name[s], i, force_N, most_N);
-            CHECK(size_of(sim_finger_push_N(f) / most_N - 0.85) < 0.25, "%s, %u: feels %.3f N",
+            CHECK(fabs(sim_finger_push_N(f) / most_N - 0.85) < 0.25, "%s, %u: feels %.3f N",
                   name[s], i, sim_finger_push_N(f));
         }
         check_note("%s: at the wall with %.3f m/s, deepest %.1f mm, then %.2f N", name[s],
                    at_mps[1], 1e3 * deepest, c.device.kf_npa * posix_finger(1)->plant.cur_A);
-        CHECK(size_of(at_mps[1] - sim_path_speed(name[s])) < 0.2 * sim_path_speed(name[s]) + 0.01,
+        CHECK(fabs(at_mps[1] - sim_path_speed(name[s])) < 0.2 * sim_path_speed(name[s]) + 0.01,
               "%s: %.4f m/s", name[s], at_mps[1]);
     }
 }

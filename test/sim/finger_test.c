@@ -7,14 +7,10 @@
 
 #include "exhand/hand.h"
 
+#include <math.h>
 #include <string.h>
 
 #define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
-static double size_of(double v)
-{
-    return v < 0 ? -v : v;
-}
 
 /* No friction but what the hand reckons with. */
 static struct sim_device smooth(void)
@@ -73,7 +69,7 @@ TEST(a_finger_without_string_swings_in_closed_form)
             f.plant.q_m = 1; /* slack */
             sim_finger_advance(&f, 0.05);
             want = path.start_m + swing_m(row[i].m, row[i].k, row[i].b, 0.01, 0, 0.05);
-            err = size_of(f.plant.x_m - want);
+            err = fabs(f.plant.x_m - want);
             CHECK(err < 300 * d.substep_s * d.substep_s, "row %zu, %.3g s: off by %.3g m", i, d.substep_s, err);
             if (halved > 2) { /* pieces of 250 us are 5, 10, 20 steps */
                 CHECK(last / err > 3.5 && last / err < 4.5, "row %zu, %.3g s: error falls by %.2f",
@@ -96,7 +92,7 @@ TEST(a_moving_target_moves_within_a_piece)
         d.mass_kg = 0.1;
         d.substep_s = 100e-6 / (1 << halved) * 1.0000001;
         plant_advance_hand(&p, &d, 0.03, 0, &hand);
-        err = size_of(p.x_m - (0.03 + swing_m(0.1, 300, 5, 0, -1, 0.03)));
+        err = fabs(p.x_m - (0.03 + swing_m(0.1, 300, 5, 0, -1, 0.03)));
         CHECK(err < 300 * d.substep_s * d.substep_s, "%.3g s: off by %.3g m", d.substep_s, err);
         CHECK(halved == 0 || (last / err > 3.6 && last / err < 4.4), "%.3g s: error falls by %.2f",
               d.substep_s, last / err);
@@ -123,9 +119,9 @@ TEST(pressing_stretches_hand_and_string)
         CHECK(f.path.phase == SIM_PATH_HOLD, "phase %d", (int)f.path.phase);
         force_N = d.cable_npm * (f.plant.x_m - f.plant.q_m);
         want_N = (path.believed_m + path.push_m - path.start_m) / (1 / k_Npm[i] + 1 / d.cable_npm);
-        CHECK(size_of(force_N - want_N) < 1e-6 * want_N, "K %g: %.9f N, want %.9f", k_Npm[i],
+        CHECK(fabs(force_N - want_N) < 1e-6 * want_N, "K %g: %.9f N, want %.9f", k_Npm[i],
               force_N, want_N);
-        CHECK(size_of(sim_finger_push_N(&f) - want_N) < 1e-6 * want_N,
+        CHECK(fabs(sim_finger_push_N(&f) - want_N) < 1e-6 * want_N,
               "K %g: the hand feels %.9f N", k_Npm[i], sim_finger_push_N(&f));
         CHECK(f.plant.q_m == path.start_m, "the rotor moved");
     }
@@ -147,11 +143,11 @@ TEST(the_straight_finger_is_the_end)
               f.plant.q_m);
     }
     CHECK(f.plant.q_m == 0, "string %.6f m", f.plant.q_m); /* the hand stretches it a little */
-    CHECK(size_of(f.plant.x_m - 0.005 * 300 / (300 + d.cable_npm)) < 5e-5, "finger %.6f m",
+    CHECK(fabs(f.plant.x_m - 0.005 * 300 / (300 + d.cable_npm)) < 5e-5, "finger %.6f m",
           f.plant.x_m);
     sim_finger_latch(&f, 0);
     sim_finger_advance(&f, 2);
-    CHECK(size_of(f.plant.x_m - path.start_m) < 0.5e-3, "%.6f m", f.plant.x_m);
+    CHECK(fabs(f.plant.x_m - path.start_m) < 0.5e-3, "%.6f m", f.plant.x_m);
 }
 
 /* ---- The script -------------------------------------------------------------------------- */
@@ -178,8 +174,8 @@ static struct passed pass(const struct sim_device *d, const struct sim_finger_pa
             p.finger_mps = (f.plant.x_m - x) / h;
         }
         if (w < path->believed_m && now_w >= path->believed_m) { p.wanted_mps = (now_w - w) / h; }
-        if (now_w < path->believed_m && size_of(now_w - f.plant.x_m) > p.late_m) {
-            p.late_m = size_of(now_w - f.plant.x_m);
+        if (now_w < path->believed_m && fabs(now_w - f.plant.x_m) > p.late_m) {
+            p.late_m = fabs(now_w - f.plant.x_m);
         }
         x = f.plant.x_m;
         w = now_w;
@@ -206,9 +202,9 @@ TEST(a_learned_hand_passes_at_the_speed_that_was_asked)
         d.cable_nspm = 50;
         path.speed_mps = want;
         p = pass(&d, &par, &path);
-        CHECK(size_of(p.wanted_mps - want) < 0.005 * want, "%g m/s: wanted %.5f", want,
+        CHECK(fabs(p.wanted_mps - want) < 0.005 * want, "%g m/s: wanted %.5f", want,
               p.wanted_mps);
-        CHECK(size_of(p.finger_mps - want) < 0.02 * want, "%g m/s, K %g: the finger has %.5f", want,
+        CHECK(fabs(p.finger_mps - want) < 0.02 * want, "%g m/s, K %g: the finger has %.5f", want,
               par.k_Npm, p.finger_mps);
         CHECK(p.late_m < 0.0015, "%g m/s, K %g: %.3g m off", want, par.k_Npm, p.late_m);
         par.learned = 0;
@@ -230,7 +226,7 @@ TEST(friction_costs_little_of_it)
         p = pass(&d, &par, &path);
         check_note("%s: asked %.2f m/s, the finger passes at %.4f, at most %.2f mm off", name[i],
                    path.speed_mps, p.finger_mps, 1e3 * p.late_m);
-        CHECK(size_of(p.finger_mps / path.speed_mps - 1) < 0.1, "%.4f m/s", p.finger_mps);
+        CHECK(fabs(p.finger_mps / path.speed_mps - 1) < 0.1, "%.4f m/s", p.finger_mps);
     }
     CHECK(sim_path_speed("natural") == 0.87 && sim_path_speed("") == 0, "names");
 }
@@ -254,7 +250,7 @@ TEST(approaches_are_counted_varied_and_the_seeds)
         sim_path_advance(&other, t);
         CHECK(sim_path_at(&same, t) == sim_path_at(&p, t), "the same seed, at %.6f s", t);
         differ += sim_path_at(&other, t) != sim_path_at(&p, t);
-        CHECK(size_of(sim_path_at(&p, t) - at) < 1e-12, "jumps by %.3g at %.6f s",
+        CHECK(fabs(sim_path_at(&p, t) - at) < 1e-12, "jumps by %.3g at %.6f s",
               sim_path_at(&p, t) - at, t);
         if (was == SIM_PATH_HOLD) {
             hold_lo = t - begun < hold_lo ? t - begun : hold_lo;
@@ -289,7 +285,7 @@ TEST(the_lead_is_what_the_load_takes)
             const double left = load.k_Npm * e1 + load.b_Nspm * (e2 - e0) / (2 * h);
             const double right = load.out_kg * (w2 - 2 * w1 + w0) / (h * h) +
                                  load.out_Nspm * (w2 - w0) / (2 * h) + load.out_N;
-            CHECK(size_of(left - right) < 1e-3, "B %g, %.5f s: %.6f N, want %.6f", b_Nspm[i], t,
+            CHECK(fabs(left - right) < 1e-3, "B %g, %.5f s: %.6f N, want %.6f", b_Nspm[i], t,
                   left, right);
         }
     }
@@ -316,14 +312,14 @@ TEST(joints_share_the_string_as_the_library_has_it)
         CHECK_EQ_I64(exh_hand_setup(&hand, &exh_hit2_bones[1], &lib), 0);
         for (int j = 0; j < 2; j++) {
             const double want = hand.pull_radpm_q20[j] / 1048576.0;
-            CHECK(size_of(f.bend_radpm[j] - want) < 2e-6 * want, "row %zu: %.9f, want %.9f", i,
+            CHECK(fabs(f.bend_radpm[j] - want) < 2e-6 * want, "row %zu: %.9f, want %.9f", i,
                   f.bend_radpm[j], want);
         }
         paid = par.arm_m[0] * f.bend_radpm[0] + (par.arm_m[1] + par.arm_m[2]) * f.bend_radpm[1];
-        CHECK(size_of(paid - 1) < 1e-12, "row %zu: a metre of string is %.12f", i, paid);
+        CHECK(fabs(paid - 1) < 1e-12, "row %zu: a metre of string is %.12f", i, paid);
     }
     CHECK(exh_hand_rows[0].dflt == (int32_t)(sim_finger_default().arm_m[0] * 1073741824 + 0.5) ||
-              size_of(exh_hand_rows[0].dflt / 1073741824.0 - sim_finger_default().arm_m[0]) < 1e-8,
+              fabs(exh_hand_rows[0].dflt / 1073741824.0 - sim_finger_default().arm_m[0]) < 1e-8,
           "the default arms differ");
 }
 
@@ -360,14 +356,14 @@ TEST(a_recording_is_smooth_and_stays_within_its_rows)
         CHECK(now >= lo - 1e-12 && now <= hi + 1e-12, "%.4f s: %.6f, rows %.6f..%.6f", t, now, lo,
               hi);
         /* the third derivative is at most 8 times the rows' span, by 60^3 */
-        CHECK(size_of(a_now - a) <= 8 * 0.06 * 216000 * h * 2 + 1e-3,
+        CHECK(fabs(a_now - a) <= 8 * 0.06 * 216000 * h * 2 + 1e-3,
               "%.4f s: acceleration jumps by %.3g", t, a_now - a);
         v = v_now;
         a = a_now;
         last = now;
     }
-    CHECK(size_of(last - string_m[299]) < 1e-12, "ends at %.9f, want %.9f", last, string_m[299]);
-    CHECK(size_of(p.x.start_s - 301.0 / 60) < 1e-9, "ends at %.6f s", p.x.start_s);
+    CHECK(fabs(last - string_m[299]) < 1e-12, "ends at %.9f, want %.9f", last, string_m[299]);
+    CHECK(fabs(p.x.start_s - 301.0 / 60) < 1e-9, "ends at %.6f s", p.x.start_s);
 }
 
 TEST(string_of_angles)
@@ -379,9 +375,9 @@ TEST(string_of_angles)
     row[6] = 0.25;
     row[1] = -1;
     row[2] = 0.5;
-    CHECK(size_of(sim_path_string(row, 1, 1, arm_m) - 0.031) < 1e-12, "index");
-    CHECK(size_of(sim_path_string(row, 0, 1, arm_m) - 0.014) < 1e-12, "thumb, bent backwards");
-    CHECK(size_of(sim_path_string(row, 0, -1, arm_m) - 0.02) < 1e-12, "counted down");
+    CHECK(fabs(sim_path_string(row, 1, 1, arm_m) - 0.031) < 1e-12, "index");
+    CHECK(fabs(sim_path_string(row, 0, 1, arm_m) - 0.014) < 1e-12, "thumb, bent backwards");
+    CHECK(fabs(sim_path_string(row, 0, -1, arm_m) - 0.02) < 1e-12, "counted down");
     CHECK(sim_path_string(row, 1, -1, arm_m) == 0 && sim_path_string(row, 4, 1, arm_m) == 0,
           "none");
     CHECK(sim_path_sign((const double(*)[SIM_SENSORS]) & row, 1) == 1, "sign");
@@ -412,7 +408,7 @@ TEST(a_finger_does_what_it_does_alone)
             sim_exo_latch(&all, amp);
             sim_exo_latch(&one, amp);
             /* The glove cuts its time finer, so the last digits differ, no more. */
-            CHECK(size_of(all.finger[i].plant.x_m - one.finger[i].plant.x_m) < 1e-4,
+            CHECK(fabs(all.finger[i].plant.x_m - one.finger[i].plant.x_m) < 1e-4,
                   "finger %u, %d", i, n);
             for (unsigned k = 0; k < SIM_FINGERS; k++) {
                 CHECK(k == i || one.finger[k].now_s == 0, "an absent finger moved");

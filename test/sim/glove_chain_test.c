@@ -1,11 +1,13 @@
 /* The simulated glove: its analog chain against closed form, and the hand in it. References
  * are computed in long double, by series. */
 #include "check.h"
+#include "exp_neg.h"
 
 #include "sim/operator.h"
 
 #include "exhand/glove.h"
 
+#include <math.h>
 #include <string.h>
 
 #define LEN(a)  (sizeof(a) / sizeof((a)[0]))
@@ -13,25 +15,6 @@
 #define PI      3.141592653589793238
 #define LSB_V   (10.0 / 32768)
 #define SENSORS SIM_GLOVE_SENSORS
-
-static double size_of(double v)
-{
-    return v < 0 ? -v : v;
-}
-
-/* e^(-x): Taylor up to 1/2, then squaring. */
-static long double exp_neg(long double x)
-{
-    long double term = 1, sum = 1;
-    int n = 0;
-    for (; x > 0.5L; x /= 2) { n++; }
-    for (int i = 1; i < 24; i++) {
-        term *= -x / i;
-        sum += term;
-    }
-    while (n-- > 0) { sum *= sum; }
-    return sum;
-}
 
 /* Taylor after taking off whole turns; quarter 1: cosine. */
 static long double wide_sin(long double x, int quarter)
@@ -81,9 +64,9 @@ TEST(sine_and_cosine_are_good_to_their_bound)
     CHECK(sim_sin(0) == 0 && sim_cos(0) == 1, "at 0");
     for (int i = -200000; i <= 200000; i++) {
         const double x = i < 0 ? i * 4.987654321 : i * 1e-4;
-        const double bound = 1e-15 + 1e-16 * size_of(x);
-        const double s = size_of((double)((long double)sim_sin(x) - wide_sin((long double)x, 0)));
-        const double c = size_of((double)((long double)sim_cos(x) - wide_sin((long double)x, 1)));
+        const double bound = 1e-15 + 1e-16 * fabs(x);
+        const double s = fabs((double)((long double)sim_sin(x) - wide_sin((long double)x, 0)));
+        const double c = fabs((double)((long double)sim_cos(x) - wide_sin((long double)x, 1)));
         const double e = (s > c ? s : c) / bound;
         if (e > worst) { worst = e; }
         CHECK(e <= 1, "sin %.3g cos %.3g at %.9g", s, c, x);
@@ -98,10 +81,10 @@ TEST(volt_and_code_of_an_angle)
 {
     const struct sim_glove_par p = clean();
     struct sim_glove g = settled(&p, 0);
-    CHECK(size_of(sim_glove_volt(&g, 4, 0) - -1.278) < 1e-12, "%.9f", sim_glove_volt(&g, 4, 0));
+    CHECK(fabs(sim_glove_volt(&g, 4, 0) - -1.278) < 1e-12, "%.9f", sim_glove_volt(&g, 4, 0));
     CHECK_EQ_I64(sim_glove_convert(&g, 4, 0), -4188); /* -1.278 * 3276.8 = -4187.75 */
     g = settled(&p, PI / 2);
-    CHECK(size_of(sim_glove_volt(&g, 4, 0) - 2.772) < 1e-12, "%.9f", sim_glove_volt(&g, 4, 0));
+    CHECK(fabs(sim_glove_volt(&g, 4, 0) - 2.772) < 1e-12, "%.9f", sim_glove_volt(&g, 4, 0));
     CHECK_EQ_I64(sim_glove_convert(&g, 4, 0), 9083); /* 9083.29 */
 }
 
@@ -113,9 +96,9 @@ TEST(end_points_span_what_the_default_calibration_says)
         const struct sim_glove_sensor *s = &sim_glove_sensor[i];
         const double lo_V = -9 + 18 * s->lo, hi_V = -9 + 18 * s->hi;
         struct sim_glove g = settled(&p, s->lo_deg * PI / 180);
-        CHECK(size_of(sim_glove_volt(&g, i, 0) - lo_V) < 1e-12, "%s: %.9f", s->name, lo_V);
+        CHECK(fabs(sim_glove_volt(&g, i, 0) - lo_V) < 1e-12, "%s: %.9f", s->name, lo_V);
         g = settled(&p, s->hi_deg * PI / 180);
-        CHECK(size_of(sim_glove_volt(&g, i, 0) - hi_V) < 1e-12, "%s: %.9f", s->name, hi_V);
+        CHECK(fabs(sim_glove_volt(&g, i, 0) - hi_V) < 1e-12, "%s: %.9f", s->name, hi_V);
     }
     CHECK_EQ_I64(SENSORS, EXH_GLOVE_SENSORS);
 }
@@ -156,10 +139,10 @@ TEST(abduction_is_bent_by_its_neighbours)
     angle[7] = 0.4;
     angle[10] = 0.3;
     sim_glove_start(&g, &p, 1, angle);
-    CHECK(size_of(sim_glove_volt(&g, 10, 0) - static_V(&p, 10, 0.3 + 0.06)) < 1e-12, "10");
-    CHECK(size_of(sim_glove_volt(&g, 14, 0) - static_V(&p, 14, 0.02)) < 1e-12, "14");
-    CHECK(size_of(sim_glove_volt(&g, 4, 0) - static_V(&p, 4, 0.8)) < 1e-12, "4");
-    CHECK(size_of(sim_glove_volt(&g, 18, 0) - static_V(&p, 18, 0)) < 1e-12, "18");
+    CHECK(fabs(sim_glove_volt(&g, 10, 0) - static_V(&p, 10, 0.3 + 0.06)) < 1e-12, "10");
+    CHECK(fabs(sim_glove_volt(&g, 14, 0) - static_V(&p, 14, 0.02)) < 1e-12, "14");
+    CHECK(fabs(sim_glove_volt(&g, 4, 0) - static_V(&p, 4, 0.8)) < 1e-12, "4");
+    CHECK(fabs(sim_glove_volt(&g, 18, 0) - static_V(&p, 18, 0)) < 1e-12, "18");
 }
 
 /* ---- Low-pass ---------------------------------------------------------------------- */
@@ -180,7 +163,7 @@ TEST(a_step_is_an_exponential)
                 2 * PI_L * (long double)p.cutoff_Hz * ((long double)t_s - (long double)0.01);
             const double want_rad = (double)(1.2L - exp_neg(x));
             const double got_V = sim_glove_volt(&g, 5, t_s);
-            CHECK(size_of(got_V - static_V(&p, 5, want_rad)) < 1e-11, "%g Hz, %.6f s: %.12f V",
+            CHECK(fabs(got_V - static_V(&p, 5, want_rad)) < 1e-11, "%g Hz, %.6f s: %.12f V",
                   p.cutoff_Hz, t_s, got_V);
         }
     }
@@ -208,13 +191,13 @@ TEST(a_sine_comes_smaller_and_later)
             const double want_rad =
                 (double)(0.5L + settled_rad - start * exp_neg((long double)t_s / tau));
             const double got_V = sim_glove_volt(&g, 8, t_s);
-            CHECK(size_of(got_V - static_V(&p, 8, want_rad)) < 1e-11, "%g Hz, %.6f s", hz[k], t_s);
-            if (n > 2000 && size_of(got_V - static_V(&p, 8, 0.5)) > top) {
-                top = size_of(got_V - static_V(&p, 8, 0.5));
+            CHECK(fabs(got_V - static_V(&p, 8, want_rad)) < 1e-11, "%g Hz, %.6f s", hz[k], t_s);
+            if (n > 2000 && fabs(got_V - static_V(&p, 8, 0.5)) > top) {
+                top = fabs(got_V - static_V(&p, 8, 0.5));
             }
         }
         if (hz[k] == 159) { /* half the power at the cut-off */
-            const double ratio = top / size_of(static_V(&p, 8, 0.25) - static_V(&p, 8, 0));
+            const double ratio = top / fabs(static_V(&p, 8, 0.25) - static_V(&p, 8, 0));
             CHECK(ratio > 0.70700 && ratio < 0.70711, "%.6f", ratio);
         }
     }
@@ -229,9 +212,9 @@ TEST(polynomials_come_as_the_equation_says)
     const struct sim_curve all = {0.5, {0.1, 1, -2, 3, -5, 7}, 0.1, 40, 1};
     struct sim_glove g = settled(&p, 0);
     sim_glove_move(&g, 5, &ramp);
-    CHECK(size_of(sim_lag_at(&g.angle_rad[5], 0.4) - 2 * (0.4 - tau)) < 1e-14, "ramp: %.15f",
+    CHECK(fabs(sim_lag_at(&g.angle_rad[5], 0.4) - 2 * (0.4 - tau)) < 1e-14, "ramp: %.15f",
           sim_lag_at(&g.angle_rad[5], 0.4));
-    CHECK(size_of(sim_lag_at(&g.angle_rad[5], tau) - 2 * tau * 0.36787944117144233) < 1e-15,
+    CHECK(fabs(sim_lag_at(&g.angle_rad[5], tau) - 2 * tau * 0.36787944117144233) < 1e-15,
           "knee");
     sim_glove_move(&g, 5, &all);
     for (int n = 1; n < 1000; n++) {
@@ -239,9 +222,9 @@ TEST(polynomials_come_as_the_equation_says)
         const struct sim_lag *l = &g.angle_rad[5];
         const double slope = (sim_lag_at(l, t_s + h) - sim_lag_at(l, t_s - h)) / (2 * h);
         const double left = tau * slope - (sim_curve_at(&all, t_s) - sim_lag_at(l, t_s));
-        CHECK(size_of(left) < 1e-9, "%.4f s: %.3g", t_s, left);
+        CHECK(fabs(left) < 1e-9, "%.4f s: %.3g", t_s, left);
     }
-    CHECK(size_of(sim_lag_at(&g.angle_rad[5], 0.5) - 2 * (0.5 - tau)) < 1e-13,
+    CHECK(fabs(sim_lag_at(&g.angle_rad[5], 0.5) - 2 * (0.5 - tau)) < 1e-13,
           "it goes on from where it is");
 }
 
@@ -276,11 +259,11 @@ TEST(channels_are_held_one_interval_apart)
             const double at_0 = static_V(&p, i, -0.5) / LSB_V;
             const double held_s = (raw[i] - at_0) / (per_rad * speed) + lag_s; /* code to instant */
             const double want_s = 0.01 - (22 - i) * interval_s[k];
-            const double code_s = 0.5 / size_of(per_rad * speed) + lag_s * 5e-5; /* e^-10 is left */
-            CHECK(size_of(held_s - want_s) <= code_s, "%g us, channel %u: %.3f us, want %.3f",
+            const double code_s = 0.5 / fabs(per_rad * speed) + lag_s * 5e-5; /* e^-10 is left */
+            CHECK(fabs(held_s - want_s) <= code_s, "%g us, channel %u: %.3f us, want %.3f",
                   interval_s[k] * 1e6, i, held_s * 1e6, want_s * 1e6);
             CHECK(code_s < interval_s[k], "channel %u is too coarse to tell: %.3g s", i, code_s);
-            CHECK(size_of(sim_glove_held_s(&p, i, 0.01) - want_s) < 1e-15, "channel %u", i);
+            CHECK(fabs(sim_glove_held_s(&p, i, 0.01) - want_s) < 1e-15, "channel %u", i);
         }
     }
 }
@@ -301,9 +284,9 @@ TEST(the_multiplexer_keeps_some_of_the_channel_before)
             const double left = i == 0 ? 0 : (double)exp_neg(4e-6L / (long double)settle_s[k]);
             const double want = v + (before - v) * left;
             at_s = sim_glove_held_s(&p, i, 1);
-            CHECK(size_of(sim_glove_convert(&g, i, at_s) * LSB_V - want) <= LSB_V * 0.501,
+            CHECK(fabs(sim_glove_convert(&g, i, at_s) * LSB_V - want) <= LSB_V * 0.501,
                   "%g us, channel %u", settle_s[k] * 1e6, i);
-            CHECK(size_of(g.held_V - want) < 1e-9, "%g us, channel %u: %.9f V, want %.9f",
+            CHECK(fabs(g.held_V - want) < 1e-9, "%g us, channel %u: %.9f V, want %.9f",
                   settle_s[k] * 1e6, i, g.held_V, want);
             before = want;
         }
@@ -347,7 +330,7 @@ TEST(noise_is_the_papers_peak_to_peak)
     CHECK(worst_V > 0.0052, "least in a second: %.2f mV", worst_V * 1e3);
     sum /= 22e4;
     squares /= 22e4;
-    CHECK(size_of(sum) < 0.02e-3, "mean %.4f mV", sum * 1e3); /* settling and rounding are in it */
+    CHECK(fabs(sum) < 0.02e-3, "mean %.4f mV", sum * 1e3); /* settling and rounding are in it */
     CHECK(squares > 0.98e-6 && squares < 1.08e-6, "deviation^2 %.4f mV^2", squares * 1e6);
     check_note("noise: least peak to peak of a second and channel %.2f mV, mean square %.3f mV^2",
                worst_V * 1e3, squares * 1e6);
@@ -458,14 +441,14 @@ TEST(a_movement_is_minimum_jerk)
         CHECK(sim_operator_at_rest(&op, t_s) == (t_s >= op.end_s), "%.4f", t_s);
         last = at;
     }
-    CHECK(size_of(op.end_s - 1.4) < 1e-12, "ends at %.6f", op.end_s);
-    CHECK(size_of(last - PI / 2) < 1e-9, "%.9f", last);
+    CHECK(fabs(op.end_s - 1.4) < 1e-12, "ends at %.6f", op.end_s);
+    CHECK(fabs(last - PI / 2) < 1e-9, "%.9f", last);
     CHECK(fastest > 0.998 * 1.875 * PI / 2 / 0.4 && fastest < 1.875 * PI / 2 / 0.4, "%.4f rad/s",
           fastest);
     sim_operator_start(&op, &o, &g, &p, 1);
     sim_operator_go(&op, sim_pose_find("fist"));
     sim_operator_advance(&op, &g, 0);
-    CHECK(size_of(sim_lag_at(&g.angle_rad[4], 0.2 + lag_s) - PI / 4) < 1e-4, "half way");
+    CHECK(fabs(sim_lag_at(&g.angle_rad[4], 0.2 + lag_s) - PI / 4) < 1e-4, "half way");
 }
 
 /* Through all poses and round again; grasping never rests. */
@@ -483,16 +466,16 @@ TEST(scripts_go_on_by_themselves)
         CHECK(op.to == pose, "%d: in %s", n, sim_pose[op.to].name);
         for (unsigned i = 0; i < SENSORS; i++) {
             const double rad = sim_lag_at(&g.angle_rad[i], n * 1.0 + 0.45);
-            CHECK(size_of(rad * 180 / PI - sim_pose[pose].deg[i]) < 1e-6, "%d, %u: %.9f", n, i,
+            CHECK(fabs(rad * 180 / PI - sim_pose[pose].deg[i]) < 1e-6, "%d, %u: %.9f", n, i,
                   rad);
         }
     }
     o.does = SIM_GRASP;
     sim_operator_start(&op, &o, &g, &p, 1);
     sim_operator_advance(&op, &g, 0.5001);
-    CHECK(size_of(sim_lag_at(&g.angle_rad[4], 0.5001) - PI / 2) < 1e-3, "a fist after 0.5 s");
+    CHECK(fabs(sim_lag_at(&g.angle_rad[4], 0.5001) - PI / 2) < 1e-3, "a fist after 0.5 s");
     sim_operator_advance(&op, &g, 1.0001);
-    CHECK(size_of(sim_lag_at(&g.angle_rad[4], 1.0001)) < 1e-3, "flat after 1 s");
+    CHECK(fabs(sim_lag_at(&g.angle_rad[4], 1.0001)) < 1e-3, "flat after 1 s");
 }
 
 /* One big advance is many small ones. */
@@ -543,7 +526,7 @@ TEST(a_recording_is_played_through_its_rows)
         const double t_s = n * 1e-3;
         const double want = t_s < 0.1 ? 0.2 + 4 * t_s : t_s < 0.2 ? 0.6 - 5 * (t_s - 0.1) : 0.1;
         sim_operator_advance(&op, &g, t_s);
-        CHECK(size_of(sim_curve_at(&g.angle_rad[5].x, t_s) - want) < 1e-12, "%.3f s", t_s);
+        CHECK(fabs(sim_curve_at(&g.angle_rad[5].x, t_s) - want) < 1e-12, "%.3f s", t_s);
     }
 }
 

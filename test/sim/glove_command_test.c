@@ -2,15 +2,11 @@
  * options that make no sense. */
 #include "glove_said.h"
 
+#include <math.h>
 #include <signal.h>
 #include <time.h>
 
 static struct said s;
-
-static double size_of(double v)
-{
-    return v < 0 ? -v : v;
-}
 
 /* ---- Recordings ----------------------------------------------------------------------- */
 
@@ -140,8 +136,8 @@ TEST(angles_pass_a_calibration_and_back)
     for (int i = 0; i < SENSORS; i++) {
         static const double want[] = {.1, .2, .3, .4, .5,  .6, .7, .8, .9, 1,  .3,
                                       1.2, 1.3, 1.4, .4, .6, .7, .8, .3, .2, .1, -.1};
-        const double code_rad = size_of(cal.sensor[i].gain_turnpraw_q38) / 274877906944.0 * 6.2832;
-        const double off = size_of(number_after(s.out, "\n0", i) - want[i]);
+        const double code_rad = abs(cal.sensor[i].gain_turnpraw_q38) / 274877906944.0 * 6.2832;
+        const double off = fabs(number_after(s.out, "\n0", i) - want[i]);
         CHECK(off <= 0.51 * code_rad + (i == 10 ? 1e-4 : 0), "column %d: %.6f rad off", i, off);
     }
     image[30] ^= 1;

@@ -4,6 +4,7 @@
 
 #include "check.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -11,12 +12,6 @@
 #define TURN_RAD 6.283185307179586
 #define ROWS_MAX 7000
 #define COLS_MAX 34
-
-/* Without libm, which the tests are not linked to. */
-static double size_of(double v)
-{
-    return v < 0 ? -v : v;
-}
 
 static int nearest(double v)
 {
@@ -157,7 +152,7 @@ static double check_angles(const struct chain *c, const struct recording *r, int
     for (unsigned i = 0; i < c->sensors; i++) {
         const int col = c->column[i], code = code_of(r, row, col);
         const double rad = angle[i] * (TURN_RAD / 4294967296.0), file = cell[row][r->first + col];
-        const double off = size_of(rad - file);
+        const double off = fabs(rad - file);
         const double bound =
             abs(code) * c->scale * (TURN_RAD / 549755813888.0) + TURN_RAD / 8589934592.0;
         CHECK(nearest(rad / r->step_rad[col]) == code, "%s row %d column %d: code %d", r->name, row,
@@ -175,7 +170,7 @@ static void check_grid(const struct recording *r, int rows)
     for (int col = 0; col < r->cols; col++) {
         for (int row = 0; row < rows && r->step_rad[col] > 0; row++) {
             const double codes = cell[row][r->first + col] / r->step_rad[col];
-            CHECK(size_of(codes - nearest(codes)) < 1e-9, "%s row %d column %d: %.9g", r->name, row,
+            CHECK(fabs(codes - nearest(codes)) < 1e-9, "%s row %d column %d: %.9g", r->name, row,
                   col + 1, codes);
         }
     }

@@ -1,30 +1,14 @@
 /* What gloves recorded, as string for fingers: files of both kinds, and real hands through the
  * simulated exoskeleton. */
 #include "check.h"
+#include "file_of.h"
 #include "said.h"
 
 #include "cli/hand_record.h"
 
+#include <math.h>
+
 static struct sim_exo_par exo_par;
-
-static double size_of(double v)
-{
-    return v < 0 ? -v : v;
-}
-
-static const char *file_of(const char *text)
-{
-    static char name[64];
-    FILE *f;
-    int fd;
-    strcpy(name, "/tmp/hand_record_test.XXXXXX");
-    fd = mkstemp(name);
-    f = fd < 0 ? NULL : fdopen(fd, "w");
-    CHECK(f != NULL, "%s", name);
-    fputs(text, f);
-    fclose(f);
-    return name;
-}
 
 /* A row of the timed kind: knuckle, first and last joint of the index, the rest 0. */
 static void timed(char *to, size_t cap, double minute, double second, double knuckle, double first,
@@ -59,7 +43,7 @@ TEST(rows_with_a_clock_go_onto_an_even_grid)
           h.row_hz);
     for (long n = 0; n < h.rows; n++) {
         const double want = arm[0] * ((double)n / 60) + arm[1] * 0.5 + arm[2] * 0.25;
-        CHECK(size_of(h.string_m[1][n] - want) < 1e-6, "row %ld: %.9f, want %.9f", n,
+        CHECK(fabs(h.string_m[1][n] - want) < 1e-6, "row %ld: %.9f, want %.9f", n,
               h.string_m[1][n], want);
         CHECK(h.string_m[0][n] == 0 && h.string_m[2][n] == 0 && h.string_m[4][n] == 0, "others");
     }
@@ -88,7 +72,7 @@ TEST(every_finger_gets_its_own_angles)
     for (unsigned i = 0; i < 5; i++) {
         const double *arm = exo_par.finger[i].arm_m;
         const double m = 0.01 * (arm[0] * want[i][0] + arm[1] * want[i][1] + arm[2] * want[i][2]);
-        CHECK(size_of(h.string_m[i][30] - m) < 1e-9, "finger %u: %.6f, want %.6f", i,
+        CHECK(fabs(h.string_m[i][30] - m) < 1e-9, "finger %u: %.6f, want %.6f", i,
               h.string_m[i][30], m);
     }
     hand_record_free(&h);
@@ -103,7 +87,7 @@ TEST(rows_without_a_clock_have_the_rate_they_are_given)
     CHECK_EQ_I64(hand_record_read(&h, name, 12.5, &exo_par), 0);
     (void)remove(name);
     CHECK(h.rows == 2 && h.row_hz == 12.5, "%ld rows", h.rows);
-    CHECK(size_of(h.string_m[1][0] - 0.01) < 1e-12 && size_of(h.string_m[1][1] - 0.03) < 1e-12,
+    CHECK(fabs(h.string_m[1][0] - 0.01) < 1e-12 && fabs(h.string_m[1][1] - 0.03) < 1e-12,
           "string");
     hand_record_use(&h, &exo_par);
     CHECK(exo_par.record[1].string_m == h.string_m[1] && exo_par.record[4].rows == 2, "use");
@@ -183,8 +167,8 @@ static void follow(const char *file, double row_hz, double run_s)
         sim_exo_advance(&exo, n * 0.005);
         for (unsigned i = 0; i < SIM_FINGERS; i++) {
             const double x = exo.finger[i].plant.x_m;
-            const double off = size_of(x - sim_path_wanted(&exo.finger[i].path, n * 0.005));
-            const double v = size_of(x - was_m[i]) / 0.005;
+            const double off = fabs(x - sim_path_wanted(&exo.finger[i].path, n * 0.005));
+            const double v = fabs(x - was_m[i]) / 0.005;
             late_m = off > late_m ? off : late_m;
             most_m = x > most_m ? x : most_m;
             least_m = x < least_m ? x : least_m;

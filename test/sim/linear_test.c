@@ -5,12 +5,9 @@
 #include "sim/linear.h"
 #include "sim/plant.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
+#include <math.h>
 
-static double size_of(double v)
-{
-    return v < 0 ? -v : v;
-}
+#define LEN(a) (sizeof(a) / sizeof((a)[0]))
 
 static double between(double lo, double hi)
 {
@@ -36,9 +33,9 @@ TEST(the_flow_is_the_closed_form)
             {f.phi[0][2], -((1 - eq) / q - (1 - ep) / p) / (p - q) / m},
             {f.gamma[2], 1 - eq}, {f.phi[1][0], 0}, {f.phi[2][0], 0}, {f.phi[2][1], 0},
         };
-        if (size_of(p - q) < 0.01 * q) { continue; } /* there the closed form cancels */
+        if (fabs(p - q) < 0.01 * q) { continue; } /* there the closed form cancels */
         for (size_t i = 0; i < LEN(row); i++) {
-            CHECK(size_of(row[i].got - row[i].want) <= 1e-10 * (1e-3 + size_of(row[i].want)),
+            CHECK(fabs(row[i].got - row[i].want) <= 1e-10 * (1e-3 + fabs(row[i].want)),
                   "m %g c %g tau %g t %g, entry %zu: %.15g, want %.15g", m, c, tau, t, i, row[i].got,
                   row[i].want);
         }
@@ -52,10 +49,10 @@ TEST(the_flow_without_lag_is_the_closed_form)
         const struct linear_plant damped = linear_one_mass(m, c, 0), free = linear_one_mass(m, 0, 0);
         const struct linear_flow f = linear_flow(&damped, t), g = linear_flow(&free, t);
         const double e = 1 - sim_exp_neg(p * t);
-        CHECK(size_of(f.gamma[0] + (t - e / p) / c) <= 1e-12, "%.15g", f.gamma[0]);
-        CHECK(size_of(f.gamma[1] + e / c) <= 1e-12, "%.15g", f.gamma[1]);
-        CHECK(size_of(g.gamma[0] + t * t / (2 * m)) <= 1e-15, "%.15g", g.gamma[0]);
-        CHECK(size_of(g.gamma[1] + t / m) <= 1e-13 && g.phi[0][1] == t, "%.15g", g.gamma[1]);
+        CHECK(fabs(f.gamma[0] + (t - e / p) / c) <= 1e-12, "%.15g", f.gamma[0]);
+        CHECK(fabs(f.gamma[1] + e / c) <= 1e-12, "%.15g", f.gamma[1]);
+        CHECK(fabs(g.gamma[0] + t * t / (2 * m)) <= 1e-15, "%.15g", g.gamma[0]);
+        CHECK(fabs(g.gamma[1] + t / m) <= 1e-13 && g.phi[0][1] == t, "%.15g", g.gamma[1]);
     }
 }
 
@@ -74,10 +71,10 @@ TEST(flows_follow_each_other)
                 double sum = 0;
                 g += b.phi[i][j] * a.gamma[j];
                 for (int k = 0; k < p.n; k++) { sum += b.phi[i][k] * a.phi[k][j]; }
-                CHECK(size_of(sum - both.phi[i][j]) <= 1e-9 * (1 + size_of(sum)), "%d %d: %.15g %.15g",
+                CHECK(fabs(sum - both.phi[i][j]) <= 1e-9 * (1 + fabs(sum)), "%d %d: %.15g %.15g",
                       i, j, sum, both.phi[i][j]);
             }
-            CHECK(size_of(g - both.gamma[i]) <= 1e-9 * (1 + size_of(g)), "%d: %.15g", i, g);
+            CHECK(fabs(g - both.gamma[i]) <= 1e-9 * (1 + fabs(g)), "%d: %.15g", i, g);
         }
     }
 }
@@ -128,7 +125,7 @@ TEST(the_radius_of_known_eigenvalues)
     for (size_t i = 0; i < LEN(row); i++) {
         const struct matrix M = companion(row[i].real, row[i].reals, row[i].pair, row[i].pairs);
         const double rho = eigen_radius(&M);
-        CHECK(size_of(rho - row[i].rho) <= row[i].error, "row %zu: %.15g, want %.15g", i, rho,
+        CHECK(fabs(rho - row[i].rho) <= row[i].error, "row %zu: %.15g, want %.15g", i, rho,
               row[i].rho);
     }
 }
@@ -138,7 +135,7 @@ TEST(the_root_squared_is_the_number)
     while (check_case(2000)) {
         double v = between(0.1, 10);
         for (int e = (int)(check_u64() % 200); e > 0; e--) { v *= check_u64() % 2 ? 3 : 1 / 3.0; }
-        CHECK(size_of(sim_sqrt(v) * sim_sqrt(v) - v) <= 5e-16 * v, "%.17g: %.17g", v, sim_sqrt(v));
+        CHECK(fabs(sim_sqrt(v) * sim_sqrt(v) - v) <= 5e-16 * v, "%.17g: %.17g", v, sim_sqrt(v));
     }
     CHECK(sim_sqrt(0) == 0 && sim_sqrt(1) == 1 && sim_sqrt(1e-300) > 0, "ends");
 }
@@ -160,7 +157,7 @@ TEST(the_radius_does_not_hang_on_units)
             }
         }
         got = eigen_radius(&M);
-        CHECK(size_of(got - want) <= 1e-9 * want, "%.15g, want %.15g", got, want);
+        CHECK(fabs(got - want) <= 1e-9 * want, "%.15g, want %.15g", got, want);
     }
 }
 
@@ -194,7 +191,7 @@ TEST(one_mass_has_the_radii_of_theory)
         for (size_t j = 0; j < LEN(column); j++) {
             const double rho = one_mass(row[i].rate, row[i].k, row[i].b, 0.52, column[j].c, column[j].h,
                                         column[j].tau);
-            CHECK(size_of(rho - row[i].rho[j]) <= 0.6e-9, "%g Hz, column %zu: %.10f, want %.9f",
+            CHECK(fabs(rho - row[i].rho[j]) <= 0.6e-9, "%g Hz, column %zu: %.10f, want %.9f",
                   row[i].rate, j, rho, row[i].rho[j]);
         }
     }
@@ -242,7 +239,7 @@ TEST(two_masses_have_the_radii_of_theory)
     for (size_t i = 0; i < LEN(row); i++) {
         for (int h = 0; h < 2; h++) {
             const double rho = two_masses(row[i].m1, row[i].kc, h);
-            CHECK(size_of(rho - row[i].rho[h]) <= 0.6e-3, "row %zu, h %d: %.4f, want %.3f", i, h, rho,
+            CHECK(fabs(rho - row[i].rho[h]) <= 0.6e-3, "row %zu, h %d: %.4f, want %.3f", i, h, rho,
                   row[i].rho[h]);
         }
     }
@@ -265,7 +262,7 @@ TEST(the_device_has_the_radii_found_before)
     d.delay_s = 0.00015784175067843915;
     for (size_t i = 0; i < LEN(row); i++) {
         const double rho = linear_rho(&d, 1 / row[i].rate, row[i].k, row[i].b, 2);
-        CHECK(size_of(rho - row[i].rho) <= 0.6e-3, "%g Hz: %.4f, want %.3f", row[i].rate, rho,
+        CHECK(fabs(rho - row[i].rho) <= 0.6e-3, "%g Hz: %.4f, want %.3f", row[i].rate, rho,
               row[i].rho);
     }
 }
@@ -288,7 +285,7 @@ TEST(a_stiff_string_is_one_mass)
     p = linear_one_mass(d.mass_kg + d.rotor_kg, d.viscous_nspm, 1 / (6.283185307179586 * d.current_hz));
     CHECK(linear_monodromy(&M, &p, &w) == 0, "one");
     one = eigen_radius(&M);
-    CHECK(size_of(two - one) < 1e-6, "%.9f, want %.9f", two, one);
+    CHECK(fabs(two - one) < 1e-6, "%.9f, want %.9f", two, one);
 }
 
 /* A delay of a whole tick is the end of a fraction and the start of the next. */
@@ -304,7 +301,7 @@ TEST(the_radius_has_no_step_at_a_whole_tick)
             CHECK(linear_monodromy(&M, &p, &w) == 0, "%d", tick);
             rho[i] = eigen_radius(&M);
         }
-        CHECK(size_of(rho[0] - rho[1]) < 1e-7 && size_of(rho[2] - rho[1]) < 1e-7, "%d: %.12f %.12f %.12f",
+        CHECK(fabs(rho[0] - rho[1]) < 1e-7 && fabs(rho[2] - rho[1]) < 1e-7, "%d: %.12f %.12f %.12f",
               tick, rho[0], rho[1], rho[2]);
     }
 }
@@ -345,7 +342,7 @@ TEST(the_matrix_does_what_the_plant_does)
             for (int j = 0; j < M.n; j++) { next[i] += M.m[i][j] * z[j]; }
         }
         memcpy(z, next, sizeof z);
-        CHECK(size_of(z[0] - p.q_m) < 1e-6 && size_of(z[2] - (p.x_m - taut_m)) < 1e-6,
+        CHECK(fabs(z[0] - p.q_m) < 1e-6 && fabs(z[2] - (p.x_m - taut_m)) < 1e-6,
               "tick %d: q %.9f and %.9f, x %.9f and %.9f", tick, z[0], p.q_m, z[2], p.x_m - taut_m);
     }
 }

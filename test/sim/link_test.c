@@ -1,8 +1,10 @@
 /* The impaired link against its own numbers, two-sided, and recorded networks through it. */
 #include "check.h"
+#include "file_of.h"
 
 #include "sim/link.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,11 +23,6 @@ static struct {
     int order[2 * N]; /* numbers as they arrived                                 */
     int arrived;
 } seen;
-
-static double size_of(double v)
-{
-    return v < 0 ? -v : v;
-}
 
 static double root_of(double v)
 {
@@ -140,15 +137,15 @@ TEST(jitter_has_the_shape_that_was_asked)
             for (int b = 0; b < 10; b++) {
                 const double want = kind == SIM_LINK_UNIFORM ? 0.1 : bell[b < 5 ? b : 9 - b];
                 const double tol = 5 * root_of(want / N * 2 * rare) + 5e-4;
-                CHECK(size_of(s.bin[b] - want) < tol, "kind %d, memory %g, bin %d: %.5f, want %.5f",
+                CHECK(fabs(s.bin[b] - want) < tol, "kind %d, memory %g, bin %d: %.5f, want %.5f",
                       kind, memory[m], b, s.bin[b], want);
             }
-            CHECK(size_of(s.mean) < 5 * root_of(2 * rare / N) / 1.7, "kind %d: mean %.5f", kind,
+            CHECK(fabs(s.mean) < 5 * root_of(2 * rare / N) / 1.7, "kind %d: mean %.5f", kind,
                   s.mean);
-            CHECK(size_of(s.deviation - (kind == SIM_LINK_UNIFORM ? 0.57735 : 0.3315)) <
+            CHECK(fabs(s.deviation - (kind == SIM_LINK_UNIFORM ? 0.57735 : 0.3315)) <
                       0.003 * root_of(rare),
                   "kind %d, memory %g: deviation %.5f", kind, memory[m], s.deviation);
-            CHECK(size_of(s.next - r) < 0.016, "kind %d: memory %.4f, want %g", kind, s.next, r);
+            CHECK(fabs(s.next - r) < 0.016, "kind %d: memory %.4f, want %g", kind, s.next, r);
             CHECK(s.lo >= -1 - 1e-9 && s.hi <= 1 + 1e-9 && s.lo < -0.97 && s.hi > 0.97,
                   "kind %d: %.4f..%.4f", kind, s.lo, s.hi);
         }
@@ -166,7 +163,7 @@ TEST(no_delay_is_negative)
         CHECK(delay_of(n) >= 0, "packet %d: %.9f s", n, delay_of(n));
         none += delay_of(n) == 0;
     }
-    CHECK(size_of(none - 0.5 * N) < 5 * 0.5 * root_of(N), "%d without delay", none);
+    CHECK(fabs(none - 0.5 * N) < 5 * 0.5 * root_of(N), "%d without delay", none);
 }
 
 /* ---- Order --------------------------------------------------------------------------------------- */
@@ -208,14 +205,14 @@ TEST(shares_of_what_happens_to_packets)
         p.delay_s = 0.01;
         p.loss = share[i];
         run(&p, NULL, 6);
-        CHECK(size_of((double)way.counts.lost - share[i] * N) <= tol, "loss %g: %d", share[i],
+        CHECK(fabs((double)way.counts.lost - share[i] * N) <= tol, "loss %g: %d", share[i],
               (int)way.counts.lost);
         p.loss = 0;
         p.duplicate = share[i];
         p.duplicate_s = 0.004;
         run(&p, NULL, 6);
         for (int n = 0; n < N; n++) { twice += seen.copies[n] == 2; }
-        CHECK(size_of(twice - share[i] * N) <= tol && seen.arrived == N + twice, "twice %g: %d",
+        CHECK(fabs(twice - share[i] * N) <= tol && seen.arrived == N + twice, "twice %g: %d",
               share[i], twice);
         p.duplicate_s = 0.001; /* before the next packet */
         run(&p, NULL, 6);
@@ -225,11 +222,11 @@ TEST(shares_of_what_happens_to_packets)
         p.reorder_s = 0.006; /* two that follow overtake */
         run(&p, NULL, 6);
         for (int n = 0; n < N; n++) {
-            CHECK(size_of(delay_of(n) - 0.01) < 1e-9 || size_of(delay_of(n) - 0.016) < 1e-9, "%.9f",
+            CHECK(fabs(delay_of(n) - 0.01) < 1e-9 || fabs(delay_of(n) - 0.016) < 1e-9, "%.9f",
                   delay_of(n));
             back += delay_of(n) > 0.013;
         }
-        CHECK(size_of(back - share[i] * N) <= tol, "held back %g: %d", share[i], back);
+        CHECK(fabs(back - share[i] * N) <= tol, "held back %g: %d", share[i], back);
         CHECK((way.counts.overtaken > 0) == (share[i] > 0 && share[i] < 1), "overtaken: %d",
               (int)way.counts.overtaken);
     }
@@ -282,7 +279,7 @@ TEST(nothing_arrives_in_a_hole_and_all_outside)
                 int hole;
                 while (row[i].every > 0 && since >= row[i].every) { since -= row[i].every; }
                 if (since > -1e-6 && row[i].every > 0 && since > row[i].every - 1e-6) { continue; }
-                if (size_of(since) < 1e-6 || size_of(since - row[i].hole) < 1e-6) { continue; }
+                if (fabs(since) < 1e-6 || fabs(since - row[i].hole) < 1e-6) { continue; }
                 hole = since >= 0 && since < row[i].hole;
                 gone += (uint64_t)hole;
                 CHECK((seen.due_s[n] < 0) == hole, "row %zu, packet %d at %.6f s", i, n,
@@ -344,21 +341,6 @@ TEST(parameters_by_name)
 }
 
 /* ---- Traces --------------------------------------------------------------------------------------------- */
-
-/* A file of this text. */
-static const char *file_of(const char *text)
-{
-    static char name[64];
-    FILE *f;
-    int fd;
-    strcpy(name, "/tmp/link_test.XXXXXX");
-    fd = mkstemp(name);
-    f = fd < 0 ? NULL : fdopen(fd, "w");
-    CHECK(f != NULL, "%s", name);
-    fputs(text, f);
-    fclose(f);
-    return name;
-}
 
 TEST(a_trace_replays_exactly)
 {
@@ -424,13 +406,13 @@ TEST(arrivals_are_delays_above_the_quickest)
     CHECK(sim_trace_read(&t, name, SIM_TRACE_ARRIVAL, why, sizeof why) == 0, "%s", why);
     CHECK_EQ_I64(t.n, 4);
     for (int i = 0; i < 4; i++) {
-        CHECK(size_of(t.delay_s[i] - want_s[i]) < 1e-12, "%d: %.9g", i, t.delay_s[i]);
+        CHECK(fabs(t.delay_s[i] - want_s[i]) < 1e-12, "%d: %.9g", i, t.delay_s[i]);
     }
     CHECK_EQ_I64(sim_trace_write(&t, name), 0);
     sim_trace_free(&t);
     CHECK(sim_trace_read(&t, name, SIM_TRACE_MS, why, sizeof why) == 0, "%s", why);
     for (int i = 0; i < 4; i++) {
-        CHECK(size_of(t.delay_s[i] - want_s[i]) < 1e-12, "%d: %.9g", i, t.delay_s[i]);
+        CHECK(fabs(t.delay_s[i] - want_s[i]) < 1e-12, "%d: %.9g", i, t.delay_s[i]);
     }
     sim_trace_free(&t);
     (void)remove(name);
@@ -469,7 +451,7 @@ static void recorded(const char *file, enum sim_trace_kind kind, long n, const d
     qsort(sorted, (size_t)t.n, sizeof *sorted, by_size);
     for (int k = 0; k < 4; k++) {
         const double ms = 1e3 * sorted[(long)(at[k] * (double)(t.n - 1))];
-        CHECK(size_of(ms - want_ms[k]) <= 0.051 + 0.0005 * want_ms[k],
+        CHECK(fabs(ms - want_ms[k]) <= 0.051 + 0.0005 * want_ms[k],
               "%s: %g of it %.4f ms, want %.4f", file, at[k], ms, want_ms[k]);
     }
     sim_trace_free(&t);

@@ -1,16 +1,14 @@
 /* The simulated plant against closed form: what it is sold for must be provable
  * without the controller. References are computed in long double, by series. */
 #include "check.h"
+#include "exp_neg.h"
 
 #include "sim/plant.h"
 
+#include <math.h>
+
 #define LEN(a)   (sizeof(a) / sizeof((a)[0]))
 #define TWO_PI_L 6.283185307179586476925286766559L
-
-static double size_of(double v)
-{
-    return v < 0 ? -v : v;
-}
 
 static double root_of(double v)
 {
@@ -22,21 +20,6 @@ static double root_of(double v)
 static long double wide(double v)
 {
     return (long double)v;
-}
-
-/* exp(-x), x >= 0: Taylor up to 1/2, then squaring; relative error < 1e-15 up to 700
- * (2^11 times some half LSBs of a long double with 64 bits). */
-static long double exp_neg(long double x)
-{
-    long double term = 1, sum = 1;
-    int n = 0;
-    for (; x > 0.5L; x /= 2) { n++; }
-    for (int i = 1; i < 24; i++) {
-        term *= -x / i;
-        sum += term;
-    }
-    while (n-- > 0) { sum *= sum; }
-    return sum;
 }
 
 /* A device without friction, noise or delay; a test adds what it looks at. */
@@ -90,7 +73,7 @@ TEST(impact_speed_is_that_of_a_free_fall)
         d.cable_nspm = row[i].cable_nspm;
         ideal = root_of(2 * SIM_GRAVITY * row[i].h_m);
         got = impact_mps(&d, row[i].h_m, 1e-4);
-        CHECK(size_of(got - ideal) <= 0.005 * ideal, "row %zu: %.6f m/s, want %.6f", i, got, ideal);
+        CHECK(fabs(got - ideal) <= 0.005 * ideal, "row %zu: %.6f m/s, want %.6f", i, got, ideal);
     }
 }
 
@@ -106,7 +89,7 @@ TEST(a_rotor_slows_the_fall_by_its_share)
         d.substep_s = 1e-6;
         ideal = root_of(2 * SIM_GRAVITY * 0.07 * d.mass_kg / (d.mass_kg + d.rotor_kg));
         got = impact_mps(&d, 0.07, 1e-4);
-        CHECK(size_of(got - ideal) <= 0.005 * ideal, "rotor %.4f kg: %.6f m/s, want %.6f",
+        CHECK(fabs(got - ideal) <= 0.005 * ideal, "rotor %.4f kg: %.6f m/s, want %.6f",
               rotor_kg[i], got, ideal);
     }
 }
@@ -118,7 +101,7 @@ TEST(what_is_held_does_not_move)
     plant_advance(&p, &d, 1, 3.3, 1);
     CHECK(p.x_m == -0.07 && p.q_m == -0.07 && p.v_mps == 0 && p.w_mps == 0, "x %.9g q %.9g", p.x_m,
           p.q_m);
-    CHECK(size_of(p.cur_A - 3.3) < 1e-9, "its current flows all the same: %.12f A", p.cur_A);
+    CHECK(fabs(p.cur_A - 3.3) < 1e-9, "its current flows all the same: %.12f A", p.cur_A);
 }
 
 /* ---- Stiction ---------------------------------------------------------------- */
@@ -164,7 +147,7 @@ TEST(stiction_lets_go_at_its_limit)
 {
     static const double tension[] = {0.9, 1.1, 0.6};
     for (size_t i = 0; i < LEN(tension); i++) {
-        const double load = size_of(1 - tension[i]) / tension[i];
+        const double load = fabs(1 - tension[i]) / tension[i];
         for (int more = 0; more <= 1; more++) {
             struct sim_device d;
             struct plant p =
@@ -186,7 +169,7 @@ TEST(friction_stops_in_closed_form)
         struct plant p = {-1, 0, 0, speed_mps[i], 0, 0}; /* the string is slack */
         double stop_s, path_m, q_m;
         d.coulomb_n = 0.05;
-        stop_s = size_of(speed_mps[i]) * d.rotor_kg / d.coulomb_n;
+        stop_s = fabs(speed_mps[i]) * d.rotor_kg / d.coulomb_n;
         path_m = 0.5 * speed_mps[i] * stop_s;
         for (double t = 0; t < 1.2 * stop_s; t += stop_s / 100) {
             p.x_m = -1;
@@ -195,7 +178,7 @@ TEST(friction_stops_in_closed_form)
         }
         q_m = p.q_m;
         CHECK(p.w_mps == 0, "still %.3g m/s", p.w_mps);
-        CHECK(size_of(q_m - path_m) <= size_of(speed_mps[i]) * d.substep_s, "path %.9f, want %.9f",
+        CHECK(fabs(q_m - path_m) <= fabs(speed_mps[i]) * d.substep_s, "path %.9f, want %.9f",
               q_m, path_m);
         p.x_m = -1;
         p.v_mps = 0;
@@ -231,11 +214,11 @@ TEST(the_string_only_pulls_and_pulls_both_ends_alike)
         first_N = law_N(&d, mid_m, v - w);
         want_N = law_N(&d, mid_m,
                        v - w + h / 2 * (SIM_GRAVITY - first_N / d.mass_kg - first_N / d.rotor_kg));
-        tiny_N = 1e-9 * (1 + want_N + first_N + d.mass_kg * size_of(v) / h * 1e-6);
+        tiny_N = 1e-9 * (1 + want_N + first_N + d.mass_kg * fabs(v) / h * 1e-6);
         CHECK(mass_N >= -tiny_N && rotor_N >= -tiny_N, "pushes: %.9g N, %.9g N", mass_N, rotor_N);
-        CHECK(size_of(mass_N - rotor_N) <= tiny_N, "%.9g N at the mass, %.9g at the rotor", mass_N,
+        CHECK(fabs(mass_N - rotor_N) <= tiny_N, "%.9g N at the mass, %.9g at the rotor", mass_N,
               rotor_N);
-        CHECK(size_of(rotor_N - want_N) <= tiny_N, "%.9g N, law %.9g", rotor_N, want_N);
+        CHECK(fabs(rotor_N - want_N) <= tiny_N, "%.9g N, law %.9g", rotor_N, want_N);
         if (mid_m < 0) { CHECK(p.w_mps == w, "slack, yet the rotor feels %.3g N", rotor_N); }
     }
 }
@@ -258,7 +241,7 @@ TEST(current_loop_is_exact_at_any_substep)
             const long double x = TWO_PI_L * wide(d.current_hz) * n * wide(piece);
             const double want = (double)(1 - exp_neg(x));
             plant_advance(&p, &d, piece, 1, 1);
-            CHECK(size_of(p.cur_A - want) <= 1e-9,
+            CHECK(fabs(p.cur_A - want) <= 1e-9,
                   "substep %.3g, %.1f Hz, %.3g s: %.12f, want %.12f", d.substep_s, d.current_hz,
                   n * piece, p.cur_A, want);
         }
@@ -279,7 +262,7 @@ TEST(monitor_lags_behind_the_current)
             const long double a = 1 / (TWO_PI_L * wide(d.current_hz));
             const double want = (double)(1 - (b * exp_neg(t / b) - a * exp_neg(t / a)) / (b - a));
             plant_advance(&p, &d, 50e-6, 1, n % 2); /* held or not, in one piece or two */
-            CHECK(size_of(p.mon_A - want) <= 1e-9, "lag %.3g s, %d: %.12f, want %.12f", lag_s[i], n,
+            CHECK(fabs(p.mon_A - want) <= 1e-9, "lag %.3g s, %d: %.12f, want %.12f", lag_s[i], n,
                   p.mon_A, want);
         }
         d.mon_lag_s = 0;
@@ -302,7 +285,7 @@ TEST(a_monitor_as_fast_as_the_current)
             const double want = (double)(1 - (1 + t) * exp_neg(t));
             const double shift = (double)(t * t * exp_neg(t)) * -off[i] / 2; /* first order */
             plant_advance(&p, &d, 50e-6, 1, 1);
-            CHECK(size_of(p.mon_A - want - shift) <= 2e-8, "%g apart, %d: %.12f, want %.12f", off[i], n,
+            CHECK(fabs(p.mon_A - want - shift) <= 2e-8, "%g apart, %d: %.12f, want %.12f", off[i], n,
                   p.mon_A, want + shift);
         }
     }
@@ -317,7 +300,7 @@ TEST(exp_neg_is_good_to_1e_12)
     for (int i = 0; i <= 700000; i++) {
         const double x = i < 350000 ? i * (1.0 / 350000) : (i - 350000) * (700.0 / 350000);
         const long double want = exp_neg(wide(x));
-        const double err = size_of((double)((wide(sim_exp_neg(x)) - want) / want));
+        const double err = fabs((double)((wide(sim_exp_neg(x)) - want) / want));
         if (err > worst) {
             worst = err;
             at = x;
@@ -348,10 +331,10 @@ static struct energy energy_of(const struct plant *p, const struct sim_device *d
     const double stretch = p->x_m - p->q_m, s = stretch > 0 ? stretch : 0;
     const double opening = p->v_mps - p->w_mps, mid = stretch + h / 2 * opening;
     const double weight_N = d->mass_kg * SIM_GRAVITY, elastic_N = d->cable_npm * s;
-    const double damper_N = s > 0 || mid > 0 ? d->cable_nspm * size_of(opening) : 0;
+    const double damper_N = s > 0 || mid > 0 ? d->cable_nspm * fabs(opening) : 0;
     const double loss_N = damper_N + (d->mu_mass + d->mu_motor) * (elastic_N + damper_N) +
-                          d->coulomb_n + d->viscous_nspm * size_of(p->w_mps);
-    const double all_N = elastic_N + d->cable_npm * h / 2 * size_of(opening) + weight_N + loss_N;
+                          d->coulomb_n + d->viscous_nspm * fabs(p->w_mps);
+    const double all_N = elastic_N + d->cable_npm * h / 2 * fabs(opening) + weight_N + loss_N;
     struct energy e;
     e.e_J = 0.5 * (d->mass_kg * p->v_mps * p->v_mps + d->rotor_kg * p->w_mps * p->w_mps +
                    elastic_N * s) -
@@ -359,7 +342,7 @@ static struct energy energy_of(const struct plant *p, const struct sim_device *d
     e.edge_J = 0.625 * d->cable_npm * h * h * opening * opening;
     e.d_J = e.e_J - (s > 0 ? e.edge_J / 5 : 0);
     e.may_J = h * h / 2 * (1 / d->mass_kg + 1 / d->rotor_kg) * all_N * loss_N +
-              1e-13 * (1 + size_of(e.e_J));
+              1e-13 * (1 + fabs(e.e_J));
     e.taut = s > 0;
     e.taut_mid = mid > 0;
     return e;
@@ -397,7 +380,7 @@ TEST(energy_never_grows_with_the_motor_off)
         d.cable_npm = below(2) ? full.cable_npm : 1e5;
         d.substep_s = below(2) ? 100e-6 : 25e-6;
         run_free(p, &d, &first, &last);
-        CHECK(last.e_J <= first.e_J + 0.02 * size_of(first.e_J) + 1e-3, "from %.6f J to %.6f J",
+        CHECK(last.e_J <= first.e_J + 0.02 * fabs(first.e_J) + 1e-3, "from %.6f J to %.6f J",
               first.e_J, last.e_J);
         slack += !last.taut;
     }
@@ -433,7 +416,7 @@ TEST(a_quarter_of_the_error_with_half_the_substep)
         double err;
         d.substep_s = 1e-3 / (1 << i) * 1.0000001;
         plant_advance(&p, &d, 0.1, 0, 0);
-        err = size_of(p.x_m - swing_m(&d, 0.0015, 0.1));
+        err = fabs(p.x_m - swing_m(&d, 0.0015, 0.1));
         CHECK(err > 0 && err < 0.5 * d.substep_s * d.substep_s, "substep %.3g s: error %.3g m",
               d.substep_s, err);
         if (i > 0) {
@@ -466,8 +449,8 @@ static double grown(const struct sim_device *d, double hand_npm, double hand_nsp
         } else {
             plant_advance(&p, &fixed, 10 * step_s, weight_N / d->kf_npa, 0);
         }
-        off_N = d->cable_npm * size_of(p.x_m - p.q_m - rest_m) +
-                d->cable_nspm * size_of(p.v_mps - p.w_mps);
+        off_N = d->cable_npm * fabs(p.x_m - p.q_m - rest_m) +
+                d->cable_nspm * fabs(p.v_mps - p.w_mps);
         if (!(off_N < 1e6 * weight_N)) { return 1e6; }
         if (i > 150 && off_N > most) { most = off_N; }
     }
@@ -525,8 +508,8 @@ static double off_steady(struct sim_device d, double hand_nspm, double step_s)
             plant_advance_hand(&p[k], &d, 250e-6, 1, &hand);
         }
         if (i < 8) { continue; } /* what the beginning took */
-        if (size_of(p[0].v_mps - p[1].v_mps) > most) { most = size_of(p[0].v_mps - p[1].v_mps); }
-        if (size_of(p[0].w_mps - p[1].w_mps) > most) { most = size_of(p[0].w_mps - p[1].w_mps); }
+        if (fabs(p[0].v_mps - p[1].v_mps) > most) { most = fabs(p[0].v_mps - p[1].v_mps); }
+        if (fabs(p[0].w_mps - p[1].w_mps) > most) { most = fabs(p[0].w_mps - p[1].w_mps); }
     }
     return most;
 }

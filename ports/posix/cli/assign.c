@@ -34,6 +34,15 @@ int assign_refused(const char *command, const char *name, double value, const st
     return 2;
 }
 
+int assign_device(struct sim_device *d, const char *command, const char *text)
+{
+    const struct sim_device_row *row;
+    char name[ASSIGN_NAME_B];
+    double value;
+    if (assign_split("device", text, name, &value)) { return 2; }
+    return sim_device_set(d, name, value, &row) ? assign_refused(command, name, value, row) : 0;
+}
+
 int assign_step(struct sim_device *d, double hand_npm, double hand_nspm)
 {
     const double enough_s = plant_step_that_will_do(d, hand_npm, hand_nspm);

@@ -13,6 +13,9 @@ int assign_split(const char *option, const char *text, char name[ASSIGN_NAME_B],
  * which command lists what there is. 2. */
 int assign_refused(const char *command, const char *name, double value, const struct sim_device_row *row);
 
+/* NAME=VALUE into the device of this command: 0, or 2 after a line on stderr. */
+int assign_device(struct sim_device *d, const char *command, const char *text);
+
 /* That the device is integrated in steps that are short enough (plant.h), hand_npm being the stiffness of
  * a hand, 0 without. The table's own step is shortened to one that will do; another is refused: 0, or 2
  * after a line on stderr with the step that would do. */

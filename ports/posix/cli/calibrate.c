@@ -114,12 +114,7 @@ static int take_setting(void *ctx, const char *text)
 static int take_device(void *ctx, const char *text)
 {
     struct calibrate_options *o = ctx;
-    const struct sim_device_row *row;
-    char name[ASSIGN_NAME_B];
-    double value;
-    if (assign_split("device", text, name, &value)) { return 2; }
-    if (sim_device_set(&o->device, name, value, &row) == 0) { return 0; }
-    return assign_refused("calibrate", name, value, row);
+    return assign_device(&o->device, "calibrate", text);
 }
 
 static int take_wrong(void *ctx, const char *text)

@@ -130,13 +130,7 @@ static int take_setting(void *ctx, const char *text)
 static int take_device(void *ctx, const char *text)
 {
     struct drop_options *o = ctx;
-    const struct sim_device_row *row;
-    char name[ASSIGN_NAME_B];
-    double value;
-    int err;
-    if (assign_split("device", text, name, &value)) { return 2; }
-    err = sim_device_set(&o->device, name, value, &row);
-    return err ? assign_refused("drop", name, value, row) : 0;
+    return assign_device(&o->device, "drop", text);
 }
 
 static void print_params(const struct exh_scene *scene)

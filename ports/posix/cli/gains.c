@@ -46,13 +46,7 @@ static int take_rates(void *ctx, const char *text)
 static int take_device(void *ctx, const char *text)
 {
     struct asked *a = ctx;
-    const struct sim_device_row *row;
-    char name[ASSIGN_NAME_B];
-    double value;
-    if (assign_split("device", text, name, &value)) { return 2; }
-    return sim_device_set(&a->o.device, name, value, &row)
-               ? assign_refused("drop", name, value, row)
-               : 0;
+    return assign_device(&a->o.device, "drop", text);
 }
 
 /* What the drop scene has when nobody says otherwise. */
