@@ -117,6 +117,7 @@ class Page:
             found = "  " + sub in helps(self.program)
             self.want(found, "exhand: no command " + sub)
             more = words[1].split("|") if sub == "advise" and len(words) > 1 and re.match(r"[a-z]", words[1]) else [None]
+            more = ["--glove"] if sub == "calibrate" and "--glove" in words else more
             for m in more if found else ():
                 self.options((self.program, sub) + ((m,) if m else ()), words[1:])
 
