@@ -12,6 +12,7 @@
 #include "sim/exo.h"
 #include "sim/mass.h"
 #include "sim/operator.h"
+#include "sim/still.h"
 
 #include "exhand/board.h"
 #include "exhand/error.h"
@@ -215,6 +216,64 @@ int posix_bench_ready(void)
     return bench_ready(&sim.mass.bench);
 }
 
+/* Nothing but a fall and the box, in virtual time. */
+static int plain(void)
+{
+    const struct posix_config *c = &sim.cfg;
+    return !sim.exo.fingers && !c->pace && !c->max_ticks && !c->cards.how && !c->line.on && !c->gpio && !c->glove &&
+           c->let_go_s <= 0 && c->enc_jitter_cnt <= 0 && !c->wires_out && !c->wires_in && !c->late;
+}
+
+/* When the device gets what is put out now. */
+static double due_s(double now_s)
+{
+    const struct sim_device *d = &sim.cfg.device;
+    return now_s + d->delay_tick * ((double)sim.T.num / (double)sim.T.den) + d->delay_s;
+}
+
+/* Of the plant, between any two of tick, output and servo sample. */
+static double longest_step_s(void)
+{
+    const struct sim_device *d = &sim.cfg.device;
+    const double T_s = (double)sim.T.num / (double)sim.T.den;
+    const double behind_s = due_s(0) - (double)sim_floor(due_s(0) / T_s) * T_s;
+    double most_s = behind_s > T_s - behind_s ? behind_s : T_s - behind_s;
+    if (most_s > 1 / d->servo_hz) { most_s = 1 / d->servo_hz; }
+    return most_s < d->substep_s ? most_s : d->substep_s;
+}
+
+int posix_still(void)
+{
+    const double ref_A = sim.mass.ref_A;
+    if (sim.mass.plant.w_mps != 0 || !plain() || !sim_mass_still(&sim.mass, longest_step_s())) { return 0; }
+    for (unsigned i = 0; i < sim.queued; i++) {
+        if (sim.queue[(sim.head + i) % OUTPUTS_MAX].ref_A[0] != ref_A) { return 0; }
+    }
+    return 1;
+}
+
+void posix_monitor(int16_t *low_raw, int16_t *high_raw)
+{
+    sim_mass_monitor(&sim.mass, low_raw, high_raw);
+}
+
+int posix_pass(int16_t *mon_raw)
+{
+    const double now_s = tick_time_s(sim.tick);
+    uint32_t enc_raw;
+    if (!sim_mass_pass(&sim.mass, now_s)) { return 0; }
+    while (sim.queued && sim.queue[sim.head].at_s <= now_s) {
+        sim.head = (sim.head + 1) % OUTPUTS_MAX;
+        sim.queued--;
+    }
+    sim.now_s = now_s;
+    sim.tick++;
+    sim_mass_read(&sim.mass, 0, &enc_raw, mon_raw);
+    sim.queue[(sim.head + sim.queued) % OUTPUTS_MAX].at_s = due_s(now_s);
+    sim.queue[(sim.head + sim.queued++) % OUTPUTS_MAX].ref_A[0] = sim.mass.ref_A;
+    return 1;
+}
+
 static void advance_device(double until_s)
 {
     if (sim.exo.fingers) {
@@ -339,12 +398,11 @@ static int put_out(const struct exh_drive_out *from)
     const struct exh_drive_out *out = &wired;
     const struct sim_device *d = &sim.cfg.device;
     const unsigned axes = sim.exo.fingers ? sim.exo.fingers : 1;
-    const double T_s = (double)sim.T.num / (double)sim.T.den;
     struct output *o = &sim.queue[(sim.head + sim.queued) % OUTPUTS_MAX];
 
     if (sim.queued == OUTPUTS_MAX) { return -EXH_E_IO; }
     if (sim.cfg.wires_out) { sim.cfg.wires_out(&wired); }
-    o->at_s = sim.now_s + d->delay_tick * T_s + d->delay_s;
+    o->at_s = due_s(sim.now_s);
     for (unsigned i = 0; i < EXH_FINGERS && axes >> i; i++) {
         o->ref_A[i] = sim_drive_A(d, out->dac_raw[i], out->enable >> i & 1);
     }

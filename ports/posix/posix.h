@@ -79,6 +79,13 @@ void posix_ready(void);
 /* It does not any more: they catch it, and the next hold goes on until it does. */
 void posix_hold(void);
 
+/* The device, and what is on its way to it, stand still to the last bit (sim/still.h), and will until another output or
+ * the fall's end: then so many ticks may pass without a tick of the loop. What its monitor may show meanwhile. */
+int posix_still(void);
+void posix_monitor(int16_t *low_raw, int16_t *high_raw);
+/* The next tick has passed and the output is as it was; the monitor at it. 0: it has not, something ends before it. */
+int posix_pass(int16_t *mon_raw);
+
 /* The person at the bench prepares a place; ready some time later. */
 void posix_bench(enum bench_place place, double mass_kg);
 int posix_bench_ready(void);

@@ -228,7 +228,7 @@ TEST(the_judge_observes_as_long_as_the_device)
         c.board = posix_config_default();
         c.board.falls = 3;
         c.board.device.observe_s = observe_s[i];
-        r = table2_measure(&c, NULL, 0);
+        r = table2_measure(&c, NULL, TABLE2_SAME);
         CHECK(r.done && r.falls == 3 && r.incomplete == 0, "%g s: %d of %d incomplete", observe_s[i],
               r.incomplete, r.falls);
     }

@@ -27,7 +27,7 @@ static struct table2_result run(double rate_Hz, double k, double b, double on, F
     c.board.device.observe_s = 2;
     c.board.falls = 4;
     c.board.log = log;
-    return table2_measure(&c, NULL, 0);
+    return table2_measure(&c, NULL, TABLE2_SAME);
 }
 
 /* Up to 16 times the paper's gains, at each of its rates. Without the controller the bound is

@@ -36,7 +36,7 @@ static inline void rig_replays(struct run_cfg c)
     const char *path = log_path();
     c.board.log = fopen(path, "wb");
     CHECK(c.board.log != NULL, "%s", path);
-    r = table2_measure(&c, NULL, 0);
+    r = table2_measure(&c, NULL, TABLE2_SAME);
     CHECK(r.done && !r.error && r.faults == 0, "faults %x", r.faults);
     CHECK_EQ_I64(fclose(c.board.log), 0);
     CHECK_EQ_I64(replay(path, NULL), 0);

@@ -58,7 +58,7 @@ static double local_Npm(const struct bilateral_options *o)
     c.board.device = o->run.board.device;
     c.board.seed = (uint64_t)o->seed;
     c.board.falls = 10;
-    r = table2_measure(&c, NULL, 0);
+    r = table2_measure(&c, NULL, TABLE2_SAME);
     return r.done && r.line == FALL_OK ? r.b_Npm : 0;
 }
 

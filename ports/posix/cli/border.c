@@ -160,7 +160,7 @@ static void work(const void *ctx, int i, void *result)
         c.board.device.servo_hz = 100000; /* no phase of chance: the delay is the test's */
         c.board.device.delay_s += 0.5 / p->o->base.board.device.servo_hz - 0.5 / 100000;
     }
-    r = table2_measure(&c, NULL, 0);
+    r = table2_measure(&c, NULL, TABLE2_REST);
     x.error = r.error;
     x.done = r.done && !r.error;
     x.stable = !r.faults && 10 * (r.falls - r.oscillating - r.incomplete) >= 9 * r.falls;

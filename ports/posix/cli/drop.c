@@ -181,6 +181,11 @@ static struct run_cfg job_cfg(const struct drop_options *o, int rate_i, double s
     return c;
 }
 
+static enum table2_ask asked(const struct drop_options *o)
+{
+    return o->readings ? TABLE2_READINGS : TABLE2_SAME;
+}
+
 static struct table2_result shown_run(const struct drop_options *o, int i)
 {
     struct run_cfg c = job_cfg(o, i, 1, (uint64_t)o->seed);
@@ -188,7 +193,7 @@ static struct table2_result shown_run(const struct drop_options *o, int i)
     char log[TABLE2_PATH_B], csv[TABLE2_PATH_B], plot[TABLE2_PATH_B], fault[TABLE2_PATH_B];
 
     c.blackbox = o->blackbox;
-    if (o->out == NULL) { return table2_measure(&c, NULL, o->readings); }
+    if (o->out == NULL) { return table2_measure(&c, NULL, asked(o)); }
     if (c.blackbox == NULL) {
         outdir_path(fault, o->out, o->rate_Hz[i], "_fault.exh");
         c.blackbox = fault;
@@ -204,7 +209,7 @@ static struct table2_result shown_run(const struct drop_options *o, int i)
         r.error = 1;
         return r;
     }
-    r = table2_measure(&c, plot, o->readings);
+    r = table2_measure(&c, plot, asked(o));
     if (fclose(c.board.log) != 0 || r.lost) {
         cli_complain("%s: can't be written: %lu records lost", log, r.lost);
         r.error = 1;
@@ -227,7 +232,7 @@ static void work(const void *ctx, int i, void *result)
         const double scale = run < o->spread ? 1 : 1.5;
         const struct run_cfg c =
             job_cfg(o, rate_i, scale, (uint64_t)o->seed + 1 + (uint64_t)(run % o->spread));
-        r = table2_measure(&c, NULL, o->readings);
+        r = table2_measure(&c, NULL, asked(o));
     }
     memcpy(result, &r, sizeof r);
 }
@@ -313,7 +318,7 @@ static struct table2_result observed(const struct drop_options *o, int i)
     setting[o->settings] = (struct run_setting){"passivity", 0};
     c.setting = setting;
     c.settings = o->settings + 1;
-    return table2_measure(&c, NULL, 0);
+    return table2_measure(&c, NULL, TABLE2_SAME);
 }
 
 static void report_guard(const struct drop_options *o, const struct table2_result *r)

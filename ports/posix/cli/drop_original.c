@@ -69,7 +69,7 @@ static void fill_contacts(double *v, const struct fall_log *log, double wall_m, 
 /* The run twice, for the table and for its samples: it is the same. */
 static int column(double *v, const struct run_cfg *c, const char *dir, int n)
 {
-    const struct table2_result r = table2_measure(c, NULL, 0);
+    const struct table2_result r = table2_measure(c, NULL, TABLE2_SAME);
     struct run run;
     size_t first = 0;
     int err = r.error || !r.done || run_drop(c, &run) < 0;

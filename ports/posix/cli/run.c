@@ -2,6 +2,7 @@
 
 #include "arming.h"
 #include "dumpfile.h"
+#include "idle.h"
 #include "option.h"
 #include "param.h"
 #include "params_file.h"
@@ -30,8 +31,10 @@ static struct {
     int no_memory;
     double mon_gain;
     int logged; /* records cost a third of a run that nobody keeps */
-    uint32_t last_tick;
+    uint32_t last_tick, passed; /* the latter of ticks that the loop had no part in */
     int ran; /* the box came to run */
+    int all; /* every tick is run   */
+    struct idle idle;
 } run;
 
 static void *grow(void *p, size_t *cap, size_t n, size_t size)
@@ -91,6 +94,40 @@ static void watch_arming(const struct drop_signals *s)
     }
 }
 
+static void keep(uint32_t tick, const struct drop_signals *s)
+{
+    run.sample = grow(run.sample, &run.samples_cap, run.r->log.samples, sizeof *run.sample);
+    if (run.no_memory) {
+        posix_stop();
+        return;
+    }
+    run.sample[run.r->log.samples++] = (struct fall_sample){
+        .t_s = (double)tick * run.r->T.num / run.r->T.den,
+        .q_m = si(s->q_m_q30, EXH_Q_POS),
+        .qd_mps = si(s->qd_mps_q27, EXH_Q_VEL),
+        .f_des_N = si(s->f_des_N_q20, EXH_Q_FORCE),
+        .i_des_A = si(s->i_des_A_q26, EXH_Q_CUR),
+        .f_mon_N = si(s->f_mon_N_q20, EXH_Q_FORCE) * run.mon_gain,
+        .c = s->c,
+    };
+}
+
+/* The ticks up to the end of a fall that are known. */
+static void pass(uint32_t tick, struct drop_signals *s)
+{
+    uint32_t n = 0;
+    int16_t mon_raw;
+    if (!idle_step(&run.idle)) { return; }
+    while (!run.no_memory && posix_pass(&mon_raw)) {
+        s->f_mon_N_q20 = idle_monitor_N_q20(mon_raw);
+        keep(tick + ++n, s);
+    }
+    idle_passed(n);
+    run.r->ticks += n;
+    run.r->known += n;
+    run.passed += n;
+}
+
 static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
 {
     struct drop_signals s;
@@ -103,20 +140,8 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
     watch_arming(&s);
     if (run.more) { run.more->after(tick, in, out); }
     if (run.fall == 0 || run.live) { return; }
-    run.sample = grow(run.sample, &run.samples_cap, run.r->log.samples, sizeof *run.sample);
-    if (run.no_memory) {
-        posix_stop();
-        return;
-    }
-    run.sample[run.r->log.samples++] = (struct fall_sample){
-        .t_s = (double)tick * run.r->T.num / run.r->T.den,
-        .q_m = si(s.q_m_q30, EXH_Q_POS),
-        .qd_mps = si(s.qd_mps_q27, EXH_Q_VEL),
-        .f_des_N = si(s.f_des_N_q20, EXH_Q_FORCE),
-        .i_des_A = si(s.i_des_A_q26, EXH_Q_CUR),
-        .f_mon_N = si(s.f_mon_N_q20, EXH_Q_FORCE) * run.mon_gain,
-        .c = s.c,
-    };
+    keep(tick + run.passed, &s);
+    if (!run.all) { pass(tick + run.passed, &s); }
 }
 
 static const struct exh_scene *scene_of(const struct run_cfg *c)
@@ -206,6 +231,7 @@ int run_drop(const struct run_cfg *c, struct run *r)
     run.more = c->more;
     run.live = c->live.on;
     run.logged = c->board.log != NULL;
+    run.all = c->all || run.scene != &exh_scene_drop || run.more || run.logged || c->board.log_put || c->blackbox;
     run.mon_gain = c->mon_gain != 0 ? c->mon_gain : 1;
     err = set_parameters(c);
     if (err == 0) {

@@ -38,13 +38,14 @@ struct run_cfg {
     const struct images *images; /* calibrations; NULL, or none: uncalibrated   */
     const char *blackbox; /* dumps go there (dumpfile.h); NULL: no black box      */
     size_t blackbox_B;    /* its memory; 0: as it is there                       */
+    int all; /* 1: every tick is run, also those that are known (idle.h): longer, and no digit else */
     struct run_live live;
 };
 
 struct run {
     struct fall_log log; /* samples of the falls only, not of hold and lift    */
     struct exh_period T;
-    uint64_t ticks;
+    uint64_t ticks, known; /* the latter of them not run: idle.h                */
     uint32_t lost;       /* log records lost                                   */
     uint32_t faults;     /* enum exh_fault                                     */
     uint32_t refused;    /* enum exh_arm: the step at which arming was; no fall then */

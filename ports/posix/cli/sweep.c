@@ -108,7 +108,7 @@ struct cell sweep_cell(const struct run_cfg *base, double rate_Hz, double k_Npm,
     c.rate_Hz = (uint32_t)(rate_Hz + 0.5);
     c.k_Npm = k_Npm;
     c.b_Nspm = b_Nspm;
-    r = table2_measure(&c, NULL, 0);
+    r = table2_measure(&c, NULL, TABLE2_LINE);
     *error = r.error ? 1 : r.done ? 0 : -1;
     cell.stable_falls = r.falls - r.oscillating - r.incomplete;
     if (r.faults) { cell.stable_falls = 0; } /* the box stopped: nothing held the mass */

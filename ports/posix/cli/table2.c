@@ -96,7 +96,8 @@ static void write_fall(const struct fall_log *log, const char *prefix, struct ta
     }
 }
 
-static void judge_stiffness(const struct run *run, const char *plot_prefix, struct table2_result *r)
+static void judge_stiffness(const struct run *run, const char *plot_prefix, enum table2_ask ask,
+                            struct table2_result *r)
 {
     struct fall_opt opt = fall_opt_default;
     struct fall_stiffness s;
@@ -119,7 +120,7 @@ static void judge_stiffness(const struct run *run, const char *plot_prefix, stru
         write_fall(&run->log, plot_prefix, r);
     }
     fall_stiffness_free(&s);
-    if (status != FALL_OK) { return; }
+    if (status != FALL_OK || ask < TABLE2_SAME) { return; }
     opt.lag = 0;
     status = fall_stiffness(&run->log, &opt, &s);
     if (status != FALL_OK) { failed(r, "stiffness at the same tick", fall_status_text(status)); }
@@ -136,7 +137,8 @@ static void judge_readings(const struct run *run, const struct sim_device *d, st
     if (status != FALL_OK) { failed(r, "readings", fall_status_text(status)); }
 }
 
-struct table2_result table2_measure(const struct run_cfg *c, const char *plot_prefix, int readings)
+struct table2_result table2_measure(const struct run_cfg *c, const char *plot_prefix,
+                                    enum table2_ask ask)
 {
     struct table2_result r;
     struct run run;
@@ -150,8 +152,8 @@ struct table2_result table2_measure(const struct run_cfg *c, const char *plot_pr
         r.done = 1;
         r.rate_Hz = (double)run.T.den / run.T.num;
         judge_rest(&run, &c->board.device, &r);
-        judge_stiffness(&run, plot_prefix, &r);
-        if (readings) { judge_readings(&run, &c->board.device, &r); }
+        if (ask >= TABLE2_LINE) { judge_stiffness(&run, plot_prefix, ask, &r); }
+        if (ask >= TABLE2_READINGS) { judge_readings(&run, &c->board.device, &r); }
         r.faults = run.faults;
         r.lost = run.lost;
         r.guard = run.guard;

@@ -37,9 +37,17 @@ struct table2_result {
 
 #define TABLE2_PATH_B 1024 /* a path with its zero                              */
 
-/* Runs and judges; with a plot prefix also writes what the force-over-position picture
- * needs; with `readings` also reads the run in every way of reading.h. */
-struct table2_result table2_measure(const struct run_cfg *c, const char *plot_prefix, int readings);
+/* What of a run is asked for, each with all before it: the longer the log, the more of the time is judging. */
+enum table2_ask {
+    TABLE2_REST,    /* falls, and which came to rest                            */
+    TABLE2_LINE,    /* the stiffness, aligned                                   */
+    TABLE2_SAME,    /* and at the same tick                                     */
+    TABLE2_READINGS /* and in every way of reading.h                            */
+};
+
+/* Runs and judges; with a plot prefix also writes what the force-over-position picture needs. */
+struct table2_result table2_measure(const struct run_cfg *c, const char *plot_prefix,
+                                    enum table2_ask ask);
 
 /* Many runs of one row, at its gains and at 1.5 times both. Medians are of the runs
  * that gave a line; 0 unless more than half did. */

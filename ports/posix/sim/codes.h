@@ -21,12 +21,17 @@ static inline uint32_t sim_encoder_raw(const struct sim_device *d, double q_m, d
     return (uint32_t)((uint64_t)cnt & 0xFFFFFF);
 }
 
-/* The monitor at this current, with its noise. */
+/* The monitor at this current, */
+static inline int16_t sim_monitor_code(const struct sim_device *d, double mon_A)
+{
+    const int64_t raw = sim_floor(mon_A / d->mon_apc + 0.5);
+    return (int16_t)(raw > 32767 ? 32767 : raw < -32768 ? -32768 : raw);
+}
+
+/* and with its noise. */
 static inline int16_t sim_monitor_raw(const struct sim_device *d, double mon_A, struct sim_random *r)
 {
-    const double noisy_A = mon_A + d->mon_noise_a * sim_random_bell(r);
-    const int64_t raw = sim_floor(noisy_A / d->mon_apc + 0.5);
-    return (int16_t)(raw > 32767 ? 32767 : raw < -32768 ? -32768 : raw);
+    return sim_monitor_code(d, mon_A + d->mon_noise_a * sim_random_bell(r));
 }
 
 /* The monitor of the supply while the motors take so much in all. */

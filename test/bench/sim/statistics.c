@@ -130,6 +130,7 @@ static void work(const void *ctx, int i, void *to)
     memset(&c, 0, sizeof c);
     memset(&r, 0, sizeof r);
     now = at->method;
+    c.all = 1; /* what stands still is known of the simulator's own method */
     c.rate_Hz = (uint32_t)table2_paper[row].rate_Hz;
     c.k_Npm = table2_paper[row].k_Npm * scale;
     c.b_Nspm = table2_paper[row].b_Nspm * scale;
@@ -219,6 +220,7 @@ __attribute__((noinline)) void one_fall(const struct cell *at, double *seconds)
     struct run run;
     memset(&c, 0, sizeof c);
     now = at->method;
+    c.all = 1;
     c.rate_Hz = 500;
     c.k_Npm = 6000;
     c.b_Nspm = 20;
