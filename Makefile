@@ -1266,10 +1266,10 @@ install-lib: $(lib) $(if $(filter posix,$(PORT)),$(shared))
 	$(if $(filter posix,$(PORT)),install -m 755 $(shared) $(DESTDIR)$(LIBDIR) && cd $(DESTDIR)$(LIBDIR) && \
 	    ln -sf libexhand.so.$(version) $(soname) && ln -sf $(soname) libexhand.so)
 
-## Both README commands in a fresh Debian 12 with only git, make and a C compiler (root)
+## Both README commands in a fresh Debian with only git, make and a C compiler (root; RELEASE=bookworm, 12)
 .PHONY: fresh
 fresh:
-	test/fresh/fresh.sh
+	test/fresh/fresh.sh $(RELEASE)
 
 ## The public headers as pages, build/doc/html: every symbol documented
 .PHONY: doc
