@@ -12,6 +12,7 @@
 #define K_MAX_NPM  1e6 /* what the scene takes */
 #define B_MAX_NSPM 1e3
 #define HALVINGS   4   /* of the step between a stable cell and the next */
+#define FALL_HZ    500 /* a fall at no rate would take as long as so much of a rate */
 
 /* --- wanting --- */
 
@@ -194,21 +195,42 @@ static void want_line(struct wants *w, const struct line *l)
     border(w, l, &below, &above);
 }
 
+/* From 0: rows in their order make blocks that take about as long, so that few rates have their octaves
+ * found by more than one. */
+static int shard_of(const struct sweep_opt *o, int rate, int row)
+{
+    double all_Hz = 0, before_Hz = 0;
+    for (int r = 0; r < o->rates; r++) {
+        before_Hz += r < rate ? o->rate_Hz[r] + FALL_HZ : 0;
+        all_Hz += o->rate_Hz[r] + FALL_HZ;
+    }
+    return (int)(o->shards * (before_Hz + (o->rate_Hz[rate] + FALL_HZ) * (row + 0.5) / o->rows) / all_Hz);
+}
+
+/* Columns ask for cells of all rows: who has these, at the end, runs what halving a column's border takes. */
+static int ours(const struct sweep_opt *o, int rate, int line)
+{
+    return o->shards == 1 || (line < o->rows && shard_of(o, rate, line) == o->shard - 1);
+}
+
+static int any_ours(const struct sweep_opt *o, int rate)
+{
+    int any = 0;
+    for (int j = 0; j < o->rows; j++) { any |= ours(o, rate, j); }
+    return any;
+}
+
 int plane_wants(const struct cells *cells, const struct sweep_opt *o, struct plane_want **want)
 {
     struct wants w = {cells, NULL, 0, 0, 0};
-    int line = 0; /* rows and columns of all rates, dealt to the shards in turn */
     for (int r = 0; r < o->rates; r++) {
         const double rate_Hz = o->rate_Hz[r];
         struct reach reach;
-        if (!reach_of(&w, rate_Hz, &reach)) {
-            line += o->rows + o->columns;
-            continue;
-        }
-        for (int i = 0; i < o->rows + o->columns && !posix_interrupted(); i++, line++) {
+        if (!any_ours(o, r) || !reach_of(&w, rate_Hz, &reach)) { continue; }
+        for (int i = 0; i < o->rows + o->columns && !posix_interrupted(); i++) {
             const struct line l = i < o->rows ? row_of(o, rate_Hz, reach, i)
                                               : column_of(o, rate_Hz, reach, i - o->rows);
-            if (line % o->shards == o->shard - 1) { want_line(&w, &l); }
+            if (ours(o, r, i)) { want_line(&w, &l); }
         }
     }
     tidy(&w);

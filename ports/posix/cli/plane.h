@@ -11,7 +11,7 @@ struct plane_want {
     double rate_Hz, k_Npm, b_Nspm;
 };
 
-/* Cells to be run before more can be said, each once, into a list that the caller
+/* Cells to be run before more can be said (a shard's: of octaves and rows), each once, into a list that the caller
  * frees. How many: 0 when the sweep is done; -1 after a line on stderr. Once interrupted it
  * returns early, with any number. */
 int plane_wants(const struct cells *cells, const struct sweep_opt *o, struct plane_want **want);
