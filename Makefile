@@ -1285,10 +1285,10 @@ doc:
 doc-names: $(exhand)
 	@PYTHONDONTWRITEBYTECODE=1 test/docs/docs.py $(exhand) $(world)
 
-## Lay out all C sources by .clang-format
+## Lay out the lines of C that are changed and not committed by .clang-format
 .PHONY: fmt
 fmt:
-	clang-format -i $(shell git ls-files '*.c' '*.h')
+	git clang-format --force --extensions c,h
 
 ## Draw the block diagrams in docs/ from the signal and device tables
 .PHONY: diagrams
