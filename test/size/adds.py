@@ -156,28 +156,46 @@ def all_adds(rows, costs, short, has):
     return adds.rows
 
 
-GOAL_HEAD = ["processor", "compiled", "text_B", "data_B", "bss_B", "RAM_B", "with loop and grip: text_B", "RAM_B", "insn/tick", "of the goal's 3072 B, 256 B"]
+GOAL_HEAD = ["processor", "set up", "compiled", "text_B", "data_B", "bss_B", "RAM_B", "with loop and grip: text_B", "RAM_B", "stack_B", "insn/tick",
+             "of the goal's 3072 B, 256 B"]
+FROZEN = "1000"
+# Where set-up is, how it is compiled, and what make is told.
+GOAL_WAYS = [("there", "-O2", ()), ("there", "-Os", ("O=s",)),
+             ("frozen", "-O2", ("FROZEN=" + FROZEN, "WHOLE=")), ("frozen", "-Os", ("O=s", "FROZEN=" + FROZEN, "WHOLE=")),
+             ("frozen", "as one, -O2", ("FROZEN=" + FROZEN, "WHOLE=-flto -ffat-lto-objects")), ("frozen", "as one, -Os", ("O=s", "FROZEN=" + FROZEN))]
 
 
-def goal(short, insn_M3):
-    """Library and scene of minimal, by processor and optimisation."""
-    rows = []
-    ways = [("Cortex-M3", "-O2", None)]
-    if not short:
-        m0 = ("CFLAGS=-mcpu=cortex-m0", "LDFLAGS=-mcpu=cortex-m0", "SCENE_LIBS=-lgcc")
-        ways += [("Cortex-M3", "-Os", ("O=s",)), ("Cortex-M0", "-O2", m0), ("Cortex-M0", "-Os", m0 + ("O=s",))]
-    for cpu, option, words in ways:
-        at = AT
-        if words:
-            at = "%s/%s%s" % (AT, cpu[-2:].lower(), option)
-            run(["make", "-s", "PORT=mps2", "SCENE=minimal", "CROSS=arm-none-eabi-", "CC=arm-none-eabi-gcc", "B=" + at, *words, at + "/mps2/minimal.elf"])
-        costs = Costs("minimal", "mps2", at)
-        alone = costs.library_and_scene(True)
-        helpers = costs.image.bytes_of(costs.kept.get("compiler", []))
-        ours = [a + b + c for a, b, c in zip(costs.library_and_scene(False), helpers,
-                                             costs.image.bytes_of(n for m in ("examples/loop", "examples/deadman", "examples/image") for n in costs.kept[m]))]
-        alone = [a + b for a, b in zip(alone, helpers)]
-        insn = on_mps2(at + "/mps2/minimal.elf") if words else insn_M3
-        rows.append([cpu, option, *alone, alone[1] + alone[2], ours[0], ours[1] + ours[2], "-" if insn in (None, "-") else round(float(insn)),
-                     "%.0f %%, %.0f %%" % (100 * alone[0] / 3072, 100 * (alone[1] + alone[2]) / 256)])
+def worst_stack(at, name):
+    """Bytes of the image's deepest path; the objects that the scene is in come last, since names of theirs are in the library's, too."""
+    found = [os.path.join(d, f)[:-3] + ".o" for top in ("lib", "examples", "minimal") for d, _, files in os.walk("%s/mps2/%s" % (at, top)) for f in files if f.endswith(".ci")]
+    mine = ["%s/mps2/%s.elf.ltrans0.ltrans.o" % (at, name)]
+    if not os.path.exists(mine[0]):
+        mine = [os.path.join(d, f)[:-3] + ".o" for d, _, files in os.walk("%s/mps2/frozen/parts" % at) for f in files if f.endswith(".ci")]
+    return int(run(["python3", "test/size/stack.py", "--objdump", "arm-none-eabi-objdump", *found, *mine]).split()[0])
+
+
+def goal(short):
+    """Library and scene of minimal, by processor, where set-up is, and optimisation; short: the one that size.sh has built."""
+    rows = [["Cortex-M3", *GOAL_WAYS[0][:2], *goal_of(AT, "minimal")]]
+    for cpu in () if short else ("Cortex-M3", "Cortex-M0"):
+        for where, compiled, words in GOAL_WAYS[cpu == "Cortex-M3":]:
+            at = "%s/goal/%s%s%s" % (AT, cpu[-2:].lower(), where, compiled.replace(", ", "").replace(" ", ""))
+            name = "minimal" + ("-frozen-" + FROZEN if where == "frozen" else "")
+            m0 = cpu == "Cortex-M0"
+            run(["make", "-s", "PORT=mps2", "SCENE=minimal", "CROSS=arm-none-eabi-", "CC=arm-none-eabi-gcc", "B=" + at, *words,
+                 "CFLAGS=-fcallgraph-info=su" + " -mcpu=cortex-m0" * m0, *["LDFLAGS=-mcpu=cortex-m0"] * m0, "SCENE_LIBS=-save-temps" + " -lgcc" * m0,
+                 "%s/mps2/%s.elf" % (at, name)])
+            rows.append([cpu, where, compiled, *goal_of(at, name)])
     return rows
+
+
+def goal_of(at, name):
+    """The numbers of a row."""
+    costs = Costs("minimal", "mps2", at, name)
+    helpers = costs.image.bytes_of(costs.helpers())
+    ours = [a + b + c for a, b, c in zip(costs.library_and_scene(False), costs.image.bytes_of(costs.kept.get("compiler", [])),
+                                         costs.image.bytes_of(n for m in ("examples/loop", "examples/deadman", "examples/image") for n in costs.kept[m]))]
+    alone = [a + b for a, b in zip(costs.library_and_scene(True), helpers)]
+    insn = on_mps2("%s/mps2/%s.elf" % (at, name))
+    return [*alone, alone[1] + alone[2], ours[0], ours[1] + ours[2], worst_stack(at, name), "-" if insn is None else round(insn),
+            "%.0f %%, %.0f %%" % (100 * alone[0] / 3072, 100 * (alone[1] + alone[2]) / 256)]

@@ -13,6 +13,7 @@ SCENES = ("minimal", "drop", "guarded", "glove", "bilateral", "bringup", "calibr
 PORTS = {"posix": ("template", ""), "pc104": ("pc104", "i686-linux-gnu-"), "mps2": ("mps2", "arm-none-eabi-")}
 SOURCES = ("lib", "examples", "ports/cards", "ports/mps2", "ports/pc104", "ports/template", "ldscripts", "Makefile", "test/no_board.c") + tuple("test/size/" + f for f in ("size.sh", "stack.py", "ticks.c", "world.c", "world.h"))
 OWN = "scene itself"
+WHOLE = re.compile(r"[.]ltrans[.]o$")  # of scene and library as one program (make FROZEN=...): what no other object needs is one section each
 HOOK = re.compile(r"^exh_(assert_failed|board_)")  # what the port does then is no need of the scene's
 FEATURES = (("glove: 22 angles", ("lib/glove", "lib/glove_cal", "lib/glove_fit", "glove/cal")),
             ("fingertips of five fingers", ("lib/hand", "lib/hand_hit2")),
@@ -76,8 +77,8 @@ class Costs:
 
     def __init__(self, scene, port, at=AT, name=None):
         self.scene, self.port = scene, port
-        directory, cross = PORTS[port]
-        self.image = linked.Image("%s/%s/%s.map" % (at, directory, name or scene), cross + "objdump")
+        directory, self.cross = PORTS[port]
+        self.image = linked.Image("%s/%s/%s.map" % (at, directory, name or scene), self.cross + "objdump")
         hook = lambda node: HOOK.match(linked.word(node)) is not None
         self.root, self.main = self.image.node("exh_scene_" + scene), self.image.node("main")
         self.of_scene = self.image.walk([self.root], hook)
@@ -117,7 +118,18 @@ class Costs:
         """[text, data, bss] of library and scene: all of them in the image, or what the scene leads to."""
         own = set(self.own())
         return self.image.bytes_of(n for n in (self.of_scene if of_scene_alone else self.image.sizes)
-                                   if n in own or module_of(n[0]).startswith("lib/"))
+                                   if n in own or module_of(n[0]).startswith("lib/") or WHOLE.search(n[0]))
+
+    def helpers(self):
+        """Sections of the compiler's own functions that the scene leads to: not what the port divides with."""
+        wanted, names, found = self.image.wants(self.of_scene), {}, []
+        for node in self.kept.get("compiler", []):
+            archive, _, member = node[0].rstrip(")").partition("(")
+            if member and archive not in names:
+                names[archive] = run([self.cross + "nm", "-g", "-A", "--defined-only", archive])
+            if member and wanted & set(re.findall(r":%s:\S+ \S (\S+)" % re.escape(member), names[archive])):
+                found.append(node)
+        return found
 
 
 def instructions(scene):

@@ -9,7 +9,7 @@ import subprocess
 
 INPUT = re.compile(r"^ (\.\S+|COMMON)(?:\s+(0x[0-9a-f]+)\s+(0x[0-9a-f]+)\s+(\S.*))?$")
 REST = re.compile(r"^\s+(0x[0-9a-f]+)\s+(0x[0-9a-f]+)\s+(\S.*)$")
-MEMBER = re.compile(r"^(.*)/lib[^/]*\.a\(([^)]*)\)$")
+MEMBER = re.compile(r"^(.*)/libexhand\.a\(([^)]*)\)$")
 SYMBOL = re.compile(r"^[0-9a-f]+ (.{7}) (\S+)\t[0-9a-f]+ (?:\.hidden |\.internal )?(.*)$")
 HEADER = re.compile(r"^ *\d+ (\S+) +([0-9a-f]{8}) ")
 RECORDS = re.compile(r"^RELOCATION RECORDS FOR \[(.*)\]:")
@@ -27,7 +27,7 @@ def kind_of(section):
 
 
 def object_of(place):
-    """The object file that a map names, an archive's members beside their sources in the build directory."""
+    """The object file that a map names, our archive's members beside their sources in the build directory."""
     member = MEMBER.match(place)
     return "%s/lib/src/%s" % member.groups() if member else place
 
@@ -89,6 +89,14 @@ class Image:
             self.objects[place] = Object(place, objdump)
             for name in self.objects[place].is_global:
                 self.where.setdefault(name, (place, self.objects[place].symbols[name]))
+
+    def wants(self, nodes):
+        """Names that these sections refer to and that no object of ours has: mem*, the compiler's helpers."""
+        found = set()
+        for place, section in nodes:
+            obj = self.objects.get(place)
+            found |= {n for n in obj.refers.get(section, ()) if n[0] != "." and n not in obj.symbols and n not in self.where} if obj else set()
+        return found
 
     def next_of(self, node):
         """Sections of the image that this one refers to."""

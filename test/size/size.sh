@@ -13,6 +13,7 @@
 #          dearest tick of 2000, arming, ramp and running among them; with nothing moving.
 #   mps2   the image, a loop-back for drives. Instructions in virtual time under QEMU, to 1: 64 ns each,
 #          seen by a timer of 25 MHz (bilateral: 32 ns, to 2); the dearest tick, nothing moving.
+#          minimal once more as minimal-frozen-1000 (make FROZEN=1000): scene and library set up and linked as one program.
 #
 # Environment: MAKE (make), B (build). A missing cross compiler, emulator or valgrind
 # leaves "-" in the table and says so.
@@ -36,13 +37,15 @@ command -v "$cc" >/dev/null 2>&1 || { echo "$cc: not found: install gcc" >&2; ex
 
 note() { echo "size: $*" >&2; }
 
-# build PORT SCENE [VARIABLE...]: the image and the call graphs beside its objects
+# build PORT SCENE [VARIABLE...]: the image and the call graphs beside its objects. Of SCENE-frozen-RATE those are what
+# the linker made, which it leaves there.
 build()
 {
     port=$1 scene=$2
     shift 2
+    case $scene in *-frozen-*) set -- "$@" "FROZEN=${scene##*-}" SCENE_LIBS=-save-temps ;; esac
     # shellcheck disable=SC2046 # none or one word
-    $make -s "PORT=$port" "SCENE=$scene" "B=$b" CFLAGS=-fcallgraph-info=su "$@" \
+    $make -s "PORT=$port" "SCENE=${scene%-frozen-*}" "B=$b" CFLAGS=-fcallgraph-info=su "$@" \
         "$b/$port/$scene.elf" $([ "$port" = template ] && echo "$b/template/examples/log.o")
 }
 
@@ -62,12 +65,15 @@ model()
     case $2 in custom) echo "$b/$1/model/wall" ;; esac
 }
 
-# objects PORT SCENE: everything compiled from C for that image
+# objects PORT SCENE: everything compiled from C for that image. What was linked as one comes last: names of it are the library's, too.
 objects()
 {
-    # shellcheck disable=SC2046 # the names of our objects have no blanks
-    find "$b/$1/lib" "$b/$1/examples/loop.ci" "$b/$1/examples/$2" "$b/$1/$2" $(shared "$1" "$2" ci) $(model "$1" "$2") -name '*.ci' |
+    own=$b/$1/examples/$2
+    case $2 in *-frozen-*) own= ;; esac
+    # shellcheck disable=SC2046,SC2086 # the names of our objects have no blanks
+    find "$b/$1/lib" "$b/$1/examples/loop.ci" $own "$b/$1/${2%-frozen-*}" $(shared "$1" "$2" ci) $(model "$1" "$2") -name '*.ci' |
         sed 's/\.ci$/.o/' | sort
+    [ -n "$own" ] || echo "$b/$1/$2.elf.ltrans0.ltrans.o"
 }
 
 # library_symbols PORT SCENE NM: global symbols of the library that the image has
@@ -199,7 +205,7 @@ counted_m()
 # row SCENE PORT TEXT DATA BSS STACK INSTRUCTIONS
 row()
 {
-    printf '%-12s %-8s %8s %6s %6s %8s %12s %8s\n' "$@" "$(wc -l <"$b/symbols.txt")"
+    printf '%-19s %-8s %8s %6s %6s %8s %12s %8s\n' "$@" "$(wc -l <"$b/symbols.txt")"
 }
 
 posix_row()
@@ -256,9 +262,10 @@ for scene in "$@"; do
         posix_row "$scene"
         pc104_row "$scene"
         mps2_row "$scene"
+        if [ "$scene" = minimal ]; then mps2_row minimal-frozen-1000; fi
     } >>"$b/table.txt"
 done
-printf '%-12s %-8s %8s %6s %6s %8s %12s %8s\n' scene port text_B data_B bss_B stack_B \
+printf '%-19s %-8s %8s %6s %6s %8s %12s %8s\n' scene port text_B data_B bss_B stack_B \
     insn/tick symbols
 cat "$b/table.txt"
 [ "$failed" = no ]
