@@ -1246,8 +1246,8 @@ porting:
 ## Each way of examples/link/README.md to link the library to a program: commands, seconds, bytes; and its ABI
 .PHONY: link
 link: $(lib)
-	@.ci/deps "the ways to link" "command -v cmake && command -v pkg-config && command -v clang && command -v tcc && command -v g++ && python3 -m pip --version" \
-	    cmake pkg-config clang tcc g++ python3-pip || :
+	@.ci/deps "the ways to link" "command -v cmake && command -v pkg-config && command -v clang && command -v tcc && command -v g++ && python3 -c 'import ensurepip'" \
+	    cmake pkg-config clang tcc g++ python3-venv || :
 	@test/link/abi.py $(lib) gcc $(notdir $(shell command -v i686-linux-gnu-gcc))
 	@test/link/package.sh $(B)/link/package
 	@test/link/link.py $(B)/link $(ARGS)
@@ -1270,6 +1270,11 @@ install-lib: $(lib) $(if $(filter posix,$(PORT)),$(shared))
 .PHONY: fresh
 fresh:
 	test/fresh/fresh.sh $(RELEASE)
+
+## Each way of examples/link/README.md on a bare Debian 12: commands, packages, minutes, disk (root; ARGS=--update: its table anew)
+.PHONY: fresh-ways
+fresh-ways:
+	test/fresh/ways.py $(B)/fresh/ways $(ARGS)
 
 ## The public headers as pages, build/doc/html: every symbol documented
 .PHONY: doc
