@@ -139,13 +139,19 @@ $(if $(wildcard examples/$(SCENE)/freeze.c),,$(error FROZEN=$(FROZEN): no exampl
 frozen     := $(call frozen_h,$(SCENE):$(FROZEN):$(ENC_BITS))
 frozen_out := $(out)/frozen/$(if $(WHOLE),whole,parts)
 frozen_lib := $(frozen_out)/libexhand.a
+# As the stamp, of what is asked for here alone.
+frozen_stamp := $(out)/frozen/flags
+$(frozen_stamp): export flags = $(WHOLE) | $(ENC_BITS)
+$(frozen_stamp): FORCE
+	@mkdir -p $(@D)
+	@printf '%s\n' "$$flags" | cmp -s - $@ || printf '%s\n' "$$flags" > $@
 frozen_obj := $(SCENE_SRC:%.c=$(frozen_out)/$(basename $(notdir $(frozen)))/%.o)
-$(frozen_out)/lib/%.o: lib/%.c $(stamp)
+$(frozen_out)/lib/%.o: lib/%.c $(stamp) $(frozen_stamp)
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(base) $(PORT_CFLAGS) $(WHOLE) $(CFLAGS) -c $< -o $@
 $(frozen_lib): $(lib_src:%.c=$(frozen_out)/%.o)
 	$(Q)rm -f $@ && $(CROSS)ar rcD $@ $^
-$(frozen_obj): $(frozen_out)/$(basename $(notdir $(frozen)))/%.o: %.c $(frozen) $(stamp)
+$(frozen_obj): $(frozen_out)/$(basename $(notdir $(frozen)))/%.o: %.c $(frozen) $(stamp) $(frozen_stamp)
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(base) $(PORT_CFLAGS) $(PORT_HOSTFLAGS) $(WHOLE) $(SCENE_CFLAGS) $(frozen_flags) -DEXH_FROZEN='"$(notdir $(frozen))"' $(CFLAGS) -c $< -o $@
 endif
@@ -173,7 +179,7 @@ $(out)/$(SCENE)/%.o: %.S $(stamp)
 	@mkdir -p $(@D)
 	$(Q)$(CC) -Ilib/include $(PORT_CFLAGS) -g -c $< -o $@
 
-$(image): $(image_obj) $(lib) $(PORT_LDSCRIPT)
+$(image): $(image_obj) $(lib) $(PORT_LDSCRIPT) $(frozen_stamp)
 	$(Q)$(CC) $(if $(FROZEN),$(if $(WHOLE),$(base) $(PORT_CFLAGS) $(WHOLE) -flto-partition=one $(CFLAGS))) $(PORT_LDFLAGS) $(LDFLAGS) -Wl,--gc-sections,-Map=$(@:.elf=.map) \
 	    $(PORT_LDSCRIPT:%=-T %) $(image_obj) $(lib) $(SCENE_LIBS) -o $@
 
@@ -407,9 +413,12 @@ frozen_sides := live $(subst /,_,$(test_rates))
 $(frozen_sides:%=$(B)/test/frozen/side_%.o): $(B)/test/frozen/side_%.o: test/frozen/side.c $(stamp) $(foreach r,$(test_rates),$(call frozen_h,minimal:$r:24))
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(tflags) $(san) $(frozen_flags) -DSIDE=side_$* $(if $(filter live,$*),,-DEXH_FROZEN='"minimal_$*_24.h"') -c $< -o $@
-$(B)/test/san/test/frozen/%.o: tflags += -DFREEZE='"$(B)/freeze-minimal"'
+$(B)/test/san/test/frozen/%.o: tflags += -DFREEZE='"$(B)/freeze-minimal"' -DFREEZE_PLANTED='"$(B)/test/frozen/planted"'
+$(B)/test/frozen/planted: examples/freeze.c test/frozen/planted.c $(lib_src) $(B)/freeze-minimal
+	@mkdir -p $(@D)
+	$(Q)$(HOSTCC) -std=c99 $(warn) -Ilib/include -Iexamples -o $@ $(filter %.c,$^)
 $(B)/test/frozen/%_test: $(B)/test/san/test/frozen/%_test.o $(B)/test/san/test/support.o $(frozen_sides:%=$(B)/test/frozen/side_%.o) \
-                         $(lib_src:%.c=$(B)/test/san/%.o) | $(B)/freeze-minimal
+                         $(lib_src:%.c=$(B)/test/san/%.o) | $(B)/freeze-minimal $(B)/test/frozen/planted
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(san) -o $@ $^ -lcmocka
 

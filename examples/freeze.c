@@ -61,17 +61,24 @@ const struct freeze_type freeze_safety =
          F(exh_safety_cfg, arm_ticks, U32), F(exh_safety_cfg, ramp_q30, I32),
          F(exh_safety_cfg, release_ticks, U32), F(exh_safety_cfg, fall, GAIN));
 
-/* Between fields there may be what aligns the next and no more: one that was added to the header and not here is told. */
-static int whole(const struct freeze_type *t)
+static int nothing(const uint8_t *p, size_t len_B)
+{
+    while (len_B > 0 && p[len_B - 1] == 0) { len_B--; }
+    return len_B == 0;
+}
+
+/* Between fields there may be what aligns the next and no more, and set-up put nothing there: a field that was added to
+ * the header and not here is told, also one where an alignment left room. */
+static int whole(const struct freeze_type *t, const uint8_t *of)
 {
     size_t end = 0;
     for (size_t k = 0; k < t->fields; k++) {
-        const size_t size = size_B[t->field[k].kind];
+        const size_t at = t->field[k].at, size = size_B[t->field[k].kind];
         const size_t align = size < sizeof(void *) ? size : sizeof(void *);
-        if (t->field[k].at < end || t->field[k].at - end >= align) { return 0; }
-        end = t->field[k].at + size;
+        if (at < end || at - end >= align || !nothing(of + end, at - end)) { return 0; }
+        end = at + size;
     }
-    return end <= t->size_B && t->size_B - end < sizeof(void *);
+    return end <= t->size_B && t->size_B - end < sizeof(void *) && nothing(of + end, t->size_B - end);
 }
 
 /* --- as C --- */
@@ -115,7 +122,8 @@ static void print_one(const struct freeze *f, const void *of)
 static int print_list(void)
 {
     for (const struct freeze *f = freeze_list; f->type; f++) {
-        if (!whole(f->type)) {
+        for (unsigned k = 0; k < f->n; k++) {
+            if (whole(f->type, (const uint8_t *)f->of + k * f->type->size_B)) { continue; }
             fprintf(stderr, "freeze: %s: has other fields than examples/freeze.c\n", f->type->name);
             return 1;
         }

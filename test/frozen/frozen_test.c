@@ -107,11 +107,11 @@ TEST(ticks_are_the_same)
     }
 }
 
-static int status(const char *words)
+static int status(const char *program, const char *words)
 {
     char line[256];
     int s;
-    (void)snprintf(line, sizeof line, FREEZE " %s >/dev/null 2>&1", words);
+    (void)snprintf(line, sizeof line, "%s %s >/dev/null 2>&1", program, words);
     s = system(line);
     return WIFEXITED(s) ? WEXITSTATUS(s) : 128;
 }
@@ -128,10 +128,15 @@ TEST(the_program_takes_what_it_says)
                {"1000 33", 2},  {"1000 -1", 2},       {"1000 24 1", 2},
                {"1 16", 1}}; /* at 1 Hz 10 m/s are more than 16 bits tell */
     for (size_t k = 0; k < LEN(row); k++) {
-        const int is = status(row[k].words);
+        const int is = status(FREEZE, row[k].words);
         CHECK(is == row[k].status, "freeze %s: %d, want %d", row[k].words, is, row[k].status);
     }
 }
 
+TEST(a_field_that_is_not_written_down_is_refused)
+{
+    CHECK_EQ_I64(status(FREEZE_PLANTED, "1000 24"), 1);
+}
+
 TEST_MAIN("frozen", constants_are_those_of_set_up, another_board_is_refused, ticks_are_the_same,
-          the_program_takes_what_it_says);
+          the_program_takes_what_it_says, a_field_that_is_not_written_down_is_refused);
