@@ -136,6 +136,7 @@ frozen_flags = -Wno-unused-const-variable -I$(B)/frozen
 
 ifneq ($(FROZEN),)
 $(if $(wildcard examples/$(SCENE)/freeze.c),,$(error FROZEN=$(FROZEN): no examples/$(SCENE)/freeze.c: examples/freeze.h says what is in it))
+$(if $(ENC_BITS),,$(error FROZEN=$(FROZEN): ports/$(PORT)/board.c has no .enc_bits: name a PORT that has, or ENC_BITS=24))
 frozen     := $(call frozen_h,$(SCENE):$(FROZEN):$(ENC_BITS))
 frozen_out := $(out)/frozen/$(if $(WHOLE),whole,parts)
 frozen_lib := $(frozen_out)/libexhand.a
