@@ -440,9 +440,10 @@ static int last_is_near(const char *text, unsigned at, double deg, double by)
 {
     const char *row = strrchr(text, ',');
     double got;
-    while (row > text && row[-1] != '\n') { row--; }
-    for (unsigned i = 0; i <= at; i++) { row = strchr(row, ',') + 1; }
-    got = strtod(row, NULL);
+    while (row && row > text && row[-1] != '\n') { row--; }
+    for (unsigned i = 0; row && i <= at; i++) { row = strchr(row + 1, ','); }
+    if (row == NULL) { return 0; }
+    got = strtod(row + 1, NULL);
     return got > deg - by && got < deg + by;
 }
 
@@ -487,7 +488,7 @@ TEST(a_user_calibrates_it_by_poses)
     said(&s, dir, cli_calibrate, WORDS("calibrate", "--glove", "--poses", csv, "--out", dir));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     hand_in("knuckles");
-    command(&s, dir, WORDS("glove", "--serial", far.link, "--calibration", image, "--deg", "--seconds", "2"));
+    command(&s, dir, WORDS("glove", "--serial", far.link, "--calibration", image, "--deg", "--glove-rate", "20", "--seconds", "2"));
     CHECK(s.status == 0 && last_is_near(s.out, EXH_GLOVE_INDEX_MPJ, 80, 1.5) && last_is_near(s.out, EXH_GLOVE_PINKIE_PIJ, 0, 1.5), "%d: %s%s",
           s.status, s.out, s.err);
     command(&s, dir, WORDS("glove", "--serial", far.link, "--calibration", csv, "--seconds", "0.5"));
