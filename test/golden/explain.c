@@ -178,9 +178,8 @@ const char *golden_explain(const char *name, golden_run *run, uint32_t rate_Hz)
     return r.said;
 }
 
-unsigned golden_hundreds(const char *name, uint32_t crc[GOLDEN_HUNDREDS])
+int golden_hundreds(const char *name, uint32_t crc[GOLDEN_HUNDREDS])
 {
-    unsigned every = 1;
     char path[200];
     FILE *f;
     unsigned v;
@@ -188,10 +187,9 @@ unsigned golden_hundreds(const char *name, uint32_t crc[GOLDEN_HUNDREDS])
     (void)snprintf(path, sizeof path, DIR "beyond/%s.inc", name);
     f = fopen(path, "r");
     if (f == NULL) { return 0; }
-    if (fscanf(f, "every %u", &every) != 1) { rewind(f); }
     while (n < GOLDEN_HUNDREDS && fscanf(f, "%x,", &v) == 1) { crc[n++] = v; }
     (void)fclose(f);
-    return n == GOLDEN_HUNDREDS ? every : 0;
+    return n == GOLDEN_HUNDREDS;
 }
 
 const char *golden_trace(const char *name, golden_run *run, uint32_t rate_Hz)
@@ -242,7 +240,7 @@ int golden_quiet(void)
     return 0;
 }
 
-unsigned golden_hundreds(const char *name, uint32_t crc[GOLDEN_HUNDREDS])
+int golden_hundreds(const char *name, uint32_t crc[GOLDEN_HUNDREDS])
 {
     (void)name;
     (void)crc;
