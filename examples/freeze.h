@@ -3,6 +3,7 @@
  * A scene that can be frozen has a file freeze.c, which includes it and lists what its set-up fills; examples/minimal is
  * one. freeze.c beside this header is the program; it has the tables of the structures that scenes so far need:
  * one for another module is a row for each field.
+ * What -D of CFLAGS or SCENE_CFLAGS defines does not reach it: parameters stand in the scene's source, not on the command line.
  */
 #ifndef EXAMPLES_FREEZE_H
 #define EXAMPLES_FREEZE_H
