@@ -144,7 +144,6 @@ void golden_bytes(struct golden *g, uint32_t rate_Hz)
 /* --- record --- */
 
 #define PAYLOAD_B 40
-#define RECORD_B  (PAYLOAD_B + EXH_RECORD_OVERHEAD)
 
 /* Writes a record; its size, 0 if it did not fit. */
 static uint32_t write(uint8_t *buf, uint32_t cap, uint8_t type, uint32_t seq, uint32_t tick,

@@ -31,16 +31,6 @@ def monitor_table(points, end):
     return [(-x, -y) for x, y in reversed(knots)] + [(0, 0)] + knots
 
 
-def falls_at(points, which):
-    """The first point that is not above the one before, or -1."""
-    before = 0
-    for i, p in enumerate(points):
-        if p[which] <= before:
-            return i
-        before = p[which]
-    return -1
-
-
 def knots_bytes(knots):
     t = Table(knots)
     return b"".join(pack("<iiiB", *k, *s) for k, s in zip(knots, t.slope + [(0, 0)]))
