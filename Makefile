@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # exhand: haptic-glove controller library, its ports, its experiments.
 # Variables for you: PORT SCENE FROZEN B O V CC CROSS CFLAGS LDFLAGS DEPS ARGS. `make help` lists the targets.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # The headers' plain comments as Doxygen wants them, line for line. A comment at the margin is of all that follows it until an
 # empty line, and of nothing if that comes at once; one behind code is of that code, the first is the file's; those between
 # "---" begin a section; those in the body of a function are left alone.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "blackbox.h"
 
 #include "exhand/error.h"

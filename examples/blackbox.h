@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Black box: the last seconds of a scene's records in memory, to be read out after a fault as a log
  * that `exhand replay` runs again. Hooks for the loop in the place of the log's, which they call: a
  * scene has one by being linked with this file and given memory.

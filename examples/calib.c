@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "calib.h"
 
 #include "exhand/error.h"

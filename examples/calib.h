@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A scene's calibrations of fingers: images that `calibrate` made (exhand/calibrate.h), checked at
  * set-up against device, day and scales, into the tables that forces go by. A good one vouches for
  * two steps of arming: CALIBRATION, and POLARITY, since no image comes to be before a small pull was

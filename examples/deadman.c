@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "deadman.h"
 
 #include "exhand/fix.h"

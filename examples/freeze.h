@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Freeze: writes down as C what a scene's set-up made, for the compiler that makes the image (frozen.h).
  *
  * A scene that can be frozen has a file freeze.c, which includes it and lists what its set-up fills; examples/minimal is

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Frozen: a scene whose set-up was made with the image, for one period and one width of counters.
  *
  * `make image FROZEN=1000 SCENE=minimal PORT=...` runs the scene's own set-up on the machine that builds and writes down,

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Log: everything that crosses inward, as records (exhand/record.h) to the board's
  * log, so that a run can be replayed bit for bit. Hooks for the loop. */
 #ifndef EXAMPLES_LOG_H

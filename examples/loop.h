@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The loop: waits, reads, ticks, writes, logs. It exists once. */
 #ifndef EXAMPLES_LOOP_H
 #define EXAMPLES_LOOP_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Scene: what the loop, the log and the replay need to know of one.
  *
  * A scene is a pure tick over the library's modules; this descriptor points to

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Check: the test API, written once for every place a test runs.
  *
  * A test file is a list of TEST(name) bodies and one TEST_MAIN("group", name, ...).

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What git knows of this tree, as it is now, elsewhere: for tests that do what a new user does."""
 
 import os

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A board that nobody is at, for programs that run a scene's tick and nothing else. No port's, so that what is counted
  * holds nothing of one. */
 #include "exhand/board.h"

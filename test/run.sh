@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # run.sh BINARY...: runs each test, prints its result and its notes (lines that begin with "  | "),
 # of one that failed everything it said; ends with `N passed, N failed`.
 #

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The one shared object of all tests: runner, printer, generator, and the two
  * hooks that the library asks of a program. */
 #include "check.h"

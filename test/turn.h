@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Turn: sine and cosine of a binary angle to 2^-55, in integers, for oracles.
  *
  * The power series, in q60: it shares nothing with angle.c but that sine and cosine

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Wide: exact 128-bit signed integers from two 64-bit words, for oracles.
  *
  * 32-bit compilers have no __int128, and an oracle must be wider than the code

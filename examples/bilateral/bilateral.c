@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "bilateral.h"
 
 #include "exhand/board.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The full box as a scene (the paper's bilateral controller): glove to fingertips, fingertips over
  * a link to a world, planes back, virtual contacts frozen before they are touched, forces. A
  * finger that is not in use costs nothing. */

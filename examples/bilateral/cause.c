@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Causes of faults that are the box's and not a finger's: glove, link, supply. */
 #include "bilateral.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "bilateral.h"
 
 static uint32_t sensors_of(const struct exh_hand_map *map, unsigned f)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "bilateral.h"
 
 #define MASK ((1 << BILATERAL_FINGERS) - 1)

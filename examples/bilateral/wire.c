@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "bilateral.h"
 
 /* In this many exchanges, until planes come and in a silence, and else: a world that missed one

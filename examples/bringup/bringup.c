@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "bringup.h"
 
 void bringup_start(struct bringup *s)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* First power-up of a box, one finger at a time, as a scene: docs/BRINGUP.md is its manual.
  *
  *   stage 1  no motors, no drives: rest, encoder turned by hand, inputs, D/A into a meter

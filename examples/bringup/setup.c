@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Parameters, set-up, and the one instance of this image. */
 #include "bringup.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The phases of each stage. */
 #include "bringup.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What people read: one line at the end of a phase, and what to do for the next. */
 #include "bringup.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "calibrate.h"
 
 #define ROW_A(id, name, max_mA, dflt_mA, help) \

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Calibration of one finger as a scene: the paper's first step, with a person who
  * hangs masses on. Steps, in this order, each only after the person said that it is
  * prepared (parameter `go`: a new word for each, given while it waits), each bounded in

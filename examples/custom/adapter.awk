@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Plugs a generated controller into the slot: awk -v model=NAME -v rate=HZ -f adapter.awk NAME.h
 #
 # Reads the header that the generator wrote: its entry points and its structs. Understood are

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "custom.h"
 
 const struct exh_signal custom_input_rows[CUSTOM_INPUT_ROWS] = {

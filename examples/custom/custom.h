@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Drop, with a controller of your own in the place of the wall: it asks for a force, and all that stands
  * behind drop's law stands behind it. */
 #ifndef EXAMPLES_CUSTOM_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Slot: a controller of your own in the place of the law, behind init, step and terminate.
  *
  * What goes in is named: each input is a signal of the slot, or any parameter of the scene, and comes

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "slot_real.h"
 
 #if defined __FINITE_MATH_ONLY__ && __FINITE_MATH_ONLY__

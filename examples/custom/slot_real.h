@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What every adapter to a controller in floats needs: raw values to numbers and back. */
 #ifndef EXAMPLES_CUSTOM_SLOT_REAL_H
 #define EXAMPLES_CUSTOM_SLOT_REAL_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "drop.h"
 
 const struct exh_signal drop_own_rows[DROP_OWN_ROWS] = {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The identification controller of the paper (its Fig. 4) as a scene: one motor,
  * a virtual wall at q_lim, everything tunable, everything logged. */
 #ifndef EXAMPLES_DROP_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "cal.h"
 
 #include "exhand/fix.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A calibration of the glove as parameters of a scene, so that a log holds it. */
 #ifndef EXAMPLES_GLOVE_CAL_H
 #define EXAMPLES_GLOVE_CAL_H

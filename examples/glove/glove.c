@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "glove.h"
 
 #include "exhand/board.h"

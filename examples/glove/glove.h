@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The sensing half of the box as a scene: 22 codes to glove angles, to the joints of the robot
  * hand, to five fingertips. No motor runs. */
 #ifndef EXAMPLES_GLOVE_H

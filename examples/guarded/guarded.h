@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The drop scene, guarded: passivity between law and limits. */
 #ifndef EXAMPLES_GUARDED_H
 #define EXAMPLES_GUARDED_H

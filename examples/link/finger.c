@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A firmware-style program over the library alone: its own loop, its own board, one finger and one wall. Nothing of
  * exhand but lib/ is needed. The board here is played: a finger that goes 25 mm out and back in a second, and a
  * motor that follows its code at once. On a real one the three functions of "board" touch registers.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What set-up makes here, for ../freeze.c to write down. */
 #include "minimal.c"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The shortest complete scene: one finger against one virtual wall. */
 #include "../scene.h"
 

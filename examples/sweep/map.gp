@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # The borders of a map over all its rates, in its directory: gnuplot -c .../examples/sweep/map.gp
 set terminal pngcairo size 1600,900 font 'DejaVu Sans,16'
 set output 'map.png'

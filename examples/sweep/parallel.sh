@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # parallel.sh DIR SHARDS HOSTS [OPTION...]: `exhand drop --sweep OPTION... --out DIR` as so many shards by GNU parallel, on HOSTS
 # as its --sshlogin has them ("8/big,4/small"; ":" is this machine). Nothing needs to be there but ssh and a processor of this kind: the
 # program goes along, files of cells come back. Run again after whatever went wrong, it does the shards that failed.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Frames and rays a second on one core, with and without culling, and with the picture drawn. */
 #include "run.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What is to be seen, as a list: made from a world and one exchange without any graphics, so that a
  * test can read it; gl.c paints it. */
 #ifndef WORLD_DRAW_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The virtual hand: a palm of rounded bars, and three capsules a finger. A finger that is not in
  * use is as of glass. */
 #include "draw.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Numbers on the screen: how the link is, and d, q_lim, F of every finger. */
 #include "draw.h"
 

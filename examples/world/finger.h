@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The virtual hand: DLR/HIT Hand II, right, in doubles. {R} is its palm: z along the fingers,
  * x out of the palm (the way the fingers close), y towards the thumb's side; metres.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Parts of the OpenGL picture. */
 #ifndef WORLD_GL_H
 #define WORLD_GL_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Bodies put into one array of corners with their colours, so that a whole picture is a handful of
  * calls: without a graphics card, a call costs as much as a hundred corners. Light is reckoned here, at
  * the corners: sky from above, a lamp, some from the eye, a shine, darker edges. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The forms that all is put together from, as corners and triangles. */
 #include "gl.h"
 

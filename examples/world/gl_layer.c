@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Layers of a picture: what stands still keeps its pixels and depths from picture to picture, and so do
  * the numbers, which nobody reads four hundred times a second. A new picture begins as a copy of the first,
  * where something moved, and ends with a copy of the second. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "link_part.h"
 
 #include "exhand/exhand.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The link to the controller: UDP, one datagram a packet, never waiting. Either end may come, go
  * and come back in any order. */
 #ifndef WORLD_LINK_H

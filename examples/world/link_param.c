@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What the world wants of the controller: asked for until it is answered, and again of a controller that
  * has started anew. */
 #include "link_part.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Between the parts of the link. */
 #ifndef WORLD_LINK_PART_H
 #define WORLD_LINK_PART_H

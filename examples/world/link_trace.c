@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A trace of the controller's outputs, asked for until it is answered, as CSV: a line a frame. */
 #include "link_part.h"
 

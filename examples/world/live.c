@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* In real time. The exchange has a thread of its own, so that a slow picture delays no plane: the
  * picture takes the newest exchange whenever it gets to it, and leaves out the others. */
 #include "run.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* world: the world simulator as a program of its own. */
 #include "run.h"
 

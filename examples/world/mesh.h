@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Triangle meshes: read from OBJ files; rays into them by Embree, which is loaded when the first
  * mesh is, and only then: a world without one neither needs nor loads it. */
 #ifndef WORLD_MESH_H

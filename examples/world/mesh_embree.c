@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Rays into meshes by Embree 3 or 4. Its library has 44 MB: it is loaded when the first mesh is.
  *
  * Embree answers in floats which triangle is hit; where, is then computed from the triangle in

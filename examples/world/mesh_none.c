@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Built without Embree: meshes can be read and drawn, but no ray can be cast into them. */
 #include "mesh.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* How something moves: an offset (metres) and a turning about its own origin (roll, pitch, yaw)
  * on top of where it stands, as functions of time alone. */
 #ifndef WORLD_MOTION_H

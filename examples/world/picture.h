@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A window (or, headless, none) that a draw list is painted in: SDL2 and OpenGL 2.1. Built without
  * them, picture_open() says which packages are missing, and all else goes on. */
 #ifndef WORLD_PICTURE_H

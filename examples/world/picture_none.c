@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Built without SDL2 and OpenGL. */
 #include "picture.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Which objects the hand can reach. One that can't sleeps until the time at which, at the
  * highest speed of both, it could at the earliest; sleepers stand in a heap, the one that wakes first
  * on top, and a frame looks at that one only. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "rpy.h"
 
 #include "sim/lag.h"

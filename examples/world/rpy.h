@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Turning about fixed axes: first roll about x, then pitch about y, then yaw about z. */
 #ifndef WORLD_RPY_H
 #define WORLD_RPY_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What a run of the program was asked to do, and the three ways to do it. */
 #ifndef WORLD_RUN_H
 #define WORLD_RUN_H

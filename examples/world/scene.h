@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A scene: what a world is made of, read from a text (scenes/README.md tells the format). */
 #ifndef WORLD_SCENE_H
 #define WORLD_SCENE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "scene_part.h"
 
 #include "rpy.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Parts of the scene reader: struct reading goes from statement to statement. */
 #ifndef WORLD_SCENE_PART_H
 #define WORLD_SCENE_PART_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Shapes and the ray: where does a ray enter one of many bodies?
  *
  * All bodies are convex but the mesh. A ray enters a body where it passes its surface inwards,

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "solo.h"
 
 #include "rpy.h"

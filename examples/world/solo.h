@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A hand for a world without a controller: fingers bend towards where keys or a script want them,
  * and stop at what they touch. Its forces are an illustration: they grow with how much further
  * the finger wants. */

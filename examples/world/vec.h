@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Vectors, rotations and poses of the world simulator: doubles, + - x / and square roots only,
  * so that a world gives the same bits on every machine. */
 #ifndef WORLD_VEC_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The eye, turned about a point. */
 #ifndef WORLD_VIEW_H
 #define WORLD_VIEW_H

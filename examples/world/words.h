@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A line of a scene as words, and its "key value" pairs by a table, with errors that say where,
  * what, and what to do. */
 #ifndef WORLD_WORDS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The world simulator's core: no clock, no socket, no graphics. A frame answers the hand's joints
  * with the planes its fingers are about to touch.
  *

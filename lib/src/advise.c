@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Set-up of precontact by figures: apart from it, so that an image that asks nobody links
  * nothing of it. */
 #include "exhand/precontact.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "exhand/bytes.h"
 
 #include "exhand/fix.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "exhand/contact.h"
 
 #include "exhand/fix.h"

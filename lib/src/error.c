@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "exhand/error.h"
 
 const char *exh_error_text(int code)

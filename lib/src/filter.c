@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "exhand/filter.h"
 
 #include "exhand/error.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The high kinds: cut-off up to half the rate. Fractions of 31 bits times 64-bit states. */
 #include "filter_tick.h"
 

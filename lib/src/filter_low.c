@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The low kinds: cut-off well below the rate, where the state creeps and the cost counts.
  * Words are cut so that a 32-bit CPU multiplies 32 by 32 bits only and shifts once. */
 #include "filter_tick.h"

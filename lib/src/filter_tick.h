@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The low-pass of each kind, one sample of n channels. Files of their own, since compiled
  * into one function they take each other's registers. Not part of the library's interface. */
 #ifndef EXH_FILTER_TICK_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "exhand/gains.h"
 
 #include "exhand/contact.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Calibration of a user's glove: what is accepted, its image, and one to begin with. */
 #include "exhand/glove.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A glove's calibration from poses: least squares, in integers.
  *
  * A sensor's angle is linear in its code and, for an abduction, in the angles of two

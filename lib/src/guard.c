@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "exhand/guard.h"
 
 #include "exhand/bytes.h"

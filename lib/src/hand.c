@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "exhand/hand.h"
 
 #include "exhand/angle.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The DLR/HIT Hand II, right: its bones, and how the glove's sensors move it (glove.h
  * lends their names, no more). */
 #include "exhand/hand.h"

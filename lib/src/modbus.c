@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* One request in, one answer out. Checked in the order of the specification: function, then counts
  * and lengths, then addresses, then values. */
 #include "exhand/modbus.h"

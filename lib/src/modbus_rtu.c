@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "exhand/modbus.h"
 
 #include "exhand/error.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "exhand/signal.h"
 
 #include "exhand/error.h"

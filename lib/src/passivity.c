@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "exhand/passivity.h"
 
 #include "exhand/error.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "exhand/precontact.h"
 
 #include "exhand/error.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "exhand/quad.h"
 
 #include "exhand/error.h"

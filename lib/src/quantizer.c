@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "exhand/quantizer.h"
 
 #include "exhand/error.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The quantizer as code in place, for quantizer.c and for glove.c, which needs 22 at once. Not part of the library's
  * interface. */
 #ifndef EXH_QUANTIZER_TICK_H

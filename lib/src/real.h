@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Positive real numbers for set-ups: 63 significant bits and an exponent, in
  * integers. Slow (a division is 63 steps) and never called in a tick. Not part
  * of the library's interface. */

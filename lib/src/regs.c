@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "regs.h"
 
 #include "exhand/error.h"

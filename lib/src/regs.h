@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What the two files of the register map share; not part of the library's interface. */
 #ifndef EXH_REGS_PRIVATE_H
 #define EXH_REGS_PRIVATE_H

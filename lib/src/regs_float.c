@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* binary32 and back, by integers: a register's mirror. */
 #include "exhand/fix.h"
 #include "exhand/error.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The map in words, for people and documents; an image that prints none links none. */
 #include "exhand/modbus.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The registers that change something: what is staged, what is commanded. */
 #include "regs.h"
 

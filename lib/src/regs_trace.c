@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The registers of the trace. */
 #include "regs.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "exhand/safety.h"
 
 #include "exhand/error.h"

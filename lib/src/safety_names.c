@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "exhand/safety.h"
 
 static const char *const states[EXH_STATES] = {"off", "arm", "run", "limit", "release", "fault"};

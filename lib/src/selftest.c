@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "exhand/angle.h"
 #include "exhand/bytes.h"
 #include "exhand/filter.h"

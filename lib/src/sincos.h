@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Sine and cosine as code in place, for angle.c and for hand.c, which needs three at once. */
 #ifndef EXHAND_SINCOS_H
 #define EXHAND_SINCOS_H

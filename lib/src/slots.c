@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "exhand/slots.h"
 
 #include "exhand/bytes.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "exhand/trace.h"
 
 #include "exhand/error.h"

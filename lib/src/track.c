@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "exhand/drive.h"
 
 #include "exhand/error.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "exhand/watch.h"
 
 #include "exhand/error.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "exhand/wire.h"
 
 #include "exhand/error.h"

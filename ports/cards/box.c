@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Wiring, opening and the tick of the box. What is refused of a configuration is config.c. */
 #include "box.h"
 

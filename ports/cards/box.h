@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The box: the card half of the functions of exhand/board.h, the same on every port that has the
  * cards, over the port accesses of io.h.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What may stand in the configuration of a box. */
 #include "box.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What a card can do wrong, and where it was when it did. */
 #ifndef CARDS_FAULT_H
 #define CARDS_FAULT_H

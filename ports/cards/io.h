@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Port input and output, as the drivers of the cards need it: five functions that exist once in
  * a program, chosen by what is linked. On PC/104 they are the instructions; elsewhere whatever
  * stands for the cards answers. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Diamond MM-32X-AT: the glove's voltages, 16 bits, +-10 V, one scan of all channels through the
  * FIFO per software start. Sequences and sources: docs/CARDS.md. */
 #ifndef CARDS_MM32XAT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What a tick needs of the card. Opening it is s526_open.c. */
 #include "s526_reg.h"
 #include "wait.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Sensoray 526: four 24-bit quadrature counters, eight A/D and four D/A channels of 16 bits,
  * eight digital lines. Sequences and sources: docs/CARDS.md.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Finding, testing and calibrating the card. */
 #include "s526_reg.h"
 #include "wait.h"

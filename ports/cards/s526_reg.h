@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Registers of the Sensoray 526: offsets from its base, all of 16 bits. */
 #ifndef CARDS_S526_REG_H
 #define CARDS_S526_REG_H

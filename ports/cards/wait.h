@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A wait that ends: by time, and by polls where time stands still. */
 #ifndef CARDS_WAIT_H
 #define CARDS_WAIT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What a unit has not: model exchange, scheduled execution, clocks, derivatives, variables of other types. Importers
  * ask for all names at once, so all are there, and say no. */
 #include "fmi3Functions.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The controller as a unit: a scene (examples/), its tick and its signal table. */
 #include "unit.h"
 

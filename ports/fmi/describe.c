@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Prints modelDescription.xml, or with "build" buildDescription.xml, of the unit it is linked with: describe [build SOURCE...] */
 #include "unit.h"
 

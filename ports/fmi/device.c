@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The simulated device as a unit: what ports/posix/board.c does around sim/mass, a tick at a time. */
 #include "unit.h"
 

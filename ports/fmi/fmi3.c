@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* FMI 3.0, Co-Simulation, over a unit. One instance a process: a scene is one static instance. */
 #include "unit.h"
 

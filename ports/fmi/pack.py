@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Packs a source FMU: pack.py FMU DESCRIBE FOLDER=PREFIX... -- SOURCE... : what DESCRIBE prints, and the sources in their
 folders. Files of each FOLDER go to sources/PREFIX (headers all, of C files those named). The same bytes every time."""
 import pathlib

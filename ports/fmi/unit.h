@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A unit: what of ours stands behind the functions of FMI 3.0, the controller or the simulated device. One an FMU.
  *
  * Its variables are a list, made from the tables that everything else is made from; the model description is printed

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The board's functions. Ticks are SysTick's, counted in its interrupt; time within a tick is the
  * board's timer 0, which counts the processor's clock. */
 #include "box.h"

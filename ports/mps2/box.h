@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The box: what a port that has drives fills with its drivers. Here a loop-back. */
 #ifndef MPS2_BOX_H
 #define MPS2_BOX_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The four string functions that library and compiler call. The Makefile's flags would let the
  * compiler see memcpy in a loop of memcpy and call itself: not in this file. */
 #include <stddef.h>

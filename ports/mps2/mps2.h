@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Inside of this port: what its files need from each other. */
 #ifndef MPS2_H
 #define MPS2_H

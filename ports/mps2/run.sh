@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # Runs an image under QEMU: run.sh IMAGE
 # Exit status: 0 the image said "done", 1 it did not (or took too long), 2 bad usage, 3 no QEMU,
 # 5 processor exception.

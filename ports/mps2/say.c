@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Text over UART 0 of the board, and the way out of an emulator. */
 #include "mps2.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Start: vectors, .data, .bss, main(). What goes wrong leads to mps2_fault(). */
 #include "mps2.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The board's functions: the box (ports/cards), the timer, the two ways out for records. */
 #include "pc104.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Which box the image drives: cards, where they are, what of them is not certain. */
 #ifndef PC104_BOX_H
 #define PC104_BOX_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* CARDS=none: constants instead of cards, for a smoke image that runs on any emulator. Encoders
  * and monitors 0, glove codes 0, every input healthy; a hand takes hold of the dead-man switch
  * after a while. */

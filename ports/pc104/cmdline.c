@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "pc104.h"
 
 #include <stddef.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Start: multiboot 1 header, flat segments, stack, zeroed .bss, main().
  *
  * The loader leaves 32-bit protected mode without paging, interrupts off; neither

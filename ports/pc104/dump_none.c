@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A scene without a black box. */
 #include "pc104.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The FPU, for a scene that reckons in floats (SCENE_FLOAT in its scene.mk). It is set up once and never saved: no
  * interrupt comes near it, as all but that scene's controller is compiled for general registers alone. */
 #include "pc104.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Memory: all of it at its own address; nothing at page 0 and below the stack, code and constants
  * read-only. What runs over the end of the stack meets the guard page, where the processor
  * cannot even push the fault: that makes a double fault, which has a task and a stack of its own. */

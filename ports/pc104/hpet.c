@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* HPET in legacy replacement mode: timer 0 takes the 8254's place on IRQ 0. Registers are read
  * and written 32 bits at a time, so the counter is used modulo 2^32. */
 #include "pc104.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Port input and output: the instructions, nothing more. */
 #ifndef PC104_IO_H
 #define PC104_IO_H

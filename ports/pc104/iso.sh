@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # A bootable ISO of an image: iso.sh IMAGE ISO [OPTION...]; GRUB 2 on it starts the image with
 # these options after two seconds, in which others can be typed (e).
 # Environment: MODULES, files that GRUB brings along, blanks between: calibrations of fingers.

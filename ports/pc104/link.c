@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The link of a scene and a way out for its log, as UDP over the network card. Without ip= there
  * is none, and none is looked for. Frames are taken once a tick, behind its outputs, and no more
  * than IN_A_TICK of them: what a flood leaves is dropped by the card. */

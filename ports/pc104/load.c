@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What a tick costs, by the timer that makes the ticks: nothing that a law or a digest sees. And
  * the policy of the paper's xPC Target for ticks that come too early: so many in all, not counting
  * the first ones, then safe. (The scene's own safety is stricter: one in 64, EXH_FAULT_OVERRUN.) */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* main() of an image: banner, options, dry ticks, the loop with its hooks. */
 #include "pc104.h"
 

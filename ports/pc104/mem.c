@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The four string functions that the library and the compiler may call. The string
  * instructions keep the compiler from turning a loop back into a call of itself. */
 #include <stddef.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The scene's registers on COM2, by the library's slave: modbus=com2,ADDRESS,BAUD[,remote]. Polled once a tick, behind the
  * outputs, a bounded number of characters at a time; nothing waits. Without the option the UART is not touched.
  *

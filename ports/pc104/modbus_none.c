@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* An image without Modbus: MODBUS=no. */
 #include "pc104.h"
 

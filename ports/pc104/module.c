@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Calibrations of fingers as multiboot modules, beside the image: a loader puts files into memory
  * that it was told of (GRUB: module; QEMU: -initrd). They are copied, so that nothing else has to
  * stay where it is. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Ethernet, ARP, IPv4 and UDP: as much as one link between two machines needs, and no more. One
  * peer on the same wire, no routes, no fragments, no options, no allocation, no clock of its own.
  * Portable: knows no card. What it is given may be anything; what is not wanted is dropped and

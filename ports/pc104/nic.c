@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Rings of descriptors in our memory, legacy format: who owns a descriptor stands in it, so that a
  * tick reads no register of the card (a microsecond each), and writes one for all that came and one
  * for each frame that goes. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Intel 82574L (8086:10D3): frames in and out, polled. It never interrupts. */
 #ifndef PC104_NIC_H
 #define PC104_NIC_H

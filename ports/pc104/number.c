@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Decimal text to raw values and back, in integers: an image and a host program that are told
  * the same text take the same bits. */
 #include "pc104.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The boot command line: name=value, by the rows below, the box's (box.c) and the scene's. A
  * word that is none of them, or a value outside its range, stops the image before anything moves. */
 #include "pc104.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Inside of the PC/104 port: what its files need from each other. */
 #ifndef PC104_H
 #define PC104_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PCI configuration space, by the two ports of every PC. */
 #ifndef PC104_PCI_H
 #define PC104_PCI_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* 8254, channel 0, mode 2: one interrupt every `divisor` counts, reloaded by the hardware, so
  * that periods do not drift whatever the software does. */
 #include "pc104.h"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 PORT_DESC     := bare-metal 32-bit x86 (i686), multiboot; CARDS=real, or none for a smoke image
 CROSS         ?= i686-linux-gnu-
 # real: the drivers over port instructions. none: constants instead of cards.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What the drivers of the cards stand on: the instructions. (Their clock is in timer.c.) */
 #include "io.h"
 

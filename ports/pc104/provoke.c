@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Failures on request (provoke=NAME provoke_at=TICK): commissioning shows with them, on the real
  * box, that each ends with the outputs safe. */
 #include "pc104.h"

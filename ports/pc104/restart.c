@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Did the run before this boot end? A mark in memory is set while ticks run and taken away when
  * they end in order; a reset by the watchdog, or by whoever found the box crashed, leaves it. Memory
  * outlives a reset and no power-off; some firmware clears it, and then this boot looks like the first

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # Runs an image under QEMU: run.sh IMAGE [OPTION...], e.g. run.sh build/pc104/minimal-none.elf ticks=5000
 # IMAGE: an ELF, or an .iso that GRUB on it boots (its options are inside). An ELF that is told no
 # ticks= runs 1000, so that it ends.

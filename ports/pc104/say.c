@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "pc104.h"
 
 void pc104_say(const char *text)

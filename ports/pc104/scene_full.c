@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A scene with parameters and records: options by the names of its table, log to a serial line or
  * to the port that emulators listen to. */
 #include "pc104.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A scene of constants, without records: SCENE_ROM in its scene.mk. */
 #include "pc104.h"
 

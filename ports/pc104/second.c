@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The local APIC's timer: another clock than the one that makes the ticks, in the processor
  * itself. Armed while the loop sleeps; it fires only when no tick came for several periods. Its
  * frequency is known to no register, so it is taken from the ticks' clock, and only roughly. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The log as datagrams, pieces of a stream of bytes: whoever listens sees what is missing by its
  * place. Nothing is sent again.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Ticks from the HPET, or from the 8254 where there is none or where it is asked for.
  *
  * With the HPET a tick is due when the main counter has passed its instant; the interrupt only

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A 16550, by its registers from its base. */
 #ifndef PC104_UART_H
 #define PC104_UART_H

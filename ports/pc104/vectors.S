@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Entries of the interrupt table. They touch no C until something is wrong. */
 
     .set APIC_END, 0xFEE000B0

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The eleven functions over a simulated device, single-threaded, in virtual time:
  * exh_board_wait() advances the plant to the next tick, hitting every event in
  * between exactly (tick, D/A output, servo sample, what the experimenter does). */

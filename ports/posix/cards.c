@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "cards.h"
 
 #include "emu/bus.h"

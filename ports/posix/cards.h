@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Cards: between the board's functions and the simulated device, the drivers of ports/cards and
  * the emulated cards. The device shows its codes on the cards' connectors as voltages and counts,
  * the drivers read them from registers; what they put out comes back the same way. */

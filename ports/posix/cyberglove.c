@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "cyberglove.h"
 
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* CyberGlove: what a stock glove of 22 sensors sends on its serial line, byte by byte, into frames.
  *
  * A frame: 'S' (streamed) or 'G' (asked for), 22 samples 1 .. 255, perhaps a status byte, perhaps 'e'

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "glove_tty.h"
 
 #include <errno.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Glove tty: a stock glove (cyberglove.h) on a serial line of this machine, 115200 baud, 8 bits, no
  * parity. It is told to stop, filter nothing, send its status, and stream at a rate; each command
  * waits for the answer to the one before, or a quarter of a second. After a second without a frame

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What lines mean: contacts that are believed, outputs that go low when in doubt. */
 #include "gpio.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Lines of a Linux GPIO chip: the contacts of a person, and what a watchdog relay and a drive's
  * enable hang on. Wiring and what this is not for: docs/GPIO.md. */
 #ifndef POSIX_GPIO_H

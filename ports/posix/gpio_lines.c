@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What is the same by every version of libgpiod. */
 #include "gpio_lines.h"
 

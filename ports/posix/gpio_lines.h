@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Lines of one GPIO chip, as a version of libgpiod gives them: gpio_v1.c, gpio_v2.c, or gpio_none.c
  * where there is none. One of them is linked, and gpio_lines.c with it; what lines mean is gpio.c's.
  * Levels, never edges. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Without libgpiod: whoever asks for lines is told. */
 #include "gpio_lines.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The text after --gpio. */
 #include "gpio.h"
 

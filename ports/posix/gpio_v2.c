@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Lines by libgpiod 2 (Debian 13): a request for each direction, one ioctl() for all of it. */
 #include "gpio_lines.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Line: what the board's link functions lead to: two impaired ways (sim/link.h), and at their end
  * a peer in this process or a UDP socket. */
 #ifndef LINE_H

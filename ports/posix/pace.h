@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The wall clock that a paced run follows: when a tick is due, and how many went by. */
 #ifndef POSIX_PACE_H
 #define POSIX_PACE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The POSIX port's own controls: what a program may set before the loop starts and
  * ask while it runs. The port simulates the device in virtual time. */
 #ifndef POSIX_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "udp.h"
 
 #include <arpa/inet.h>

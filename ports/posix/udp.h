@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* UDP over IPv4, one peer, never waiting. */
 #ifndef UDP_H
 #define UDP_H

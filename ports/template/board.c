@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Template board: compiles, does nothing, refuses to run. Copy the folder, then
  * fill one function after the other; the test in test/board says when it is done.
  *

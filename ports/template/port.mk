@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Variables a port may set; only PORT_DESC and PORT_SRC are needed on a hosted compiler.
 PORT_DESC := does nothing; the start of every new port
 PORT_SRC  := ports/template/board.c

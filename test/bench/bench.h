@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Bench: what each kernel of the tick costs and how wrong it is.
  *
  * A kernel is one row of a table. Its instructions are counted by callgrind, which

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # What each kernel costs and how wrong it is: bench.sh [--update]
 #
 # Builds nothing: runs kernels, velocity and speed from $B/bench, the first and the last also

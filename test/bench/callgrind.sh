@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # What bench.sh and peers.sh share; to be sourced. Needs $tmp, a directory for profiles.
 
 # profile FUNCTION COMMAND...: callgrind collects inside FUNCTION only

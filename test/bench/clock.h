@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What an op takes on this machine; needs _POSIX_C_SOURCE 200809L. */
 #ifndef BENCH_CLOCK_H
 #define BENCH_CLOCK_H

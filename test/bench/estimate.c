@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The velocity estimators: error of the arithmetic alone, against the same recursion
  * in long double with exact coefficients. What quantised positions do to an estimator is
  * another question: velocity.c. */

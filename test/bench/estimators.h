@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* One of each velocity estimator, behind one interface: start, 0 or why not, and step. arg:
  * window p, of 2^p ticks; pole tau and track T_f in us; foaw the longest window in ticks. */
 #ifndef BENCH_ESTIMATORS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The estimators of estimators.h in plain floating point, behind the same interface. */
 #ifndef BENCH_ESTIMATORS_PLAIN_H
 #define BENCH_ESTIMATORS_PLAIN_H

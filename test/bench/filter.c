@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The glove's 22 channels: low-pass and quantizer. */
 #include "bench.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The path from position to D/A code, module by module. Where a module has a state,
  * one step is judged from the state it has: errors do not hide in a history. */
 #include "force.h"

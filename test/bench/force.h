@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Growth of the laws' errors with time: the reason for a law without a memory. */
 #ifndef BENCH_FORCE_H
 #define BENCH_FORCE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Glove: a frame of 22 codes to 22 angles. */
 #include "bench.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Angles, joints, fingertips: long double kinematics of the same integer angles and bones. */
 #include "bench.h"
 

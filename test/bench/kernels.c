@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* kernels errors | count | anchors | build: the tables of the bench, as CSV for bench.sh.
  *
  * count runs every op BENCH_OPS times, the empty one first, and prints the order: the

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "law.h"
 
 double law_double(const struct law_double *p, double q_m, double v_mps)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The contact law as one would write it with a floating-point unit: contact test, F0,
  * clamp. No dead band, no hysteresis, no ledger, no slew. To have a ratio in one run. */
 #ifndef BENCH_LAW_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The minimal scene, with its constants in sight: they are private to its file, and a
  * copy of them here would go stale. */
 #include "minimal/minimal.c"

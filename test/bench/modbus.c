@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Modbus: the longest reads and writes of a box with 420 parameters and 140 outputs, from the bytes of a
  * request to those of its answer; instructions per register. And the binary32 mirror. */
 #include "bench.h"

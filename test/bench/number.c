@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Arithmetic, bytes, counts, tables: exact wide integers are the reference. */
 #include "bench.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Parameters: what exh_params_apply() costs in a tick of each class, and exh_gains_step() behind it. */
 #include "bench.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Passivity: one finger's tick, and its limit against the exact one. */
 #include "path.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The drop scene's configuration at 2 kHz with gains that are no powers of two, and a
  * movement through its wall: what the force path and the ticks are fed with. */
 #ifndef BENCH_PATH_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* peers errors | sines | count | time | ram: ours and others' low-passes and sines in one program,
  * on the same inputs; CSV for peers.sh.
  *

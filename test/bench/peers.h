@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Peers: low-passes and sines of others, run beside ours on the same inputs. */
 #ifndef BENCH_PEERS_H
 #define BENCH_PEERS_H

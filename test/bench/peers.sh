@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # Low-passes and sines of others beside ours: peers.sh fetch | fixmath | rust | table
 #
 # fetch: CMSIS-DSP's C sources, as its package on PyPI holds them, into $B/peers, checked by

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* CMSIS-DSP's biquads and sines by its plain C paths, as its functions are called. */
 #include "peers.h"
 

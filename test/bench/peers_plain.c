@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Ours, and what anybody would write in floating point. */
 #include "peers.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The crate idsp's filters and sine (peers_rust/), built by cargo with its own optimisation. */
 #include "peers.h"
 

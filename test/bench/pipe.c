@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The scenes in double, in float and in long double. */
 #include "pipe.h"
 

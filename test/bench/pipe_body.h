@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Included with T (a type), N(name) (its functions' names), SIN, COS and FLOOR. */
 
 /* --- a finger --- */

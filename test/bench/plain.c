@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The kernels in double and in float, apart from whoever calls them. */
 #include "plain.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The kernels as anybody would write them in floating point; plain_body.h has them, once a type. */
 #ifndef BENCH_PLAIN_H
 #define BENCH_PLAIN_H

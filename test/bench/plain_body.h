@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Included with T (a type), N(name) (its functions' names), SIN and COS. */
 
 /* y at x: the knots are evenly spaced or not, the last one below x is looked for. */

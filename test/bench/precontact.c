@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Pre-contact and wire: five fingers that come down, touch and leave, each at its own phase.
  * The same in double, as one would write it: distance and freeze rule, without hysteresis,
  * ages, births or counts. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Whole ticks: from raw encoder count to D/A code, against the same chain in long
  * double. The error is in codes, where half a code is the converter's own. */
 #include "path.h"

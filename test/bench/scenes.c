@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* scenes errors SECONDS | count | time: whole ticks of the scenes as shipped, beside the same in double and float.
  *
  * errors: scene, rate, way, quantity, unit, largest and rms error against long double, at nine rates, each for so many

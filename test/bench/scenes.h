@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The scenes as they are shipped beside the same in double, float and long double, at any rate. */
 #ifndef BENCH_SCENES_H
 #define BENCH_SCENES_H

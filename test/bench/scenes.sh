@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # Whole ticks of the scenes, as CSV: scenes.sh
 #
 # Runs $B/bench/scenes and, where built, scenes-i686; writes $B/bench/scenes.csv: scene, rate, way (fixed, double, float),

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The glove, and the full box: glove to fingertips, planes of a link, five walls. The glove's quantizer has 24 bits
  * here, and is the integers' alone: one of fewer bits would hide what arithmetic does. */
 #include "scenes.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The minimal scene with its constants and state in sight. */
 #include "minimal/minimal.c"
 

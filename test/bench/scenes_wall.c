@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* One finger and a wall: minimal, drop, guarded. */
 #include "scenes.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* How much faster than the clock the simulation runs: the paper's experiment, ten falls
  * at 2 kHz, through the port and the loop that firmware runs. Usage: speed [MAX_TICKS]. */
 #include "posix.h"

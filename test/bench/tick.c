@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "tick.h"
 
 #define MM(x) EXH_Q(x, 1000, EXH_Q_POS)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The integer kernels of the paper's controller, one tick of five fingers: 22 low-passes, fingertips, distances to
  * five planes with the freeze rule, contact laws. What no converter or switch is part of. */
 #ifndef BENCH_TICK_H

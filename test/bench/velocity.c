@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Velocity estimators on a quantised position, at 2 kHz: noise at constant speed, lag
  * under constant acceleration, error on a sine. One CSV line an estimator and encoder;
  * the figures of theory come with it where there are any. bench.sh adds instructions.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* work errors | count | time: kernels of ours and of others, as CSV for the report.
  *
  * errors: kernel, name, kind, unit, "all" or the seconds of 2 kHz ticks at whose end it was, the

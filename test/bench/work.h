@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Work: error and cost of ours, of others' integer code and of plain floating point, of one
  * kernel each on the same inputs, for the report's diagrams.
  */

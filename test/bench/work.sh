@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # Kernels of ours, of others and in plain floating point, as CSV: work.sh
 #
 # Runs $B/bench/work and, where built, work-i686; writes $B/bench/work.csv: kernel, name, kind, unit, when (all, or seconds of

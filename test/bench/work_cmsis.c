@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* CMSIS-DSP by its plain C paths: its controllers as a law without integral, its interpolation, its sines in
  * the same fingertips. */
 #include "work.h"

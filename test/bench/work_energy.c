@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The energy that one contact of an hour has taken up: what a passivity controller judges by. */
 #include "plain.h"
 #include "path.h"

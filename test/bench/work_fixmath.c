@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* libfixmath by hand into the rules that the plain ones have: its products, sines and interpolation. Lengths are in
  * millimetres and speeds in decimetres a second: the units in which 16 fraction bits lose least. */
 #include "peers_fixmath.h"

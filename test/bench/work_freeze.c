@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Distance to a plane and the freeze rule, five fingers. */
 #include "plain.h"
 #include "work.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Fingertips of five fingers from their joints. */
 #include "plain.h"
 #include "work.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Velocity in plain floating point: what it costs. Its noise and lag are in the velocity bench. */
 #include "estimators_plain.h"
 #include "work.h"

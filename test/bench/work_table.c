@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A conversion table of 16 knots, as force to current: linear between them. */
 #include "plain.h"
 #include "work.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Between the contract test and who runs it. */
 #ifndef TEST_CONTRACT_H
 #define TEST_CONTRACT_H

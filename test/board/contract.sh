@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # The port contract, and fault handlers, on images under QEMU: contract.sh DIR
 # DIR holds the images of `make contract`, PORT/SCENE.elf. In virtual time, the same on every machine.
 # The POSIX port runs the same checks in `make test`, pc104 with its cards in `make hil`.

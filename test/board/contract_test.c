@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The contract of a port, against exhand/board.h alone: link it to any port and run it
  * there. Where drives are connected, finger 0 is told 0.5 A for 50 ms and the samples
  * behind them, some times with its drive not enabled.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* main() of an image of the contract test. It ends in exh_board_halt() with current on: whoever
  * runs it sees that none is left. */
 #include "contract.h"

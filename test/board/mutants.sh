@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # Breaks the small port's promises one by one: the contract must tell. mutants.sh DIR
 # DIR holds the objects of `make image PORT=mps2 SCENE=contract`. Each line below is a file of
 # ports/mps2, a sed expression, and the promise of board.h that it breaks.

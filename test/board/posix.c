@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The contract on the POSIX port: directly, and through drivers and emulated cards, at several
  * rates; a process each, since a board is set up once a run. Then how exh_board_halt() ends. */
 #include "contract.h"

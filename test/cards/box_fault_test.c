@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The box against a scripted bus: faults, safe outputs from anywhere, opening and its words. */
 #include "check.h"
 #include "rig.h"

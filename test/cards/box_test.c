@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The box against a scripted bus: accesses of a tick, wiring, the glove. */
 #include "check.h"
 #include "rig.h"

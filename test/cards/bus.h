@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A scripted bus: what a driver writes is taken down, what it reads is what the script says. As
  * much of the cards as the drivers' sequences touch and no more; the emulators, which know the
  * cards and not the drivers, are elsewhere. */

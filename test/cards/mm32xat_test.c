@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The driver of the MM-32X-AT against a scripted bus. */
 #include "bus.h"
 #include "check.h"

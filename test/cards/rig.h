@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The box on the scripted bus, for all its tests. */
 #ifndef TEST_CARDS_RIG_H
 #define TEST_CARDS_RIG_H

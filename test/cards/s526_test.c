@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The driver of the Sensoray 526 against a scripted bus: EEPROM, calibration, self-test. */
 #include "bus.h"
 #include "check.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A tick with fewer accesses: monitors, high words and quadrature errors in turn, output pins when
  * they change, a glove's scan in parts. What it may not cost: a count, a code, a fault. */
 #include "rig.h"

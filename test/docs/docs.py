@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """docs.py EXHAND WORLD: what the documents of the tree name is there. In code, that is between backticks or in a block: every make
 target, variable, port and scene, every command of these programs and every option that stands behind one, options alone (some
 program or script has them), names of functions, signals and tests; anywhere: files, documents and links. And the other way: every

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The bus, its time, and every misbehaviour at the registers: what a driver can see of it. */
 #include "rig.h"
 

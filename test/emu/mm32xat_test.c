@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The Diamond MM-32X-AT: its detection to the byte, scans, FIFO, timer, D/A, pages. What is
  * quoted is the fact that is checked. */
 #include "rig.h"

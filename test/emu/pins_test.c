@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Codes and voltages: both ways, every code. */
 #include "rig.h"
 

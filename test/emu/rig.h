@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A box on the bus, and accesses as the sources of the facts write them. */
 #ifndef TEST_EMU_RIG_H
 #define TEST_EMU_RIG_H

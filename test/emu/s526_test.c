@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The Sensoray 526: sequences A to G as their sources write them, and the traps beside them.
  * What is quoted is the fact that is checked. */
 #include "rig.h"

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """The FMUs against the native run: fmi.py FMU-FOLDER NATIVE FALLS RATE...: FMPy validates and compiles them and runs them alone
 and together; fmuloader, another importer, runs them together, too. Every output of every step is the native one, bit for bit. A third, ecos, where
 it can be had."""

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # fmi.sh RATE...: FMPy and fmuloader at the FMUs, in an environment of their own (build/fmi/venv). B: the build.
 # FALLS: of a run (1). Exit status: 0, 1 a difference, 3 what is missing.
 set -eu

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The run that FMUs must repeat, as text: native RATE_HZ FALLS SEED: loop, board and scene drop as they are shipped.
  *
  *   param NAME RAW FRAC      each parameter as set-up took it

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # root.sh make RELEASE ROOT [PACKAGE...]: a bare Debian of that name (bookworm, trixie, sid, ...) in ROOT, with those packages and
 #     the way out that this machine has. ROOT must be new, empty or made by an earlier run, which is removed first.
 # root.sh copy ROOT NEW: such a root once more; NEW as ROOT above.

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """ways.py DIR [--release NAME] [--only WORD] [--update]: each way of examples/link/README.md on a Debian that holds nothing, of which
 DIR gets one and then a copy a way: its lines as they stand, those that install packages too. Behind `git clone` stands a clone
 of what is committed here. Prints a table, a row a way, and with --update puts it into that file:

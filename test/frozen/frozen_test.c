@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* examples/frozen.h: constants that are those of set-up, no other board, and the same ticks. */
 #include "ride.h"
 #include "side.h"

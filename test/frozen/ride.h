@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Inputs that take scene minimal through all its states: armed with the string at rest, through the wall and back while it
  * runs, and then something happens, another thing each time; a round ends when it was let go or latched. */
 #ifndef TEST_FROZEN_RIDE_H

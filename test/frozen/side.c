@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The scene with its parts in sight: SIDE names the copy. */
 #define JOIN(a, b)        a##b
 #define NAMED(a, b)       JOIN(a, b)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Scene minimal once with its own set-up and once for each rate it was frozen for: what a test sees of either. */
 #ifndef TEST_FROZEN_SIDE_H
 #define TEST_FROZEN_SIDE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Runs LLVMFuzzerTestOneInput() where there is no libFuzzer, and makes its first inputs.
  *
  *   driver --write DIR              the first inputs, one file each

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What the library's checks call, where a fuzzer looks on: an assertion ends it, saturation is none
  * of its business. */
 #ifndef TEST_FUZZ_FAILS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Whatever a Modbus client or a serial line brings: the slave, fed with anything.
  *
  * An input is a row of requests, each behind two bytes: what is put right about it, and its length.

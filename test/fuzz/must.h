@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What must hold whatever comes in: a fuzzer sees an abort, people the line. */
 #ifndef TEST_FUZZ_MUST_H
 #define TEST_FUZZ_MUST_H

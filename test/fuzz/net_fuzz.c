@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Whatever a network card brings: the image's receiving end, fed with anything.
  *
  * An input is a row of frames, each behind three bytes: what is put right about it, and its length

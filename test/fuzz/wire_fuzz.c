@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Whatever a socket brings: a controller's receiving end, fed with anything.
  *
  * An input is a row of datagrams, each behind three bytes: what is put right about it before it

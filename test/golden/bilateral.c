@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The scene bilateral: one tick from codes and packets to D/A codes and packets. */
 #include "modules.h"
 

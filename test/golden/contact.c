@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* contact: the law of one finger. */
 #include "modules.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What the generator found: the digest of each module at 1, 2, … 2000 Hz. */
 #include "modules.h"
 

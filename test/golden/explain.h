@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Explain: where a run and the generator's part. On hosts only; elsewhere nothing. */
 #ifndef TEST_GOLDEN_EXPLAIN_H
 #define TEST_GOLDEN_EXPLAIN_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* gains: rules set up and refused, pairs asked, values staged under a rule and moved under it. */
 #include "modules.h"
 

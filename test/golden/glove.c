@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* glove: 22 codes to 22 angles, faults channel by channel. */
 #include "modules.h"
 

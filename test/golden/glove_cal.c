@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* glove_cal: a glove's calibration as an image, what is refused of it and when. */
 #include "modules.h"
 

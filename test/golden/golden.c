@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The stimuli of README.md and the digest of a run. */
 #include "golden.h"
 

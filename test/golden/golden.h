@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Golden: every module's ticks against the independent generator's (README.md).
  *
  * A module's run is a function that plays the stimuli of README.md at one rate and

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Golden vectors: what docs/NUMERICS.md says every module computes, tick by tick.
 
     golden.py --all                      write digest/ and trace/ anew (make golden)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Every module at every rate against the digests of the independent generator, and
  * tick by tick at the paper's six rates. Where a digest differs, the generator is
  * called for that module and rate, and the first tick that differs is told.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* angle and hand: sine and cosine, sensors to joints to a fingertip and its slope. */
 #include "modules.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A box with registers, and requests for them: right, at the edges, damaged. */
 #include "modbus_box.h"
 

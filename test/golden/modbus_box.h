@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A box with registers, and requests for them: what modbus and modbus_rtu share. */
 #ifndef TEST_GOLDEN_MODBUS_BOX_H
 #define TEST_GOLDEN_MODBUS_BOX_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Every module that has golden vectors. The name is that of its run, its digests, its
  * files and its test. */
 #ifndef TEST_GOLDEN_MODULES_H

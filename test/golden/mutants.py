@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Mutants: small changes of the library that the golden vectors must notice.
 
 Each row names a module, a source and a text in it with another in its place. The changed source is

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* precontact: the distance to a plane told, q_lim frozen before contact; advice. */
 #include "modules.h"
 

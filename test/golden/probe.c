@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* probe: the motions of calibration, over a toy of a string with a mass. */
 #include "modules.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* ring: the newest records in memory of the caller's, and out of it in pieces. */
 #include "modules.h"
 

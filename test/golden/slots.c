@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* slots: images in two slots of flash, cut off and damaged, and which of them counts. */
 #include "modules.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* velocity: the four estimators. */
 #include "modules.h"
 

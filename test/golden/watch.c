@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* watch: too fast, or standing while pulled. */
 #include "modules.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* wire: packets written, lost, late, twice, damaged and forged, and taken. */
 #include "modules.h"
 #include "wire_body.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The payloads of wire, listed anew from docs/WIRE.md: any that can be, and one that cannot. */
 #include "wire_body.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The payloads of wire, listed anew from docs/WIRE.md. */
 #ifndef TEST_GOLDEN_WIRE_BODY_H
 #define TEST_GOLDEN_WIRE_BODY_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "chip.h"
 
 #include <errno.h>

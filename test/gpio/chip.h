@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A GPIO chip that is none: what the two fakes of libgpiod (v1/, v2/) share, and what a test does
  * to it. */
 #ifndef TEST_GPIO_CHIP_H

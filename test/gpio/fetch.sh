@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # fetch: what gpio.sh needs of others, into DIR: Debian's kernel, the source of its simulated GPIO chip (Debian builds none) and
 # what compiles a module for it, busybox; libgpiod of this Debian (1.6) and of the next one (2), all by a private apt that leaves the
 # system's alone. Nothing is installed, nothing of it is kept in the repository. Exit 3: what is missing, in one line.

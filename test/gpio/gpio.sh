@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # gpio: `exhand drop --pace --gpio` in an emulated Linux, on the kernel's simulated GPIO chip; then its logs, by the program that
 # runs here. The machine's clock counts instructions: how busy this one is does not show in it.
 # $B: where to build. LIMIT_S: seconds the machine may take (600).

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Contacts and outputs, from libgpiod's side: the tests of v1_test.c and v2_test.c. The library and
  * the chip are fakes; everything above them is as shipped. GPIO_LIBRARY: which it is. */
 #ifndef TEST_GPIO_LINES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The text after --gpio: every way to write it, every way to get it wrong. */
 #include "check.h"
 

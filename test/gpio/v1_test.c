@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* gpio_v1.c and all above it. */
 #define GPIO_LIBRARY "libgpiod 1"
 #include "lines.h"

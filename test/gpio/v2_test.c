@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* gpio_v2.c and all above it. */
 #define GPIO_LIBRARY "libgpiod 2"
 #include "lines.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The box: emulated cards in the harness's time, wired to frames of raw codes. */
 #ifndef HIL_BOX_H
 #define HIL_BOX_H

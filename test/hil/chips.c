@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "chips.h"
 
 #define PS_PER_S UINT64_C(1000000000000)

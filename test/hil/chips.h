@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The chips of a PC that an image may touch, as far as it may: 8259 pair, 8254, HPET, 16550.
  * Each keeps its own time only as a number that it is told. */
 #ifndef HIL_CHIPS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "class.h"
 
 #include "cli/param.h"

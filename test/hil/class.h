@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Which class of ticks a tick was of, for what the scene costs (count.h). */
 #ifndef HIL_CLASS_H
 #define HIL_CLASS_H

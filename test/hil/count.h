@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What a run costs: instructions and accesses of every tick, and of the scene's part of it. */
 #ifndef HIL_COUNT_H
 #define HIL_COUNT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Hardware in the loop: an unmodified PC/104 image on an emulated processor, in virtual time.
  *
  * Time is made of what the image does and of nothing else: HIL_CPI cycles an instruction, so much

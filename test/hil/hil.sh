@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # What `make hil` shows: hil.sh [WHAT...], of these (all of them):
 #   count    instructions counted by blocks are those counted one by one
 #   spoil    an encoder count more in one tick is found in that tick

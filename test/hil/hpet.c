@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "chips.h"
 
 #define HPET_RUNS      1u

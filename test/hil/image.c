@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The ELF file: what is loaded where, and where its functions are. */
 #include "hil.h"
 

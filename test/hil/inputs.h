@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Random and extreme inputs, put in place of the image's own at the start of a scene's tick. */
 #ifndef HIL_INPUTS_H
 #define HIL_INPUTS_H

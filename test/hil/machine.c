@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "hil.h"
 
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* hil: runs an unmodified PC/104 image in the loop, in virtual time. `hil --help`. */
 #include "run.h"
 #include "where.h"

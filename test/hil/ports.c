@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What answers at which port. */
 #include "hil.h"
 

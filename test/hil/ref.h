@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The reference: the same scene on the POSIX port, in a process of its own, tick by tick. */
 #ifndef HIL_REF_H
 #define HIL_REF_H

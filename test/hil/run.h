@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* One run of an image: what it is told, and what is known of it. */
 #ifndef HIL_RUN_H
 #define HIL_RUN_H

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # The processor emulator Unicorn, as its package on PyPI holds it (headers and library), into
 # $B/unicorn, checked by its sum; never committed. Debian's 2.0.1 will not do: it cannot hand
 # RDTSC to the harness, and lets the host's clock in.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Where the instructions of the cheapest and of the dearest tick of a scene were. */
 #ifndef HIL_WHERE_H
 #define HIL_WHERE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What is behind the cards: the simulated device, which stands at each tick's instant, and beside
  * it the POSIX port doing the same run, compared tick by tick. */
 #ifndef HIL_WORLD_H

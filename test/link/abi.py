@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """abi.py LIBRARY [--update] [CC...]: does LIBRARY (libexhand.a) offer what lib/exhand.map says, and are the structures that
 callers own as large as abi.tsv says, by each compiler CC (default gcc)? --update writes both.
 

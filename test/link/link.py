@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """link.py DIR [--only WORD]: the ways of examples/link/README.md, each in a new directory under DIR beside a clone of what is
 there now, its lines as they stand but for what installs packages; the last line's output must be what the README says. Prints a
 row a way: commands, seconds, bytes of the program. What programs those packages have and are not here are named and the way

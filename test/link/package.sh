@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # package.sh DIR: what CMake installs for others to find, with the folder of libraries given in full and not: the paths of
 # exhand.pc, and which versions find_package(exhand) takes. Exit status: 0, 1 not as it should be, 3 what is missing.
 set -eu

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """registry.py: what PlatformIO's registry would have brought: its SCons, which PyPI has as well, and platform `native`, which is
 ours here. Run by the Python of the environment that holds PlatformIO; put where that one looks for it.
 """

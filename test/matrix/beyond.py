@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """beyond.py DIR GOLDEN: 2001..20000 Hz of every module of test/golden/beyond by the program GOLDEN, as many at a time as
 JOBS says. Compares the CRC over each module's 180 hundreds with the generator's, writes DIR/beyond.tsv, ends with `N passed, N failed`.
 `make matrix-beyond`. Standard library only.

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """box.py DIR [--only T,T]: the host program for every target of targets.tsv, by its gcc; test/sim/bits.sh compares what each makes
 with the host's in DIR/host: Table II, logs of it and of the full box, a calibration, replays, faults. `make matrix-box`.
 Writes DIR/box.tsv, keeps the rows of targets that are not asked for, and writes docs/MATRIX.md's table anew. Standard library only.

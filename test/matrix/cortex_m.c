@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Start of a Cortex-M under an emulator: vectors, memory, the words of the command line as an environment, text and the way
  * out by semihosting (a breakpoint that the emulator answers). No device of a board is touched: memory's place is the linker's. */
 #include <stddef.h>

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # cortex_m.sh MACHINE IMAGE: runs an image under QEMU; what the environment says of EXH_* goes with it.
 # Exit status: the image's, 5 a processor exception, 124 it did not end.
 args=arg=image

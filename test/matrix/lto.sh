@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # lto.sh OUT "CC FLAGS" BITCODE...: one object OUT.lto.o of all these, optimised as one program. For clang, whose
 # bitcode the linkers of other CPUs do not read.
 set -e

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """The matrix: unit tests, laws and golden vectors on every target, by every compiler and option.
 
     matrix.py                     build and run all (make matrix), docs/MATRIX.md anew

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Every test that needs no machine, as one program: `tests` runs all groups, `tests FOLDER...` those
  * of these folders, as unit and prop. Says which begins; the last line is "N groups passed, N failed". */
 #include "check.h"

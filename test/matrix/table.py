@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Targets and variants of the matrix, digests expected of them, and what is kept of runs: matrix.tsv and the generated parts
 of docs/MATRIX.md.
 """

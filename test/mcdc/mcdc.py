@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Runs the tests that `make mcdc-built` made, and says of lib/ and ports/cards which conditions they leave undecided.
 
 A condition of a decision of several (a && b) is covered when two runs of the decision differ in its value and in the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What was read of a box's ticks, in its log.
 
 logged.py READ MAP CSV RATE: READ by strangers.py, MAP is `exhand regs --csv`, CSV `exhand csv --all` of the

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # modbus.sh: strangers at the registers of the box, then 10^6 reads and 10^6 requests. B: the build.
 set -eu
 B=${B:-build}

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Two strangers at the registers of a running box: pymodbus, and mbpoll beside it.
 
 strangers.py WHERE MAP SAVED READ: WHERE is a port of 127.0.0.1 or the device of a serial line, MAP `exhand regs --csv`,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Mutants of a C source: small changes, each at one place, of operators, numbers, conditions, returns and statements.
 
 What this file knows of C is its tokens and how brackets nest; the compiler says which changes are none of C. Not changed:

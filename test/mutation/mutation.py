@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Plants small errors all over lib/src, one at a time, and runs the tests of that source: do they tell it?
 
     mutation.py [--build DIR] [--jobs N] [--sample N | --all] [--seed S] [--limit SECONDS] [--report] [--list] [SOURCE...]

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # Boots images under QEMU in every way that must end well, safe or refused: boot.sh DIR
 # DIR holds the images of all scenes, SCENE.elf and SCENE-none.elf (CARDS=none), and drop-none.iso.
 # Each case: exit status of ports/pc104/run.sh, what the image must have said, its options. Virtual

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The other end of an emulator's cable: answers ARP and sends bad frames, a good one now and then.
  *
  *   cable SOCKET FRAMES [SEED]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # What tests of an image under QEMU share: sourced, with name set to the test's, and dir to where
 # it keeps what the image said (said) and what went wrong (err).
 # shellcheck shell=bash disable=SC2154 # both are whoever sources it's

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Frames as somebody may send them who means no good, or is broken: made of a number. For the unit
  * test, the fuzzer and the flood over an emulator's cable. */
 #ifndef TEST_PC104_FRAMES_H

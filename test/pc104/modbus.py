@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """A Modbus master on the image's COM2, which QEMU has as a TCP socket: modbus.py PORT READS|rule [remote].
 
 Requests are at most 14 bytes, what QEMU's UART takes at once: how QEMU hands over more has no timing of a line.

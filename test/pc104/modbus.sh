@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # The image's Modbus slave under QEMU: modbus.sh [READS]
 #   ways       what is said where there is no UART, or an option that does not hold
 #   master     a client of its own (modbus.py) reads, writes and commands; no tick is missed, and the log replays bit for bit

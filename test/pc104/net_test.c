@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Frames taken and made: by examples byte for byte, every cause of a drop, and anything at all. */
 #include "check.h"
 #include "frames.h"

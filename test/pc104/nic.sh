@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # The image's network card under QEMU: nic.sh PART... of
 #   ways       what is said where there is no card, another card, no peer, or an option that is none
 #   bilateral  the paper's second experiment over it: the unmodified world simulator at the other end

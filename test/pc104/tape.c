@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Emulated cards inside an image, and at their connectors what a log of the same scene recorded:
  * counts, monitors, lines and glove of each tick, and the log's parameters. The log comes as a
  * multiboot module (qemu: -initrd). The drivers, the timer and the network card's driver are the

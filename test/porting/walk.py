@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """walk.py DIR: types docs/PORTING.md in a new clone under DIR and compares what comes with what stands there. `...` in a line
 is any text, on a line of its own any lines. `<!-- file: PATH -->` writes the block that follows, `<!-- fill: NAME... -->`
 gives ports/mine/board.c those functions of ports/mps2, all others being the template's, as a user who got that far. Exit

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What CI runs. The record is whole and the document is of it; what is cheap is proved again, first what has another text now.
 
 What is of another text and dear is told and does not fail: make proof ARGS=--update is due then. Frama-C is large (README.md): where

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Proves the tick path, unit by unit (README.md).
 
 A unit is a file eva/any_UNIT.c, whose first comment says what has to be known of it:

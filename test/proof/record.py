@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What was proved: counts.txt (how much, of which text, how long it took) and reached.txt (which functions of lib)."""
 import glob
 import hashlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Lemmas about single expressions of the tick, for every value of their arguments.
 
 Bit vectors where wrapping and shifting are the point, integers where only size is. What is

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Lemmas about the fingertip of hand.c: why its sums of products fit 32 bits.
 
 They do because sine and cosine have length 1 within 2^-27 (every/sincos.c, of every angle), and rows of

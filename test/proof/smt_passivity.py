@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The lemmas of docs/NUMERICS.md on passivity, for all integers.
 
 Work of a tick is one variable, u = held * way, so that all is linear: P * way is B, a movement of at

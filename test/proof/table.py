@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The section "Proofs" of docs/NUMERICS.md: what is proved, by unit and by file, and what not and why."""
 import os
 import re

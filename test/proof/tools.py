@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Runs the provers: Frama-C's Eva and WP on a copy of lib, a program of every value, a lemma by z3.
 
 A result is a dict, kept under OUT/cache by what went into it: sources without comments of the library, the unit as it
@@ -103,7 +104,7 @@ class Unit:
         self.name = os.path.basename(harness)[0 if self.every else 4:-2]
         self.about, self.options, self.plants, self.beside = "", [], [], []
         with open(self.harness) as f:
-            self.text = f.read()
+            self.text = re.sub(r"^/\* SPDX-.*\n", "", f.read())
         head, self.body = self.text.split("*/", 1)
         for line in head.splitlines():
             key, _, rest = line.lstrip("/* ").partition(": ")

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* angle.h: every angle within its bound of a series in wider integers, and the series
  * within its own bound of what defines sine and cosine. */
 #include "exhand/angle.h"

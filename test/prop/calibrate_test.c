@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* calibrate.h against known tables: what was put in comes out, within the bound that
  * the measurement allows. The D/A code is 36355 LSB of current, the monitor's 34655. */
 #include "exhand/calibrate.h"

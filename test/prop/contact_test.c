@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* contact.h against exact arithmetic: F = b*qd + k*q + F0, every corner of every
  * argument, parameters at the ends of their ranges. */
 #include "exhand/contact.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* drive.h against exact arithmetic: tables, both ledgers, the monitor. */
 #include "exhand/drive.h"
 

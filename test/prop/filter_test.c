@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* filter.h against its definition in wider arithmetic; settling and changes of cut-off at
  * any rate. */
 #include "exhand/filter.h"

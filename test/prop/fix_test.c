@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* fix.h against exact 128-bit arithmetic: all corners of all arguments, then
  * random ones. */
 #include "exhand/fix.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* gains.h: inside or not against exact wider arithmetic, for every rule, gain and rate; and on the way from any pair
  * to any other inside in every tick. */
 #include "exhand/gains.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* glove.h against exact arithmetic: the angle of any code by any calibration, cross terms,
  * what is believed, and a calibration found back from poses. */
 #include "exhand/glove.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* hand.h against exact kinematics in wider integers, and slopes against differences of tips. */
 #include "exhand/hand.h"
 

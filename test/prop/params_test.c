@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Slewed parameters, for any values and shifts: monotone, never beyond, at the goal in no more ticks than the
  * header says, the rest as exact division has it; the guard's sum whatever is staged and applied. */
 #include "exhand/fix.h"

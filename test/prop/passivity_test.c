@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* passivity.h: whatever the law asks and however the string moves within the speed limit, what a
  * contact has given out at any moment is within the bound; a trajectory that turns as badly
  * as it can comes up to it, and without the controller goes beyond it. */

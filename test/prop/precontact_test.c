@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* precontact.h: the distance against exact arithmetic, its states against a second account of
  * them, and approaches: nothing is felt before the freeze, and the freeze comes in time. */
 #include "exhand/precontact.h"

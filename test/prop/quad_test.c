@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* quad.h against exact arithmetic: metres of a count, and the extension. */
 #include "exhand/quad.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* quantizer.h: no flip at a constant input, the error's bound, small formats in full. */
 #include "exhand/quantizer.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* record.h's ring against a plain list of everything that was ever put. */
 #include "exhand/record.h"
 

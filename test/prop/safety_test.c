@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* safety.h: the gate with any current, any parameters in range, any state; the
  * state machine under any sequence of inputs. */
 #include "exhand/safety.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* velocity.h against exact arithmetic: one step of each estimator from any state,
  * any count, any scale that set-up accepts; foaw against brute force. */
 #include "exhand/velocity.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* wire.h over links that lose, delay, repeat, reorder and damage: what gets through is in
  * order, each once, and every packet is counted once. */
 #include "exhand/wire.h"

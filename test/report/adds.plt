@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # What one thing more adds: text, memory, instructions per tick, by port. adds_bars.csv, adds_names.csv.
 stats 'adds_names.csv' using 1 every ::1 nooutput
 n = STATS_records

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # What a scene costs on each port: four panels of bars, cost.csv (scene, port, text, data, bss, stack, instructions).
 width = 1500
 height = 1050

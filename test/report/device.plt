@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Planes of k and b: rows steps and string, all; columns rate and mass.
 width = 1900; height = 1150
 load here.'/style.gp'

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Error over time: kernels.py's drift().
 width = 1500; height = 800
 load here.'/style.gp'

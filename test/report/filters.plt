@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # What is left at zero input, over the cut-off.
 width = 1500; height = 800
 load here.'/style.gp'

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Kernels: error over cost, from what `make bench` has left in B/bench; CSV and panels into OUT."""
 
 import csv

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Which module is in which scene: bytes in the Cortex-M3 image beside instructions per tick. modules_cells.csv, modules_names.csv.
 stats 'modules_names.csv' using 1 every ::1 nooutput
 n = STATS_records

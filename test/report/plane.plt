@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # sigma over beta: four panels of alpha and delay, with the borders of theory.
 width = 1700; height = 1250
 load here.'/style.gp'

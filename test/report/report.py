@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Runs the sections of the report, draws their pictures and writes one page that explains each.
 
     report.py [--build DIR] [--out DIR] [--short] [--only NAME[,NAME...]] [--jobs N] [--list] [--help]

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Does report.py tell what it should: sections that end well, are skipped, fail, take too long or share a run; pages and statuses?
 Exit status: 0 ok, 1 not."""
 

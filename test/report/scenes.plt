@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Largest error of whole ticks over the loop's rate: fixed point, double and float.
 width = 2000; height = 1060
 load here.'/style.gp'

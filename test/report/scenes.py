@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Whole ticks of the scenes: scenes.py rates | ticks, from B/bench/scenes.csv and scenes_cost.csv (make scenes-csv)."""
 
 import csv

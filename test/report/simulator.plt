@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Error over cost of the simulator's plant: a column a problem, instructions above, nanoseconds below.
 width = 1900; height = 1150
 load here.'/style.gp'

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Simulator: error over cost of ways to integrate its plant, from B/bench/sim_work; CSV into OUT."""
 
 import csv

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # What becomes of the time until rest and of the stiffness, over what the plant costs.
 width = 1800; height = 850
 load here.'/style.gp'

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Delay 0..3: what the simulated wall does, over beta and alpha, and the border of the spectral radius.
 width = 1700; height = 1250
 load here.'/style.gp'

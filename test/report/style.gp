@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # What all pictures of the report have in common. Given by report.py: data (NAME.csv), out (NAME.png), here (this directory).
 if (!exists("width")) width = 1500
 if (!exists("height")) height = 950

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Work-precision diagrams: what work.py has put into NAME.panels, NAME_points.csv and NAME_front.csv.
 stem = data[1:strlen(data) - 4]
 load stem.'.panels'

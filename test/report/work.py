@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Work-precision diagrams: error over cost, both logarithmic, a panel per case.
 
 Ours in one colour, integer code of others, floating point hollow; the front of integer code, of which nothing is both cheaper and

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The bytes of a stock glove's serial line: whole frames come out, nothing else does, and each thing
  * that goes wrong is counted. The emulated glove knows nothing of the parser. */
 #include "check.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand advise freeze: the figures of the formulas, and what is too small is said with the
  * number that is wanted. */
 #include "said.h"

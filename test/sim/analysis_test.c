@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The analysis of the falling mass, whole: exact where the answer is known, explicit
  * where there is none, the same digits always. */
 #include "falls.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A third opinion on angle.h: the cosines that CMSIS-DSP keeps to test its own by. They are rounded
  * doubles; its sines are not, they stray by up to 2147 LSB of q31, and are not asked. */
 #include "exhand/angle.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand bilateral as people use and misuse it: logs that replay, tables, files, scenes, recorded hands. */
 #include "said.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The full box in closed loop with a hand, a link and a world: what is felt hangs on the plane that
  * was known before the contact, and on nothing the link does after. */
 #include "felt.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The full box a tick at a time, with packets and glove frames made here: what is felt while nobody
  * knows where the finger is, and what goes out. */
 #include "check.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The full box and a world in another process, over UDP. Time is virtual: the controller's ticks lead, the world does
  * a frame when it is told to and is waited for. So a slow machine makes the test slow, and nothing else. */
 #include "felt.h"

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # bits.sh DIR LOGS EXHAND...: every EXHAND (other compilers, optimisations, CPUs) must
 # make the same tables and logs as those in LOGS, and replay these bit for bit from
 # the start and from keyframes. Works in DIR; ends with `N passed, N failed`.

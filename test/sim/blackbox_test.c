@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The black box: what it holds after a fault replays to that fault, wherever the dump begins. */
 #include "logs.h"
 #include "said.h"

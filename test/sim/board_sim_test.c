@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The POSIX port's virtual time and raw codes: exact where it promises exactness,
  * bounded on both sides where there is chance. */
 #include "check.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What docs/BRINGUP.md says the scene prints is what it prints now: every block that begins with a
  * command. EXH_UPDATE=1 writes them anew. */
 #include "said.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* First power-up, rehearsed: every stage comes through when all is well, whichever the finger, with
  * and without the cards; whatever is wrong ends it within stated limits of time, current and way,
  * and from then on nothing comes out. */

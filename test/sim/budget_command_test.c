@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand budget: its arithmetic by hand, and the goals at the stated times. */
 #include "said.h"
 

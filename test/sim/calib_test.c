@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Calibrations of fingers in the scenes that pull: a good one vouches for two steps of arming and forces go by
  * its points; one that is damaged, another device's or finger's, too old or made with other scales is refused at
  * set-up by name, and nothing of it is used; without one nothing arms, unless that is waived. */

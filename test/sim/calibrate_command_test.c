@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand calibrate as people meet it: exit status, words, files, interruption. */
 #include "said.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The calibration on the simulated bench: what it finds is the device's, within bounds on
  * both sides, and whatever is wrong at the bench stops it before it is dangerous.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* --cards: the same bytes through drivers, bus and emulated cards as without; and it does go
  * through them. */
 #include "said.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Causes of faults that are the box's: supply, glove, link; each told when it should be, not before,
  * and not at all where nobody asked. Of one finger's scenes: supply, and memory that changed. */
 #include "check.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand drop as people use and misuse it: what is refused by name, what is written
  * where, what an interruption leaves. */
 #include "said.h"

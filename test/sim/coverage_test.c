@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The intervals of the analysis cover the mean of the estimator in 95 % of runs; how far
  * that mean lies from k is another question, and printed apart.
  *

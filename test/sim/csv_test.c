@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What is made of a log, csv and replay: nothing is lost by a slip of the hand, nothing
  * damaged passes unsaid, and Table II can be made again from the CSVs alone. */
 #include "said.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* examples/deadman.c: which grip gives which command, and what is none. */
 #include "check.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Diagrams: every name in them is a row of a table, and docs/ holds what is drawn now. */
 #include "check.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Contacts, pairs, band and averages of the analysis: by hand, to the last sample. */
 #include "falls.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Synthetic logs of falls, for the tests of the analysis. */
 #ifndef TEST_SIM_FALLS_H
 #define TEST_SIM_FALLS_H

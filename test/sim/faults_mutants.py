@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Mutants of the library's safety that `exhand faults` must tell: errors planted one at a time.
 
 Each row: source, a text in it, what stands there instead, what is asked of exhand faults (TABLE: the table at one rate; TIMES: so many

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A hand in the full box at a wall, and what it felt: for the tests of the bilateral experiment. */
 #ifndef TEST_SIM_FELT_H
 #define TEST_SIM_FELT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Fingers through the board: codes of five axes, the glove that moves with them, and a wall
  * that stops them. */
 #include "check.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Finger and path against closed form and against what was asked for. References in long
  * double, by series. */
 #include "check.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The search for a plant: equal effort for every reading, the same again from the same
  * seed, and on from where it was cut off. */
 #include "said.h"

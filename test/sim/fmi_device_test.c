@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The simulated device as an FMI unit, its source as it is, with values of which a step of the table's length would not do. */
 #include "check.h"
 

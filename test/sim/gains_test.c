@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand advise gains: the model of a fall, the lattice, and a rule that lies inside of it. */
 #include "cli/gains.h"
 #include "said.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Glove frames from the board through the loop and the log: when they are read, how old they
  * are, and that nothing of it touches scenes without a glove. */
 #include "check.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand calibrate --glove: what is true of the simulated glove is found back, what is wrong
  * is told by name, and files come in and go out. */
 #include "said.h"

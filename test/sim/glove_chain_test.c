@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The simulated glove: its analog chain against closed form, and the hand in it. References
  * are computed in long double, by series. */
 #include "check.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand glove as people use and misuse it: recordings of every shape, bad ones refused by name,
  * options that make no sense. */
 #include "glove_said.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand glove --record: logs that are as long as they should be and replay bit for bit. */
 #include "glove_said.h"
 

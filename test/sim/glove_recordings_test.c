@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Real gloves through the glove module: CyberGlove recordings, whose codes come back exactly,
  * and the noise of a bend-sensor glove at rest. */
 #include "exhand/glove.h"

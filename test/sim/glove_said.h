@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What the tests of exhand glove share: words, files, and numbers in what was said. */
 #ifndef TEST_SIM_GLOVE_SAID_H
 #define TEST_SIM_GLOVE_SAID_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A stock glove on a serial line as the board's glove, on a pseudo-terminal with an emulated one at its
  * other end: frames as they were sent and no others, ages, silence, the device gone and back; and the command. */
 #define _XOPEN_SOURCE 700 /* pseudo-terminals */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand glove --selftest and --skew: Table I within bounds on both sides, and failing when it
  * should; the scan's skew in proportion. */
 #include "glove_said.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* --gpio on the command line: what is refused before any line is asked for. Tests are linked without
  * libgpiod, whatever the machine has. */
 #include "said.h"

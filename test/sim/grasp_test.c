@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Scenes of the world simulator in the full box: five fingers hold one ball; a mesh where there are rays for it. */
 #include "check.h"
 

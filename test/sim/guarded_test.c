@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Scene guarded in closed loop with the simulated device: what no contact may give out, at gains far
  * beyond the stable border; what is taken away at gains that are stable; its log replays. */
 #include "logs.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What gloves recorded, as string for fingers: files of both kinds, and real hands through the
  * simulated exoskeleton. */
 #include "check.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The map of the robot hand over recordings of real hands in CyberGloves: joints keep their
  * limits, and how often each had to be cut off. */
 #include "exhand/exhand.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The rest of a fall that need not be run is, digit by digit, what running it gives: over stable, marginal and
  * unstable walls, with little and much friction, at slow and fast rates; and where something would still happen
  * behind a mass that stands, it is run. */

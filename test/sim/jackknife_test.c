@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The interval of the analysis: two-sided where it is random. */
 #include "falls.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The board's link functions: a peer in this process in virtual time, and one in another
  * process over UDP, either of which may come, go and come again in any order. */
 #include "check.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The exact stability test against what is known without it: closed forms, matrices of
  * known eigenvalues, published-in-theory radii, its own limits. */
 #include "check.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The impaired link against its own numbers, two-sided, and recorded networks through it. */
 #include "check.h"
 #include "file_of.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand listen: pieces of a log that come late, twice, from elsewhere, or never. */
 #include "check.h"
 

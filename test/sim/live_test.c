@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand run: goes on, ends when asked, and leaves a log that replays. */
 #define _XOPEN_SOURCE 700 /* pseudo-terminals */
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A log of whole runs: reads, replays bit for bit, and tells damage, loss and forgery. */
 #include "logs.h"
 

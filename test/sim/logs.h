@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* For tests of logs: a path of its own for each, and the host program's replay of it. */
 #ifndef TEST_SIM_LOGS_H
 #define TEST_SIM_LOGS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The loop under a script: what is staged, commanded, missed or broken is in the log, acts
  * at its tick, and comes out of the replay bit for bit. */
 #include "logs.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand run --modbus: clients that do harm, and threads that must not. */
 #define _XOPEN_SOURCE 700
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand run --modbus: requests that are wrong get the standard exceptions. */
 #define _XOPEN_SOURCE 700
 

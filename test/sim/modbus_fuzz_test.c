@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The same bytes to the libmodbus server and to the library's slave, from the same state of the map:
  * the same bytes come back. */
 #ifndef EXH_MODBUS

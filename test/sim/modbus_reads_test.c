@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand run --modbus: no torn reads, and the same bits of force whoever reads. */
 #define _XOPEN_SOURCE 700
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* `exhand run --modbus` in a process of its own, and libmodbus clients of it. */
 #ifndef TEST_SIM_MODBUS_RIG_H
 #define TEST_SIM_MODBUS_RIG_H

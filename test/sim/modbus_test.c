@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand run --modbus: where it serves, also over a serial line, and what it says where it cannot. */
 #define _XOPEN_SOURCE 700
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand watch --modbus of a box that `exhand run --modbus` is. */
 #include "modbus_rig.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand run --modbus: what clients write and command, in the log, in an image, and refused. */
 #define _XOPEN_SOURCE 700
 

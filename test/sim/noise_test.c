@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Whole scenes upstream of noise: every input of a tick is noise, and again and again their state
  * is restored from random bytes and the box is put into any state there is. No code leaves the span,
  * none but that of 0 A leaves a gate that is shut, and from tick to tick the force moves no faster

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* --preset original: the glove of 8 bits a frame late is one, and what is said of it beside this box
  * follows from that. */
 #include "said.h"

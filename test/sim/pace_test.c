@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Ticks by the wall clock, over a clock of the test's own. */
 #include "check.h"
 

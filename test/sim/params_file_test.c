@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Images of parameters on disk: there and back, whole or not at all, and what is said of bad ones. */
 #include "said.h"
 

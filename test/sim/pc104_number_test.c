@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The bare-metal image reads decimal text as the command line's options are read here: the same
  * text, the same raw value. */
 #include "check.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The simulated plant against closed form: what it is sold for must be provable
  * without the controller. References are computed in long double, by series. */
 #include "check.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand quad: recorded and synthetic captures decode to the counts, the illegal steps and
  * the shortest gaps of their descriptions, as bytes and as CSV; whatever is wrong with
  * options or input is refused by name. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The readings of the analysis: each takes the samples its name says, and gives what the
  * analysis itself gives. */
 #include "falls.h"

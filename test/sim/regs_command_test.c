@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand regs: what it prints is where the library has it, of every scene; docs/MODBUS.md has it. */
 #include "said.h"
 

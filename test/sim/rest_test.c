@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Whether a fall came to rest: labelled traces, limits, slow rates, runaways. */
 #include "falls.h"
 

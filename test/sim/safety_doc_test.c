@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* docs/SAFETY.md: every test it names is there, every fault, limit and step of arming has its row, the
  * checklist has its 26 lines. And what it says of the D/A: one file of the library makes codes, and what
  * else writes them moves codes that were made there. */

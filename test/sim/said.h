@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A subcommand of the host program in a process of its own: what it said. */
 #ifndef TEST_SIM_SAID_H
 #define TEST_SIM_SAID_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* SAVE is done if it was answered, whichever tick was the last; and what it keeps is what is wanted. */
 #include "said.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What the log of a run of the simulated device hangs on: its seed, to the last byte,
  * and not where the encoder's counter stands. */
 #include "check.h"

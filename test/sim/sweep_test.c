@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand drop --sweep: whatever way its cells came about, the file is the same. */
 #include "said.h"
 

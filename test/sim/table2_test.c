@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The fidelity gate of the simulated experiment: the paper's six points come to rest,
  * 1.5 times both gains does not, and the stiffness is what it must be. The seeds were
  * not used to fit the device. */

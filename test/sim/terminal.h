@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A pseudo-terminal, for a command that looks whether it has one. */
 #ifndef TEST_SIM_TERMINAL_H
 #define TEST_SIM_TERMINAL_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Whether a fall came to rest, on traces whose answer is known because they were made so:
  * none of some thousands may be mistaken.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A D/A that stands still is told in time in closed loop, at any rate; and no current that does
  * follow is ever told, whatever is commanded, with the latest outputs that the device allows. */
 #include "check.h"

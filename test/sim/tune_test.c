@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Parameters that change while a finger presses: no force step beyond the slew limit, whatever is staged
  * in whichever tick; what a finger feels of one change; a log of it replays from the middle of it. */
 #include "logs.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand watch --listen: a log that comes over the network, sampled. Over Modbus: modbus_watch_test.c. */
 #define _XOPEN_SOURCE 700 /* pseudo-terminals */
 

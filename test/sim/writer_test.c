@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Bytes to a file by a thread of its own: a pipe that nobody reads, one that is slow, one that ends. */
 #include "check.h"
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What one thing more adds: images and runs with and without it; and what `minimal` is on Cortex-M."""
 import os
 import re

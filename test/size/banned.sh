@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # No floating point and no division in the library: banned.sh ARCHIVE OBJDUMP
 # Refutes "integer only" and "divides nowhere" on the object code: names every function that has
 # a divide instruction, an x87 one, an SSE/AVX instruction that computes, compares or converts

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What size.sh has built and counted: images, their modules, instructions by module."""
 import os
 import re

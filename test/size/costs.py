@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """What a scene costs, which modules are in it and why, and what one thing more adds: costs.py [--out DIR] [--short] [--update] [--help]
 
 Reads what size.sh has built and measured in B/size (runs it where something is newer), and writes into DIR (B/size/costs; OUT in the

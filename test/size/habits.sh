@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # What the library never does, on its object code: habits.sh ARCHIVE OBJDUMP
 # Refutes "no recursion", "no calls through pointers" and "no memory of its own that changes": looks for
 # cycles in the graph of calls and tail calls (a function that jumps to itself is a loop), for calls of a

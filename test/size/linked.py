@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a linked image consists of, and why: out of the linker's map, and of the relocations of the objects that it was linked from.
 
 Every function and table of ours has a section of its own (-ffunction-sections), and the linker keeps what is referred to from what it

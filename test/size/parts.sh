@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # Bytes of an image by where its code came from: parts.sh MAP... (build/pc104/SCENE.map). Alignment between
 # pieces is in none of them.
 # Exit status: 0, 2 bad usage.

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # What a scene costs on a port: size.sh [--update] [SCENE...]
 # Refutes "a scene links only what it calls": prints bytes, worst-case stack, instructions per
 # tick and the library symbols of each scene x port, and compares the symbols with the committed

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Worst-case stack of an image, in bytes: stack.py [--root main] [--objdump objdump] OBJECT...
 
 Each OBJECT was compiled by gcc with -fcallgraph-info=su: its call graph lies beside it, with the

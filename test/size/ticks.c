@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Runs a scene's tick and nothing else, for whoever counts its instructions: every input healthy,
  * the string at rest until the box runs (armed, ramp over), then pulled out and let in one count a
  * tick, so that a wall is entered and left, the glove bent and stretched along with it. Counted,

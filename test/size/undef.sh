@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # What the library needs from outside: undef.sh ARCHIVE NM [ALLOWED_HELPER...]
 # Refutes "needs nothing but four string functions and the assertion hook". Helpers of the
 # compiler (shifts, multiplications on small machines) are named one by one; division helpers

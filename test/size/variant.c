@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* main() of an image that costs.py compares with itself: with or without a log, and with the fingers of a mask. Beside what
  * examples/image.c does: a scene that wants a calibration is told that there is none.
  *     -DVARIANT_LOG         examples/log.c, to the board's log

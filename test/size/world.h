@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The other end of a scene's link, for whoever counts its instructions: it answers every state by planes that stand where the
  * fingertips once were, in the same tick. */
 #ifndef SIZE_WORLD_H

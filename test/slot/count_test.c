@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A model made for one rate, whose ports are named otherwise; init, step and terminate are called when they should be. */
 #include "rig.h"
 #include "sim/said.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A model that remembers, reusable, in single precision, at any rate by its inport T. */
 #include "rig.h"
 

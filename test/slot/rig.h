@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Scene custom with the model that this binary was linked with, in closed loop with the simulated device. */
 #ifndef TEST_SLOT_RIG_H
 #define TEST_SLOT_RIG_H

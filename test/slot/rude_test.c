@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Whatever a controller answers, what goes out is the gate's: not a number, infinite, huge, negative, late. */
 #include "rig.h"
 

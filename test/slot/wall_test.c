@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The example's model, a spring and a damper in doubles, is drop's law: in every tick, and in what comes of it. */
 #include "rig.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The same cells with what a device adds, one by one: dry and viscous friction, encoder steps, a string that only pulls and no
  * further than a peak. Linear theory no longer says what happens; what must still hold is said below. */
 #include "stability.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Drift: laws that are cheap enough to run for 10^9 ticks, at 20 kHz half a day. The input repeats every 1000 ticks, so once
  * what was before has died away every period must give the bits of an early one, and what is summed must grow by the same
  * number in each. Where a state has bits below those that come out, these may go round on their own, and the last bits of what

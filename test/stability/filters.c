@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Filters at rest: from any state that inputs can cause, a constant input must bring each to a state that does not change
  * any more, or to states that follow each other in a circle while the output stands: then nothing moves ever again. Beside them
  * direct forms, as others build them. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Stability: stiff and extreme cases against theory. `make stability`; parts of it are sections of `make report`.
  *
  *   map      every rate, k to 10^6 N/m, b to 10^3 Ns/m, 1 g to 5 kg, 0 to 3 ticks of delay: does the library's law with an exact

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The map: with friction, saturation and steps off, is the wall stable where rho < 1, and as fast? */
 #include "stability.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The sigma-beta plane: a virtual spring alone, steps of D, dry friction Fc = sigma K D, viscous friction c = beta K T. Where it
  * rests, where it cycles by a step or so, and from where it grows. Theory: rest at sigma >= 1/2; nothing grows where rho < 1, that is from beta = 1/2 + d on where the swing is
  * slow beside the rate; below, what starts larger than A* = 4 sigma D / (pi sqrt(alpha) (that - beta)) grows, alpha = K T^2 / m; without dry friction

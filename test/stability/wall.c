@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "wall.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Wall: one mass in sustained contact with the library's law, tick by tick.
  *
  * The plant is exact: between two ticks the force is constant, so speed and way are closed forms, with a stop where

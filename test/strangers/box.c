@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Box: the emulated cards of ports/posix/emu and their pins, for WebAssembly: what run.mjs calls.
  * Linked with the emulator's own objects, which are compiled unchanged.
  */

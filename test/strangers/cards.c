@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Cards, of the host program: in the place of ports/posix/cards.c. The device shows its codes on
  * the cards' connectors as it does there, but what reads and writes the cards are Linux's drivers.
  * It runs inside the machine; comedi 0, 1, 2 are the cards A, B and MM-32X-AT, attached.

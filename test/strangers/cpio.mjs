@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Cpio: an archive in the "newc" format, as the kernel unpacks it into its first file system.
 
 const hex = (n) => n.toString(16).toUpperCase().padStart(8, "0");

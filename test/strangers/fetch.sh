@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # fetch: what strangers.sh needs of others, into DIR: Debian's i386 kernel with the drivers, a BIOS,
 # a linker for WebAssembly, all by a private apt that leaves the system's alone; v86 by npm.
 # Nothing of it is kept in the repository. Exit 3: what is missing, in one line.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Mask: the s526 module with another mask of A/D channels, by one byte.
 //
 // In s526_ai_insn_read the compiler has made of  (1 << (5 + (chan & 0x9))) | (chan & 0xf) << 1  :

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Run: a machine in v86 whose port accesses to the cards are answered by the emulator, compiled
 // to WebAssembly. Usage: node run.mjs DIR GOLDEN [--update]; DIR holds what
 // strangers.sh put there, GOLDEN the register traffic that is compared.

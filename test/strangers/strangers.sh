@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # strangers: Debian's own drivers of the cards, in Debian's own kernel, against our emulators.
 # $B: where to build. ARGS=--update writes the golden register traffic. LIMIT_S: seconds it may take (1800).
 # Exit 0: all as it should be; 1: not; 3: something is missing.

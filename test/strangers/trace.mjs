@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Trace: the port accesses of marked sequences, as text of a C table (test/emu/linux_trace.inc).
 
 import fs from "node:fs";

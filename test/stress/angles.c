@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Stress: sine and cosine of each of the 2^32 angles, against long double.
  *
  * The reference is known in one eighth of the turn: a power series at every 1024th angle,

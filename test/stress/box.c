@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "box.h"
 
 #define FULL ((int64_t)1 << 30)

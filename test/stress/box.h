@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Stress: the box as docs/SAFETY.md and NUMERICS.md describe it, written once more and in another way: no
  * table, no triggers. What the library does in a tick must be what this says. */
 #ifndef STRESS_BOX_H

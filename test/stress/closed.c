@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Closed loop over the simulated device: gains, masses, rates and encoders at their ends. */
 #include "stress.h"
 

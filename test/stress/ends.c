@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* All inputs at their ends at once, the other end in the next tick; all parameters likewise; in every scene that takes
  * defaults. What has to hold
  * is what no scene may ever do: a code that pushes or is beyond its span, a drive that is not enabled and has one, a count

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Heat: I2t over minutes and pulses, at rates where a tick is much and little of its time. */
 #include "stress.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Open loop: inputs no device could give. */
 #include "stress.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Parameters: any the tables allow, at set-up and while it runs. */
 #include "stress.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The rig: set-up, inputs, and the table of what was seen. */
 #include "stress.h"
 

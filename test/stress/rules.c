@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The rules that must hold in every tick, listed in stress.c. */
 #include "stress.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Stress: the drop scene at and beyond the ends of its ranges, alone and in closed loop
  * over the simulated device; and sine and cosine of every angle there is. `make stress` builds
  * it with -fsanitize=address,undefined, runs it, and runs the property tests with EXH_CASES=100000000 for the laws themselves.

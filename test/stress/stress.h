@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Stress: one rig for all cases. It is a drop scene of our own, its shadow made from the
  * modules, and what was seen of both; tick() holds every rule of stress.c against them. */
 #ifndef STRESS_H

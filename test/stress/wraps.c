@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Counters that wrap: ticks, records, encoder counts. */
 #include "stress.h"
 

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: MIT
 # slurm.sh DIR COMMAND...: a Slurm cluster of this machine alone, its files in DIR, while COMMAND runs. Root. Exit status: COMMAND's.
 set -u
 [ $# -ge 2 ] || { echo "usage: $0 DIR COMMAND..." >&2; exit 2; }

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* precontact.h, the advice: how far before contact to freeze and how far to look. */
 #include "exhand/precontact.h"
 

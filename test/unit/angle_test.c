@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* angle.h: worked examples. */
 #include "exhand/angle.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* bytes.h: one list of fields, three directions; a CRC that finds every flip. */
 #include "exhand/bytes.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* calibrate.h: means, tables out of points, what is refused and by which name, the image. */
 #include "exhand/calibrate.h"
 

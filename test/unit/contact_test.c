@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* contact.h: truth table of the law, edge of the contact, hysteresis, and the
  * pull-back force that must not chatter. */
 #include "exhand/contact.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* drive.h: limits, I2t and slew, on numbers worked out by hand. */
 #include "exhand/drive.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* error.h: one line of text for every code there is, and for those there is not. */
 #include "exhand/error.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* filter.h: what is refused, a constant input, steps, full scale, a change of cut-off. */
 #include "exhand/filter.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* fix.h: every primitive at its documented edges, by hand. */
 #include "exhand/fix.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* gains.h: the rule's pieces and ends, what set-up refuses, and that staging refuses by name. */
 #include "exhand/gains.h"
 

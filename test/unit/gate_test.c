@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* safety.h: the gate. */
 #include "exhand/safety.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* glove.h, calibration: what is refused and by which name, the image, the one the library has. */
 #include "exhand/glove.h"
 

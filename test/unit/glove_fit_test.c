@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* glove.h, the fit of poses: what it finds, what is refused and by which name. */
 #include "exhand/glove.h"
 

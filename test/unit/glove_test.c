@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* glove.h, the tick: codes to angles, what is believed, faults and their end. */
 #include "exhand/glove.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* guard.h: a change of any one byte or parameter is told in time; the self-test passes. */
 #include "exhand/guard.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* hand.h: the published test vectors of the hand, and the map by hand. */
 #include "exhand/hand.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* modbus.h: a serial line, byte by byte and silence by silence. */
 #include "exhand/modbus.h"
 

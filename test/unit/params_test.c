@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Parameters that go little by little (signal.h): where they are in each tick, that they end where they are
  * wanted, in mid-way saved, restored and guarded. */
 #include "exhand/error.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* passivity.h: what is observed, when force is taken away, how contacts begin and end, refusals. */
 #include "exhand/passivity.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* precontact.h by worked examples: a finger that comes down along -z onto the plane z = 0.1 m,
  * pad 10 mm, so that it touches at z = 0.11; string and finger move alike. */
 #include "exhand/precontact.h"

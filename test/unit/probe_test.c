@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* probe.h: what each motion finds on a string with known friction, and what stops it. */
 #include "exhand/probe.h"
 

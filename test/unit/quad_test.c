@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* quad.h: all transitions of the two lines, and the counter across its wraps. */
 #include "exhand/quad.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* quantizer.h: refusals, worked examples, both ends. */
 #include "exhand/quantizer.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Set-ups take the ends of their parameters' documented ranges and refuse what is one beyond: each field of the struct by itself,
  * the others as they are usual. */
 #include "exhand/drive.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The positive reals of set-ups (lib/src/real.h): where they end. What they come to is in unit/filter and golden. */
 #include "../../lib/src/real.h"
 

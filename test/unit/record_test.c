@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* record.h: what goes in comes out; what is damaged is noticed; reading goes on. */
 #include "exhand/record.h"
 

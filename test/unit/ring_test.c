@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* record.h's ring and records in pieces: what is kept, what goes, what cannot be held. */
 #include "exhand/record.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* safety.h: every cell of the state machine, every fault in every state, arming, release, clearing. */
 #include "exhand/safety.h"
 

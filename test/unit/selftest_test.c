@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The known answers of guard.h's self-test: each of them wrong alone is told, by its group. What computes them is spoiled
  * here, by names that lib/src/selftest.c is compiled with once more. */
 #include "exhand/angle.h"

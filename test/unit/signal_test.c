@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* signal.h: tables, the one way to change a parameter, and its image. */
 #include "exhand/signal.h"
 

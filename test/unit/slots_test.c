@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* slots.h: which slot counts, and what a cut, a bit or somebody else's bytes make of that. */
 #include "exhand/slots.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* drive.h, the drives' supply: which codes are within the limits, for how long others may come. */
 #include "exhand/drive.h"
 

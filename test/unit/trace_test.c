@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* trace.h: which ticks a frame is of, what is held, and that nobody misses a frame without seeing it;
  * and its registers. */
 #include "exhand/trace.h"

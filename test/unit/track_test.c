@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* drive.h, does the current follow the code: ranges, when it is told, when not. */
 #include "exhand/drive.h"
 

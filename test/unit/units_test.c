@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* units.h: the format table of docs/NUMERICS.md as numbers. */
 #include "exhand/units.h"
 

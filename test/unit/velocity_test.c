@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* velocity.h: the five estimators on movements whose velocity is known exactly.
  * The acceptance test of foaw against brute force is in test/prop/velocity_test.c. */
 #include "exhand/velocity.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* watch.h: the speed limit, and the encoder that stands. */
 #include "exhand/watch.h"
 

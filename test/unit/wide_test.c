@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The oracle's own arithmetic, against the compiler's 128 bits where there are
  * any, and against identities that hold everywhere. */
 #include "wide.h"

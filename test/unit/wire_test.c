@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* wire.h: every packet there and back, every bit flipped, every byte cut off, and whatever a
  * link does to the order. */
 #include "exhand/wire.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Rays against bodies, beside a walk along the ray in small steps that knows no more of a body
  * than whether a point is inside. */
 #include "check.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The draw list: what is to be seen, and how high the bars are. */
 #include "check.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Frames: the hand, the planes, what is left out, and that the bits never vary. */
 #include "check.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The link, over loopback: either end may come, go and come back. */
 #include "check.h"
 

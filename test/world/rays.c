@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What a ray costs: the performance sheet's scene, a plane, a sphere of 40 mm and a box, five rays an
  * operation from a hand whose fingers are bent at random: above them, so that nearly every ray hits, or
  * beside sphere and box. Run under callgrind by rays.sh, which counts the instructions of cast(), and of

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # rays.sh BINARY: instructions of one ray by callgrind, ours beside code by hand for that scene alone.
 rays=50000
 

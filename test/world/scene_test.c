@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Scene files: what is wrong is said with file, line, what, and what to do. */
 #include "check.h"
 

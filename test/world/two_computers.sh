@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # two_computers.sh EXHAND WORLD: the whole command and the whole world program, with nothing between
 # them but UDP: as two processes on loopback, and in two network namespaces with a cable between where the
 # machine lets this (root, or user namespaces; it says so where not). The world's material is stiffer than

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # window.sh WORLD DIR [KEY...]: opens the window of the world simulator on a screen of its own, presses keys as
 # somebody would, and leaves; in DIR the last draw list. Prints the program's exit status. Exit 77: no screen.
 world=$1 dir=$2

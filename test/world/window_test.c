@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The window and its keys, on a screen of its own (Xvfb), pressed as somebody would (xdotool). What was on it is
  * read from the draw list that the program leaves. */
 #include "check.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Angle: binary angles, where 2^32 is one turn, and their sine and cosine.
  *
  * An int32_t x_turn_q32 covers -1/2 .. 1/2 turn with an LSB of 0.084 millionths of

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Board: the eleven functions a port provides. Included by the loop and the
  * ports, never by a module. Each is defined exactly once, at link time.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Bytes: little-endian input and output through one cursor, and the one CRC.
  *
  * A module lists its fields once, in a function that takes a cursor; the cursor

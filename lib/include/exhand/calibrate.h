@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Calibration: what was measured on one finger, the tables made of it, its image.
  *
  * The paper's first step: known forces (masses, F = m g) give the table from force

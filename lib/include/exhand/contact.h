@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Contact law of one finger: F = b*qd + k*q + F0 past q_lim, F0 before (eq. 1).
  *
  * q is the string pulled out, so a finger that closes makes q grow and qd

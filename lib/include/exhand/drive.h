@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Drive: from a force ledger to a motor current, and from raw codes back to SI.
  *
  * Order, fixed: permit, force limit, slew, force-to-current table, peak

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Errors: what a call that may fail returns, and the assertion that stays on.
  *
  * Three lanes (docs/DESIGN.md 13): set-up, input and output return 0 or a

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand: from 22 glove voltages and 5 encoder counts to 5 motor currents, in
  * integers, without allocation, with the same bits on every machine.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Filter: low-pass of first or second order for many channels over one set of
  * coefficients.
  *

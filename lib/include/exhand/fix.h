@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Fixed-point arithmetic: everything that can lose a bit or clip, in one place.
  *
  * Formats are written into names: x_m_q30 is x in metres times 2^30. 32-bit

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Gains: which stiffness and damping a scene takes. A rule made outside, asked here in integers.
  *
  * What k and b the loop holds at rest depends on the rate and on the device; `exhand advise gains

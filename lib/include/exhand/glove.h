@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Glove: 22 A/D codes to 22 joint angles, and the calibration of a user's glove.
  *
  * One frame of all sensors at a time: codes that no hand gives are kept out, the rest

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Guard: is what must stand still still what it was, and does the machine reckon right?
  *
  * For scenes that want it; nothing else links it. What the guard finds is EXH_FAULT_CONFIG, what the self-test

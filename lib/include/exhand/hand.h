@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Hand: from the glove's 22 angles to the joints of a robot hand, to its fingertips.
  *
  * What a hand is made of is data: a map (which sensors move which joint) and bones

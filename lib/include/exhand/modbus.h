@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Modbus: the box as registers, made from its tables, and a slave that answers requests for them.
  *
  * regs: what a register means, in one place for every port. modbus: one request PDU in, one answer

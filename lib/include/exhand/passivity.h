@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Passivity of one finger: a contact gives back no more energy than it was given.
  *
  * The observer is exact: between two ticks the force stands still, so the energy that the

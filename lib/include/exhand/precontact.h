@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Pre-contact: where the string will be when the finger touches, frozen before it does
  * (the paper's eq. 2 and 3).
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Probe: pull with little, watch the encoder, stop at the first thing that is not
  * as it should be. The motions of calibration, of one finger each, bounded in
  * current, travel and time:

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Quadrature: A/B lines or a hardware counter to a count, a count to metres. */
 #ifndef EXHAND_QUAD_H
 #define EXHAND_QUAD_H

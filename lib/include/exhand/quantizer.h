@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Quantizer: a code of N bits that stands still while its input only trembles. */
 #ifndef EXHAND_QUANTIZER_H
 #define EXHAND_QUANTIZER_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Record: the log as a stream of records, enough to replay a run bit for bit.
  *
  * Everything that crosses inward is in it: the header (scene, versions, period,

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Safety: the state of the box, its faults, and the gate to the D/A.
  *
  * OFF at power-on: zero current, drives disabled. A command arms it, in steps; FAULT latches with

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Signals: one descriptor for every input, output and parameter.
  *
  * Each module defines the rows of its own parameter struct (all fields int32_t,

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Slots: an image of parameters or of a calibration in flash, that a power cut at any moment leaves old or new.
  *
  * Two areas of memory that is erased as a whole, each with room for one image. The newest whole one counts; what is

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Trace: a few signals of every n-th tick, in memory of the caller's, until somebody fetches them.
  *
  * It reads what a tick has made and changes nothing. Modbus keeps one that is no part of a scene, in

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Units and formats: docs/NUMERICS.md as constants (a test asserts they agree).
  *
  * The ranges are the formats'; what a parameter may be is narrower, in its row.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Velocity of a counted position: five estimators, of which a scene links one.
  *
  * All take the extended count and return m/s in q27, saturated at +-16 m/s.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Watch: what a finger's own movement tells: it is too fast, or it stands although pulled.
  *
  * The speed limit acts on the velocity that goes into the law; who is beyond it for too long has a

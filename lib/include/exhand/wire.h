@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Wire: the packets between a controller and the world it feels (docs/WIRE.md).
  *
  * A packet may be lost, late, twice, out of order or damaged; nothing is sent again but

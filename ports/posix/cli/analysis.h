@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* From the log of a falling-mass run to a stiffness and to "came to rest or not".
  *
  * The paper's steps, each one function: cut the log by the collision signal, pool

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "arming.h"
 
 #include "option.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Arming, watched by whoever commanded RUN: by a scene's signals state, arm_step and present. */
 #ifndef CLI_ARMING_H
 #define CLI_ARMING_H

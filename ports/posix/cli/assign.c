@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "assign.h"
 
 #include "option.h"

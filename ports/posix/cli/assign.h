@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* NAME=VALUE, as --set and --device take it. */
 #ifndef CLI_ASSIGN_H
 #define CLI_ASSIGN_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand bilateral: the paper's second experiment. */
 #include "bilateral.h"
 

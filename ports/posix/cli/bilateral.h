@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand bilateral: what its parts share. */
 #ifndef CLI_BILATERAL_H
 #define CLI_BILATERAL_H

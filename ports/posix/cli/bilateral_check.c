@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand bilateral --check: random approaches in closed loop. */
 #include "bilateral.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand bilateral: three speeds, run, judged, printed, written. */
 #include "bilateral.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand bilateral --hands and --crisp: the experiment over fingers and hands, and over k and b. */
 #include "bilateral.h"
 

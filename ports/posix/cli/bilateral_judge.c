@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "bilateral_judge.h"
 
 #include "exhand/units.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What a contact was like: speed, settling, stiffness, and whether it was there in its time. */
 #ifndef CLI_BILATERAL_JUDGE_H
 #define CLI_BILATERAL_JUDGE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* --link: what the network between controller and world is like. */
 #include "bilateral.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand bilateral --preset original: a hand in the system before, and in this box. */
 #include "bilateral.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What --out leaves behind. */
 #include "bilateral.h"
 

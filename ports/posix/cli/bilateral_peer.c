@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "bilateral_peer.h"
 
 #include "world/world.h"

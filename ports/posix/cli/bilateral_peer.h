@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The world's end of the link, in this process and in virtual time: walls put up where a command
  * wants them, or a scene of the world simulator. */
 #ifndef CLI_BILATERAL_PEER_H

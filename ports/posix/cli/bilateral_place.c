@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Where things are: the glove's calibration, a finger by its string, walls, first touch. */
 #include "bilateral_run.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The experiment as tables. */
 #include "bilateral.h"
 

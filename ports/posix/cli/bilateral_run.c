@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "bilateral_run.h"
 
 #include "arming.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* One run of the bilateral scene: hand, glove, motors, link and world in virtual time. */
 #ifndef CLI_BILATERAL_RUN_H
 #define CLI_BILATERAL_RUN_H

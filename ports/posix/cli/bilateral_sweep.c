@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand bilateral --sweep: what is felt over delay, jitter and loss. */
 #include "bilateral.h"
 

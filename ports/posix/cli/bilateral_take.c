@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand bilateral: options with a syntax of their own, and what --params lists. */
 #include "bilateral.h"
 

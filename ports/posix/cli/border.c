@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "border.h"
 
 #include "jobs.h"

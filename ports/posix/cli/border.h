@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand drop --border-check: does the simulation have the border of the linear test
  * when nothing is in it but what that test knows, and what does each thing more do to it.
  *

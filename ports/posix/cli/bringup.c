@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand bringup: the first power-up of docs/BRINGUP.md, rehearsed on the simulated device. */
 #include "cli.h"
 

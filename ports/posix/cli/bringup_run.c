@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "bringup_run.h"
 
 #include "assign.h"

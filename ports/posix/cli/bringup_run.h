@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A rehearsal of one stage of examples/bringup on the simulated device: a person who does what is
  * asked, and what may be wrong. */
 #ifndef CLI_BRINGUP_RUN_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand budget: the highest rate of the loop that the box can hold, bound by bound. */
 #include "cli.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand calibrate: the paper's first step, on the simulated device's bench. */
 #include "cli.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* One calibration on the simulated device's bench, and what comes of it as files. */
 #ifndef CLI_CALIBRATION_H
 #define CLI_CALIBRATION_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand cards: every misbehaviour of a card in every phase of its driver, and how it ends. */
 #include "cards.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* How the box ends when something is wrong with a card: one kind of misbehaviour of one card that
  * begins in one phase of its driver, at one access of that phase after the other. */
 #ifndef CLI_CARDS_H

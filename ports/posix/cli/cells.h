@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Cells of the k-b plane in a file that grows as they come, so that a sweep that was
  * interrupted goes on and the files of shards make one.
  *

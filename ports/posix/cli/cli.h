@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The subcommands of the host program: one file each. Each returns the exit status:
  * 0 ok, 1 a check failed, 2 bad usage, 3 a tool or device is missing, 130 interrupted. */
 #ifndef CLI_CLI_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "contacts.h"
 
 #include "option.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* --gpio: real contacts and outputs (docs/GPIO.md), for any command that follows the wall clock.
  *
  *     static struct contacts gpio;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A log as CSV: one header line, t_s first and rising, the unit in every name. */
 #ifndef CLI_CSV_H
 #define CLI_CSV_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Diagrams: boxes and wires whose texts name rows of the signal and device tables, so
  * that a picture cannot keep a name or a value that the code has dropped. */
 #ifndef CLI_DIAGRAM_H

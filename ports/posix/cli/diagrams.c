@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What is wired to what: the paper's overview, set-up, both controller models, and what the second of
  * them measures. */
 #include "diagram.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand drop: the paper's falling-mass experiment, run, judged, written. */
 #include "cli.h"
 

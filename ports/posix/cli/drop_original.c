@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand drop --preset original: the falling mass on the wall of the system before, and on this box's. */
 #include "drop_original.h"
 

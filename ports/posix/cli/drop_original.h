@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand drop --preset original. */
 #ifndef CLI_DROP_ORIGINAL_H
 #define CLI_DROP_ORIGINAL_H

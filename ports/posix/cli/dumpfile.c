@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "dumpfile.h"
 
 #include "names.h"

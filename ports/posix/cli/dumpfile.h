@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The black box of a run on this machine: its memory, and a file for each dump. */
 #ifndef CLI_DUMPFILE_H
 #define CLI_DUMPFILE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand faults: every fault in every state, and any fault at any tick. */
 #include "cli.h"
 #include "faults_part.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What goes wrong, where, and how the box ends: one run in closed loop that many others branch
  * from, each with a fault at its true source.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* One branch: a copy of the process goes on with a fault, and is watched. */
 #include "faults.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Every fault in every state of the box, at several rates. */
 #include "faults_part.h"
 

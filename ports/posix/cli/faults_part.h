@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand faults: what its parts share. */
 #ifndef CLI_FAULTS_PART_H
 #define CLI_FAULTS_PART_H

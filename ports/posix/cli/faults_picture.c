@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What the picture of the reactions needs: force around a fault, released and cut. */
 #include "faults_part.h"
 

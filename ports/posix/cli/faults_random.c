@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Any fault at any tick: random times in closed loop, two causes, contacts that close again, somebody
  * who will not stop commanding RUN. */
 #include "faults_part.h"

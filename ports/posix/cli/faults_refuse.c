@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Arming that does not come to RUN: every step of it that does not hold, and which one the box names. */
 #include "faults_part.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The run that others branch from: a finger that presses against a wall in the full box, or a mass
  * that falls onto one. */
 #include "faults.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Where each fault comes from: contacts, encoder, monitor, D/A, glove, cards, link, time, memory. */
 #include "faults.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What must happen, said once more: written from docs/SAFETY.md and the drives' needs, not from the
  * library's table. */
 #include "faults.h"

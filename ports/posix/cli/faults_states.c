@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand faults --states: the state machine as the library has it. */
 #include "faults_part.h"
 #include "names.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "part.h"
 
 /* Spread or correlation below this share of the value is rounding, not data:

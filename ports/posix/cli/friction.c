@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "friction.h"
 
 #include "jobs.h"

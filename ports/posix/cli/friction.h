@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand drop --friction N: the stability border against the friction of the string.
  *
  * At each rate both gains are raised together, along the ray through the paper's point,

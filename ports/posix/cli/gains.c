@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand advise gains: the k and b that come to rest at a rate on a device, with friction. */
 #include "gains.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand advise gains, in parts. */
 #ifndef CLI_GAINS_H
 #define CLI_GAINS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "gains.h"
 
 #include "option.h"

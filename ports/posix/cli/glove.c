@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand glove: the glove's Table I, recordings as stable angles, the scan's skew, logs, a stock glove. */
 #include "glove.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What the parts of `exhand glove` share. */
 #ifndef CLI_GLOVE_H
 #define CLI_GLOVE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand calibrate --glove: a user's calibration of the glove, from poses. */
 #include "cli.h"
 

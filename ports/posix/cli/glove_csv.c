@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand glove --csv: a recording through the glove's modules, as angles. */
 #include "glove.h"
 

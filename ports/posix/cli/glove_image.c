@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "glove_image.h"
 
 #include "option.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The file that `exhand calibrate --glove` writes and others read. */
 #ifndef CLI_GLOVE_IMAGE_H
 #define CLI_GLOVE_IMAGE_H

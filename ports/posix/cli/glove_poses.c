@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "glove_poses.h"
 
 #include "lines.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The poses that a glove is calibrated from: what to do, what is known of each, and the
  * codes that were taken in it, live or recorded. */
 #ifndef CLI_GLOVE_POSES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand glove --record: the sensing scene on the simulated glove, logged. */
 #include "glove.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Where exhand glove --selftest gets hand and motor at rest from. */
 #include "glove.h"
 

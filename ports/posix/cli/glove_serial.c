@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand glove --serial: the sensing scene on a stock glove at a serial line. */
 #include "glove.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A stock glove on a serial line, for commands. */
 #ifndef CLI_GLOVE_SERIAL_H
 #define CLI_GLOVE_SERIAL_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand glove --skew: what the scan's skew does to the fingertips. */
 #include "glove.h"
 

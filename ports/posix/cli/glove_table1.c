@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand glove --selftest: the paper's Table I, peak-to-peak noise and stable bits of joint
  * angle, motor position and motor current at rest, and what low-pass and quantizer make of
  * the first. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What passivity does in a run of scene guarded: what it takes away, and what a contact gave out. */
 #ifndef CLI_GUARD_H
 #define CLI_GUARD_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "hand_record.h"
 
 #include "option.h"

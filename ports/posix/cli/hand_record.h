@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Hand record: what a glove recorded, as string for simulated fingers.
  *
  * Two kinds of text: rows of 22 angles in the glove's order, as recording.h reads them, equally far

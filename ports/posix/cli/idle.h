@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Idle: the rest of a fall that has come to rest is known, and need not be run.
  *
  * Once the device stands still to the last bit (sim/still.h) and a tick has left the controller's state as it was,

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* --calibration: images of fingers, as `exhand calibrate --out` writes them, for a scene's set-up. */
 #ifndef CLI_IMAGES_H
 #define CLI_IMAGES_H

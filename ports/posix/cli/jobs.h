@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Independent jobs over all cores: one process each, results in order. */
 #ifndef CLI_JOBS_H
 #define CLI_JOBS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lines.h"
 
 int lines_next(FILE *f, char *to, size_t cap_B)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Lines of a text, however they end. */
 #ifndef CLI_LINES_H
 #define CLI_LINES_H

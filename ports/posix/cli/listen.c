@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand listen: the log of a box that sends it over UDP (log=udp), as a file. */
 #include "cli.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand run: a box that goes on, on the simulated device. */
 #include "cli.h"
 

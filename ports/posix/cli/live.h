@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand run: what its parts share. */
 #ifndef CLI_LIVE_H
 #define CLI_LIVE_H

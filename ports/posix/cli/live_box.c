@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand run: the two kinds of box, and who is told what happens in them. */
 #include "live.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand run --log: written by a thread of its own. A paced box does not wait for it. */
 #include "live.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand run: a person at the simulated box. Holds the dead-man switch. */
 #include "live.h"
 

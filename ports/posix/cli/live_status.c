@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand run: a line of status on a terminal, and what became of it. */
 #include "live.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A log file in memory, record by record. */
 #ifndef CLI_LOGFILE_H
 #define CLI_LOGFILE_H

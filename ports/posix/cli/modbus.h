@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand run --modbus: the registers of the running box (exhand/modbus.h) for clients, over TCP or a
  * serial line. A thread of its own answers them; between it and the loop is a mailbox:
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Modbus over TCP or a serial line, by libmodbus: it receives, frames and sends. What a register
  * means, and what may be written, is the library's (exhand/modbus.h): a request's registers are
  * filled into libmodbus's mapping before it answers, and its exceptions are given before it writes.

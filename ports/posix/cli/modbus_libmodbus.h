@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What the files that use libmodbus share. */
 #ifndef CLI_MODBUS_LIBMODBUS_H
 #define CLI_MODBUS_LIBMODBUS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* One request, from the bytes that libmodbus received to the answer that it sends. */
 #include "modbus_libmodbus.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The registers of a box, read as a Modbus client. */
 #include "watch.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The mailbox between the loop and whoever answers Modbus requests. */
 #include "modbus.h"
 

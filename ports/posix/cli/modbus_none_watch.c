@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* In place of modbus_libmodbus_watch.c where that package is not. */
 #include "watch.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* States, faults, limits, arming steps, commands, inputs, fingers: words for people. The short words are
  * the library's where it has them (safety.h); sentences, and the rest, stand here alone, for every
  * command of the host program. */

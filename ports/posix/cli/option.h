@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Options: one table per subcommand makes the parser and the --help. */
 #ifndef CLI_OPTION_H
 #define CLI_OPTION_H

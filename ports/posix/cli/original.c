@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "original.h"
 
 #include "option.h"

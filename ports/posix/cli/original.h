@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Original: the system that the paper started from, beside this box: tables of a column each, and their
  * picture.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The directory that `exhand drop --out` leaves its files in. */
 #ifndef CLI_OUTDIR_H
 #define CLI_OUTDIR_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The files that a command leaves in the directory of its --out. */
 #ifndef CLI_OUTFILE_H
 #define CLI_OUTFILE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A scene's parameters by name and in SI, for options and printing. */
 #ifndef CLI_PARAM_H
 #define CLI_PARAM_H

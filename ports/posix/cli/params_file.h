@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Images of parameters on disk (exh_params_save). What is saved is what is wanted, not what a slewed value passes
  * on its way. */
 #ifndef CLI_PARAMS_FILE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Part: what the files of the analysis share among themselves (analysis.h). */
 #ifndef CLI_PART_H
 #define CLI_PART_H

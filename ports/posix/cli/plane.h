@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Plane: which cells of the k-b plane a sweep still wants, and what they say. */
 #ifndef CLI_PLANE_H
 #define CLI_PLANE_H

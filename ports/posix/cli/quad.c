@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand quad: samples of two lines to counts, through the library's decoder. */
 #include "cli.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Medians and other quantiles of many runs, of which some gave no value. */
 #ifndef CLI_QUANTILE_H
 #define CLI_QUANTILE_H

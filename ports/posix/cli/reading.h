@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Readings of the paper's analysis: what its text leaves open, as options.
  *
  * The text says which steps are made, not which of two regressions ("the stiffness as

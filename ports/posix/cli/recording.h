@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Recording: a glove's rows from a text file.
  *
  * A row is a line: 22 numbers in the order of the glove's sensors, with commas, semicolons,

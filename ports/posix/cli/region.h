@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Region: the gains that the stability advisor allows at one rate on one device.
  *
  * A lattice of nodes over k and b. A node holds if in each of so many cases (sim/settle.h) the mass comes

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand regs: the registers of a scene, as a Modbus client finds them. */
 #include "cli.h"
 #include "names.h"

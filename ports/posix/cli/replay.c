@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Replay: the recorded inputs through the scene again; every output must come out
  * bit for bit, and every keyframe on the way must equal our state. */
 #include "cli.h"

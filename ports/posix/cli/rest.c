@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "part.h"
 
 const struct fall_rest_opt fall_rest_opt_default = {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* One run of the drop scene on the simulated device: the paper's ten falls. */
 #ifndef CLI_RUN_H
 #define CLI_RUN_H

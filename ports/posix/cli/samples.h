@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Samples of the lines of an encoder, out of bytes or CSV, a chunk at a time. */
 #ifndef CLI_SAMPLES_H
 #define CLI_SAMPLES_H

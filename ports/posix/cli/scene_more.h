@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A scene that not every host program has. */
 #ifndef CLI_SCENE_MORE_H
 #define CLI_SCENE_MORE_H

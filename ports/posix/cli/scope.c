@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "part.h"
 
 /* The first sample of the tail in which position stays within one count. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand drop --sweep: the stability border in the k-b plane, at each rate.
  *
  * First octaves: k and b are doubled until a whole column and a whole row of cells is

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The paper's Table II: its six points, and how ours are judged and printed. */
 #ifndef CLI_TABLE2_H
 #define CLI_TABLE2_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "table2.h"
 
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A thread beside the loop. */
 #ifndef CLI_THREAD_H
 #define CLI_THREAD_H

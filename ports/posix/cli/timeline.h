@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What happened in a log, in the words of a person: commands, states, arming, contacts and limits
  * with their peaks, faults by name, what was missed or lost. */
 #ifndef CLI_TIMELINE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "until.h"
 
 #include <signal.h>

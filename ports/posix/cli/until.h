@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Until somebody stops it: Ctrl-C and the time, for commands that wait for what others send. */
 #ifndef CLI_UNTIL_H
 #define CLI_UNTIL_H

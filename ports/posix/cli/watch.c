@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand watch: what a running box does, as it does it. */
 #include "watch.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand watch: what its parts share. */
 #ifndef CLI_WATCH_H
 #define CLI_WATCH_H

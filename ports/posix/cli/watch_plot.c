@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The last seconds of a running box as a picture: a panel a signal, the state below. */
 #include "watch.h"
 

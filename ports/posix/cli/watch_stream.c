@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The log of a box, as it comes over the network: each frame has every signal. */
 #include "watch.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The box on a terminal, and as lines. */
 #include "watch.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Lines on stderr while a box goes on: written by a thread of their own, so that no tick waits for a
  * terminal that was halted, or a pipe that is full. Before words_begin() and behind words_end() they
  * are written at once. */

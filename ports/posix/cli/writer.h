@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A file that is written by a thread of its own, so that who has something to write need not wait
  * for a disk, a pipe or a terminal. */
 #ifndef CLI_WRITER_H

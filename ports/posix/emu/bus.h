@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Bus: the port accesses of ports/cards/io.h, answered by an emulated box. */
 #ifndef EMU_BUS_H
 #define EMU_BUS_H

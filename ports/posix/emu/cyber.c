@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "cyber.h"
 
 #define BAUD        115200u

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Cyber: a stock glove of 22 sensors at the far end of a serial line, and what can go wrong there.
  * Written from the facts about the line (docs/CYBERGLOVE.md), not from the parser.
  *

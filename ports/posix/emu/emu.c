@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "emu.h"
 
 #include <stddef.h>

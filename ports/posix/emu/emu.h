@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Emu: the box's cards on a bus: two Sensoray 526, a Diamond MM-32X-AT, and what can go wrong
  * with them. Written from the facts about the cards (docs/CARDS.md), not from the drivers.
  *

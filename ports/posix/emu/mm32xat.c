@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "mm32xat.h"
 
 #include <stddef.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Diamond MM-32X-AT, register by register: 32 A/D inputs with a scan into a FIFO, four 12-bit
  * D/A outputs, digital lines, a counter/timer that may pace the scans.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "pins.h"
 
 #define AD_MAX_UV  10500000 /* beyond it a converter of 10 V sees a rail anyway      */

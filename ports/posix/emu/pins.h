@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Pins: what stands on the connectors of the cards, and its codes.
  *
  * Voltages are whole microvolts. An A/D code is 10 V / 32768 = 305.17578125 uV, two's

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "s526.h"
 
 #include <stddef.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Sensoray Model 526, register by register: four 24-bit quadrature counters, eight A/D inputs
  * with two references, four D/A outputs, eight digital lines, an EEPROM of calibration values.
  *

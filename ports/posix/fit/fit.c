@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exhand fit: which plant, under which reading of the paper's analysis, comes closest. */
 #include "cli/cli.h"
 #include "cli/jobs.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Score: a plant is run at the paper's six points and at 1.5 times both gains, and read
  * in every way at once. */
 #ifndef FIT_SCORE_H

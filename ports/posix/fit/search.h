@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Search: one population a reading, every plant offered to all of them.
  *
  * A round makes one plant from each population, runs them, and offers each to every

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Space: which values of the simulated device and the box are searched, and how far. */
 #ifndef FIT_SPACE_H
 #define FIT_SPACE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "winners.h"
 
 #include "cli/jobs.h"

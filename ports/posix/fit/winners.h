@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Winners: those of a search, by the whole experiment and seeds they never saw. */
 #ifndef FIT_WINNERS_H
 #define FIT_WINNERS_H

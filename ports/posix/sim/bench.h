@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Bench: what the experimenter does for a calibration, and what may be wrong with it.
  *
  * The string has an end (a knot at the sheath) at q = 0; the person draws it out and

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Codes of the simulated device's cards and drive. */
 #ifndef SIM_CODES_H
 #define SIM_CODES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The simulated device: all its parameters, from one commented table (device.c). */
 #ifndef SIM_DEVICE_H
 #define SIM_DEVICE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "eigen.h"
 
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Eigen: how large the largest eigenvalue of a small matrix is. */
 #ifndef SIM_EIGEN_H
 #define SIM_EIGEN_H

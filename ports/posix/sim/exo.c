@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "exo.h"
 
 #include <string.h>

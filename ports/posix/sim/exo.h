@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Exo: the fingers in use, and the glove that moves with them. An absent finger has no
  * plant, no path and no piece of glove: it costs nothing. */
 #ifndef SIM_EXO_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "fall.h"
 
 #define FAR_S 1e30

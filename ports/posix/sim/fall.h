@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Fall: what the experimenter does. Holds the mass, lets go, watches, lifts again.
  *
  * While held or lifted, the hand guides mass and string together. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Every parameter of a finger in the exoskeleton, with unit, range and how sure we are.
  *
  * unsure  no data of a hand in this device exist. The middle of the nine cases that a study of the

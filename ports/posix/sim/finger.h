@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Finger: one in the exoskeleton, with the motor that pulls it back.
  *
  * In string coordinates, x the string the finger draws out, q that at the motor:

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Every parameter of the simulated glove and its card, with unit, range and how sure we are.
  *
  * paper   read in the ICRA 2013 paper

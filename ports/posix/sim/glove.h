@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The glove's analog chain, from 22 joint angles to 22 A/D codes:
  *
  *   angle, low-pass, sensor (its own two end points), amplifier, multiplexer, noise, A/D

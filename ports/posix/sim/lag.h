@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Lag: a first-order low-pass behind an input that is known in closed form, so its
  * output is too: nothing is integrated, at no time step.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Linear: is the sampled wall stable in sustained contact, exactly, by eigenvalues.
  *
  * The string is taut, dry friction, saturation and steps are off: between two ticks

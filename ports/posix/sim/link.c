@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Every parameter of one way of the simulated link, with unit and range. All are choices of the
  * simulation; where a network was recorded, a trace says more than any model. */
 #include "link.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Link: what a network does to packets, in virtual time, seeded.
  *
  * Each of two ways delays (constant, or with jitter of three kinds, or as a recorded trace says),

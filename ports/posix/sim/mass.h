@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Mass: the one axis of the paper's first experiment, a falling mass or a bench for calibration,
  * with drive, encoder and monitor. What sim/exo is for fingers. */
 #ifndef SIM_MASS_H

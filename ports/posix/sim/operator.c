@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "operator.h"
 
 #include <string.h>

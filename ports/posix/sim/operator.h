@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Operator: the hand in the simulated glove. It rests in a pose, goes to one when asked,
  * goes through all of them, waves, or does what a recording says. */
 #ifndef SIM_OPERATOR_H

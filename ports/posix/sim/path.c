@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Every parameter of a scripted approach, with unit, range and how sure we are.
  *
  * paper   read in the ICRA 2013 paper

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Path: where a finger wants to be, as string drawn out, m.
  *
  * Scripted approaches: from rest to beyond where the object is believed to be, a

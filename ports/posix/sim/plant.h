@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Plant: a mass on an elastic string that only pulls, wound on a motor's rotor.
  *
  *   T    = max(0, kc (x - q) + bc (x' - q')), 0 when x < q

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Random numbers of the simulation: seeded, the same on every machine. */
 #ifndef SIM_RANDOM_H
 #define SIM_RANDOM_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Settle: does a mass that falls onto the wall come to rest? One fall, without chance.
  *
  * The model of the stability advisor: rotor, string, mass and their friction as plant.h has them, the

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "still.h"
 
 #include "codes.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Still: a mass that stands, to the last bit, and will for as long as the D/A output stays as it is.
  *
  * Nothing of it is an estimate. Speeds are 0 and friction holds both ends, with 1e-9 N to spare: no step of any

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Trace: recorded delays for the simulated link, one a packet.
  *
  * The file format is text: one packet a line, its delay in ms, "lost" for one that never

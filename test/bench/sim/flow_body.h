@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The exact flow, in whatever REAL is; included by flow.c and wide.c.
  *
  * In each mode (string taut or slack, each body sliding one way or the other or stuck) the plant is

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The simulator's own source, under another name: what is compared is what is shipped. Its name is
  * then ours to give, so that a whole simulator can be linked with another method (statistics.c). */
 #define plant_advance      leapfrog_own_advance

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Method: ways to integrate the simulator's plant (sim/plant.h), to be compared with the one it has.
  *
  * The same equations for all, and the lags of current and monitor exact in all. Euler's two treat

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Semi-implicit Euler, friction as an impulse, current at the end of a step: what the simulator had before. */
 #include "method.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What Table II and the time until rest become when the simulator's plant is integrated in another way.
  *
  *   statistics [--short] [RUNS]

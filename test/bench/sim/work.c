@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Work and precision of the ways to integrate the simulator's plant, on three problems.
  *
  *   work errors       problem,method,step_s,error_m,reference_m of every method and step

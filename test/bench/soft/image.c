@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* main() of an image that counts kernels: one line each, kernel,name,cycles of 1024 ops, an empty op subtracted. Where
  * virtual time is instructions, so are these. No sines: they would need a C library. */
 #include "law.h"

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # Kernels on a CPU without an FPU: soft.sh
 # Builds the image of this directory for a Cortex-M3 and runs it under QEMU, where virtual time is 64 ns an instruction, seen by
 # a timer of 25 MHz. Writes $B/bench/soft.csv: kernel, way, instructions of one op.

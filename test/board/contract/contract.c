@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What the ports know of a scene by name: nothing runs by itself. */
 #include "scene.h"
 

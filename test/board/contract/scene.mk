@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # The contract test as an image. It calls the board itself, so it has a main() and no tick.
 SCENE_DESC   := the port contract, every check printed
 SCENE_MAIN   := $(addprefix test/board/,image.c say.c contract_test.c contract/contract.c) test/support.c

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Fails on purpose: current on, and then a function that calls itself until the stack is full. */
 #include "exhand/board.h"
 #include "exhand/error.h"

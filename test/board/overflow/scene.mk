@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # An image that overruns its stack with current on: the port's fault handlers make it safe.
 SCENE_DESC := a stack overrun with current on
 SCENE_MAIN := test/board/overflow/image.c

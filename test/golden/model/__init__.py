@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The modules that have golden vectors: {name: (columns, run(rate) -> (row, state) a tick)}."""
 
 from . import (basics, bilateral, calibrate, contact, drive, drop, filter, gains, glove, glove_cal, guard, hand, modbus, passivity,

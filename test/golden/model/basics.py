@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """fix, bytes and record: below everything else."""
 
 import zlib

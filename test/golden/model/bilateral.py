@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The scene bilateral: the models of all its modules put together, and the world's packets."""
 
 import zlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """calibrate: mean, fit, the two tables made of the points, the image."""
 
 import zlib

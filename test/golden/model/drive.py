@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """drive: tables, from force to current, and the monitor back."""
 
 from struct import Struct

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The scenes drop and guarded: one tick from an encoder's counter to a D/A code."""
 
 from .contact import Contact

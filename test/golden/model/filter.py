@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """filter and quantizer: low-pass of several channels, and codes that stand still."""
 
 from struct import Struct

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """gains: rules set up and refused, pairs asked, values staged under a rule and moved under it."""
 
 from fractions import Fraction

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """guard and supply: is what must stand still what it was, and are the drives fed?"""
 
 import zlib

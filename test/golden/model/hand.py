@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """angle and hand: sine and cosine, sensors to joints to a fingertip and its slope."""
 
 from .num import AGAIN, MAX32, MIN32, TICKS, Rng, clamp, div, shr, wave, wrap

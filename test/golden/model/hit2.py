@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The DLR/HIT Hand II as docs/NUMERICS.md and hand_hit2.c have it: bones, and the map of a glove's sensors."""
 
 from .hand import Finger

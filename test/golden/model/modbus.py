@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """mirror, modbus and modbus_rtu: binary32 by integers, requests and their answers, and a serial line; from docs/MODBUS.md."""
 
 import zlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The arithmetic of docs/NUMERICS.md in Python's exact integers, and the stimuli of README.md."""
 
 import zlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """passivity: no contact gives back more energy than it was given."""
 
 from struct import Struct

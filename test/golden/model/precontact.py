@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """precontact: distance to a plane told, q_lim frozen before contact; advice."""
 
 from struct import Struct

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """quad: extension of a counter, position, and the decoder of two lines."""
 
 from struct import Struct

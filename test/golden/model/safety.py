@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """safety: the box's state, and the gate to the D/A."""
 
 from struct import Struct, pack as pack_once

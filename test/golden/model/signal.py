@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """signal: a table's CRC, and parameters staged, applied at once or little by little, saved and loaded."""
 
 import zlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """slots: images in two slots of flash, and which of them counts."""
 
 import zlib

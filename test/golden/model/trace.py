@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The trace that a world asks a controller for: docs/WIRE.md, packets 6 and 7."""
 
 from struct import Struct, pack, unpack

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """track: does the current monitored follow what is coded?"""
 
 from struct import Struct

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """velocity: four estimators (the difference is the window of one tick)."""
 
 from struct import Struct

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """watch: too fast, or standing while pulled."""
 
 from struct import Struct

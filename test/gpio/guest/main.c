@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* First process of an emulated Linux: `exhand drop --pace --gpio` on lines of the kernel's simulated
  * chip, of which this program is the contacts, the drive and the other programs. Prints `ok` and
  * `not ok` lines; logs leave through the second serial line. Arguments: versions of libgpiod, as

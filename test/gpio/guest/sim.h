@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The kernel's simulated GPIO chip, from outside: what hangs on its lines; and somebody else who wants
  * one. Kernel files and system calls alone. */
 #ifndef GUEST_SIM_H

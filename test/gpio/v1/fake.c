@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* libgpiod 1 over the chip of the tests. */
 #include "chip.h"
 #include "gpiod.h"

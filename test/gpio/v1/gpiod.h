@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Of libgpiod 1.6's names those that gpio_v1.c uses, for a machine without the package. */
 #ifndef TEST_GPIO_V1_GPIOD_H
 #define TEST_GPIO_V1_GPIOD_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* libgpiod 2 over the chip of the tests. Objects are counted: those not freed are in fake_objects. */
 #include "chip.h"
 #include "gpiod.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Of libgpiod 2's names those that gpio_v2.c uses, for a machine without the package. */
 #ifndef TEST_GPIO_V2_GPIOD_H
 #define TEST_GPIO_V2_GPIOD_H

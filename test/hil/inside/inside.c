@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The emulated cards inside an image, in the place of its port instructions, and behind them a
  * device of integers: strings that are drawn out and let in in turn, so that walls are met and
  * left. For emulators of the machine that have no such cards: the drivers, the timer and its

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A scene that is too slow on purpose: every SLOW_EVERY-th tick computes for so long that two
  * instants of the timer find it at work: at the first of these a tick is missed, at the second one
  * begins late. Whoever counts them must find exactly these. */

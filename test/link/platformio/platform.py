@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 from platformio.public import PlatformBase
 
 

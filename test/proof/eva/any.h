@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Anything: for the abstract interpreter alone. A harness includes the source it judges, gives it
  * every value the documents allow (of a state: every bit pattern), and ends with END(). */
 #ifndef PROOF_ANY_H

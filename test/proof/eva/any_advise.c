@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: set-up of pre-contact by figures
  * Any figures, loop rates of a whole number of Hz and of thousandths of it, any threshold: what is advised is within what is refused beyond.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: sine and cosine
  * Of every angle: eighth by eighth, the whole eighths by themselves.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: scene bilateral
  * Scene bilateral: a tick and what goes out behind it, for every number of fingers in use (damaged ones too), anything as their
  * places, in any state that its bytes leave, with any frame, glove and command, any packets (none, one, as many as there is room

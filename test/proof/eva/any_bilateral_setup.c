@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: set-up of scene bilateral
  * Set-up of scene bilateral: each choice of fingers, any parameters, calibrations, any timer that the loop takes: what it makes is what
  * the tick is proved with, every place is a finger, and the first are those in use.

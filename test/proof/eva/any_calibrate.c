@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: calibration of a finger
  * Any bytes of some lengths as an image, with room for none to two points; any calibration of up to two points judged and compared with
  * anything; those whose points are in range (as it judges: test/unit) made into tables of any room and written into buffers of

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: what scenes are judged with
  * The functions of a tick keep to contract.h: given what scenes are shown to give them (called.h), they leave what scenes are
  * shown to do with. That set-ups make such configurations, and bytes such states, unit setup shows.

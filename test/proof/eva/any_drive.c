@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: force and current
  * Force and current of a finger: any ledger, any permit of exh_safety_step(), any state that
  * exh_drive_bytes() lets pass; a table of three knots with any values that exh_table_set() lets.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: scene drop
  * Scene drop: any parameters, set-up for any board and calibrations, and of what it makes a tick in any state that its bytes
  * leave, with any frame, any command, any ticks missed, all functions of the library keeping to contract.h; what a tick leaves is a

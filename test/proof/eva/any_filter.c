@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: low-pass
  * Each kind, with any coefficients and shift (those of damaged memory too), any bits in the states, any input,
  * up to three channels, which know nothing of each other; reset; from any coefficients to any others.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: arithmetic
  * fix.h: the arithmetic that the wp/ proofs take for granted, over its whole documented range.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: velocity, foaw
  * The adaptive window: any parameters into set-up; any gains that it can make, any longest window and
  * tolerance (those of damaged memory too), in any state that the bytes leave, of any count.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: rule of gains
  * Any rule and any period into set-up. Of a rule that it takes, with any values in the knots that do not
  * count, any k and b asked; and of the way, any two pairs within the rows of k and b, any shift.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: the gate
  * The gate: any state of the box, any ledger, any output frame, every number of fingers; of the
  * parameters and constants those that exh_drive_setup() lets pass.

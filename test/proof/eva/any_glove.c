@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: glove
  * Any codes, in any state that the bytes leave, with a calibration of which only what the tick reads counts: any
  * gain, cross term, end and sensor, a zero within the card; any coefficients, limits and lists (those of damaged memory too).

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: calibration of a glove
  * Any bytes of any length into a calibration: what is accepted has its sensors, ends and terms in range, what is
  * refused has no sensor present. Any calibration into judging, for any user, glove and day, and into an image of any size.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: scene glove
  * Scene glove: any parameters and calibration, set-up for any board, a frame or none in any state that its bytes leave, all
  * functions of the library keeping to contract_box.h; the gate with nothing to drive.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: scene guarded
  * Scene guarded, with drop's functions, as scene drop; with a rule of gains and without, values staged by it, and what may be
  * applied.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: hand: map and joints
  * Any map into its check; of a map that passes, any sensors into the joints of each finger, and
  * any pulls into those that follow. The DLR/HIT II's own map passes.

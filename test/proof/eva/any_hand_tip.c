@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: hand: fingertip and slope
  * Set-up of any bones and parameters; of what it takes, tip and slope at any angles. Here int_fast32_t has 64 bits: that 32 are
  * enough for every value is z3's (smt_hand.py), and that bound is what eva/hand_tip.acsl admits.

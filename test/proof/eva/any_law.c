@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: contact law
  * The contact law: any state, position and velocity, parameters in their ranges.
  *

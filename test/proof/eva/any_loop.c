@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: loop and switch
  * The loop and the dead-man switch: a board that answers anything, of any timer and any ticks missed, whose calls fail at any time and
  * leave then what they were to fill; a scene with glove, link, parameters and words and one without any, which asserts what it is

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: scene minimal
  * Scene minimal: set-up for any board, and of what it makes a tick in any state, with any frame, any command, any ticks missed, all
  * functions of the library keeping to contract.h; what a tick leaves is a state that a tick takes.

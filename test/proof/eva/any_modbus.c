@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: Modbus
  * Any bytes as a request, of lengths up to 12 and of the longest; those that write many of ten counts, whatever the map of
  * registers says: nothing is read beyond the request, nothing written beyond an answer of 253 bytes, and no more asked of the

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: serial line of Modbus
  * Any byte, any silence, in any state of a line whose frame is at most as long as what stops it; set-up of any address and
  * rate; an answer to any request that is ready, whatever the map says.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: texts
  * Names and texts of any number: of states, triggers, faults, limits, steps of arming, errors, what is wrong with a sensor or with a
  * calibration.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: parameters
  * Anything in the rows of a table (four groups), in both arrays and in what is kept beside them, damaged or not: look,
  * apply, stage, put, drop and take back; any index, any value. A step towards any goal by any shift. Set-up of any time and

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: energy
  * Passivity of a finger: any state that exh_passivity_bytes() lets pass, any count, any ledger of a law, any
  * current; a table of three knots with any values that exh_table_set() lets.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: pre-contact
  * Told any plane of any age, in any state that the bytes leave, any fingertip, slope, string and age; ticks missed.
  * Parameters in their rows, read at every tick; set-up of any. What is left is again such a state: the phase one of the

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: probe, home, weigh
  * Set-up of any parameters and any scale; what a configuration that it takes is, is stated, and every such one is ticked: in any
  * state, at any count, with any currents. What is asked is within the current it is bounded by, a result one of the seven.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: quadrature
  * Lines, index and counter in any state that their bytes leave, of any sample; any count to metres; set-up
  * of any parameters, any period and any width: what it takes is a jump of a quarter of the counter at most.

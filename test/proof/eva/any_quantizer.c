@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: quantizer
  * Any parameters into set-up; what it takes, in any state, of any input.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: records
  * Any bytes of some lengths as a record, whatever length they tell; one begun and ended through a cursor that writes, reads or
  * measures, anywhere; header and event through any.

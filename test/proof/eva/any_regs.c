@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: register map, read
  * Set-up of tables with anything in their rows. A request of any address and number, of tables of any size: what is found of
  * it lies within its block. Each address of each block, and behind its end, of a map of two tables of eight values and a trace of

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: register map, written
  * Each address of the blocks that can be written, and behind their ends, of a map of two tables of eight values and a trace of
  * two frames with anything in them, staged or commanded: one register, two, all, and one more, of any bytes. Any coils; what

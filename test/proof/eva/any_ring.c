@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: ring of records
  * Set-up of any size. Memory of the least size and of one that is no power of two, in any state that a put leaves (parts within
  * it, the head within it): a record of any type and of some lengths, the longest that fits and one more among them; two

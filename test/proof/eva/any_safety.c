@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: state of the box
  * The state of the box: any bit pattern of it, any input.
  *

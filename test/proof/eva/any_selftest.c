@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: self-test
  * Whatever memory and machine make of the operands (they are volatile: any value), no undefined behaviour; the answer is one
  * of its enumeration. The filter's set-up is any, as is

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: set-up and bytes of the output path
  * Set-up of force and current, passivity, state of the box, tracking, speed: any parameters, loop rates in
  * thousandths of Hz; tables of up to three knots with anything in them, judged and inverted. States of any bytes, and what

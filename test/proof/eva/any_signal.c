@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: tables of signals
  * Tables of up to three groups, of up to four rows each and any number of instances, with anything in the rows: any
  * index, any id; their CRC.

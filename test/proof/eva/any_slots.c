@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: slots
  * Anything in both slots, of sizes around the least and one of 40 bytes, whatever they say of their length; what is to be
  * saved next, of images of some lengths and of any, in buffers of some sizes.

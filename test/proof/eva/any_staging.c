@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: staging of gains
  * Any rule that set-up takes, a table of four groups with anything in its rows and in both arrays, any id, instance and value: staged
  * or refused, looked for, led, dropped, and a step of all walls on their way.

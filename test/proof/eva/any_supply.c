@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: supply
  * Set-up of any parameters and period; the tick with any limits, any code, any ticks missed, in any state.
  *

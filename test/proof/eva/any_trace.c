@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: trace
  * Memory of 2, 8 and 128 frames with anything in it, five signals, any state as the bytes leave it, any trace asked for, any
  * values; passed on between any two states. Set-up of any number of frames and signals.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: current tracking
  * Current tracking: any state, any tolerance in range, any monitor, any code.
  *

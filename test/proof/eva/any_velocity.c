@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: velocity, all but foaw
  * Difference and window, pole, track: any parameters into its set-up; with a step > 0, tables and shares as set-up leaves them,
  * in any state that its bytes leave, of any count. A state is afterwards within what bytes leave.

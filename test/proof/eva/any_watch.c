@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: speed, standing
  * Speed and stand-still of a finger: any state, any constants, any input.
  *

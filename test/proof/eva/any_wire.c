@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: wire
  * Any bytes of any length as a datagram, into a receiver in any state that its bytes leave; time that passes. Any packet into
  * buffers of any size; what came as a plane, and as a parameter of any table of ten values.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The library's functions as a scene calls them: each asks for what its own proof takes for granted, and leaves anything within what
  * that proof shows (contract.h). What a function only reads stays a pointer that must be one. */
 #ifndef PROOF_CALLED_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* As called.h: glove, hand, pre-contact and link. */
 #ifndef PROOF_CALLED_BOX_H
 #define PROOF_CALLED_BOX_H

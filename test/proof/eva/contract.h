@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What the library's functions of a tick are given and what they leave: any value within a predicate. any_contract.c shows of the
  * functions that they keep to these; called.h stands in their place where a scene is judged, and asks the same of the scene. */
 #ifndef PROOF_CONTRACT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* As contract.h, of the functions that a box with glove and link has besides. Units precontact, hand, hand_tip, glove and wire show
  * that they keep to these. */
 #ifndef PROOF_CONTRACT_BOX_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: reciprocal
  * exh_recip_q24() of each of its arguments, 1/8 .. 8: the result is within 1/8 .. 8 again.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PROVES: length of (sin, cos)
  * Of each distance from a whole quarter, an eighth of a turn at most, on either side: the square of the length
  * is 1 within 2^-27; and -x has -sin and cos, but at the eighth itself, where the two have changed places. All

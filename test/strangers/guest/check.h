@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Check: through the Linux drivers, every kind of value beside what the pins have. */
 #ifndef GUEST_CHECK_H
 #define GUEST_CHECK_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #define _GNU_SOURCE 1 /* syscall, usleep: also where a standard is asked for              */
 #include "linux.h"
 

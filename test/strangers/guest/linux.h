@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Linux: modules, comedi devices and instructions, by system calls alone. */
 #ifndef GUEST_LINUX_H
 #define GUEST_LINUX_H

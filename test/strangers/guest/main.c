@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Main: the first process of the machine. Loads Debian's drivers, attaches the cards, compares. */
 #include "check.h"
 #include "linux.h"

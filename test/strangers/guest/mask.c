@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Channels 2..7 of the S526's A/D: whose error it is that Linux does not read them.
  *
  * The card keeps a result for each channel; a word starts the conversion of the channels whose

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The MM-32X-AT through Linux. */
 #include "check.h"
 #include "linux.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Pin: what stands on the connectors of the emulated cards, seen from inside the machine through
  * ports that no card has. The drivers know nothing of it.
  */

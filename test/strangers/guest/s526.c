@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The Sensoray 526 through Linux. What a pin's voltage is in codes is worked out here anew, by
  * division of 64-bit integers, not with the emulator's functions. */
 #include "check.h"

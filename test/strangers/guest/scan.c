@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Scans of the MM-32X-AT, as Linux does them: the FIFO, an interrupt for each scan, the card's own
  * timer. The glove is read by such scans. */
 #include "check.h"

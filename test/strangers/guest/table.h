@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Table: what the pins have beside what Linux says, a row a channel. */
 #ifndef GUEST_TABLE_H
 #define GUEST_TABLE_H

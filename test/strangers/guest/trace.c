@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The short sequences of golden traces: one thing each, with pins that are told here. */
 #include "check.h"
 #include "linux.h"

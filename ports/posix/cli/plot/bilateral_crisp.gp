@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Crispness over k and b: the steepest millisecond of the monitored force in the first three of
 # a contact, per speed at contact; where contacts do not come to rest, marked.
 #

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Force over position of bilateral contacts, a panel per speed, as the paper's: pairs, ten-point
 # averages, fitted line.
 #

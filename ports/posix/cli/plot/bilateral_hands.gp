@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Settling and stiffness over fingers and hands, beside the paper's: of each finger mass, hand stiffness
 # and hand damping the median contact, and a line to its quickest.
 #

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # What is felt over delay, jitter and loss: stiffness as a share of that over a perfect link,
 # and missed contacts. A column per loss, a line per jitter.
 #

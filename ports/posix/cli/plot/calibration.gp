@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # A calibration: force over current as measured, the table made of it, the straight
 # line, and below how far each point lies from that line.
 #

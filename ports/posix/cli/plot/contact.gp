@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # One contact over time, a column per speed, as the paper's time plot of a contact:
 # force commanded and force by the current monitor above, velocity below, a line where
 # contact begins.

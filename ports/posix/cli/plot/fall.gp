@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # One fall over time, a row per loop rate: how the system stops the mass, and that
 # it comes to rest. Wide panels show the first 0.3 s after contact, narrow ones the
 # whole observation; a pair of them shares its vertical axis.

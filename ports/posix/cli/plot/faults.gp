@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Force around a fault: let go by the release law at several rates, and cut.
 #
 #   gnuplot -e "rates='90 2000'" faults.gp

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Force over position of a falling-mass run: pairs, ten-point averages, fitted line.
 # Two panels, as in the paper: (a) the old rate, (b) the new one.
 #

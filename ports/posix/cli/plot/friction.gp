@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # The stability border against friction: how far both of the paper's gains may be raised
 # until the falls no longer come to rest. Panels: all friction, dry alone, viscous alone.
 #

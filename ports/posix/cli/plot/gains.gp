@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # The gains that are allowed at each loop rate, over a simulated map, with the rule of the target.
 #
 #   gnuplot -c gains.gp PLOTS        in a directory of `exhand advise gains --out`

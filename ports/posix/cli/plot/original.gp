@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # A first contact over time, the original system's and this box's: how far past the wall, and the
 # force that is felt there.
 #

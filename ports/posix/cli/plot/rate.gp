@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # What a rate of the loop buys: the largest stable stiffness over the rate, simulated and linear, and
 # the paper's rows.
 #

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # The k-b plane at each loop rate: which cells come to rest, the border found by
 # bisection, the border of the exact linear test, the paper's point.
 #

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 from SCons.Script import AlwaysBuild, Default, DefaultEnvironment
 
 env = DefaultEnvironment()
