@@ -945,6 +945,7 @@ check:
 	@$(timed) $(check_runs)
 	@$(timed) stress-short
 	@$(timed) size
+	@$(timed) fmt-check
 	@$(timed) doc doc-names
 	@$(timed) bench
 	@$(timed) report-test
@@ -1301,10 +1302,16 @@ doc:
 doc-names: $(exhand)
 	@PYTHONDONTWRITEBYTECODE=1 test/docs/docs.py $(exhand) $(world)
 
-## Lay out the lines of C that are changed and not committed by .clang-format
-.PHONY: fmt
+## Format every C source by .clang-format (clang-format 14)
+.PHONY: fmt fmt-check
+fmt_src = $(shell git ls-files '*.c' '*.h' | grep -v _ert_rtw/)
 fmt:
-	git clang-format --force --extensions c,h
+	$(Q)clang-format -i $(fmt_src)
+# Another version of the program lays some lines out in another way.
+fmt-check:
+	@.ci/deps "$@" clang-format clang-format || exit 3
+	@clang-format --version | grep -q 'version 14' || { echo "$@: left out: this clang-format is not 14"; exit 0; }; \
+	    clang-format --dry-run -Werror $(fmt_src)
 
 ## Draw the block diagrams in docs/ from the signal and device tables
 .PHONY: diagrams

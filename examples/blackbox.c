@@ -17,17 +17,17 @@ static uint32_t after_ticks;
 static int32_t faults_at; /* index of the scene's signal; < 0: it has none */
 
 static struct exh_blackbox_is is;
-static uint32_t seen; /* faults of the last tick */
-static uint32_t left; /* ticks to the freeze */
+static uint32_t seen;      /* faults of the last tick */
+static uint32_t left;      /* ticks to the freeze */
 static uint32_t last_tick; /* recorded */
 
 /* The parameters in the header's payload: brought up to date value by value while it runs on, since
  * all of them at once cost as much as a dozen ticks. Layout as exh_params_save() makes it. */
 static struct {
     uint32_t header_B; /* of the payload */
-    uint32_t end_B; /* of it, to the end of the parameters; behind them are calibrations */
-    uint32_t n, at; /* values, done */
-    uint32_t slice; /* of them a tick */
+    uint32_t end_B;    /* of it, to the end of the parameters; behind them are calibrations */
+    uint32_t n, at;    /* values, done */
+    uint32_t slice;    /* of them a tick */
     uint32_t crc;
 } image;
 

@@ -11,7 +11,7 @@
 
 #include "log.h"
 
-#define EXH_BLACKBOX_AFTER_MS    50 /* and 8 ticks at least                       */
+#define EXH_BLACKBOX_AFTER_MS    50 /* and 8 ticks at least */
 #define EXH_BLACKBOX_AFTER_TICKS 8
 
 /* Before the start: the memory, for header and records; NULL: no black box. alone: the board's log
@@ -30,7 +30,8 @@ void exh_blackbox_stop(int halted);
  * parameters of the freeze, records, EXH_EVENT_FROZE, the end with the number of records that found
  * no room. 0: there is nothing, or nothing more. Then the box begins anew. */
 uint32_t exh_blackbox_read(uint8_t *to, uint32_t cap_B);
-/* Bytes to the end of the record that was last read from: where words may stand on the same line. */
+/* Bytes to the end of the record that was last read from: where words may stand on the same line.
+ */
 uint32_t exh_blackbox_rest(void);
 void exh_blackbox_clear(void);
 
@@ -42,10 +43,10 @@ enum exh_blackbox_state {
 };
 struct exh_blackbox_is {
     enum exh_blackbox_state state;
-    uint32_t cause; /* enum exh_fault; 0: halted                                */
-    uint32_t tick; /* of the fault, or the last                               */
-    uint32_t later; /* causes since                                            */
-    uint32_t held_B; /* what a dump has to say, about                          */
+    uint32_t cause;  /* enum exh_fault; 0: halted */
+    uint32_t tick;   /* of the fault, or the last */
+    uint32_t later;  /* causes since */
+    uint32_t held_B; /* what a dump has to say, about */
 };
 struct exh_blackbox_is exh_blackbox_is(void);
 

@@ -38,7 +38,8 @@ static int load(struct loaded *to, struct exh_scene_calib *k, unsigned i)
     to->c.cap = EXH_CALIB_POINTS_MAX;
     err = exh_calib_load(&to->c, k->image[i].byte, k->image[i].len_B, &bad);
     /* Bytes behind it would stand in a log's header as the next image, and no replay take it. */
-    if (err == 0 && k->image[i].len_B != EXH_CALIB_IMAGE_B - 16u * (EXH_CALIB_POINTS_MAX - (uint32_t)to->c.points)) {
+    if (err == 0 && k->image[i].len_B !=
+                        EXH_CALIB_IMAGE_B - 16u * (EXH_CALIB_POINTS_MAX - (uint32_t)to->c.points)) {
         err = -EXH_E_RANGE;
     }
     return err < 0 ? refuse(k, i, bad, err) : 0;
@@ -48,8 +49,9 @@ static int load(struct loaded *to, struct exh_scene_calib *k, unsigned i)
 static struct exh_calib_here here(const struct exh_calib *c, const struct calib_par *par,
                                   const struct exh_drive_par *drive)
 {
-    struct exh_calib_here h = {(uint32_t)par->device_id, c->finger, (uint32_t)par->day,
-                               c->dac_rawpA_q16, c->dac_zero_raw, c->mon_A_q40, c->mon_zero_raw};
+    struct exh_calib_here h = {(uint32_t)par->device_id, c->finger,       (uint32_t)par->day,
+                               c->dac_rawpA_q16,         c->dac_zero_raw, c->mon_A_q40,
+                               c->mon_zero_raw};
     if (drive) {
         h.dac_rawpA_q16 = drive->dac_rawpA_q16;
         h.dac_zero_raw = drive->dac_zero_raw;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* A scene's calibrations of fingers: images that `calibrate` made (exhand/calibrate.h), checked at
  * set-up against device, day and scales, into the tables that forces go by. A good one vouches for
- * two steps of arming: CALIBRATION, and POLARITY, since no image comes to be before a small pull was
- * seen to move the slack string in. */
+ * two steps of arming: CALIBRATION, and POLARITY, since no image comes to be before a small pull
+ * was seen to move the slack string in. */
 #ifndef EXAMPLES_CALIB_H
 #define EXAMPLES_CALIB_H
 
@@ -12,9 +12,9 @@
 #include "exhand/signal.h"
 
 struct calib_par {
-    int32_t device_id;    /* of this box: images are made for one               */
+    int32_t device_id;    /* of this box: images are made for one */
     int32_t day;          /* today, days since 1970-01-01; 0, not known: no image of a day holds */
-    int32_t uncalibrated; /* 1: fingers without an image arm without            */
+    int32_t uncalibrated; /* 1: fingers without an image arm without */
 };
 #define CALIB_ROWS 3
 extern const struct exh_signal calib_rows[CALIB_ROWS];
@@ -24,19 +24,20 @@ struct calib_tables {
     struct exh_knot force_to_cur[EXH_CALIB_POINTS_MAX + 2];
     struct exh_knot cur_to_force[2 * EXH_CALIB_POINTS_MAX + 3];
     uint8_t to_cur_n, to_force_n;
-    uint8_t vouches; /* enum exh_arm: CALIBRATION and POLARITY, or none          */
+    uint8_t vouches; /* enum exh_arm: CALIBRATION and POLARITY, or none */
 };
 
-/* First thing of a set-up: every image must be sound, of one of these fingers (bits), of no other one's
- * finger, of this device and good today. Then the zero of each finger's monitor becomes the
+/* First thing of a set-up: every image must be sound, of one of these fingers (bits), of no other
+ * one's finger, of this device and good today. Then the zero of each finger's monitor becomes the
  * parameter, which a log's header has, as DRIVE parameters of instance `finger`. 0, or -EXH_E_…
  * with *k saying of which image and what, and nothing taken. */
 int calib_take(struct exh_scene_calib *k, struct exh_params *params, const struct calib_par *par,
                uint32_t fingers);
 
-/* Then tables of a finger: those of its image, made with the scales in use (else -EXH_E_STALE, and *k says so); or, of a
- * finger without one, straight lines by kf, N/A, to the peak current, vouched for only where
- * `uncalibrated` waives it. k may be NULL: there are no images. 0 or -EXH_E_…. Divides. */
+/* Then tables of a finger: those of its image, made with the scales in use (else -EXH_E_STALE, and
+ * *k says so); or, of a finger without one, straight lines by kf, N/A, to the peak current, vouched
+ * for only where `uncalibrated` waives it. k may be NULL: there are no images. 0 or -EXH_E_….
+ * Divides. */
 struct calib_finger {
     unsigned f;
     const struct exh_drive_par *drive;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Who runs a firmware image: the dead-man switch. Taking hold of it gives one command: in FAULT it
- * clears, in OFF it runs; so after a fault it is let go and taken a second time. Letting go stops. A
- * switch that is closed at power-on, and so may be stuck, has to be let go first. Hooks for the loop. */
+ * clears, in OFF it runs; so after a fault it is let go and taken a second time. Letting go stops.
+ * A switch that is closed at power-on, and so may be stuck, has to be let go first. Hooks for the
+ * loop. */
 #ifndef EXAMPLES_DEADMAN_H
 #define EXAMPLES_DEADMAN_H
 

@@ -38,7 +38,7 @@ struct freeze_type {
     }
 #define F(type, name, kind) \
     { \
-        #name, offsetof(struct type, name), kind \
+#name, offsetof(struct type, name), kind \
     }
 
 const struct freeze_type freeze_knot =
@@ -68,8 +68,9 @@ static int nothing(const uint8_t *p, size_t len_B)
     return len_B == 0;
 }
 
-/* Between fields there may be what aligns the next and no more, and set-up put nothing there: a field that was added to
- * the header and not here is told, also one where an alignment left room. */
+/* Between fields there may be what aligns the next and no more, and set-up put nothing there: a
+ * field that was added to the header and not here is told, also one where an alignment left room.
+ */
 static int whole(const struct freeze_type *t, const uint8_t *of)
 {
     size_t end = 0;
@@ -79,7 +80,8 @@ static int whole(const struct freeze_type *t, const uint8_t *of)
         if (at < end || at - end >= align || !nothing(of + end, at - end)) { return 0; }
         end = at + size;
     }
-    return end <= t->size_B && t->size_B - end < sizeof(void *) && nothing(of + end, t->size_B - end);
+    return end <= t->size_B && t->size_B - end < sizeof(void *) &&
+           nothing(of + end, t->size_B - end);
 }
 
 /* --- as C --- */
@@ -210,7 +212,7 @@ int main(int argc, char **argv)
     printf(
         "/* Made by examples/freeze.c, not by hand: what the set-up of scene %s makes at %" PRIu32
         "/%" PRIu32 " s with counters of %u bits.\n * `make frozen` makes it anew. */\n#include "
-                    "\"frozen.h\"\n\n"
+        "\"frozen.h\"\n\n"
         "#include \"exhand/exhand.h\"\n\n"
         "EXH_STATIC_ASSERT(frozen_by, EXH_VERSION_MAJOR == %d && EXH_VERSION_MINOR == %d && "
         "EXH_VERSION_PATCH == %d);\n\n"

@@ -8,12 +8,12 @@
 static const struct exh_scene *scene;
 static uint8_t buf[EXH_LOG_RECORD_B];
 static uint32_t seq;
-static uint32_t lost;      /* in all                                           */
-static uint32_t lost_here; /* since the last record that was taken              */
+static uint32_t lost;      /* in all */
+static uint32_t lost_here; /* since the last record that was taken */
 static const struct exh_log_tap *tap;
-static int silent; /* this record, or all of them (alone), is the tap's alone     */
+static int silent; /* this record, or all of them (alone), is the tap's alone */
 static int alone;
-static uint8_t type_now; /* of the record in buf                               */
+static uint8_t type_now; /* of the record in buf */
 static uint32_t tick_now;
 static struct exh_record_header header;
 
@@ -170,15 +170,16 @@ void exh_log_mark(uint32_t tick, int32_t value)
 }
 
 /* Staged parameters become events at the tick they will first act in; one on its way still may
- * come again, and is staged anew with the value it has. Who stages where one on its way is now halts it: while any
- * is, all that may be are told. */
+ * come again, and is staged anew with the value it has. Who stages where one on its way is now
+ * halts it: while any is, all that may be are told. */
 static void log_params(uint32_t tick, const struct exh_params *p)
 {
     const uint32_t n = exh_signal_count(p->table);
     for (uint32_t i = 0; i < n; i++) {
         uint16_t instance;
         const struct exh_signal *row = exh_signal_at(p->table, i, &instance);
-        const int halts = p->moving && (row->when == EXH_WHEN_SLEWED || row->when == EXH_WHEN_LIMIT);
+        const int halts =
+            p->moving && (row->when == EXH_WHEN_SLEWED || row->when == EXH_WHEN_LIMIT);
         if (halts || p->staged[i] != p->active[i]) {
             event(tick, (struct exh_event){EXH_EVENT_PARAM, row->id, instance, p->staged[i]});
         }
@@ -192,8 +193,8 @@ void exh_log_before(uint32_t tick, struct exh_scene_in *in)
         event(tick, (struct exh_event){EXH_EVENT_COMMAND, 0, 0, in->command});
     }
     if (in->missed != 0) {
-        event(tick, (struct exh_event){EXH_EVENT_MISSED, 0, 0,
-                                       exh_clamp(in->missed, 0, INT32_MAX)});
+        event(tick,
+              (struct exh_event){EXH_EVENT_MISSED, 0, 0, exh_clamp(in->missed, 0, INT32_MAX)});
     }
 }
 

@@ -21,11 +21,11 @@ void exh_log_mark(uint32_t tick, int32_t value);
 /* Ends the log and tells how many records it lost, this last one included. */
 uint32_t exh_log_end(uint32_t tick);
 
-/* Whoever else takes the records, before their bytes go out: the black box. NULL: nobody. alone: the
- * board's log gets none. To be called before exh_log_start(). */
+/* Whoever else takes the records, before their bytes go out: the black box. NULL: nobody. alone:
+ * the board's log gets none. To be called before exh_log_start(). */
 struct exh_log_tap {
     void (*take)(uint8_t type, uint32_t tick, const uint8_t *payload, uint32_t len_B);
-    int (*due)(void); /* 1: it wants a keyframe behind this tick                */
+    int (*due)(void); /* 1: it wants a keyframe behind this tick */
 };
 void exh_log_tap(const struct exh_log_tap *tap, int alone);
 /* The header's payload with the parameters as they are now. */

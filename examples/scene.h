@@ -18,11 +18,11 @@
 
 struct exh_scene_in {
     struct exh_drive_in drive;
-    uint32_t missed; /* ticks missed before this one                          */
-    uint8_t command; /* enum exh_command                                      */
+    uint32_t missed; /* ticks missed before this one */
+    uint8_t command; /* enum exh_command */
     /* Of scenes with a glove alone: */
     uint8_t glove_new;         /* 1: a new frame, 0: the one before, older by a tick */
-    struct exh_glove_in glove; /* its age counts from its conversion           */
+    struct exh_glove_in glove; /* its age counts from its conversion */
 };
 
 /* Packets of one tick, in or out. What comes in excess of that waits for the next tick: at 90 Hz
@@ -37,45 +37,46 @@ struct exh_scene_mail {
 
 /* The link of a scene that has one. A link that is down is no reason to stop. */
 struct exh_scene_link {
-    int (*recv)(void *buf, size_t cap_B);       /* exh_board_link_recv          */
-    int (*send)(const void *buf, size_t len_B); /* exh_board_link_send          */
+    int (*recv)(void *buf, size_t cap_B);       /* exh_board_link_recv */
+    int (*send)(const void *buf, size_t len_B); /* exh_board_link_send */
     struct exh_scene_mail *in;  /* before a tick, by the loop: logged, as all that crosses inward */
     struct exh_scene_mail *out; /* what is to be sent, by: */
-    void (*write)(void); /* behind the outputs, where it delays none of them      */
+    void (*write)(void);        /* behind the outputs, where it delays none of them */
 };
 
 /* What set-up has to know of the board it runs on. */
 struct exh_scene_board {
-    struct exh_period T; /* what its timer was programmed to                  */
-    uint8_t enc_bits;    /* width of its counters                             */
+    struct exh_period T; /* what its timer was programmed to */
+    uint8_t enc_bits;    /* width of its counters */
 };
 
-/* Calibrations of fingers as images (exhand/calibrate.h), from whoever sets the scene up, before that: one a
- * finger, in any order. Their bytes stay where they are and as they are: a log's header has them. */
+/* Calibrations of fingers as images (exhand/calibrate.h), from whoever sets the scene up, before
+ * that: one a finger, in any order. Their bytes stay where they are and as they are: a log's header
+ * has them. */
 struct exh_scene_calib {
     struct {
         const uint8_t *byte;
         uint32_t len_B;
     } image[EXH_FINGERS];
     uint8_t images;
-    /* Why the last set-up refused one: 0 it did not, or -EXH_E_…; which, from 0; of what a table does not
-     * hold, the point; a name for people. */
+    /* Why the last set-up refused one: 0 it did not, or -EXH_E_…; which, from 0; of what a table
+     * does not hold, the point; a name for people. */
     int refused;
     uint8_t image_at, point_at;
     const char *what;
 };
 
 struct exh_scene {
-    const char *name; /* at most 15 characters                                */
-    uint32_t rate_Hz; /* when nobody asks for another                         */
+    const char *name; /* at most 15 characters */
+    uint32_t rate_Hz; /* when nobody asks for another */
     uint8_t fingers;
-    struct exh_params *params;              /* NULL: constants in ROM         */
-    const struct exh_signal_table *signals; /* outputs per tick, or NULL      */
-    int32_t *signal;                        /* their values, or NULL          */
+    struct exh_params *params;              /* NULL: constants in ROM */
+    const struct exh_signal_table *signals; /* outputs per tick, or NULL */
+    int32_t *signal;                        /* their values, or NULL */
     /* exh_board_read_glove, or NULL: only a scene that names it links it. */
     int (*read_glove)(struct exh_glove_in *in);
-    const int32_t *glove_every; /* asks for a frame every so many ticks; NULL: every tick */
-    const struct exh_scene_link *link; /* or NULL                             */
+    const int32_t *glove_every;        /* asks for a frame every so many ticks; NULL: every tick */
+    const struct exh_scene_link *link; /* or NULL */
 
     /* Parameters to their defaults and unlocked; NULL without parameters. Before
      * staging any and before the loop. */
@@ -93,11 +94,12 @@ struct exh_scene {
     const struct exh_safety *safety;
     /* Where calibrations are put before set-up; or NULL: it takes none. */
     struct exh_scene_calib *calib;
-    /* May all that is staged be applied together: 0, or -EXH_E… by a rule of the scene, and whoever staged it takes it
-     * back. NULL: the rows' ranges are enough. */
+    /* May all that is staged be applied together: 0, or -EXH_E… by a rule of the scene, and whoever
+     * staged it takes it back. NULL: the rows' ranges are enough. */
     int (*allowed)(void);
-    /* Of a scene that asks what is not ours (custom): its answer in the coming tick is the one in these signals, as
-     * a log has them; it is not asked. NULL: all that decides is in inputs and state. */
+    /* Of a scene that asks what is not ours (custom): its answer in the coming tick is the one in
+     * these signals, as a log has them; it is not asked. NULL: all that decides is in inputs and
+     * state. */
     void (*answered)(const int32_t *signal);
     /* The loop has ended and the outputs are safe. Or NULL. */
     void (*end)(void);

@@ -20,7 +20,8 @@
 #if __STDC_HOSTED__
 #include <inttypes.h>
 #include <string.h>
-#else /* without a C library; where int has 32 bits it does whichever of int and long int32_t is */
+#else /* without a C library; where int has 32 bits it does whichever of int and long int32_t is \
+       */
 #include <limits.h>
 #if INT_MAX >= INT32_MAX
 #define PRId32 "d"
@@ -74,8 +75,8 @@ int memcmp(const void *a, const void *b, size_t n);
 
 typedef void (*check_fn)(void);
 
-extern uint64_t check_count;       /* checks made so far                       */
-extern uint32_t check_saturations; /* calls of the audit hook of fix.h so far  */
+extern uint64_t check_count;       /* checks made so far */
+extern uint32_t check_saturations; /* calls of the audit hook of fix.h so far */
 
 /* 1 if two strings are equal; a target may have no strcmp. */
 int check_same_text(const char *a, const char *b);
@@ -84,8 +85,8 @@ int check_main(const char *group, const char *names, const check_fn *list, size_
 void check_failed(const char *file, int line, const char *cond, const char *fmt, ...)
     CHECK_PRINTF(4, 5);
 
-/* The value of NAME in the environment of a host, or where EXH_CHECK_ENV names a function of that kind in
- * what that says; NULL where there is neither. */
+/* The value of NAME in the environment of a host, or where EXH_CHECK_ENV names a function of that
+ * kind in what that says; NULL where there is neither. */
 const char *check_env(const char *name);
 
 /* Prints a line: own printer alone. */

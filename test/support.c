@@ -41,11 +41,11 @@ const int32_t check_corner[CHECK_CORNERS] = {INT32_MIN, INT32_MIN + 1, -65536,  
                                              1,         65535,         INT32_MAX};
 
 static struct {
-    const char *test; /* the one that runs                                     */
+    const char *test; /* the one that runs */
     uint64_t seed, cases, only;
-    uint64_t part, parts; /* of all cases, those that are part modulo parts        */
-    uint64_t next; /* case after the one that runs, 0 outside a property    */
-    uint64_t state; /* of the generator                                      */
+    uint64_t part, parts; /* of all cases, those that are part modulo parts */
+    uint64_t next;        /* case after the one that runs, 0 outside a property */
+    uint64_t state;       /* of the generator */
 } run = {"", EXH_SEED, EXH_CASES, NO_CASE, 0, 1, 0, 0};
 
 /* --- what the environment asks for --- */
@@ -201,7 +201,7 @@ void exh_assert_failed(const char *file, int line)
 #else
 /* --- own printer --- */
 
-#define SHOWN_MAX 3 /* failures of one test that are worth a line               */
+#define SHOWN_MAX 3 /* failures of one test that are worth a line */
 
 static unsigned failures;
 
@@ -302,7 +302,7 @@ int check_main(const char *group, const char *names, const check_fn *list, size_
 {
     unsigned passed = 0;
     unsigned failed = 0;
-    check_count = 0; /* of another group of this program                           */
+    check_count = 0; /* of another group of this program */
     read_env();
     if (n > TESTS_MAX || run.part >= run.parts) { return 2; }
     split_names(names, n);

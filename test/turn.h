@@ -22,7 +22,7 @@ static inline struct turn turn_series(int32_t x_turn_q32)
     const struct wide pi_x = wide_mul(TURN_PI_Q60, x_turn_q32); /* half turns: q31 */
     const int64_t rad_q60 = wide_sat64(wide_shr_half_up(pi_x, 31));
     struct turn y = {0, INT64_C(1) << 60};
-    int64_t term_q60 = INT64_C(1) << 60; /* x^n / n!                              */
+    int64_t term_q60 = INT64_C(1) << 60; /* x^n / n! */
     for (int n = 1; term_q60 > 0 || term_q60 < -1; n++) {
         term_q60 = wide_sat64(wide_shr_half_up(wide_mul(term_q60, rad_q60), 60)) / n;
         switch (n & 3) {

@@ -40,7 +40,8 @@ int bilateral_setup(struct bilateral_cfg *cfg, struct bilateral *s, const struct
     if (num > UINT32_MAX) { return -EXH_E_RATE; }
     /* Every value of both in range: no overflow. */
     cfg->rest_ticks = (uint32_t)exh_udiv64((uint64_t)(uint32_t)par->own.f0_rest_ms * board.T.den,
-                                           UINT64_C(1000) * board.T.num, NULL) + 1;
+                                           UINT64_C(1000) * board.T.num, NULL) +
+                      1;
     glove_cal_of_rows(&cfg->cal, &par->glove_own, par->sensor);
     err = exh_glove_setup(&cfg->glove, &par->glove, &cfg->cal,
                           (struct exh_period){(uint32_t)num, board.T.den});
@@ -112,7 +113,9 @@ static uint32_t din_by_place(const struct bilateral_cfg *cfg, uint32_t din)
     const unsigned n = bilateral_n(cfg);
     uint32_t placed = din & (EXH_DIN_DRIVE0 - 1u);
     for (unsigned k = 0; k < n; k++) {
-        if (din & (uint32_t)EXH_DIN_DRIVE0 << bilateral_at(cfg, k)) { placed |= (uint32_t)EXH_DIN_DRIVE0 << k; }
+        if (din & (uint32_t)EXH_DIN_DRIVE0 << bilateral_at(cfg, k)) {
+            placed |= (uint32_t)EXH_DIN_DRIVE0 << k;
+        }
     }
     return placed;
 }
@@ -177,8 +180,8 @@ static void tell_box(struct bilateral_box *b, const struct bilateral *s,
     b->arm_step = exh_safety_arm(&s->safety);
 }
 
-/* Steps of arming that hold, of those a scene vouches for. A calibration that is none, a glove's or a finger's, was
- * refused at set-up. */
+/* Steps of arming that hold, of those a scene vouches for. A calibration that is none, a glove's or
+ * a finger's, was refused at set-up. */
 static uint8_t steps_held(const struct bilateral_cfg *cfg, uint32_t raised)
 {
     return (uint8_t)((cfg->tested ? EXH_ARM_SELFTEST : 0u) | cfg->vouches |
@@ -194,8 +197,9 @@ void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,
     int32_t cnt[BILATERAL_FINGERS];
     uint32_t limits[BILATERAL_FINGERS];
     const uint32_t fingers = sense(s, cfg, &in->drive, sig->paper, cnt, limits);
-    struct exh_safety_in box = {din_by_place(cfg, in->drive.din), fingers, in->missed,
-                                in->command, (uint8_t)n, steps_held(cfg, fingers)};
+    struct exh_safety_in box = {
+        din_by_place(cfg, in->drive.din), fingers, in->missed, in->command, (uint8_t)n,
+        steps_held(cfg, fingers)};
     struct exh_permit permit;
     struct exh_current_ledger i[BILATERAL_FINGERS];
     struct exh_drive_out placed;

@@ -16,10 +16,10 @@
 
 /* Rows of the scene's own parameters. */
 struct bilateral_own_par {
-    int32_t fingers;     /* mask: which are in use, thumb in bit 0               */
-    int32_t state_every; /* ticks from one state packet to the next              */
+    int32_t fingers;     /* mask: which are in use, thumb in bit 0 */
+    int32_t state_every; /* ticks from one state packet to the next */
     int32_t session;     /* of the link; 0: made up at set-up, of the board's cycle counter */
-    int32_t quiet_ms;    /* nothing heard for so long: a HELLO begins anew      */
+    int32_t quiet_ms;    /* nothing heard for so long: a HELLO begins anew */
     int32_t f0_rest_ms;  /* a string that has run out no farther for so long is wound in */
     int32_t glove_ms;    /* nothing known of a finger in use for so long: a fault; 0: never */
     int32_t link_ms;     /* no planes for so long: a fault; 0: never, contacts are local */
@@ -55,33 +55,33 @@ struct bilateral_paper {
     int32_t i_des_A_q26;
     int32_t c;
     int32_t f_mon_N_q20;
-    int32_t d_m_q30;     /* INT32_MIN: there is no plane                         */
-    int32_t q_lim_m_q30; /* EXH_PRECONTACT_NEVER: no contact can be              */
+    int32_t d_m_q30;     /* INT32_MIN: there is no plane */
+    int32_t q_lim_m_q30; /* EXH_PRECONTACT_NEVER: no contact can be */
 };
 
 struct bilateral_more {
-    int32_t bits;   /* enum exh_precontact_bit                                  */
-    int32_t limits; /* enum exh_limit                                          */
+    int32_t bits;   /* enum exh_precontact_bit */
+    int32_t limits; /* enum exh_limit */
     int32_t joint_turn_q32[EXH_HAND_JOINTS];
-    int32_t clamped; /* bit j: joint j at a limit                              */
+    int32_t clamped; /* bit j: joint j at a limit */
     struct exh_vec3 tip_m_q30;
     int32_t freezes, born, refused, ignored, stale, let_go; /* counts, of exh_precontact */
 };
 
 struct bilateral_box {
-    int32_t state;        /* enum exh_state                                    */
-    int32_t faults;       /* enum exh_fault, latched                           */
-    int32_t present;      /* enum exh_fault: why RUN or CLEAR is refused        */
-    int32_t glove_faults; /* bit i: sensor i                                   */
-    int32_t glove_age;    /* ticks                                             */
+    int32_t state;        /* enum exh_state */
+    int32_t faults;       /* enum exh_fault, latched */
+    int32_t present;      /* enum exh_fault: why RUN or CLEAR is refused */
+    int32_t glove_faults; /* bit i: sensor i */
+    int32_t glove_age;    /* ticks */
     int32_t age;          /* ticks since the newest planes came; INT32_MAX: never */
-    int32_t trip_us;      /* how old the question was that they answered        */
-    int32_t set;          /* parameters set over the link                       */
+    int32_t trip_us;      /* how old the question was that they answered */
+    int32_t set;          /* parameters set over the link */
     int32_t accepted, missing, duplicate, reordered, old, stranger, corrupt, version, unknown;
     int32_t far, silences;
-    int32_t differs; /* enum exh_wire_differs, of the newest HELLO              */
-    int32_t odd;     /* HELLOs that differed                                   */
-    int32_t arm_step; /* enum exh_arm: on which arming is, or was refused       */
+    int32_t differs;  /* enum exh_wire_differs, of the newest HELLO */
+    int32_t odd;      /* HELLOs that differed */
+    int32_t arm_step; /* enum exh_arm: on which arming is, or was refused */
 };
 
 struct bilateral_signals {
@@ -102,7 +102,7 @@ struct bilateral_finger_cfg {
     struct exh_track_cfg track;
     struct exh_watch_cfg watch;
     struct calib_tables calib;
-    uint32_t sensors; /* bit i: sensor i moves it                              */
+    uint32_t sensors; /* bit i: sensor i moves it */
 };
 
 struct bilateral_finger {
@@ -113,8 +113,8 @@ struct bilateral_finger {
     struct exh_track track;
     struct exh_watch watch;
     struct exh_precontact precontact;
-    int32_t out_m_q30;   /* how far the string has run out                      */
-    uint32_t rest_ticks; /* since then                                          */
+    int32_t out_m_q30;                       /* how far the string has run out */
+    uint32_t rest_ticks;                     /* since then */
     int32_t joint_turn_q32[EXH_HAND_JOINTS]; /* these four of the newest glove frame */
     struct exh_vec3 tip_m_q30, slope_q24;
     uint8_t clamped;
@@ -123,10 +123,10 @@ struct bilateral_finger {
 /* --- the link --- */
 
 struct bilateral_wire_cfg {
-    uint64_t tick_us_q20; /* a tick                                            */
+    uint64_t tick_us_q20; /* a tick */
     uint32_t ticks_per_us_q32;
     uint32_t ms_per_tick_q20;
-    struct exh_wire_hello hello; /* ours                                       */
+    struct exh_wire_hello hello; /* ours */
 };
 
 #define BILATERAL_FRAMES 16 /* of a trace, in memory: more than a packet holds */
@@ -135,25 +135,25 @@ struct bilateral_wire_cfg {
 struct bilateral_trace {
     struct exh_trace of;
     struct exh_trace_frame frame[BILATERAL_FRAMES];
-    uint32_t request_seq; /* of the newest packet that asked                    */
-    uint32_t next;        /* number of the first frame that has not gone out    */
-    uint32_t wait_ticks;  /* since then there have been such                    */
-    int16_t result;       /* of what was asked                                  */
-    uint8_t answer;       /* 1: it is still to be told                          */
+    uint32_t request_seq; /* of the newest packet that asked */
+    uint32_t next;        /* number of the first frame that has not gone out */
+    uint32_t wait_ticks;  /* since then there have been such */
+    int16_t result;       /* of what was asked */
+    uint8_t answer;       /* 1: it is still to be told */
 };
 
 struct bilateral_wire {
     struct exh_wire_tx tx;
     struct exh_wire_rx rx;
     uint64_t now_us_q20; /* our clock: ticks since set-up, missed ones too; modulo 2^44 us */
-    uint32_t age_ticks;  /* since the newest planes; UINT32_MAX: never          */
+    uint32_t age_ticks;  /* since the newest planes; UINT32_MAX: never */
     uint32_t trip_us;
     uint32_t exchanges;
     uint32_t set;
-    uint32_t wait_ticks; /* to the next exchange                               */
-    uint32_t differs;    /* enum exh_wire_differs, of the newest HELLO          */
-    uint32_t odd;        /* HELLOs that differed                               */
-    uint8_t acks;        /* answers to be given at the end of this tick          */
+    uint32_t wait_ticks; /* to the next exchange */
+    uint32_t differs;    /* enum exh_wire_differs, of the newest HELLO */
+    uint32_t odd;        /* HELLOs that differed */
+    uint8_t acks;        /* answers to be given at the end of this tick */
     struct exh_wire_ack ack[EXH_SCENE_PACKETS];
     struct bilateral_trace trace;
 };
@@ -169,12 +169,12 @@ struct bilateral_cfg {
     struct exh_drive_cfg drive[BILATERAL_FINGERS];
     struct exh_safety_cfg safety;
     struct exh_supply_cfg supply;
-    uint32_t glove_ticks, link_ticks; /* glove_ms, link_ms; 0: never            */
-    uint8_t at[BILATERAL_FINGERS]; /* which finger is at this place             */
-    uint8_t n;                     /* in use                                    */
-    uint32_t rest_ticks;           /* f0_rest                                   */
-    uint8_t tested;                /* 1: known answers came out at set-up       */
-    uint8_t vouches;               /* enum exh_arm: by calibrations of all fingers in use, or waived */
+    uint32_t glove_ticks, link_ticks; /* glove_ms, link_ms; 0: never */
+    uint8_t at[BILATERAL_FINGERS];    /* which finger is at this place */
+    uint8_t n;                        /* in use */
+    uint32_t rest_ticks;              /* f0_rest */
+    uint8_t tested;                   /* 1: known answers came out at set-up */
+    uint8_t vouches; /* enum exh_arm: by calibrations of all fingers in use, or waived */
     struct bilateral_wire_cfg wire;
 };
 
@@ -183,19 +183,19 @@ struct bilateral {
     struct exh_safety safety;
     struct exh_glove glove;
     struct bilateral_wire wire;
-    uint8_t worn;          /* a glove frame has come                           */
-    uint32_t glove_faults; /* in the newest                                    */
+    uint8_t worn;          /* a glove frame has come */
+    uint32_t glove_faults; /* in the newest */
     struct exh_supply supply;
-    uint32_t unsure_ticks; /* nothing new known of a finger in use since        */
+    uint32_t unsure_ticks; /* nothing new known of a finger in use since */
     uint8_t broken;        /* 1: configuration or parameters changed (guard.h); of whoever looks */
-    /* Made anew in every tick: parameters as a material changes them; how old what the glove says is,
-     * UINT32_MAX: it has not said anything, or not for very long. */
+    /* Made anew in every tick: parameters as a material changes them; how old what the glove says
+     * is, UINT32_MAX: it has not said anything, or not for very long. */
     struct exh_drive_par drive_now[BILATERAL_FINGERS];
     uint32_t glove_age_ticks;
 };
 
-/* Configuration from parameters, and of the calibrations that calib has of fingers in use (NULL: none); cfg
- * keeps pointers to par and to s. 0 or -EXH_E…. */
+/* Configuration from parameters, and of the calibrations that calib has of fingers in use (NULL:
+ * none); cfg keeps pointers to par and to s. 0 or -EXH_E…. */
 int bilateral_setup(struct bilateral_cfg *cfg, struct bilateral *s, const struct bilateral_par *par,
                     struct exh_scene_board board, struct exh_scene_calib *calib);
 
@@ -211,8 +211,8 @@ void bilateral_write(struct bilateral *s, const struct bilateral_cfg *cfg,
 
 void bilateral_bytes(struct exh_bytes *c, struct bilateral *s);
 
-/* How many fingers are in use, and which is at a place k < 5. Of damaged memory they are wrong, until the
- * guard tells, but no index beyond an array. */
+/* How many fingers are in use, and which is at a place k < 5. Of damaged memory they are wrong,
+ * until the guard tells, but no index beyond an array. */
 static inline unsigned bilateral_n(const struct bilateral_cfg *cfg)
 {
     const unsigned n = cfg->n < BILATERAL_FINGERS ? cfg->n : BILATERAL_FINGERS;
@@ -234,7 +234,8 @@ void bilateral_wire_take(struct bilateral *s, const struct bilateral_cfg *cfg,
                          struct exh_params *params);
 void bilateral_wire_bytes(struct exh_bytes *c, struct bilateral_wire *s);
 /* One packet, if there is room. */
-void bilateral_wire_put(struct bilateral_wire *w, struct exh_scene_mail *out, struct exh_wire_packet *p);
+void bilateral_wire_put(struct bilateral_wire *w, struct exh_scene_mail *out,
+                        struct exh_wire_packet *p);
 /* Nobody has asked, or who did has gone. */
 void bilateral_trace_stop(struct bilateral_trace *t);
 void bilateral_trace_ask(struct bilateral_trace *t, const struct exh_wire_packet *p);
@@ -257,9 +258,8 @@ uint32_t bilateral_causes(struct bilateral *s, const struct bilateral_cfg *cfg,
 void bilateral_finger_see(struct bilateral_finger *s, const struct bilateral_cfg *cfg, unsigned f,
                           const int32_t *angle_turn_q32);
 /* Position to force and current. Returns limit bits. */
-uint32_t bilateral_finger_feel(struct bilateral *s, const struct bilateral_cfg *cfg,
-                               unsigned place, const struct exh_permit *permit,
-                               struct exh_current_ledger *i,
+uint32_t bilateral_finger_feel(struct bilateral *s, const struct bilateral_cfg *cfg, unsigned place,
+                               const struct exh_permit *permit, struct exh_current_ledger *i,
                                struct bilateral_paper *p, int32_t *bits);
 
 /* Stages a calibration in the scene's parameters, between defaults() and set-up: 0, or

@@ -21,9 +21,9 @@ static uint32_t later(uint32_t ticks, uint32_t missed)
     return ticks + (ticks < UINT32_MAX);
 }
 
-/* Of no finger in use the glove may have known nothing for so long: a sensor that is not believed, no
- * frame, or an old one. Where an age ends, be it that its 16 bits do, time goes on from it. What its
- * finger does until then is precontact's: it is let go alone. */
+/* Of no finger in use the glove may have known nothing for so long: a sensor that is not believed,
+ * no frame, or an old one. Where an age ends, be it that its 16 bits do, time goes on from it. What
+ * its finger does until then is precontact's: it is let go alone. */
 static int glove_lost(struct bilateral *s, const struct bilateral_cfg *cfg, uint32_t missed)
 {
     uint32_t oldest = 0;
@@ -48,6 +48,6 @@ uint32_t bilateral_causes(struct bilateral *s, const struct bilateral_cfg *cfg,
     const int supply = exh_supply_step(&s->supply, &cfg->supply, in->drive.supply_raw, in->missed);
     /* Contacts are local, frozen before they are felt: who wants a link for them says so. */
     const int link = cfg->link_ticks != 0 && s->wire.age_ticks >= cfg->link_ticks;
-    return (s->broken ? EXH_FAULT_CONFIG : 0u) | (glove ? EXH_FAULT_GLOVE : 0u) | (supply ? EXH_FAULT_SUPPLY : 0u) |
-           (link ? EXH_FAULT_LINK : 0u);
+    return (s->broken ? EXH_FAULT_CONFIG : 0u) | (glove ? EXH_FAULT_GLOVE : 0u) |
+           (supply ? EXH_FAULT_SUPPLY : 0u) | (link ? EXH_FAULT_LINK : 0u);
 }

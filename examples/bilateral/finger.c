@@ -36,8 +36,8 @@ int bilateral_finger_setup(struct bilateral_cfg *cfg, struct bilateral *s, unsig
     if (err == 0) { err = exh_quad_setup(&c->quad, &par->quad[f], board.T, board.enc_bits); }
     if (err == 0) { err = exh_velocity_window_setup(&c->velocity, scale, &par->velocity[f]); }
     if (err == 0) {
-        err = exh_drive_setup(&cfg->drive[place], &s->drive_now[f], board.T, calib_to_cur(&c->calib),
-                              calib_to_force(&c->calib));
+        err = exh_drive_setup(&cfg->drive[place], &s->drive_now[f], board.T,
+                              calib_to_cur(&c->calib), calib_to_force(&c->calib));
     }
     if (err == 0) { err = exh_track_setup(&c->track, &par->track[f], board.T); }
     if (err == 0) { err = exh_watch_setup(&c->watch, &par->watch[f], board.T); }
@@ -80,9 +80,9 @@ static struct exh_contact_par touch(struct bilateral *s, const struct bilateral_
     return law;
 }
 
-/* The finger that met no wall, or left one in haste, went back without the string, which hangs slack and
- * does not move: for the law it never ran in, and F0 would not act. Having rested, it counts as running in,
- * until it runs out by F0's band again. In contact it is taut. */
+/* The finger that met no wall, or left one in haste, went back without the string, which hangs
+ * slack and does not move: for the law it never ran in, and F0 would not act. Having rested, it
+ * counts as running in, until it runs out by F0's band again. In contact it is taut. */
 static void wind_in(struct bilateral_finger *s, uint32_t rest_ticks)
 {
     struct exh_contact *c = &s->contact;
@@ -96,9 +96,8 @@ static void wind_in(struct bilateral_finger *s, uint32_t rest_ticks)
     s->out_m_q30 = c->turn_m_q30;
 }
 
-uint32_t bilateral_finger_feel(struct bilateral *s, const struct bilateral_cfg *cfg,
-                               unsigned place, const struct exh_permit *permit,
-                               struct exh_current_ledger *i,
+uint32_t bilateral_finger_feel(struct bilateral *s, const struct bilateral_cfg *cfg, unsigned place,
+                               const struct exh_permit *permit, struct exh_current_ledger *i,
                                struct bilateral_paper *p, int32_t *bits)
 {
     const unsigned f = bilateral_at(cfg, place);

@@ -5,21 +5,31 @@
 
 static const struct exh_signal kf_rows[] = {
     {0x8601, EXH_Q_FORCE, EXH_WHEN_SETUP, EXH_Q(1, 10, EXH_Q_FORCE), EXH_Q(100, 1, EXH_Q_FORCE),
-     EXH_Q(3339, 1000, EXH_Q_FORCE), "kf", "n_per_a", "string force per motor current, without a calibration"},
+     EXH_Q(3339, 1000, EXH_Q_FORCE), "kf", "n_per_a",
+     "string force per motor current, without a calibration"},
 };
 
 static const struct exh_signal own_rows[] = {
-    {0x8610, 0, EXH_WHEN_SETUP, 1, MASK, 1 << EXH_INDEX, "fingers", "", "in use, bits: 1 thumb .. 16 little"},
-    {0x8611, 0, EXH_WHEN_ANY, 1, 10000, 5, "state_every", "", "ticks from one state packet to the next"},
-    {0x8612, 0, EXH_WHEN_SETUP, 0, INT32_MAX, 0, "session", "", "of the link, another at every start; 0: of the board's cycle counter"},
-    {0x8613, 0, EXH_WHEN_ANY, 100, 60000, 1000, "quiet", "ms", "nothing heard for so long: any hello begins anew"},
-    {0x8614, 0, EXH_WHEN_SETUP, 1, 60000, 20, "f0_rest", "ms", "a string that runs out no farther for so long is wound in"},
-    {0x8615, 0, EXH_WHEN_SETUP, 0, 60000, 1000, "glove_time", "ms", "nothing known of a finger in use for so long: a fault; 0: never"},
-    {0x8616, 0, EXH_WHEN_SETUP, 0, 60000, 0, "link_time", "ms", "no planes for so long: a fault; 0: never, contacts are local"},
+    {0x8610, 0, EXH_WHEN_SETUP, 1, MASK, 1 << EXH_INDEX, "fingers", "",
+     "in use, bits: 1 thumb .. 16 little"},
+    {0x8611, 0, EXH_WHEN_ANY, 1, 10000, 5, "state_every", "",
+     "ticks from one state packet to the next"},
+    {0x8612, 0, EXH_WHEN_SETUP, 0, INT32_MAX, 0, "session", "",
+     "of the link, another at every start; 0: of the board's cycle counter"},
+    {0x8613, 0, EXH_WHEN_ANY, 100, 60000, 1000, "quiet", "ms",
+     "nothing heard for so long: any hello begins anew"},
+    {0x8614, 0, EXH_WHEN_SETUP, 1, 60000, 20, "f0_rest", "ms",
+     "a string that runs out no farther for so long is wound in"},
+    {0x8615, 0, EXH_WHEN_SETUP, 0, 60000, 1000, "glove_time", "ms",
+     "nothing known of a finger in use for so long: a fault; 0: never"},
+    {0x8616, 0, EXH_WHEN_SETUP, 0, 60000, 0, "link_time", "ms",
+     "no planes for so long: a fault; 0: never, contacts are local"},
 };
 
 #define OUT(id, frac, min, max, name, unit, help) \
-    {(id), (frac), EXH_WHEN_OUTPUT, (min), (max), 0, (name), (unit), (help)}
+    { \
+        (id), (frac), EXH_WHEN_OUTPUT, (min), (max), 0, (name), (unit), (help) \
+    }
 #define ANY(id, frac, name, unit, help) OUT(id, frac, INT32_MIN, INT32_MAX, name, unit, help)
 #define POS(id, frac, name, unit, help) OUT(id, frac, 0, INT32_MAX, name, unit, help)
 
@@ -36,7 +46,9 @@ static const struct exh_signal paper_rows[] = {
 };
 
 static const struct exh_signal more_rows[] = {
-    POS(0x8710, 0, "frozen", "", "1 q_lim stands, 2 moves, 4 inside, 8 stale, 16 bent, 32 freeze, 64 release, 128 blind, 256 doubt, 512 let go"),
+    POS(0x8710, 0, "frozen", "",
+        "1 q_lim stands, 2 moves, 4 inside, 8 stale, 16 bent, 32 freeze, 64 release, 128 blind, "
+        "256 doubt, 512 let go"),
     POS(0x8711, 0, "limits", "", "limits acting, bits"),
     ANY(0x8712, 32, "q0", "turn", "robot: sideways"),
     ANY(0x8713, 32, "q1", "turn", "knuckle"),
@@ -78,8 +90,11 @@ static const struct exh_signal box_rows[] = {
     POS(0x8735, 0, "arm_step", "", "arming is at, or was refused by"),
 };
 
-#define LEN(a)     (sizeof(a) / sizeof((a)[0]))
-#define EACH(r, n) {(r), (n), BILATERAL_FINGERS}
+#define LEN(a) (sizeof(a) / sizeof((a)[0]))
+#define EACH(r, n) \
+    { \
+        (r), (n), BILATERAL_FINGERS \
+    }
 
 static const struct exh_signal_group param_groups[] = {
     EACH(exh_quad_rows, EXH_QUAD_ROWS),
@@ -116,13 +131,12 @@ EXH_STATIC_ASSERT(bilateral_par_matches_rows,
                       sizeof(int32_t) *
                           (BILATERAL_FINGERS *
                                (EXH_QUAD_ROWS + EXH_VELOCITY_ROWS + EXH_CONTACT_ROWS +
-                                EXH_DRIVE_ROWS + EXH_TRACK_ROWS + EXH_WATCH_ROWS + LEN(kf_rows) + EXH_HAND_ROWS +
-                                EXH_PRECONTACT_ROWS) +
+                                EXH_DRIVE_ROWS + EXH_TRACK_ROWS + EXH_WATCH_ROWS + LEN(kf_rows) +
+                                EXH_HAND_ROWS + EXH_PRECONTACT_ROWS) +
                            BILATERAL_MATERIALS * EXH_MATERIAL_ROWS + EXH_SAFETY_ROWS +
-                           EXH_SUPPLY_ROWS +
-                           EXH_GLOVE_ROWS + LEN(own_rows) + CALIB_ROWS + GLOVE_OWN_ROWS +
-                           GLOVE_CAL_ROWS * EXH_GLOVE_SENSORS + EXH_TUNE_ROWS));
+                           EXH_SUPPLY_ROWS + EXH_GLOVE_ROWS + LEN(own_rows) + CALIB_ROWS +
+                           GLOVE_OWN_ROWS + GLOVE_CAL_ROWS * EXH_GLOVE_SENSORS + EXH_TUNE_ROWS));
 EXH_STATIC_ASSERT(bilateral_signals_match_rows,
                   sizeof(struct bilateral_signals) ==
-                      sizeof(int32_t) * (BILATERAL_FINGERS * (LEN(paper_rows) + LEN(more_rows)) +
-                                         LEN(box_rows)));
+                      sizeof(int32_t) *
+                          (BILATERAL_FINGERS * (LEN(paper_rows) + LEN(more_rows)) + LEN(box_rows)));

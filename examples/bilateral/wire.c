@@ -5,7 +5,7 @@
  * hears the next. */
 #define HELLO_AT_FIRST 8u
 #define HELLO_THEN     128u
-#define US_Q        20
+#define US_Q           20
 
 void bilateral_wire_setup(struct bilateral_wire_cfg *cfg, struct bilateral_wire *s,
                           uint32_t session, struct exh_period T)
@@ -48,10 +48,10 @@ static void take_planes(struct bilateral *s, const struct bilateral_cfg *cfg,
     }
 }
 
-/* Materials are the world's, and nothing else: they are taken at a freeze, and the drive's own limit
- * holds beside theirs. What pulls without a contact (f0), what limits a pull, and where and when a
- * contact is (s, d_lim, and all that a frozen finger stands on) are the box's own: no world, and
- * nobody else who can send a packet, sets them, frozen or not. */
+/* Materials are the world's, and nothing else: they are taken at a freeze, and the drive's own
+ * limit holds beside theirs. What pulls without a contact (f0), what limits a pull, and where and
+ * when a contact is (s, d_lim, and all that a frozen finger stands on) are the box's own: no world,
+ * and nobody else who can send a packet, sets them, frozen or not. */
 static struct exh_wire_ack stage(struct exh_params *params, const struct exh_wire_packet *p)
 {
     const struct exh_wire_param *ask = &p->u.param;
@@ -78,7 +78,8 @@ void bilateral_wire_take(struct bilateral *s, const struct bilateral_cfg *cfg,
         struct exh_wire_packet p;
         const uint32_t session = w->rx.session;
         const int type = exh_wire_take(&w->rx, &p, in->byte[i], in->len_B[i]);
-        if (w->rx.session != session) { /* a world that does not know us yet, and has asked for nothing */
+        if (w->rx.session !=
+            session) { /* a world that does not know us yet, and has asked for nothing */
             w->exchanges = 0;
             bilateral_trace_stop(&w->trace);
         }
@@ -99,7 +100,8 @@ void bilateral_wire_take(struct bilateral *s, const struct bilateral_cfg *cfg,
 
 /* --- out --- */
 
-void bilateral_wire_put(struct bilateral_wire *w, struct exh_scene_mail *out, struct exh_wire_packet *p)
+void bilateral_wire_put(struct bilateral_wire *w, struct exh_scene_mail *out,
+                        struct exh_wire_packet *p)
 {
     int32_t n;
     if (out->packets == EXH_SCENE_PACKETS) { return; }

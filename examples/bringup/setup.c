@@ -210,7 +210,8 @@ static int setup_motions(struct bringup_cfg *cfg, struct exh_period T)
     return err == 0 ? exh_home_setup(&cfg->home, &home, scale) : err;
 }
 
-/* A mass that half of homing's current might lift, or the stage's limit hardly could, is refused. */
+/* A mass that half of homing's current might lift, or the stage's limit hardly could, is refused.
+ */
 static int setup_weigh(struct bringup_cfg *cfg, struct exh_period T)
 {
     const struct bringup_own_par *own = &cfg->par->own;

@@ -2,7 +2,8 @@
 /* The phases of each stage. */
 #include "bringup.h"
 
-/* Levels' dwell is hold: nothing is measured while the current still rises, in its first quarter. */
+/* Levels' dwell is hold: nothing is measured while the current still rises, in its first quarter.
+ */
 static int measures(const struct bringup *s, const struct bringup_cfg *cfg)
 {
     return s->tick - s->level * cfg->hold_ticks >= cfg->hold_ticks / 4;
@@ -69,7 +70,8 @@ static uint8_t levels(struct bringup *s, const struct bringup_cfg *cfg, struct b
     s->mon.sum = s->coded.sum = 0;
     s->mon.n = s->coded.n = 0;
     s->level++;
-    /* A string that is pulled harder gives at least a little: an encoder that saw nothing is none. */
+    /* A string that is pulled harder gives at least a little: an encoder that saw nothing is none.
+     */
     if (cfg->par->own.stage >= 4 && v.cnt == s->at_cnt) { return EXH_PROBE_STILL; }
     s->at_cnt = v.cnt;
     return s->level < BRINGUP_LEVELS ? EXH_PROBE_BUSY : EXH_PROBE_DONE;

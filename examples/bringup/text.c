@@ -111,10 +111,21 @@ static void put_names(struct text *t, const char *const *name, unsigned count, u
 
 static void put_causes(struct text *t, const struct bringup *s)
 {
-    static const char *const name[] = {"emergency stop", "drive not ready", "ticks missed",
-                                       "encoder", "dead-man released", "current tracking",
-                                       "encoder stands", "too fast", "glove", "card", "link",
-                                       "supply", "watchdog", "configuration", "state of the box"};
+    static const char *const name[] = {"emergency stop",
+                                       "drive not ready",
+                                       "ticks missed",
+                                       "encoder",
+                                       "dead-man released",
+                                       "current tracking",
+                                       "encoder stands",
+                                       "too fast",
+                                       "glove",
+                                       "card",
+                                       "link",
+                                       "supply",
+                                       "watchdog",
+                                       "configuration",
+                                       "state of the box"};
     put_names(t, name, EXH_FAULTS,
               s->safety.state == EXH_STATE_FAULT ? s->safety.faults : s->safety.present);
 }

@@ -2,13 +2,20 @@
 #include "calibrate.h"
 
 #define ROW_A(id, name, max_mA, dflt_mA, help) \
-    {(id), EXH_Q_CUR, EXH_WHEN_SETUP, EXH_Q(1, 1000, EXH_Q_CUR), EXH_Q(max_mA, 1000, EXH_Q_CUR), \
-     EXH_Q(dflt_mA, 1000, EXH_Q_CUR), (name), "a", (help)}
+    { \
+        (id), EXH_Q_CUR, EXH_WHEN_SETUP, EXH_Q(1, 1000, EXH_Q_CUR), \
+            EXH_Q(max_mA, 1000, EXH_Q_CUR), EXH_Q(dflt_mA, 1000, EXH_Q_CUR), (name), "a", (help) \
+    }
 #define ROW_M(id, name, max_mm, dflt_um, help) \
-    {(id), EXH_Q_POS, EXH_WHEN_SETUP, EXH_Q(1, 10000, EXH_Q_POS), EXH_Q(max_mm, 1000, EXH_Q_POS), \
-     EXH_Q(dflt_um, 1000000, EXH_Q_POS), (name), "m", (help)}
+    { \
+        (id), EXH_Q_POS, EXH_WHEN_SETUP, EXH_Q(1, 10000, EXH_Q_POS), \
+            EXH_Q(max_mm, 1000, EXH_Q_POS), EXH_Q(dflt_um, 1000000, EXH_Q_POS), (name), "m", \
+            (help) \
+    }
 #define ROW_MS(id, name, max_ms, dflt_ms, help) \
-    {(id), 0, EXH_WHEN_SETUP, 1, (max_ms), (dflt_ms), (name), "ms", (help)}
+    { \
+        (id), 0, EXH_WHEN_SETUP, 1, (max_ms), (dflt_ms), (name), "ms", (help) \
+    }
 
 static const struct exh_signal own_rows[] = {
     {0x8201, EXH_Q_FORCE, EXH_WHEN_SETUP, EXH_Q(97, 10, EXH_Q_FORCE), EXH_Q(99, 10, EXH_Q_FORCE),
@@ -19,7 +26,8 @@ static const struct exh_signal own_rows[] = {
     ROW_A(0x8205, "home_cur", 500, 100, "homing pulls with this"),
     ROW_A(0x8206, "slack_cur", 500, 50, "takes up a standing mass's slack"),
     {0x8212, EXH_Q_FORCE, EXH_WHEN_SETUP, EXH_Q(1, 10, EXH_Q_FORCE), EXH_Q(50, 1, EXH_Q_FORCE),
-     EXH_Q(2, 1, EXH_Q_FORCE), "kf_min", "n_per_a", "no mass gets more current than its force over this"},
+     EXH_Q(2, 1, EXH_Q_FORCE), "kf_min", "n_per_a",
+     "no mass gets more current than its force over this"},
     ROW_A(0x8207, "end_cur", 6600, 6600, "tables go on straight from the last mass to here"),
     ROW_M(0x8208, "move", 5, 300, "this far within a dwell is movement"),
     ROW_M(0x8209, "travel", 100, 30000, "travel limit of all steps but home"),
@@ -44,8 +52,10 @@ static const struct exh_signal mass_rows[] = {
 static const struct exh_signal signal_rows[] = {
     {0x8301, EXH_Q_POS, EXH_WHEN_OUTPUT, INT32_MIN, INT32_MAX, 0, "q", "m", "position"},
     {0x8302, EXH_Q_CUR, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "i_des", "a", "current coded"},
-    {0x8303, EXH_Q_CUR, EXH_WHEN_OUTPUT, INT32_MIN, INT32_MAX, 0, "i_mon", "a", "current monitored"},
-    {0x8304, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "step", "", "0 zero, 1 polarity, 2 home, 3 f0, 4... masses"},
+    {0x8303, EXH_Q_CUR, EXH_WHEN_OUTPUT, INT32_MIN, INT32_MAX, 0, "i_mon", "a",
+     "current monitored"},
+    {0x8304, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "step", "",
+     "0 zero, 1 polarity, 2 home, 3 f0, 4... masses"},
     {0x8305, 0, EXH_WHEN_OUTPUT, 0, 1, 0, "waits", "", "for the person"},
     {0x8306, 0, EXH_WHEN_OUTPUT, 0, CALIBRATE_RESULTS, 0, "result", "", "why it ended, 1 done"},
     {0x8307, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "limits", "", "limits acting, bits"},
@@ -58,18 +68,18 @@ static const struct exh_signal signal_rows[] = {
 #define COUNT(r) (sizeof(r) / sizeof((r)[0]))
 
 static const struct exh_signal_group param_groups[] = {
-    {exh_quad_rows, EXH_QUAD_ROWS, 1},     {exh_drive_rows, EXH_DRIVE_ROWS, 1},
-    {exh_track_rows, EXH_TRACK_ROWS, 1},   {exh_safety_rows, EXH_SAFETY_ROWS, 1},
-    {own_rows, COUNT(own_rows), 1},        {mass_rows, 1, CALIBRATE_MASSES},
+    {exh_quad_rows, EXH_QUAD_ROWS, 1},   {exh_drive_rows, EXH_DRIVE_ROWS, 1},
+    {exh_track_rows, EXH_TRACK_ROWS, 1}, {exh_safety_rows, EXH_SAFETY_ROWS, 1},
+    {own_rows, COUNT(own_rows), 1},      {mass_rows, 1, CALIBRATE_MASSES},
 };
 static const struct exh_signal_table param_table = {param_groups, 6};
 static const struct exh_signal_group signal_groups[] = {{signal_rows, COUNT(signal_rows), 1}};
 static const struct exh_signal_table signal_table = {signal_groups, 1};
 
-EXH_STATIC_ASSERT(calibrate_par_matches_rows,
-                  sizeof(struct calibrate_par) / sizeof(int32_t) ==
-                      EXH_QUAD_ROWS + EXH_DRIVE_ROWS + EXH_TRACK_ROWS + EXH_SAFETY_ROWS +
-                          COUNT(own_rows) + CALIBRATE_MASSES);
+EXH_STATIC_ASSERT(calibrate_par_matches_rows, sizeof(struct calibrate_par) / sizeof(int32_t) ==
+                                                  EXH_QUAD_ROWS + EXH_DRIVE_ROWS + EXH_TRACK_ROWS +
+                                                      EXH_SAFETY_ROWS + COUNT(own_rows) +
+                                                      CALIBRATE_MASSES);
 EXH_STATIC_ASSERT(calibrate_signals_match_rows,
                   sizeof(struct calibrate_signals) / sizeof(int32_t) == COUNT(signal_rows));
 
@@ -92,15 +102,16 @@ static int setup_motions(struct calibrate_cfg *cfg, const struct calibrate_own_p
                          struct exh_probe_scale scale)
 {
     const struct exh_probe_par mass = {own->step_A_q26, own->i_max_A_q26, own->dwell_ms,
-                                       own->time_ms, own->move_m_q30, own->travel_m_q30};
-    const struct exh_home_par home = {own->home_A_q26, own->dwell_ms, own->time_ms,
+                                       own->time_ms,    own->move_m_q30,  own->travel_m_q30};
+    const struct exh_home_par home = {own->home_A_q26, own->dwell_ms,       own->time_ms,
                                       own->move_m_q30, own->home_min_m_q30, own->home_max_m_q30};
     struct exh_probe_par polarity = mass, f0 = mass;
     int err;
     polarity.end_A_q26 = f0.end_A_q26 = own->pol_max_A_q26;
-    f0.move_m_q30 = exh_clamp((int64_t)exh_udiv64((uint64_t)(uint32_t)own->f0_speed_mps_q27 *
-                                                      (uint32_t)own->dwell_ms, 125, NULL),
-                              1, INT32_MAX); /* v q27 * ms / 1000, in q30 */
+    f0.move_m_q30 = exh_clamp(
+        (int64_t)exh_udiv64((uint64_t)(uint32_t)own->f0_speed_mps_q27 * (uint32_t)own->dwell_ms,
+                            125, NULL),
+        1, INT32_MAX); /* v q27 * ms / 1000, in q30 */
     if (exh_probe_ticks(own->dwell_ms, scale.T) < 2) { return -EXH_E_RATE; }
     cfg->zero_ticks = exh_probe_ticks(own->hold_ms, scale.T);
     cfg->wait_ticks = exh_probe_ticks(own->wait_ms, scale.T);
@@ -121,12 +132,12 @@ static int setup_mass(struct exh_weigh_cfg *cfg, const struct calibrate_par *par
                       struct exh_probe_scale scale)
 {
     const struct calibrate_own_par *own = &par->own;
-    const uint64_t most_A_q26 = exh_udiv64((uint64_t)force_of(par, i) << EXH_Q_CUR,
-                                           (uint32_t)own->kf_min_NpA_q20, NULL);
-    const int32_t end_A_q26 = most_A_q26 < (uint32_t)own->i_max_A_q26 ? (int32_t)most_A_q26
-                                                                     : own->i_max_A_q26;
-    const struct exh_probe_par probe = {
-        own->step_A_q26, end_A_q26, own->dwell_ms, own->time_ms, own->move_m_q30, own->travel_m_q30};
+    const uint64_t most_A_q26 =
+        exh_udiv64((uint64_t)force_of(par, i) << EXH_Q_CUR, (uint32_t)own->kf_min_NpA_q20, NULL);
+    const int32_t end_A_q26 =
+        most_A_q26 < (uint32_t)own->i_max_A_q26 ? (int32_t)most_A_q26 : own->i_max_A_q26;
+    const struct exh_probe_par probe = {own->step_A_q26, end_A_q26,       own->dwell_ms,
+                                        own->time_ms,    own->move_m_q30, own->travel_m_q30};
     const struct exh_weigh_par weigh = {probe, own->slack_A_q26, own->hold_ms};
     return exh_weigh_setup(cfg, &weigh, scale);
 }
@@ -167,7 +178,8 @@ int calibrate_setup(struct calibrate_cfg *cfg, const struct calibrate_par *par,
 
 /* --- steps --- */
 
-struct view { /* what a step may see of a tick */
+/* what a step may see of a tick */
+struct view {
     int32_t cnt, mon_A_q26;
     int16_t mon_raw;
 };
@@ -230,10 +242,8 @@ static const struct {
     step_fn *step;
     enum calibrate_ask ask;
 } steps[] = {
-    {"zero", zero, CALIBRATE_ASK_SLACK},
-    {"polarity", polarity, CALIBRATE_ASK_SLACK},
-    {"home", home, CALIBRATE_ASK_SLACK},
-    {"f0", f0, CALIBRATE_ASK_SLACK},
+    {"zero", zero, CALIBRATE_ASK_SLACK}, {"polarity", polarity, CALIBRATE_ASK_SLACK},
+    {"home", home, CALIBRATE_ASK_SLACK}, {"f0", f0, CALIBRATE_ASK_SLACK},
     {"mass", mass, CALIBRATE_ASK_MASS},
 };
 
@@ -333,8 +343,7 @@ void calibrate_tick(struct calibrate *s, const struct calibrate_cfg *cfg,
     const int astray = exh_track_step(&s->track, &cfg->track, v.mon_A_q26);
     const uint32_t raised =
         (s->quad.lost ? EXH_FAULT_ENCODER : 0u) | (astray ? EXH_FAULT_TRACKING : 0u);
-    const struct exh_safety_in box = {in->drive.din, raised, in->missed, in->command, 1,
-                                      VOUCHED};
+    const struct exh_safety_in box = {in->drive.din, raised, in->missed, in->command, 1, VOUCHED};
     const struct exh_permit permit = exh_safety_step(&s->safety, &cfg->safety, box);
     const int32_t cur_A_q26 = go_on(s, cfg, v, exh_safety_runs(&s->safety));
     struct exh_force_ledger f = {0};

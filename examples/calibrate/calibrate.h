@@ -29,38 +29,38 @@ enum calibrate_step {
     CALIBRATE_POLARITY,
     CALIBRATE_HOME,
     CALIBRATE_F0,
-    CALIBRATE_MASS /* the first; one step a mass                               */
+    CALIBRATE_MASS /* the first; one step a mass */
 };
 
 /* What the person has to do before a step. */
 enum calibrate_ask {
-    CALIBRATE_ASK_SLACK, /* draw the string out, take everything off it, let go  */
-    CALIBRATE_ASK_MASS   /* stand mass i on something, string taut above it      */
+    CALIBRATE_ASK_SLACK, /* draw the string out, take everything off it, let go */
+    CALIBRATE_ASK_MASS   /* stand mass i on something, string taut above it */
 };
 
 /* Why it ended: enum exh_probe_result (DONE: all of it is done), or */
 enum calibrate_result {
-    CALIBRATE_OFF = EXH_PROBE_RESULTS, /* the box left RUN: see faults         */
+    CALIBRATE_OFF = EXH_PROBE_RESULTS, /* the box left RUN: see faults */
     CALIBRATE_LIMITED, /* a limit of the drive acts: current is not what it should be */
-    CALIBRATE_NOBODY,  /* nobody prepared the step                             */
+    CALIBRATE_NOBODY,  /* nobody prepared the step */
     CALIBRATE_RESULTS
 };
 
 struct calibrate_own_par {
-    int32_t gravity_mps2_q20; /* where the masses hang                         */
-    int32_t i_max_A_q26;      /* no step goes beyond                           */
-    int32_t step_A_q26;       /* currents rise by this                         */
-    int32_t pol_max_A_q26;    /* polarity: no further than this                */
+    int32_t gravity_mps2_q20; /* where the masses hang */
+    int32_t i_max_A_q26;      /* no step goes beyond */
+    int32_t step_A_q26;       /* currents rise by this */
+    int32_t pol_max_A_q26;    /* polarity: no further than this */
     int32_t home_A_q26;
-    int32_t slack_A_q26;      /* makes the string of a standing mass taut      */
-    int32_t kf_min_NpA_q20;   /* no mass gets more current than its force over this */
-    int32_t end_A_q26;        /* tables go on straight to here                 */
-    int32_t move_m_q30;       /* within a dwell: it moves                      */
-    int32_t travel_m_q30;     /* limit of all steps but home                   */
+    int32_t slack_A_q26;    /* makes the string of a standing mass taut */
+    int32_t kf_min_NpA_q20; /* no mass gets more current than its force over this */
+    int32_t end_A_q26;      /* tables go on straight to here */
+    int32_t move_m_q30;     /* within a dwell: it moves */
+    int32_t travel_m_q30;   /* limit of all steps but home */
     int32_t home_min_m_q30, home_max_m_q30;
     int32_t f0_speed_mps_q27;
     int32_t dwell_ms, hold_ms, time_ms, wait_ms;
-    int32_t go; /* this many steps are prepared: step + 1, newly said          */
+    int32_t go; /* this many steps are prepared: step + 1, newly said */
 };
 
 struct calibrate_par {
@@ -69,17 +69,17 @@ struct calibrate_par {
     struct exh_track_par track;
     struct exh_safety_par safety;
     struct calibrate_own_par own;
-    int32_t mass_kg_q20[CALIBRATE_MASSES]; /* rising; the first 0 ends the list  */
+    int32_t mass_kg_q20[CALIBRATE_MASSES]; /* rising; the first 0 ends the list */
 };
 
 struct calibrate_signals {
     int32_t q_m_q30;
     int32_t i_des_A_q26;
     int32_t i_mon_A_q26;
-    int32_t step;    /* enum calibrate_step                                    */
-    int32_t waits;   /* 1: for the person                                      */
-    int32_t result;  /* why it ended; 0 while it goes on                       */
-    int32_t limits, state, faults, present; /* as in every scene               */
+    int32_t step;                           /* enum calibrate_step */
+    int32_t waits;                          /* 1: for the person */
+    int32_t result;                         /* why it ended; 0 while it goes on */
+    int32_t limits, state, faults, present; /* as in every scene */
 };
 
 struct calibrate_cfg {
@@ -101,17 +101,17 @@ struct calibrate {
     struct exh_drive drive;
     struct exh_track track;
     struct exh_safety safety;
-    struct exh_mean zero_raw;      /* monitor codes at no current              */
+    struct exh_mean zero_raw; /* monitor codes at no current */
     struct exh_probe polarity, f0;
     struct exh_home home;
     struct exh_weigh weigh[CALIBRATE_MASSES];
-    int32_t coded_A_q26; /* in the last tick                                   */
-    int32_t start_cnt;   /* of the step                                        */
-    uint32_t tick;       /* of the step or the wait                            */
+    int32_t coded_A_q26; /* in the last tick */
+    int32_t start_cnt;   /* of the step */
+    uint32_t tick;       /* of the step or the wait */
     int32_t go;          /* the word that was there when the wait began, or its last */
     uint8_t step, busy, result;
-    uint8_t word;        /* the person's word was given in this wait           */
-    uint8_t ran;         /* the box was in RUN                                 */
+    uint8_t word; /* the person's word was given in this wait */
+    uint8_t ran;  /* the box was in RUN */
 };
 
 /* Configuration from parameters. 0 or -EXH_E…; -EXH_E_RATE: a dwell has less than two

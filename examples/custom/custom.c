@@ -38,8 +38,8 @@ static struct exh_guard guard;
 static struct exh_scene_calib calib;
 static struct slot_wire wire[SLOT_INPUTS];
 static const char *unknown;
-static uint8_t runs;     /* init was called, terminate not yet                   */
-static uint8_t answered; /* the answer of the coming tick is known: a replay     */
+static uint8_t runs;     /* init was called, terminate not yet */
+static uint8_t answered; /* the answer of the coming tick is known: a replay */
 static int32_t answer;
 
 static void defaults(void)
@@ -125,8 +125,8 @@ static int32_t ask(void)
     return f;
 }
 
-/* The answer stands for spring and damper; the pull-back force, which the string needs and no wall, is
- * the law's own. No answer is no force, in this tick, and a fault that cuts in the next. */
+/* The answer stands for spring and damper; the pull-back force, which the string needs and no wall,
+ * is the law's own. No answer is no force, in this tick, and a fault that cuts in the next. */
 static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
 {
     struct drop_now now;

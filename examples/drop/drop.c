@@ -5,7 +5,8 @@ const struct exh_signal drop_own_rows[DROP_OWN_ROWS] = {
     {0x8001, EXH_Q_POS, EXH_WHEN_SLEWED, -EXH_Q(1, 1, EXH_Q_POS), EXH_Q(1, 1, EXH_Q_POS),
      EXH_Q(7, 100, EXH_Q_POS), "q_lim", "m", "virtual contact, from where the string starts"},
     {0x8002, EXH_Q_FORCE, EXH_WHEN_SETUP, EXH_Q(1, 10, EXH_Q_FORCE), EXH_Q(100, 1, EXH_Q_FORCE),
-     EXH_Q(3339, 1000, EXH_Q_FORCE), "kf", "n_per_a", "string force per motor current, without a calibration"},
+     EXH_Q(3339, 1000, EXH_Q_FORCE), "kf", "n_per_a",
+     "string force per motor current, without a calibration"},
 };
 
 const struct exh_signal drop_paper_rows[DROP_PAPER_ROWS] = {
@@ -24,7 +25,8 @@ const struct exh_signal drop_more_rows[DROP_MORE_ROWS] = {
      "0 off, 1 arm, 2 run, 3 limit, 4 release, 5 fault"},
     {0x8109, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "faults", "", "fault causes latched, bits"},
     {0x810A, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "present", "", "fault causes now, bits"},
-    {0x810B, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "arm_step", "", "arming is at, or was refused by"},
+    {0x810B, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "arm_step", "",
+     "arming is at, or was refused by"},
 };
 
 static const struct exh_signal_group param_groups[] = {DROP_PARAM_GROUPS};
@@ -35,10 +37,9 @@ static const struct exh_signal_table signal_table = {signal_groups, DROP_SIGNAL_
 
 #define PARAMS (sizeof(struct drop_par) / sizeof(int32_t))
 EXH_STATIC_ASSERT(drop_par_matches_rows,
-                  PARAMS == EXH_QUAD_ROWS + EXH_VELOCITY_ROWS + EXH_CONTACT_ROWS +
-                                EXH_DRIVE_ROWS + EXH_TRACK_ROWS + EXH_WATCH_ROWS +
-                                EXH_SAFETY_ROWS + EXH_SUPPLY_ROWS + DROP_OWN_ROWS + CALIB_ROWS +
-                                EXH_TUNE_ROWS);
+                  PARAMS == EXH_QUAD_ROWS + EXH_VELOCITY_ROWS + EXH_CONTACT_ROWS + EXH_DRIVE_ROWS +
+                                EXH_TRACK_ROWS + EXH_WATCH_ROWS + EXH_SAFETY_ROWS +
+                                EXH_SUPPLY_ROWS + DROP_OWN_ROWS + CALIB_ROWS + EXH_TUNE_ROWS);
 
 int drop_setup(struct drop_cfg *cfg, const struct drop_par *par, struct exh_scene_board board,
                struct exh_scene_calib *calib)
@@ -75,21 +76,19 @@ void drop_law(struct drop *s, const struct drop_cfg *cfg, const struct exh_scene
 {
     const struct drop_par *par = cfg->par;
     const int32_t cnt = exh_quad_extend(&s->quad, &cfg->quad, in->drive.enc_raw[0]);
-    struct exh_contact_in q = {
-        exh_quad_pos_m_q30(&par->quad, cnt),
-        exh_velocity_window_mps_q27(&s->velocity, &cfg->velocity, cnt), par->own.q_lim_m_q30};
+    struct exh_contact_in q = {exh_quad_pos_m_q30(&par->quad, cnt),
+                               exh_velocity_window_mps_q27(&s->velocity, &cfg->velocity, cnt),
+                               par->own.q_lim_m_q30};
     const int32_t mon_A_q26 = exh_drive_monitor_A_q26(&cfg->drive, in->drive.mon_raw[0]);
     const int astray = exh_track_step(&s->track, &cfg->track, mon_A_q26);
-    const int starved =
-        exh_supply_step(&s->supply, &cfg->supply, in->drive.supply_raw, in->missed);
+    const int starved = exh_supply_step(&s->supply, &cfg->supply, in->drive.supply_raw, in->missed);
     uint32_t limits = 0;
     const uint32_t raised = (s->quad.lost ? EXH_FAULT_ENCODER : 0u) |
-                            (astray ? EXH_FAULT_TRACKING : 0u) |
-                            (starved ? EXH_FAULT_SUPPLY : 0u) |
+                            (astray ? EXH_FAULT_TRACKING : 0u) | (starved ? EXH_FAULT_SUPPLY : 0u) |
                             (s->broken ? EXH_FAULT_CONFIG : 0u) | s->more |
                             exh_watch_step(&s->watch, &cfg->watch, &q.vel_mps_q27, &limits);
-    const struct exh_safety_in box = {in->drive.din, raised, in->missed, in->command, 1,
-                                      steps_held(s, cfg)};
+    const struct exh_safety_in box = {in->drive.din, raised, in->missed,
+                                      in->command,   1,      steps_held(s, cfg)};
 
     now->permit = exh_safety_step(&s->safety, &cfg->safety, box);
     now->cnt = cnt;

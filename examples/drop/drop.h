@@ -10,7 +10,7 @@
 
 /* Rows of the scene's own parameters. */
 struct drop_own_par {
-    int32_t q_lim_m_q30; /* virtual contact, from the first count              */
+    int32_t q_lim_m_q30; /* virtual contact, from the first count */
     int32_t kf_NpA_q20;  /* string force per motor ampere, without a calibration */
 };
 
@@ -29,10 +29,16 @@ extern const struct exh_signal drop_more_rows[DROP_MORE_ROWS];
         {exh_track_rows, EXH_TRACK_ROWS, 1}, {exh_watch_rows, EXH_WATCH_ROWS, 1}, \
         {exh_safety_rows, EXH_SAFETY_ROWS, 1}, {exh_supply_rows, EXH_SUPPLY_ROWS, 1}, \
         {drop_own_rows, DROP_OWN_ROWS, 1}, {calib_rows, CALIB_ROWS, 1}, \
-        {exh_tune_rows, EXH_TUNE_ROWS, 1}
+    { \
+        exh_tune_rows, EXH_TUNE_ROWS, 1 \
+    }
 /* The first is the paper's, in its order: what a CSV holds. */
 #define DROP_SIGNAL_N 2
-#define DROP_SIGNAL_GROUPS {drop_paper_rows, DROP_PAPER_ROWS, 1}, {drop_more_rows, DROP_MORE_ROWS, 1}
+#define DROP_SIGNAL_GROUPS \
+    {drop_paper_rows, DROP_PAPER_ROWS, 1}, \
+    { \
+        drop_more_rows, DROP_MORE_ROWS, 1 \
+    }
 
 /* All parameters, in the order of the scene's signal table. */
 struct drop_par {
@@ -57,11 +63,11 @@ struct drop_signals {
     int32_t i_des_A_q26;
     int32_t c;
     int32_t f_mon_N_q20;
-    int32_t limits; /* enum exh_limit                                          */
-    int32_t state;  /* enum exh_state                                          */
-    int32_t faults;  /* enum exh_fault, latched                                 */
-    int32_t present; /* enum exh_fault: why RUN or CLEAR is refused             */
-    int32_t arm_step; /* enum exh_arm: on which arming is, or was refused       */
+    int32_t limits;   /* enum exh_limit */
+    int32_t state;    /* enum exh_state */
+    int32_t faults;   /* enum exh_fault, latched */
+    int32_t present;  /* enum exh_fault: why RUN or CLEAR is refused */
+    int32_t arm_step; /* enum exh_arm: on which arming is, or was refused */
 };
 
 struct drop_cfg {
@@ -73,7 +79,7 @@ struct drop_cfg {
     struct exh_watch_cfg watch;
     struct exh_safety_cfg safety;
     struct exh_supply_cfg supply;
-    uint8_t tested; /* 1: the self-test passed                                 */
+    uint8_t tested; /* 1: the self-test passed */
     struct calib_tables calib;
 };
 
@@ -90,8 +96,8 @@ struct drop {
     uint32_t more;  /* enum exh_fault: what a scene around this one raises; not saved */
 };
 
-/* Configuration from parameters, and of a calibration of finger 0 if calib has one (NULL: none). 0 or
- * -EXH_E…. */
+/* Configuration from parameters, and of a calibration of finger 0 if calib has one (NULL: none). 0
+ * or -EXH_E…. */
 int drop_setup(struct drop_cfg *cfg, const struct drop_par *par, struct exh_scene_board board,
                struct exh_scene_calib *calib);
 

@@ -8,9 +8,9 @@
 
 /* Of the glove in a scene; rows in glove_own_rows[]. */
 struct glove_own_par {
-    int32_t every;              /* ticks from one glove frame to the next       */
-    int32_t user_id, glove_id;  /* whose calibration it is                      */
-    int32_t present;            /* bit i: there is a sensor i                   */
+    int32_t every;             /* ticks from one glove frame to the next */
+    int32_t user_id, glove_id; /* whose calibration it is */
+    int32_t present;           /* bit i: there is a sensor i */
 };
 #define GLOVE_OWN_ROWS 4
 extern const struct exh_signal glove_own_rows[GLOVE_OWN_ROWS];

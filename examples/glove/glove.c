@@ -8,11 +8,20 @@
 #define ALL_SENSORS ((1 << EXH_GLOVE_SENSORS) - 1)
 
 #define ANGLE(i, name, help) \
-    {(uint16_t)(0x8501 + (i)), 32, EXH_WHEN_OUTPUT, INT32_MIN, INT32_MAX, 0, (name), "turn", (help)}
+    { \
+        (uint16_t)(0x8501 + (i)), 32, EXH_WHEN_OUTPUT, INT32_MIN, INT32_MAX, 0, (name), "turn", \
+            (help) \
+    }
 #define JOINT(i, name, help) \
-    {(uint16_t)(0x8521 + (i)), 32, EXH_WHEN_OUTPUT, INT32_MIN, INT32_MAX, 0, (name), "turn", (help)}
+    { \
+        (uint16_t)(0x8521 + (i)), 32, EXH_WHEN_OUTPUT, INT32_MIN, INT32_MAX, 0, (name), "turn", \
+            (help) \
+    }
 #define TIP(i, name, help) \
-    {(uint16_t)(0x8541 + (i)), EXH_Q_POS, EXH_WHEN_OUTPUT, INT32_MIN, INT32_MAX, 0, (name), "m", (help)}
+    { \
+        (uint16_t)(0x8541 + (i)), EXH_Q_POS, EXH_WHEN_OUTPUT, INT32_MIN, INT32_MAX, 0, (name), \
+            "m", (help) \
+    }
 
 static const struct exh_signal signal_rows[] = {
     ANGLE(0, "thumb_rotate", "glove: thumb across the palm"),
@@ -37,7 +46,8 @@ static const struct exh_signal signal_rows[] = {
     ANGLE(19, "palm_arch", "hollow of the palm"),
     ANGLE(20, "wrist_pitch", "up"),
     ANGLE(21, "wrist_yaw", "out"),
-    {0x8517, 0, EXH_WHEN_OUTPUT, 0, ALL_SENSORS, 0, "glove_faults", "", "sensors not believed, bits"},
+    {0x8517, 0, EXH_WHEN_OUTPUT, 0, ALL_SENSORS, 0, "glove_faults", "",
+     "sensors not believed, bits"},
     JOINT(0, "thumb_q0", "robot: sideways"),
     JOINT(1, "thumb_q1", "knuckle"),
     JOINT(2, "thumb_q2", "middle joint, the last follows it"),
@@ -69,14 +79,16 @@ static const struct exh_signal signal_rows[] = {
     TIP(12, "little_x", ""),
     TIP(13, "little_y", ""),
     TIP(14, "little_z", ""),
-    {0x8550, 0, EXH_WHEN_OUTPUT, 0, UINT16_MAX, 0, "age", "", "ticks since the frame was converted"},
+    {0x8550, 0, EXH_WHEN_OUTPUT, 0, UINT16_MAX, 0, "age", "",
+     "ticks since the frame was converted"},
 };
 #define SIGNALS (sizeof signal_rows / sizeof signal_rows[0])
 
-static const struct exh_signal_group param_groups[] = {{exh_glove_rows, EXH_GLOVE_ROWS, 1},
-                                                       {exh_hand_rows, EXH_HAND_ROWS, 1},
-                                                       {glove_own_rows, GLOVE_OWN_ROWS, 1},
-                                                       {glove_cal_rows, GLOVE_CAL_ROWS, EXH_GLOVE_SENSORS}};
+static const struct exh_signal_group param_groups[] = {
+    {exh_glove_rows, EXH_GLOVE_ROWS, 1},
+    {exh_hand_rows, EXH_HAND_ROWS, 1},
+    {glove_own_rows, GLOVE_OWN_ROWS, 1},
+    {glove_cal_rows, GLOVE_CAL_ROWS, EXH_GLOVE_SENSORS}};
 static const struct exh_signal_table param_table = {param_groups, 4};
 static const struct exh_signal_group signal_groups[] = {{signal_rows, SIGNALS, 1}};
 static const struct exh_signal_table signal_table = {signal_groups, 1};

@@ -12,7 +12,7 @@
 /* All parameters, in the order of the scene's signal table. */
 struct glove_par {
     struct exh_glove_par glove;
-    struct exh_hand_par hand; /* the same for five fingers                      */
+    struct exh_hand_par hand; /* the same for five fingers */
     struct glove_own_par own;
     struct glove_sensor_par sensor[EXH_GLOVE_SENSORS];
 };
@@ -20,9 +20,9 @@ struct glove_par {
 /* In the order of the table. They stand still between two frames but for the age. */
 struct glove_signals {
     int32_t angle_turn_q32[EXH_GLOVE_SENSORS];
-    int32_t faults; /* bit i: sensor i                                          */
+    int32_t faults; /* bit i: sensor i */
     int32_t joint_turn_q32[EXH_HAND_FINGERS][EXH_HAND_JOINTS];
-    int32_t clamped; /* bit 3 f + j: joint j of finger f                         */
+    int32_t clamped; /* bit 3 f + j: joint j of finger f */
     struct exh_vec3 tip_m_q30[EXH_HAND_FINGERS];
     int32_t age_ticks;
 };

@@ -6,7 +6,7 @@
 #include "../drop/drop.h"
 
 struct guarded_own_par {
-    int32_t rule_on; /* 1: k and b outside the rule of gains are refused         */
+    int32_t rule_on; /* 1: k and b outside the rule of gains are refused */
 };
 
 /* Drop's parameters first, then what is added: so names and places of drop's stay. */
@@ -14,13 +14,13 @@ struct guarded_par {
     struct drop_par drop;
     struct exh_passivity_par passivity;
     struct guarded_own_par own;
-    struct exh_gains_par gains; /* looked at with rule_on alone                */
+    struct exh_gains_par gains; /* looked at with rule_on alone */
 };
 
 struct guarded_signals {
     struct drop_signals drop;
-    int32_t energy_J_q24; /* taken up by the present contact               */
-    int32_t passivity_N_q20; /* the ledger's term: taken away, <= 0           */
+    int32_t energy_J_q24;    /* taken up by the present contact */
+    int32_t passivity_N_q20; /* the ledger's term: taken away, <= 0 */
 };
 
 struct guarded_cfg {
@@ -34,13 +34,13 @@ struct guarded {
     struct exh_passivity passivity;
 };
 
-/* Configuration from parameters; calib as drop_setup(). 0 or -EXH_E…; with rule_on also what exh_gains_setup() says of the rule,
- * and -EXH_E_GAINS for k and b outside. */
+/* Configuration from parameters; calib as drop_setup(). 0 or -EXH_E…; with rule_on also what
+ * exh_gains_setup() says of the rule, and -EXH_E_GAINS for k and b outside. */
 int guarded_setup(struct guarded_cfg *cfg, const struct guarded_par *par,
                   struct exh_scene_board board, struct exh_scene_calib *calib);
 
-/* For whoever stages values of this image's scene, over a link too: as exh_params_stage(), with rule_on
- * as exh_gains_stage() under the rule that set-up took. */
+/* For whoever stages values of this image's scene, over a link too: as exh_params_stage(), with
+ * rule_on as exh_gains_stage() under the rule that set-up took. */
 int guarded_stage(uint16_t id, uint16_t instance, int32_t raw);
 
 /* One tick. */

@@ -53,17 +53,23 @@ static int object(char *to, size_t to_B, struct sim_random *r, int k, double hal
     int n;
     switch (k % 3) {
     case 0:
-        n = snprintf(to, to_B, "sphere o%d at %.4f %.4f %.4f radius %.4f material m\n", k, x, y, z, a);
+        n = snprintf(to, to_B, "sphere o%d at %.4f %.4f %.4f radius %.4f material m\n", k, x, y, z,
+                     a);
         break;
     case 1:
-        n = snprintf(to, to_B, "box o%d at %.4f %.4f %.4f rpy 20 30 %.1f size %.4f 0.03 0.02 material m\n", k,
+        n = snprintf(to, to_B,
+                     "box o%d at %.4f %.4f %.4f rpy 20 30 %.1f size %.4f 0.03 0.02 material m\n", k,
                      x, y, z, 1e4 * a, 2 * a);
         break;
     default:
-        n = snprintf(to, to_B, "capsule o%d at %.4f %.4f %.4f rpy 50 %.1f 0 radius 0.01 length %.4f "
-                               "material m\n", k, x, y, z, 1e4 * a, 2 * a);
+        n = snprintf(to, to_B,
+                     "capsule o%d at %.4f %.4f %.4f rpy 50 %.1f 0 radius 0.01 length %.4f "
+                     "material m\n",
+                     k, x, y, z, 1e4 * a, 2 * a);
     }
-    if (moving) { n += snprintf(to + n, to_B - (size_t)n, "motion o%d sine move 0.02 0 0 hz 0.5\n", k); }
+    if (moving) {
+        n += snprintf(to + n, to_B - (size_t)n, "motion o%d sine move 0.02 0 0 hz 0.5\n", k);
+    }
     return n;
 }
 
@@ -76,7 +82,9 @@ static char *objects(int n, double half_m, int moving)
     int at;
     if (text == NULL) { return NULL; }
     at = snprintf(text, room, "%splane floor at 0 0 -0.09 material m\n", frame_of_all);
-    for (int k = 1; k < n; k++) { at += object(text + at, room - (size_t)at, &r, k, half_m, moving); }
+    for (int k = 1; k < n; k++) {
+        at += object(text + at, room - (size_t)at, &r, k, half_m, moving);
+    }
     return text;
 }
 
@@ -108,7 +116,8 @@ static struct world *mesh_world(char *why, size_t why_B)
     if (f == NULL || write_ball(f, 224, 0.07)) {
         snprintf(why, why_B, "/tmp: no file can be made there");
     } else {
-        snprintf(text, sizeof text, "%smesh ball at 0.0 0.13 -0.07 file %s material m\n", frame_of_all, name);
+        snprintf(text, sizeof text, "%smesh ball at 0.0 0.13 -0.07 file %s material m\n",
+                 frame_of_all, name);
         w = world_load("bench", text, why, why_B);
     }
     if (f) { fclose(f); }
@@ -148,7 +157,8 @@ static double frames_per_s(struct world *w, int cull, struct world_stats *s)
     return (double)s->frames / (t - start);
 }
 
-/* And by the clock on the wall. turning: the view moves, so that nothing is kept from the picture before. */
+/* And by the clock on the wall. turning: the view moves, so that nothing is kept from the picture
+ * before. */
 static double pictures_per_s(struct picture *p, struct world *w, int turning, double *by_wall)
 {
     static struct draw_list list;
@@ -186,7 +196,8 @@ static void drawn(struct world *w, const struct picture_want *want)
     double wall, wall_turning;
     struct picture *p = want ? picture_open(want, why, sizeof why) : NULL;
     if (p) {
-        const double still = pictures_per_s(p, w, 0, &wall), turning = pictures_per_s(p, w, 1, &wall_turning);
+        const double still = pictures_per_s(p, w, 0, &wall),
+                     turning = pictures_per_s(p, w, 1, &wall_turning);
         printf(" %8.0f %8.0f %8.0f %8.0f", still, wall, turning, wall_turning);
     } else {
         printf(" %8s %8s %8s %8s", "-", "-", "-", "-");
@@ -229,11 +240,19 @@ static int rows(const struct run *r, const struct picture_want *want)
         world_free(w);
     }
     w = mesh_world(why, sizeof why);
-    if (w) { row("mesh of 100352 triangles", w, want); } else { printf("mesh: left out: %s\n", why); }
+    if (w) {
+        row("mesh of 100352 triangles", w, want);
+    } else {
+        printf("mesh: left out: %s\n", why);
+    }
     world_free(w);
     if (r->scene == NULL) { return 0; }
     w = world_load_file(r->scene, why, sizeof why);
-    if (w) { row("--scene", w, want); } else { cli_complain("%s", why); }
+    if (w) {
+        row("--scene", w, want);
+    } else {
+        cli_complain("%s", why);
+    }
     world_free(w);
     return w == NULL ? 2 : 0;
 }
@@ -247,11 +266,13 @@ int run_bench(struct run *r)
     if (p == NULL) { printf("without pictures: %s\n", why); }
     picture_close(p);
     make_states();
-    printf("One core, five fingers. Frames, rays and pictures (%d x %d, view still or turning) a second of the\n"
-           "processor's time, all threads together, and of pictures also by the clock on the wall.\n",
-           want.width, want.height);
-    printf("%-26s %9s %9s %7s %5s %9s %7s %8s %8s %8s %8s\n", "", "frames", "rays", "bodies", "hits", "rays un-", "bodies",
-           "pictures", "wall", "turning", "wall");
+    printf(
+        "One core, five fingers. Frames, rays and pictures (%d x %d, view still or turning) a "
+        "second of the\n"
+        "processor's time, all threads together, and of pictures also by the clock on the wall.\n",
+        want.width, want.height);
+    printf("%-26s %9s %9s %7s %5s %9s %7s %8s %8s %8s %8s\n", "", "frames", "rays", "bodies",
+           "hits", "rays un-", "bodies", "pictures", "wall", "turning", "wall");
     printf("%-26s %9s %9s %7s %5s %9s %7s\n", "", "", "", "a ray", "%", "culled", "a ray");
     return rows(r, p ? &want : NULL);
 }

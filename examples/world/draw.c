@@ -7,10 +7,11 @@
 #include <string.h>
 
 #define DISC_M 0.022
-#define LIFT_M 0.0006 /* a disc above the surface it touches, to be seen          */
+#define LIFT_M 0.0006 /* a disc above the surface it touches, to be seen */
 #define DOT_M  0.0012
 
-struct draw_item *draw_add(struct draw_list *list, enum draw_kind kind, enum draw_what what, int which)
+struct draw_item *draw_add(struct draw_list *list, enum draw_kind kind, enum draw_what what,
+                           int which)
 {
     static struct draw_item nowhere;
     struct draw_item *i;
@@ -43,7 +44,8 @@ static void paint(struct draw_item *i, double r, double g, double b, double opaq
 
 static void objects(const struct scene *s, double t_s, struct draw_list *list)
 {
-    static const enum draw_kind kind[] = {DRAW_SQUARE, DRAW_SPHERE, DRAW_BOX, DRAW_CAPSULE, DRAW_MESH};
+    static const enum draw_kind kind[] = {DRAW_SQUARE, DRAW_SPHERE, DRAW_BOX, DRAW_CAPSULE,
+                                          DRAW_MESH};
     for (int k = 0; k < s->objects; k++) {
         const struct scene_object *o = &s->object[k];
         const double *c = s->material[o->material].colour;
@@ -86,7 +88,8 @@ static void state_colour(const struct exh_wire_state *in, int f, struct draw_ite
 }
 
 /* The collision plane as a disc around P_C, and dots along the ray from P_F to it. */
-static void plane(const struct draw_moment *m, const struct pose *hand, int f, struct draw_list *list)
+static void plane(const struct draw_moment *m, const struct pose *hand, int f,
+                  struct draw_list *list)
 {
     const struct exh_wire_plane *p = &m->out.plane[f];
     const struct v3 n = m3_by(&hand->turn, from_q30(p->normal_q30));
@@ -161,7 +164,7 @@ void draw_write(FILE *to, const struct draw_list *list)
     }
     for (int k = 0; k < list->items; k++) {
         const struct draw_item *i = &list->item[k];
-        fprintf(to, "item %d %d %d %.6f %.6f %.6f\n", (int)i->kind, (int)i->what, i->which, i->at.at.x, i->at.at.y,
-                i->at.at.z);
+        fprintf(to, "item %d %d %d %.6f %.6f %.6f\n", (int)i->kind, (int)i->what, i->which,
+                i->at.at.x, i->at.at.y, i->at.at.z);
     }
 }

@@ -5,8 +5,8 @@
 
 #define KNUCKLE_M 0.0130
 
-static struct draw_item *capsule(struct draw_list *list, const struct pose *hand, int which, struct v3 from,
-                    struct v3 to, double radius, const float colour[4])
+static struct draw_item *capsule(struct draw_list *list, const struct pose *hand, int which,
+                                 struct v3 from, struct v3 to, double radius, const float colour[4])
 {
     const struct v3 a = pose_by(hand, from), b = pose_by(hand, to), way = v3_sub(b, a);
     struct draw_item *i = draw_add(list, DRAW_CAPSULE, DRAW_HAND, which);
@@ -49,7 +49,9 @@ void draw_hand(const struct world *w, const struct draw_moment *m, struct draw_l
         const float tip[4] = {0.26F, 0.29F, 0.34F, on ? 1 : 0.35F};
         struct finger f;
         finger_at(&f, world_hand(w), (unsigned)i, m->in.joint_turn_q32[i]);
-        for (int k = 0; k < 3; k++) { capsule(list, &m->hand, i, f.joint[k], f.joint[k], KNUCKLE_M, tip); }
+        for (int k = 0; k < 3; k++) {
+            capsule(list, &m->hand, i, f.joint[k], f.joint[k], KNUCKLE_M, tip);
+        }
         capsule(list, &m->hand, i, f.joint[0], f.joint[1], finger_radius_m[0], link)->hidden = 2;
         capsule(list, &m->hand, i, f.joint[1], f.joint[2], finger_radius_m[1], link)->hidden = 2;
         capsule(list, &m->hand, i, f.joint[2], f.tip, finger_radius_m[2], tip)->hidden = 1;

@@ -7,14 +7,17 @@
 #include <string.h>
 
 enum { WHITE, GREY, BLUE, AMBER, RED };
-static const float ink[][4] = {{0.97F, 0.97F, 0.97F, 1}, {0.74F, 0.77F, 0.81F, 1},
-                               {0.52F, 0.79F, 1, 1},     {1, 0.78F, 0.30F, 1},
+static const float ink[][4] = {{0.97F, 0.97F, 0.97F, 1},
+                               {0.74F, 0.77F, 0.81F, 1},
+                               {0.52F, 0.79F, 1, 1},
+                               {1, 0.78F, 0.30F, 1},
                                {1, 0.46F, 0.42F, 1}};
 
 #ifdef __GNUC__
 __attribute__((format(printf, 6, 7)))
 #endif
-static void say(struct draw_list *l, int x, int y, int colour, int how, const char *format, ...)
+static void
+say(struct draw_list *l, int x, int y, int colour, int how, const char *format, ...)
 {
     struct draw_text *t = &l->text[l->texts];
     va_list args;
@@ -30,7 +33,8 @@ static void say(struct draw_list *l, int x, int y, int colour, int how, const ch
     va_end(args);
 }
 
-static void rect(struct draw_list *l, int x, int y, int w, int h, float r, float g, float b, float opaque)
+static void rect(struct draw_list *l, int x, int y, int w, int h, float r, float g, float b,
+                 float opaque)
 {
     const struct draw_rect q = {x, y, w, h, opaque < 1, {r, g, b, opaque}};
     if (l->rects < (int)(sizeof l->rect / sizeof l->rect[0])) { l->rect[l->rects++] = q; }
@@ -85,22 +89,26 @@ static void link_state(const struct draw_moment *m, struct draw_list *l)
     if (!m->linked) {
         say(l, 24, 66, AMBER, 0, "no link: hand moved by keys, forces made up here");
     } else if (m->trip_ms >= 0) {
-        say(l, 24, 66, m->age_ms > 100 ? RED : GREY, 0, "link: age %.1f ms, round trip %.1f ms, lost %lu",
-            m->age_ms, m->trip_ms, m->lost);
+        say(l, 24, 66, m->age_ms > 100 ? RED : GREY, 0,
+            "link: age %.1f ms, round trip %.1f ms, lost %lu", m->age_ms, m->trip_ms, m->lost);
     } else {
-        say(l, 24, 66, m->age_ms > 100 ? RED : GREY, 0, "link: age %.1f ms, lost %lu", m->age_ms, m->lost);
+        say(l, 24, 66, m->age_ms > 100 ? RED : GREY, 0, "link: age %.1f ms, lost %lu", m->age_ms,
+            m->lost);
     }
     if (m->paused) { say(l, 24, 86, AMBER, 0, "paused"); }
 }
 
 static void keys(struct draw_list *l)
 {
-    static const char *const text[] = {
-        "arrows, mouse    turn the view", "+ -, wheel       nearer, farther",
-        "1 .. 5           bend thumb .. little", "0                bend all; shift opens",
-        "w a s d r f      carry the hand", "space            pause",
-        "b                back to the start", "h                this help",
-        "q, esc           leave"};
+    static const char *const text[] = {"arrows, mouse    turn the view",
+                                       "+ -, wheel       nearer, farther",
+                                       "1 .. 5           bend thumb .. little",
+                                       "0                bend all; shift opens",
+                                       "w a s d r f      carry the hand",
+                                       "space            pause",
+                                       "b                back to the start",
+                                       "h                this help",
+                                       "q, esc           leave"};
     const int n = (int)(sizeof text / sizeof text[0]);
     rect(l, -330, 12, 318, 20 * n + 16, 0.07F, 0.09F, 0.12F, 0.72F);
     for (int i = 0; i < n; i++) {

@@ -4,7 +4,8 @@
  *
  * A finger has four joints: q0 sideways, then q1, q2 and q3 = q2, which bend. P_F is the middle
  * of the pad's sphere, FINGER_PAD_M its radius. The ray starts there, along the pad's
- * direction: square to the last link, in the plane the finger bends in, to the side it closes to. */
+ * direction: square to the last link, in the plane the finger bends in, to the side it closes to.
+ */
 #ifndef WORLD_FINGER_H
 #define WORLD_FINGER_H
 
@@ -12,8 +13,8 @@
 
 #include <stdint.h>
 
-#define FINGERS 5
-#define FINGER_PAD_M 0.0105
+#define FINGERS       5
+#define FINGER_PAD_M  0.0105
 #define FINGER_SPAN_M 0.105 /* from q1 to P_F, straight: P_F is never further from its base */
 
 extern const char *const finger_name[FINGERS];
@@ -29,9 +30,9 @@ struct hand {
 void hand_hit2(struct hand *h);
 
 struct finger {
-    struct v3 joint[3]; /* where q1, q2, q3 are                                */
-    struct v3 tip;      /* P_F                                                 */
-    struct v3 pad;      /* r, length 1                                         */
+    struct v3 joint[3]; /* where q1, q2, q3 are */
+    struct v3 tip;      /* P_F */
+    struct v3 pad;      /* r, length 1 */
 };
 
 /* One finger (0 thumb .. 4 little) at the angles q0, q1, q2; P_F within 1e-15 m. */

@@ -50,15 +50,16 @@ GLuint gl_program(const char *vertex, const char *fragment, const char *const *a
 
 static int open_window(struct picture *p, const struct picture_want *want, int samples)
 {
-    const Uint32 how = SDL_WINDOW_OPENGL | (want->headless ? SDL_WINDOW_HIDDEN : SDL_WINDOW_RESIZABLE);
+    const Uint32 how =
+        SDL_WINDOW_OPENGL | (want->headless ? SDL_WINDOW_HIDDEN : SDL_WINDOW_RESIZABLE);
     SDL_GL_SetAttribute(SDL_GL_CONTEXT_MAJOR_VERSION, 2);
     SDL_GL_SetAttribute(SDL_GL_CONTEXT_MINOR_VERSION, 1);
     SDL_GL_SetAttribute(SDL_GL_DEPTH_SIZE, 24);
     SDL_GL_SetAttribute(SDL_GL_STENCIL_SIZE, 8);
     SDL_GL_SetAttribute(SDL_GL_MULTISAMPLEBUFFERS, samples > 1);
     SDL_GL_SetAttribute(SDL_GL_MULTISAMPLESAMPLES, samples > 1 ? samples : 0);
-    p->window = SDL_CreateWindow(want->title, SDL_WINDOWPOS_UNDEFINED, SDL_WINDOWPOS_UNDEFINED, want->width,
-                                 want->height, how);
+    p->window = SDL_CreateWindow(want->title, SDL_WINDOWPOS_UNDEFINED, SDL_WINDOWPOS_UNDEFINED,
+                                 want->width, want->height, how);
     if (p->window) { p->context = SDL_GL_CreateContext(p->window); }
     if (p->context) { return 0; }
     if (p->window) { SDL_DestroyWindow(p->window); }
@@ -77,8 +78,10 @@ static int open_all(struct picture *p, const struct picture_want *want, char *er
         return 1;
     }
     if (open_window(p, want, want->samples) && open_window(p, want, 0)) {
-        snprintf(error, error_B, "no OpenGL 2.1: %s: install libgl1-mesa-dri and libegl1, or use "
-                                 "--headless without --png and --video", SDL_GetError());
+        snprintf(error, error_B,
+                 "no OpenGL 2.1: %s: install libgl1-mesa-dri and libegl1, or use "
+                 "--headless without --png and --video",
+                 SDL_GetError());
         return 1;
     }
     p->headless = want->headless;
@@ -161,7 +164,11 @@ static void paint(struct picture *p, const struct draw_list *list, int fresh)
     SDL_GL_GetDrawableSize(p->window, &p->width, &p->height);
     p->layered = gl_layers_fit(&p->layers, p->width, p->height) == 0;
     glViewport(0, 0, p->width, p->height);
-    if (p->layered) { paint_layers(p, list, fresh); } else { paint_all(p, list); }
+    if (p->layered) {
+        paint_layers(p, list, fresh);
+    } else {
+        paint_all(p, list);
+    }
 }
 
 void picture_paint(struct picture *p, const struct draw_list *list)
@@ -206,7 +213,8 @@ static int write_png(FILE *f, const unsigned char *pixel, int width, int height)
     return 0;
 }
 
-int picture_save(struct picture *p, const struct draw_list *list, const char *path, char *error, size_t error_B)
+int picture_save(struct picture *p, const struct draw_list *list, const char *path, char *error,
+                 size_t error_B)
 {
     unsigned char *pixel;
     FILE *f = fopen(path, "wb");
@@ -220,7 +228,9 @@ int picture_save(struct picture *p, const struct draw_list *list, const char *pa
         bad = write_png(f, pixel, p->width, p->height);
     }
     if (f && fclose(f) != 0) { bad = 1; }
-    if (bad) { snprintf(error, error_B, "%s: %s: give a file that can be written", path, strerror(errno)); }
+    if (bad) {
+        snprintf(error, error_B, "%s: %s: give a file that can be written", path, strerror(errno));
+    }
     free(pixel);
     return bad;
 }

@@ -12,11 +12,21 @@
 /* --- gl_form.c: what all bodies are put together from --- */
 
 /* FINE to TUBE are round: the half of a ball or capsule that the eye can see. */
-enum { GL_FORM_FINE, GL_FORM_BALL, GL_FORM_TUBE, GL_FORM_DOT, GL_FORM_SHADE, GL_FORM_DIM, GL_FORM_FLOOR, GL_FORM_BOX,
-       GL_FORM_DISC, GL_FORMS };
+enum {
+    GL_FORM_FINE,
+    GL_FORM_BALL,
+    GL_FORM_TUBE,
+    GL_FORM_DOT,
+    GL_FORM_SHADE,
+    GL_FORM_DIM,
+    GL_FORM_FLOOR,
+    GL_FORM_BOX,
+    GL_FORM_DISC,
+    GL_FORMS
+};
 
-#define GL_FLOOR_MIDDLE 6   /* indices of the floor's middle, which come first   */
-#define GL_FLOOR_OPAQUE 0.7 /* half its edge; from there on the floor fades      */
+#define GL_FLOOR_MIDDLE 6   /* indices of the floor's middle, which come first */
+#define GL_FLOOR_OPAQUE 0.7 /* half its edge; from there on the floor fades */
 
 struct gl_corner {
     struct v3 place, normal;
@@ -81,10 +91,10 @@ struct gl_solid {
     GLint program_eye[GL_PROGRAMS], eye, at, turn, colour, flat, flat_x, flat_y, look;
     const struct mesh *mesh[GL_MESHES_MAX];
     GLuint mesh_buffer[GL_MESHES_MAX];
-    int meshes, fine, mark[GL_SECTIONS]; /* indices where the sections begin      */
+    int meshes, fine, mark[GL_SECTIONS]; /* indices where the sections begin */
     int part, has_meshes;
     float view[16];
-    const struct draw_item **order; /* what can be seen through, farthest first  */
+    const struct draw_item **order; /* what can be seen through, farthest first */
     double *depth;
     int room;
 };
@@ -93,7 +103,8 @@ struct gl_solid {
 int gl_solid_open(struct gl_solid *g, char *error, size_t error_B);
 void gl_solid_close(struct gl_solid *g);
 /* Puts a part together; returns where on the screen it will be. */
-struct gl_patch gl_solid_fill(struct gl_solid *g, const struct draw_list *list, int part, int width, int height);
+struct gl_patch gl_solid_fill(struct gl_solid *g, const struct draw_list *list, int part, int width,
+                              int height);
 /* Paints it: first what hides, then what can be seen through. */
 void gl_solid_paint(struct gl_solid *g, const struct draw_list *list);
 
@@ -105,21 +116,22 @@ struct gl_layers {
     struct gl_layer {
         GLuint frame, buffer[2];
     } layer[GL_LAYERS];
-    int never; /* this driver has none                                            */
+    int never; /* this driver has none */
     int width, height;
-    struct draw_item *seen; /* what the still layer shows, from where              */
+    struct draw_item *seen; /* what the still layer shows, from where */
     int items, room;
     struct v3 eye, look;
     int panels;
     Uint32 numbers_ms;
-    struct gl_patch moving; /* where WHOLE is not as STILL                         */
+    struct gl_patch moving; /* where WHOLE is not as STILL */
 };
 
 /* 0, or 1 where there can be no layers. */
 int gl_layers_fit(struct gl_layers *g, int width, int height);
 void gl_layers_close(struct gl_layers *g);
-void gl_layer_on(const struct gl_layers *g, int layer); /* -1: the window           */
-void gl_layer_copy(const struct gl_layers *g, int from, int to, GLbitfield what, const struct gl_patch *p);
+void gl_layer_on(const struct gl_layers *g, int layer); /* -1: the window */
+void gl_layer_copy(const struct gl_layers *g, int from, int to, GLbitfield what,
+                   const struct gl_patch *p);
 int gl_layers_moved(struct gl_layers *g, const struct draw_list *list);
 int gl_layers_old(struct gl_layers *g, const struct draw_list *list);
 void gl_layers_panels(const struct gl_layers *g, int from, int to, const struct draw_list *list);

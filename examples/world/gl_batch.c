@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Bodies put into one array of corners with their colours, so that a whole picture is a handful of
- * calls: without a graphics card, a call costs as much as a hundred corners. Light is reckoned here, at
- * the corners: sky from above, a lamp, some from the eye, a shine, darker edges. */
+ * calls: without a graphics card, a call costs as much as a hundred corners. Light is reckoned
+ * here, at the corners: sky from above, a lamp, some from the eye, a shine, darker edges. */
 #include "gl.h"
 
 #include "rpy.h"
@@ -9,17 +9,17 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-#define LIFT_M 0.0003 /* a shadow above its floor, to be seen                     */
+#define LIFT_M 0.0003 /* a shadow above its floor, to be seen */
 
 const struct v3 gl_light = {-0.40, -0.25, 0.88};
 
 /* What one thing is painted with. */
 struct brush {
     const struct draw_item *item;
-    struct m3 turn;           /* of the form                                     */
-    struct v3 x, y, z, carry; /* columns of place, and where w carries           */
+    struct m3 turn;           /* of the form */
+    struct v3 x, y, z, carry; /* columns of place, and where w carries */
     struct v3 eye;
-    const struct draw_item *floor; /* not NULL: its shadow there                 */
+    const struct draw_item *floor; /* not NULL: its shadow there */
 };
 
 static double power24(double v)
@@ -32,15 +32,18 @@ static void lit(const struct brush *b, struct v3 p, struct v3 n, float c[4])
 {
     const struct v3 u = v3_unit(n), v = v3_unit(v3_sub(b->eye, p));
     const double up = 0.5 + 0.5 * u.z, lamp = fmax(v3_dot(u, gl_light), 0);
-    const double face = fmax(v3_dot(u, v), 0), side = 1 - face, edge = 1 - 0.35 * side * side * side;
+    const double face = fmax(v3_dot(u, v), 0), side = 1 - face,
+                 edge = 1 - 0.35 * side * side * side;
     const double shine = 0.14 * power24(fmax(v3_dot(u, v3_unit(v3_add(gl_light, v))), 0));
     const double low[3] = {0.24, 0.23, 0.25}, high[3] = {0.22, 0.26, 0.29};
     for (int i = 0; i < 3; i++) {
-        c[i] = (float)fmin((double)c[i] * edge * (low[i] + high[i] * up + 0.50 * lamp + 0.22 * face) + shine, 1);
+        c[i] = (float)fmin(
+            (double)c[i] * edge * (low[i] + high[i] * up + 0.50 * lamp + 0.22 * face) + shine, 1);
     }
 }
 
-static void paint(const struct brush *b, const struct gl_corner *k, struct v3 p, struct v3 n, float c[4])
+static void paint(const struct brush *b, const struct gl_corner *k, struct v3 p, struct v3 n,
+                  float c[4])
 {
     for (int i = 0; i < 4; i++) { c[i] = b->item->colour[i]; }
     switch (b->item->what) {
@@ -106,17 +109,21 @@ static int is_long(const struct draw_item *i)
     return i->kind == DRAW_CAPSULE && i->size.z > 0;
 }
 
-/* The frame of a round body's form: x to the eye, but z along its axis; of a flat one z to the eye, or of
- * its outline to the lamp and x along the axis. */
+/* The frame of a round body's form: x to the eye, but z along its axis; of a flat one z to the eye,
+ * or of its outline to the lamp and x along the axis. */
 static void set_round(struct brush *b, struct gl_forms *f, int form)
 {
     const struct draw_item *i = b->item;
     const struct v3 to = v3_sub(b->eye, i->at.at), axis = i->at.turn.z;
     const int round = f->form[form].strips > 0;
-    const struct v3 main = form == GL_FORM_SHADE || form == GL_FORM_DIM ? gl_light : is_long(i) ? axis : to;
+    const struct v3 main = form == GL_FORM_SHADE || form == GL_FORM_DIM ? gl_light
+                           : is_long(i)                                 ? axis
+                                                                        : to;
     const struct v3 next = round && is_long(i) ? to : axis;
     struct m3 *t = &b->turn;
-    if (frame_from_z(t, main, next) && frame_from_z(t, main, v3(1, 0, 0))) { frame_from_z(t, main, v3(0, 1, 0)); }
+    if (frame_from_z(t, main, next) && frame_from_z(t, main, v3(1, 0, 0))) {
+        frame_from_z(t, main, v3(0, 1, 0));
+    }
     if (!is_long(i) && round) { *t = (struct m3){t->z, t->x, t->y}; }
     if (round) { gl_form_face(f, form, atan2(v3_dot(to, t->z), v3_dot(to, t->x))); }
     b->x = v3_times(t->x, i->size.x);
@@ -153,14 +160,18 @@ static struct gl_form seen_of(const struct gl_form *f, const struct draw_item *i
     return m;
 }
 
-void gl_batch_add(struct gl_batch *g, struct gl_forms *f, const struct draw_item *i, int form, struct v3 eye,
-                  const struct draw_item *floor)
+void gl_batch_add(struct gl_batch *g, struct gl_forms *f, const struct draw_item *i, int form,
+                  struct v3 eye, const struct draw_item *floor)
 {
     struct brush b = {.item = i, .eye = eye, .floor = floor};
     const struct gl_form m = seen_of(&f->form[form], i);
     const GLuint first = (GLuint)(g->vertices - m.corner);
     if (room(g, m.corners, m.indices)) { return; }
-    if (is_round(i)) { set_round(&b, f, form); } else { set_brush(&b); }
+    if (is_round(i)) {
+        set_round(&b, f, form);
+    } else {
+        set_brush(&b);
+    }
     for (int k = 0; k < m.corners; k++) { one_corner(g, &b, &f->corner[m.corner + k]); }
     for (int k = 0; k < m.indices; k++) { g->index[g->indices++] = first + f->index[m.index + k]; }
 }
@@ -168,13 +179,15 @@ void gl_batch_add(struct gl_batch *g, struct gl_forms *f, const struct draw_item
 void gl_batch_paint(struct gl_batch *g, GLenum kind, int from, int to)
 {
     if (to <= from) { return; }
-    glDrawElements(kind, to - from, GL_UNSIGNED_INT, (const void *)(uintptr_t)((size_t)from * sizeof *g->index));
+    glDrawElements(kind, to - from, GL_UNSIGNED_INT,
+                   (const void *)(uintptr_t)((size_t)from * sizeof *g->index));
 }
 
 void gl_batch_send(struct gl_batch *g)
 {
     glBindBuffer(GL_ARRAY_BUFFER, g->buffer[0]);
-    glBufferData(GL_ARRAY_BUFFER, g->vertices * (GLsizeiptr)sizeof *g->vertex, g->vertex, GL_STREAM_DRAW);
+    glBufferData(GL_ARRAY_BUFFER, g->vertices * (GLsizeiptr)sizeof *g->vertex, g->vertex,
+                 GL_STREAM_DRAW);
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, g->buffer[1]);
     glBufferData(GL_ELEMENT_ARRAY_BUFFER, g->indices * (GLsizeiptr)sizeof *g->index, g->index,
                  GL_STREAM_DRAW);
@@ -186,8 +199,10 @@ void gl_batch_bind(const struct gl_batch *g)
     glBindBuffer(GL_ARRAY_BUFFER, g->buffer[0]);
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, g->buffer[1]);
     glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof *g->vertex, (const void *)0);
-    glVertexAttribPointer(1, 4, GL_FLOAT, GL_FALSE, sizeof *g->vertex, (const void *)(3 * sizeof(float)));
-    glVertexAttribPointer(2, 2, GL_FLOAT, GL_FALSE, sizeof *g->vertex, (const void *)(7 * sizeof(float)));
+    glVertexAttribPointer(1, 4, GL_FLOAT, GL_FALSE, sizeof *g->vertex,
+                          (const void *)(3 * sizeof(float)));
+    glVertexAttribPointer(2, 2, GL_FLOAT, GL_FALSE, sizeof *g->vertex,
+                          (const void *)(7 * sizeof(float)));
 }
 
 void gl_batch_close(struct gl_batch *g)

@@ -19,9 +19,9 @@ static void triangle(struct gl_forms *m, int a, int b, int c)
     for (int i = 0; i < 3; i++) { m->index[m->indices++] = (unsigned short)corners[i]; }
 }
 
-/* The half of a ball that is seen from x: `strips` strips to either side of the middle, of `steps` steps from
- * one pole, -y, to the other; gl_form_face() gives the corners their places. A capsule's ends are carried
- * apart along z by the strip in the middle, which comes last: a ball has none. */
+/* The half of a ball that is seen from x: `strips` strips to either side of the middle, of `steps`
+ * steps from one pole, -y, to the other; gl_form_face() gives the corners their places. A capsule's
+ * ends are carried apart along z by the strip in the middle, which comes last: a ball has none. */
 static void make_round(struct gl_forms *m, struct gl_form *f, int steps, int strips)
 {
     const int first = m->corners, wide = steps + 1, rows = 2 * strips + 1;
@@ -47,7 +47,8 @@ void gl_form_face(struct gl_forms *m, int form, double angle)
     const double half = 1.5707963267948966;
     for (int r = 0; r < 2 * (f->strips + 1); r++) {
         const int k = r - f->strips; /* 0, 1: the middle */
-        const double a = k > 0 ? (half + angle) * (k - 1) / f->strips : (half - angle) * k / f->strips;
+        const double a =
+            k > 0 ? (half + angle) * (k - 1) / f->strips : (half - angle) * k / f->strips;
         const double x = cos(a), z = sin(a);
         for (int s = 0; s <= f->steps; s++, c++) {
             const double b = half * (2 * s - f->steps) / f->steps;
@@ -80,7 +81,9 @@ static void make_box(struct gl_forms *m)
 static void fill_arc(struct gl_forms *m, int first, int steps)
 {
     for (int d = 1; 2 * d <= steps; d *= 2) {
-        for (int k = 0; k < steps; k += 2 * d) { triangle(m, first + k, first + k + d, first + k + 2 * d); }
+        for (int k = 0; k < steps; k += 2 * d) {
+            triangle(m, first + k, first + k + d, first + k + 2 * d);
+        }
     }
 }
 
@@ -95,7 +98,8 @@ static void make_disc(struct gl_forms *m, int steps, double radius)
 }
 
 /* A ring of `steps` quads between two radii, w at each. */
-static void make_ring(struct gl_forms *m, int steps, double in, double w_in, double out, double w_out)
+static void make_ring(struct gl_forms *m, int steps, double in, double w_in, double out,
+                      double w_out)
 {
     const struct v3 up = v3(0, 0, 1);
     for (int s = 0; s <= steps; s++) {
@@ -121,7 +125,8 @@ static void make_floor(struct gl_forms *m)
     }
 }
 
-/* What of a ball or capsule a lamp far along z sees the outline of: two half discs, carried apart along x. */
+/* What of a ball or capsule a lamp far along z sees the outline of: two half discs, carried apart
+ * along x. */
 static void make_shade(struct gl_forms *m, int steps)
 {
     const int first = m->corners;

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-/* Layers of a picture: what stands still keeps its pixels and depths from picture to picture, and so do
- * the numbers, which nobody reads four hundred times a second. A new picture begins as a copy of the first,
- * where something moved, and ends with a copy of the second. */
+/* Layers of a picture: what stands still keeps its pixels and depths from picture to picture, and
+ * so do the numbers, which nobody reads four hundred times a second. A new picture begins as a copy
+ * of the first, where something moved, and ends with a copy of the second. */
 #include "gl.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#define NUMBERS_MS 50 /* how old those on the screen may be                          */
+#define NUMBERS_MS 50 /* how old those on the screen may be */
 
 static int make(struct gl_layer *l, int width, int height)
 {
@@ -19,7 +19,8 @@ static int make(struct gl_layer *l, int width, int height)
     glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, l->buffer[0]);
     glBindRenderbuffer(GL_RENDERBUFFER, l->buffer[1]);
     glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH24_STENCIL8, width, height);
-    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER, l->buffer[1]);
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER,
+                              l->buffer[1]);
     return glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE;
 }
 
@@ -37,7 +38,8 @@ int gl_layers_fit(struct gl_layers *g, int width, int height)
     if (width == g->width && height == g->height) { return 0; }
     gl_layers_close(g);
     if (SDL_GL_ExtensionSupported("GL_ARB_framebuffer_object")) {
-        g->never = make(&g->layer[GL_STILL], width, height) || make(&g->layer[GL_NUMBERS], width, height) ||
+        g->never = make(&g->layer[GL_STILL], width, height) ||
+                   make(&g->layer[GL_NUMBERS], width, height) ||
                    make(&g->layer[GL_WHOLE], width, height);
     } else {
         g->never = 1;
@@ -65,7 +67,8 @@ void gl_layer_on(const struct gl_layers *g, int layer)
     glBindFramebuffer(GL_FRAMEBUFFER, layer < 0 ? 0 : g->layer[layer].frame);
 }
 
-void gl_layer_copy(const struct gl_layers *g, int from, int to, GLbitfield what, const struct gl_patch *p)
+void gl_layer_copy(const struct gl_layers *g, int from, int to, GLbitfield what,
+                   const struct gl_patch *p)
 {
     const int x0 = p->x0 < 0 ? 0 : p->x0, x1 = p->x1 > g->width ? g->width : p->x1;
     const int y0 = p->y0 < 0 ? 0 : p->y0, y1 = p->y1 > g->height ? g->height : p->y1;

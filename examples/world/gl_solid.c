@@ -11,27 +11,24 @@ static const char batch_text[] =
     "attribute vec3 place; attribute vec4 ink; attribute vec2 where; uniform mat4 eye;\n"
     "varying vec4 c; varying vec2 on;\n"
     "void main() { c = ink; on = where; gl_Position = eye * vec4(place, 1.0); }\n";
-static const char plain_text[] =
-    "#version 120\n"
-    "varying vec4 c;\n"
-    "void main() { gl_FragColor = c; }\n";
+static const char plain_text[] = "#version 120\n"
+                                 "varying vec4 c;\n"
+                                 "void main() { gl_FragColor = c; }\n";
 
 /* A floor fades towards its edges; so does what is on it. */
 #define FADED "c.a * clamp((1.0 - max(abs(on.x), abs(on.y))) * (1.0 / 0.3), 0.0, 1.0)"
 
 /* Lines at each 1/12 of the way from the middle to the edge. */
-static const char floor_text[] =
-    "#version 120\n"
-    "varying vec4 c; varying vec2 on;\n"
-    "void main() {\n"
-    "  vec2 q = 12.0 * on, d = abs(q - floor(q + 0.5)) / fwidth(q);\n"
-    "  float line = 0.28 * clamp(1.0 - min(d.x, d.y), 0.0, 1.0);\n"
-    "  gl_FragColor = vec4(mix(c.rgb, vec3(1.0), line), " FADED ");\n"
-    "}\n";
-static const char shade_text[] =
-    "#version 120\n"
-    "varying vec4 c; varying vec2 on;\n"
-    "void main() { gl_FragColor = vec4(c.rgb, " FADED "); }\n";
+static const char floor_text[] = "#version 120\n"
+                                 "varying vec4 c; varying vec2 on;\n"
+                                 "void main() {\n"
+                                 "  vec2 q = 12.0 * on, d = abs(q - floor(q + 0.5)) / fwidth(q);\n"
+                                 "  float line = 0.28 * clamp(1.0 - min(d.x, d.y), 0.0, 1.0);\n"
+                                 "  gl_FragColor = vec4(mix(c.rgb, vec3(1.0), line), " FADED ");\n"
+                                 "}\n";
+static const char shade_text[] = "#version 120\n"
+                                 "varying vec4 c; varying vec2 on;\n"
+                                 "void main() { gl_FragColor = vec4(c.rgb, " FADED "); }\n";
 
 /* A mesh stays on the card and is lit there, by the rule of gl_batch.c. */
 static const char mesh_text[] =
@@ -53,14 +50,16 @@ static const char mesh_text[] =
     "    float up = 0.5 + 0.5 * u.z, lamp = max(dot(u, light), 0.0), face = max(dot(u, v), 0.0);\n"
     "    float side = 1.0 - face;\n"
     "    c.rgb *= (1.0 - 0.35 * side * side * side) *\n"
-    "             (vec3(0.24, 0.23, 0.25) + vec3(0.22, 0.26, 0.29) * up + 0.50 * lamp + 0.22 * face);\n"
+    "             (vec3(0.24, 0.23, 0.25) + vec3(0.22, 0.26, 0.29) * up + 0.50 * lamp + 0.22 * "
+    "face);\n"
     "    c.rgb += 0.14 * pow(max(dot(u, normalize(light + v)), 0.0), 24.0);\n"
     "  }\n"
     "  gl_Position = eye * vec4(p, 1.0);\n"
     "}\n";
 int gl_solid_open(struct gl_solid *g, char *error, size_t error_B)
 {
-    static const char *const batch[] = {"place", "ink", "where"}, *const mesh[] = {"place", "normal"};
+    static const char *const batch[] = {"place", "ink", "where"}, *const mesh[] = {"place",
+                                                                                   "normal"};
     static const char *const text[GL_PROGRAMS] = {plain_text, floor_text, shade_text};
     gl_forms_make(&g->forms);
     for (int i = 0; i < GL_PROGRAMS; i++) {
@@ -137,7 +136,9 @@ static void mesh(struct gl_solid *g, const struct draw_item *i)
     to_float(f, i->at.at);
     glUniform3fv(g->at, 1, f);
     glBindBuffer(GL_ARRAY_BUFFER, buffer);
-    for (GLuint k = 0; k < 3; k++) { (k < 2 ? glEnableVertexAttribArray : glDisableVertexAttribArray)(k); }
+    for (GLuint k = 0; k < 3; k++) {
+        (k < 2 ? glEnableVertexAttribArray : glDisableVertexAttribArray)(k);
+    }
     glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(struct mesh_vertex), (const void *)0);
     glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, sizeof(struct mesh_vertex),
                           (const void *)(3 * sizeof(float)));
@@ -182,8 +183,8 @@ static void meshes(struct gl_solid *g, const struct draw_list *l, const struct d
 
 /* --- what goes into the batch, in the order it is painted --- */
 
-/* How round is round: corners cost, too. Finest when pixels are sampled many times, for pictures that
- * stay; of the rest large objects; the palm least: outlines are the same. */
+/* How round is round: corners cost, too. Finest when pixels are sampled many times, for pictures
+ * that stay; of the rest large objects; the palm least: outlines are the same. */
 static int form_of(const struct gl_solid *g, const struct draw_item *i, int shade)
 {
     switch (i->kind) {
@@ -262,7 +263,9 @@ static void add_glasses(struct gl_solid *g, const struct draw_list *l)
         const struct draw_item *i = &l->item[k];
         const double far = v3_len(v3_sub(i->at.at, l->eye));
         int j = n;
-        if (i->kind == DRAW_SQUARE || form_of(g, i, 0) < 0 || i->colour[3] >= 1 || !mine(g, i)) { continue; }
+        if (i->kind == DRAW_SQUARE || form_of(g, i, 0) < 0 || i->colour[3] >= 1 || !mine(g, i)) {
+            continue;
+        }
         for (; j > 0 && g->depth[j - 1] < far; j--) {
             g->depth[j] = g->depth[j - 1];
             g->order[j] = g->order[j - 1];
@@ -285,7 +288,7 @@ static void set_view(float e[16], const struct draw_list *l, double width, doubl
     const struct v3 y = v3_cross(z, x);
     const double sx = f * height / width, a = (lo + hi) / (lo - hi), b = 2 * lo * hi / (lo - hi);
     const double ex = -v3_dot(x, l->eye), ey = -v3_dot(y, l->eye), ez = -v3_dot(z, l->eye);
-    const double m[16] = {sx * x.x, f * y.x, a * z.x, -z.x, sx * x.y, f * y.y, a * z.y,     -z.y,
+    const double m[16] = {sx * x.x, f * y.x, a * z.x, -z.x, sx * x.y, f * y.y, a * z.y,    -z.y,
                           sx * x.z, f * y.z, a * z.z, -z.z, sx * ex,  f * ey,  a * ez + b, -ez};
     for (int i = 0; i < 16; i++) { e[i] = (float)m[i]; }
 }
@@ -312,12 +315,13 @@ static struct gl_patch reach(const struct gl_solid *g, int width, int height)
     y0 = y0 < -1 ? -1 : y0;
     x1 = x1 > 1 ? 1 : x1;
     y1 = y1 > 1 ? 1 : y1;
-    return (struct gl_patch){(int)((x0 + 1) * 0.5F * (float)width) - 2, (int)((y0 + 1) * 0.5F * (float)height) - 2,
-                             (int)((x1 + 1) * 0.5F * (float)width) + 3,
-                             (int)((y1 + 1) * 0.5F * (float)height) + 3};
+    return (struct gl_patch){
+        (int)((x0 + 1) * 0.5F * (float)width) - 2, (int)((y0 + 1) * 0.5F * (float)height) - 2,
+        (int)((x1 + 1) * 0.5F * (float)width) + 3, (int)((y1 + 1) * 0.5F * (float)height) + 3};
 }
 
-static void fill(struct gl_solid *g, const struct draw_list *l, const struct draw_item *floor, int mark[])
+static void fill(struct gl_solid *g, const struct draw_list *l, const struct draw_item *floor,
+                 int mark[])
 {
     struct gl_batch *b = &g->batch;
     b->vertices = b->indices = 0;
@@ -342,7 +346,8 @@ static void section(struct gl_solid *g, int program, int which)
 }
 
 /* Once a pixel, where the floor is seen. */
-static void paint_shadows(struct gl_solid *g, const struct draw_list *l, const struct draw_item *floor)
+static void paint_shadows(struct gl_solid *g, const struct draw_list *l,
+                          const struct draw_item *floor)
 {
     glEnable(GL_STENCIL_TEST);
     glStencilFunc(GL_EQUAL, 0, 0xFF);
@@ -365,11 +370,12 @@ static int has_meshes(const struct gl_solid *g, const struct draw_list *l)
     return 0;
 }
 
-struct gl_patch gl_solid_fill(struct gl_solid *g, const struct draw_list *l, int part, int width, int height)
+struct gl_patch gl_solid_fill(struct gl_solid *g, const struct draw_list *l, int part, int width,
+                              int height)
 {
     const struct draw_item *floor = floor_of(l);
     const struct gl_patch all = {0, 0, width, height};
-    const int moves = floor && !floor->still; /* and on it all shadows             */
+    const int moves = floor && !floor->still; /* and on it all shadows */
     g->part = !moves ? part : part & GL_PART_MOVING ? GL_PART_ALL : 0;
     set_view(g->view, l, width, height);
     fill(g, l, floor, g->mark);

@@ -17,20 +17,18 @@
 
 static const int size_px[2] = {14, 20};
 
-static const char vertex_text[] =
-    "#version 120\n"
-    "attribute vec2 place; attribute vec2 from; attribute vec4 ink;\n"
-    "uniform vec2 size; varying vec2 t; varying vec4 c;\n"
-    "void main() { t = from; c = ink;\n"
-    "  gl_Position = vec4(2.0 * place.x / size.x - 1.0, 1.0 - 2.0 * place.y / size.y, 0.0, 1.0); }\n";
-static const char plain_text[] =
-    "#version 120\n"
-    "varying vec2 t; varying vec4 c;\n"
-    "void main() { gl_FragColor = c; }\n";
-static const char lettered_text[] =
-    "#version 120\n"
-    "uniform sampler2D atlas; varying vec2 t; varying vec4 c;\n"
-    "void main() { gl_FragColor = c * texture2D(atlas, t).a; }\n";
+static const char vertex_text[] = "#version 120\n"
+                                  "attribute vec2 place; attribute vec2 from; attribute vec4 ink;\n"
+                                  "uniform vec2 size; varying vec2 t; varying vec4 c;\n"
+                                  "void main() { t = from; c = ink;\n"
+                                  "  gl_Position = vec4(2.0 * place.x / size.x - 1.0, 1.0 - 2.0 * "
+                                  "place.y / size.y, 0.0, 1.0); }\n";
+static const char plain_text[] = "#version 120\n"
+                                 "varying vec2 t; varying vec4 c;\n"
+                                 "void main() { gl_FragColor = c; }\n";
+static const char lettered_text[] = "#version 120\n"
+                                    "uniform sampler2D atlas; varying vec2 t; varying vec4 c;\n"
+                                    "void main() { gl_FragColor = c * texture2D(atlas, t).a; }\n";
 
 /* Letters of one size into the atlas, from *x, *y on. */
 static int letters(struct gl_text *g, unsigned char *atlas, int size, int *x, int *y, char *error,
@@ -82,7 +80,8 @@ static int make_atlas(struct gl_text *g, char *error, size_t error_B)
         glGenTextures(1, &g->texture);
         glBindTexture(GL_TEXTURE_2D, g->texture);
         glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-        glTexImage2D(GL_TEXTURE_2D, 0, GL_ALPHA, ATLAS, ATLAS, 0, GL_ALPHA, GL_UNSIGNED_BYTE, atlas);
+        glTexImage2D(GL_TEXTURE_2D, 0, GL_ALPHA, ATLAS, ATLAS, 0, GL_ALPHA, GL_UNSIGNED_BYTE,
+                     atlas);
         glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
         glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     }
@@ -95,7 +94,8 @@ int gl_text_open(struct gl_text *g, char *error, size_t error_B)
     static const char *const attribute[] = {"place", "from", "ink"};
     if (make_atlas(g, error, error_B)) { return 1; }
     g->plain = gl_program(vertex_text, plain_text, attribute, 3, error, error_B);
-    g->lettered = g->plain ? gl_program(vertex_text, lettered_text, attribute, 3, error, error_B) : 0;
+    g->lettered =
+        g->plain ? gl_program(vertex_text, lettered_text, attribute, 3, error, error_B) : 0;
     if (g->lettered == 0) { return 1; }
     g->plain_size = glGetUniformLocation(g->plain, "size");
     g->lettered_size = glGetUniformLocation(g->lettered, "size");

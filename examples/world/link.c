@@ -11,8 +11,8 @@
 #include <unistd.h>
 
 #define HELLO_EVERY_US 500000
-#define QUIET_US       1000000 /* nothing heard for so long: any HELLO begins anew    */
-#define BURST          64 /* datagrams taken a frame, at most: a flood can't hold a frame up */
+#define QUIET_US       1000000 /* nothing heard for so long: any HELLO begins anew */
+#define BURST          64      /* datagrams taken a frame, at most: a flood can't hold a frame up */
 
 /* "[HOST:]PORT" apart; host is "" where there is none. */
 static int part(const char *text, char host[128], char port[16])
@@ -33,7 +33,8 @@ static int look_up(const char *text, const char *host_if_none, int passive, stru
     char host[128], port[16];
     int err;
     if (part(text, host, port)) {
-        snprintf(error, error_B, "%.60s: give it as ADDRESS:PORT, such as 127.0.0.1:" LINK_PORT, text);
+        snprintf(error, error_B, "%.60s: give it as ADDRESS:PORT, such as 127.0.0.1:" LINK_PORT,
+                 text);
         return 1;
     }
     err = getaddrinfo(host[0] ? host : host_if_none, port, &want, to);
@@ -52,8 +53,8 @@ static int open_socket(struct link *l, const char *listen, const struct addrinfo
     l->fd = socket(own ? own->ai_family : family, SOCK_DGRAM, 0);
     if (l->fd < 0 || fcntl(l->fd, F_SETFL, O_NONBLOCK) != 0 ||
         (own && bind(l->fd, own->ai_addr, own->ai_addrlen) != 0)) {
-        snprintf(error, error_B, "%.60s: %s: choose another address or port", listen ? listen : "socket",
-                 strerror(errno));
+        snprintf(error, error_B, "%.60s: %s: choose another address or port",
+                 listen ? listen : "socket", strerror(errno));
         freeaddrinfo(own);
         return 1;
     }
@@ -120,16 +121,21 @@ static void say_what_differs(const struct link *l)
     const struct exh_wire_hello ours = hello_of_ours(l);
     char text[200];
     if (l->say == NULL) { return; }
-    if (l->differs & EXH_WIRE_ROLE) { l->say("the peer is a world, too: give the address of a controller"); }
+    if (l->differs & EXH_WIRE_ROLE) {
+        l->say("the peer is a world, too: give the address of a controller");
+    }
     if (l->differs & EXH_WIRE_LIB) {
-        snprintf(text, sizeof text, "the controller has version %#lx of the library, this world %#lx: build both of one",
-                 (unsigned long)l->theirs.lib_version, (unsigned long)ours.lib_version);
+        snprintf(
+            text, sizeof text,
+            "the controller has version %#lx of the library, this world %#lx: build both of one",
+            (unsigned long)l->theirs.lib_version, (unsigned long)ours.lib_version);
         l->say(text);
     }
     if (l->differs & EXH_WIRE_TABLE) {
-        snprintf(text, sizeof text,
-                 "the controller's table of parameters is %08lx, this world's %08lx: build both of one",
-                 (unsigned long)l->theirs.table_crc, (unsigned long)ours.table_crc);
+        snprintf(
+            text, sizeof text,
+            "the controller's table of parameters is %08lx, this world's %08lx: build both of one",
+            (unsigned long)l->theirs.table_crc, (unsigned long)ours.table_crc);
         l->say(text);
     }
 }

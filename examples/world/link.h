@@ -21,54 +21,55 @@
 struct link_want {
     struct exh_wire_param param;
     const struct exh_signal *row;
-    char name[SCENE_NAME_B]; /* of the material                                 */
+    char name[SCENE_NAME_B]; /* of the material */
     int answered;
     int64_t asked_us;
 };
 
-/* What it is to trace: signals "q[1],f_des[1]", four at most, of the controller's table of outputs. */
+/* What it is to trace: signals "q[1],f_des[1]", four at most, of the controller's table of outputs.
+ */
 struct link_trace_want {
     const struct exh_signal_table *table;
     const char *path, *signals;
-    uint32_t every; /* ticks from frame to frame                                */
+    uint32_t every; /* ticks from frame to frame */
 };
 
 struct link_trace {
     const struct exh_signal_table *table;
     const char *path;
-    FILE *file;                     /* NULL: none                                */
-    struct exh_wire_trace_ask ask;  /* every 0: none                             */
-    unsigned signals;               /* of the four that it asks for              */
-    int asked, answered;            /* of this controller; by it                 */
-    uint32_t first_seq, last_seq;   /* of the packets that asked                 */
+    FILE *file;                    /* NULL: none */
+    struct exh_wire_trace_ask ask; /* every 0: none */
+    unsigned signals;              /* of the four that it asks for */
+    int asked, answered;           /* of this controller; by it */
+    uint32_t first_seq, last_seq;  /* of the packets that asked */
     int64_t asked_us;
-    uint32_t next;                  /* number of the frame that comes next       */
+    uint32_t next; /* number of the frame that comes next */
     unsigned long frames, missed;
 };
 
 struct link {
     int fd;
     struct sockaddr_storage peer;
-    socklen_t peer_B; /* 0: nobody so far                                        */
-    int fixed;        /* peer was given, and only it is listened to               */
+    socklen_t peer_B; /* 0: nobody so far */
+    int fixed;        /* peer was given, and only it is listened to */
     struct exh_wire_tx tx;
     struct exh_wire_rx rx;
     uint32_t echo_seq, echo_stamp_us;
-    int64_t hello_us; /* when the last HELLO went out                             */
-    int64_t heard_us; /* when it was last looked what came                        */
+    int64_t hello_us; /* when the last HELLO went out */
+    int64_t heard_us; /* when it was last looked what came */
     struct exh_wire_hello theirs;
-    unsigned differs; /* enum exh_wire_differs, of the newest HELLO               */
-    unsigned long odd; /* HELLOs that differed                                    */
-    unsigned long strangers; /* from elsewhere than the peer that was given       */
+    unsigned differs;        /* enum exh_wire_differs, of the newest HELLO */
+    unsigned long odd;       /* HELLOs that differed */
+    unsigned long strangers; /* from elsewhere than the peer that was given */
     unsigned long sent, unsent;
-    uint32_t table_crc; /* of the parameters the world was built for; 0: of none   */
+    uint32_t table_crc; /* of the parameters the world was built for; 0: of none */
     struct link_want want[LINK_WANTS];
-    int wants, waiting; /* how many; and have no answer                           */
-    int impatient;      /* some got none for long: planes go out without           */
-    int64_t anew_us;    /* since when it is this controller                        */
+    int wants, waiting; /* how many; and have no answer */
+    int impatient;      /* some got none for long: planes go out without */
+    int64_t anew_us;    /* since when it is this controller */
     unsigned long refused;
     struct link_trace trace;
-    void (*say)(const char *text); /* a line about what is wrong; or NULL           */
+    void (*say)(const char *text); /* a line about what is wrong; or NULL */
 };
 
 /* listen: "[ADDRESS:]PORT" or NULL; peer: "HOST:PORT" or NULL. 0, or 1 with the reason. */
@@ -77,16 +78,19 @@ int link_open(struct link *l, const char *listen, const char *peer, uint32_t ses
 void link_close(struct link *l);
 
 /* The scene's materials, each checked against its row, are what the controller is to have: asked
- * for when it has said HELLO and till it answers, and again of one that has started anew. Planes wait
- * for the answers, but for no longer than a second. What is refused here or there is said. */
+ * for when it has said HELLO and till it answers, and again of one that has started anew. Planes
+ * wait for the answers, but for no longer than a second. What is refused here or there is said. */
 void link_materials(struct link *l, const struct scene *s);
 
 /* One value of one material; 1: refused. */
-int link_want(struct link *l, const char *name, const struct exh_signal *row, unsigned instance, double value);
+int link_want(struct link *l, const char *name, const struct exh_signal *row, unsigned instance,
+              double value);
 
-/* Asks for a trace when the controller has said HELLO and till it answers, and again of one that has started anew; its
- * frames are lines of a CSV. 0, 1 (no file) or 2 (no such signal) with the reason. */
-int link_trace_open(struct link *l, const struct link_trace_want *want, char *error, size_t error_B);
+/* Asks for a trace when the controller has said HELLO and till it answers, and again of one that
+ * has started anew; its frames are lines of a CSV. 0, 1 (no file) or 2 (no such signal) with the
+ * reason. */
+int link_trace_open(struct link *l, const struct link_trace_want *want, char *error,
+                    size_t error_B);
 
 /* Says what was missed. 1: the file could not be written. */
 int link_trace_close(struct link *l);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What the world wants of the controller: asked for until it is answered, and again of a controller that
- * has started anew. */
+/* What the world wants of the controller: asked for until it is answered, and again of a controller
+ * that has started anew. */
 #include "link_part.h"
 
 #include "exhand/exhand.h"
@@ -8,15 +8,16 @@
 #include <stdio.h>
 #include <string.h>
 
-#define AGAIN_US   100000  /* without an answer for so long: it is asked for again           */
-#define A_FRAME    2       /* asked for at once: a tick of the controller takes few packets   */
-#define PATIENT_US 1000000 /* without an answer for so long it goes on without               */
+#define AGAIN_US   100000  /* without an answer for so long: it is asked for again */
+#define A_FRAME    2       /* asked for at once: a tick of the controller takes few packets */
+#define PATIENT_US 1000000 /* without an answer for so long it goes on without */
 
 static void say(const struct link *l, const struct link_want *w, double value, const char *what)
 {
     char text[400];
     if (l->say == NULL) { return; }
-    snprintf(text, sizeof text, "material %s: %s %.9g %s: %s", w->name, w->row->name, value, w->row->unit, what);
+    snprintf(text, sizeof text, "material %s: %s %.9g %s: %s", w->name, w->row->name, value,
+             w->row->unit, what);
     l->say(text);
 }
 
@@ -25,7 +26,8 @@ static double value_of(const struct link_want *w)
     return (double)w->param.value / (double)(INT64_C(1) << w->row->frac);
 }
 
-int link_want(struct link *l, const char *name, const struct exh_signal *row, unsigned instance, double value)
+int link_want(struct link *l, const char *name, const struct exh_signal *row, unsigned instance,
+              double value)
 {
     const double one = (double)(INT64_C(1) << row->frac), raw = value * one;
     struct link_want w = {{row->id, (uint16_t)instance, 0}, row, "", 0, 0};
@@ -33,8 +35,8 @@ int link_want(struct link *l, const char *name, const struct exh_signal *row, un
     snprintf(w.name, sizeof w.name, "%s", name);
     if (!(raw >= row->min && raw <= row->max)) {
         char why[120];
-        snprintf(why, sizeof why, "not between %.9g and %.9g: not sent, the controller's own holds", row->min / one,
-                 row->max / one);
+        snprintf(why, sizeof why, "not between %.9g and %.9g: not sent, the controller's own holds",
+                 row->min / one, row->max / one);
         say(l, &w, value, why);
         l->refused++;
         return 1;
@@ -73,7 +75,8 @@ void link_params_answered(struct link *l, const struct exh_wire_ack *a)
         struct link_want *w = &l->want[i];
         const struct exh_wire_param *p = &w->param;
         char why[200];
-        if (w->answered || p->id != a->param.id || p->instance != a->param.instance || p->value != a->param.value) {
+        if (w->answered || p->id != a->param.id || p->instance != a->param.instance ||
+            p->value != a->param.value) {
             continue;
         }
         w->answered = 1;
@@ -109,7 +112,8 @@ int link_params_hold(struct link *l, int64_t now_us)
     for (int i = 0; i < l->wants; i++) {
         if (!l->want[i].answered) {
             char why[120];
-            snprintf(why, sizeof why, "no answer (%d of %d are without): the controller's own holds till then",
+            snprintf(why, sizeof why,
+                     "no answer (%d of %d are without): the controller's own holds till then",
                      l->waiting, l->wants);
             say(l, &l->want[i], value_of(&l->want[i]), why);
             break;

@@ -21,7 +21,9 @@ static int32_t index_of(const struct exh_signal_table *t, const char *name, size
     for (uint32_t i = 0; i < exh_signal_count(t); i++) {
         uint16_t instance;
         const struct exh_signal *row = exh_signal_at(t, i, &instance);
-        if (strlen(row->name) == own && memcmp(row->name, name, own) == 0 && instance == k) { return (int32_t)i; }
+        if (strlen(row->name) == own && memcmp(row->name, name, own) == 0 && instance == k) {
+            return (int32_t)i;
+        }
     }
     return -1;
 }
@@ -33,7 +35,8 @@ static int pick(struct link_trace *t, const char *names, char *error, size_t err
         const int32_t i = index_of(t->table, at, len);
         if (i < 0 || t->signals == EXH_TRACE_SIGNALS) {
             snprintf(error, error_B, "--trace-signals: %.*s: %s", (int)len, at,
-                     i < 0 ? "no output of the controller: see `exhand regs --scene bilateral`" : "one too many: give four at most");
+                     i < 0 ? "no output of the controller: see `exhand regs --scene bilateral`"
+                           : "one too many: give four at most");
             return 1;
         }
         t->ask.index[t->signals++] = (uint16_t)i;
@@ -126,9 +129,13 @@ void link_trace_take(struct link *l, const struct exh_wire_trace *in)
 {
     struct link_trace *t = &l->trace;
     char text[200];
-    if (t->file == NULL || !t->asked || in->request_seq - t->first_seq > t->last_seq - t->first_seq) { return; }
+    if (t->file == NULL || !t->asked ||
+        in->request_seq - t->first_seq > t->last_seq - t->first_seq) {
+        return;
+    }
     if (!t->answered && in->result < 0 && l->say) {
-        snprintf(text, sizeof text, "--trace: refused by the controller: %s", exh_error_text(in->result));
+        snprintf(text, sizeof text, "--trace: refused by the controller: %s",
+                 exh_error_text(in->result));
         l->say(text);
     }
     if (!t->answered) { t->next = in->first; }

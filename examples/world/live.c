@@ -24,10 +24,10 @@ struct live {
     struct run *run;
     struct link link;
     int has_link;
-    pthread_mutex_t lock; /* of all below                                        */
+    pthread_mutex_t lock; /* of all below */
     struct draw_moment newest;
     unsigned long exchanges;
-    struct solo keys;     /* where they want the fingers                          */
+    struct solo keys; /* where they want the fingers */
     struct v3 carried;
     int paused, restart, carry, ended, left;
     struct world_stats stats;
@@ -286,9 +286,7 @@ static int watch(struct live *l)
     while (!look(l, &v)) {
         if (take_keys(l, &v)) { leave(l); }
     }
-    if (r->png) {
-        bad = picture_save(v.picture, &v.list, r->png, why, sizeof why);
-    }
+    if (r->png) { bad = picture_save(v.picture, &v.list, r->png, why, sizeof why); }
     if (bad) { cli_complain("%s", why); }
     bad |= r->list && leave_list(&v.list, r->list);
     picture_close(v.picture);
@@ -302,10 +300,11 @@ static void report(const struct live *l)
     const struct exh_wire_rx *rx = &l->link.rx;
     printf("frames %lu  rays %lu  hits %lu", s->frames, s->rays, s->hits);
     if (l->has_link) {
-        printf("  sent %lu  taken %lu  lost %lu  late %lu  twice %lu  bad %lu  refused %lu", l->link.sent,
-               (unsigned long)rx->accepted, (unsigned long)rx->missing,
+        printf("  sent %lu  taken %lu  lost %lu  late %lu  twice %lu  bad %lu  refused %lu",
+               l->link.sent, (unsigned long)rx->accepted, (unsigned long)rx->missing,
                (unsigned long)rx->reordered + rx->old, (unsigned long)rx->duplicate,
-               (unsigned long)rx->corrupt + rx->version + rx->unknown + rx->stranger + rx->far, l->link.refused);
+               (unsigned long)rx->corrupt + rx->version + rx->unknown + rx->stranger + rx->far,
+               l->link.refused);
     }
     putchar('\n');
 }
@@ -332,7 +331,8 @@ static void complain(const char *text)
 
 static int open_trace(const struct run *r, struct link *l)
 {
-    const struct link_trace_want want = {&bilateral_outputs, r->trace, r->trace_signals, (uint32_t)r->trace_every};
+    const struct link_trace_want want = {&bilateral_outputs, r->trace, r->trace_signals,
+                                         (uint32_t)r->trace_every};
     char why[300];
     const int bad = r->trace ? link_trace_open(l, &want, why, sizeof why) : 0;
     if (bad) {

@@ -41,7 +41,8 @@ static int take_point(struct reading *r, const char *s, double scale)
     for (int i = 0; i < 3; i++) {
         c[i] = strtod(s, &end) * scale;
         if (end == s || !(fabs(c[i]) < 1e3)) {
-            return complain(r, "v: three coordinates within 1 km are needed: export the mesh in metres");
+            return complain(
+                r, "v: three coordinates within 1 km are needed: export the mesh in metres");
         }
         s = end;
     }
@@ -57,7 +58,8 @@ static int take_triangle(struct reading *r, int a, int b, int c)
 {
     struct mesh *m = r->m;
     const struct triangle t = {{a, b, c}};
-    const struct v3 n = v3_cross(v3_sub(m->point[b], m->point[a]), v3_sub(m->point[c], m->point[a]));
+    const struct v3 n =
+        v3_cross(v3_sub(m->point[b], m->point[a]), v3_sub(m->point[c], m->point[a]));
     if (!(v3_len(n) > 0)) { return 0; } /* without area no ray hits it */
     if (m->triangles == MESH_TRIANGLES_MAX ||
         grow((void **)&m->triangle, &r->triangle_room, m->triangles, sizeof *m->triangle)) {
@@ -106,7 +108,9 @@ static int read_lines(struct reading *r, FILE *f, double scale)
         if (bad) { return 1; }
     }
     if (ferror(f)) { return complain(r, strerror(errno)); }
-    if (r->m->triangles == 0) { return complain(r, "no triangles: is this an OBJ file with f lines?"); }
+    if (r->m->triangles == 0) {
+        return complain(r, "no triangles: is this an OBJ file with f lines?");
+    }
     return 0;
 }
 

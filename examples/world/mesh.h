@@ -11,15 +11,15 @@
 #define MESH_TRIANGLES_MAX 4000000
 
 struct triangle {
-    int corner[3]; /* counter-clockwise seen from outside                       */
+    int corner[3]; /* counter-clockwise seen from outside */
 };
 
 struct mesh {
     struct v3 *point;
     struct triangle *triangle;
     int points, triangles;
-    double bound_m; /* of the ball around the origin that holds it             */
-    void *rays;     /* what mesh_cast() needs                                  */
+    double bound_m; /* of the ball around the origin that holds it */
+    void *rays;     /* what mesh_cast() needs */
 };
 
 /* Reads v and f lines of an OBJ file (polygons become fans; everything else is passed over) and

@@ -18,10 +18,12 @@
 #define LIBRARY "libembree3.so.3"
 #endif
 
+/* clang-format off */
 #define EACH(F) \
     F(rtcNewDevice) F(rtcReleaseDevice) F(rtcNewScene) F(rtcReleaseScene) F(rtcSetSceneFlags) \
     F(rtcCommitScene) F(rtcNewGeometry) F(rtcReleaseGeometry) F(rtcCommitGeometry) \
     F(rtcSetNewGeometryBuffer) F(rtcAttachGeometry) F(rtcIntersect1)
+/* clang-format on */
 
 static struct {
 #define POINTER(f) __typeof__(f) *f;
@@ -36,8 +38,9 @@ static int load(char *error, size_t error_B)
     if (embree.device) { return 0; }
     library = dlopen(LIBRARY, RTLD_NOW | RTLD_LOCAL);
     if (library == NULL) {
-        snprintf(error, error_B, "a mesh needs " LIBRARY ", which can't be loaded: install it (Debian: "
-                                 "libembree-dev)");
+        snprintf(error, error_B,
+                 "a mesh needs " LIBRARY ", which can't be loaded: install it (Debian: "
+                 "libembree-dev)");
         return 1;
     }
 #define LOOK_UP(name) \

@@ -7,8 +7,9 @@
 int mesh_ready(struct mesh *m, char *error, size_t error_B)
 {
     (void)m;
-    snprintf(error, error_B, "a mesh needs Embree, which was missing when this program was built: install "
-                             "it (Debian: libembree-dev) and run make again");
+    snprintf(error, error_B,
+             "a mesh needs Embree, which was missing when this program was built: install "
+             "it (Debian: libembree-dev) and run make again");
     return 1;
 }
 

@@ -19,7 +19,11 @@ static void keyed(const struct motion *m, double t_s, struct v3 *move, struct v3
     if (t_s >= k[hi].t_s) { lo = hi; }
     while (hi - lo > 1) {
         const int mid = (lo + hi) / 2;
-        if (k[mid].t_s <= t_s) { lo = mid; } else { hi = mid; }
+        if (k[mid].t_s <= t_s) {
+            lo = mid;
+        } else {
+            hi = mid;
+        }
     }
     part = lo == hi ? 0 : (t_s - k[lo].t_s) / (k[hi].t_s - k[lo].t_s);
     *move = v3_along(k[lo].move_m, part, v3_sub(k[hi].move_m, k[lo].move_m));
@@ -57,7 +61,8 @@ static double fastest(const struct motion *m, int turning)
     double most = 0;
     for (int i = 1; i < m->keys; i++) {
         const struct motion_key *a = &m->key[i - 1], *b = &m->key[i];
-        const struct v3 way = turning ? v3_sub(b->turn_rad, a->turn_rad) : v3_sub(b->move_m, a->move_m);
+        const struct v3 way =
+            turning ? v3_sub(b->turn_rad, a->turn_rad) : v3_sub(b->move_m, a->move_m);
         most = fmax(most, v3_len(way) / (b->t_s - a->t_s));
     }
     return most;

@@ -15,11 +15,11 @@ struct motion_key {
 
 struct motion {
     enum motion_kind kind;
-    struct v3 move, turn; /* LINEAR: per second; SINE: amplitude                */
-    double hz, phase_rad; /* SINE                                              */
-    int loop;             /* KEYS: from the last on again with the first       */
+    struct v3 move, turn; /* LINEAR: per second; SINE: amplitude */
+    double hz, phase_rad; /* SINE */
+    int loop;             /* KEYS: from the last on again with the first */
     int keys;
-    struct motion_key *key; /* at rising times; malloc                          */
+    struct motion_key *key; /* at rising times; malloc */
 };
 
 /* Where `stand` is at t_s. */

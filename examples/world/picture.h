@@ -14,7 +14,7 @@ struct picture_want {
     const char *title;
     int width, height;
     int headless;
-    int samples; /* per pixel, against jagged edges; 0 or 1: one                */
+    int samples; /* per pixel, against jagged edges; 0 or 1: one */
 };
 
 /* NULL with the reason, and what to do, in error. */
@@ -24,10 +24,11 @@ void picture_close(struct picture *p);
 /* Paints; it is seen after picture_show(). The numbers may be those of 50 ms ago. */
 void picture_paint(struct picture *p, const struct draw_list *list);
 void picture_show(struct picture *p);
-void picture_wait(struct picture *p); /* until it is painted, for measuring      */
+void picture_wait(struct picture *p); /* until it is painted, for measuring */
 
 /* Paints, all numbers of now, and writes as PNG; 0, or 1 with the reason in error. */
-int picture_save(struct picture *p, const struct draw_list *list, const char *path, char *error, size_t error_B);
+int picture_save(struct picture *p, const struct draw_list *list, const char *path, char *error,
+                 size_t error_B);
 
 /* What was pressed since the last call: keys as their characters, arrows as below; 0: nothing
  * more. Turning and zooming by mouse is added to the view. */

@@ -27,7 +27,8 @@ int reach_start(struct reach *r, const struct scene *s, const struct hand *h)
         }
     }
     r->centre = v3_times(r->centre, 1.0 / used);
-    r->radius_m = farthest(h, s->fingers, r->centre) + FINGER_SPAN_M + fmax(s->ray_m, s->back_m) + SLACK_M;
+    r->radius_m =
+        farthest(h, s->fingers, r->centre) + FINGER_SPAN_M + fmax(s->ray_m, s->back_m) + SLACK_M;
     r->speed = motion_speed(&s->motion) + motion_turning(&s->motion) * v3_len(r->centre);
     r->asleep = calloc(n, sizeof *r->asleep);
     r->near = calloc(n, sizeof *r->near);
@@ -105,7 +106,9 @@ static int place(struct reach *r, const struct scene *s, const struct pose *hand
             motion_turning(&o->motion) + motion_turning(&s->motion) > 0) {
             speed = ENDLESS;
         }
-        if (speed > 0) { wake_s = fmax(t_s + apart / (speed * (1 + 1e-9)), nextafter(t_s, wake_s)); }
+        if (speed > 0) {
+            wake_s = fmax(t_s + apart / (speed * (1 + 1e-9)), nextafter(t_s, wake_s));
+        }
         sleep_till(r, object, wake_s);
         r->nears--;
         r->near[i] = r->near[r->nears];

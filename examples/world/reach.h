@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Which objects the hand can reach. One that can't sleeps until the time at which, at the
- * highest speed of both, it could at the earliest; sleepers stand in a heap, the one that wakes first
- * on top, and a frame looks at that one only. */
+ * highest speed of both, it could at the earliest; sleepers stand in a heap, the one that wakes
+ * first on top, and a frame looks at that one only. */
 #ifndef WORLD_REACH_H
 #define WORLD_REACH_H
 
@@ -15,14 +15,14 @@ struct sleeper {
 };
 
 struct reach {
-    struct sleeper *asleep; /* heap                                              */
+    struct sleeper *asleep; /* heap */
     struct body *near;
-    unsigned char *placed;  /* of near[]: its pose is that of all times          */
+    unsigned char *placed; /* of near[]: its pose is that of all times */
     int sleepers, nears;
-    int all;                /* nobody is put to sleep                            */
+    int all;                /* nobody is put to sleep */
     struct v3 centre;       /* in {R}: P_F and its ray stay within radius_m of it */
-    double radius_m, speed; /* of centre in {W}, at most                         */
-    double t_s;             /* of the last frame                                 */
+    double radius_m, speed; /* of centre in {W}, at most */
+    double t_s;             /* of the last frame */
 };
 
 /* 0, or 1 for no memory. */

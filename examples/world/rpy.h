@@ -5,7 +5,7 @@
 
 #include "vec.h"
 
-#define RAD_PER_DEG 0.017453292519943295
+#define RAD_PER_DEG      0.017453292519943295
 #define RAD_PER_TURN_Q32 1.4629180792671596e-9 /* 2 pi / 2^32 */
 
 /* rpy.x is roll, rpy.y pitch, rpy.z yaw, in radians. */

@@ -10,7 +10,7 @@
 struct run {
     const char *scene, *listen, *peer, *png, *list, *video, *trace, *trace_signals;
     double fps, seconds, video_fps;
-    int64_t frames, width, height, samples; /* frames 0: no end                  */
+    int64_t frames, width, height, samples; /* frames 0: no end */
     int64_t trace_every;
     int headless, script, bench;
     struct world *world;

@@ -24,8 +24,8 @@ int scene_named(struct reading *r, char to[SCENE_NAME_B])
     struct words *w = &r->w;
     if (w->n < 2) { return words_complain(w, "%s: its name is missing: add one word", w->word[0]); }
     if (strlen(w->word[1]) >= SCENE_NAME_B) {
-        return words_complain(w, "%s %.40s: a name has at most %d characters: shorten it", w->word[0],
-                              w->word[1], SCENE_NAME_B - 1);
+        return words_complain(w, "%s %.40s: a name has at most %d characters: shorten it",
+                              w->word[0], w->word[1], SCENE_NAME_B - 1);
     }
     strcpy(to, w->word[1]);
     return 0;
@@ -73,8 +73,10 @@ static int take_fingers(struct reading *r)
         unsigned f = 0;
         while (f < FINGERS && strcmp(w->word[i], finger_name[f]) != 0) { f++; }
         if (f == FINGERS && strcmp(w->word[i], "all") != 0) {
-            return words_complain(w, "fingers: %.30s: no such finger: use thumb index middle ring "
-                                     "little, or all", w->word[i]);
+            return words_complain(w,
+                                  "fingers: %.30s: no such finger: use thumb index middle ring "
+                                  "little, or all",
+                                  w->word[i]);
         }
         r->s->fingers |= f == FINGERS ? (1u << FINGERS) - 1 : 1u << f;
     }
@@ -105,14 +107,16 @@ static int take_hand(struct reading *r)
     to_v3(&z, point);
     return frame_from_z(&r->s->hand.turn, z, x) == 0
                ? 0
-               : words_complain(&r->w, "hand: palm and point are parallel or zero: the palm looks to "
-                                       "the side of where the fingers point");
+               : words_complain(&r->w,
+                                "hand: palm and point are parallel or zero: the palm looks to "
+                                "the side of where the fingers point");
 }
 
 static int take_camera(struct reading *r)
 {
     double eye[3], look[3];
-    struct pair p[] = {{"eye", 3, eye, -SCENE_FAR_M, SCENE_FAR_M, 1, 0}, {"look", 3, look, -SCENE_FAR_M, SCENE_FAR_M, 1, 0}};
+    struct pair p[] = {{"eye", 3, eye, -SCENE_FAR_M, SCENE_FAR_M, 1, 0},
+                       {"look", 3, look, -SCENE_FAR_M, SCENE_FAR_M, 1, 0}};
     if (words_pairs(&r->w, 1, p, 2)) { return 1; }
     to_v3(&r->s->eye, eye);
     to_v3(&r->s->look, look);
@@ -154,9 +158,12 @@ static const struct {
     const char *name;
     int (*take)(struct reading *r);
 } statement[] = {
-    {"world", take_world},   {"fingers", take_fingers}, {"ray", take_ray},       {"hand", take_hand},
-    {"camera", take_camera}, {"material", take_material}, {"plane", scene_take_plane}, {"sphere", scene_take_sphere},
-    {"box", scene_take_box},       {"capsule", scene_take_capsule}, {"mesh", scene_take_mesh},     {"motion", scene_take_motion},
+    {"world", take_world},       {"fingers", take_fingers},
+    {"ray", take_ray},           {"hand", take_hand},
+    {"camera", take_camera},     {"material", take_material},
+    {"plane", scene_take_plane}, {"sphere", scene_take_sphere},
+    {"box", scene_take_box},     {"capsule", scene_take_capsule},
+    {"mesh", scene_take_mesh},   {"motion", scene_take_motion},
     {"key", scene_take_key},
 };
 
@@ -168,8 +175,11 @@ static int take_line(struct reading *r, char *text)
     for (size_t i = 0; i < sizeof statement / sizeof statement[0]; i++) {
         if (strcmp(statement[i].name, w->word[0]) == 0) { return statement[i].take(r); }
     }
-    return words_complain(w, "%.30s: no such statement: use world, fingers, ray, hand, camera, material, "
-                             "plane, sphere, box, capsule, mesh, motion or key", w->word[0]);
+    return words_complain(
+        w,
+        "%.30s: no such statement: use world, fingers, ray, hand, camera, material, "
+        "plane, sphere, box, capsule, mesh, motion or key",
+        w->word[0]);
 }
 
 static int take_text(struct reading *r, const char *text)
@@ -179,7 +189,8 @@ static int take_text(struct reading *r, const char *text)
         char line[1024];
         r->w.line++;
         if (len >= sizeof line) {
-            return words_complain(&r->w, "more than %d characters: is this a scene? Shorten the line",
+            return words_complain(&r->w,
+                                  "more than %d characters: is this a scene? Shorten the line",
                                   (int)sizeof line - 1);
         }
         memcpy(line, text, len);

@@ -9,33 +9,33 @@
 
 #include <stddef.h>
 
-#define SCENE_NAME_B 32
+#define SCENE_NAME_B        32
 #define SCENE_MATERIALS_MAX 255
-#define SCENE_OBJECTS_MAX 65535
+#define SCENE_OBJECTS_MAX   65535
 
 struct scene_material {
     char name[SCENE_NAME_B];
-    double k, b, f_max; /* N/m, N s/m, N                                       */
-    double colour[3];   /* 0..1                                                */
+    double k, b, f_max; /* N/m, N s/m, N */
+    double colour[3];   /* 0..1 */
 };
 
 struct scene_object {
     char name[SCENE_NAME_B];
     struct shape shape;
     int material;
-    struct pose stand; /* in {W}, at rest                                      */
+    struct pose stand; /* in {W}, at rest */
     struct motion motion;
-    double draw_m;     /* PLANE: half the edge of the square that is drawn     */
+    double draw_m; /* PLANE: half the edge of the square that is drawn */
 };
 
 struct scene {
     char title[80];
-    unsigned fingers;      /* mask: which are in use                            */
-    struct pose hand;      /* {R} in {W}, at rest                               */
-    struct motion motion;  /* of the hand                                       */
+    unsigned fingers;     /* mask: which are in use */
+    struct pose hand;     /* {R} in {W}, at rest */
+    struct motion motion; /* of the hand */
     double ray_m, back_m;
-    double graze; /* least sine between ray and surface, beyond the pad's reach  */
-    struct v3 eye, look;   /* camera                                            */
+    double graze;        /* least sine between ray and surface, beyond the pad's reach */
+    struct v3 eye, look; /* camera */
     int eye_set;
     struct scene_material *material;
     struct scene_object *object;

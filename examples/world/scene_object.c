@@ -12,15 +12,18 @@ static int add_object(struct reading *r, struct scene_object *o, const char *mat
     struct scene *s = r->s;
     o->material = scene_material_of(s, material);
     if (o->material < 0) {
-        return words_complain(&r->w, "%s %s: material %.30s: not defined so far: add `material %.30s` "
-                                     "above", r->w.word[0], o->name, material, material);
+        return words_complain(&r->w,
+                              "%s %s: material %.30s: not defined so far: add `material %.30s` "
+                              "above",
+                              r->w.word[0], o->name, material, material);
     }
     if (strcmp(o->name, "hand") == 0 || scene_object_of(s, o->name)) {
-        return words_complain(&r->w, "%s %s: the name is taken: use another one", r->w.word[0], o->name);
+        return words_complain(&r->w, "%s %s: the name is taken: use another one", r->w.word[0],
+                              o->name);
     }
     if (s->objects == SCENE_OBJECTS_MAX) {
-        return words_complain(&r->w, "%s %s: more than %d objects: leave some out", r->w.word[0], o->name,
-                              SCENE_OBJECTS_MAX);
+        return words_complain(&r->w, "%s %s: more than %d objects: leave some out", r->w.word[0],
+                              o->name, SCENE_OBJECTS_MAX);
     }
     s->object = scene_room(s->object, s->objects, sizeof *o);
     if (s->object == NULL) { return words_complain(&r->w, "no memory"); }
@@ -42,8 +45,8 @@ int scene_take_plane(struct reading *r)
     to_v3(&o.stand.at, at);
     to_v3(&n, normal);
     if (frame_from_z(&o.stand.turn, n, fabs(n.x) < 0.9 * v3_len(n) ? v3(1, 0, 0) : v3(0, 1, 0))) {
-        return words_complain(&r->w, "plane %s: normal has no length: let it point out of the solid",
-                              o.name);
+        return words_complain(
+            &r->w, "plane %s: normal has no length: let it point out of the solid", o.name);
     }
     o.shape.bound_m = ENDLESS;
     return add_object(r, &o, material);
@@ -124,7 +127,9 @@ int scene_take_mesh(struct reading *r)
     s->mesh = scene_room(s->mesh, s->meshes, sizeof *s->mesh);
     if (s->mesh == NULL) { return words_complain(&r->w, "no memory"); }
     s->mesh[s->meshes++] = m;
-    if (mesh_ready(m, why, sizeof why)) { return words_complain(&r->w, "mesh %s: %s", o.name, why); }
+    if (mesh_ready(m, why, sizeof why)) {
+        return words_complain(&r->w, "mesh %s: %s", o.name, why);
+    }
     o.shape.mesh = m;
     o.shape.bound_m = m->bound_m * (1 + 1e-6); /* Embree's corners are floats */
     return add_object(r, &o, material);

@@ -128,10 +128,10 @@ static inline d2 size(d2 v)
 /* The rays by component, and what they have found. */
 struct beam {
     struct pair {
-        d2 x, y, z, rx, ry, rz; /* origin and direction                         */
-        d2 best;                /* where the first entry so far is              */
-        unsigned lanes;         /* bit j: lane j is a ray                        */
-        struct hit *hit;        /* theirs                                        */
+        d2 x, y, z, rx, ry, rz; /* origin and direction */
+        d2 best;                /* where the first entry so far is */
+        unsigned lanes;         /* bit j: lane j is a ray */
+        struct hit *hit;        /* theirs */
     } pair[PAIRS];
     const struct ray *ray;
     double back;
@@ -156,16 +156,18 @@ static void spread(struct beam *k, const struct ray *r, int rays, struct hit *h)
     if (rays & 1) { k->pair[rays / 2].lanes = 1; }
 }
 
-/* The entries at t of the lanes `in`, where they are the first so far. Of two at one place the lower
- * object has it, so that the order of the bodies is of no consequence. */
-static inline void keep(struct pair *p, double back, const struct body *all, int body, unsigned in, d2 t,
-                        int face)
+/* The entries at t of the lanes `in`, where they are the first so far. Of two at one place the
+ * lower object has it, so that the order of the bodies is of no consequence. */
+static inline void keep(struct pair *p, double back, const struct body *all, int body, unsigned in,
+                        d2 t, int face)
 {
     in &= ~(negative(p->best - t) | negative(t - back));
     for (; in; in &= in - 1) {
         const int j = !(in & 1);
         struct hit *h = &p->hit[j];
-        if (h->body >= 0 && t[j] == p->best[j] && all[body].object > all[h->body].object) { continue; }
+        if (h->body >= 0 && t[j] == p->best[j] && all[body].object > all[h->body].object) {
+            continue;
+        }
         p->best[j] = h->t = t[j];
         h->body = body;
         h->face = face;
@@ -184,8 +186,10 @@ static void plane(struct beam *k, const struct body *all, int body)
     }
 }
 
-/* One pair of faces: narrows the stretch of the rays that is inside. o: from the origins to the middle. */
-static inline void slab(struct v3 axis, double half, const struct pair *p, const d2 o[3], d2 *in, d2 *out)
+/* One pair of faces: narrows the stretch of the rays that is inside. o: from the origins to the
+ * middle. */
+static inline void slab(struct v3 axis, double half, const struct pair *p, const d2 o[3], d2 *in,
+                        d2 *out)
 {
     /* 1e-300 makes a ray along the faces finite and changes no other */
     const d2 k = 1 / (axis.x * p->rx + axis.y * p->ry + axis.z * p->rz + 1e-300);

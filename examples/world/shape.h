@@ -10,10 +10,10 @@
 #include "vec.h"
 
 enum shape_kind {
-    SHAPE_PLANE,   /* everything below z = 0 of its frame                      */
+    SHAPE_PLANE, /* everything below z = 0 of its frame */
     SHAPE_SPHERE,
     SHAPE_BOX,
-    SHAPE_CAPSULE, /* along z of its frame                                     */
+    SHAPE_CAPSULE, /* along z of its frame */
     SHAPE_MESH
 };
 
@@ -21,10 +21,10 @@ struct mesh;
 
 struct shape {
     enum shape_kind kind;
-    struct v3 half_m;   /* BOX: half its edges; CAPSULE: z half the length between the centres of
-                           its ends                                            */
-    double radius_m;    /* SPHERE, CAPSULE                                     */
-    double bound_m;     /* of the ball around its origin that holds it; PLANE: infinite */
+    struct v3 half_m; /* BOX: half its edges; CAPSULE: z half the length between the centres of
+                         its ends */
+    double radius_m;  /* SPHERE, CAPSULE */
+    double bound_m;   /* of the ball around its origin that holds it; PLANE: infinite */
     const struct mesh *mesh;
 };
 
@@ -32,23 +32,23 @@ struct shape {
 struct body {
     struct pose at;
     struct shape is;
-    double radius2;  /* is.radius_m squared                                    */
-    double offset;   /* PLANE: of it along z from the frame's origin           */
-    double bound2;   /* is.bound_m squared                                     */
-    unsigned object;        /* whose shape it is, for the caller               */
+    double radius2;  /* is.radius_m squared */
+    double offset;   /* PLANE: of it along z from the frame's origin */
+    double bound2;   /* is.bound_m squared */
+    unsigned object; /* whose shape it is, for the caller */
 };
 
 void body_set(struct body *b, const struct shape *is, const struct pose *at, unsigned object);
 
 struct ray {
-    struct v3 from, along; /* along has length 1                               */
+    struct v3 from, along; /* along has length 1 */
     double len, back;
 };
 
 struct hit {
-    double t; /* the ray enters at from + t along                              */
-    int body; /* of the array, -1: none                                        */
-    int face; /* MESH: triangle                                                */
+    double t; /* the ray enters at from + t along */
+    int body; /* of the array, -1: none */
+    int face; /* MESH: triangle */
 };
 
 struct cast_stats {
@@ -57,15 +57,16 @@ struct cast_stats {
 
 #define CAST_MAX 6
 
-/* The first entry of each of up to CAST_MAX rays into any of n bodies: h[i] is that of r[i]. All have the
- * len and back of the first. Two rays go at a time, lane by lane with the bits that each alone would
- * give. With cull 0 no ball is asked. */
+/* The first entry of each of up to CAST_MAX rays into any of n bodies: h[i] is that of r[i]. All
+ * have the len and back of the first. Two rays go at a time, lane by lane with the bits that each
+ * alone would give. With cull 0 no ball is asked. */
 void cast(const struct body *b, int n, const struct ray *r, int rays, int cull, struct hit *h,
           struct cast_stats *s);
 
 /* The outward normal (length 1) where r enters, and how far the tangent plane there is from the
  * origin of the frame, along it. Of a flat face both are of the body's pose alone and so the same
  * bits wherever the ray comes from. */
-struct v3 hit_normal(const struct body *b, const struct ray *r, const struct hit *h, double *offset);
+struct v3 hit_normal(const struct body *b, const struct ray *r, const struct hit *h,
+                     double *offset);
 
 #endif

@@ -5,10 +5,10 @@
 
 #include <string.h>
 
-#define SPEED   0.8    /* of the whole bend, a second                            */
-#define STRING_M 0.07  /* that runs out over the whole bend                      */
+#define SPEED    0.8  /* of the whole bend, a second */
+#define STRING_M 0.07 /* that runs out over the whole bend */
 #define FREEZE_M 0.003
-#define SOFT_N  40.0   /* per whole bend that is wanted too much                 */
+#define SOFT_N   40.0 /* per whole bend that is wanted too much */
 
 void solo_script(struct solo *s, double t_s)
 {
@@ -32,23 +32,26 @@ static int32_t scaled(double v, double one)
 
 static double distance(const struct exh_wire_plane *p, struct v3 tip)
 {
-    const double n[3] = {p->normal_q30[0] * 0x1p-30, p->normal_q30[1] * 0x1p-30, p->normal_q30[2] * 0x1p-30};
-    return (p->point_m_q30[0] * 0x1p-30 - tip.x) * n[0] + (p->point_m_q30[1] * 0x1p-30 - tip.y) * n[1] +
+    const double n[3] = {p->normal_q30[0] * 0x1p-30, p->normal_q30[1] * 0x1p-30,
+                         p->normal_q30[2] * 0x1p-30};
+    return (p->point_m_q30[0] * 0x1p-30 - tip.x) * n[0] +
+           (p->point_m_q30[1] * 0x1p-30 - tip.y) * n[1] +
            (p->point_m_q30[2] * 0x1p-30 - tip.z) * n[2] + FINGER_PAD_M;
 }
 
-static void pose_finger(const struct solo *s, const struct world *w, int f, struct exh_wire_state *out,
-                        struct finger *at)
+static void pose_finger(const struct solo *s, const struct world *w, int f,
+                        struct exh_wire_state *out, struct finger *at)
 {
     const double b = s->bend[f];
     out->joint_turn_q32[f][0] = 0;
     out->joint_turn_q32[f][1] = turn_q32(b * finger_hi_rad[1] * 0.82);
-    out->joint_turn_q32[f][2] = turn_q32(b * finger_hi_rad[2] * (f == 0 ? 1 : 0.80)); /* a thumb meets the others */
+    out->joint_turn_q32[f][2] =
+        turn_q32(b * finger_hi_rad[2] * (f == 0 ? 1 : 0.80)); /* a thumb meets the others */
     finger_at(at, world_hand(w), (unsigned)f, out->joint_turn_q32[f]);
 }
 
-static void one_finger(struct solo *s, const struct world *w, const struct exh_wire_plane *p, double dt_s,
-                       int f, struct exh_wire_state *out)
+static void one_finger(struct solo *s, const struct world *w, const struct exh_wire_plane *p,
+                       double dt_s, int f, struct exh_wire_state *out)
 {
     const struct scene *sc = world_scene(w);
     const double before = s->bend[f], most = SPEED * dt_s;
@@ -77,8 +80,8 @@ static void one_finger(struct solo *s, const struct world *w, const struct exh_w
     if (force > 0) { out->touching |= (uint8_t)(1u << f); }
 }
 
-void solo_step(struct solo *s, const struct world *w, const struct exh_wire_planes *last, double dt_s,
-               struct exh_wire_state *out)
+void solo_step(struct solo *s, const struct world *w, const struct exh_wire_planes *last,
+               double dt_s, struct exh_wire_state *out)
 {
     const uint32_t tick = out->tick + 1;
     memset(out, 0, sizeof *out);

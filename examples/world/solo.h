@@ -8,8 +8,8 @@
 #include "world.h"
 
 struct solo {
-    double want[FINGERS], bend[FINGERS]; /* 0 straight .. 1 bent                 */
-    int armed[FINGERS]; /* the plane was seen from before it                     */
+    double want[FINGERS], bend[FINGERS]; /* 0 straight .. 1 bent */
+    int armed[FINGERS];                  /* the plane was seen from before it */
 };
 
 /* Towards where the script has the fingers at t_s: closing one after the other, pressing,
@@ -17,7 +17,7 @@ struct solo {
 void solo_script(struct solo *s, double t_s);
 
 /* dt_s later; last: the planes of the frame before. Fills out as a controller would. */
-void solo_step(struct solo *s, const struct world *w, const struct exh_wire_planes *last, double dt_s,
-               struct exh_wire_state *out);
+void solo_step(struct solo *s, const struct world *w, const struct exh_wire_planes *last,
+               double dt_s, struct exh_wire_state *out);
 
 #endif

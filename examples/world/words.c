@@ -35,8 +35,8 @@ int words_part(struct words *w, char *text)
 /* What the line is about: its first word, and the second where there is one. */
 static int complain(struct words *w, int from, const char *what)
 {
-    return words_complain(w, "%s%s%s: %s", w->word[0], from > 1 ? " " : "", from > 1 ? w->word[1] : "",
-                          what);
+    return words_complain(w, "%s%s%s: %s", w->word[0], from > 1 ? " " : "",
+                          from > 1 ? w->word[1] : "", what);
 }
 
 static int number(struct words *w, int from, int at, const struct pair *p, int i)
@@ -45,13 +45,14 @@ static int number(struct words *w, int from, int at, const struct pair *p, int i
     const char *s = at < w->n ? w->word[at] : "";
     const double v = strtod(s, &end);
     if (end == s || *end) {
-        snprintf(text, sizeof text, "%s: %d number%s must follow, not \"%.30s\": add what is missing",
-                 p->key, p->numbers, p->numbers > 1 ? "s" : "", s);
+        snprintf(text, sizeof text,
+                 "%s: %d number%s must follow, not \"%.30s\": add what is missing", p->key,
+                 p->numbers, p->numbers > 1 ? "s" : "", s);
         return complain(w, from, text);
     }
     if (!(v >= p->lo && v <= p->hi)) {
-        snprintf(text, sizeof text, "%s %.30s (allowed %g..%g): give a number in that range", p->key, s,
-                 p->lo, p->hi);
+        snprintf(text, sizeof text, "%s %.30s (allowed %g..%g): give a number in that range",
+                 p->key, s, p->lo, p->hi);
         return complain(w, from, text);
     }
     ((double *)p->to)[i] = v;
@@ -107,7 +108,9 @@ int words_pairs(struct words *w, int from, struct pair *p, int n)
         if (p[i].must && !p[i].seen) {
             char text[100];
             snprintf(text, sizeof text, "%s is missing: add `%s` and its %s", p[i].key, p[i].key,
-                     p[i].numbers == 0 ? "name" : p[i].numbers > 1 ? "numbers" : "number");
+                     p[i].numbers == 0  ? "name"
+                     : p[i].numbers > 1 ? "numbers"
+                                        : "number");
             return complain(w, from, text);
         }
     }

@@ -12,15 +12,15 @@ struct words {
     const char *file;
     int line, n;
     char *word[WORDS_MAX];
-    char *error; /* "" until something is wrong; the first fault stays          */
+    char *error; /* "" until something is wrong; the first fault stays */
     size_t error_B;
 };
 
 struct pair {
     const char *key;
-    int numbers;   /* how many follow; 0: one word                              */
-    void *to;      /* double[numbers], or const char *                          */
-    double lo, hi; /* of each number                                            */
+    int numbers;   /* how many follow; 0: one word */
+    void *to;      /* double[numbers], or const char * */
+    double lo, hi; /* of each number */
     int must, seen;
 };
 

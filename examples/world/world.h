@@ -14,12 +14,13 @@
 
 #include <stddef.h>
 
-struct world_stats { /* since world_load() or as the caller cleared them         */
+/* since world_load() or as the caller cleared them */
+struct world_stats {
     unsigned long frames, rays, hits;
-    unsigned long tests;   /* bodies asked whether a ray enters them             */
-    unsigned long culled;  /* bodies of these put aside by the ball around them  */
-    unsigned long slept;   /* objects not looked at, summed over the frames      */
-    unsigned long moved;   /* objects whose place was computed                   */
+    unsigned long tests;  /* bodies asked whether a ray enters them */
+    unsigned long culled; /* bodies of these put aside by the ball around them */
+    unsigned long slept;  /* objects not looked at, summed over the frames */
+    unsigned long moved;  /* objects whose place was computed */
 };
 
 struct world;

@@ -34,8 +34,9 @@ struct exh_bytes exh_bytes_measure(void)
     return c;
 }
 
-/* Where the next n bytes are, or NULL if nothing goes to or comes from there: there is no room, or sizes are all
- * that is asked for. Counting past cap tells the size needed; saturates instead of wrapping. */
+/* Where the next n bytes are, or NULL if nothing goes to or comes from there: there is no room, or
+ * sizes are all that is asked for. Counting past cap tells the size needed; saturates instead of
+ * wrapping. */
 static uint8_t *move_past(struct exh_bytes *c, uint32_t n)
 {
     const uint32_t at = c->at;
@@ -50,7 +51,8 @@ static int stays(const struct exh_bytes *c)
     return c->mode != EXH_BYTES_READ;
 }
 
-/* Least significant byte first. Written out byte by byte: compilers make one access of them where the machine has it. */
+/* Least significant byte first. Written out byte by byte: compilers make one access of them where
+ * the machine has it. */
 static uint32_t word_at(const uint8_t *p)
 {
     return p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
@@ -123,11 +125,12 @@ void exh_bytes_i64(struct exh_bytes *c, int64_t *v)
 
 uint32_t exh_crc32(uint32_t crc, const void *buf, size_t len_B)
 {
-    /* Steps of 4 bits: 64 bytes of table instead of 1 KiB. Four bytes at once: one load and one turn for them. */
-    static const uint32_t nibble[16] = {
-        0x00000000u, 0x1DB71064u, 0x3B6E20C8u, 0x26D930ACu, 0x76DC4190u, 0x6B6B51F4u,
-        0x4DB26158u, 0x5005713Cu, 0xEDB88320u, 0xF00F9344u, 0xD6D6A3E8u, 0xCB61B38Cu,
-        0x9B64C2B0u, 0x86D3D2D4u, 0xA00AE278u, 0xBDBDF21Cu};
+    /* Steps of 4 bits: 64 bytes of table instead of 1 KiB. Four bytes at once: one load and one
+     * turn for them. */
+    static const uint32_t nibble[16] = {0x00000000u, 0x1DB71064u, 0x3B6E20C8u, 0x26D930ACu,
+                                        0x76DC4190u, 0x6B6B51F4u, 0x4DB26158u, 0x5005713Cu,
+                                        0xEDB88320u, 0xF00F9344u, 0xD6D6A3E8u, 0xCB61B38Cu,
+                                        0x9B64C2B0u, 0x86D3D2D4u, 0xA00AE278u, 0xBDBDF21Cu};
     const uint8_t *p = buf;
     crc = ~crc;
     for (; len_B >= 4; len_B -= 4, p += 4) {

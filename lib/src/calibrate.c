@@ -4,8 +4,8 @@
 #include "exhand/bytes.h"
 #include "exhand/error.h"
 
-#define IMAGE_MAGIC 0x43485845u /* "EXHC" */
-#define IMAGE_CRC_B 4u
+#define IMAGE_MAGIC     0x43485845u /* "EXHC" */
+#define IMAGE_CRC_B     4u
 #define FORCE_MAX_N_Q20 EXH_Q(100, 1, EXH_Q_FORCE)
 #define CUR_MAX_A_Q26   EXH_Q(66, 10, EXH_Q_CUR)
 #define MON_MAX_A_Q26   EXH_Q(10, 1, EXH_Q_CUR)
@@ -38,7 +38,8 @@ static int32_t current_of(const struct exh_calib_point *p, enum exh_calib_which 
     return which == EXH_CALIB_MONITOR ? p->mon_A_q26 : p->cur_A_q26;
 }
 
-/* Force over current, which is above 0 where the force is; raw force q20 per raw current q26 is 2^-6 N/A. */
+/* Force over current, which is above 0 where the force is; raw force q20 per raw current q26 is
+ * 2^-6 N/A. */
 static int ratio_ok(int64_t force, int64_t cur)
 {
     const int64_t force_q26 = force * (1 << (EXH_Q_CUR - EXH_Q_FORCE)); /* < 2^33 */
@@ -48,7 +49,8 @@ static int ratio_ok(int64_t force, int64_t cur)
 static int point_ok(const struct exh_calib_point *p, enum exh_calib_which which)
 {
     const int32_t cur = current_of(p, which);
-    return ratio_ok(p->force_N_q20, cur) && p->force_N_q20 > 0 && p->force_N_q20 <= FORCE_MAX_N_Q20 &&
+    return ratio_ok(p->force_N_q20, cur) && p->force_N_q20 > 0 &&
+           p->force_N_q20 <= FORCE_MAX_N_Q20 &&
            cur <= (which == EXH_CALIB_MONITOR ? MON_MAX_A_Q26 : CUR_MAX_A_Q26) &&
            p->friction_A_q26 >= 0 && p->friction_A_q26 <= CUR_MAX_A_Q26;
 }
@@ -56,7 +58,7 @@ static int point_ok(const struct exh_calib_point *p, enum exh_calib_which which)
 int exh_calib_fit(struct exh_calib_fit *fit, const struct exh_calib_point *p, unsigned n,
                   enum exh_calib_which which)
 {
-    uint64_t fi = 0, ii = 0; /* terms < 2^57 and < 2^59, 16 of them              */
+    uint64_t fi = 0, ii = 0; /* terms < 2^57 and < 2^59, 16 of them */
     fit->gain = (struct exh_gain){0, 1};
     fit->kf_NpA_q20 = 0;
     if (n < 1 || n > EXH_CALIB_POINTS_MAX) { return -EXH_E_RANGE; }
@@ -67,7 +69,8 @@ int exh_calib_fit(struct exh_calib_fit *fit, const struct exh_calib_point *p, un
         ii += cur * cur;
     }
     if (exh_gain_set(&fit->gain, fi, ii) < 0) { return -EXH_E_RANGE; }
-    fit->kf_NpA_q20 = (int32_t)exh_gain_mul(fit->gain, INT32_C(1) << EXH_Q_CUR); /* as each point's, below 2^31 */
+    fit->kf_NpA_q20 =
+        (int32_t)exh_gain_mul(fit->gain, INT32_C(1) << EXH_Q_CUR); /* as each point's, below 2^31 */
     return 0;
 }
 
@@ -82,8 +85,14 @@ int32_t exh_calib_residual_N_q20(const struct exh_calib_fit *fit, const struct e
 const char *exh_calib_what_text(unsigned what)
 {
     static const char *const text[EXH_CALIB_WHATS] = {
-        "image", "device", "finger", "age", "scale or zero of D/A or monitor", "zero, F0, end or number of points",
-        "force-to-current table", "monitor-to-force table",
+        "image",
+        "device",
+        "finger",
+        "age",
+        "scale or zero of D/A or monitor",
+        "zero, F0, end or number of points",
+        "force-to-current table",
+        "monitor-to-force table",
     };
     return what < EXH_CALIB_WHATS ? text[what] : "unknown";
 }
@@ -97,10 +106,9 @@ static int refuse(struct exh_calib_bad *bad, enum exh_calib_what what, unsigned 
 static int values_ok(const struct exh_calib *c)
 {
     return c->points >= 1 && c->points <= EXH_CALIB_POINTS_MAX && c->finger < EXH_FINGERS &&
-           c->dac_rawpA_q16 > 0 && exh_inside(c->dac_zero_raw, 0, UINT16_MAX) &&
-           c->mon_A_q40 > 0 && c->mon_zero_raw >= INT16_MIN &&
-           c->mon_zero_raw <= INT16_MAX && c->f0_A_q26 >= 0 && c->f0_A_q26 <= CUR_MAX_A_Q26 &&
-           c->end_A_q26 >= 0 && c->end_A_q26 <= CUR_MAX_A_Q26;
+           c->dac_rawpA_q16 > 0 && exh_inside(c->dac_zero_raw, 0, UINT16_MAX) && c->mon_A_q40 > 0 &&
+           c->mon_zero_raw >= INT16_MIN && c->mon_zero_raw <= INT16_MAX && c->f0_A_q26 >= 0 &&
+           c->f0_A_q26 <= CUR_MAX_A_Q26 && c->end_A_q26 >= 0 && c->end_A_q26 <= CUR_MAX_A_Q26;
 }
 
 /* --- tables --- */
@@ -126,8 +134,7 @@ static int rises(const struct exh_calib *c, enum exh_calib_which which, enum exh
 
 /* The point at which the tables end when they go on straight; 0 where they don't. A
  * slope below the monitor's or the table's own resolution is no table either. */
-static int straight_on(const struct exh_calib *c, enum exh_calib_which which,
-                       struct exh_knot *knot)
+static int straight_on(const struct exh_calib *c, enum exh_calib_which which, struct exh_knot *knot)
 {
     const struct exh_calib_point *last = &c->point[c->points - 1];
     const int64_t more = (int64_t)c->end_A_q26 - last->cur_A_q26;
@@ -233,8 +240,8 @@ static void head_bytes(struct exh_bytes *b, struct head *h)
 static void body_bytes(struct exh_bytes *b, struct exh_calib *c)
 {
     uint32_t *const id[] = {&c->device_id, &c->finger, &c->day, &c->valid_days};
-    int32_t *const value[] = {&c->dac_rawpA_q16, &c->dac_zero_raw, &c->mon_A_q40, &c->mon_zero_raw,
-                              &c->f0_A_q26, &c->end_A_q26};
+    int32_t *const value[] = {&c->dac_rawpA_q16, &c->dac_zero_raw, &c->mon_A_q40,
+                              &c->mon_zero_raw,  &c->f0_A_q26,     &c->end_A_q26};
     for (unsigned i = 0; i < sizeof id / sizeof id[0]; i++) { exh_bytes_u32(b, id[i]); }
     for (unsigned i = 0; i < sizeof value / sizeof value[0]; i++) { exh_bytes_i32(b, value[i]); }
     for (unsigned i = 0; i < c->points; i++) {

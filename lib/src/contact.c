@@ -17,8 +17,8 @@ const struct exh_signal exh_contact_rows[EXH_CONTACT_ROWS] = {
      "contact ends this far before q_lim"},
 };
 
-/* Two states: the farthest point since the last reversal moves along; a return of more than the band from it is
- * the next reversal. Either way is one that 32 bits without a sign hold. */
+/* Two states: the farthest point since the last reversal moves along; a return of more than the
+ * band from it is the next reversal. Either way is one that 32 bits without a sign hold. */
 static void follow_reversals(struct exh_contact *s, int32_t pos, int32_t band)
 {
     const int32_t turn = s->turn_m_q30;
@@ -27,7 +27,8 @@ static void follow_reversals(struct exh_contact *s, int32_t pos, int32_t band)
         s->started = 1;
     } else if (s->inward ? pos < turn : pos > turn) {
         s->turn_m_q30 = pos;
-    } else if ((s->inward ? (uint32_t)pos - (uint32_t)turn : (uint32_t)turn - (uint32_t)pos) > (uint32_t)band) {
+    } else if ((s->inward ? (uint32_t)pos - (uint32_t)turn : (uint32_t)turn - (uint32_t)pos) >
+               (uint32_t)band) {
         s->turn_m_q30 = pos;
         s->inward = !s->inward;
     }
@@ -41,7 +42,8 @@ int exh_contact_law(struct exh_contact *s, const struct exh_contact_par *par,
     int32_t on;
 
     follow_reversals(s, in.pos_m_q30, par->f0_band_m_q30);
-    touching = pen >= 0 || (s->touching && pen > ~par->hyst_m_q30); /* ~h is -h - 1, which fits for any h */
+    touching = pen >= 0 ||
+               (s->touching && pen > ~par->hyst_m_q30); /* ~h is -h - 1, which fits for any h */
     s->touching = (uint8_t)touching;
 
     /* Both products in every tick: the cost must not depend on contact. */

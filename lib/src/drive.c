@@ -93,8 +93,8 @@ int32_t exh_table_at(struct exh_table t, int32_t x)
     unsigned i = 0;
     /* Every knot is looked at: the cost must not depend on the force. */
     for (unsigned k = 1; k <= last; k++) { i += in >= t.knot[k].x; }
-    return exh_clamp(t.knot[i].y + exh_gain_mul(t.knot[i].slope, exh_wrap_diff(in, t.knot[i].x)), t.knot[i].y,
-                     t.knot[i < last ? i + 1 : last].y);
+    return exh_clamp(t.knot[i].y + exh_gain_mul(t.knot[i].slope, exh_wrap_diff(in, t.knot[i].x)),
+                     t.knot[i].y, t.knot[i < last ? i + 1 : last].y);
 }
 
 /* --- set-up --- */
@@ -120,8 +120,7 @@ static int setup_i2t(struct exh_drive_cfg *cfg, const struct exh_drive_par *par,
     while (cfg->i2t_budget_q32 >> cfg->i2t_shift > INT32_MAX) { cfg->i2t_shift++; }
     /* Never 0: one LSB of peak above i_cont, i_peak 0.1 A, is 2^13 already. */
     knee = (uint64_t)cfg->i2t_budget_q32 >> cfg->i2t_shift >> 2;
-    return exh_gain_set(&cfg->i2t_fold, (uint64_t)(par->i_peak_A_q26 - par->i_cont_A_q26),
-                        knee);
+    return exh_gain_set(&cfg->i2t_fold, (uint64_t)(par->i_peak_A_q26 - par->i_cont_A_q26), knee);
 }
 
 /* exh_table_set() was here: slopes are filled, so knots rise. */
@@ -255,7 +254,8 @@ uint32_t exh_drive_current(struct exh_drive *s, const struct exh_drive_cfg *cfg,
     const int32_t now = exh_clamp32(peak, -hot, hot);
     const int32_t now_A_q16 = now >> (EXH_Q_CUR - 16);
     const int32_t cont_A_q16 = cfg->par->i_cont_A_q26 >> (EXH_Q_CUR - 16);
-    const int64_t heat = s->i2t_q32 + (int64_t)now_A_q16 * now_A_q16 - (int64_t)cont_A_q16 * cont_A_q16;
+    const int64_t heat =
+        s->i2t_q32 + (int64_t)now_A_q16 * now_A_q16 - (int64_t)cont_A_q16 * cont_A_q16;
     const int64_t most = exh_wrap_add64(cfg->i2t_budget_q32, cfg->i2t_budget_q32);
 
     /* One tick may overshoot the budget, by no more than that again; it is not forgotten. */

@@ -41,7 +41,8 @@ static inline uint64_t drive(int64_t pos, int32_t x, int32_t a)
 #else
     const int32_t below = exh_from_u32((uint32_t)((uint64_t)pos & UINT32_MAX));
     const int64_t odd = (uint32_t)a & (uint32_t)(below >> 31);
-    return (uint64_t)((int64_t)x * a - (int64_t)high_word(pos) * exh_from_u32(2 * (uint32_t)a) - odd);
+    return (uint64_t)((int64_t)x * a - (int64_t)high_word(pos) * exh_from_u32(2 * (uint32_t)a) -
+                      odd);
 #endif
 }
 

@@ -50,7 +50,7 @@ int exh_gain_set(struct exh_gain *g, uint64_t num, uint64_t den)
         if (shift > 62) { return -EXH_E_RANGE; }
     }
     if (rem >= den - rem) { mant++; } /* half up */
-    if (mant > INT32_MAX) { /* rounded up to 2^31 */
+    if (mant > INT32_MAX) {           /* rounded up to 2^31 */
         if (shift == 0) { return -EXH_E_RANGE; }
         mant >>= 1;
         shift--;

@@ -12,7 +12,7 @@
 #define K_ID  0x0401 /* rows of exhand/contact.h */
 #define B_ID  0x0402
 
-#define RATE_Q8(rate_Hz) (INT32_C(1) * (rate_Hz) * 256)
+#define RATE_Q8(rate_Hz) (INT32_C(1) * (rate_Hz)*256)
 
 #define KNOT_B(i) \
     { \
@@ -97,7 +97,8 @@ static int is_none(struct pair at)
     return at.k == 0 && at.b == 0;
 }
 
-/* (a - b) times (c - d) of what lies within 0 .. 2^30, exact. Other values wrap, and lie outside the pieces anyway. */
+/* (a - b) times (c - d) of what lies within 0 .. 2^30, exact. Other values wrap, and lie outside
+ * the pieces anyway. */
 static inline int64_t area(int32_t a, int32_t b, int32_t c, int32_t d)
 {
     return (int64_t)exh_wrap_diff(a, b) * exh_wrap_diff(c, d);
@@ -169,8 +170,8 @@ void exh_gains_lead(struct exh_params *p, int on)
     p->led[1] = on ? B_ID : 0;
 }
 
-/* The k to go for: the goal's if no knot between is below the straight line there; else what passes below all
- * of them. Both pairs are under the pieces. */
+/* The k to go for: the goal's if no knot between is below the straight line there; else what passes
+ * below all of them. Both pairs are under the pieces. */
 static int32_t aim(const struct exh_gains_par *rule, struct pair at, struct pair goal)
 {
     int32_t low = at.k;
@@ -186,8 +187,9 @@ static int32_t aim(const struct exh_gains_par *rule, struct pair at, struct pair
     return straight ? goal.k : low;
 }
 
-/* From under the pieces to under the pieces. One of the two may have to wait for the other: k falls alone, since
- * less stiff is inside too; b goes alone where k rises, since then the line there is above k. */
+/* From under the pieces to under the pieces. One of the two may have to wait for the other: k falls
+ * alone, since less stiff is inside too; b goes alone where k rises, since then the line there is
+ * above k. */
 static struct pair slewed(const struct exh_gains_par *rule, struct pair at, struct pair goal,
                           unsigned shift)
 {
@@ -221,8 +223,8 @@ static struct pair stepped(const struct exh_gains_par *rule, struct pair at, str
     return goal;
 }
 
-/* While nothing is on its way, what is staged is what is active, or damaged, and nobody goes there: that is the
- * guard's to tell. */
+/* While nothing is on its way, what is staged is what is active, or damaged, and nobody goes there:
+ * that is the guard's to tell. */
 void exh_gains_step(struct exh_params *p, const struct exh_gains_par *rule)
 {
     const int moves = p->moving;

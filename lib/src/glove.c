@@ -164,7 +164,9 @@ static void cross(const struct exh_glove_cfg *cfg, int32_t *angle_turn_q32)
         const struct exh_glove_sensor *cal = &cfg->cal->sensor[i];
         int64_t sum = angle_turn_q32[i];
         for (unsigned k = 0; k < 2; k++) {
-            if (cal->of[k] >= EXH_GLOVE_SENSORS) { continue; } /* none; or damaged memory, as above */
+            if (cal->of[k] >= EXH_GLOVE_SENSORS) {
+                continue;
+            } /* none; or damaged memory, as above */
             sum += exh_mul_shr(angle_turn_q32[cal->of[k]], cal->cross_q30[k], 30);
         }
         angle_turn_q32[i] = exh_sat32(sum);
@@ -193,8 +195,8 @@ uint32_t exh_glove_step(struct exh_glove *s, const struct exh_glove_cfg *cfg,
         const int32_t code = quantizer_in_place(&s->quantizer[i], &cfg->quantizer, x[i]);
         /* Half the code: the difference to a zero at the far end fits. */
         angle_turn_q32[i] =
-            exh_sat32(exh_mul_shr(exh_wrap_diff(code >> 1, cal->zero_raw_q15), cal->gain_turnpraw_q38,
-                                  EXH_Q_ZERO + EXH_Q_TPRAW - EXH_Q_TURN));
+            exh_sat32(exh_mul_shr(exh_wrap_diff(code >> 1, cal->zero_raw_q15),
+                                  cal->gain_turnpraw_q38, EXH_Q_ZERO + EXH_Q_TPRAW - EXH_Q_TURN));
     }
     cross(cfg, angle_turn_q32);
     return faulty;

@@ -4,7 +4,7 @@
 
 #include "exhand/error.h"
 
-#define IMAGE_MAGIC           0x47485845u /* "EXHG" */
+#define IMAGE_MAGIC           0x47485845u        /* "EXHG" */
 #define GAIN_MIN_TURNPRAW_Q38 (INT32_C(1) << 17) /* 2^-21 turn a code: 11 degrees over the card */
 #define ZERO_END_RAW_Q15      (INT32_C(1) << 30)
 
@@ -12,29 +12,36 @@
 
 /* From normalised end points in thousandths and the angles there in degrees; -9 .. 9 V of
  * a +-10 V card are 58982.4 codes. All quotients are exact to one LSB. */
-#define CODE(m) ((int16_t)((2 * (m) - 1000) * INT64_C(294912) / 10000))
+#define CODE(m) ((int16_t)((2 * (m)-1000) * INT64_C(294912) / 10000))
 #define ZERO_Q15(m0, m1, d0, d1) \
-    ((int32_t)((2 * ((m0) * INT64_C(1) * ((d1) - (d0)) - (d0) * INT64_C(1) * ((m1) - (m0))) - \
+    ((int32_t)((2 * ((m0)*INT64_C(1) * ((d1) - (d0)) - (d0)*INT64_C(1) * ((m1) - (m0))) - \
                 1000 * INT64_C(1) * ((d1) - (d0))) * \
                (INT64_C(294912) << 15) / (((d1) - (d0)) * INT64_C(10000))))
 #define GAIN_Q38(m0, m1, d0, d1) \
     ((int32_t)(((d1) - (d0)) * (INT64_C(1) << 38) * 1000 / (((m1) - (m0)) * INT64_C(21233664))))
-#define NO_CROSS {EXH_GLOVE_NONE, EXH_GLOVE_NONE}
+#define NO_CROSS \
+    { \
+        EXH_GLOVE_NONE, EXH_GLOVE_NONE \
+    }
 #define LINE(m0, m1, d0, d1, low, high) \
-    {ZERO_Q15(m0, m1, d0, d1), GAIN_Q38(m0, m1, d0, d1), {0, 0}, CODE(low), CODE(high), NO_CROSS}
+    { \
+        ZERO_Q15(m0, m1, d0, d1), GAIN_Q38(m0, m1, d0, d1), {0, 0}, CODE(low), CODE(high), \
+            NO_CROSS \
+    }
 #define UP(m0, m1, d0, d1)   LINE(m0, m1, d0, d1, m0, m1)
 #define DOWN(m0, m1, d0, d1) LINE(m0, m1, d0, d1, m1, m0)
 
 const struct exh_glove_cal exh_glove_cal_default = {
     .valid_days = UINT32_MAX,
     .present = (UINT32_C(1) << EXH_GLOVE_SENSORS) - 1u,
-    .sensor =
-    {UP(335, 697, -60, 60), UP(311, 736, -30, 30),  UP(461, 909, 0, 90),   DOWN(791, 350, 0, 50),
-     UP(429, 654, 0, 90),   UP(181, 654, 0, 90),    UP(185, 469, 0, 90),   UP(417, 630, 0, 90),
-     UP(268, 591, 0, 90),   UP(0, 323, 0, 90),      DOWN(468, 390, 0, 50), UP(323, 571, 0, 90),
-     UP(240, 618, 0, 90),   UP(177, 390, 0, 90),    DOWN(610, 283, 0, 50), UP(354, 591, 0, 90),
-     UP(154, 602, 0, 90),   UP(319, 579, 0, 90),    DOWN(516, 209, 0, 50), UP(357, 650, 0, 40),
-     UP(154, 622, -30, 40), DOWN(925, 236, -30, 10)},
+    .sensor = {UP(335, 697, -60, 60),  UP(311, 736, -30, 30), UP(461, 909, 0, 90),
+               DOWN(791, 350, 0, 50),  UP(429, 654, 0, 90),   UP(181, 654, 0, 90),
+               UP(185, 469, 0, 90),    UP(417, 630, 0, 90),   UP(268, 591, 0, 90),
+               UP(0, 323, 0, 90),      DOWN(468, 390, 0, 50), UP(323, 571, 0, 90),
+               UP(240, 618, 0, 90),    UP(177, 390, 0, 90),   DOWN(610, 283, 0, 50),
+               UP(354, 591, 0, 90),    UP(154, 602, 0, 90),   UP(319, 579, 0, 90),
+               DOWN(516, 209, 0, 50),  UP(357, 650, 0, 40),   UP(154, 622, -30, 40),
+               DOWN(925, 236, -30, 10)},
 };
 
 /* --- words --- */

@@ -11,20 +11,20 @@
 #include "exhand/error.h"
 #include "exhand/fix.h"
 
-#define ALL                   4 /* code, two knuckles, and the known angle */
-#define ANGLES_APART_TURN_Q32 EXH_Q(5, 360, 32) /* known angles that differ at all     */
+#define ALL                   4                  /* code, two knuckles, and the known angle */
+#define ANGLES_APART_TURN_Q32 EXH_Q(5, 360, 32)  /* known angles that differ at all */
 #define PIVOT_MIN             (INT64_C(1) << 42) /* a knuckle that moved by 2.8 degrees */
-#define PIVOT_SHARE           8 /* 2^-8 of it in its own way           */
+#define PIVOT_SHARE           8                  /* 2^-8 of it in its own way */
 
 const struct exh_glove_fit_par exh_glove_fit_default = {256, 128, EXH_Q(6, 360, 32)};
 
 /* The poses that know one sensor's angle. */
 struct known {
-    unsigned n, terms; /* poses, unknown factors                */
-    uint8_t pose[EXH_GLOVE_POSES_MAX]; /* which they are                        */
+    unsigned n, terms;                 /* poses, unknown factors */
+    uint8_t pose[EXH_GLOVE_POSES_MAX]; /* which they are */
     int32_t code_raw_q16[EXH_GLOVE_POSES_MAX];
-    int32_t term[ALL][EXH_GLOVE_POSES_MAX]; /* code q12, angles of knuckles turn_q28 */
-    int32_t angle_turn_q32[EXH_GLOVE_POSES_MAX]; /* less what cross terms explain  */
+    int32_t term[ALL][EXH_GLOVE_POSES_MAX];      /* code q12, angles of knuckles turn_q28 */
+    int32_t angle_turn_q32[EXH_GLOVE_POSES_MAX]; /* less what cross terms explain */
 };
 
 struct factor {

@@ -14,7 +14,8 @@ void exh_guard_seal(struct exh_guard *g, const void *area, size_t len_B, struct 
     if (params) { exh_params_seal(params); }
 }
 
-/* The last part of a round may be shorter; what it lacks is spent on nothing, so all ticks cost the same. */
+/* The last part of a round may be shorter; what it lacks is spent on nothing, so all ticks cost the
+ * same. */
 static void look_at_area(struct exh_guard *g)
 {
     static const uint8_t nothing[EXH_GUARD_B];

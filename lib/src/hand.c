@@ -8,11 +8,11 @@
 
 #include "sincos.h"
 
-#define ARM_MAX_M_Q30  EXH_Q(50, 1000, EXH_Q_POS)
-#define PAD_MAX_M_Q30  EXH_Q(25, 1000, EXH_Q_POS)
-#define ARM_MIN_M_Q30  EXH_Q(4, 1000, EXH_Q_POS)
-#define LEN_MAX_M_Q34  EXH_Q(120, 1000, 34)
-#define BASE_MAX_M_Q32 EXH_Q(125, 1000, 32)
+#define ARM_MAX_M_Q30      EXH_Q(50, 1000, EXH_Q_POS)
+#define PAD_MAX_M_Q30      EXH_Q(25, 1000, EXH_Q_POS)
+#define ARM_MIN_M_Q30      EXH_Q(4, 1000, EXH_Q_POS)
+#define LEN_MAX_M_Q34      EXH_Q(120, 1000, 34)
+#define BASE_MAX_M_Q32     EXH_Q(125, 1000, 32)
 #define PULL_MAX_RADPM_Q20 EXH_Q(250, 1, 20)
 
 /* The arms are ours, and not measured: cables guided 20, 16 and 12 mm from the joints'
@@ -60,7 +60,8 @@ uint32_t exh_hand_joints(const struct exh_hand_map *map, unsigned finger,
     uint32_t limited = 0;
     for (unsigned i = 0; i < EXH_HAND_JOINTS; i++) {
         const struct exh_hand_joint *j = &map->joint[finger][i];
-        int64_t sum_q56 = (int64_t)j->bias_turn_q32 * (INT32_C(1) << 24) + (INT32_C(1) << 23); /* |sum| < 2^60 */
+        int64_t sum_q56 =
+            (int64_t)j->bias_turn_q32 * (INT32_C(1) << 24) + (INT32_C(1) << 23); /* |sum| < 2^60 */
         int64_t want;
         for (unsigned t = 0; t < EXH_HAND_TERMS; t++) {
             sum_q56 += (int64_t)j->gain_q24[t] * sensor_turn_q32[j->sensor[t]];

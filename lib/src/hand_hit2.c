@@ -82,40 +82,43 @@ const struct exh_hand_bones exh_hit2_bones[EXH_HAND_FINGERS] = {
             {pij, dij}, MIDDLE_LIMITS \
     }
 
-const struct exh_hand_map exh_hit2_map = {
-    .joint = {
-    [EXH_THUMB] =
-        {/* Turning across the palm moves the robot's thumb against q0. */
-         {-SPAN_BIAS(-15, 15, -60, 130),
-          {-SPAN_GAIN(-15, 15, -60, 130), 0},
-          {EXH_GLOVE_THUMB_ROTATE, 0},
-          SIDE_LIMITS},
-         /* The base bends as the thumb comes to the palm: by its own joint, or less abduction. */
-         {SPAN_BIAS(0, 85, -85, 45),
-          {SPAN_GAIN(0, 85, -85, 45), -SPAN_GAIN(0, 85, -85, 45)},
-          {EXH_GLOVE_THUMB_MPJ, EXH_GLOVE_THUMB_AB},
-          PROXIMAL_LIMITS},
-         CURL(EXH_GLOVE_THUMB_MPJ, EXH_GLOVE_THUMB_IJ, -30, 120)},
-    [EXH_INDEX] = {{0, {-SPREAD_GAIN, 0}, {EXH_GLOVE_MIDDLE_INDEX_AB, 0}, SIDE_LIMITS},
-                   KNUCKLE(EXH_GLOVE_INDEX_MPJ),
-                   CURL(EXH_GLOVE_INDEX_PIJ, EXH_GLOVE_INDEX_DIJ, -40, 225)},
-    [EXH_MIDDLE] = {{0, {0, 0}, {0, 0}, SIDE_LIMITS},
-                    KNUCKLE(EXH_GLOVE_MIDDLE_MPJ),
-                    CURL(EXH_GLOVE_MIDDLE_PIJ, EXH_GLOVE_MIDDLE_DIJ, -40, 225)},
-    [EXH_RING] = {{0, {SPREAD_GAIN, 0}, {EXH_GLOVE_RING_MIDDLE_AB, 0}, SIDE_LIMITS},
-                  KNUCKLE(EXH_GLOVE_RING_MPJ),
-                  CURL(EXH_GLOVE_RING_PIJ, EXH_GLOVE_RING_DIJ, -40, 225)},
-    /* The little finger's sensors reach farther in all recordings. */
-    [EXH_LITTLE] = {{0,
-                     {SPREAD_GAIN, SPREAD_GAIN},
-                     {EXH_GLOVE_RING_MIDDLE_AB, EXH_GLOVE_PINKIE_RING_AB},
-                     SIDE_LIMITS},
-                    KNUCKLE(EXH_GLOVE_PINKIE_MPJ),
-                    CURL(EXH_GLOVE_PINKIE_PIJ, EXH_GLOVE_PINKIE_DIJ, -40, 275)},
-},
-    .bent = {{EXH_GLOVE_THUMB_MPJ, EXH_GLOVE_THUMB_IJ, EXH_GLOVE_THUMB_IJ},
-             {EXH_GLOVE_INDEX_MPJ, EXH_GLOVE_INDEX_PIJ, EXH_GLOVE_INDEX_DIJ},
-             {EXH_GLOVE_MIDDLE_MPJ, EXH_GLOVE_MIDDLE_PIJ, EXH_GLOVE_MIDDLE_DIJ},
-             {EXH_GLOVE_RING_MPJ, EXH_GLOVE_RING_PIJ, EXH_GLOVE_RING_DIJ},
-             {EXH_GLOVE_PINKIE_MPJ, EXH_GLOVE_PINKIE_PIJ, EXH_GLOVE_PINKIE_DIJ}},
+const struct exh_hand_map exh_hit2_map =
+    {
+        .joint =
+            {
+                [EXH_THUMB] =
+                    {/* Turning across the palm moves the robot's thumb against q0. */
+                     {-SPAN_BIAS(-15, 15, -60, 130),
+                      {-SPAN_GAIN(-15, 15, -60, 130), 0},
+                      {EXH_GLOVE_THUMB_ROTATE, 0},
+                      SIDE_LIMITS},
+                     /* The base bends as the thumb comes to the palm: by its own joint, or less
+                        abduction. */
+                     {SPAN_BIAS(0, 85, -85, 45),
+                      {SPAN_GAIN(0, 85, -85, 45), -SPAN_GAIN(0, 85, -85, 45)},
+                      {EXH_GLOVE_THUMB_MPJ, EXH_GLOVE_THUMB_AB},
+                      PROXIMAL_LIMITS},
+                     CURL(EXH_GLOVE_THUMB_MPJ, EXH_GLOVE_THUMB_IJ, -30, 120)},
+                [EXH_INDEX] = {{0, {-SPREAD_GAIN, 0}, {EXH_GLOVE_MIDDLE_INDEX_AB, 0}, SIDE_LIMITS},
+                               KNUCKLE(EXH_GLOVE_INDEX_MPJ),
+                               CURL(EXH_GLOVE_INDEX_PIJ, EXH_GLOVE_INDEX_DIJ, -40, 225)},
+                [EXH_MIDDLE] = {{0, {0, 0}, {0, 0}, SIDE_LIMITS},
+                                KNUCKLE(EXH_GLOVE_MIDDLE_MPJ),
+                                CURL(EXH_GLOVE_MIDDLE_PIJ, EXH_GLOVE_MIDDLE_DIJ, -40, 225)},
+                [EXH_RING] = {{0, {SPREAD_GAIN, 0}, {EXH_GLOVE_RING_MIDDLE_AB, 0}, SIDE_LIMITS},
+                              KNUCKLE(EXH_GLOVE_RING_MPJ),
+                              CURL(EXH_GLOVE_RING_PIJ, EXH_GLOVE_RING_DIJ, -40, 225)},
+                /* The little finger's sensors reach farther in all recordings. */
+                [EXH_LITTLE] = {{0,
+                                 {SPREAD_GAIN, SPREAD_GAIN},
+                                 {EXH_GLOVE_RING_MIDDLE_AB, EXH_GLOVE_PINKIE_RING_AB},
+                                 SIDE_LIMITS},
+                                KNUCKLE(EXH_GLOVE_PINKIE_MPJ),
+                                CURL(EXH_GLOVE_PINKIE_PIJ, EXH_GLOVE_PINKIE_DIJ, -40, 275)},
+            },
+        .bent = {{EXH_GLOVE_THUMB_MPJ, EXH_GLOVE_THUMB_IJ, EXH_GLOVE_THUMB_IJ},
+                 {EXH_GLOVE_INDEX_MPJ, EXH_GLOVE_INDEX_PIJ, EXH_GLOVE_INDEX_DIJ},
+                 {EXH_GLOVE_MIDDLE_MPJ, EXH_GLOVE_MIDDLE_PIJ, EXH_GLOVE_MIDDLE_DIJ},
+                 {EXH_GLOVE_RING_MPJ, EXH_GLOVE_RING_PIJ, EXH_GLOVE_RING_DIJ},
+                 {EXH_GLOVE_PINKIE_MPJ, EXH_GLOVE_PINKIE_PIJ, EXH_GLOVE_PINKIE_DIJ}},
 };

@@ -10,10 +10,10 @@
 #define WRITE_BITS 1968u
 #define READ_REGS  125u
 #define WRITE_REGS 123u
-#define BOTH_REGS  121u /* written by function 23                              */
+#define BOTH_REGS  121u /* written by function 23 */
 
 struct request {
-    const uint8_t *p; /* the function code first                               */
+    const uint8_t *p; /* the function code first */
     uint32_t len_B;
 };
 
@@ -141,7 +141,7 @@ static int write_and_read(struct exh_regs *r, const struct request *q, uint8_t *
 #define OBJECTS 3u
 EXH_STATIC_ASSERT(one_digit,
                   EXH_VERSION_MAJOR < 10 && EXH_VERSION_MINOR < 10 && EXH_VERSION_PATCH < 10);
-#define CONFORMS 0x81u /* those, as a stream or one by one                     */
+#define CONFORMS 0x81u /* those, as a stream or one by one */
 
 static uint8_t *object(uint8_t *to, uint32_t id)
 {

@@ -4,7 +4,7 @@
 #include "exhand/error.h"
 #include "exhand/fix.h"
 
-#define LEAST_B 4u /* address, function, CRC                                   */
+#define LEAST_B 4u /* address, function, CRC */
 
 uint16_t exh_crc16(const uint8_t *p, size_t len_B)
 {

@@ -158,7 +158,8 @@ static uint32_t next_other(const struct exh_params *p, uint32_t i, uint32_t end)
 }
 
 /* Values from `first` on, of one group: few differ, and of the others there is nothing to do. */
-static void apply_group(struct exh_params *p, const struct exh_signal_group *g, uint32_t first, int all)
+static void apply_group(struct exh_params *p, const struct exh_signal_group *g, uint32_t first,
+                        int all)
 {
     const uint32_t end = first + (uint32_t)g->rows * g->instances;
     for (uint32_t i = next_other(p, first, end); i < end; i = next_other(p, i + 1, end)) {
@@ -213,7 +214,8 @@ static int value_bytes(struct exh_bytes *c, struct exh_params *p, const struct e
     return exh_params_may(p, i, is) == 0 && exh_params_may(p, i, wanted) == 0;
 }
 
-/* Row by row as the table has them: finding each value's row anew was nine tenths of a keyframe's cost. */
+/* Row by row as the table has them: finding each value's row anew was nine tenths of a keyframe's
+ * cost. */
 static int values_bytes(struct exh_bytes *c, struct exh_params *p, int take)
 {
     uint32_t i = 0;

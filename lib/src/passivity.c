@@ -5,9 +5,9 @@
 #include "exhand/fix.h"
 #include "exhand/units.h"
 
-#define F_MOST_N_Q20      EXH_Q(100, 1, EXH_Q_FORCE) /* no f_max is higher       */
+#define F_MOST_N_Q20      EXH_Q(100, 1, EXH_Q_FORCE) /* no f_max is higher */
 #define SPEED_MIN_MPS_Q27 EXH_Q(1, 10, EXH_Q_VEL)
-#define WAY_MAX_CNT       (INT32_C(1) << 24) /* 10 m/s at 1 Hz and 1 um: 10^7    */
+#define WAY_MAX_CNT       (INT32_C(1) << 24) /* 10 m/s at 1 Hz and 1 um: 10^7 */
 #define LATE              2
 /* 100 N over 10^10 counts: no device gets there, and no sum leaves 64 bits. */
 #define ENERGY_MAX_NCNT_Q20 (INT64_C(1) << 60)

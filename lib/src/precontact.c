@@ -45,7 +45,8 @@ static int in_rows(const struct exh_signal *row, const int32_t *v, int n)
     return 1;
 }
 
-/* The first number of ticks that lasts longer. At 20 kHz and a minute 1.2 million: far from any end. */
+/* The first number of ticks that lasts longer. At 20 kHz and a minute 1.2 million: far from any
+ * end. */
 static uint32_t more_than(int32_t ms, struct exh_period T)
 {
     return exh_ticks_in(ms, T) + 1;
@@ -113,8 +114,8 @@ int exh_precontact_tell(struct exh_precontact *s, const struct exh_precontact_cf
             return -EXH_E_RANGE;
         }
         now.normal_q30 = plane->normal_q30;
-        now.offset_m_q60 = exh_wrap_add64(dot(&plane->normal_q30, &plane->point_m_q30) + HALF_Q60,
-                                          cfg->pad_m_q60);
+        now.offset_m_q60 =
+            exh_wrap_add64(dot(&plane->normal_q30, &plane->point_m_q30) + HALF_Q60, cfg->pad_m_q60);
         now.object = plane->object;
         now.material = plane->material;
         left = age_ticks < cfg->age_ticks ? cfg->age_ticks - age_ticks : 0;

@@ -12,8 +12,8 @@ const struct exh_signal exh_quad_rows[EXH_QUAD_ROWS] = {
     {0x0201, EXH_Q_STEP, EXH_WHEN_SETUP, STEP_MIN_M_Q42, INT32_MAX,
      EXH_Q(6632, 100000000, EXH_Q_STEP), "step", "m", "string per encoder count"},
     /* Beyond the fastest hand: what moves more is no movement. */
-    {0x0202, EXH_Q_VEL, EXH_WHEN_SETUP, SPEED_MIN_MPS_Q27, INT32_MAX,
-     EXH_Q(10, 1, EXH_Q_VEL), "speed_max", "m_per_s", "faster is an encoder fault"},
+    {0x0202, EXH_Q_VEL, EXH_WHEN_SETUP, SPEED_MIN_MPS_Q27, INT32_MAX, EXH_Q(10, 1, EXH_Q_VEL),
+     "speed_max", "m_per_s", "faster is an encoder fault"},
 };
 
 /* --- two lines --- */

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-/* The quantizer as code in place, for quantizer.c and for glove.c, which needs 22 at once. Not part of the library's
- * interface. */
+/* The quantizer as code in place, for quantizer.c and for glove.c, which needs 22 at once. Not part
+ * of the library's interface. */
 #ifndef EXH_QUANTIZER_TICK_H
 #define EXH_QUANTIZER_TICK_H
 
 #include "exhand/fix.h"
 #include "exhand/quantizer.h"
 
-static inline int32_t quantizer_in_place(struct exh_quantizer *s, const struct exh_quantizer_cfg *cfg, int32_t x)
+static inline int32_t quantizer_in_place(struct exh_quantizer *s,
+                                         const struct exh_quantizer_cfg *cfg, int32_t x)
 {
     const int32_t value = s->value;
     const uint32_t off = x > value ? (uint32_t)x - (uint32_t)value : (uint32_t)value - (uint32_t)x;

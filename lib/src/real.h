@@ -19,9 +19,9 @@ struct exh_real {
 
 struct exh_real exh_real_of(uint64_t v);
 struct exh_real exh_real_mul(struct exh_real a, struct exh_real b);
-struct exh_real exh_real_div(struct exh_real a, struct exh_real b); /* b > 0        */
+struct exh_real exh_real_div(struct exh_real a, struct exh_real b); /* b > 0 */
 struct exh_real exh_real_add(struct exh_real a, struct exh_real b);
-struct exh_real exh_real_sub(struct exh_real a, struct exh_real b); /* a >= b       */
+struct exh_real exh_real_sub(struct exh_real a, struct exh_real b); /* a >= b */
 
 /* a * 2^n. */
 static inline struct exh_real exh_real_scale(struct exh_real a, int32_t n)

@@ -67,7 +67,9 @@ static void text_bytes(struct exh_bytes *c, char text[16])
     for (int i = 0; i < 16; i++) {
         uint8_t u = (uint8_t)text[i];
         exh_bytes_u8(c, &u);
-        text[i] = (char)(u < 0x80u ? (int)u : (int)u - 0x100); /* fits where char is signed, wraps where not */
+        text[i] =
+            (char)(u < 0x80u ? (int)u
+                             : (int)u - 0x100); /* fits where char is signed, wraps where not */
     }
 }
 

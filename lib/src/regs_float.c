@@ -4,7 +4,7 @@
 #include "exhand/error.h"
 #include "exhand/modbus.h"
 
-#define FRACTION 23 /* bits of a binary32 behind its leading one               */
+#define FRACTION 23 /* bits of a binary32 behind its leading one */
 #define BIAS     127
 #define HIDDEN   (UINT32_C(1) << FRACTION)
 #define SIGN     (UINT32_C(1) << 31)
@@ -31,7 +31,8 @@ int exh_float_raw(uint32_t bits, unsigned frac, int32_t *raw)
 {
     const uint32_t field = bits >> FRACTION & 0xFFu;
     const uint32_t mant = (bits & (HIDDEN - 1)) | (field ? HIDDEN : 0u);
-    /* value = mant 2^(field - 150); below the normal ones, and 0, as field 1: up < 0 for every frac */
+    /* value = mant 2^(field - 150); below the normal ones, and 0, as field 1: up < 0 for every frac
+     */
     const int32_t up = (int32_t)(field ? field : 1) - (BIAS + FRACTION) + (int32_t)frac;
     uint32_t mag = 0;
     int64_t v;

@@ -44,7 +44,9 @@ uint32_t exh_regs_trace_value(const struct exh_regs *r, enum exh_regs_source sou
     const uint32_t slot = i * 43691u >> 18; /* i / 6, below 2^16 */
     const uint32_t k = i - VALUES * slot;
     if (source == EXH_REGS_TRACE) { return head_of(t, (enum exh_regs_trace)i); }
-    if (source == EXH_REGS_SET) { return head_of(t, (enum exh_regs_trace)(EXH_TRACE_HEAD_EVERY + i)); }
+    if (source == EXH_REGS_SET) {
+        return head_of(t, (enum exh_regs_trace)(EXH_TRACE_HEAD_EVERY + i));
+    }
     if (k < 2) { return k == 0 ? t->frame[slot].number : t->frame[slot].tick; }
     return (uint32_t)t->frame[slot].raw[k - 2];
 }

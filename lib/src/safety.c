@@ -13,13 +13,14 @@
 #define ARM_MAX_MS     1000
 #define RAMP_MAX_MS    5000
 #define RELEASE_MIN_MS 5
-#define SLOW_HZ        500 /* below it a release has no more than                */
+#define SLOW_HZ        500 /* below it a release has no more than */
 #define SLOW_TICKS     4
-#define RELEASE_MAX_MS 18 /* and the tick that sees it, at 500 Hz: 20            */
+#define RELEASE_MAX_MS 18 /* and the tick that sees it, at 500 Hz: 20 */
 #define FULL_Q30       (INT32_C(1) << 30)
 
 const struct exh_signal exh_safety_rows[EXH_SAFETY_ROWS] = {
-    {0x0601, 0, EXH_WHEN_SETUP, 0, MISSED_MAX, 1, "missed_max", "", "missed ticks tolerated, in 64"},
+    {0x0601, 0, EXH_WHEN_SETUP, 0, MISSED_MAX, 1, "missed_max", "",
+     "missed ticks tolerated, in 64"},
     {0x0602, EXH_Q_FORCE, EXH_WHEN_SETUP, SMALL_MIN_NQ20, SMALL_MAX_NQ20, EXH_Q(1, 1, EXH_Q_FORCE),
      "arm_force", "n", "arming needs a law that asks for no more"},
     {0x0603, 0, EXH_WHEN_SETUP, 1, ARM_MAX_MS, 50, "arm_time", "ms", "for so long, and 2 ticks"},
@@ -125,8 +126,8 @@ static void latch(struct exh_safety *s, uint32_t now)
     s->faults |= now;
 }
 
-/* Let go after the last cause, also one that came back while the switch was open: nobody clears what he has not seen
- * the end of. */
+/* Let go after the last cause, also one that came back while the switch was open: nobody clears
+ * what he has not seen the end of. */
 static void see_hand(struct exh_safety *s, uint32_t din)
 {
     if (s->present) { s->opened = s->present == EXH_FAULT_DEADMAN && !(din & EXH_DIN_DEADMAN); }
@@ -206,7 +207,7 @@ static struct exh_permit permit_of(const struct exh_safety *s, const struct exh_
                                    uint32_t missed)
 {
     struct exh_permit p;
-    p.mode = !exh_safety_open(s)               ? EXH_PERMIT_CLOSED
+    p.mode = !exh_safety_open(s)             ? EXH_PERMIT_CLOSED
              : s->state == EXH_STATE_RELEASE ? EXH_PERMIT_RELEASE
                                              : EXH_PERMIT_OPEN;
     p.share_q30 = s->state == EXH_STATE_ARM ? s->share_q30 : FULL_Q30;
@@ -253,13 +254,13 @@ uint8_t exh_safety_arm(const struct exh_safety *s)
 
 /* --- state --- */
 
-/* A RUN made of a damaged OFF would open the gate, so what was written is sealed. The factor, odd and so losing
- * nothing: bytes with their own CRC behind them say nothing to a CRC around both, be it of a record or a digest. */
+/* A RUN made of a damaged OFF would open the gate, so what was written is sealed. The factor, odd
+ * and so losing nothing: bytes with their own CRC behind them say nothing to a CRC around both, be
+ * it of a record or a digest. */
 static int sealed(struct exh_bytes *c, uint32_t from)
 {
     const int buffer = c->mode != EXH_BYTES_MEASURE && exh_bytes_ok(c);
-    const uint32_t is =
-        buffer ? exh_crc32(0, c->p + from, c->at - from) * UINT32_C(0x9E3779B1) : 0;
+    const uint32_t is = buffer ? exh_crc32(0, c->p + from, c->at - from) * UINT32_C(0x9E3779B1) : 0;
     uint32_t seal = is;
     exh_bytes_u32(c, &seal);
     return seal == is && exh_bytes_ok(c);

@@ -13,7 +13,8 @@ static volatile uint64_t num = UINT64_C(0xFEDCBA9876543210), den = UINT64_C(0x12
 static int shift_fails(void)
 {
     const int64_t v = odd;
-    return v >> 4 != INT64_C(-0x123456789ABCDF) || exh_shr_round(v, 4) != INT64_C(-0x123456789ABCDF) ||
+    return v >> 4 != INT64_C(-0x123456789ABCDF) ||
+           exh_shr_round(v, 4) != INT64_C(-0x123456789ABCDF) ||
            exh_shr_round(v, 3) != INT64_C(-0x2468ACF13579BE) || exh_sat32(v) != INT32_MIN ||
            exh_sat32(exh_wrap_diff64(0, v)) != INT32_MAX || exh_clamp(v, -5, 7) != -5 ||
            exh_wrap_diff(INT32_MIN, INT32_MAX) != 1;

@@ -15,14 +15,14 @@
  * one for what the floors of the products add. A product keeps its high word, so a format loses
  * the two bits of z's q30 at every step: what is added to it has the format of that result. -u,
  * -sin and -cos are computed, as these fit 32 bits at both ends. */
-#define S0_Q31  1686629689 /*  0.785398152542748    */
-#define S1_Q33  (-693597423) /* -0.0807453672710303   */
-#define S2_Q35  85551349 /*  0.00248987196800914  */
-#define S3_Q37  (-4930933) /* -3.58772585030588e-5  */
-#define C1_Q32  1324675872 /*  0.308425135838379    */
-#define C2_Q34  (-272375277) /* -0.0158543277519284   */
-#define C3_Q36  22398564 /*  3.25942008049486e-4  */
-#define C4_Q38  (-970686) /* -3.53133471025078e-6  */
+#define S0_Q31  1686629689   /*  0.785398152542748 */
+#define S1_Q33  (-693597423) /* -0.0807453672710303 */
+#define S2_Q35  85551349     /*  0.00248987196800914 */
+#define S3_Q37  (-4930933)   /* -3.58772585030588e-5 */
+#define C1_Q32  1324675872   /*  0.308425135838379 */
+#define C2_Q34  (-272375277) /* -0.0158543277519284 */
+#define C3_Q36  22398564     /*  3.25942008049486e-4 */
+#define C4_Q38  (-970686)    /* -3.53133471025078e-6 */
 #define ONE_Q30 (INT32_C(1) << 30)
 
 #define EIGHTH  (UINT32_C(1) << 29)

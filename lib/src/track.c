@@ -14,8 +14,8 @@
 
 /* Default tolerance: the paper's monitor noise is 47.2 mA peak to peak, D/A and monitor steps
  * 0.5 mA each, 3 % of difference in scale 0.2 A at the peak. Default time: an output 10 ms late,
- * 0.25 ms to the drive's next 4 kHz sample, 2.5 ms of current loop and monitor (0.11 and 0.57 ms) until
- * 0.2 A are left of 13.2 A; rounded up to 20 ms for slower ones. */
+ * 0.25 ms to the drive's next 4 kHz sample, 2.5 ms of current loop and monitor (0.11 and 0.57 ms)
+ * until 0.2 A are left of 13.2 A; rounded up to 20 ms for slower ones. */
 const struct exh_signal exh_track_rows[EXH_TRACK_ROWS] = {
     {0x0D01, EXH_Q_CUR, EXH_WHEN_SETUP, TOL_MIN_A_Q26, TOL_MAX_A_Q26, EXH_Q(1, 4, EXH_Q_CUR),
      "track_tol", "a", "current monitored differs from what is coded by no more"},

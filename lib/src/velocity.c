@@ -48,7 +48,8 @@ int32_t exh_velocity_window_mps_q27(struct exh_velocity_window *s,
     }
     moved = exh_wrap_diff(cnt, s->cnt[s->at]);
     s->cnt[s->at] = cnt;
-    s->at = (uint8_t)((s->at + 1u) & (cfg->n - 1u) & (EXH_VELOCITY_N - 1u)); /* n: damaged, perhaps */
+    s->at =
+        (uint8_t)((s->at + 1u) & (cfg->n - 1u) & (EXH_VELOCITY_N - 1u)); /* n: damaged, perhaps */
     return exh_sat32(exh_gain_mul(cfg->gain, moved));
 }
 
@@ -74,7 +75,8 @@ int32_t exh_velocity_pole_mps_q27(struct exh_velocity_pole *s,
                                   const struct exh_velocity_pole_cfg *cfg, int32_t cnt)
 {
     const int32_t moved = s->started ? exh_wrap_diff(cnt, s->cnt) : 0;
-    const int64_t diff_q55 = (int64_t)exh_sat32(exh_gain_mul(cfg->gain, moved)) * (INT32_C(1) << 28);
+    const int64_t diff_q55 =
+        (int64_t)exh_sat32(exh_gain_mul(cfg->gain, moved)) * (INT32_C(1) << 28);
     s->cnt = cnt;
     s->started = 1;
     /* Modulo 2^64: a share of damaged memory may be none. */
@@ -124,9 +126,7 @@ static int line_fits(const int32_t *d, int32_t n, int64_t m, int32_t tol)
  * two parts; the first shift is a floor, so only the last one rounds. */
 static int32_t wide_gain(struct exh_gain g, int64_t m)
 {
-    if (m == exh_clamp(m, INT32_MIN, INT32_MAX)) {
-        return exh_sat32(exh_gain_mul(g, (int32_t)m));
-    }
+    if (m == exh_clamp(m, INT32_MIN, INT32_MAX)) { return exh_sat32(exh_gain_mul(g, (int32_t)m)); }
     if (g.shift < 31) { return exh_sat32(m); }
     if (g.shift == 31) { return exh_sat32(exh_mul64_q31(m, g.mant)); }
     return exh_sat32(exh_shr_round((m >> 31) * g.mant + ((m & INT32_MAX) * g.mant >> 31),
@@ -189,7 +189,8 @@ int32_t exh_velocity_track_mps_q27(struct exh_velocity_track *s,
                                    const struct exh_velocity_track_cfg *cfg, int32_t cnt)
 {
     const int32_t moved = s->started ? exh_wrap_diff(cnt, s->cnt) : 0;
-    const int64_t moved_q32 = exh_clamp(moved, -(INT32_C(1) << 28), INT32_C(1) << 28) * (INT64_C(1) << 32);
+    const int64_t moved_q32 =
+        exh_clamp(moved, -(INT32_C(1) << 28), INT32_C(1) << 28) * (INT64_C(1) << 32);
     const int64_t off = limit(s->err_cnt_q32 + s->vel_cnt_q32 - moved_q32, TRACK_MAX_CNT_Q32);
 
     s->cnt = cnt;

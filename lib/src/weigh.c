@@ -82,8 +82,8 @@ uint8_t exh_weigh_step(struct exh_weigh *s, const struct exh_weigh_cfg *cfg, int
                        int32_t coded_A_q26, int32_t mon_A_q26)
 {
     if (s->result != EXH_PROBE_BUSY) { return s->result; }
-    s->result = s->phase < REST ? lift_or_sink(s, cfg, cnt)
-                                : hold(s, cfg, cnt, coded_A_q26, mon_A_q26);
+    s->result =
+        s->phase < REST ? lift_or_sink(s, cfg, cnt) : hold(s, cfg, cnt, coded_A_q26, mon_A_q26);
     if (s->result != EXH_PROBE_BUSY) { s->cur_A_q26 = 0; }
     return s->result;
 }

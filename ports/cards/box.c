@@ -52,16 +52,16 @@ static struct {
     const struct wiring *wiring;
     struct exh_s526 s526[2];
     struct exh_mm32xat mm32xat;
-    unsigned boards; /* S526 in use                                         */
-    unsigned axes[2]; /* fingers on each                                     */
-    uint8_t lines_off[2]; /* output pins with nothing active                     */
-    uint8_t open, started; /* started: an A/D scan begun by the last read          */
+    unsigned boards;       /* S526 in use */
+    unsigned axes[2];      /* fingers on each */
+    uint8_t lines_off[2];  /* output pins with nothing active */
+    uint8_t open, started; /* started: an A/D scan begun by the last read */
     struct exh_box_error error;
     struct exh_box_counts counts;
-    int16_t frame[EXH_MM32XAT_CHANNELS]; /* the last of the glove                 */
-    uint32_t frame_read, scan_read; /* counts.reads when it and the running scan began */
-    uint8_t framed, fresh; /* fresh: taken in parts, and not yet handed over          */
-    int16_t ad_code[2][EXH_S526_AD]; /* as last converted                          */
+    int16_t frame[EXH_MM32XAT_CHANNELS]; /* the last of the glove */
+    uint32_t frame_read, scan_read;      /* counts.reads when it and the running scan began */
+    uint8_t framed, fresh;               /* fresh: taken in parts, and not yet handed over */
+    int16_t ad_code[2][EXH_S526_AD];     /* as last converted */
     volatile uint32_t safe_calls;
 } box;
 
@@ -181,8 +181,8 @@ static int in_parts(void)
     return box.cfg.glove == EXH_BOX_LAST && box.cfg.mm32xat.slice > 0;
 }
 
-/* What the first tick hands over is begun here: it has as little to wait for as the others. A scan that
- * is taken in parts is begun when it is first asked for. */
+/* What the first tick hands over is begun here: it has as little to wait for as the others. A scan
+ * that is taken in parts is begun when it is first asked for. */
 static void start(void)
 {
     box.open = 1;
@@ -398,7 +398,7 @@ static int glove_take(struct exh_card_fault *f)
 {
     struct exh_mm32xat *m = &box.mm32xat;
     int got;
-    if (in_parts()) { /* not even for the first */
+    if (in_parts()) {                                 /* not even for the first */
         if (m->running) { box.counts.glove_waits++; } /* begun when it was last asked for */
         box.fresh = 0;
         if (!m->running) { glove_start(); }

@@ -27,30 +27,31 @@ enum exh_box_card { EXH_BOX_A, EXH_BOX_B, EXH_BOX_GLOVE, EXH_BOX_CARDS };
 /* When what a tick hands over was converted. */
 enum exh_box_when {
     EXH_BOX_NEVER, /* not at all: monitors and supply are 0, the glove is absent */
-    EXH_BOX_NOW,   /* in the tick that reads it, which waits for the converter    */
+    EXH_BOX_NOW,   /* in the tick that reads it, which waits for the converter */
     EXH_BOX_LAST,  /* begun when the one before was read, the first when the box was opened: no
-                    * wait while a tick is longer than a conversion. A glove's scan that is taken in parts
-                    * (mm32xat.slice) is begun when it is asked for: the first time there is none */
+                    * wait while a tick is longer than a conversion. A glove's scan that is taken in
+                    * parts  (mm32xat.slice) is begun when it is asked for: the first time there is
+                    * none */
     EXH_BOX_WHENS
 };
 
 struct exh_box_config {
-    uint16_t s526_base[2];    /* multiples of 0x40, 0x100 .. 0xFFC0               */
-    uint16_t mm32xat_base;    /* a place its jumpers have                         */
-    uint8_t fingers;          /* in use                                           */
-    uint8_t full;             /* 1: wired for five fingers, A and B, also where one is in use.
-                               * 0: one finger is board A alone, wired otherwise; refused where
-                               * B answers, since A's lines then mean something else */
-    uint8_t monitor;          /* current monitors, enum exh_box_when              */
-    uint8_t supply;           /* 1: the supply is converted with them             */
-    uint8_t watchdog;         /* 1: the watchdog's contact is wired to an input; 0: what it says is
-                               * not known here, and passed as healthy            */
-    uint8_t glove;            /* enum exh_box_when; EXH_BOX_NEVER: its card is not touched */
-    uint8_t din_invert[2];    /* of A, B: input pins 0..3 whose healthy level is 0 */
-    uint8_t out_invert[2];    /* output pins 4..7 whose active level is 0, bits 0xF0 */
-    uint16_t dac_span_raw;    /* codes either side of 0 A that ever go out        */
-    uint16_t dac_rest_raw;    /* codes either side that a drive that is off may be given, for the
-                               * offset of its input; more is a fault: it is 0 A to nobody else */
+    uint16_t s526_base[2]; /* multiples of 0x40, 0x100 .. 0xFFC0 */
+    uint16_t mm32xat_base; /* a place its jumpers have */
+    uint8_t fingers;       /* in use */
+    uint8_t full;          /* 1: wired for five fingers, A and B, also where one is in use.
+                            * 0: one finger is board A alone, wired otherwise; refused where
+                            * B answers, since A's lines then mean something else */
+    uint8_t monitor;       /* current monitors, enum exh_box_when */
+    uint8_t supply;        /* 1: the supply is converted with them */
+    uint8_t watchdog;      /* 1: the watchdog's contact is wired to an input; 0: what it says is
+                            * not known here, and passed as healthy */
+    uint8_t glove;         /* enum exh_box_when; EXH_BOX_NEVER: its card is not touched */
+    uint8_t din_invert[2]; /* of A, B: input pins 0..3 whose healthy level is 0 */
+    uint8_t out_invert[2]; /* output pins 4..7 whose active level is 0, bits 0xF0 */
+    uint16_t dac_span_raw; /* codes either side of 0 A that ever go out */
+    uint16_t dac_rest_raw; /* codes either side that a drive that is off may be given, for the
+                            * offset of its input; more is a fault: it is 0 A to nobody else */
     struct exh_s526_par s526;
     struct exh_mm32xat_par mm32xat;
 };
@@ -64,15 +65,15 @@ enum exh_box_row {
     EXH_BOX_ROW_BASE_A,
     EXH_BOX_ROW_BASE_B,
     EXH_BOX_ROW_BASE_GLOVE,
-    EXH_BOX_ROW_OVERLAP, /* of their register blocks                              */
+    EXH_BOX_ROW_OVERLAP, /* of their register blocks */
     EXH_BOX_ROW_FINGERS,
     EXH_BOX_ROW_MONITOR,
     EXH_BOX_ROW_GLOVE,
-    EXH_BOX_ROW_SPAN, /* dac_span_raw, dac_rest_raw                               */
-    EXH_BOX_ROW_WAIT, /* a limit of 0, or above 60000 us                          */
-    EXH_BOX_ROW_SCAN, /* channels, interval, slice, lost_limit                    */
+    EXH_BOX_ROW_SPAN, /* dac_span_raw, dac_rest_raw */
+    EXH_BOX_ROW_WAIT, /* a limit of 0, or above 60000 us */
+    EXH_BOX_ROW_SCAN, /* channels, interval, slice, lost_limit */
     EXH_BOX_ROW_PINS, /* another bit than those in din_invert, out_invert; watchdog not 0 or 1 */
-    EXH_BOX_ROW_FULL, /* not 0 or 1; or 0 with one finger, and board B answers    */
+    EXH_BOX_ROW_FULL, /* not 0 or 1; or 0 with one finger, and board B answers */
     EXH_BOX_ROWS
 };
 
@@ -81,29 +82,29 @@ unsigned exh_box_check(const struct exh_box_config *config, int32_t *value);
 
 /* What went wrong, and where. */
 struct exh_box_error {
-    int16_t code;  /* 0: nothing; else -EXH_E_ABSENT, -EXH_E_IO, -EXH_E_RANGE     */
-    uint8_t card;  /* enum exh_box_card; EXH_BOX_CARDS: the configuration         */
-    uint16_t base; /* of that card                                                */
+    int16_t code;  /* 0: nothing; else -EXH_E_ABSENT, -EXH_E_IO, -EXH_E_RANGE */
+    uint8_t card;  /* enum exh_box_card; EXH_BOX_CARDS: the configuration */
+    uint16_t base; /* of that card */
     struct exh_card_fault fault;
 };
 
 struct exh_box_report {
-    uint8_t used[EXH_BOX_CARDS];               /* 0: not touched                  */
+    uint8_t used[EXH_BOX_CARDS]; /* 0: not touched */
     uint16_t base[EXH_BOX_CARDS];
-    struct exh_box_error error[EXH_BOX_CARDS]; /* code 0: passed                  */
-    struct exh_s526_id s526[2];                /* of those that passed            */
+    struct exh_box_error error[EXH_BOX_CARDS]; /* code 0: passed */
+    struct exh_s526_id s526[2];                /* of those that passed */
 };
 
 /* What happened and was dealt with; nothing of it is an error alone. */
 struct exh_box_counts {
-    uint32_t reads;             /* exh_box_read_drive() that ended well           */
-    uint32_t clamped;           /* D/A codes beyond dac_span_raw                  */
-    uint32_t overtaken;         /* writes into which exh_box_safe() fell          */
-    uint32_t quad[EXH_FINGERS]; /* illegal transitions an encoder input captured  */
-    uint32_t glove_frames;      /* scans handed over                              */
+    uint32_t reads;             /* exh_box_read_drive() that ended well */
+    uint32_t clamped;           /* D/A codes beyond dac_span_raw */
+    uint32_t overtaken;         /* writes into which exh_box_safe() fell */
+    uint32_t quad[EXH_FINGERS]; /* illegal transitions an encoder input captured */
+    uint32_t glove_frames;      /* scans handed over */
     uint32_t glove_waits;       /* asked for while the scan still ran: the last again */
-    uint32_t glove_short;       /* scans with samples missing,                    */
-    uint32_t glove_long;        /* with too many,                                 */
+    uint32_t glove_short;       /* scans with samples missing, */
+    uint32_t glove_long;        /* with too many, */
     uint32_t glove_overflow;    /* from a FIFO that overflowed: dropped, FIFO reset */
 };
 

@@ -8,32 +8,23 @@
 
 #include <stddef.h>
 
-enum { /* offsets, 8 bits each */
-       MM_DATA = 0,
-       MM_START = 0,
-       MM_LOW = 2,
-       MM_HIGH = 3,
-       MM_FIFO = 7,
-       MM_MISC = 8,
-       MM_CLOCK = 9,
-       MM_RANGE = 11
+/* offsets, 8 bits each */
+enum {
+    MM_DATA = 0,
+    MM_START = 0,
+    MM_LOW = 2,
+    MM_HIGH = 3,
+    MM_FIFO = 7,
+    MM_MISC = 8,
+    MM_CLOCK = 9,
+    MM_RANGE = 11
 };
-enum { /* FIFO */
-       MM_FIFO_RESET = 0x02,
-       MM_SCAN = 0x04,
-       MM_OVERFLOW = 0x10,
-       MM_EMPTY = 0x80
-};
-enum { /* MISC */
-       MM_RESET = 0x20,
-       MM_BUSY = 0x80,
-       MM_SINGLE_ENDED = 0x60
-};
-enum { /* RANGE: +-10 V in the low bits, the interval above */
-       MM_10V = 0x08,
-       MM_INTERVAL_SHIFT = 4,
-       MM_WAIT = 0x80
-};
+/* FIFO */
+enum { MM_FIFO_RESET = 0x02, MM_SCAN = 0x04, MM_OVERFLOW = 0x10, MM_EMPTY = 0x80 };
+/* MISC */
+enum { MM_RESET = 0x20, MM_BUSY = 0x80, MM_SINGLE_ENDED = 0x60 };
+/* RANGE: +-10 V in the low bits, the interval above */
+enum { MM_10V = 0x08, MM_INTERVAL_SHIFT = 4, MM_WAIT = 0x80 };
 #define MM_ALL_ONES 0xFFu /* an empty port; no register that is looked at here can have it */
 
 /* A scan that never ends is asked for so many times, where time stands still. */
@@ -107,7 +98,7 @@ static int detect(struct exh_mm32xat *m, struct exh_card_fault *f)
     pause_us(m, m->par.reset_us);
     out(m, MM_FIFO, 0);
     out(m, MM_CLOCK, 0);
-    out(m, MM_LOW, 0x80); /* channels have five bits: 0 */
+    out(m, MM_LOW, 0x80);  /* channels have five bits: 0 */
     out(m, MM_HIGH, 0xFF); /* and 31 */
     out(m, MM_RANGE, 0x0C);
     pause_us(m, m->par.set_us);

@@ -12,15 +12,16 @@
 
 /* What is not certain about the card, and how much it may take. */
 struct exh_mm32xat_par {
-    uint8_t channels;      /* 0 .. channels-1 are scanned, 1 .. 31                */
-    uint8_t interval;      /* SCINT: 0 20 us, 1 15, 2 10, 3 5 (-AT) or 4 (X) a sample */
-    uint8_t words;         /* 1: a sample is one 16-bit read                      */
-    uint8_t slice;         /* samples taken a call of exh_mm32xat_some(), 1 .. 32; 0: not in parts, by exh_mm32xat_read() */
-    uint8_t lost_limit;    /* so many scans lost in a row are a fault, 1 .. 255   */
-    uint16_t reset_us;     /* after a reset of the card                           */
-    uint16_t set_us;       /* after its registers were set                        */
-    uint16_t settle_us;    /* longest wait for the input after a change of channel */
-    uint16_t scan_wait_us; /* longest scan, 1 .. 60000                            */
+    uint8_t channels;   /* 0 .. channels-1 are scanned, 1 .. 31 */
+    uint8_t interval;   /* SCINT: 0 20 us, 1 15, 2 10, 3 5 (-AT) or 4 (X) a sample */
+    uint8_t words;      /* 1: a sample is one 16-bit read */
+    uint8_t slice;      /* samples taken a call of exh_mm32xat_some(), 1 .. 32; 0: not in parts, by
+                           exh_mm32xat_read() */
+    uint8_t lost_limit; /* so many scans lost in a row are a fault, 1 .. 255 */
+    uint16_t reset_us;  /* after a reset of the card */
+    uint16_t set_us;    /* after its registers were set */
+    uint16_t settle_us; /* longest wait for the input after a change of channel */
+    uint16_t scan_wait_us; /* longest scan, 1 .. 60000 */
 };
 #define EXH_MM32XAT_PAR_DEFAULT \
     { \
@@ -30,15 +31,15 @@ struct exh_mm32xat_par {
 
 struct exh_mm32xat {
     uint16_t base;
-    uint8_t live;    /* found                                                     */
-    uint8_t running; /* a scan was started and its samples not yet read           */
-    uint8_t taken;   /* of its samples                                            */
-    uint8_t lost;    /* scans lost in a row                                       */
-    uint16_t asked;  /* while it ran                                              */
-    uint32_t since_us; /* when it was first found running                         */
-    uint32_t shorts, longs, overflows; /* scans lost, by cause                     */
+    uint8_t live;                      /* found */
+    uint8_t running;                   /* a scan was started and its samples not yet read */
+    uint8_t taken;                     /* of its samples */
+    uint8_t lost;                      /* scans lost in a row */
+    uint16_t asked;                    /* while it ran */
+    uint32_t since_us;                 /* when it was first found running */
+    uint32_t shorts, longs, overflows; /* scans lost, by cause */
     struct exh_mm32xat_par par;
-    int16_t part[EXH_MM32XAT_CHANNELS]; /* those samples                          */
+    int16_t part[EXH_MM32XAT_CHANNELS]; /* those samples */
 };
 
 /* Finds and tests the card at base. 0, -EXH_E_ABSENT (no card, another card) or -EXH_E_IO
@@ -58,9 +59,9 @@ int exh_mm32xat_wait(struct exh_mm32xat *m, struct exh_card_fault *f);
  * too many lost in a row (3 + 2 a channel, or 1 where words are read). */
 int exh_mm32xat_read(struct exh_mm32xat *m, int16_t *code, struct exh_card_fault *f);
 
-/* Both in parts: nothing while no scan runs, one look while it runs, then at most par.slice samples a
- * call. 1: these were the last, code has them all; 0: not yet, or lost; -EXH_E_IO with *f (at most
- * 2 + 2 a sample of the slice, or 1 where words are read). */
+/* Both in parts: nothing while no scan runs, one look while it runs, then at most par.slice samples
+ * a call. 1: these were the last, code has them all; 0: not yet, or lost; -EXH_E_IO with *f (at
+ * most 2 + 2 a sample of the slice, or 1 where words are read). */
 int exh_mm32xat_some(struct exh_mm32xat *m, int16_t *code, struct exh_card_fault *f);
 
 #endif

@@ -19,16 +19,16 @@
 
 /* What is not certain about the card, and how much it may take. */
 struct exh_s526_par {
-    uint8_t settle;      /* 1: the A/D waits for its inputs before each scan      */
-    uint8_t nominal;     /* 1: nominal values where the EEPROM's are garbage      */
-    uint8_t da_check;    /* 1: updates must be reported done                      */
-    uint8_t line_check;  /* 1: pins of outputs must read as written               */
+    uint8_t settle;      /* 1: the A/D waits for its inputs before each scan */
+    uint8_t nominal;     /* 1: nominal values where the EEPROM's are garbage */
+    uint8_t da_check;    /* 1: updates must be reported done */
+    uint8_t line_check;  /* 1: pins of outputs must read as written */
     uint8_t quad_check;  /* 1: one counter's quadrature error is looked at a tick */
-    uint8_t turns;       /* 1: what can wait takes turns (see below)               */
-    uint16_t quad_limit; /* so many may a counter have; more are a fault          */
-    uint16_t ad_wait_us; /* longest wait for a scan, 1 .. 60000                   */
-    uint16_t da_wait_us; /* for an update                                         */
-    uint16_t ee_wait_us; /* for a word of the EEPROM                              */
+    uint8_t turns;       /* 1: what can wait takes turns (see below) */
+    uint16_t quad_limit; /* so many may a counter have; more are a fault */
+    uint16_t ad_wait_us; /* longest wait for a scan, 1 .. 60000 */
+    uint16_t da_wait_us; /* for an update */
+    uint16_t ee_wait_us; /* for a word of the EEPROM */
     uint16_t noise_raw;  /* ten conversions of a reference lie within so many codes */
 };
 #define EXH_S526_PAR_DEFAULT \
@@ -47,40 +47,42 @@ struct exh_s526_par {
 #define EXH_S526_LINES_EVERY 16
 
 /* Nominal codes to this card's, and back. */
-struct exh_s526_da { /* code = 32768 + zero + gain (nominal - 32768) */
+/* code = 32768 + zero + gain (nominal - 32768) */
+struct exh_s526_da {
     int32_t gain_q30;
     int32_t zero_raw_q14;
 };
-struct exh_s526_ad { /* nominal = gain (code - zero) */
+/* nominal = gain (code - zero) */
+struct exh_s526_ad {
     int32_t gain_q30;
     int32_t zero_raw_q14;
 };
 
 /* Who it is, and what its calibration said. */
 struct exh_s526_id {
-    uint16_t signature; /* 0x526A or 0x526B                                      */
-    uint8_t nominal;    /* bit k: D/A k has nominal values, bit 4: Vref has      */
+    uint16_t signature; /* 0x526A or 0x526B */
+    uint8_t nominal;    /* bit k: D/A k has nominal values, bit 4: Vref has */
     struct exh_s526_da da[EXH_S526_AXES];
     struct exh_s526_ad ad;
     int64_t vref_V_q32;
-    int32_t c0_sum, c10_sum; /* ten conversions of each reference                */
+    int32_t c0_sum, c10_sum; /* ten conversions of each reference */
 };
 
 struct exh_s526 {
     uint16_t base;
-    uint32_t ad_mask;  /* bit k: channel k is scanned                            */
-    uint8_t live;      /* its signature was seen: its outputs may be written     */
-    volatile uint8_t lines; /* pins 4..7 as last written                              */
-    uint8_t lines_off; /* what they are when all is off                          */
-    uint8_t da_sent;   /* updates since one was last reported done               */
-    uint8_t quad_next; /* counter to be looked at next                           */
-    uint8_t ad_first;  /* no scan was begun                                      */
-    uint8_t lines_kept; /* writes of lines left out in a row                     */
-    uint8_t counted;   /* bit: axis whose count is known                         */
-    uint32_t ad_now;   /* channels of the scan that runs                         */
-    uint32_t count[EXH_S526_AXES]; /* 24 bits, as last read                      */
-    uint16_t da_zero_raw[EXH_S526_AXES]; /* its codes of 0 V                     */
-    uint32_t quad[EXH_S526_AXES];        /* illegal transitions captured         */
+    uint32_t ad_mask;                    /* bit k: channel k is scanned */
+    uint8_t live;                        /* its signature was seen: its outputs may be written */
+    volatile uint8_t lines;              /* pins 4..7 as last written */
+    uint8_t lines_off;                   /* what they are when all is off */
+    uint8_t da_sent;                     /* updates since one was last reported done */
+    uint8_t quad_next;                   /* counter to be looked at next */
+    uint8_t ad_first;                    /* no scan was begun */
+    uint8_t lines_kept;                  /* writes of lines left out in a row */
+    uint8_t counted;                     /* bit: axis whose count is known */
+    uint32_t ad_now;                     /* channels of the scan that runs */
+    uint32_t count[EXH_S526_AXES];       /* 24 bits, as last read */
+    uint16_t da_zero_raw[EXH_S526_AXES]; /* its codes of 0 V */
+    uint32_t quad[EXH_S526_AXES];        /* illegal transitions captured */
     struct exh_s526_par par;
     struct exh_s526_id id;
 };
@@ -97,7 +99,7 @@ int exh_s526_open(struct exh_s526 *s, uint16_t base, unsigned ad_mask, unsigned 
 /* --- of a tick; the number of accesses in brackets --- */
 
 uint32_t exh_s526_count(const struct exh_s526 *s, unsigned axis); /* 24 bits (2) */
-uint32_t exh_s526_follow(struct exh_s526 *s, unsigned axis); /* the same (2; with turns 1) */
+uint32_t exh_s526_follow(struct exh_s526 *s, unsigned axis);      /* the same (2; with turns 1) */
 
 /* One counter's quadrature error, the next one's at each call, axes 0 .. axes-1 (1, and 1 if
  * there was one). With turns, in between one counter's high word, which must be that of its last
@@ -115,8 +117,8 @@ void exh_s526_ad_start(struct exh_s526 *s); /* a scan (1) */
 int exh_s526_ad_read(struct exh_s526 *s, int16_t *code, struct exh_card_fault *f);
 
 void exh_s526_da_put(const struct exh_s526 *s, unsigned channel, uint16_t nominal); /* (2) */
-void exh_s526_da_start(struct exh_s526 *s);                      /* all that were put (1) */
-void exh_s526_lines_put(struct exh_s526 *s, unsigned lines);     /* pins 4..7 (1; with turns 0) */
+void exh_s526_da_start(struct exh_s526 *s);                  /* all that were put (1) */
+void exh_s526_lines_put(struct exh_s526 *s, unsigned lines); /* pins 4..7 (1; with turns 0) */
 
 /* Lines off, D/A at 0 V, of those of n cards that are live, from anywhere, between any two
  * accesses of the others. */

@@ -322,7 +322,7 @@ int exh_s526_open(struct exh_s526 *s, uint16_t base, unsigned ad_mask, unsigned 
     err = self_test(s, f);
     if (err == 0) { err = eeprom(s, f); }
     if (err == 0) { err = calibrate(s, f); }
-    exh_s526_safe(s, 1); /* with its own codes of 0 V */
+    exh_s526_safe(s, 1);                                    /* with its own codes of 0 V */
     if (err < 0 && s526_in(s, S526_EEC) == S526_ALL_ONES) { /* it died meanwhile */
         return exh_card_fault(f, EXH_CARD_EMPTY, S526_EEC, S526_ALL_ONES, 0, 0);
     }

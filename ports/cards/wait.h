@@ -27,7 +27,7 @@ static inline int exh_wait_more(struct exh_wait *w)
     const uint32_t now_us = exh_io_time_us();
     if (w->polls == 0) { w->start_us = now_us; }
     if (w->polls++ >= w->limit_us * EXH_WAIT_POLLS_PER_US) { return 0; } /* or the limit is gone */
-    if (now_us - w->start_us > w->limit_us) { w->limit_us = 0; } /* one more poll */
+    if (now_us - w->start_us > w->limit_us) { w->limit_us = 0; }         /* one more poll */
     return 1;
 }
 

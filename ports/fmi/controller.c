@@ -17,8 +17,10 @@ extern const struct exh_scene EXH_SCENE;
 #define scene (&EXH_SCENE)
 
 const char unit_name[] = "ExhandController";
-const char unit_help[] = "exhand: fixed-point controller of a force-feedback glove, the scene and its safety, counts in, D/A codes out";
-const char unit_order[] = "reads its inputs at the beginning of a step: step it before ExhandDevice, with that one's outputs";
+const char unit_help[] = "exhand: fixed-point controller of a force-feedback glove, the scene and "
+                         "its safety, counts in, D/A codes out";
+const char unit_order[] = "reads its inputs at the beginning of a step: step it before "
+                          "ExhandDevice, with that one's outputs";
 
 static struct exh_scene_in in;
 static struct exh_drive_out out;
@@ -27,23 +29,48 @@ static uint8_t started;
 
 /* --- what there is beside the scene's tables --- */
 
-enum own { PERIOD_NUM, PERIOD_DEN, ENC_BITS, MON, SUPPLY, DIN, MISSED, COMMAND, ENC, DAC, ENABLE, ALIVE, OWN };
+enum own {
+    PERIOD_NUM,
+    PERIOD_DEN,
+    ENC_BITS,
+    MON,
+    SUPPLY,
+    DIN,
+    MISSED,
+    COMMAND,
+    ENC,
+    DAC,
+    ENABLE,
+    ALIVE,
+    OWN
+};
 static int32_t enc_bits;
 
 static const struct unit_var own_var[OWN] = {
-    [PERIOD_NUM] = {UNIT_INT32, UNIT_FIXED, "period_num", "", "period of the loop and of a step, numerator, s", 1, 2147483647, 1},
-    [PERIOD_DEN] = {UNIT_INT32, UNIT_FIXED, "period_den", "", "and denominator; 1/20000..1 s", 1, 2147483647, 2000},
-    [ENC_BITS] = {UNIT_INT32, UNIT_FIXED, "enc_bits", "", "width of the encoders' counters", 8, 32, 24},
+    [PERIOD_NUM] = {UNIT_INT32, UNIT_FIXED, "period_num", "",
+                    "period of the loop and of a step, numerator, s", 1, 2147483647, 1},
+    [PERIOD_DEN] = {UNIT_INT32, UNIT_FIXED, "period_den", "", "and denominator; 1/20000..1 s", 1,
+                    2147483647, 2000},
+    [ENC_BITS] = {UNIT_INT32, UNIT_FIXED, "enc_bits", "", "width of the encoders' counters", 8, 32,
+                  24},
     [MON] = {UNIT_INT32, UNIT_INPUT, "mon_raw", "", "current monitor, code", -32768, 32767, 0},
     [SUPPLY] = {UNIT_INT32, UNIT_INPUT, "supply_raw", "", "supply monitor, code", -32768, 32767, 0},
-    [DIN] = {UNIT_INT32, UNIT_INPUT, "din", "", "digital inputs, bits: 1 e-stop loop, 2 dead-man, 4 watchdog, 8 cards, 256 drive; 1 is healthy",
+    [DIN] = {UNIT_INT32, UNIT_INPUT, "din", "",
+             "digital inputs, bits: 1 e-stop loop, 2 dead-man, 4 watchdog, 8 cards, 256 drive; 1 "
+             "is healthy",
              0, 65535, 271},
-    [MISSED] = {UNIT_INT32, UNIT_INPUT, "missed", "", "ticks missed before this one", 0, 2147483647, 0},
-    [COMMAND] = {UNIT_INT32, UNIT_INPUT, "command", "", "at this tick: 0 none, 1 run, 2 off, 3 clear; -1: run at the first tick, then none", -1, 3, -1},
-    [ENC] = {UNIT_INT32, UNIT_INPUT, "enc_raw", "", "encoder counter; of 32 bits as two's complement", 1, 0, 0},
+    [MISSED] = {UNIT_INT32, UNIT_INPUT, "missed", "", "ticks missed before this one", 0, 2147483647,
+                0},
+    [COMMAND] =
+        {UNIT_INT32, UNIT_INPUT, "command", "",
+         "at this tick: 0 none, 1 run, 2 off, 3 clear; -1: run at the first tick, then none", -1, 3,
+         -1},
+    [ENC] = {UNIT_INT32, UNIT_INPUT, "enc_raw", "",
+             "encoder counter; of 32 bits as two's complement", 1, 0, 0},
     [DAC] = {UNIT_INT32, UNIT_OUTPUT, "dac_raw", "", "D/A code, offset binary", 0, 65535, 0},
     [ENABLE] = {UNIT_INT32, UNIT_OUTPUT, "enable", "", "drive enabled", 0, 1, 0},
-    [ALIVE] = {UNIT_INT32, UNIT_OUTPUT, "alive", "", "the watchdog's kick: changes each tick", 0, 255, 0},
+    [ALIVE] = {UNIT_INT32, UNIT_OUTPUT, "alive", "", "the watchdog's kick: changes each tick", 0,
+               255, 0},
 };
 static int32_t command;
 
@@ -81,9 +108,13 @@ void unit_var(uint32_t i, struct unit_var *v)
         return;
     }
     if (row == NULL) { row = exh_signal_at(scene->params->table, i - OWN, &instance); }
-    *v = (struct unit_var){.type = row->frac ? UNIT_FLOAT64 : UNIT_INT32, .unit = row->unit, .help = row->help};
-    v->role = row->when == EXH_WHEN_OUTPUT ? UNIT_OUTPUT : row->when == EXH_WHEN_SETUP ? UNIT_FIXED : UNIT_TUNABLE;
-    (void)snprintf(v->name, sizeof v->name, instance ? "%s_%u" : "%s", row->name, (unsigned)instance);
+    *v = (struct unit_var){
+        .type = row->frac ? UNIT_FLOAT64 : UNIT_INT32, .unit = row->unit, .help = row->help};
+    v->role = row->when == EXH_WHEN_OUTPUT  ? UNIT_OUTPUT
+              : row->when == EXH_WHEN_SETUP ? UNIT_FIXED
+                                            : UNIT_TUNABLE;
+    (void)snprintf(v->name, sizeof v->name, instance ? "%s_%u" : "%s", row->name,
+                   (unsigned)instance);
     v->min = scaled(row, row->min);
     v->max = scaled(row, row->max);
     v->start = scaled(row, row->dflt);
@@ -95,20 +126,27 @@ void unit_var(uint32_t i, struct unit_var *v)
 
 double unit_get(uint32_t i)
 {
-    const double own[OWN] = {T.num, T.den, enc_bits, in.drive.mon_raw[0], in.drive.supply_raw, in.drive.din, in.missed, command,
-                             (int32_t)in.drive.enc_raw[0], out.dac_raw[0], out.enable & 1, out.alive};
+    const double own[OWN] = {
+        T.num,          T.den,     enc_bits, in.drive.mon_raw[0],          in.drive.supply_raw,
+        in.drive.din,   in.missed, command,  (int32_t)in.drive.enc_raw[0], out.dac_raw[0],
+        out.enable & 1, out.alive};
     int32_t raw = 0;
     const struct exh_signal *row = signal_of(i, &raw);
     if (i < OWN) { return own[i]; }
     if (row) { return scaled(row, raw); }
-    return scaled(exh_signal_at(scene->params->table, i - OWN, NULL), scene->params->staged[i - OWN]);
+    return scaled(exh_signal_at(scene->params->table, i - OWN, NULL),
+                  scene->params->staged[i - OWN]);
 }
 
 static int set_own(uint32_t i, double value)
 {
     const int32_t v = (int32_t)value;
-    if (own_var[i].min <= own_var[i].max && (value < own_var[i].min || value > own_var[i].max)) { return -EXH_E_RANGE; }
-    if (own_var[i].role == UNIT_OUTPUT || (own_var[i].role == UNIT_FIXED && started)) { return -EXH_E_STATE; }
+    if (own_var[i].min <= own_var[i].max && (value < own_var[i].min || value > own_var[i].max)) {
+        return -EXH_E_RANGE;
+    }
+    if (own_var[i].role == UNIT_OUTPUT || (own_var[i].role == UNIT_FIXED && started)) {
+        return -EXH_E_STATE;
+    }
     switch (i) {
     case PERIOD_NUM: T.num = (uint32_t)v; break;
     case PERIOD_DEN: T.den = (uint32_t)v; break;
@@ -140,13 +178,16 @@ int unit_set(uint32_t i, double value)
 void unit_reset(void)
 {
     static const struct exh_scene_in no_in;
-    static const struct exh_drive_out no_out = {.dac_raw = {32768}}; /* 0 V: what is there before the first tick */
+    static const struct exh_drive_out no_out = {
+        .dac_raw = {32768}}; /* 0 V: what is there before the first tick */
     in = no_in;
     out = no_out;
     T = (struct exh_period){1, scene->rate_Hz};
     started = 0;
     scene->defaults();
-    for (uint32_t i = 0; i < exh_signal_count(scene->signals); i++) { scene->signal[i] = 0; } /* of an instance before */
+    for (uint32_t i = 0; i < exh_signal_count(scene->signals); i++) {
+        scene->signal[i] = 0;
+    } /* of an instance before */
     for (uint32_t i = 0; i < OWN; i++) {
         if (own_var[i].role == UNIT_INPUT || i == ENC_BITS) { (void)set_own(i, own_var[i].start); }
     }
@@ -181,7 +222,8 @@ int unit_step(void)
 static void set_up_anew(struct exh_bytes *c)
 {
     const struct exh_scene_board board = {T, (uint8_t)enc_bits};
-    const int fits = exh_period_ok(T) && enc_bits >= own_var[ENC_BITS].min && enc_bits <= own_var[ENC_BITS].max;
+    const int fits =
+        exh_period_ok(T) && enc_bits >= own_var[ENC_BITS].min && enc_bits <= own_var[ENC_BITS].max;
     if (!exh_bytes_ok(c) || !started) { return; }
     if (!fits || scene->setup(board) < 0) { exh_bytes_fail(c); }
 }

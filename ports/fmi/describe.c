@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Prints modelDescription.xml, or with "build" buildDescription.xml, of the unit it is linked with: describe [build SOURCE...] */
+/* Prints modelDescription.xml, or with "build" buildDescription.xml, of the unit it is linked with:
+ * describe [build SOURCE...] */
 #include "unit.h"
 
 #include "exhand/exhand.h"
@@ -8,7 +9,8 @@
 #include <string.h>
 
 static const char *const type_name[] = {"Int32", "Float64"};
-static const char *const role_text[] = {"causality=\"parameter\" variability=\"fixed\"", "causality=\"parameter\" variability=\"tunable\"",
+static const char *const role_text[] = {"causality=\"parameter\" variability=\"fixed\"",
+                                        "causality=\"parameter\" variability=\"tunable\"",
                                         "causality=\"input\"", "causality=\"output\""};
 
 static void text(const char *s)
@@ -35,7 +37,9 @@ static void units(void)
         uint32_t k = 0;
         unit_var(i, &v);
         if (v.unit[0] == '\0' || v.type != UNIT_FLOAT64) { continue; }
-        for (unit_var(k, &other); k < i && (other.type != UNIT_FLOAT64 || strcmp(other.unit, v.unit) != 0); unit_var(++k, &other)) {}
+        for (unit_var(k, &other);
+             k < i && (other.type != UNIT_FLOAT64 || strcmp(other.unit, v.unit) != 0);
+             unit_var(++k, &other)) {}
         if (k == i) { printf("    <Unit name=\"%s\"/>\n", v.unit); }
     }
     printf("  </UnitDefinitions>\n");
@@ -43,7 +47,8 @@ static void units(void)
 
 static void variable(uint32_t i, const struct unit_var *v)
 {
-    printf("    <%s name=\"%s\" valueReference=\"%lu\" %s", type_name[v->type], v->name, (unsigned long)i, role_text[v->role]);
+    printf("    <%s name=\"%s\" valueReference=\"%lu\" %s", type_name[v->type], v->name,
+           (unsigned long)i, role_text[v->role]);
     if (v->type == UNIT_INT32 && v->role > UNIT_TUNABLE) { printf(" variability=\"discrete\""); }
     if (v->type == UNIT_FLOAT64 && v->role == UNIT_OUTPUT) { printf(" variability=\"discrete\""); }
     if (v->role != UNIT_OUTPUT) { printf(" start=\"%.17g\"", v->start); }
@@ -72,16 +77,21 @@ static void model(void)
 {
     const struct exh_period T = unit_period();
     struct unit_var v;
-    printf("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-           "<fmiModelDescription fmiVersion=\"3.0\" modelName=\"%s\" instantiationToken=\"%s-%08lx\"\n"
-           "    description=\"%s; %s\" version=\"%d.%d.%d\" license=\"MIT\" generationTool=\"exhand\">\n"
-           "  <CoSimulation modelIdentifier=\"%s\" canBeInstantiatedOnlyOncePerProcess=\"true\" canGetAndSetFMUState=\"true\"\n"
-           "      canSerializeFMUState=\"true\" canHandleVariableCommunicationStepSize=\"false\"/>\n",
-           unit_name, unit_name, (unsigned long)token(), unit_help, unit_order, EXH_VERSION_MAJOR, EXH_VERSION_MINOR, EXH_VERSION_PATCH,
-           unit_name);
+    printf(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+        "<fmiModelDescription fmiVersion=\"3.0\" modelName=\"%s\" instantiationToken=\"%s-%08lx\"\n"
+        "    description=\"%s; %s\" version=\"%d.%d.%d\" license=\"MIT\" "
+        "generationTool=\"exhand\">\n"
+        "  <CoSimulation modelIdentifier=\"%s\" canBeInstantiatedOnlyOncePerProcess=\"true\" "
+        "canGetAndSetFMUState=\"true\"\n"
+        "      canSerializeFMUState=\"true\" canHandleVariableCommunicationStepSize=\"false\"/>\n",
+        unit_name, unit_name, (unsigned long)token(), unit_help, unit_order, EXH_VERSION_MAJOR,
+        EXH_VERSION_MINOR, EXH_VERSION_PATCH, unit_name);
     units();
-    printf("  <DefaultExperiment startTime=\"0\" stopTime=\"3\" stepSize=\"%.17g\"/>\n  <ModelVariables>\n"
-           "    <Float64 name=\"time\" valueReference=\"%lu\" causality=\"independent\" variability=\"continuous\"/>\n",
+    printf("  <DefaultExperiment startTime=\"0\" stopTime=\"3\" stepSize=\"%.17g\"/>\n  "
+           "<ModelVariables>\n"
+           "    <Float64 name=\"time\" valueReference=\"%lu\" causality=\"independent\" "
+           "variability=\"continuous\"/>\n",
            (double)T.num / T.den, (unsigned long)unit_vars());
     for (uint32_t i = 0; i < unit_vars(); i++) {
         unit_var(i, &v);
@@ -91,7 +101,10 @@ static void model(void)
     for (int pass = 0; pass < 2; pass++) {
         for (uint32_t i = 0; i < unit_vars(); i++) {
             unit_var(i, &v);
-            if (v.role == UNIT_OUTPUT) { printf("    <%s valueReference=\"%lu\"/>\n", pass ? "InitialUnknown" : "Output", (unsigned long)i); }
+            if (v.role == UNIT_OUTPUT) {
+                printf("    <%s valueReference=\"%lu\"/>\n", pass ? "InitialUnknown" : "Output",
+                       (unsigned long)i);
+            }
         }
     }
     printf("  </ModelStructure>\n</fmiModelDescription>\n");
@@ -100,11 +113,13 @@ static void model(void)
 static void build(int n, char **source)
 {
     printf("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiBuildDescription fmiVersion=\"3.0\">\n"
-           "  <BuildConfiguration modelIdentifier=\"%s\">\n    <SourceFileSet language=\"C99\" compilerOptions=\"-ffp-contract=off\">\n",
+           "  <BuildConfiguration modelIdentifier=\"%s\">\n    <SourceFileSet language=\"C99\" "
+           "compilerOptions=\"-ffp-contract=off\">\n",
            unit_name);
     for (int i = 0; i < n; i++) { printf("      <SourceFile name=\"%s\"/>\n", source[i]); }
     printf("      <PreprocessorDefinition name=\"FMI_TOKEN\" value=\"0x%08lx\"/>\n"
-           "      <IncludeDirectory name=\".\"/>\n    </SourceFileSet>\n  </BuildConfiguration>\n</fmiBuildDescription>\n",
+           "      <IncludeDirectory name=\".\"/>\n    </SourceFileSet>\n  "
+           "</BuildConfiguration>\n</fmiBuildDescription>\n",
            (unsigned long)token());
 }
 

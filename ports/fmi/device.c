@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The simulated device as a unit: what ports/posix/board.c does around sim/mass, a tick at a time. */
+/* The simulated device as a unit: what ports/posix/board.c does around sim/mass, a tick at a time.
+ */
 #include "unit.h"
 
 #include "sim/codes.h"
@@ -12,8 +13,10 @@
 #include <string.h>
 
 const char unit_name[] = "ExhandDevice";
-const char unit_help[] = "exhand: the simulated device, a falling mass on one string: motor, drive, encoder and codes; D/A codes in, counts out";
-const char unit_order[] = "takes its inputs at the beginning of a step: step it behind ExhandController, with that one's outputs";
+const char unit_help[] = "exhand: the simulated device, a falling mass on one string: motor, "
+                         "drive, encoder and codes; D/A codes in, counts out";
+const char unit_order[] = "takes its inputs at the beginning of a step: step it behind "
+                          "ExhandController, with that one's outputs";
 
 #define OUTPUTS_MAX 256 /* on their way to the drive: 3 ticks + 10 ms at 20 kHz are 203 */
 
@@ -34,24 +37,49 @@ static struct {
     uint8_t started, ran;
 } u;
 
-enum own { PERIOD_NUM, PERIOD_DEN, SEED, FALLS, WAITS, DAC, ENABLE, STATE, ENC, MON, SUPPLY, DIN, FALL, DONE, X, Q, CURRENT, OWN };
+enum own {
+    PERIOD_NUM,
+    PERIOD_DEN,
+    SEED,
+    FALLS,
+    WAITS,
+    DAC,
+    ENABLE,
+    STATE,
+    ENC,
+    MON,
+    SUPPLY,
+    DIN,
+    FALL,
+    DONE,
+    X,
+    Q,
+    CURRENT,
+    OWN
+};
 
 static const struct unit_var own_var[OWN] = {
-    [PERIOD_NUM] = {UNIT_INT32, UNIT_FIXED, "period_num", "", "period of a step, numerator, s", 1, 2147483647, 1},
-    [PERIOD_DEN] = {UNIT_INT32, UNIT_FIXED, "period_den", "", "and denominator; 1/20000..1 s", 1, 2147483647, 2000},
+    [PERIOD_NUM] = {UNIT_INT32, UNIT_FIXED, "period_num", "", "period of a step, numerator, s", 1,
+                    2147483647, 1},
+    [PERIOD_DEN] = {UNIT_INT32, UNIT_FIXED, "period_den", "", "and denominator; 1/20000..1 s", 1,
+                    2147483647, 2000},
     [SEED] = {UNIT_INT32, UNIT_FIXED, "seed", "", "of all chance", 0, 2147483647, 1},
     [FALLS] = {UNIT_INT32, UNIT_FIXED, "falls", "", "falls, then done", 1, 1000000, 1},
-    [WAITS] = {UNIT_INT32, UNIT_FIXED, "waits", "", "1: the first fall is held until state says run or limit", 0, 1, 1},
+    [WAITS] = {UNIT_INT32, UNIT_FIXED, "waits", "",
+               "1: the first fall is held until state says run or limit", 0, 1, 1},
     [DAC] = {UNIT_INT32, UNIT_INPUT, "dac_raw", "", "D/A code, offset binary", 0, 65535, 32768},
     [ENABLE] = {UNIT_INT32, UNIT_INPUT, "enable", "", "drive enabled", 0, 1, 0},
-    [STATE] = {UNIT_INT32, UNIT_INPUT, "state", "", "of the box, for whoever holds the mass", 0, 5, 0},
+    [STATE] = {UNIT_INT32, UNIT_INPUT, "state", "", "of the box, for whoever holds the mass", 0, 5,
+               0},
     [ENC] = {UNIT_INT32, UNIT_OUTPUT, "enc_raw", "", "encoder counter, 24 bits", 1, 0, 0},
     [MON] = {UNIT_INT32, UNIT_OUTPUT, "mon_raw", "", "current monitor, code", 1, 0, 0},
     [SUPPLY] = {UNIT_INT32, UNIT_OUTPUT, "supply_raw", "", "supply monitor, code", 1, 0, 0},
     [DIN] = {UNIT_INT32, UNIT_OUTPUT, "din", "", "digital inputs, bits: all healthy", 1, 0, 0},
-    [FALL] = {UNIT_INT32, UNIT_OUTPUT, "fall", "", "the fall under observation; 0: the mass is held or lifted", 1, 0, 0},
+    [FALL] = {UNIT_INT32, UNIT_OUTPUT, "fall", "",
+              "the fall under observation; 0: the mass is held or lifted", 1, 0, 0},
     [DONE] = {UNIT_INT32, UNIT_OUTPUT, "done", "", "1: all falls are over", 1, 0, 0},
-    [X] = {UNIT_FLOAT64, UNIT_OUTPUT, "x", "m", "mass, down positive, 0 is the virtual contact", 1, 0, 0},
+    [X] = {UNIT_FLOAT64, UNIT_OUTPUT, "x", "m", "mass, down positive, 0 is the virtual contact", 1,
+           0, 0},
     [Q] = {UNIT_FLOAT64, UNIT_OUTPUT, "q", "m", "string at the motor", 1, 0, 0},
     [CURRENT] = {UNIT_FLOAT64, UNIT_OUTPUT, "current", "a", "motor current", 1, 0, 0},
 };
@@ -69,8 +97,13 @@ void unit_var(uint32_t i, struct unit_var *v)
         return;
     }
     row = &sim_device_row[i - OWN];
-    *v = (struct unit_var){.type = UNIT_FLOAT64, .role = UNIT_FIXED, .unit = row->unit, .help = row->help, .min = row->min,
-                           .max = row->max, .start = row->value};
+    *v = (struct unit_var){.type = UNIT_FLOAT64,
+                           .role = UNIT_FIXED,
+                           .unit = row->unit,
+                           .help = row->help,
+                           .min = row->min,
+                           .max = row->max,
+                           .start = row->value};
     (void)strncpy(v->name, row->name, sizeof v->name - 1);
 }
 
@@ -82,9 +115,23 @@ static double *device_value(uint32_t row)
 double unit_get(uint32_t i)
 {
     const int32_t done = u.mass.fall.phase == FALL_DONE;
-    const double own[OWN] = {u.T.num, u.T.den, u.seed, u.falls, u.waits, u.dac_raw, u.enable, u.state, u.enc_raw, u.mon_raw, u.supply_raw,
-                             EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG | EXH_DIN_CARDS | EXH_DIN_DRIVE0,
-                             u.mass.fall.phase == FALL_FREE ? u.mass.fall.number : 0, done, u.mass.plant.x_m, u.mass.plant.q_m,
+    const double own[OWN] = {u.T.num,
+                             u.T.den,
+                             u.seed,
+                             u.falls,
+                             u.waits,
+                             u.dac_raw,
+                             u.enable,
+                             u.state,
+                             u.enc_raw,
+                             u.mon_raw,
+                             u.supply_raw,
+                             EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG | EXH_DIN_CARDS |
+                                 EXH_DIN_DRIVE0,
+                             u.mass.fall.phase == FALL_FREE ? u.mass.fall.number : 0,
+                             done,
+                             u.mass.plant.x_m,
+                             u.mass.plant.q_m,
                              u.mass.plant.cur_A};
     return i < OWN ? own[i] : *device_value(i - OWN);
 }
@@ -92,7 +139,8 @@ double unit_get(uint32_t i)
 int unit_set(uint32_t i, double value)
 {
     struct unit_var v;
-    int32_t *const own[] = {NULL, NULL, &u.seed, &u.falls, &u.waits, &u.dac_raw, &u.enable, &u.state};
+    int32_t *const own[] = {NULL,     NULL,       &u.seed,   &u.falls,
+                            &u.waits, &u.dac_raw, &u.enable, &u.state};
     unit_var(i, &v);
     if (v.role == UNIT_OUTPUT || (v.role == UNIT_FIXED && u.started)) { return -EXH_E_STATE; }
     if (!(value >= v.min && value <= v.max)) { return -EXH_E_RANGE; }
@@ -128,7 +176,8 @@ int unit_start(const char **which)
 {
     *which = "period_num, period_den";
     if (!exh_period_ok(u.T)) { return -EXH_E_RATE; }
-    *which = "substep: too long for this string, rotor and mass (mass, rotor, cable_k, cable_b): give a shorter one, "
+    *which = "substep: too long for this string, rotor and mass (mass, rotor, cable_k, cable_b): "
+             "give a shorter one, "
              "or a heavier rotor";
     if (plant_take_step(&u.device, 0, 0) < 0) { return -EXH_E_RANGE; }
     sim_mass_fall(&u.mass, &u.device, (uint64_t)u.seed, u.falls, (double)u.T.num / (double)u.T.den);
@@ -148,7 +197,8 @@ struct exh_period unit_period(void)
 static void put(void)
 {
     const uint32_t at = (u.head + u.queued++) % OUTPUTS_MAX;
-    u.queue[at].at_s = u.now_s + u.device.delay_tick * ((double)u.T.num / (double)u.T.den) + u.device.delay_s;
+    u.queue[at].at_s =
+        u.now_s + u.device.delay_tick * ((double)u.T.num / (double)u.T.den) + u.device.delay_s;
     u.queue[at].ref_A = sim_drive_A(&u.device, (uint16_t)u.dac_raw, u.enable);
 }
 
@@ -179,5 +229,7 @@ void unit_bytes(struct exh_bytes *c)
 {
     uint8_t *byte = (uint8_t *)&u;
     for (size_t i = 0; i < sizeof u; i++) { exh_bytes_u8(c, &byte[i]); }
-    if (u.head >= OUTPUTS_MAX || u.queued > OUTPUTS_MAX || !exh_period_ok(u.T)) { exh_bytes_fail(c); }
+    if (u.head >= OUTPUTS_MAX || u.queued > OUTPUTS_MAX || !exh_period_ok(u.T)) {
+        exh_bytes_fail(c);
+    }
 }

@@ -37,7 +37,8 @@ const char *fmi3GetVersion(void)
     return fmi3Version;
 }
 
-fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean loggingOn, size_t nCategories, const fmi3String categories[])
+fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean loggingOn, size_t nCategories,
+                               const fmi3String categories[])
 {
     (void)instance, (void)loggingOn, (void)nCategories, (void)categories;
     return fmi3OK;
@@ -50,25 +51,28 @@ static void reset(void)
     unit_reset();
 }
 
-fmi3Instance fmi3InstantiateCoSimulation(fmi3String instanceName, fmi3String instantiationToken, fmi3String resourcePath,
-                                         fmi3Boolean visible, fmi3Boolean loggingOn, fmi3Boolean eventModeUsed,
-                                         fmi3Boolean earlyReturnAllowed,
-                                         const fmi3ValueReference requiredIntermediateVariables[],
-                                         size_t nRequiredIntermediateVariables, fmi3InstanceEnvironment instanceEnvironment,
-                                         fmi3LogMessageCallback logMessage, fmi3IntermediateUpdateCallback intermediateUpdate)
+fmi3Instance fmi3InstantiateCoSimulation(
+    fmi3String instanceName, fmi3String instantiationToken, fmi3String resourcePath,
+    fmi3Boolean visible, fmi3Boolean loggingOn, fmi3Boolean eventModeUsed,
+    fmi3Boolean earlyReturnAllowed, const fmi3ValueReference requiredIntermediateVariables[],
+    size_t nRequiredIntermediateVariables, fmi3InstanceEnvironment instanceEnvironment,
+    fmi3LogMessageCallback logMessage, fmi3IntermediateUpdateCallback intermediateUpdate)
 {
     char token[64];
-    (void)instanceName, (void)resourcePath, (void)visible, (void)loggingOn, (void)earlyReturnAllowed;
+    (void)instanceName, (void)resourcePath, (void)visible, (void)loggingOn,
+        (void)earlyReturnAllowed;
     (void)requiredIntermediateVariables, (void)intermediateUpdate;
     fmu.env = instanceEnvironment;
     fmu.log = logMessage;
     (void)snprintf(token, sizeof token, "%s-%08lx", unit_name, (unsigned long)FMI_TOKEN);
     if (instantiationToken == NULL || strcmp(instantiationToken, token) != 0) {
-        (void)fail("instantiationToken: %s: this binary is of %s: build it from its own sources", instantiationToken ? instantiationToken : "none", token);
+        (void)fail("instantiationToken: %s: this binary is of %s: build it from its own sources",
+                   instantiationToken ? instantiationToken : "none", token);
         return NULL;
     }
     if (fmu.used || eventModeUsed || nRequiredIntermediateVariables) {
-        (void)fail(fmu.used ? "one instance a process: free the other first" : "no event mode, no intermediate variables");
+        (void)fail(fmu.used ? "one instance a process: free the other first"
+                            : "no event mode, no intermediate variables");
         return NULL;
     }
     fmu.used = 1;
@@ -81,8 +85,9 @@ void fmi3FreeInstance(fmi3Instance instance)
     if (instance) { fmu.used = 0; }
 }
 
-fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean toleranceDefined, fmi3Float64 tolerance,
-                                       fmi3Float64 startTime, fmi3Boolean stopTimeDefined, fmi3Float64 stopTime)
+fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean toleranceDefined,
+                                       fmi3Float64 tolerance, fmi3Float64 startTime,
+                                       fmi3Boolean stopTimeDefined, fmi3Float64 stopTime)
 {
     (void)instance, (void)toleranceDefined, (void)tolerance, (void)stopTimeDefined, (void)stopTime;
     fmu.initialising = 1;
@@ -97,8 +102,8 @@ fmi3Status fmi3ExitInitializationMode(fmi3Instance instance)
     (void)instance;
     fmu.initialising = 0;
     fmu.running = err == 0;
-    return err < 0 ? fail("%s, period %lu/%lu s: refused, %d", which, (unsigned long)unit_period().num,
-                          (unsigned long)unit_period().den, err)
+    return err < 0 ? fail("%s, period %lu/%lu s: refused, %d", which,
+                          (unsigned long)unit_period().num, (unsigned long)unit_period().den, err)
                    : fmi3OK;
 }
 
@@ -135,8 +140,13 @@ static fmi3Status set(fmi3ValueReference vr, enum unit_type type, double value)
     const int32_t i = variable(vr, type, &v);
     const int err = i < 0 ? 0 : unit_set((uint32_t)i, value);
     if (i < 0) { return fmi3Error; }
-    if (err == -EXH_E_RANGE) { return fail("%s: %.17g (%.9g..%.9g %s): give one in that range", v.name, value, v.min, v.max, v.unit); }
-    if (err < 0 && v.role == UNIT_OUTPUT) { return fail("%s: an output: it cannot be set", v.name); }
+    if (err == -EXH_E_RANGE) {
+        return fail("%s: %.17g (%.9g..%.9g %s): give one in that range", v.name, value, v.min,
+                    v.max, v.unit);
+    }
+    if (err < 0 && v.role == UNIT_OUTPUT) {
+        return fail("%s: an output: it cannot be set", v.name);
+    }
     return err < 0 ? fail("%s: %.17g: not now: before the first step", v.name, value) : fmi3OK;
 }
 
@@ -158,7 +168,8 @@ static fmi3Status get(fmi3ValueReference vr, enum unit_type type, double *value)
 }
 
 #define VALUES(T, TYPE) \
-    fmi3Status fmi3Get##T(fmi3Instance instance, const fmi3ValueReference vr[], size_t n, fmi3##T values[], size_t nValues) \
+    fmi3Status fmi3Get##T(fmi3Instance instance, const fmi3ValueReference vr[], size_t n, \
+                          fmi3##T values[], size_t nValues) \
     { \
         (void)instance; \
         for (size_t k = 0; k < n && k < nValues; k++) { \
@@ -168,7 +179,8 @@ static fmi3Status get(fmi3ValueReference vr, enum unit_type type, double *value)
         } \
         return n == nValues ? fmi3OK : fail("%zu values for %zu variables", nValues, n); \
     } \
-    fmi3Status fmi3Set##T(fmi3Instance instance, const fmi3ValueReference vr[], size_t n, const fmi3##T values[], size_t nValues) \
+    fmi3Status fmi3Set##T(fmi3Instance instance, const fmi3ValueReference vr[], size_t n, \
+                          const fmi3##T values[], size_t nValues) \
     { \
         (void)instance; \
         for (size_t k = 0; k < n && k < nValues; k++) { \
@@ -182,9 +194,11 @@ VALUES(Float64, UNIT_FLOAT64)
 /* --- steps --- */
 
 /* Whole periods only: a step of several is as many ticks with the same inputs. */
-fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 currentCommunicationPoint, fmi3Float64 communicationStepSize,
-                      fmi3Boolean noSetFMUStatePriorToCurrentPoint, fmi3Boolean *eventHandlingNeeded,
-                      fmi3Boolean *terminateSimulation, fmi3Boolean *earlyReturn, fmi3Float64 *lastSuccessfulTime)
+fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 currentCommunicationPoint,
+                      fmi3Float64 communicationStepSize,
+                      fmi3Boolean noSetFMUStatePriorToCurrentPoint,
+                      fmi3Boolean *eventHandlingNeeded, fmi3Boolean *terminateSimulation,
+                      fmi3Boolean *earlyReturn, fmi3Float64 *lastSuccessfulTime)
 {
     const struct exh_period T = unit_period();
     const double periods = communicationStepSize * (double)T.den / (double)T.num;
@@ -193,7 +207,8 @@ fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 currentCommunicationPoi
     *eventHandlingNeeded = *terminateSimulation = *earlyReturn = fmi3False;
     if (!fmu.running) { return fail("a step before initialisation, or after its end"); }
     if (n == 0 || periods - (double)n > 1e-3 || (double)n - periods > 1e-3) {
-        return fail("communicationStepSize: %.17g s (whole periods of %lu/%lu s): give period_num and period_den, or another step",
+        return fail("communicationStepSize: %.17g s (whole periods of %lu/%lu s): give period_num "
+                    "and period_den, or another step",
                     communicationStepSize, (unsigned long)T.num, (unsigned long)T.den);
     }
     for (uint64_t k = 0; k < n; k++) {
@@ -247,7 +262,9 @@ fmi3Status fmi3SetFMUState(fmi3Instance instance, fmi3FMUState state)
     fmu.step = k->step;
     fmu.start_s = k->start_s;
     fmu.running = k->running && exh_bytes_ok(&c) && c.at == k->len_B;
-    return exh_bytes_ok(&c) && c.at == k->len_B ? fmi3OK : fail("state: not one of this unit: it is of no more use without a reset");
+    return exh_bytes_ok(&c) && c.at == k->len_B
+               ? fmi3OK
+               : fail("state: not one of this unit: it is of no more use without a reset");
 }
 
 fmi3Status fmi3FreeFMUState(fmi3Instance instance, fmi3FMUState *state)
@@ -268,20 +285,26 @@ fmi3Status fmi3SerializedFMUStateSize(fmi3Instance instance, fmi3FMUState state,
     return fmi3OK;
 }
 
-fmi3Status fmi3SerializeFMUState(fmi3Instance instance, fmi3FMUState state, fmi3Byte serializedState[], size_t size)
+fmi3Status fmi3SerializeFMUState(fmi3Instance instance, fmi3FMUState state,
+                                 fmi3Byte serializedState[], size_t size)
 {
     const struct kept *k = state;
     (void)instance;
-    if (size != sizeof *k + k->len_B) { return fail("state: %zu bytes, not %zu", size, sizeof *k + k->len_B); }
+    if (size != sizeof *k + k->len_B) {
+        return fail("state: %zu bytes, not %zu", size, sizeof *k + k->len_B);
+    }
     memcpy(serializedState, k, size);
     return fmi3OK;
 }
 
-fmi3Status fmi3DeserializeFMUState(fmi3Instance instance, const fmi3Byte serializedState[], size_t size, fmi3FMUState *state)
+fmi3Status fmi3DeserializeFMUState(fmi3Instance instance, const fmi3Byte serializedState[],
+                                   size_t size, fmi3FMUState *state)
 {
     struct kept *k;
     (void)instance;
-    if (size != sizeof *k + state_B()) { return fail("state: %zu bytes, not %zu", size, sizeof *k + state_B()); }
+    if (size != sizeof *k + state_B()) {
+        return fail("state: %zu bytes, not %zu", size, sizeof *k + state_B());
+    }
     k = malloc(size);
     if (k == NULL) { return fail("no memory for a state of %zu bytes", size); }
     memcpy(k, serializedState, size);

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* A unit: what of ours stands behind the functions of FMI 3.0, the controller or the simulated device. One an FMU.
+/* A unit: what of ours stands behind the functions of FMI 3.0, the controller or the simulated
+ * device. One an FMU.
  *
- * Its variables are a list, made from the tables that everything else is made from; the model description is printed
- * from it (describe.c), and a value reference is the place in it.
+ * Its variables are a list, made from the tables that everything else is made from; the model
+ * description is printed from it (describe.c), and a value reference is the place in it.
  */
 #ifndef FMI_UNIT_H
 #define FMI_UNIT_H
@@ -15,8 +16,8 @@
 
 enum unit_type { UNIT_INT32, UNIT_FLOAT64 };
 enum unit_role {
-    UNIT_FIXED,   /* parameter, before the first step                          */
-    UNIT_TUNABLE, /* parameter, between any two                                */
+    UNIT_FIXED,   /* parameter, before the first step */
+    UNIT_TUNABLE, /* parameter, between any two */
     UNIT_INPUT,
     UNIT_OUTPUT
 };
@@ -24,11 +25,11 @@ enum unit_role {
 struct unit_var {
     uint8_t type, role;
     char name[32];
-    const char *unit, *help; /* unit "": none                                  */
-    double min, max, start;  /* min > max: no bounds worth telling             */
+    const char *unit, *help; /* unit "": none */
+    double min, max, start;  /* min > max: no bounds worth telling */
 };
 
-extern const char unit_name[];  /* the model's identifier                      */
+extern const char unit_name[]; /* the model's identifier */
 extern const char unit_help[];
 /* What it must be called with between two steps; a loop of both is the native one bit for bit. */
 extern const char unit_order[];
@@ -41,7 +42,8 @@ void unit_var(uint32_t i, struct unit_var *v);
 double unit_get(uint32_t i);
 /* 0, or -EXH_E_…: out of its range, or not now. Parameters act with the next step. */
 int unit_set(uint32_t i, double value);
-/* Parameters are given: outputs of time 0. 0 or -EXH_E_…, and then *which is those that do not go together. */
+/* Parameters are given: outputs of time 0. 0 or -EXH_E_…, and then *which is those that do not go
+ * together. */
 int unit_start(const char **which);
 /* The period that it was started with. */
 struct exh_period unit_period(void);

@@ -12,7 +12,7 @@
 uint32_t mps2_stack_B(void); /* most that was used of it so far */
 
 /* --- board.c --- */
-void mps2_systick(void); /* the interrupt */
+void mps2_systick(void);             /* the interrupt */
 void mps2_fault(uint32_t exception); /* on a fresh stack; does not return */
 
 /* --- say.c: text over UART 0; a line that takes no character is given up --- */

@@ -24,7 +24,7 @@ const struct exh_board_info exh_board_info = {
 
 static struct {
     const struct exh_scene *scene;
-    uint32_t run, missed; /* ticks */
+    uint32_t run, missed;                    /* ticks */
     uint32_t tick_start, tick_min, tick_max; /* cycles of the scene's tick alone */
     uint8_t ready, opened, started;
 } run = {.tick_min = UINT32_MAX};

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The black box of a scene that has one (SCENE_BOX_B in its scene.mk), and its way out after a fault:
- * behind the outputs, DUMP_TICK_B bytes a tick at most into a queue, from there as fast as the line
- * takes them while the processor waits for the next tick. */
+/* The black box of a scene that has one (SCENE_BOX_B in its scene.mk), and its way out after a
+ * fault: behind the outputs, DUMP_TICK_B bytes a tick at most into a queue, from there as fast as
+ * the line takes them while the processor waits for the next tick. */
 #include "pc104.h"
 
 #include "blackbox.h"

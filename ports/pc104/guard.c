@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Memory: all of it at its own address; nothing at page 0 and below the stack, code and constants
  * read-only. What runs over the end of the stack meets the guard page, where the processor
- * cannot even push the fault: that makes a double fault, which has a task and a stack of its own. */
+ * cannot even push the fault: that makes a double fault, which has a task and a stack of its own.
+ */
 #include "pc104.h"
 
 #include "exhand/error.h"
@@ -10,7 +11,7 @@
 #define PRESENT       1u
 #define WRITABLE      2u
 #define UNCACHED      0x18u /* and written through */
-#define LARGE         0x80u /* 4 MiB              */
+#define LARGE         0x80u /* 4 MiB */
 #define LARGE_B       0x400000u
 #define DEVICES       0xC0000000u /* from here on no PC/104 machine has its memory */
 #define STACK_B       2048u

@@ -17,12 +17,12 @@ enum { CAP = 0x00, PERIOD_FS = 0x04, CONF = 0x10, COUNTER = 0xF0, T0_CONF = 0x10
 #define T_SET_VALUE  (1u << 6) /* the next write of the comparator also sets its accumulator */
 #define T_32BIT      (1u << 8)
 
-#define PERIOD_FS_MIN  1000000u /* 1 GHz: a period of 1 s stays below 2^31 counts    */
-#define PERIOD_FS_MAX  100000000u /* the specification's                               */
+#define PERIOD_FS_MIN  1000000u   /* 1 GHz: a period of 1 s stays below 2^31 counts */
+#define PERIOD_FS_MAX  100000000u /* the specification's */
 #define FS_PER_S       UINT64_C(1000000000000000)
 #define PROBE_READS    100000u
-#define COMPARE_COUNTS 11932u /* of the 8254: 10 ms                                   */
-#define COMPARE_TRIES  8u /* an emulator's host may take a moment away in between  */
+#define COMPARE_COUNTS 11932u /* of the 8254: 10 ms */
+#define COMPARE_TRIES  8u     /* an emulator's host may take a moment away in between */
 
 static uint32_t get(unsigned reg)
 {

@@ -37,7 +37,7 @@ static struct {
 } queue[QUEUE];
 static uint32_t put, got;
 static uint32_t overrun, unsent; /* datagrams: no room here, no room in the card */
-static uint32_t unanswered; /* questions behind the first of their tick */
+static uint32_t unanswered;      /* questions behind the first of their tick */
 
 /* --- options --- */
 
@@ -257,8 +257,8 @@ void pc104_link_log_new(void)
 
 /* --- what it costs --- */
 
-/* As much as a tick can bring and take, for the clock: the longest datagrams that are taken, as many
- * as the scene sends. The card sees none of it. */
+/* As much as a tick can bring and take, for the clock: the longest datagrams that are taken, as
+ * many as the scene sends. The card sees none of it. */
 void pc104_link_dry(void)
 {
     static struct net twin;

@@ -10,11 +10,11 @@
 
 #include <string.h>
 
-#define BINS       16u /* sixteenths of the period, then what took longer           */
-#define DRY_TICKS  64u
-#define DRY_ROUNDS 8u
+#define BINS         16u /* sixteenths of the period, then what took longer */
+#define DRY_TICKS    64u
+#define DRY_ROUNDS   8u
 #define DRY_IO_TICKS 16u
-#define NS_PER_S   UINT64_C(1000000000)
+#define NS_PER_S     UINT64_C(1000000000)
 
 /* All in counts of the timer until somebody asks. */
 static struct {
@@ -25,8 +25,8 @@ static struct {
 } spent;
 
 static uint32_t missed_in_all, late_in_all;
-static uint32_t second_ticks; /* periods in a second, 2 at least                  */
-static uint32_t scene_counts, io_counts; /* of dry ticks                              */
+static uint32_t second_ticks;            /* periods in a second, 2 at least */
+static uint32_t scene_counts, io_counts; /* of dry ticks */
 
 /* The signals of this table are shown to people; no record holds them. */
 static int32_t signal[4 + BINS + 1 + 3];
@@ -175,7 +175,9 @@ static uint32_t least_of_rounds(void (*once)(uint32_t tick), uint32_t ticks, uin
         uint32_t most = 0;
         for (uint32_t i = 0; i < ticks; i++) {
             uint32_t began, n;
-            do { began = pc104_timer_now(); } while (began - last < apart);
+            do {
+                began = pc104_timer_now();
+            } while (began - last < apart);
             last = began;
             once(round * ticks + i);
             n = pc104_timer_now() - began;
@@ -188,8 +190,8 @@ static uint32_t least_of_rounds(void (*once)(uint32_t tick), uint32_t ticks, uin
 
 static const struct exh_scene *scene;
 
-/* As many packets as a tick may bring, as long as its own are: what the scene last sent. Where it has
- * a peer to get them from. */
+/* As many packets as a tick may bring, as long as its own are: what the scene last sent. Where it
+ * has a peer to get them from. */
 static void dry_mail(const struct exh_scene_link *l)
 {
     const struct exh_scene_mail *out = l->out;

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* The scene's registers on COM2, by the library's slave: modbus=com2,ADDRESS,BAUD[,remote]. Polled once a tick, behind the
- * outputs, a bounded number of characters at a time; nothing waits. Without the option the UART is not touched.
+/* The scene's registers on COM2, by the library's slave: modbus=com2,ADDRESS,BAUD[,remote]. Polled
+ * once a tick, behind the outputs, a bounded number of characters at a time; nothing waits. Without
+ * the option the UART is not touched.
  *
- * The FIFO of 16 must not overflow between two ticks, nor the answer's run dry, for a gap would end its frame: a baud rate
- * of which a tick has more than 14 characters is refused. How full the transmitter is stands nowhere: it is counted, a
- * little too full. */
+ * The FIFO of 16 must not overflow between two ticks, nor the answer's run dry, for a gap would end
+ * its frame: a baud rate of which a tick has more than 14 characters is refused. How full the
+ * transmitter is stands nowhere: it is counted, a little too full. */
 #include "pc104.h"
 
 #include "io.h"
@@ -16,8 +17,8 @@
 
 #include <string.h>
 
-#define VALUES     1024u /* parameters of a scene                              */
-#define TICK_B     14u /* characters in a tick, at most                      */
+#define VALUES     1024u /* parameters of a scene */
+#define TICK_B     14u   /* characters in a tick, at most */
 #define REMOTE     (1u << EXH_COIL_RUN | 1u << EXH_COIL_CLEAR)
 #define COM2(what) ((uint16_t)(UART_COM2 + (what)))
 
@@ -38,7 +39,7 @@ static uint32_t touched[EXH_REGS_WORDS(VALUES)];
 
 static uint8_t open;
 static uint32_t tick_us, most; /* characters moved a tick, at most */
-static uint32_t tick_B_q16; /* characters that go out in a tick, a little too few */
+static uint32_t tick_B_q16;    /* characters that go out in a tick, a little too few */
 
 static uint8_t answer[EXH_MODBUS_ADU_B];
 static uint32_t answer_B, sent_B; /* sent_B < answer_B: there is more to send */
@@ -303,8 +304,8 @@ static void dry_answer(const struct exh_modbus_rtu *asked)
     (void)exh_modbus_rtu_answer(&twin, &regs, answer, sizeof answer);
 }
 
-/* Function 23 reads as much as any, twice, and writes nearly as much as 16: numbers here, in the middle of what may be, so
- * that each is made a raw value anew. */
+/* Function 23 reads as much as any, twice, and writes nearly as much as 16: numbers here, in the
+ * middle of what may be, so that each is made a raw value anew. */
 static void prepare(void)
 {
     static const uint8_t coil[] = {1, 5, 0, EXH_COIL_APPLY, 0xFF, 0};
@@ -340,8 +341,9 @@ static void dry_apply(void)
     exh_params_unstage(params, params->staged, pending);
 }
 
-/* A tick has no more than one of these: a request is answered when no character has come in that tick, none is heard
- * before the answer is out, and of one without an answer the silence behind the next is a tick away. */
+/* A tick has no more than one of these: a request is answered when no character has come in that
+ * tick, none is heard before the answer is out, and of one without an answer the silence behind the
+ * next is a tick away. */
 int pc104_modbus_dry(unsigned part)
 {
     const struct exh_regs before = regs;

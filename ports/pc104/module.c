@@ -8,8 +8,8 @@
 
 #include <string.h>
 
-#define MB_LOADED   0x2BADB002u
-#define HAS_MODULES (1u << 3)
+#define MB_LOADED       0x2BADB002u
+#define HAS_MODULES     (1u << 3)
 #define UNCALIBRATED_ID 0x8903 /* examples/calib */
 
 /* Head of the structure that the loader left. */
@@ -30,7 +30,8 @@ static void say_module(unsigned i, const char *what)
     pc104_say(what);
 }
 
-/* One that is no longer than an image is meant as one, whatever is in it: set-up refuses it by name. */
+/* One that is no longer than an image is meant as one, whatever is in it: set-up refuses it by
+ * name. */
 static void take(struct exh_scene_calib *k, unsigned i, const struct module *m)
 {
     const uint32_t len_B = (uint32_t)(m->end - m->start);
@@ -54,7 +55,8 @@ static void say_none(const struct exh_scene *sc)
 {
     const int32_t at = exh_signal_find(sc->params->table, UNCALIBRATED_ID, 0);
     if (sc->calib->images == 0 && at >= 0 && sc->params->active[at] == 0) {
-        pc104_say("no calibration: arming will be refused at calibration (uncalibrated=1: without)\n");
+        pc104_say(
+            "no calibration: arming will be refused at calibration (uncalibrated=1: without)\n");
     }
 }
 

@@ -10,8 +10,8 @@
 #include <stdint.h>
 
 #define NET_MAC_B     6
-#define NET_FRAME_B   1514u /* the longest, without the card's CRC       */
-#define NET_HEAD_B    42u /* before a datagram: Ethernet 14, IPv4 20, UDP 8 */
+#define NET_FRAME_B   1514u /* the longest, without the card's CRC */
+#define NET_HEAD_B    42u   /* before a datagram: Ethernet 14, IPv4 20, UDP 8 */
 #define NET_PAYLOAD_B (NET_FRAME_B - NET_HEAD_B)
 #define NET_ARP_B     42u
 
@@ -19,52 +19,52 @@
 struct net_cfg {
     uint8_t mac[NET_MAC_B];
     uint32_t ip, peer_ip;
-    uint16_t port; /* ours and the peer's                                      */
-    uint16_t longest_B; /* of a datagram that is taken                              */
+    uint16_t port;      /* ours and the peer's */
+    uint16_t longest_B; /* of a datagram that is taken */
 };
 
 /* Why a frame was dropped: the first cause that is met, in this order. */
 enum net_drop {
-    NET_SHORT, /* no room for a header                                     */
-    NET_LONG, /* longer than a frame can be                               */
-    NET_OTHERS, /* to somebody else's MAC, or to all and not ARP            */
-    NET_TYPE, /* neither IPv4 nor ARP                                     */
-    NET_ARP, /* not one for Ethernet and IPv4, or its sender cannot be    */
-    NET_ARP_OTHERS, /* asks for somebody else                                   */
-    NET_ARP_CONFLICT, /* somebody else has our address                            */
-    NET_ARP_UNASKED, /* an answer that nobody asked for                          */
-    NET_IP, /* version, header length or length                         */
+    NET_SHORT,        /* no room for a header */
+    NET_LONG,         /* longer than a frame can be */
+    NET_OTHERS,       /* to somebody else's MAC, or to all and not ARP */
+    NET_TYPE,         /* neither IPv4 nor ARP */
+    NET_ARP,          /* not one for Ethernet and IPv4, or its sender cannot be */
+    NET_ARP_OTHERS,   /* asks for somebody else */
+    NET_ARP_CONFLICT, /* somebody else has our address */
+    NET_ARP_UNASKED,  /* an answer that nobody asked for */
+    NET_IP,           /* version, header length or length */
     NET_IP_OPTIONS,
     NET_IP_SUM,
-    NET_IP_OTHERS, /* to another address                                       */
+    NET_IP_OTHERS, /* to another address */
     NET_FRAGMENT,
-    NET_PROTOCOL, /* not UDP                                                  */
-    NET_STRANGER, /* not from the peer                                        */
-    NET_UDP, /* its length                                               */
-    NET_PORT, /* to another port, or from another                         */
+    NET_PROTOCOL, /* not UDP */
+    NET_STRANGER, /* not from the peer */
+    NET_UDP,      /* its length */
+    NET_PORT,     /* to another port, or from another */
     NET_EMPTY,
-    NET_TOO_LONG, /* more than longest_B                                      */
+    NET_TOO_LONG, /* more than longest_B */
     NET_UDP_SUM,
     NET_DROPS
 };
 
 struct net_counts {
-    uint32_t frames; /* all that came; each is in one of the others, too          */
-    uint32_t datagrams; /* handed over                                              */
-    uint32_t arp_asked; /* for us                                                   */
-    uint32_t arp_heard; /* answers taken                                            */
+    uint32_t frames;    /* all that came; each is in one of the others, too */
+    uint32_t datagrams; /* handed over */
+    uint32_t arp_asked; /* for us */
+    uint32_t arp_heard; /* answers taken */
     uint32_t drop[NET_DROPS];
 };
 
 struct net {
     struct net_cfg cfg;
     uint8_t peer_mac[NET_MAC_B];
-    uint8_t known; /* where the peer is                                        */
-    uint8_t waiting; /* an answer to our ARP is due: for 1 s, or till it is heard   */
+    uint8_t known;   /* where the peer is */
+    uint8_t waiting; /* an answer to our ARP is due: for 1 s, or till it is heard */
     uint8_t begun;
     uint16_t asks, id;
-    uint32_t asked_us, heard_us; /* when                                       */
-    uint8_t asker_mac[NET_MAC_B]; /* whom NET_ANSWER is for                     */
+    uint32_t asked_us, heard_us;  /* when */
+    uint8_t asker_mac[NET_MAC_B]; /* whom NET_ANSWER is for */
     uint32_t asker_ip;
     struct net_counts counts;
 };
@@ -84,7 +84,8 @@ size_t net_answer(const struct net *n, uint8_t *to);
 /* Asks where the peer is if it is time: ten times a second at first, then once; also where it is
  * known but was not heard for a second. */
 size_t net_ask(struct net *n, uint8_t *to, uint32_t now_us);
-/* A datagram to that port of the peer; 0 also where it is not known yet, or len_B > NET_PAYLOAD_B. */
+/* A datagram to that port of the peer; 0 also where it is not known yet, or len_B > NET_PAYLOAD_B.
+ */
 size_t net_datagram(struct net *n, uint8_t *to, uint16_t port, const void *payload, size_t len_B);
 
 /* Short names, as in reports: "short", "long", ... */

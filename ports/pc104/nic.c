@@ -13,40 +13,41 @@
 
 #define CARD_ID     0x10D38086u
 #define CLASS_NET   0x020000u /* Ethernet, in bits 31..8 */
-#define IN          64u /* descriptors: multiples of 8 */
+#define IN          64u       /* descriptors: multiples of 8 */
 #define OUT         64u
 #define BUFFER_B    2048u /* as RCTL says */
 #define FRAME_OUT_B 1536u
 #define CRC_REMOVED (1u << 26)
 
-enum { /* registers */
-       CTRL = 0x0000,
-       STATUS = 0x0008,
-       EECD = 0x0010,
-       ICR = 0x00C0,
-       IMC = 0x00D8,
-       RCTL = 0x0100,
-       TCTL = 0x0400,
-       TIPG = 0x0410,
-       EXTCNF_CTRL = 0x0F00,
-       RDBAL = 0x2800,
-       RDBAH = 0x2804,
-       RDLEN = 0x2808,
-       RDH = 0x2810,
-       RDT = 0x2818,
-       TDBAL = 0x3800,
-       TDBAH = 0x3804,
-       TDLEN = 0x3808,
-       TDH = 0x3810,
-       TDT = 0x3818,
-       TXDCTL = 0x3828,
-       CRCERRS = 0x4000,
-       MPC = 0x4010,
-       RXCSUM = 0x5000,
-       RFCTL = 0x5008,
-       MTA = 0x5200,
-       RAL0 = 0x5400,
-       RAH0 = 0x5404
+/* registers */
+enum {
+    CTRL = 0x0000,
+    STATUS = 0x0008,
+    EECD = 0x0010,
+    ICR = 0x00C0,
+    IMC = 0x00D8,
+    RCTL = 0x0100,
+    TCTL = 0x0400,
+    TIPG = 0x0410,
+    EXTCNF_CTRL = 0x0F00,
+    RDBAL = 0x2800,
+    RDBAH = 0x2804,
+    RDLEN = 0x2808,
+    RDH = 0x2810,
+    RDT = 0x2818,
+    TDBAL = 0x3800,
+    TDBAH = 0x3804,
+    TDLEN = 0x3808,
+    TDH = 0x3810,
+    TDT = 0x3818,
+    TXDCTL = 0x3828,
+    CRCERRS = 0x4000,
+    MPC = 0x4010,
+    RXCSUM = 0x5000,
+    RFCTL = 0x5008,
+    MTA = 0x5200,
+    RAL0 = 0x5400,
+    RAH0 = 0x5404
 };
 #define CTRL_NO_MASTER   (1u << 2)
 #define CTRL_LINK_UP     (1u << 6)
@@ -94,9 +95,9 @@ static volatile struct out out_ring[OUT] __attribute__((aligned(128)));
 static uint8_t in_buffer[IN][BUFFER_B] __attribute__((aligned(16)));
 static uint8_t out_buffer[OUT][FRAME_OUT_B] __attribute__((aligned(16)));
 static struct pc104_pci place;
-static uint32_t base; /* 0: no card */
+static uint32_t base;                   /* 0: no card */
 static unsigned in_at, in_back, out_at; /* in_back: the first that is not the card's again */
-static uint8_t torn; /* the rest of a frame in pieces is to come */
+static uint8_t torn;                    /* the rest of a frame in pieces is to come */
 static struct pc104_nic_counts counts;
 
 static uint32_t get(unsigned reg)

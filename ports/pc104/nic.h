@@ -21,10 +21,10 @@ uint8_t *pc104_nic_room(void);
 void pc104_nic_send(size_t len_B);
 
 struct pc104_nic_counts {
-    uint32_t sent, damaged; /* damaged: not whole, or with errors                 */
-    uint32_t missed; /* by the card: nobody had room for them              */
-    uint32_t crc; /* by the card: damaged on the wire                   */
-    uint8_t gone, up; /* the card does not answer any more; the cable is up */
+    uint32_t sent, damaged; /* damaged: not whole, or with errors */
+    uint32_t missed;        /* by the card: nobody had room for them */
+    uint32_t crc;           /* by the card: damaged on the wire */
+    uint8_t gone, up;       /* the card does not answer any more; the cable is up */
 };
 void pc104_nic_counts(struct pc104_nic_counts *c);
 

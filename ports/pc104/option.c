@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The boot command line: name=value, by the rows below, the box's (box.c) and the scene's. A
- * word that is none of them, or a value outside its range, stops the image before anything moves. */
+ * word that is none of them, or a value outside its range, stops the image before anything moves.
+ */
 #include "pc104.h"
 
 #include "exhand/error.h"
@@ -130,8 +131,7 @@ void pc104_options(const struct exh_scene *sc)
     while (pc104_cmdline_next(&at, &name, &value)) {
         if (value && (table_option(&pc104_option_table, (int32_t *)&pc104_par, name, value) ||
                       table_option(&pc104_box_table, (int32_t *)&pc104_box_par, name, value) ||
-                      pc104_link_option(name, value) ||
-                      pc104_scene_option(sc, name, value))) {
+                      pc104_link_option(name, value) || pc104_scene_option(sc, name, value))) {
             pc104_say("set ");
             pc104_say(name);
             pc104_say(" ");

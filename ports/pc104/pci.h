@@ -10,12 +10,13 @@ struct pc104_pci {
     uint8_t begun;
 };
 
-enum { /* registers, in bytes */
-       PC104_PCI_ID = 0x00,
-       PC104_PCI_COMMAND = 0x04,
-       PC104_PCI_CLASS = 0x08,
-       PC104_PCI_BAR0 = 0x10,
-       PC104_PCI_BAR1 = 0x14
+/* registers, in bytes */
+enum {
+    PC104_PCI_ID = 0x00,
+    PC104_PCI_COMMAND = 0x04,
+    PC104_PCI_CLASS = 0x08,
+    PC104_PCI_BAR0 = 0x10,
+    PC104_PCI_BAR1 = 0x14
 };
 
 int pc104_pci_there(void); /* 1: the ports answer */

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* Did the run before this boot end? A mark in memory is set while ticks run and taken away when
- * they end in order; a reset by the watchdog, or by whoever found the box crashed, leaves it. Memory
- * outlives a reset and no power-off; some firmware clears it, and then this boot looks like the first
- * of all: what is certain is the watchdog's own contact (docs/CARDS.md). */
+ * they end in order; a reset by the watchdog, or by whoever found the box crashed, leaves it.
+ * Memory outlives a reset and no power-off; some firmware clears it, and then this boot looks like
+ * the first of all: what is certain is the watchdog's own contact (docs/CARDS.md). */
 #include "pc104.h"
 
 /* 14 MiB: above the image and what was loaded behind it, below what firmware and GRUB take, which
  * is memory's upper end. (SeaBIOS clears the lowest 576 KiB at each boot.) */
 #define MARK_AT   0x00E00000u
-#define BELOW_KIB 1024u /* not in mem_upper                                    */
+#define BELOW_KIB 1024u /* not in mem_upper */
 #define MB_LOADED 0x2BADB002u
 #define HAS_SIZES 1u
 enum { RUNS = 0x52554E53, NOT_RUNS = ~RUNS };

@@ -10,9 +10,9 @@
 #include "exhand/exhand.h"
 
 #define DEBUG_PORT  0xE9u
-#define RING_B      32768u /* a power of two: six of the largest records, 200 ms of frames */
+#define RING_B      32768u  /* a power of two: six of the largest records, 200 ms of frames */
 #define STUCK_READS 100000u /* 0.07 s and more on ISA; 16 characters take 1.4 ms */
-#define BURST_B     16u /* what the UART's FIFO takes at once                             */
+#define BURST_B     16u     /* what the UART's FIFO takes at once */
 
 static uint8_t ring[RING_B];
 static struct pc104_fifo fifo = {ring, RING_B, 0, 0};
@@ -120,7 +120,8 @@ static void start_records(const struct exh_scene *sc, struct exh_scene_board boa
     }
 }
 
-/* As when all values were staged just now and the loop runs: none is another, so the scene stays as it is. */
+/* As when all values were staged just now and the loop runs: none is another, so the scene stays as
+ * it is. */
 static void apply_dry(struct exh_params *p)
 {
     const uint8_t locked = p->locked;
@@ -129,9 +130,9 @@ static void apply_dry(struct exh_params *p)
     p->locked = locked;
 }
 
-/* Records of a dry tick, which come to nothing but time; every 16th with a keyframe: one for each thing that Modbus may
- * do. What it has staged is applied in the next tick, in which there is no request; what a link has staged, in any. Nobody
- * else stages while the loop runs. */
+/* Records of a dry tick, which come to nothing but time; every 16th with a keyframe: one for each
+ * thing that Modbus may do. What it has staged is applied in the next tick, in which there is no
+ * request; what a link has staged, in any. Nobody else stages while the loop runs. */
 void pc104_scene_dry(const struct exh_scene *sc, uint32_t tick, const struct exh_scene_in *in,
                      const struct exh_drive_out *out)
 {
@@ -210,7 +211,9 @@ void pc104_scene_end(void)
     lost = exh_log_end(last_tick + 1);
     pc104_log_flush();
     if (pc104_par.log == PC104_LOG_UDP) {
-        for (unsigned i = 0; i < 3; i++) { (void)pc104_link_log(ring, 0, 2); } /* may be lost, too */
+        for (unsigned i = 0; i < 3; i++) {
+            (void)pc104_link_log(ring, 0, 2);
+        } /* may be lost, too */
     }
     pc104_say("\nrecords lost ");
     pc104_say_u32(lost);

@@ -20,7 +20,8 @@
 
 /* --- out: one stream --- */
 void stream_open(uint32_t session);
-/* The next piece with these n <= STREAM_DATA_B bytes: its length. It is the next until stream_sent(). */
+/* The next piece with these n <= STREAM_DATA_B bytes: its length. It is the next until
+ * stream_sent(). */
 size_t stream_piece(uint8_t to[STREAM_PIECE_B], const uint8_t *byte, unsigned n, int last);
 void stream_sent(unsigned n);
 uint32_t stream_pieces(void);

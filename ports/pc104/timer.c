@@ -18,9 +18,9 @@
 
 static struct pc104_timer timer;
 static uint8_t is_hpet, running;
-static uint32_t counts; /* of a period                                           */
-static uint32_t next; /* HPET: instant of the next tick                        */
-static uint32_t seen; /* 8254: its ticks so far                                */
+static uint32_t counts; /* of a period */
+static uint32_t next;   /* HPET: instant of the next tick */
+static uint32_t seen;   /* 8254: its ticks so far */
 static uint32_t us_per_count_q32, us_last;
 static uint64_t us_q32;
 

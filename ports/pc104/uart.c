@@ -42,7 +42,9 @@ void pc104_uart_put(char c)
 unsigned pc104_uart_offer(const uint8_t *byte, unsigned n)
 {
     const unsigned room = has_fifo ? UART_FIFO_B : 1;
-    if (given_up || n == 0 || !(pc104_in8(UART_COM1 + UART_STATUS) & UART_STATUS_EMPTY)) { return 0; }
+    if (given_up || n == 0 || !(pc104_in8(UART_COM1 + UART_STATUS) & UART_STATUS_EMPTY)) {
+        return 0;
+    }
     n = n < room ? n : room;
     for (unsigned i = 0; i < n; i++) { pc104_out8(UART_COM1 + UART_DATA, byte[i]); }
     return n;

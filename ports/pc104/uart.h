@@ -15,13 +15,14 @@ enum {
 };
 #define UART_LINE_8N1      0x03u
 #define UART_LINE_DIVISOR  0x80u /* data and interrupt registers become the divisor */
-#define UART_STATUS_READY  0x01u /* a character has come                            */
-#define UART_STATUS_BAD    0x1Eu /* overrun, parity, frame, break                   */
-#define UART_STATUS_EMPTY  0x20u /* takes a character; the FIFO is empty            */
-#define UART_STATUS_SILENT 0x40u /* and the last is out                             */
-/* FIFO on, what is in it dropped. 14 characters would interrupt, if any did: emulators hand over so many at once. */
+#define UART_STATUS_READY  0x01u /* a character has come */
+#define UART_STATUS_BAD    0x1Eu /* overrun, parity, frame, break */
+#define UART_STATUS_EMPTY  0x20u /* takes a character; the FIFO is empty */
+#define UART_STATUS_SILENT 0x40u /* and the last is out */
+/* FIFO on, what is in it dropped. 14 characters would interrupt, if any did: emulators hand over so
+ * many at once. */
 #define UART_FIFO_EMPTY 0xC7u
-#define UART_BASE_BAUD  115200u /* divisor 1                                     */
+#define UART_BASE_BAUD  115200u /* divisor 1 */
 #define UART_FIFO_B     16u
 
 /* 8N1, no interrupts, FIFO on and emptied. 1: it has one. */

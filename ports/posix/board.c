@@ -125,16 +125,16 @@ static void start_mass(void)
     if (c->bench) {
         sim_mass_bench(&sim.mass, &c->device, c->seed, c->wrong);
     } else {
-        sim_mass_fall(&sim.mass, &c->device, c->seed, c->falls, (double)sim.T.num / (double)sim.T.den);
+        sim_mass_fall(&sim.mass, &c->device, c->seed, c->falls,
+                      (double)sim.T.num / (double)sim.T.den);
     }
     sim.mass.fall.waits = c->wait;
     if (c->from_here) { sim_mass_put(&sim.mass, c->from_x_m, c->from_q_m); }
-    if (c->glove) {
-        sim_operator_start(&sim.hand, &c->hand, &sim.glove, &c->glove_par, c->seed);
-    }
+    if (c->glove) { sim_operator_start(&sim.hand, &c->hand, &sim.glove, &c->glove_par, c->seed); }
 }
 
-/* A hand in exoskeleton and glove; what no finger in use bends rests as the operator's pose says. */
+/* A hand in exoskeleton and glove; what no finger in use bends rests as the operator's pose says.
+ */
 static int start_fingers(void)
 {
     if (sim_exo_start(&sim.exo, &sim.cfg.exo, &sim.cfg.device, sim.cfg.seed, sim.cfg.glove) < 0) {
@@ -221,8 +221,9 @@ int posix_bench_ready(void)
 static int plain(void)
 {
     const struct posix_config *c = &sim.cfg;
-    return !sim.exo.fingers && !c->pace && !c->max_ticks && !c->cards.how && !c->line.on && !c->gpio && !c->glove &&
-           c->let_go_s <= 0 && c->enc_jitter_cnt <= 0 && !c->wires_out && !c->wires_in && !c->late;
+    return !sim.exo.fingers && !c->pace && !c->max_ticks && !c->cards.how && !c->line.on &&
+           !c->gpio && !c->glove && c->let_go_s <= 0 && c->enc_jitter_cnt <= 0 && !c->wires_out &&
+           !c->wires_in && !c->late;
 }
 
 /* When the device gets what is put out now. */
@@ -246,7 +247,9 @@ static double longest_step_s(void)
 int posix_still(void)
 {
     const double ref_A = sim.mass.ref_A;
-    if (sim.mass.plant.w_mps != 0 || !plain() || !sim_mass_still(&sim.mass, longest_step_s())) { return 0; }
+    if (sim.mass.plant.w_mps != 0 || !plain() || !sim_mass_still(&sim.mass, longest_step_s())) {
+        return 0;
+    }
     for (unsigned i = 0; i < sim.queued; i++) {
         if (sim.queue[(sim.head + i) % OUTPUTS_MAX].ref_A[0] != ref_A) { return 0; }
     }
@@ -289,7 +292,9 @@ static void take_serial(void)
 {
     struct glove_tty *t = sim.cfg.glove_tty;
     if (t == NULL || !glove_tty_poll(t, sim.now_s)) { return; }
-    for (unsigned i = 0; i < SIM_GLOVE_SENSORS; i++) { sim.frame[i] = cyberglove_raw(t->in.sample[i]); }
+    for (unsigned i = 0; i < SIM_GLOVE_SENSORS; i++) {
+        sim.frame[i] = cyberglove_raw(t->in.sample[i]);
+    }
     sim.frame_tick = sim.tick;
     sim.frame_s = sim.now_s;
 }
@@ -370,7 +375,9 @@ static int read_device(struct exh_drive_in *in)
 {
     const double jitter_cnt = sim.cfg.enc_jitter_cnt;
     memset(in, 0, sizeof *in);
-    if (!sim.exo.fingers) { sim_mass_read(&sim.mass, jitter_cnt, &in->enc_raw[0], &in->mon_raw[0]); }
+    if (!sim.exo.fingers) {
+        sim_mass_read(&sim.mass, jitter_cnt, &in->enc_raw[0], &in->mon_raw[0]);
+    }
     for (unsigned i = 0; i < EXH_FINGERS; i++) {
         if (sim.exo.fingers >> i & 1) {
             sim_finger_read(&sim.exo.finger[i], jitter_cnt, &in->enc_raw[i], &in->mon_raw[i]);
@@ -379,7 +386,9 @@ static int read_device(struct exh_drive_in *in)
     in->din = EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG | EXH_DIN_CARDS |
               EXH_DIN_DRIVE0 * sim.drives;
     in->supply_raw = sim_supply_raw(&sim.cfg.device, load_A());
-    if (sim.cfg.let_go_s > 0 && sim.now_s >= sim.cfg.let_go_s) { in->din &= ~(uint32_t)EXH_DIN_DEADMAN; }
+    if (sim.cfg.let_go_s > 0 && sim.now_s >= sim.cfg.let_go_s) {
+        in->din &= ~(uint32_t)EXH_DIN_DEADMAN;
+    }
     if (sim.cfg.wires_in) { sim.cfg.wires_in(in); }
     return sim.cfg.cards.how ? cards_read_drive(in) : 0;
 }
@@ -469,7 +478,11 @@ static int16_t coarse(int16_t code)
 {
     const double step = 2 * 29491.2 / 254;
     const double sample = (double)sim_floor((code + 29491.2) / step + 0.5);
-    return (int16_t)sim_floor((sample < 0 ? 0 : sample > 254 ? 254 : sample) * step - 29491.2 + 0.5);
+    return (int16_t)sim_floor((sample < 0     ? 0
+                               : sample > 254 ? 254
+                                              : sample) *
+                                  step -
+                              29491.2 + 0.5);
 }
 
 /* The frame before, if there is one: this one is still on its line. */

@@ -14,7 +14,7 @@ static struct {
     struct emu_box box;
     struct posix_cards cfg;
     unsigned fingers;
-    uint64_t start_ns; /* when the first tick is                                */
+    uint64_t start_ns; /* when the first tick is */
     int said;
     struct posix_cards_watch watch;
 } cards;

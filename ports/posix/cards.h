@@ -15,13 +15,13 @@
 enum posix_cards_how {
     POSIX_CARDS_NONE,
     POSIX_CARDS_INSTANT, /* once opened, accesses and conversions take no time: same bits */
-    POSIX_CARDS_TIMED /* they take what they take on the bus                */
+    POSIX_CARDS_TIMED    /* they take what they take on the bus */
 };
 
 struct posix_cards {
-    uint8_t how; /* enum posix_cards_how                              */
-    uint8_t quiet; /* 1: what is wrong with a card is not said on stderr */
-    struct emu_fault fault; /* what is wrong with one                            */
+    uint8_t how;            /* enum posix_cards_how */
+    uint8_t quiet;          /* 1: what is wrong with a card is not said on stderr */
+    struct emu_fault fault; /* what is wrong with one */
 };
 
 /* Power on at time 0, find and calibrate the cards of so many fingers and perhaps a glove. 0, or
@@ -46,14 +46,14 @@ void cards_safe(struct exh_drive_out *seen);
 /* The box itself, and what the device saw of it since the start (tests, tables). */
 struct emu_box *posix_cards_box(void);
 
-#define POSIX_CARDS_REST_RAW 200 /* codes from 0 A; what keeps a string wound is less    */
+#define POSIX_CARDS_REST_RAW 200 /* codes from 0 A; what keeps a string wound is less */
 
 struct posix_cards_watch {
-    uint32_t ticks; /* written                                               */
-    uint32_t digest; /* CRC-32 of all that came out of the cards, tick by tick */
-    uint32_t pressed; /* the last of them with more than that in a drive, from 1; 0: none */
+    uint32_t ticks;    /* written */
+    uint32_t digest;   /* CRC-32 of all that came out of the cards, tick by tick */
+    uint32_t pressed;  /* the last of them with more than that in a drive, from 1; 0: none */
     uint16_t most_raw; /* the farthest any D/A of an enabled drive was from 0 A, */
-    uint16_t now_raw; /* and is                                                */
+    uint16_t now_raw;  /* and is */
 };
 const struct posix_cards_watch *posix_cards_watch(void);
 

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #define SAMPLES     CYBERGLOVE_SENSORS
-#define STATUS_TOP  7 /* three bits: plugged, switch, light                       */
+#define STATUS_TOP  7 /* three bits: plugged, switch, light */
 #define STATUS_PLUG 1u
 
 enum form { UNKNOWN, PLAIN, STATUS };
@@ -61,12 +61,14 @@ static int frame(struct cyberglove *g)
 {
     const uint32_t samples = g->n - 1;
     if (samples >= SAMPLES) { return ended(g); }
-    if (samples == 18 || (samples == 19 && g->held[19] <= STATUS_TOP)) { return lose(g, CYBERGLOVE_EIGHTEEN); }
+    if (samples == 18 || (samples == 19 && g->held[19] <= STATUS_TOP)) {
+        return lose(g, CYBERGLOVE_EIGHTEEN);
+    }
     return lose(g, CYBERGLOVE_ZERO);
 }
 
-/* What begins with no header: an answer, or anything. A 0 behind a frame without status is the frame's
- * end, and the one before was a status that says: unplugged. */
+/* What begins with no header: an answer, or anything. A 0 behind a frame without status is the
+ * frame's end, and the one before was a status that says: unplugged. */
 static void other(struct cyberglove *g)
 {
     const int refused = g->n == 2 && g->held[0] == 'e' && strchr("?nygs", g->held[1]) != NULL;

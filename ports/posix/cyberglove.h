@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* CyberGlove: what a stock glove of 22 sensors sends on its serial line, byte by byte, into frames.
  *
- * A frame: 'S' (streamed) or 'G' (asked for), 22 samples 1 .. 255, perhaps a status byte, perhaps 'e'
- * and a letter, 0. It has no checksum, so one counts as whole only by its form, from the 0 before it to
- * its own: what has a zero sample or another length is discarded, and a frame that another runs into
- * goes with it. A header among samples begins nothing.
- * A frame with status that lost a byte looks like one without, its samples shifted. So where the unit has
- * answered that it sends the status, nothing else is taken; where it has not, frames of the form that is
- * not in use are refused until CYBERGLOVE_SURE of them came in a row, the first ones too.
- * What cannot be told: bytes lost from the middle of one frame to the same place of another.
+ * A frame: 'S' (streamed) or 'G' (asked for), 22 samples 1 .. 255, perhaps a status byte, perhaps
+ * 'e' and a letter, 0. It has no checksum, so one counts as whole only by its form, from the 0
+ * before it to its own: what has a zero sample or another length is discarded, and a frame that
+ * another runs into goes with it. A header among samples begins nothing. A frame with status that
+ * lost a byte looks like one without, its samples shifted. So where the unit has answered that it
+ * sends the status, nothing else is taken; where it has not, frames of the form that is not in use
+ * are refused until CYBERGLOVE_SURE of them came in a row, the first ones too. What cannot be told:
+ * bytes lost from the middle of one frame to the same place of another.
  *
  * No IO, no allocation; any bytes, each in bounded time.
  */
@@ -19,42 +19,42 @@
 
 #define CYBERGLOVE_SENSORS 22
 #define CYBERGLOVE_SURE    8
-#define CYBERGLOVE_FRAME_B 25 /* header, samples, status, 0                     */
+#define CYBERGLOVE_FRAME_B 25 /* header, samples, status, 0 */
 
 /* Why a frame is discarded. */
 enum cyberglove_cause {
-    CYBERGLOVE_ZERO,      /* a sample is 0, or it ends early                    */
-    CYBERGLOVE_EIGHTEEN,  /* it ends behind 18 samples: another glove           */
-    CYBERGLOVE_LENGTH,    /* it does not end where it should                    */
+    CYBERGLOVE_ZERO,      /* a sample is 0, or it ends early */
+    CYBERGLOVE_EIGHTEEN,  /* it ends behind 18 samples: another glove */
+    CYBERGLOVE_LENGTH,    /* it does not end where it should */
     CYBERGLOVE_FORM,      /* whole, but with a status byte where the others have none, or without */
-    CYBERGLOVE_UNPLUGGED, /* its status or "eg" says: no glove on the unit      */
-    CYBERGLOVE_FAST,      /* "es": asked for more than the unit can sample      */
+    CYBERGLOVE_UNPLUGGED, /* its status or "eg" says: no glove on the unit */
+    CYBERGLOVE_FAST,      /* "es": asked for more than the unit can sample */
     CYBERGLOVE_CAUSES
 };
 
 /* All 0 before the first byte. */
 struct cyberglove {
-    uint8_t sample[CYBERGLOVE_SENSORS]; /* of the newest whole frame            */
-    uint8_t status;                     /* its; 0: it has none                  */
-    uint8_t told;                       /* the caller's: 1, with status alone    */
-    uint8_t answer;                     /* to the last command: its letter, or 'e' */
-    uint32_t frames;                    /* whole ones                           */
-    uint32_t lost[CYBERGLOVE_CAUSES];   /* discarded                            */
-    uint32_t replies, errors;           /* to commands: taken ("t", 0), refused ("e?", 0) */
-    uint32_t strays;                    /* bytes that are none of these         */
-    uint8_t held[CYBERGLOVE_FRAME_B + 2]; /* since the last 0,                    */
-    uint32_t n;                         /* so many, and those beyond             */
-    uint8_t form, sure; /* in use, 0: not known; frames of the other in a row    */
-    uint8_t rest;       /* 1: what comes may be the rest of a discarded frame     */
-    uint8_t bare;       /* 1: the last 0 may have been a status                  */
+    uint8_t sample[CYBERGLOVE_SENSORS];   /* of the newest whole frame */
+    uint8_t status;                       /* its; 0: it has none */
+    uint8_t told;                         /* the caller's: 1, with status alone */
+    uint8_t answer;                       /* to the last command: its letter, or 'e' */
+    uint32_t frames;                      /* whole ones */
+    uint32_t lost[CYBERGLOVE_CAUSES];     /* discarded */
+    uint32_t replies, errors;             /* to commands: taken ("t", 0), refused ("e?", 0) */
+    uint32_t strays;                      /* bytes that are none of these */
+    uint8_t held[CYBERGLOVE_FRAME_B + 2]; /* since the last 0, */
+    uint32_t n;                           /* so many, and those beyond */
+    uint8_t form, sure;                   /* in use, 0: not known; frames of the other in a row */
+    uint8_t rest;                         /* 1: what comes may be the rest of a discarded frame */
+    uint8_t bare;                         /* 1: the last 0 may have been a status */
 };
 
 /* The next byte: 1, a whole frame ended with it; 0. */
 int cyberglove_take(struct cyberglove *g, uint8_t byte);
 
-/* A sample 1 .. 255 as the code that the paper's card has where its bridge stands: 1 is -9 V, 255 is 9 V,
- * -29491 .. 29491; 232.2 codes a step, rounded to the nearest. So one calibration's units, parameters
- * and limits are those of both. */
+/* A sample 1 .. 255 as the code that the paper's card has where its bridge stands: 1 is -9 V, 255
+ * is 9 V, -29491 .. 29491; 232.2 codes a step, rounded to the nearest. So one calibration's units,
+ * parameters and limits are those of both. */
 int16_t cyberglove_raw(uint8_t sample);
 
 /* "zero sample", ...; never NULL. */

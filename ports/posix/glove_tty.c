@@ -10,11 +10,11 @@
 #include <unistd.h>
 
 #define COMMANDS 5
-#define STATUS   3 /* behind the command that asks for it                        */
+#define STATUS   3 /* behind the command that asks for it */
 #define ANSWER_S 0.25
 #define QUIET_S  1.0
 #define READ_B   256
-#define READS    16 /* a call, at most: a flood holds no tick up                    */
+#define READS    16 /* a call, at most: a flood holds no tick up */
 
 /* Control-C, or these two letters: sources have one or the other. */
 #define STOP "\003^c"

@@ -19,20 +19,20 @@
 #define GLOVE_TTY_RATE_MAX_HZ 200
 
 struct glove_tty {
-    const char *path; /* the caller's                                           */
-    double rate_Hz;   /* 115200 / a whole number                                */
-    int fd;           /* -1: the device is gone                                 */
+    const char *path; /* the caller's */
+    double rate_Hz;   /* 115200 / a whole number */
+    int fd;           /* -1: the device is gone */
     struct cyberglove in;
-    uint32_t bytes;   /* that came                                              */
-    uint32_t told;    /* how often it was told to stream                        */
-    uint32_t gone;    /* how often the device went away                         */
-    unsigned step;    /* of the commands                                        */
-    uint32_t answers; /* before the last of them                                */
+    uint32_t bytes;                  /* that came */
+    uint32_t told;                   /* how often it was told to stream */
+    uint32_t gone;                   /* how often the device went away */
+    unsigned step;                   /* of the commands */
+    uint32_t answers;                /* before the last of them */
     double said_s, frame_s, tried_s; /* a command; a frame, or all commands; to open */
 };
 
-/* Opens it, at 0 s; rate_Hz is made one that the glove can have. 0, or -1 with errno; ENOTTY: no serial
- * line. */
+/* Opens it, at 0 s; rate_Hz is made one that the glove can have. 0, or -1 with errno; ENOTTY: no
+ * serial line. */
 int glove_tty_open(struct glove_tty *t, const char *path, double rate_Hz);
 
 /* What has come until now: 1, a new whole frame is in t->in; 0. */

@@ -14,21 +14,21 @@
 #include <string.h>
 
 #define LINE_B 512
-#define PUTS 3 /* tries to set the outputs low                               */
+#define PUTS   3 /* tries to set the outputs low */
 
 static struct {
     struct gpio_spec spec;
     unsigned ins, outs;
     struct exh_period T;
-    uint32_t differ_max; /* ticks that contacts of a channel may disagree           */
+    uint32_t differ_max; /* ticks that contacts of a channel may disagree */
     struct {
-        uint32_t differ; /* ticks they have, saturating                             */
-        uint32_t longest, times; /* of them, saturating                               */
-        int stuck; /* for longer: one may not open any more                   */
+        uint32_t differ;         /* ticks they have, saturating */
+        uint32_t longest, times; /* of them, saturating */
+        int stuck;               /* for longer: one may not open any more */
     } channel[GPIO_CHANNELS];
-    int enable, beat; /* levels                                                     */
-    uint8_t alive; /* of the last frame                                          */
-    int failed; /* and said                                                   */
+    int enable, beat; /* levels */
+    uint8_t alive;    /* of the last frame */
+    int failed;       /* and said */
 } gpio;
 
 /* Handlers of signals read and write these. */
@@ -120,7 +120,8 @@ static void say_problem(char *said, const struct gpio_problem *p)
 
 /* --- open, close, and what comes between them unasked --- */
 
-/* 0, or -1: they may be high still. An expander on a bus may fail once: that is no reason to leave a motor on. */
+/* 0, or -1: they may be high still. An expander on a bus may fail once: that is no reason to leave
+ * a motor on. */
 static int put_low(void)
 {
     static const int low[GPIO_LINES_MAX];
@@ -146,7 +147,8 @@ static void on_signal(int sig)
     errno = before;
 }
 
-/* All that end or stop a program, unless somebody has plans for them; nobody can have any for SIGKILL and SIGSTOP. */
+/* All that end or stop a program, unless somebody has plans for them; nobody can have any for
+ * SIGKILL and SIGSTOP. */
 static void guard_signals(void)
 {
     struct sigaction a, was;
@@ -235,8 +237,10 @@ static int fail(const char *what)
     const char *why = strerror(errno);
     char line[LINE_B];
     if (!gpio.failed) {
-        snprintf(line, sizeof line, "exhand: %s: %s (%s): %s, the run ends", gpio.spec.path, what, why,
-                 put_low() == 0 ? "outputs go low" : "outputs CAN'T BE SET LOW, switch them off by hand");
+        snprintf(line, sizeof line, "exhand: %s: %s (%s): %s, the run ends", gpio.spec.path, what,
+                 why,
+                 put_low() == 0 ? "outputs go low"
+                                : "outputs CAN'T BE SET LOW, switch them off by hand");
         tell(line);
     }
     gpio.failed = 1;
@@ -252,7 +256,9 @@ static void count_differ(unsigned i)
 {
     if (gpio.channel[i].differ == 0) { gpio.channel[i].times = one_more(gpio.channel[i].times); }
     gpio.channel[i].differ = one_more(gpio.channel[i].differ);
-    if (gpio.channel[i].differ > gpio.channel[i].longest) { gpio.channel[i].longest = gpio.channel[i].differ; }
+    if (gpio.channel[i].differ > gpio.channel[i].longest) {
+        gpio.channel[i].longest = gpio.channel[i].differ;
+    }
 }
 
 uint32_t gpio_differed(void)
@@ -272,12 +278,13 @@ static void say_stuck(unsigned i, const int *level)
 {
     const unsigned *at = gpio.spec.contact[i];
     char line[LINE_B];
-    snprintf(line, sizeof line,
-             "exhand: %s: its contacts disagree for more than %lu ticks (line %u closed, line %u "
-             "open): it is taken for open until both have been: look for a welded contact, a broken "
-             "or a shorted wire",
-             gpio_channel_name[i], (unsigned long)gpio.differ_max, at[level[0] ? 0 : 1],
-             at[level[0] ? 1 : 0]);
+    snprintf(
+        line, sizeof line,
+        "exhand: %s: its contacts disagree for more than %lu ticks (line %u closed, line %u "
+        "open): it is taken for open until both have been: look for a welded contact, a broken "
+        "or a shorted wire",
+        gpio_channel_name[i], (unsigned long)gpio.differ_max, at[level[0] ? 0 : 1],
+        at[level[0] ? 1 : 0]);
     tell(line);
 }
 

@@ -15,11 +15,11 @@ enum gpio_output { GPIO_ENABLE, GPIO_ALIVE, GPIO_OUTPUTS };
 
 #define GPIO_PATH_B   64
 #define GPIO_SAID_B   256
-#define GPIO_LINE_TOP 1023 /* the highest number taken for a line's               */
-#define GPIO_DIFFER_S 0.5 /* two contacts of a channel may disagree for so long   */
+#define GPIO_LINE_TOP 1023 /* the highest number taken for a line's */
+#define GPIO_DIFFER_S 0.5  /* two contacts of a channel may disagree for so long */
 
 struct gpio_spec {
-    char path[GPIO_PATH_B]; /* /dev/gpiochip0                        */
+    char path[GPIO_PATH_B];           /* /dev/gpiochip0 */
     unsigned contacts[GPIO_CHANNELS]; /* 0: not wired, closed as simulated; 1; 2 */
     unsigned contact[GPIO_CHANNELS][2];
     int wired[GPIO_OUTPUTS];
@@ -35,8 +35,8 @@ int gpio_take(struct gpio_spec *s, const char *text, char said[GPIO_SAID_B]);
 int gpio_open(const struct gpio_spec *s, char said[GPIO_SAID_B]);
 void gpio_close(void);
 
-/* Who takes the lines that a tick has to say, each without its end; NULL, as it is at first: they are
- * written to stderr, and the tick waits for that. */
+/* Who takes the lines that a tick has to say, each without its end; NULL, as it is at first: they
+ * are written to stderr, and the tick waits for that. */
 void gpio_say(void (*say)(const char *line));
 
 /* 1: a chip is open, and this contact is a real one. */

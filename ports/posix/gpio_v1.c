@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Lines by libgpiod 1.5 to 1.6 (Debian 12): a bulk for each direction, one ioctl() for all of it. */
+/* Lines by libgpiod 1.5 to 1.6 (Debian 12): a bulk for each direction, one ioctl() for all of it.
+ */
 #include "gpio_lines.h"
 
 #include <gpiod.h>

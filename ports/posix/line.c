@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-#define PUMP     64 /* datagrams taken a call, at most: a flood holds no tick up */
+#define PUMP     64      /* datagrams taken a call, at most: a flood holds no tick up */
 #define QUIET_US 1000000 /* the socket's peer: nothing heard for so long, any HELLO begins anew */
 
 static struct {
@@ -17,7 +17,7 @@ static struct {
     struct udp udp;
     int udp_open;
     uint64_t frames;
-    struct exh_wire_rx rx; /* what comes to the socket, for whom it comes from      */
+    struct exh_wire_rx rx; /* what comes to the socket, for whom it comes from */
     double heard_s;
 } line;
 

@@ -8,8 +8,8 @@
 
 struct posix_line {
     int on;
-    struct sim_link_par way[SIM_LINK_WAYS]; /* SIM_LINK_OUT, SIM_LINK_IN          */
-    const struct sim_trace *trace[SIM_LINK_WAYS]; /* the caller's, or NULL        */
+    struct sim_link_par way[SIM_LINK_WAYS];       /* SIM_LINK_OUT, SIM_LINK_IN */
+    const struct sim_trace *trace[SIM_LINK_WAYS]; /* the caller's, or NULL */
     /* A peer in this process: called at its frames in virtual time, frame_first_s + n frame_s, or,
      * with frame_s 0, whenever a packet arrives; it takes from the way out and gives into
      * the way in, at t_s. NULL: none. */

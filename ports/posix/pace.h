@@ -8,11 +8,13 @@
 #include <signal.h>
 #include <stdint.h>
 
-/* Tick 0 is when it is first waited for. A tick that is at most slack_s late is made up for; 0: every one that went by is missed. */
+/* Tick 0 is when it is first waited for. A tick that is at most slack_s late is made up for; 0:
+ * every one that went by is missed. */
 void pace_start(struct exh_period T, double slack_s);
 
 /* Waits until this tick is due, or a signal comes and *end is set. The ticks behind it that are due
- * already: they were missed, as an interrupt is that a board's loop did not wait for. 0 within the slack. */
+ * already: they were missed, as an interrupt is that a board's loop did not wait for. 0 within the
+ * slack. */
 uint32_t pace_wait(uint64_t tick, const volatile sig_atomic_t *end);
 
 #endif

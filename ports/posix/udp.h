@@ -8,12 +8,12 @@
 #include <stdint.h>
 
 struct udp {
-    int fd;                  /* < 0: closed                                     */
-    int learns;              /* the peer is whom udp_learn() says               */
-    int known;               /* there is a peer                                 */
+    int fd;     /* < 0: closed */
+    int learns; /* the peer is whom udp_learn() says */
+    int known;  /* there is a peer */
     struct sockaddr_in peer;
-    struct sockaddr_in from; /* who sent the newest packet                      */
-    uint64_t strangers;      /* packets from others, dropped                    */
+    struct sockaddr_in from; /* who sent the newest packet */
+    uint64_t strangers;      /* packets from others, dropped */
     uint64_t unsent;         /* not taken by the system, or there was no peer yet */
 };
 
@@ -34,7 +34,8 @@ int udp_send(struct udp *u, const void *buf, size_t len_B);
 int udp_recv(struct udp *u, void *buf, size_t cap_B);
 
 /* The packet just received was whole and wanted: its sender is the peer from now on, unless one was
- * given. Never to be called for a packet that was not checked: anybody could turn the answers away. */
+ * given. Never to be called for a packet that was not checked: anybody could turn the answers away.
+ */
 void udp_learn(struct udp *u);
 
 #endif

@@ -80,8 +80,8 @@ int exh_board_read_glove(struct exh_glove_in *in)
     return -EXH_E_ABSENT;
 }
 
-/* Fill in: a free-running counter; it may wrap, it must not stop. If it begins anew with each start, a
- * scene with a link needs another `session` at each (docs/WIRE.md). */
+/* Fill in: a free-running counter; it may wrap, it must not stop. If it begins anew with each
+ * start, a scene with a link needs another `session` at each (docs/WIRE.md). */
 uint32_t exh_board_cycles(void)
 {
     return 0;

@@ -27,24 +27,26 @@ void error_add(struct error *e, long double lsb);
 
 struct kernel {
     const char *name;
-    const char *unit;  /* of the output whose error is taken                    */
-    double lsb;        /* its least significant bit, in that unit; floats: q20 N */
-    double bound_lsb;  /* documented or derived (see `why`); more is a failure   */
-    uint32_t per;      /* things done by one op; counts are shown per thing      */
+    const char *unit; /* of the output whose error is taken */
+    double lsb;       /* its least significant bit, in that unit; floats: q20 N */
+    double bound_lsb; /* documented or derived (see `why`); more is a failure */
+    uint32_t per;     /* things done by one op; counts are shown per thing */
     void (*setup)(void);
     void (*op)(uint32_t i);
     void (*error)(struct error *e);
-    const char *why;   /* where the bound comes from, and over which inputs      */
-    double anchor;     /* instructions of a peer, 0: none; not measured here     */
-    const char *source; /* which peer, where                                     */
+    const char *why;    /* where the bound comes from, and over which inputs */
+    double anchor;      /* instructions of a peer, 0: none; not measured here */
+    const char *source; /* which peer, where */
 };
 
 struct kernel_group {
     const struct kernel *kernel;
     size_t n;
 };
-extern const struct kernel_group number_group, estimate_group, force_group, filter_group, glove_group, hand_group;
-extern const struct kernel_group precontact_group, passivity_group, scene_group, modbus_group, params_group;
+extern const struct kernel_group number_group, estimate_group, force_group, filter_group,
+    glove_group, hand_group;
+extern const struct kernel_group precontact_group, passivity_group, scene_group, modbus_group,
+    params_group;
 extern const struct kernel_group box_group;
 
 /* Calls op(0) … op(n-1). Alone in its file, so that it is a call in every build. */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Whole ticks of five fingers: the integer kernels of the paper's controller in one, as a program calls them,
- * and the full box with glove and link. Their parts' errors are other rows; their bits are the golden vectors'. */
+/* Whole ticks of five fingers: the integer kernels of the paper's controller in one, as a program
+ * calls them, and the full box with glove and link. Their parts' errors are other rows; their bits
+ * are the golden vectors'. */
 #include "bench.h"
 
 #include "tick.h"

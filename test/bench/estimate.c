@@ -6,9 +6,9 @@
 
 #include "estimators.h"
 
-#define TICKS 1000000
+#define TICKS  1000000
 #define TAU_US 1354 /* the pole at 100 Hz that exp(-2 pi 100 Hz T) has */
-#define TF_US 4500  /* theta = 0.9 at 2 kHz */
+#define TF_US  4500 /* theta = 0.9 at 2 kHz */
 
 static const struct exh_velocity_scale scale = {EXH_Q(6632, 100000000, EXH_Q_STEP), {1, 2000}};
 
@@ -177,7 +177,7 @@ static void track_error(struct error *e)
     }
 }
 
-#define MPS (1.0 / (1 << EXH_Q_VEL))
+#define MPS  (1.0 / (1 << EXH_Q_VEL))
 #define HAND "hand to +-12 m/s, noise, jumps beyond full scale, count wraps"
 
 static const struct kernel kernels[] = {

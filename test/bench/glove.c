@@ -109,7 +109,8 @@ static void line_error(struct error *e)
 static const struct kernel kernels[] = {
     {"glove_step", "turn", TURN, 1.75, 1, step_setup, step_op, line_error,
      "three roundings, two of them at a share: lines and cross terms of any codes in the span; "
-     "22 channels with low-pass and quantizer", 0, NULL},
+     "22 channels with low-pass and quantizer",
+     0, NULL},
     {"glove_step_plain", "turn", TURN, 1.75, 1, plain_setup, step_op, line_error,
      "the same without low-pass", 0, NULL},
 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Modbus: the longest reads and writes of a box with 420 parameters and 140 outputs, from the bytes of a
- * request to those of its answer; instructions per register. And the binary32 mirror. */
+/* Modbus: the longest reads and writes of a box with 420 parameters and 140 outputs, from the bytes
+ * of a request to those of its answer; instructions per register. And the binary32 mirror. */
 #include "bench.h"
 
 #include "exhand/error.h"
@@ -131,7 +131,8 @@ static float as_float(uint32_t b)
     return f;
 }
 
-/* Against the host's own conversion, which rounds to nearest even, too: the bits must be the same. */
+/* Against the host's own conversion, which rounds to nearest even, too: the bits must be the same.
+ */
 static void float_of_error(struct error *e)
 {
     bench_seed();

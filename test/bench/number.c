@@ -392,7 +392,8 @@ static void table16_error(struct error *e)
 }
 
 #define SCALED(q) (1.0 / (double)(UINT64_C(1) << (q)))
-#define QUAD_PACKED_PEER "64 time samples per word, popcount, net and illegal, private probe, gcc 12.2 -O2"
+#define QUAD_PACKED_PEER \
+    "64 time samples per word, popcount, net and illegal, private probe, gcc 12.2 -O2"
 #define QUAD_PEER "table + illegal count, inlined in its loop, private harness, gcc 12.2 -O2"
 
 static const struct kernel kernels[] = {

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* Parameters: what exh_params_apply() costs in a tick of each class, and exh_gains_step() behind it. */
+/* Parameters: what exh_params_apply() costs in a tick of each class, and exh_gains_step() behind
+ * it. */
 #include "bench.h"
 
 #include "exhand/exhand.h"
 
-/* As many values as five fingers and their materials have that may change while it runs, and more that may not. */
+/* As many values as five fingers and their materials have that may change while it runs, and more
+ * that may not. */
 static const struct exh_signal_group groups[] = {
     {exh_quad_rows, EXH_QUAD_ROWS, 5},
     {exh_contact_rows, EXH_CONTACT_ROWS, 5},
@@ -51,7 +53,8 @@ static void apply_op(uint32_t i)
     bench_sink = exh_params_apply(&p);
 }
 
-/* Five walls on their way below a rule of as many knots as there may be, each with a knot in the way. */
+/* Five walls on their way below a rule of as many knots as there may be, each with a knot in the
+ * way. */
 static struct exh_gains_par rule;
 
 static void start_led(void)

@@ -8,7 +8,8 @@
 
 #include "drop/drop.h"
 
-#define PATH_HEALTHY (EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG | EXH_DIN_CARDS | EXH_DIN_DRIVE0)
+#define PATH_HEALTHY \
+    (EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG | EXH_DIN_CARDS | EXH_DIN_DRIVE0)
 
 extern struct drop_par path_par;
 extern struct drop_cfg path_cfg;

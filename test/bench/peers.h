@@ -11,18 +11,18 @@
 /* Second-order Butterworth by the bilinear transform, gain 1 at 0 Hz:
  * y = b0 x + b1 x1 + b2 x2 - a1 y1 - a2 y2. */
 struct butterworth {
-    uint32_t ticks; /* of one period of the cut-off: fs/fc                     */
+    uint32_t ticks; /* of one period of the cut-off: fs/fc */
     long double b0, b1, b2, a1, a2;
 };
 
 struct filter_peer {
     const char *name;
-    void (*setup)(const struct butterworth *f); /* CHANNELS channels at rest   */
-    long double (*native)(long double x); /* x, 1 = full scale, as the peer can take it */
-    long double (*step)(long double x); /* channel 0, one such sample  */
-    void (*tick)(uint32_t i); /* all channels, one sample each */
-    void (*block)(uint32_t i); /* channel 0, BLOCK samples    */
-    uint32_t ram_B; /* of a channel, here          */
+    void (*setup)(const struct butterworth *f); /* CHANNELS channels at rest */
+    long double (*native)(long double x);       /* x, 1 = full scale, as the peer can take it */
+    long double (*step)(long double x);         /* channel 0, one such sample */
+    void (*tick)(uint32_t i);                   /* all channels, one sample each */
+    void (*block)(uint32_t i);                  /* channel 0, BLOCK samples */
+    uint32_t ram_B;                             /* of a channel, here */
 };
 
 struct sine_peer {

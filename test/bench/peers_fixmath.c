@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* libfixmath's products in a biquad of direct form I, and its sines. Full scale is 2^13, so that the format's integer bits
- * hold signal, too: coefficients have 16 fraction bits, samples 29. */
+/* libfixmath's products in a biquad of direct form I, and its sines. Full scale is 2^13, so that
+ * the format's integer bits hold signal, too: coefficients have 16 fraction bits, samples 29. */
 #include "peers.h"
 #include "peers_fixmath.h"
 

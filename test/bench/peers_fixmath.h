@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* libfixmath as the benches call it: 16 fraction bits, its caches off, since inputs that repeat would hide what a sine costs. */
+/* libfixmath as the benches call it: 16 fraction bits, its caches off, since inputs that repeat
+ * would hide what a sine costs. */
 #ifndef BENCH_PEERS_FIXMATH_H
 #define BENCH_PEERS_FIXMATH_H
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* libfixmath's sine out of its table of 205 KB, beside the one by series: the same source once more under other names. */
+/* libfixmath's sine out of its table of 205 KB, beside the one by series: the same source once more
+ * under other names. */
 #define FIXMATH_SIN_LUT
 #define fix16_sin          fixmath_lut_sin
 #define fix16_cos          fixmath_lut_cos

@@ -25,7 +25,8 @@ static long double native_q31(long double x)
     return peer_round(x, 31);
 }
 
-/* Coefficients of 30 fraction bits, b1 taken so that the gain at 0 Hz is 1, as a careful user would. */
+/* Coefficients of 30 fraction bits, b1 taken so that the gain at 0 Hz is 1, as a careful user
+ * would. */
 static void biquad(const struct butterworth *f, int32_t ba[5])
 {
     ba[0] = (int32_t)lrintl(f->b0 * (1 << 30));
@@ -46,7 +47,8 @@ BIQUAD(df1)
 BIQUAD(wide)
 BIQUAD(dither)
 
-/* Gains whose poles are those of the bilinear transform: the recurrence's matrix has the trace and determinant asked for. */
+/* Gains whose poles are those of the bilinear transform: the recurrence's matrix has the trace and
+ * determinant asked for. */
 static void lowpass_setup(const struct butterworth *f)
 {
     const int32_t k[2] = {(int32_t)lrintl((1 + f->a1 + f->a2) / 4 * 4294967296.0L),

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What the scenes do from raw inputs to newtons, radians and metres, as one would write it in double, in float and, for
- * reference, in long double; pipe_body.h has it, once a type.
+/* What the scenes do from raw inputs to newtons, radians and metres, as one would write it in
+ * double, in float and, for reference, in long double; pipe_body.h has it, once a type.
  */
 #ifndef BENCH_PIPE_H
 #define BENCH_PIPE_H
@@ -15,7 +15,7 @@ struct pipe_wall_par {
     long double step_m, period_s, speed_mps, k_Npm, b_Nspm, f0_N, band_m, hyst_m, f_max_N, up_Nps,
         down_Nps;
     long double A_per_N, code_per_A, way_m; /* passivity; way_m 0: none */
-    int window; /* ticks */
+    int window;                             /* ticks */
     int rest_ticks; /* a string that runs out no farther for so long is wound in; -1: it is not */
 };
 struct pipe_glove_par {

@@ -13,7 +13,7 @@ T N(table)(const struct N(table) * t, T x)
 
 #if __STDC_HOSTED__
 /* Sines of sums out of those of the joints: three calls of each a finger. */
-void N(tip)(const struct N(bones) *b, const T q[3], T tip[3])
+void N(tip)(const struct N(bones) * b, const T q[3], T tip[3])
 {
     const T sine0 = SIN(q[0]), cosine0 = COS(q[0]), sine2 = SIN(q[2]), cosine2 = COS(q[2]);
     T sine = SIN(q[1]), cosine = COS(q[1]), out = b->len[0] * cosine, up = b->len[0] * sine;
@@ -25,12 +25,14 @@ void N(tip)(const struct N(bones) *b, const T q[3], T tip[3])
         up += b->len[i] * sine;
     }
     for (int i = 0; i < 3; i++) {
-        tip[i] = b->base[i] + (b->rot[i][0] * cosine0 + b->rot[i][1] * sine0) * out + b->rot[i][2] * up;
+        tip[i] =
+            b->base[i] + (b->rot[i][0] * cosine0 + b->rot[i][1] * sine0) * out + b->rot[i][2] * up;
     }
 }
 #endif
 
-/* Distance to the plane; the virtual contact moves along until d_lim, then stands until the finger has left. */
+/* Distance to the plane; the virtual contact moves along until d_lim, then stands until the finger
+ * has left. */
 void N(freeze)(struct N(freeze) * s, const T tip[3], T pos, int touching)
 {
     s->d = s->offset - (s->n[0] * tip[0] + s->n[1] * tip[1] + s->n[2] * tip[2]);

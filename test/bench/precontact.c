@@ -48,7 +48,8 @@ static void fill(void)
             *in = (struct exh_precontact_in){{MM(60) + off / 10 * 6, MM(3), MM(80) + off / 10 * 8},
                                              {-6 * (1 << 20), 0, -8 * (1 << 20)},
                                              MM(100) - off,
-                                             0, off < -MM(7)};
+                                             0,
+                                             off < -MM(7)};
             dbl.tip[f][i][0] = si(in->tip_m_q30.x);
             dbl.tip[f][i][1] = si(in->tip_m_q30.y);
             dbl.tip[f][i][2] = si(in->tip_m_q30.z);

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* scenes errors SECONDS | count | time: whole ticks of the scenes as shipped, beside the same in double and float.
+/* scenes errors SECONDS | count | time: whole ticks of the scenes as shipped, beside the same in
+ * double and float.
  *
- * errors: scene, rate, way, quantity, unit, largest and rms error against long double, at nine rates, each for so many
- * seconds of the box's time. count, time: as work has them.
+ * errors: scene, rate, way, quantity, unit, largest and rms error against long double, at nine
+ * rates, each for so many seconds of the box's time. count, time: as work has them.
  */
 #define _POSIX_C_SOURCE 200809L
 #include "scenes.h"

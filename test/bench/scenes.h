@@ -14,9 +14,10 @@
 enum { FIXED, DOUBLE, FLOAT, WAYS };
 extern const char *const scenes_way[WAYS];
 
-/* Runs one scene at a rate for so many seconds of it; prints scene,rate,way,quantity,unit,max,rms. */
+/* Runs one scene at a rate for so many seconds of it; prints scene,rate,way,quantity,unit,max,rms.
+ */
 void scenes_wall(const char *name, uint32_t rate_Hz, double seconds); /* minimal, drop, guarded */
-void scenes_hand(const char *name, uint32_t rate_Hz, double seconds); /* glove, bilateral       */
+void scenes_hand(const char *name, uint32_t rate_Hz, double seconds); /* glove, bilateral */
 
 /* Ops of one tick: the scene's own, or the same in double or float, at 2 kHz and in contact. */
 void scenes_wall_setup(const char *name);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The glove, and the full box: glove to fingertips, planes of a link, five walls. The glove's quantizer has 24 bits
- * here, and is the integers' alone: one of fewer bits would hide what arithmetic does. */
+/* The glove, and the full box: glove to fingertips, planes of a link, five walls. The glove's
+ * quantizer has 24 bits here, and is the integers' alone: one of fewer bits would hide what
+ * arithmetic does. */
 #include "scenes.h"
 
 #include "exhand/error.h"
@@ -11,7 +12,7 @@
 #define PI         3.14159265358979323846L
 #define ROUND_S    1.2
 #define MEET       0.55L /* the planes stand where the fingertips are then */
-#define STRING_CNT 1000 /* of a whole bend */
+#define STRING_CNT 1000  /* of a whole bend */
 #define ZERO       32768
 #define PULL_N     10
 
@@ -153,7 +154,8 @@ static void wall_numbers(const struct bilateral_par *p, const struct bilateral_c
     }
 }
 
-/* A plane across the way that the fingertip goes, through where it is at MEET; its normal rounded. */
+/* A plane across the way that the fingertip goes, through where it is at MEET; its normal rounded.
+ */
 static void put_planes(const struct bilateral_par *p)
 {
     static struct pipe_glove_exact at;
@@ -302,8 +304,8 @@ static void compare(struct scenes_sum *angle, struct scenes_sum *tip, struct sce
         for (int k = 0; k < 3; k++) {
             add(angle, 2 * PI * bench_q(joint[k], 32), glove_double.joint[f][k],
                 glove_float.joint[f][k], glove_exact.joint[f][k]);
-            add(tip, bench_q(((const int32_t *)p)[k], EXH_Q_POS), glove_double.tip[f][k], glove_float.tip[f][k],
-                glove_exact.tip[f][k]);
+            add(tip, bench_q(((const int32_t *)p)[k], EXH_Q_POS), glove_double.tip[f][k],
+                glove_float.tip[f][k], glove_exact.tip[f][k]);
         }
         if (box && wall_exact[f].touching) {
             add(force, bench_q(all->paper[f].f_des_N_q20, EXH_Q_FORCE), wall_double[f].force,
@@ -322,7 +324,8 @@ static void round_of(uint32_t i)
     tick();
 }
 
-/* How far to bend, so that the strings are some millimetres past the planes, as the first round finds these. */
+/* How far to bend, so that the strings are some millimetres past the planes, as the first round
+ * finds these. */
 static long double far_enough(void)
 {
     int32_t k, b;

@@ -13,7 +13,7 @@
 #include <time.h>
 
 #define RATE_HZ 2000
-#define WANT 500
+#define WANT    500
 
 /* The paper's point at 2 kHz; the rest are the scene's defaults. */
 static int set_parameters(void)
@@ -23,7 +23,9 @@ static int set_parameters(void)
     exh_scene_drop.defaults();
     p = exh_scene_drop.params;
     err = exh_params_stage(p, calib_rows[CALIB_ROWS - 1].id, 0, 1); /* uncalibrated */
-    if (err == 0) { err = exh_params_stage(p, exh_contact_rows[0].id, 0, EXH_Q(20000, 1, EXH_Q_K)); }
+    if (err == 0) {
+        err = exh_params_stage(p, exh_contact_rows[0].id, 0, EXH_Q(20000, 1, EXH_Q_K));
+    }
     return err < 0 ? err : exh_params_stage(p, exh_contact_rows[1].id, 0, EXH_Q(60, 1, EXH_Q_B));
 }
 
@@ -50,7 +52,8 @@ int main(int argc, char **argv)
         return 1;
     }
     printf("simulation: %.1f s of one finger at %d Hz in %.3f s of CPU: %.0f x real time, wanted"
-           " %d: %s\n", posix_time_s(), RATE_HZ, cpu_s, posix_time_s() / cpu_s, WANT,
+           " %d: %s\n",
+           posix_time_s(), RATE_HZ, cpu_s, posix_time_s() / cpu_s, WANT,
            posix_time_s() >= WANT * cpu_s ? "PASS" : "FAIL");
     return 0;
 }

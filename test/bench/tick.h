@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The integer kernels of the paper's controller, one tick of five fingers: 22 low-passes, fingertips, distances to
- * five planes with the freeze rule, contact laws. What no converter or switch is part of. */
+/* The integer kernels of the paper's controller, one tick of five fingers: 22 low-passes,
+ * fingertips, distances to five planes with the freeze rule, contact laws. What no converter or
+ * switch is part of. */
 #ifndef BENCH_TICK_H
 #define BENCH_TICK_H
 
@@ -26,7 +27,8 @@ struct tick_in {
 
 int tick_setup(struct tick_box *b);
 
-/* Fingers that bend and stretch over 1024 ticks, one after the other, into planes that they meet half way. */
+/* Fingers that bend and stretch over 1024 ticks, one after the other, into planes that they meet
+ * half way. */
 void tick_input(struct tick_in *in, uint32_t i);
 
 /* Returns something of all that was computed. */

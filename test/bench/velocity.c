@@ -11,7 +11,7 @@
 #include <stdlib.h>
 
 #define RATE_HZ 2000
-#define SETTLE  400 /* ticks before anything is judged */
+#define SETTLE  400   /* ticks before anything is judged */
 #define TICKS   40000 /* 20 s */
 #define SPEEDS  4
 #define PHASES  16 /* of the encoder's grid: a sine of 5 Hz repeats every 400 ticks */
@@ -127,7 +127,7 @@ static const struct estimator estimators[] = {
 /* --- the movements --- */
 
 struct movement {
-    double v_mps, a_mps2; /* constant speed and acceleration              */
+    double v_mps, a_mps2; /* constant speed and acceleration */
     double sine_m, sine_radps;
 };
 

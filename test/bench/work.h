@@ -11,14 +11,14 @@
 #define WORK_HOUR    7200000u /* ticks at 2 kHz */
 
 struct work {
-    const char *kernel; /* a diagram's panel                              */
+    const char *kernel; /* a diagram's panel */
     const char *name;
-    const char *kind; /* ours, integer, float                           */
-    const char *unit; /* of the error                                   */
-    uint32_t ticks; /* over which it is taken; WORK_HOUR: at times, too */
+    const char *kind; /* ours, integer, float */
+    const char *unit; /* of the error */
+    uint32_t ticks;   /* over which it is taken; WORK_HOUR: at times, too */
     void (*setup)(void);
     void (*op)(uint32_t i);
-    long double (*off)(uint32_t i); /* one more tick: by how much the result is off    */
+    long double (*off)(uint32_t i); /* one more tick: by how much the result is off */
 };
 
 struct work_group {
@@ -32,7 +32,8 @@ extern const struct work_group cmsis_works, fixmath_works; /* where they could b
 /* --- inputs that ours and others share --- */
 
 /* The wall: a string that moves some millimetres inside it, in counts past the contact, each tick
- * up to two and a bit of noise. A count and the gains are exact in all formats, and no powers of two. */
+ * up to two and a bit of noise. A count and the gains are exact in all formats, and no powers of
+ * two. */
 #define WALL_STEP_M (71213.0 / 1073741824.0)
 #define WALL_K_NPM  1997.25
 #define WALL_B_NSPM 6.171875
@@ -55,8 +56,8 @@ extern int32_t curve_at[BENCH_OPS];
 void curve_seed(void);
 long double curve_exact(int32_t x);
 
-/* A plane, a fingertip (and the string) before it: on the way down and up again of op i, and anywhere within half a metre, of
- * which the exact distance comes back. */
+/* A plane, a fingertip (and the string) before it: on the way down and up again of op i, and
+ * anywhere within half a metre, of which the exact distance comes back. */
 struct freeze_case {
     long double normal[3], offset_m, tip_m[3], pos_m;
     int touching;
@@ -64,8 +65,9 @@ struct freeze_case {
 void freeze_path(uint32_t i, uint32_t f, struct freeze_case *c);
 long double freeze_any(struct freeze_case *c);
 
-/* The contact of an hour: energy_next() moves it by a tick and tells the exact energy, J, the count, and the force that is
- * asked for next; what the bench can hold of that is told by energy_hold(). energy_cnt: the counts of the ops. */
+/* The contact of an hour: energy_next() moves it by a tick and tells the exact energy, J, the
+ * count, and the force that is asked for next; what the bench can hold of that is told by
+ * energy_hold(). energy_cnt: the counts of the ops. */
 #define ENERGY_F_MOST_N 22
 #define ENERGY_WAY_M    (3.0 / 2000)
 extern int32_t energy_cnt[BENCH_OPS];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* CMSIS-DSP by its plain C paths: its controllers as a law without integral, its interpolation, its sines in
- * the same fingertips. */
+/* CMSIS-DSP by its plain C paths: its controllers as a law without integral, its interpolation, its
+ * sines in the same fingertips. */
 #include "work.h"
 
 #include "dsp/controller_functions.h"
@@ -128,7 +128,8 @@ static long double curve_off(uint32_t i)
            1073741824;
 }
 
-/* --- fingertips: lengths and places of 0.5 m full scale; sines of 30 bits, as those of sums may pass 1 --- */
+/* --- fingertips: lengths and places of 0.5 m full scale; sines of 30 bits, as those of sums may
+ * pass 1 --- */
 
 static q31_t mul(q31_t a, q31_t b)
 {

@@ -46,7 +46,8 @@ static long double joules(long double Ncnt)
     return Ncnt * energy_step_m();
 }
 
-/* Exact: what was held, times the counts; and what is held next: the spring, and more on the way in. */
+/* Exact: what was held, times the counts; and what is held next: the spring, and more on the way
+ * in. */
 long double energy_next(int32_t *cnt, int32_t *asked_q20)
 {
     *cnt = wall_cnt();

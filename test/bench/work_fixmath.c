@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* libfixmath by hand into the rules that the plain ones have: its products, sines and interpolation. Lengths are in
- * millimetres and speeds in decimetres a second: the units in which 16 fraction bits lose least. */
+/* libfixmath by hand into the rules that the plain ones have: its products, sines and
+ * interpolation. Lengths are in millimetres and speeds in decimetres a second: the units in which
+ * 16 fraction bits lose least. */
 #include "peers_fixmath.h"
 #include "work.h"
 
@@ -216,7 +217,8 @@ static long double freeze_off(uint32_t i)
     return plane[0].d / (65536 * MM) - d;
 }
 
-/* --- energy of a contact: newtons times 32 counts, which hold an hour of it and in which a count is exact --- */
+/* --- energy of a contact: newtons times 32 counts, which hold an hour of it and in which a count
+ * is exact --- */
 
 static struct {
     fix16_t way, energy, held;

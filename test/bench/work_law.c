@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The contact law: an hour inside a wall. Others than ours have no contact test and no pull-back force. */
+/* The contact law: an hour inside a wall. Others than ours have no contact test and no pull-back
+ * force. */
 #include "law.h"
 #include "work.h"
 

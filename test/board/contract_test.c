@@ -15,12 +15,12 @@
 #include "exhand/board.h"
 #include "exhand/error.h"
 
-#define DAC_ZERO   32768 /* raw codes are the Sensoray's on every port                 */
-#define DAC_HALF_A 923 /* 3249 codes/V over 1.76 A/V                                 */
-#define MON_HALF_A 968 /* 305.2 uV a code at 0.591 V/A                               */
-#define SAMPLES    16 /* averaged against the monitor's noise, 47 mA peak to peak         */
+#define DAC_ZERO   32768 /* raw codes are the Sensoray's on every port */
+#define DAC_HALF_A 923   /* 3249 codes/V over 1.76 A/V */
+#define MON_HALF_A 968   /* 305.2 uV a code at 0.591 V/A */
+#define SAMPLES    16    /* averaged against the monitor's noise, 47 mA peak to peak */
 
-#define SETUP_WORK 400000u /* turns of a loop: several ticks of any port                 */
+#define SETUP_WORK 400000u /* turns of a loop: several ticks of any port */
 
 static struct exh_period period;
 static uint8_t alive;
@@ -157,7 +157,8 @@ TEST(waiting_in_time_misses_nothing)
 TEST(inputs_of_an_idle_box_are_healthy)
 {
     const uint32_t drives = ((1u << exh_board_info.fingers) - 1u) * EXH_DIN_DRIVE0;
-    const uint32_t want = EXH_DIN_ESTOP | EXH_DIN_WATCHDOG | EXH_DIN_CARDS | drives, may = want | EXH_DIN_DEADMAN;
+    const uint32_t want = EXH_DIN_ESTOP | EXH_DIN_WATCHDOG | EXH_DIN_CARDS | drives,
+                   may = want | EXH_DIN_DEADMAN;
     begin();
     for (int n = 0; n < 16; n++) {
         const struct exh_drive_in in = tick(0, 0);

@@ -14,7 +14,7 @@
 #include <unistd.h>
 
 #define HALF_A   923 /* D/A codes */
-#define NO_SMALL 97 /* monitor codes, 0.05 A */
+#define NO_SMALL 97  /* monitor codes, 0.05 A */
 #define WAITS    80
 
 uint32_t contract_rate_Hz = 1000;

@@ -415,12 +415,18 @@ TEST(every_fault_has_its_words)
         struct exh_card_fault fault;
         const char *want;
     } row[] = {
-        {{EXH_CARD_SELFTEST, EXH_CARD_COUNTER, 3, 5, 7, 7}, "?: self-test: counter does not hold what was loaded, number 3: 5 (7)"},
-        {{EXH_CARD_EEPROM, EXH_CARD_EE_TIMEOUT, 9, 0, 0, 0}, "?: EEPROM: word does not come, number 9"},
-        {{EXH_CARD_EEPROM, EXH_CARD_DA_OFFSET, 1, 1, -5, 0}, "?: EEPROM: D/A offset implausible, 0.001 codes, number 1: 1 (-5 .. 0)"},
-        {{EXH_CARD_INPUT, EXH_CARD_QUADRATURE, 2, 9, 0, 8}, "?: inputs: illegal transitions of the encoder lines, number 2: 9 (0 .. 8)"},
-        {{EXH_CARD_INPUT, EXH_CARD_LINES, 2, 0x10, 0, 0}, "?: inputs: digital outputs are not as written: 0x0010 (0x0000)"},
-        {{EXH_CARD_CONFIG, EXH_CARD_BAD_VALUE, EXH_BOX_ROWS, 7, 0, 0}, "?: configuration: value not allowed: 7"},
+        {{EXH_CARD_SELFTEST, EXH_CARD_COUNTER, 3, 5, 7, 7},
+         "?: self-test: counter does not hold what was loaded, number 3: 5 (7)"},
+        {{EXH_CARD_EEPROM, EXH_CARD_EE_TIMEOUT, 9, 0, 0, 0},
+         "?: EEPROM: word does not come, number 9"},
+        {{EXH_CARD_EEPROM, EXH_CARD_DA_OFFSET, 1, 1, -5, 0},
+         "?: EEPROM: D/A offset implausible, 0.001 codes, number 1: 1 (-5 .. 0)"},
+        {{EXH_CARD_INPUT, EXH_CARD_QUADRATURE, 2, 9, 0, 8},
+         "?: inputs: illegal transitions of the encoder lines, number 2: 9 (0 .. 8)"},
+        {{EXH_CARD_INPUT, EXH_CARD_LINES, 2, 0x10, 0, 0},
+         "?: inputs: digital outputs are not as written: 0x0010 (0x0000)"},
+        {{EXH_CARD_CONFIG, EXH_CARD_BAD_VALUE, EXH_BOX_ROWS, 7, 0, 0},
+         "?: configuration: value not allowed: 7"},
         {{EXH_CARD_PHASES, EXH_CARD_WHATS, 0, 0, 0, 0}, "?: ?: ?"},
     };
     /* of a card that is none */
@@ -444,5 +450,5 @@ TEST_MAIN("box fault", a_board_that_dies_is_found_within_a_tick,
           all_cards_that_are_absent_are_named, faults_by_example,
           configurations_are_refused_by_name, every_place_of_the_glove_s_jumpers_is_found,
           what_is_not_used_may_be_anything, one_finger_on_a_full_box_has_to_be_said,
-          a_current_for_a_drive_that_is_off_is_a_fault,
-          a_card_that_changes_its_name_is_not_dead, every_fault_has_its_words);
+          a_current_for_a_drive_that_is_off_is_a_fault, a_card_that_changes_its_name_is_not_dead,
+          every_fault_has_its_words);

@@ -176,9 +176,8 @@ TEST(a_board_without_a_finger_has_the_rest)
         CHECK_EQ_I64(exh_box_read_drive(&in), 0);
         CHECK_EQ_I64(bus.n, 9 + 4 * fingers); /* B: start, pins, flags and their end, result */
         CHECK_EQ_I64(in.supply_raw, 4321);
-        CHECK_EQ_I64(in.din,
-                     EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG | EXH_DIN_CARDS |
-                         ((1u << fingers) - 1) * EXH_DIN_DRIVE0);
+        CHECK_EQ_I64(in.din, EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG | EXH_DIN_CARDS |
+                                 ((1u << fingers) - 1) * EXH_DIN_DRIVE0);
         bus_clear();
         CHECK_EQ_I64(put(1), 0);
         CHECK_EQ_I64(bus.n, 2 * fingers + 3); /* no update of B */
@@ -285,7 +284,8 @@ TEST(codes_beyond_the_drive_s_range_are_clamped_and_counted)
     CHECK_EQ_I64(n.clamped, 3);
 }
 
-/* ---- glove ------------------------------------------------------------------------------------ */
+/* ---- glove ------------------------------------------------------------------------------------
+ */
 
 static void tick(int16_t codes)
 {
@@ -352,7 +352,7 @@ TEST(a_scan_that_still_runs_is_not_waited_for)
         CHECK_EQ_I64(glove.age_ticks, k);
     }
     tick(200);
-    CHECK_EQ_I64(glove.raw[0], 50); /* of the first tick: the scan began there, */
+    CHECK_EQ_I64(glove.raw[0], 50);   /* of the first tick: the scan began there, */
     CHECK_EQ_I64(glove.age_ticks, 4); /* and is 4 ticks old */
     exh_box_counts(&n);
     CHECK_EQ_I64(n.glove_waits, 3);
@@ -420,13 +420,14 @@ TEST(scans_lost_in_a_row_make_the_drives_safe)
     CHECK_EQ_I64(exh_box_read_glove(&glove), -EXH_E_IO);
 }
 
-TEST_MAIN("box", before_the_opening_there_is_nothing, five_fingers_take_30_and_14_accesses, one_finger_takes_10_and_4_of_one_board,
-          monitors_of_the_last_tick_take_no_wait, monitors_in_the_tick_are_that_tick_s,
-          without_monitors_a_board_is_asked_for_its_name, figures_of_a_tick,
-          every_finger_has_its_counter_monitor_and_output, a_board_without_a_finger_has_the_rest,
-          every_input_pin_has_its_meaning, every_output_pin_has_its_meaning,
-          codes_are_applied_together, codes_beyond_the_drive_s_range_are_clamped_and_counted,
-          a_scan_in_the_tick_is_that_tick_s, a_scan_of_the_tick_before_takes_no_wait,
+TEST_MAIN("box", before_the_opening_there_is_nothing, five_fingers_take_30_and_14_accesses,
+          one_finger_takes_10_and_4_of_one_board, monitors_of_the_last_tick_take_no_wait,
+          monitors_in_the_tick_are_that_tick_s, without_monitors_a_board_is_asked_for_its_name,
+          figures_of_a_tick, every_finger_has_its_counter_monitor_and_output,
+          a_board_without_a_finger_has_the_rest, every_input_pin_has_its_meaning,
+          every_output_pin_has_its_meaning, codes_are_applied_together,
+          codes_beyond_the_drive_s_range_are_clamped_and_counted, a_scan_in_the_tick_is_that_tick_s,
+          a_scan_of_the_tick_before_takes_no_wait,
           a_scan_of_the_opening_that_still_runs_is_no_frame,
           a_scan_that_still_runs_is_not_waited_for, a_scan_that_is_lost_leaves_the_last_frame_older,
           a_glove_that_fails_makes_the_drives_safe, scans_lost_in_a_row_make_the_drives_safe);

@@ -283,4 +283,5 @@ TEST_MAIN("mm32xat", detection_by_example, an_empty_port_is_not_written,
           samples_missing_or_too_many_are_dropped_and_counted, three_lost_in_a_row_are_a_fault,
           a_card_that_always_loses_samples_does_not_open,
           a_scan_that_never_ends_is_a_fault_by_time_or_by_polls, also_where_it_is_only_asked_for,
-          an_input_that_never_settles_is_a_fault, a_card_that_dies_is_found_dead, a_card_that_dies_in_a_scan_is_found_dead_when_asked);
+          an_input_that_never_settles_is_a_fault, a_card_that_dies_is_found_dead,
+          a_card_that_dies_in_a_scan_is_found_dead_when_asked);

@@ -284,8 +284,8 @@ TEST(nominal_values_only_where_the_configuration_says_so)
     par.nominal = 1;
     bus_reset();
     bus_double(&bus.s526[0].ee[8], 0, 3200, 0); /* D/A 1 is not nominal, and in order */
-    memset(&bus.s526[0].ee[16], 0xFF, 8); /* D/A 2's gain is garbage */
-    memset(&bus.s526[0].ee[0x20], 0, 8); /* and the reference */
+    memset(&bus.s526[0].ee[16], 0xFF, 8);       /* D/A 2's gain is garbage */
+    memset(&bus.s526[0].ee[0x20], 0, 8);        /* and the reference */
     CHECK_EQ_I64(open_with(par), 0);
     CHECK_EQ_I64(card.id.nominal, 0x14);
     CHECK_EQ_I64(exh_s526_da_code(&card.id.da[1], 32768 + 3249), 32768 + 3200);

@@ -204,7 +204,7 @@ TEST(the_glove_converts_while_ticks_compute)
         while (bus.time_us - from_us < 100) { bus.time_us++; }
     }
     CHECK_EQ_I64(bus.mm.scans - 1, frames); /* one more: the self-test's */
-    CHECK_EQ_I64(most, 40); /* docs/CARDS.md */
+    CHECK_EQ_I64(most, 40);                 /* docs/CARDS.md */
 }
 
 TEST(a_scan_in_parts_is_as_sound_as_one_in_a_piece)
@@ -246,8 +246,8 @@ TEST(a_scan_in_parts_that_still_runs_is_counted)
         (void)exh_box_read_drive(&in);
         (void)exh_box_read_glove(&glove);
     }
-    CHECK(exh_box_error()->card == EXH_BOX_GLOVE && exh_box_error()->fault.what == EXH_CARD_EMPTY, "%s",
-          exh_card_what_text(exh_box_error()->fault.what));
+    CHECK(exh_box_error()->card == EXH_BOX_GLOVE && exh_box_error()->fault.what == EXH_CARD_EMPTY,
+          "%s", exh_card_what_text(exh_box_error()->fault.what));
 }
 
 /* Without the check of quadrature errors every turn is of the counters. */
@@ -278,4 +278,5 @@ TEST_MAIN("turns", five_fingers_take_17_and_13_accesses, one_finger_takes_7_and_
           every_quadrature_error_is_counted, monitors_are_handed_over_in_turn,
           output_pins_are_written_when_they_change_and_every_16_times,
           pins_that_do_not_follow_are_a_fault_as_ever, the_glove_converts_while_ticks_compute,
-          a_scan_in_parts_is_as_sound_as_one_in_a_piece, a_scan_in_parts_that_still_runs_is_counted, turns_of_counters_alone);
+          a_scan_in_parts_is_as_sound_as_one_in_a_piece, a_scan_in_parts_that_still_runs_is_counted,
+          turns_of_counters_alone);

@@ -29,7 +29,8 @@ static void set_pins(void)
     box.pins.din[0] = 0xA5;
 }
 
-/* A register that is read until it is as wanted; what Linux reads in an interrupt, when it comes. */
+/* A register that is read until it is as wanted; what Linux reads in an interrupt, when it comes.
+ */
 static int polled(unsigned port)
 {
     return port == A + 0x0E || port == MM + 4 || port == MM + 8 || port == MM + 9 ||
@@ -131,7 +132,8 @@ TEST(its_s526_sequences_are_the_facts)
 }
 
 /* "Timer-paced scan: outb 0 -> 10; page 0; 0x56 -> 15, 200 -> 13; 0xB6 -> 15, lo, hi -> 14;
- * outb 0x83 -> 9": every 40 ms, value 2000. Samples: "lo = inb 0, hi = inb 1", "then outb 0x08 -> 8". */
+ * outb 0x83 -> 9": every 40 ms, value 2000. Samples: "lo = inb 0, hi = inb 1", "then outb 0x08 ->
+ * 8". */
 TEST(its_scans_are_the_facts)
 {
     static const struct access fact[] = {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The run that FMUs must repeat, as text: native RATE_HZ FALLS SEED: loop, board and scene drop as they are shipped.
+/* The run that FMUs must repeat, as text: native RATE_HZ FALLS SEED: loop, board and scene drop as
+ * they are shipped.
  *
  *   param NAME RAW FRAC      each parameter as set-up took it
  *   columns NAME:FRAC ...    what a tick's line has
@@ -21,7 +22,8 @@ static void start(const struct exh_scene *sc, struct exh_scene_board board)
         const struct exh_signal *row = exh_signal_at(p->table, i, NULL);
         printf("param %s %ld %d\n", row->name, (long)p->active[i], row->frac);
     }
-    printf("columns enc_raw:0 mon_raw:0 supply_raw:0 din:0 missed:0 command:0 dac_raw:0 enable:0 alive:0");
+    printf("columns enc_raw:0 mon_raw:0 supply_raw:0 din:0 missed:0 command:0 dac_raw:0 enable:0 "
+           "alive:0");
     for (uint32_t i = 0; i < exh_signal_count(sc->signals); i++) {
         const struct exh_signal *row = exh_signal_at(sc->signals, i, NULL);
         printf(" %s:%d", row->name, row->frac);
@@ -39,9 +41,12 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
 {
     const struct exh_scene *sc = &exh_scene_drop;
     (void)tick;
-    printf("%lu %d %d %lu %lu %d %u %u %u", (unsigned long)in->drive.enc_raw[0], in->drive.mon_raw[0], in->drive.supply_raw,
-           (unsigned long)in->drive.din, (unsigned long)in->missed, in->command, out->dac_raw[0], out->enable, out->alive);
-    for (uint32_t i = 0; i < exh_signal_count(sc->signals); i++) { printf(" %ld", (long)sc->signal[i]); }
+    printf("%lu %d %d %lu %lu %d %u %u %u", (unsigned long)in->drive.enc_raw[0],
+           in->drive.mon_raw[0], in->drive.supply_raw, (unsigned long)in->drive.din,
+           (unsigned long)in->missed, in->command, out->dac_raw[0], out->enable, out->alive);
+    for (uint32_t i = 0; i < exh_signal_count(sc->signals); i++) {
+        printf(" %ld", (long)sc->signal[i]);
+    }
     printf("\n");
 }
 

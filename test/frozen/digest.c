@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* main() of an image: scene minimal over the inputs of ride.h on its own board, without the loop, and the CRC of all that it
- * coded. With its own set-up and frozen it is the same number. */
+/* main() of an image: scene minimal over the inputs of ride.h on its own board, without the loop,
+ * and the CRC of all that it coded. With its own set-up and frozen it is the same number. */
 #include "ride.h"
 
 #include "exhand/board.h"

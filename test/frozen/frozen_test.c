@@ -66,7 +66,8 @@ static size_t state_of(const struct side *side, uint8_t *buf, size_t cap_B)
     return c.at;
 }
 
-/* Both sides, tick by tick; and what was there: states of the box as bits, faults, ticks with a current. */
+/* Both sides, tick by tick; and what was there: states of the box as bits, faults, ticks with a
+ * current. */
 static void same_ticks(const struct frozen *f, uint32_t *states, uint32_t *faults, uint32_t *pulled)
 {
     struct ride r = {.random = 1};

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Scene minimal as if a structure had one more field, where alignment left room, of which the program has no row. */
+/* Scene minimal as if a structure had one more field, where alignment left room, of which the
+ * program has no row. */
 #include "minimal/minimal.c"
 
 #include "freeze.h"

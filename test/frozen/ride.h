@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Inputs that take scene minimal through all its states: armed with the string at rest, through the wall and back while it
- * runs, and then something happens, another thing each time; a round ends when it was let go or latched. */
+/* Inputs that take scene minimal through all its states: armed with the string at rest, through the
+ * wall and back while it runs, and then something happens, another thing each time; a round ends
+ * when it was let go or latched. */
 #ifndef TEST_FROZEN_RIDE_H
 #define TEST_FROZEN_RIDE_H
 
@@ -8,9 +9,9 @@
 
 #include "exhand/safety.h"
 
-#define RIDE_TICKS 3000u /* of a round while it runs                          */
-#define RIDE_AFTER 500u /* and after what happens                            */
-#define RIDE_CNT   480u /* 32 mm of string; the wall is at 20                */
+#define RIDE_TICKS 3000u /* of a round while it runs */
+#define RIDE_AFTER 500u  /* and after what happens */
+#define RIDE_CNT   480u  /* 32 mm of string; the wall is at 20 */
 
 enum ride_event {
     RIDE_ESTOP,
@@ -50,7 +51,8 @@ static inline void ride_event(const struct ride *r, struct exh_scene_in *in)
     }
 }
 
-/* The inputs of the next tick, from the outputs of the last. 1: a new round begins with it, set the scene up. */
+/* The inputs of the next tick, from the outputs of the last. 1: a new round begins with it, set the
+ * scene up. */
 static inline int ride(struct ride *r, const struct exh_scene *sc, const struct exh_drive_out *out,
                        struct exh_scene_in *in)
 {

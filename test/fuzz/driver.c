@@ -76,7 +76,8 @@ static struct exh_wire_packet packet_of(uint8_t type)
 /* One per type behind a HELLO, and what a link does: twice, late, anew, short, nothing. */
 static void make_files(void)
 {
-    static const char *const name[] = {"hello", "state", "planes", "param", "ack", "trace-ask", "trace"};
+    static const char *const name[] = {"hello", "state",     "planes", "param",
+                                       "ack",   "trace-ask", "trace"};
     for (uint8_t t = EXH_WIRE_HELLO; t <= EXH_WIRE_TRACE; t++) {
         for (unsigned right = 0; right < 2; right++) {
             struct input *in = &files[files_n++];
@@ -135,7 +136,8 @@ static void make_files(void)
         for (unsigned i = 0; i < 3; i++) {
             static const uint32_t seq[] = {100 + EXH_WIRE_AHEAD, 101 + 2 * EXH_WIRE_AHEAD, 101};
             tx.seq = seq[i];
-            add_packet(in, &tx, i == 2 ? 64 : 0, packet_of(i == 2 ? EXH_WIRE_HELLO : EXH_WIRE_PARAM));
+            add_packet(in, &tx, i == 2 ? 64 : 0,
+                       packet_of(i == 2 ? EXH_WIRE_HELLO : EXH_WIRE_PARAM));
         }
     }
     {

@@ -2,13 +2,13 @@
 /* Whatever a Modbus client or a serial line brings: the slave, fed with anything.
  *
  * An input is a row of requests, each behind two bytes: what is put right about it, and its length.
- * Put right are, by bit: 0 a function that there is, 1 an address of a block, 2 a count that fits, 3 the
- * length. Bit 4: it comes over the serial line as a frame with its CRC, 5: the CRC is wrong, 6: the bytes
- * go to the line as they are. Bit 7: what was asked for is carried out behind it.
+ * Put right are, by bit: 0 a function that there is, 1 an address of a block, 2 a count that fits,
+ * 3 the length. Bit 4: it comes over the serial line as a frame with its CRC, 5: the CRC is wrong,
+ * 6: the bytes go to the line as they are. Bit 7: what was asked for is carried out behind it.
  *
- * What must hold: no read or write outside; an answer is at most 253 bytes, an exception two; a request
- * that got one changes nothing; nothing is ever staged outside its range, nor what it may not be while
- * locked; nothing is commanded that may not be.
+ * What must hold: no read or write outside; an answer is at most 253 bytes, an exception two; a
+ * request that got one changes nothing; nothing is ever staged outside its range, nor what it may
+ * not be while locked; nothing is commanded that may not be.
  *
  * LLVMFuzzerTestOneInput() is libFuzzer's; the rest makes inputs without it: [SECONDS [SEED]]. */
 #include "fails.h"

@@ -3,11 +3,12 @@
  *
  * An input is a row of frames, each behind three bytes: what is put right about it, and its length
  * (u16). Put right are, by bit: 0 to us, 1 IPv4's type, version and addresses, 2 UDP and its ports,
- * 3 sums, 4 ARP's head; bit 5: a second passes before it, 6: we ask where the peer is, 7: it is to all.
+ * 3 sums, 4 ARP's head; bit 5: a second passes before it, 6: we ask where the peer is, 7: it is to
+ * all.
  *
- * What must hold: no read or write outside; each frame is counted, once; one that is dropped changes
- * nothing but its count; what is handed over is the peer's, to us, and lies in the frame; only an
- * answer that was asked for says where the peer is; what we send is what we would take.
+ * What must hold: no read or write outside; each frame is counted, once; one that is dropped
+ * changes nothing but its count; what is handed over is the peer's, to us, and lies in the frame;
+ * only an answer that was asked for says where the peer is; what we send is what we would take.
  *
  *   net_fuzz SECONDS [SEED]     bent frames for so long
  *   net_fuzz FILE...            these inputs

@@ -37,7 +37,8 @@
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 static const struct exh_material_par material[2] = {{1 << 24, 1 << 24, 1 << 22}, {1, 1, 1}};
-static const struct exh_precontact_par par = {-5368709, 1073741, 1 << 24, 0, 0, 100, 5368709, 100, 50};
+static const struct exh_precontact_par par = {-5368709, 1073741, 1 << 24, 0, 0,
+                                              100,      5368709, 100,     50};
 
 /* All that a packet may reach. */
 struct box {
@@ -130,7 +131,8 @@ static void same_bytes(const struct box *b, const uint8_t *packet, size_t len)
 }
 
 /* It is next and not too far ahead, or a HELLO that may begin. */
-static void heard(const struct exh_wire_rx *was, const struct exh_wire_rx *is, uint32_t seq, int type)
+static void heard(const struct exh_wire_rx *was, const struct exh_wire_rx *is, uint32_t seq,
+                  int type)
 {
     const uint32_t ahead = is->seq - was->seq;
     const int same = is->session == was->session;
@@ -166,7 +168,8 @@ static void must_hear(struct exh_wire_rx *rx, uint32_t session)
     MUST(exh_wire_take(rx, &p, buf, (size_t)n) == EXH_WIRE_PARAM);
 }
 
-/* Whatever is asked for is traced or refused; a trace of any values is read back as one in range. */
+/* Whatever is asked for is traced or refused; a trace of any values is read back as one in range.
+ */
 static void asked(const struct exh_wire_trace_ask *a)
 {
     struct exh_trace t;
@@ -200,7 +203,9 @@ static void datagram(struct box *b, const struct exh_precontact_cfg *cfg, struct
         return;
     }
     MUST(r == b->last.type && b->rx.accepted == was.rx.accepted + 1);
-    if (r == EXH_WIRE_HELLO) { MUST(exh_wire_differs(&b->last.u.hello, &b->last.u.hello) == EXH_WIRE_ROLE); }
+    if (r == EXH_WIRE_HELLO) {
+        MUST(exh_wire_differs(&b->last.u.hello, &b->last.u.hello) == EXH_WIRE_ROLE);
+    }
     heard(&was.rx, &b->rx, b->last.seq, r);
     same_bytes(b, packet, len);
     if (r == EXH_WIRE_PLANES) {

@@ -9,7 +9,9 @@
 
 #define HEALTHY 0x1F0Fu
 #define FINGERS BILATERAL_FINGERS
-#define VERSION 0x00010203u /* of the library, and of the parameters: not these, which may change */
+#define VERSION \
+    0x00010203u /* of the library, and of the parameters: not these, which may change \
+                 */
 #define TABLE   0x89ABCDEFu
 #define LATE    4 /* packets held back to the next tick */
 #define SIGNALS (int64_t)(sizeof(struct bilateral_signals) / sizeof(int32_t))
@@ -175,7 +177,8 @@ static void set_up(struct golden_rng *r, uint32_t rate_Hz, uint32_t k)
     exh_params_init(&rig.params, &bilateral_params, (int32_t *)&rig.par, (int32_t *)&rig.staged);
     any_par(r, rate_Hz, k);
     rig.staged = rig.par;
-    while ((err = bilateral_setup(&rig.cfg, &rig.s, &rig.par, board, NULL)) != 0 && board.enc_bits < 32) {
+    while ((err = bilateral_setup(&rig.cfg, &rig.s, &rig.par, board, NULL)) != 0 &&
+           board.enc_bits < 32) {
         board.enc_bits = (uint8_t)(board.enc_bits + 4);
     }
     CHECK_EQ_I64(err, 0);
@@ -410,7 +413,9 @@ static void any_in(struct golden_rng *r, struct golden_wave moves[FINGERS], uint
     if (rig.s.safety.state == EXH_STATE_FAULT && golden_draw(r, 0, 1) == 0) { in->drive.din ^= 2; }
     in->drive.supply_raw = golden_rail(&rig.rail, r, k);
     in->missed = golden_draw(r, 0, 127) == 0 ? 1 : 0;
-    in->command = k % 4 == 2 || k % GOLDEN_AGAIN == 0 ? EXH_CMD_RUN : k % 4 == 1 ? EXH_CMD_CLEAR : EXH_CMD_NONE;
+    in->command = k % 4 == 2 || k % GOLDEN_AGAIN == 0 ? EXH_CMD_RUN
+                  : k % 4 == 1                        ? EXH_CMD_CLEAR
+                                                      : EXH_CMD_NONE;
 }
 
 static uint32_t signals_crc(void)

@@ -151,7 +151,9 @@ static struct exh_permit any_permit(struct golden_rng *r, uint32_t k, struct exh
     if (k >= 160 && (any = golden_draw(r, 0, 31)) < 5) { p.mode = mode[any]; }
     if (golden_draw(r, 0, 3) == 0) { p.share_q30 = (int32_t)golden_draw(r, 0, INT32_C(1) << 30); }
     p.small_N_q20 = (int32_t)golden_draw(r, 0, 10485760);
-    if (golden_draw(r, 0, p.mode == EXH_PERMIT_RELEASE ? 1 : 7) == 0) { p.ticks = (uint32_t)golden_draw(r, 1, 3); }
+    if (golden_draw(r, 0, p.mode == EXH_PERMIT_RELEASE ? 1 : 7) == 0) {
+        p.ticks = (uint32_t)golden_draw(r, 1, 3);
+    }
     return p;
 }
 

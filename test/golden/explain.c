@@ -47,12 +47,12 @@ struct reader {
     FILE *f;
     const char *name;
     uint32_t rate_Hz;
-    int whole; /* inputs, too, and the state's bytes instead of their CRC      */
+    int whole; /* inputs, too, and the state's bytes instead of their CRC */
     int ended;
-    uint32_t shown; /* columns but the state                                   */
+    uint32_t shown; /* columns but the state */
     char columns[LINE_B];
     char before[GOLDEN_COLUMNS + 1][LINE_B];
-    char said[LINE_B]; /* the first difference, "" while there is none          */
+    char said[LINE_B]; /* the first difference, "" while there is none */
 };
 
 static int next_line(struct reader *r, char *line)

@@ -16,7 +16,8 @@ struct golden_rates golden_rates(void);
 /* 1 if EXH_CELLS=1: say of each module which rates ran, and the CRC of their digests. */
 int golden_cells(void);
 
-/* The CRC of each hundred rates' digests beyond GOLDEN_RATES, from the generator's file; 0 if it is not there. */
+/* The CRC of each hundred rates' digests beyond GOLDEN_RATES, from the generator's file; 0 if it is
+ * not there. */
 int golden_hundreds(const char *name, uint32_t crc[GOLDEN_HUNDREDS]);
 
 /* 1 if EXH_EXPLAIN=0: count, and tell nothing. */

@@ -146,7 +146,8 @@ static void stage(struct golden *g, struct golden_rng *r, int32_t k, int32_t b)
     }
 }
 
-/* Inside a rule whose knots are none below k_min: no wall, a knot, below it, or anything under a piece. */
+/* Inside a rule whose knots are none below k_min: no wall, a knot, below it, or anything under a
+ * piece. */
 static struct exh_contact_par place(struct golden_rng *r, const struct exh_gains_par *p)
 {
     struct exh_contact_par at = {0};
@@ -165,7 +166,8 @@ static struct exh_contact_par place(struct golden_rng *r, const struct exh_gains
     return at;
 }
 
-/* Some ticks of two ways under a rule of their own, to somewhere else after them: as many corners as there are ticks. */
+/* Some ticks of two ways under a rule of their own, to somewhere else after them: as many corners
+ * as there are ticks. */
 static void walk(struct golden *g, struct golden_rng *r, struct exh_period T)
 {
     static struct exh_contact_par is[2], wanted[2];

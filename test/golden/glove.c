@@ -61,7 +61,7 @@ struct worn {
     struct exh_glove_cal cal;
     struct exh_glove_cfg cfg;
     struct exh_glove s;
-    uint32_t wrong; /* sensors whose codes are at an end or beyond it          */
+    uint32_t wrong; /* sensors whose codes are at an end or beyond it */
 };
 
 void golden_glove_sensors(struct exh_glove_cal *cal, struct golden_rng *r)

@@ -118,7 +118,7 @@ static int64_t wave_next(uint32_t k, int64_t x, int64_t *slope, struct golden_rn
     }
     if (k < 176) { return x + golden_draw(r, -small, small); }
     if (k < 192) { return golden_draw(r, lo, hi); } /* all over the range */
-    if (k < 200) { return mid; } /* after the second set-up */
+    if (k < 200) { return mid; }                    /* after the second set-up */
     if (k < 216) { return x + golden_draw(r, -small, small); }
     if (k < 232) { return x + (k < 224 ? small : -small); }
     if (k < 248) { return k & 4 ? hi : lo; }

@@ -19,10 +19,10 @@
 #include "check.h"
 
 #define GOLDEN_TICKS    256u
-#define GOLDEN_AGAIN    192u /* at this tick everything is set up anew, at another rate */
-#define GOLDEN_RESTORE  100u /* the state before this tick is read back from its bytes */
-#define GOLDEN_RATES    2000u /* each of these has a digest                                */
-#define GOLDEN_BEYOND   20000u /* up to here each hundred has one                           */
+#define GOLDEN_AGAIN    192u   /* at this tick everything is set up anew, at another rate */
+#define GOLDEN_RESTORE  100u   /* the state before this tick is read back from its bytes */
+#define GOLDEN_RATES    2000u  /* each of these has a digest */
+#define GOLDEN_BEYOND   20000u /* up to here each hundred has one */
 #define GOLDEN_HUNDREDS ((GOLDEN_BEYOND - GOLDEN_RATES) / 100u)
 #define GOLDEN_COLUMNS  40u
 #define GOLDEN_STATE_B  4096u
@@ -33,9 +33,9 @@ struct golden {
     uint8_t state[GOLDEN_STATE_B];
     uint32_t columns, state_B;
     uint32_t tick;
-    uint32_t crc; /* of all rows so far                                         */
-    void (*see)(struct golden *g); /* the sink: called at each tick's end        */
-    void *file; /* the sink's own                             */
+    uint32_t crc;                  /* of all rows so far */
+    void (*see)(struct golden *g); /* the sink: called at each tick's end */
+    void *file;                    /* the sink's own */
 };
 
 typedef void golden_run(struct golden *g, uint32_t rate_Hz);
@@ -104,12 +104,13 @@ struct golden_rail {
     int off;
 };
 
-/* Limits that are two codes, the upper as it may fall; once in seldom + 1 none. The supply is good. */
+/* Limits that are two codes, the upper as it may fall; once in seldom + 1 none. The supply is good.
+ */
 void golden_supply_par(struct exh_supply_par *p, struct golden_rail *rail, struct golden_rng *r,
                        uint32_t rate_Hz, int64_t seldom);
 
-/* Tick k's code: now and then for some ticks none, too high, or any; twice a run too high for longer
- * than it may be. */
+/* Tick k's code: now and then for some ticks none, too high, or any; twice a run too high for
+ * longer than it may be. */
 int16_t golden_rail(struct golden_rail *rail, struct golden_rng *r, uint32_t k);
 
 /* A scene's monitor: mostly the code of what was coded, now and then for a while any. */

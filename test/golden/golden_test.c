@@ -4,7 +4,8 @@
  * called for that module and rate, and the first tick that differs is told.
  *
  * Environment on hosts: EXH_TEST=name takes one module, EXH_RATES=lo..hi:step every
- * step-th of these rates alone (beyond 2000 hundreds of rates, up to 20000), EXH_EXPLAIN=0 counts without telling, EXH_CELLS=1 says what ran. */
+ * step-th of these rates alone (beyond 2000 hundreds of rates, up to 20000), EXH_EXPLAIN=0 counts
+ * without telling, EXH_CELLS=1 says what ran. */
 #include "explain.h"
 #include "modules.h"
 
@@ -163,8 +164,8 @@ MODULE(drop);
 MODULE(guarded);
 MODULE(bilateral);
 
-TEST_MAIN("golden", first_tick_that_differs_is_told, fix, bytes, record, ring, signal, slots, quad, quad_ab,
-          velocity_window, velocity_pole, velocity_foaw, velocity_track, contact, table, drive,
-          track, watch, guard, supply, passivity, safety, calibrate, probe, home, weigh, filter, quantizer,
-          gains, glove, glove_every, glove_cal, angle, hand, precontact, wire, mirror, modbus, modbus_rtu,
-          drop, guarded, bilateral);
+TEST_MAIN("golden", first_tick_that_differs_is_told, fix, bytes, record, ring, signal, slots, quad,
+          quad_ab, velocity_window, velocity_pole, velocity_foaw, velocity_track, contact, table,
+          drive, track, watch, guard, supply, passivity, safety, calibrate, probe, home, weigh,
+          filter, quantizer, gains, glove, glove_every, glove_cal, angle, hand, precontact, wire,
+          mirror, modbus, modbus_rtu, drop, guarded, bilateral);

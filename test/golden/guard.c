@@ -14,7 +14,7 @@ struct still {
     int32_t active[GOLDEN_VALUES], staged[GOLDEN_VALUES];
     uint8_t area[AREA_B];
     uint32_t len_B;
-    uint32_t at, word; /* what is changed while the masks are not 0             */
+    uint32_t at, word; /* what is changed while the masks are not 0 */
     uint8_t flip, off;
 };
 

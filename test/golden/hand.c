@@ -54,7 +54,9 @@ static void any_bones(struct golden_rng *r, struct exh_hand_bones *b)
     const int64_t rot[3][3] = {{t.c * u.d, -t.s * u.c, t.s * u.s},
                                {t.s * u.d, t.c * u.c, -t.c * u.s},
                                {0, u.s * t.d, u.c * t.d}};
-    for (int i = 0; i < 9; i++) { b->rot_q30[i / 3][i % 3] = golden_q30(rot[i / 3][i % 3], t.d * u.d); }
+    for (int i = 0; i < 9; i++) {
+        b->rot_q30[i / 3][i % 3] = golden_q30(rot[i / 3][i % 3], t.d * u.d);
+    }
     for (int i = 0; i < 3; i++) {
         b->base_m_q32[i] = (int32_t)golden_draw(r, -536870912, 536870912);
     }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* modbus: requests and their answers. modbus_rtu: the same on a serial line. mirror: binary32 and back. */
+/* modbus: requests and their answers. modbus_rtu: the same on a serial line. mirror: binary32 and
+ * back. */
 #include "modbus_box.h"
 #include "modules.h"
 

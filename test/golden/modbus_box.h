@@ -10,7 +10,7 @@
 #define BOX_SIGNALS   64
 #define BOX_PARAMS    68
 #define BOX_FRAMES    8
-#define BOX_REQUEST_B 320u /* more than any request has: some are too long       */
+#define BOX_REQUEST_B 320u /* more than any request has: some are too long */
 
 struct golden_box {
     struct exh_regs regs;

@@ -20,7 +20,7 @@ static int32_t toy(struct golden_rng *r, uint32_t k, int32_t cnt, int32_t cur_A_
 /* What is common to the three: scale, and how long a tick is. */
 struct any {
     struct exh_probe_scale scale;
-    int32_t few_ms; /* a little more than a tick                               */
+    int32_t few_ms; /* a little more than a tick */
     int32_t lift_A_q26, quick, cnt;
 };
 

@@ -12,7 +12,7 @@ struct box {
     struct exh_ring ring;
     uint8_t mem[MOST_B + 64u];
     uint32_t cap_B;
-    uint8_t table[TABLE_B]; /* what payloads are cut from                       */
+    uint8_t table[TABLE_B]; /* what payloads are cut from */
 };
 
 /* What set-up says of the first size, which may be too small. */

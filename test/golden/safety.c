@@ -5,7 +5,7 @@
 #include "exhand/fix.h"
 #include "exhand/safety.h"
 
-#define HEALTHY 0x1F0Fu /* both switches, watchdog, cards, all five drives      */
+#define HEALTHY 0x1F0Fu /* both switches, watchdog, cards, all five drives */
 
 struct box {
     struct exh_safety s;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* signal: a table's CRC, and parameters staged, applied at once or little by little, saved and loaded. */
+/* signal: a table's CRC, and parameters staged, applied at once or little by little, saved and
+ * loaded. */
 #include "modules.h"
 
 #include "exhand/error.h"

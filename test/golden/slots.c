@@ -10,7 +10,7 @@
 struct box {
     uint8_t slot[2][MOST_B];
     uint32_t slot_B;
-    uint8_t image[MOST_B]; /* the one before                                   */
+    uint8_t image[MOST_B]; /* the one before */
     uint32_t image_B;
 };
 

@@ -10,23 +10,23 @@
 #define CHIP_LINES 12
 
 struct chip_line {
-    int level; /* an input's, or what it was last set to               */
-    const char *holder; /* somebody else's, or NULL                             */
-    int held, output, pulled_down; /* by us, and how                            */
+    int level;                     /* an input's, or what it was last set to */
+    const char *holder;            /* somebody else's, or NULL */
+    int held, output, pulled_down; /* by us, and how */
     const char *consumer;
 };
 
 extern struct chip {
-    int open_error; /* errno of opening it; ENOENT also for any other path      */
-    int request_error; /* of any request                                         */
-    int no_bias; /* a kernel before 5.5: EINVAL for a request with bias      */
+    int open_error;    /* errno of opening it; ENOENT also for any other path */
+    int request_error; /* of any request */
+    int no_bias;       /* a kernel before 5.5: EINVAL for a request with bias */
     int get_error, put_error;
-    int puts_fail; /* so many more, by EIO                                     */
-    int opened; /* and not closed yet                                           */
+    int puts_fail; /* so many more, by EIO */
+    int opened;    /* and not closed yet */
     long gets, puts;
-    int flips; /* this line reads 1 at the first and 0 at the second of two reads, */
-    int first_low; /* or the other way round; -1: none                            */
-    int put_fd; /* what outputs are set to goes there, a byte each; -1: nowhere */
+    int flips;     /* this line reads 1 at the first and 0 at the second of two reads, */
+    int first_low; /* or the other way round; -1: none */
+    int put_fd;    /* what outputs are set to goes there, a byte each; -1: nowhere */
     struct chip_line line[CHIP_LINES];
 } chip;
 

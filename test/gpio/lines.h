@@ -184,7 +184,8 @@ TEST(what_can_be_wrong)
     gpio_close();
 }
 
-/* ---- Contacts --------------------------------------------------------------------------------- */
+/* ---- Contacts ---------------------------------------------------------------------------------
+ */
 
 TEST(closed_if_both_reads_are)
 {
@@ -265,8 +266,8 @@ TEST(two_contacts_that_disagree)
     gpio_close();
 }
 
-/* A terminal that was halted (Ctrl-S) holds no tick up, whatever a tick has to say: it comes when the
- * terminal goes on. */
+/* A terminal that was halted (Ctrl-S) holds no tick up, whatever a tick has to say: it comes when
+ * the terminal goes on. */
 TEST(a_halted_terminal_stalls_no_tick)
 {
     static char text[65536];
@@ -278,7 +279,7 @@ TEST(a_halted_terminal_stalls_no_tick)
     dup2(tty.slave, 2);
     words_begin(1);
     gpio_say(words_say);
-    alarm(60); /* a tick that stands still ends the test */
+    alarm(60);                      /* a tick that stands still ends the test */
     for (int k = 0; k < 100; k++) { /*/* so many lines a ring has room for, and no terminal */
         chip.line[SECOND].level = 0;
         for (int i = 0; i < 501; i++) { CHECK_EQ_I64(din(), EXH_DIN_DEADMAN); }
@@ -395,8 +396,9 @@ TEST(lines_that_cannot_be_set)
     CHECK_EQ_I64(gpio_write(&out), -EXH_E_IO);
     CHECK_EQ_I64(gpio_write(&out), -EXH_E_IO);
     text = listen_end();
-    CHECK(times(text, "/dev/gpiochip0: the outputs can't be set (Input/output error): outputs CAN'T "
-                      "BE SET LOW") == 1,
+    CHECK(times(text,
+                "/dev/gpiochip0: the outputs can't be set (Input/output error): outputs CAN'T "
+                "BE SET LOW") == 1,
           "%s", text);
     gpio_close();
 }
@@ -485,14 +487,14 @@ TEST(low_when_it_is_stopped)
 
 enum { OPEN_NEVER, OPEN_ESTOP, OPEN_SECOND, OPEN_DEADMAN, OPEN_BEFORE, CHIP_GONE };
 #define ZERO 32768
-#define PAST 40 /* ticks looked at after the contact opens                       */
+#define PAST 40 /* ticks looked at after the contact opens */
 
 static struct {
     int how;
-    uint32_t opened; /* the last tick with it closed, 0: not yet             */
+    uint32_t opened; /* the last tick with it closed, 0: not yet */
     struct exh_drive_out out[PAST + 1];
     struct drop_signals sig[PAST + 1];
-    int enable[PAST + 1], alive[PAST + 1]; /* the lines                        */
+    int enable[PAST + 1], alive[PAST + 1]; /* the lines */
 } fall;
 
 static void fall_before(uint32_t tick, struct exh_scene_in *in)
@@ -560,8 +562,8 @@ TEST(closed_contacts_change_nothing)
     }
 }
 
-/* The tick that sees it open has no current, and the enable falls with its outputs; the beat goes on:
- * the box is alive. */
+/* The tick that sees it open has no current, and the enable falls with its outputs; the beat goes
+ * on: the box is alive. */
 TEST(estop_cuts_in_its_tick)
 {
     for (int how = OPEN_ESTOP; how <= OPEN_SECOND; how++) {
@@ -610,11 +612,12 @@ TEST(a_chip_that_is_gone)
     CHECK_EQ_I64(fall.sig[1].faults & EXH_FAULT_CARD, EXH_FAULT_CARD);
 }
 
-/* ---- `exhand run`: whose hand it is ----------------------------------------------------------- */
+/* ---- `exhand run`: whose hand it is -----------------------------------------------------------
+ */
 
 static struct {
-    uint8_t state[2000]; /* of the box, by tick                                  */
-    int held; /* 1: the real switch is closed from the start and never moved     */
+    uint8_t state[2000]; /* of the box, by tick */
+    int held;            /* 1: the real switch is closed from the start and never moved */
 } hand;
 
 /* Gripped at tick 300, let go at 1000, gripped at 1200, let go at 1400, gripped at 1600. */
@@ -656,8 +659,9 @@ static void hand_runs(int held)
     gpio_close();
 }
 
-/* Only the real switch commands: a grip runs the box, letting go is a fault, the next grip clears it and the one after
- * runs it. The simulated person, who would have gripped at 0.1 s and let go at 0.5 s, is not there. */
+/* Only the real switch commands: a grip runs the box, letting go is a fault, the next grip clears
+ * it and the one after runs it. The simulated person, who would have gripped at 0.1 s and let go at
+ * 0.5 s, is not there. */
 TEST(a_real_hand)
 {
     static const struct {
@@ -685,12 +689,11 @@ TEST(a_switch_that_is_closed_from_the_start)
 
 #define LINES_TESTS \
     requested_low_and_pulled_down, a_field_alone, what_can_be_wrong, closed_if_both_reads_are, \
-        a_contact_closes_nothing, two_contacts, two_contacts_that_disagree, a_halted_terminal_stalls_no_tick, disagreement_in_ticks, \
-        lines_that_cannot_be_read, enable_and_beat, safe_is_low, lines_that_cannot_be_set, \
-        low_at_the_third_try, \
+        a_contact_closes_nothing, two_contacts, two_contacts_that_disagree, \
+        a_halted_terminal_stalls_no_tick, disagreement_in_ticks, lines_that_cannot_be_read, \
+        enable_and_beat, safe_is_low, lines_that_cannot_be_set, low_at_the_third_try, \
         low_when_the_program_ends, low_when_it_is_stopped, closed_contacts_change_nothing, \
         estop_cuts_in_its_tick, deadman_lets_go, no_start_with_an_open_contact, \
-        a_chip_that_is_gone, a_real_hand, \
-        a_switch_that_is_closed_from_the_start
+        a_chip_that_is_gone, a_real_hand, a_switch_that_is_closed_from_the_start
 
 #endif

@@ -4,8 +4,24 @@
 #include <string.h>
 
 /* Wiring, as docs/CARDS.md has it; a table of its own, so that the driver's is judged by it. */
-enum { READY_A = 0, ONE_ESTOP = 1, ONE_DEADMAN = 2, ONE_WATCHDOG = 3, ONE_ENABLE = 4, ONE_ALIVE = 5, ONE_SUPPLY = 4 };
-enum { B_READY4 = 0, B_ESTOP = 1, B_DEADMAN = 2, B_WATCHDOG = 3, B_ENABLE4 = 4, B_ALIVE = 5, B_SUPPLY = 4 };
+enum {
+    READY_A = 0,
+    ONE_ESTOP = 1,
+    ONE_DEADMAN = 2,
+    ONE_WATCHDOG = 3,
+    ONE_ENABLE = 4,
+    ONE_ALIVE = 5,
+    ONE_SUPPLY = 4
+};
+enum {
+    B_READY4 = 0,
+    B_ESTOP = 1,
+    B_DEADMAN = 2,
+    B_WATCHDOG = 3,
+    B_ENABLE4 = 4,
+    B_ALIVE = 5,
+    B_SUPPLY = 4
+};
 #define ON_A 4u /* fingers */
 
 void box_open(struct box *b, int one_finger, const struct emu_config *c)

@@ -13,7 +13,7 @@
 struct box {
     struct emu_box emu;
     uint64_t from_ns; /* emu.time_ns when the harness's time was 0 */
-    int one_finger; /* wired for one finger, on board A alone */
+    int one_finger;   /* wired for one finger, on board A alone */
     /* The glove's samples are about to be read, or with glove_starts a scan begins; NULL: nobody
      * asks. */
     int glove_starts;

@@ -10,14 +10,15 @@
 #define PIT_HZ       1193182u
 #define UART_CHAR_PS UINT64_C(86805556) /* ten bits at 115200 baud */
 
-struct pic { /* one of the pair */
+/* one of the pair */
+struct pic {
     uint8_t irr, isr, mask, base, words_left, word, read_isr, auto_eoi;
 };
 
 struct pit {
     uint32_t divisor; /* 1..65536 */
     uint64_t from_ps; /* the count was loaded then */
-    uint64_t done; /* interrupts since */
+    uint64_t done;    /* interrupts since */
     uint8_t low, have_low, latched, read_high;
     uint16_t latch;
     uint64_t loads;
@@ -30,7 +31,7 @@ struct pit {
 struct hpet {
     uint32_t period_fs; /* of its counter; 0: there is no HPET */
     uint64_t config, status;
-    uint64_t held; /* the counter while it stands */
+    uint64_t held;    /* the counter while it stands */
     uint64_t from_ps; /* and it was that at this time, when it runs */
     struct {
         uint64_t config, compare, period;
@@ -41,7 +42,7 @@ struct hpet {
 struct uart {
     uint8_t divisor_low, divisor_high, line, fifo, scratch, ier, modem;
     uint64_t busy_ps; /* all that it took has left by then */
-    uint64_t lost; /* written while it could take none  */
+    uint64_t lost;    /* written while it could take none */
 };
 
 struct chips {
@@ -64,7 +65,7 @@ uint64_t chips_timer_loads(const struct chips *c);
 double chips_period_s(const struct chips *c);
 
 int pic_wants(const struct chips *c); /* an interrupt is requested and not masked */
-int pic_accept(struct chips *c); /* its vector; 0: spurious line 7 */
+int pic_accept(struct chips *c);      /* its vector; 0: spurious line 7 */
 
 /* 1 and *value, or 0: not one of its ports. */
 int chips_in8(struct chips *c, uint64_t now_ps, uint16_t port, uint8_t *value);
@@ -73,7 +74,7 @@ int chips_out8(struct chips *c, uint64_t now_ps, uint16_t port, uint8_t value, i
 
 /* --- hpet.c --- */
 
-int hpet_advance(struct hpet *t, uint64_t now_ps); /* 1: its interrupt was requested   */
+int hpet_advance(struct hpet *t, uint64_t now_ps); /* 1: its interrupt was requested */
 uint64_t hpet_next_ps(const struct hpet *t);
 int hpet_is_legacy(const struct hpet *t); /* it stands in the place of the 8254 */
 uint32_t hpet_read(const struct chips *c, uint64_t now_ps, uint32_t offset);

@@ -7,8 +7,8 @@
 
 struct class_of {
     const struct exh_scene *twin; /* the same scene, of this program: names of signals; or NULL */
-    uint32_t scene; /* the image's, an address                       */
-    uint32_t accepted; /* packets, up to the tick before                 */
+    uint32_t scene;               /* the image's, an address */
+    uint32_t accepted;            /* packets, up to the tick before */
 };
 
 /* Sum of enum count_key: before the tick, of what goes in; and behind it, of what came out. */

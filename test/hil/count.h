@@ -23,10 +23,10 @@ struct count_class {
 /* What makes a class of ticks: bits, and counts of three. Packets are counted by kind, and those
  * among them that were refused. */
 enum count_key {
-    COUNT_RUNS = 1 << 0,   /* drives are enabled when the tick ends              */
-    COUNT_GLOVE = 1 << 1,  /* a new glove frame                                  */
-    COUNT_FIRST = 1 << 2,  /* the first since power-on                           */
-    COUNT_TRACKS = 1 << 3, /* fingers whose q_lim moves along                    */
+    COUNT_RUNS = 1 << 0,   /* drives are enabled when the tick ends */
+    COUNT_GLOVE = 1 << 1,  /* a new glove frame */
+    COUNT_FIRST = 1 << 2,  /* the first since power-on */
+    COUNT_TRACKS = 1 << 3, /* fingers whose q_lim moves along */
     COUNT_HELLO = 1 << 6,
     COUNT_PLANES = 1 << 9,
     COUNT_PARAM = 1 << 12,
@@ -43,16 +43,16 @@ struct count {
     struct count_class class[COUNT_CLASSES];
     unsigned classes;
 
-    uint64_t boot_insns, boot_ps; /* up to the first wait; to the first tick's end of it      */
+    uint64_t boot_insns, boot_ps; /* up to the first wait; to the first tick's end of it */
     uint64_t boot_ports;
     int ticking;
     int no_memory;
-    uint64_t at_insns, at_ports, at_cards, at_ps; /* when this tick began                      */
+    uint64_t at_insns, at_ports, at_cards, at_ps; /* when this tick began */
     uint64_t scene_at;
 };
 
 void count_wait(struct count *c, const struct hil *h); /* the image waits */
-void count_tick(struct count *c, const struct hil *h); /* and is woken    */
+void count_tick(struct count *c, const struct hil *h); /* and is woken */
 void count_scene(struct count *c, const struct hil *h);
 uint32_t count_scene_end(struct count *c, const struct hil *h, unsigned key); /* what it took */
 void count_free(struct count *c);

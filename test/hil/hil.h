@@ -16,10 +16,10 @@
 #define HIL_RAM_B (16u << 20)
 
 struct hil_cost {
-    uint32_t insn_ps; /* 2 cycles of a 1.6 GHz in-order Atom                       */
-    uint32_t entry_ps; /* into an interrupt handler                                 */
-    uint32_t port_ps; /* an access to a port behind the ISA or LPC bridge          */
-    uint32_t hpet_ps; /* an access to the HPET                                     */
+    uint32_t insn_ps;  /* 2 cycles of a 1.6 GHz in-order Atom */
+    uint32_t entry_ps; /* into an interrupt handler */
+    uint32_t port_ps;  /* an access to a port behind the ISA or LPC bridge */
+    uint32_t hpet_ps;  /* an access to the HPET */
 };
 extern const struct hil_cost hil_cost_default;
 
@@ -34,33 +34,33 @@ struct hil {
     uc_engine *uc;
     uint8_t *ram;
     uint32_t entry;
-    uint16_t *block; /* by address: instructions of the block that begins there; 0: not seen     */
+    uint16_t *block; /* by address: instructions of the block that begins there; 0: not seen */
     struct hil_cost cost;
     struct chips chips;
     struct box *box; /* the cards; NULL: there are none */
 
     uint64_t now_ps;
-    uint64_t wake_ps; /* the next thing that a chip does by itself, or 0: an interrupt waits     */
-    uint64_t insns; /* executed                                                               */
-    uint64_t singly; /* the same, counted one by one, slowly, if                               */
-    int count_singly; /* that was asked for before hil_open()                                   */
-    uint64_t ports; /* accesses, all of them                                                   */
-    uint64_t cards; /* those to the cards                                                     */
+    uint64_t wake_ps; /* the next thing that a chip does by itself, or 0: an interrupt waits */
+    uint64_t insns;   /* executed */
+    uint64_t singly;  /* the same, counted one by one, slowly, if */
+    int count_singly; /* that was asked for before hil_open() */
+    uint64_t ports;   /* accesses, all of them */
+    uint64_t cards;   /* those to the cards */
     uint64_t hpets;
-    uint64_t irqs; /* timer interrupts that went in */
-    uint64_t late; /* of them, those that found the image not waiting, since the first tick      */
-    int idle; /* it waits in HLT                                                           */
-    int waited; /* and has before                                                            */
-    uint32_t last_end; /* where the block before this one ended                                */
-    int wants_stop; /* the harness asked for it, at the start of a block                     */
-    int returns; /* the harness did what a function should                       */
+    uint64_t irqs;     /* timer interrupts that went in */
+    uint64_t late;     /* of them, those that found the image not waiting, since the first tick */
+    int idle;          /* it waits in HLT */
+    int waited;        /* and has before */
+    uint32_t last_end; /* where the block before this one ended */
+    int wants_stop;    /* the harness asked for it, at the start of a block */
+    int returns;       /* the harness did what a function should */
     uint32_t returned;
-    uint64_t max_insns; /* from here on it is taken to hang; 0: never                            */
+    uint64_t max_insns; /* from here on it is taken to hang; 0: never */
     enum hil_end end;
-    uint32_t status; /* of HIL_EXIT: what was written to the debug port                        */
-    char why[160]; /* of HIL_BROKEN                                                           */
-    FILE *records; /* what comes out of port 0xE9, or NULL                           */
-    void (*line)(struct hil *h, const char *text); /* called with each line of it, or NULL    */
+    uint32_t status; /* of HIL_EXIT: what was written to the debug port */
+    char why[160];   /* of HIL_BROKEN */
+    FILE *records;   /* what comes out of port 0xE9, or NULL */
+    void (*line)(struct hil *h, const char *text); /* called with each line of it, or NULL */
     char text[256];
     unsigned text_n;
 
@@ -69,9 +69,9 @@ struct hil {
         hil_watch_fn *fn;
     } watch[HIL_WATCHES];
     unsigned watches;
-    void (*set)(struct hil *h); /* the timer was set, or NULL */
-    void (*tick)(struct hil *h); /* at each timer interrupt, before it goes in                  */
-    void (*wait)(struct hil *h); /* at each HLT: what was to be done is done                    */
+    void (*set)(struct hil *h);                     /* the timer was set, or NULL */
+    void (*tick)(struct hil *h);                    /* at each timer interrupt, before it goes in */
+    void (*wait)(struct hil *h);                    /* at each HLT: what was to be done is done */
     void (*block_fn)(uint32_t address, unsigned n); /* before each block, or NULL */
 };
 

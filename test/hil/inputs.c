@@ -50,8 +50,9 @@ void inputs_next(struct inputs *s, int runs, struct exh_scene_in *in)
         in->drive.mon_raw[i] = (int16_t)value(s, (uint16_t)last->drive.mon_raw[i], 0xFFFF);
     }
     in->drive.supply_raw = (int16_t)value(s, (uint16_t)last->drive.supply_raw, 0xFFFF);
-    in->drive.din =
-        wild && one_in(s, 8) ? draw(s) : EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG | EXH_DIN_CARDS | 31u * EXH_DIN_DRIVE0;
+    in->drive.din = wild && one_in(s, 8) ? draw(s)
+                                         : EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG |
+                                               EXH_DIN_CARDS | 31u * EXH_DIN_DRIVE0;
     in->missed = wild && one_in(s, 8) ? draw(s) : 0;
     in->command = command(s, runs, in->command);
     for (unsigned i = 0; in->glove_new && i < EXH_GLOVE_SENSORS; i++) {

@@ -6,7 +6,7 @@
 #include "scene.h"
 
 struct inputs {
-    uint64_t state; /* of the generator */
+    uint64_t state;             /* of the generator */
     uint32_t walk[EXH_FINGERS]; /* what the strings move besides */
     int torn; /* encoders jump, too: the scene takes none that did for good again */
     struct exh_scene_in last;

@@ -114,7 +114,8 @@ static int judge(void)
 int main(int argc, char **argv)
 {
     const struct cli_call setting = {take_setting, NULL};
-    union { /* an option's place to write to is not const; this one is only called */
+    /* an option's place to write to is not const; this one is only called */
+    union {
         const struct cli_call *call;
         void *to;
     } set = {&setting};

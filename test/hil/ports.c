@@ -69,7 +69,8 @@ static void on_out(uc_engine *uc, uint32_t port, int size, uint32_t value, void 
 
 int hil_ports_open(struct hil *h)
 {
-    union { /* hooks are stored as objects in Unicorn's interface */
+    /* hooks are stored as objects in Unicorn's interface */
+    union {
         uint32_t (*in)(uc_engine *, uint32_t, int, void *);
         void (*out)(uc_engine *, uint32_t, int, uint32_t, void *);
         void *hook;

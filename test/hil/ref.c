@@ -77,9 +77,9 @@ static void delay_monitor(struct exh_drive_in *in)
     last = now;
 }
 
-/* Of each board the tick before began one channel, in turn: of A those of monitors 0..3, or of monitor 0
- * and the supply of a box for one finger, of B those of monitor 4 and the supply. The first tick has
- * what stood there when the box was opened: nothing. */
+/* Of each board the tick before began one channel, in turn: of A those of monitors 0..3, or of
+ * monitor 0 and the supply of a box for one finger, of B those of monitor 4 and the supply. The
+ * first tick has what stood there when the box was opened: nothing. */
 static void take_turns(uint32_t tick, struct exh_drive_in *in)
 {
     static struct exh_drive_in held, last;

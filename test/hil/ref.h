@@ -20,11 +20,11 @@ struct ref_cfg {
     struct ref_setting setting[REF_SETTINGS];
     int settings;
     int (*prepare)(void); /* stages what is no setting: 0 or -EXH_E_...; NULL: nothing is */
-    double held_s; /* from then on the dead-man switch is held */
-    uint16_t glove_age; /* of frames as the cards hand them over, ticks */
-    int turns; /* monitors and supply of the tick before, one a board, in turn */
-    int glove_last; /* a frame is of the tick in which the one before was handed over */
-    int monitor_age; /* of monitors and supply, likewise, 0 or 1 */
+    double held_s;        /* from then on the dead-man switch is held */
+    uint16_t glove_age;   /* of frames as the cards hand them over, ticks */
+    int turns;            /* monitors and supply of the tick before, one a board, in turn */
+    int glove_last;       /* a frame is of the tick in which the one before was handed over */
+    int monitor_age;      /* of monitors and supply, likewise, 0 or 1 */
 };
 
 /* One tick: what went in and came out, */

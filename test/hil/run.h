@@ -8,8 +8,8 @@
 #include "world.h"
 
 struct run_options {
-    const char *image, *options; /* the file, and its command line              */
-    const char *records; /* where what comes out of port 0xE9 goes, or NULL */
+    const char *image, *options; /* the file, and its command line */
+    const char *records;         /* where what comes out of port 0xE9 goes, or NULL */
     int wild, quiet, singly, loop, absent, board, turns, glove_last;
     double cpi, port_us, hpet_MHz, baud;
     int64_t seed, where, ticks, rate_Hz, glove_age, monitor_age, spoil;
@@ -25,15 +25,15 @@ struct run {
     struct count count;
     struct inputs inputs;
     uint32_t scene, tick,
-        back; /* addresses: descriptor, its tick function, where that returns to */
-    uint32_t out; /* where its outputs go                          */
+        back;     /* addresses: descriptor, its tick function, where that returns to */
+    uint32_t out; /* where its outputs go */
     struct class_of class_of;
-    unsigned key; /* of the tick under way: enum count_key           */
-    int runs; /* the drives were enabled when the last tick ended */
-    uint64_t passed; /* instants of the timer since the first wait,   */
-    uint64_t instants, ticks; /* those up to the last tick of the scene; these ticks */
-    uint64_t late; /* instants that found it at work               */
-    uint32_t said_run, said_missed; /* ticks, as the image says at its end       */
+    unsigned key;                   /* of the tick under way: enum count_key */
+    int runs;                       /* the drives were enabled when the last tick ended */
+    uint64_t passed;                /* instants of the timer since the first wait, */
+    uint64_t instants, ticks;       /* those up to the last tick of the scene; these ticks */
+    uint64_t late;                  /* instants that found it at work */
+    uint32_t said_run, said_missed; /* ticks, as the image says at its end */
 };
 extern struct run run;
 

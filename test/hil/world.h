@@ -8,31 +8,31 @@
 #include "ref.h"
 
 struct world_result {
-    uint64_t ticks; /* compared                                               */
-    uint64_t differ; /* ticks                                                   */
-    uint64_t first; /* the first that differs                                  */
-    char what[160]; /* and in what                                            */
+    uint64_t ticks;     /* compared */
+    uint64_t differ;    /* ticks */
+    uint64_t first;     /* the first that differs */
+    char what[160];     /* and in what */
     uint32_t digest[2]; /* CRC of all outputs and signals: the image's, the POSIX port's */
-    uint64_t running; /* ticks with a drive enabled                             */
-    uint64_t packets; /* over the link, both ways                                */
-    uint64_t pulling; /* with a code other than 0 A                             */
+    uint64_t running;   /* ticks with a drive enabled */
+    uint64_t packets;   /* over the link, both ways */
+    uint64_t pulling;   /* with a code other than 0 A */
 };
 
 struct world {
-    struct ref_cfg ref_cfg; /* board.T is the image's, once that is known        */
+    struct ref_cfg ref_cfg; /* board.T is the image's, once that is known */
     struct box *box;
     struct hil *h;
-    int64_t spoil; /* in this tick an encoder reads a count more: a test of the test; < 0: never */
-    uint32_t scene; /* the image's descriptor                                    */
-    int begun; /* the image's loop has                                      */
+    int64_t spoil;  /* in this tick an encoder reads a count more: a test of the test; < 0: never */
+    uint32_t scene; /* the image's descriptor */
+    int begun;      /* the image's loop has */
     struct ref *ref;
-    struct ref_frame now; /* the reference's tick, while the image does it        */
-    unsigned received, sent; /* packets of this tick                              */
-    uint64_t ticks; /* instants so far                                           */
-    int open; /* a tick is under way                                       */
-    int gloved; /* its glove frame was converted                             */
-    int differs; /* this tick does                                            */
-    int broken; /* the reference ended, or never began                       */
+    struct ref_frame now;    /* the reference's tick, while the image does it */
+    unsigned received, sent; /* packets of this tick */
+    uint64_t ticks;          /* instants so far */
+    int open;                /* a tick is under way */
+    int gloved;              /* its glove frame was converted */
+    int differs;             /* this tick does */
+    int broken;              /* the reference ended, or never began */
     struct world_result result;
 };
 

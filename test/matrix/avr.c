@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* One module's golden vectors on an AVR: which rates stands behind a mark in the image, where avr_run.c writes it;
- * what ran, and the CRC of its digests, leave by a register that avr_run.c reads. */
+/* One module's golden vectors on an AVR: which rates stands behind a mark in the image, where
+ * avr_run.c writes it; what ran, and the CRC of its digests, leave by a register that avr_run.c
+ * reads. */
 #include "modules.h"
 
 #include <avr/interrupt.h>

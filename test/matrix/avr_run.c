@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* avr_run IMAGE...: each image of avr.c on an emulated ATmega1284P, with the rates that EXH_RATES=lo..hi:step asks for.
- * Prints what they say. Exit status 1: one did not end by itself. The chip has 16 KiB of memory; an image whose data need
- * more than 15 gets 63, and that is said. */
+/* avr_run IMAGE...: each image of avr.c on an emulated ATmega1284P, with the rates that
+ * EXH_RATES=lo..hi:step asks for. Prints what they say. Exit status 1: one did not end by itself.
+ * The chip has 16 KiB of memory; an image whose data need more than 15 gets 63, and that is said.
+ */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,7 +10,7 @@
 #include <simavr/sim_avr.h>
 #include <simavr/sim_elf.h>
 
-#define GPIOR0 0x3E /* in data memory */
+#define GPIOR0 0x3E  /* in data memory */
 #define BEGIN  0x100 /* of memory, behind registers */
 #define MUCH_B 15360
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Start of a Cortex-M under an emulator: vectors, memory, the words of the command line as an environment, text and the way
- * out by semihosting (a breakpoint that the emulator answers). No device of a board is touched: memory's place is the linker's. */
+/* Start of a Cortex-M under an emulator: vectors, memory, the words of the command line as an
+ * environment, text and the way out by semihosting (a breakpoint that the emulator answers). No
+ * device of a board is touched: memory's place is the linker's. */
 #include <stddef.h>
 #include <stdint.h>
 
@@ -108,7 +109,8 @@ __attribute__((section(".vectors"), used)) static const struct {
              {metal_reset, fault, fault, fault, fault, fault, fault, fault, fault, fault, fault,
               fault, fault, fault, fault}};
 
-/* --- what compilers call: clang for this CPU by names of its own, with value and length the other way round --- */
+/* --- what compilers call: clang for this CPU by names of its own, with value and length the other
+ * way round --- */
 
 void *memcpy(void *restrict dst, const void *restrict src, size_t len_B);
 void *memmove(void *dst, const void *src, size_t len_B);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Every test that needs no machine, as one program: `tests` runs all groups, `tests FOLDER...` those
- * of these folders, as unit and prop. Says which begins; the last line is "N groups passed, N failed". */
+/* Every test that needs no machine, as one program: `tests` runs all groups, `tests FOLDER...`
+ * those of these folders, as unit and prop. Says which begins; the last line is "N groups passed, N
+ * failed". */
 #include "check.h"
 
 #if __STDC_HOSTED__
@@ -12,7 +13,7 @@
 #undef GROUP
 
 static const struct {
-    const char *name; /* folder_module                                             */
+    const char *name; /* folder_module */
     int (*main)(void);
 } group[] = {
 #define GROUP(name) {#name, suite_##name},

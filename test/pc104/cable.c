@@ -4,9 +4,9 @@
  *   cable SOCKET FRAMES [SEED]
  *
  * SOCKET: a Unix stream that the emulator connects to (qemu: -netdev stream), each frame behind its
- * length, u32, the highest byte first. What is not taken is waited for, so that none is lost on the way. Prints
- * what it sent, and how many of these a card lets through; 0 if all were taken, 1 if the other end
- * left before. */
+ * length, u32, the highest byte first. What is not taken is waited for, so that none is lost on the
+ * way. Prints what it sent, and how many of these a card lets through; 0 if all were taken, 1 if
+ * the other end left before. */
 #include "frames.h"
 
 #include <errno.h>

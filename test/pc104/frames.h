@@ -10,8 +10,8 @@
 
 struct frames {
     uint64_t state;
-    struct net_cfg to; /* who is to get them; `to` may be the broadcast                */
-    uint8_t mac[NET_MAC_B]; /* the peer's                                                */
+    struct net_cfg to;      /* who is to get them; `to` may be the broadcast */
+    uint8_t mac[NET_MAC_B]; /* the peer's */
 };
 
 uint64_t frames_u64(struct frames *f);

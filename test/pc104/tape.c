@@ -35,8 +35,8 @@ static int on;
 
 /* --- the tape --- */
 
-/* The next record of that type; 0: there is none. By its head alone: whoever started this has checked
- * the log, and its sums would cost the tick more than the scene does. */
+/* The next record of that type; 0: there is none. By its head alone: whoever started this has
+ * checked the log, and its sums would cost the tick more than the scene does. */
 static int next(struct exh_record *r, uint8_t type)
 {
     while (tape_end - tape >= EXH_RECORD_OVERHEAD) {
@@ -117,8 +117,8 @@ static void power_on(void)
     take_params();
 }
 
-/* The cards' clock goes on with their accesses, a microsecond each, and here up to the timer's. At the
- * first access of a tick that tick's inputs are at the connectors. */
+/* The cards' clock goes on with their accesses, a microsecond each, and here up to the timer's. At
+ * the first access of a tick that tick's inputs are at the connectors. */
 static void follow(void)
 {
     const uint32_t now_us = exh_io_time_us(), passed_us = now_us - last_us;

@@ -11,7 +11,8 @@
 #define DAC_LSB (INT64_C(36355))
 #define MON_LSB (INT64_C(34655))
 
-struct known { /* F = kf I, straight; 0.5 .. 50 N/A */
+/* F = kf I, straight; 0.5 .. 50 N/A */
+struct known {
     int64_t kf_q20;
     struct exh_calib c;
     struct exh_calib_point point[EXH_CALIB_POINTS_MAX];
@@ -39,8 +40,11 @@ static int measure(struct known *k, int64_t dac_lsb, int64_t mon_lsb)
     int err;
     memset(k, 0, sizeof *k);
     k->kf_q20 = check_i32_in(EXH_Q(1, 2, EXH_Q_FORCE), EXH_Q(50, 1, EXH_Q_FORCE));
-    k->c = (struct exh_calib){.dac_rawpA_q16 = 1, .mon_A_q40 = 1, .point = k->point,
-                              .points = (uint8_t)n, .cap = EXH_CALIB_POINTS_MAX};
+    k->c = (struct exh_calib){.dac_rawpA_q16 = 1,
+                              .mon_A_q40 = 1,
+                              .point = k->point,
+                              .points = (uint8_t)n,
+                              .cap = EXH_CALIB_POINTS_MAX};
     for (unsigned i = 0; i < n; i++) {
         int64_t cur;
         force += ((apart * k->kf_q20) >> EXH_Q_CUR) + 1 + check_i32_in(0, 3 << EXH_Q_FORCE);
@@ -213,7 +217,8 @@ TEST(anything_is_saved_and_loaded_or_refused)
         CHECK(len > 0 || bad.what < EXH_CALIB_WHATS, "refused without a name");
         cases++;
         if (len < 0) {
-            CHECK(len == -EXH_E_RANGE || (len == -EXH_E_MONOTONE && bad.what == EXH_CALIB_MONITOR_TABLE),
+            CHECK(len == -EXH_E_RANGE ||
+                      (len == -EXH_E_MONOTONE && bad.what == EXH_CALIB_MONITOR_TABLE),
                   "refused: %" PRId32, len);
             continue;
         }

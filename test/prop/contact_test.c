@@ -34,8 +34,8 @@ static void law_case(const struct exh_contact_par *par, struct exh_contact s,
     struct exh_force_ledger f = {1, 1, 1, 1, 1, 1, 1, 1};
     const int touching = exh_contact_law(&s, par, in, &f);
     const int64_t sum = f.spring_N_q20 + f.damper_N_q20 + f.pullback_N_q20;
-    const struct wide err = wide_sub(wide_shl(wide_of(sum), 27),
-                                     exact_N_q47(par, in, touching, s.inward));
+    const struct wide err =
+        wide_sub(wide_shl(wide_of(sum), 27), exact_N_q47(par, in, touching, s.inward));
     CHECK(wide_within(err, wide_of(INT64_C(1) << 27)),
           "k %" PRId32 " b %" PRId32 " q %" PRId32 " lim %" PRId32 " v %" PRId32 ": off by more "
           "than 1 LSB",
@@ -64,8 +64,8 @@ TEST(law_at_all_corners)
         const struct exh_contact_in in = {check_corner[i & 7], check_corner[i >> 3 & 7],
                                           check_corner[i >> 6 & 7]};
         for (uint8_t state = 0; state < 8; state++) {
-            const struct exh_contact s = {check_corner[(i + state) & 7], state & 1,
-                                          state >> 1 & 1, state >> 2 & 1};
+            const struct exh_contact s = {check_corner[(i + state) & 7], state & 1, state >> 1 & 1,
+                                          state >> 2 & 1};
             law_case(&par, s, in);
         }
     }

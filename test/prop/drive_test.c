@@ -54,8 +54,9 @@ TEST(table_is_near_its_lines_and_monotone)
         if (!any_table(k, n, 31) || exh_table_set(k, n) < 0) { continue; }
         x = check_u64() % 2 ? check_i32() : check_i32_in(k[0].x, k[n - 1].x);
         y = exh_table_at(t, x);
-        CHECK(on_table(k, n, x, y), "x %" PRId32 " y %" PRId32 " of %u knots from %" PRId32
-              ",%" PRId32 " to %" PRId32 ",%" PRId32,
+        CHECK(on_table(k, n, x, y),
+              "x %" PRId32 " y %" PRId32 " of %u knots from %" PRId32 ",%" PRId32 " to %" PRId32
+              ",%" PRId32,
               x, y, n, k[0].x, k[0].y, k[n - 1].x, k[n - 1].y);
         if (x < INT32_MAX) { CHECK(exh_table_at(t, x + 1) >= y, "falls after %" PRId32, x); }
         x = k[check_u64() % n].x;
@@ -77,8 +78,9 @@ TEST(table_set_follows_its_contract)
         }
         fits = (int64_t)k[2].x - k[0].x <= INT32_MAX && (int64_t)k[2].y - k[0].y <= INT32_MAX;
         err = exh_table_set(k, 3);
-        CHECK((err == 0) == (rises && fits), "error %d, rises %d, fits %d: y %" PRId32 " %" PRId32
-              " %" PRId32 " at x %" PRId32 " %" PRId32 " %" PRId32,
+        CHECK((err == 0) == (rises && fits),
+              "error %d, rises %d, fits %d: y %" PRId32 " %" PRId32 " %" PRId32 " at x %" PRId32
+              " %" PRId32 " %" PRId32,
               err, rises, fits, k[0].y, k[1].y, k[2].y, k[0].x, k[1].x, k[2].x);
         CHECK(err == 0 || (err == -EXH_E_MONOTONE ? !rises : err == -EXH_E_RANGE), "error %d", err);
     }
@@ -134,8 +136,12 @@ static int any_axis(struct axis *a)
         a->par.i_peak_A_q26 = a->par.i_cont_A_q26;
         a->par.i_cont_A_q26 = swap;
     }
-    if (a->par.i_cont_A_q26 > exh_drive_rows[4].max) { a->par.i_cont_A_q26 = exh_drive_rows[4].max; }
-    if (a->par.i_peak_A_q26 < exh_drive_rows[3].min) { a->par.i_peak_A_q26 = exh_drive_rows[3].min; }
+    if (a->par.i_cont_A_q26 > exh_drive_rows[4].max) {
+        a->par.i_cont_A_q26 = exh_drive_rows[4].max;
+    }
+    if (a->par.i_peak_A_q26 < exh_drive_rows[3].min) {
+        a->par.i_peak_A_q26 = exh_drive_rows[3].min;
+    }
     a->T.num = 1;
     a->T.den = (uint32_t)check_i32_in(1, 20000);
     if (!any_table(a->knot, 4, 28)) { return 0; }
@@ -191,8 +197,8 @@ TEST(force_ledger_sums_and_limits_hold)
             continue;
         }
         slew = f.force_N_q20 >= last ? a.par.slew_up_Nps : a.par.slew_down_Nps;
-        CHECK(within_slew(&a, (int64_t)f.force_N_q20 - last, slew),
-              "from %" PRId32 " to %" PRId32, last, f.force_N_q20);
+        CHECK(within_slew(&a, (int64_t)f.force_N_q20 - last, slew), "from %" PRId32 " to %" PRId32,
+              last, f.force_N_q20);
         CHECK(((bits & EXH_LIMIT_PULL) != 0) == (asked < 0), "pull bit, asked %" PRId64, asked);
         CHECK(((bits & EXH_LIMIT_FORCE) != 0) == (asked > most), "force bit");
         CHECK(((bits & EXH_LIMIT_SLEW) != 0) == (f.slew_N_q20 != 0), "slew bit");
@@ -214,8 +220,7 @@ TEST(force_above_a_lowered_limit_comes_down)
         last = s.force_N_q20 = check_i32_in(most, INT32_MAX);
         f.spring_N_q20 = check_i64() >> 2;
         (void)exh_drive_force(&s, &a.cfg, &open_permit, &f);
-        CHECK(f.force_N_q20 <= most || f.force_N_q20 < last, "stays at %" PRId32,
-              last);
+        CHECK(f.force_N_q20 <= most || f.force_N_q20 < last, "stays at %" PRId32, last);
         CHECK(within_slew(&a, (int64_t)f.force_N_q20 - last, a.par.slew_down_Nps), "snaps");
         CHECK(f.force_N_q20 == f.spring_N_q20 + f.clamp_N_q20 + f.slew_N_q20, "ledger");
     }
@@ -282,8 +287,7 @@ TEST(heat_is_what_was_spent)
         spent = wide_sat64(wide_shr_floor(wide_sub(wide_mul(spent, spent), cont2), 20));
         gained = s.i2t_q32 - a.cfg.i2t_budget_q32 / 2;
         /* 6.6 A is 432538 in q16; each of two squares is off by less than 2*432538 + 1 */
-        CHECK(s.i2t_q32 == 0 ||
-                  (gained - spent < 1730154 && spent - gained < 1730154),
+        CHECK(s.i2t_q32 == 0 || (gained - spent < 1730154 && spent - gained < 1730154),
               "heat %" PRId64 ", spent %" PRId64, gained, spent);
     }
 }

@@ -66,9 +66,8 @@ static void shr_case(int64_t v, unsigned n)
 
 TEST(shr_round_is_exact)
 {
-    static const int64_t corner[] = {INT64_MIN, INT64_MIN + 1, INT32_MIN, -65536,
-                                     -1,        0,             1,         65535,
-                                     INT32_MAX, INT64_MAX - 1, INT64_MAX};
+    static const int64_t corner[] = {INT64_MIN, INT64_MIN + 1, INT32_MIN,     -65536,   -1, 0, 1,
+                                     65535,     INT32_MAX,     INT64_MAX - 1, INT64_MAX};
     for (size_t i = 0; i < sizeof corner / sizeof corner[0]; i++) {
         for (unsigned n = 1; n <= 63; n++) { shr_case(corner[i], n); }
     }
@@ -155,8 +154,8 @@ static void gain_case(uint64_t num, uint64_t den)
     const int err = exh_gain_set(&g, num, den);
     const struct wide n = {0, num}, d = {0, den};
     /* rounds to 2^31 or more: 2 num >= (2^32 - 1) den */
-    const int too_big = den != 0 && !(den >> 63) &&
-                        wide_cmp(wide_shl(n, 1), wide_sub(wide_shl(d, 32), d)) >= 0;
+    const int too_big =
+        den != 0 && !(den >> 63) && wide_cmp(wide_shl(n, 1), wide_sub(wide_shl(d, 32), d)) >= 0;
     const int too_small = num != 0 && den != 0 && wide_cmp(wide_shl(n, 32), d) < 0;
     const int bad = den == 0 || den >> 63 || too_big || too_small;
     CHECK((err != 0) == bad, "%" PRIu64 " / %" PRIu64 ": error %d", num, den, err);
@@ -164,8 +163,8 @@ static void gain_case(uint64_t num, uint64_t den)
     if (err == 0 && num != 0) {
         const struct wide exact = wide_shl(n, g.shift);
         const struct wide off = wide_sub(wide_mulu((uint64_t)g.mant, den), exact);
-        CHECK(g.mant >= 1 << 30 && g.shift <= 62,
-              "%" PRIu64 " / %" PRIu64 ": %" PRId32 " >> %d", num, den, g.mant, g.shift);
+        CHECK(g.mant >= 1 << 30 && g.shift <= 62, "%" PRIu64 " / %" PRIu64 ": %" PRId32 " >> %d",
+              num, den, g.mant, g.shift);
         CHECK(wide_cmp(wide_abs(off), wide_shr_floor(exact, 31)) <= 0,
               "%" PRIu64 " / %" PRIu64 ": %" PRId32 " >> %d", num, den, g.mant, g.shift);
     }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* gains.h: inside or not against exact wider arithmetic, for every rule, gain and rate; and on the way from any pair
- * to any other inside in every tick. */
+/* gains.h: inside or not against exact wider arithmetic, for every rule, gain and rate; and on the
+ * way from any pair to any other inside in every tick. */
 #include "exhand/gains.h"
 
 #include "exhand/contact.h"
@@ -156,7 +156,8 @@ static void start_at(unsigned shift)
     }
 }
 
-/* Staged anew in every so many ticks, dropped now and then: inside in every tick, and never told by the guard. */
+/* Staged anew in every so many ticks, dropped now and then: inside in every tick, and never told by
+ * the guard. */
 TEST(inside_in_every_tick)
 {
     uint64_t ticks = 0;
@@ -219,7 +220,8 @@ TEST(the_way_ends)
     }
 }
 
-/* Whatever stands in both arrays, as a damaged keyframe may have it: inside after one step, and from then on. */
+/* Whatever stands in both arrays, as a damaged keyframe may have it: inside after one step, and
+ * from then on. */
 TEST(inside_from_anywhere)
 {
     while (check_case(20)) {

@@ -137,9 +137,9 @@ TEST(faults_as_the_header_tells)
 /* --- the fit finds back what codes were made of --- */
 
 struct truth {
-    int64_t zero_q16; /* code                                             */
-    int32_t deg_raw_q16; /* codes per degree                                  */
-    int32_t cross_q16[2]; /* of 4 and 7, on 10                                 */
+    int64_t zero_q16;     /* code */
+    int32_t deg_raw_q16;  /* codes per degree */
+    int32_t cross_q16[2]; /* of 4 and 7, on 10 */
 };
 
 static int32_t read_q16(const struct truth *t, int32_t own_mdeg)

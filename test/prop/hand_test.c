@@ -11,10 +11,10 @@
 #include "wide.h"
 
 /* Bounds of hand.h, in hundredths of an LSB. */
-#define TIP_LSB   215 /* of the hand's own bones                             */
-#define LONG_LSB  300 /* of any                                              */
-#define SLOPE_LSB 400 /* up to PULL_USUAL                                    */
-#define STEEP_LSB 1600 /* of any arms                                         */
+#define TIP_LSB   215  /* of the hand's own bones */
+#define LONG_LSB  300  /* of any */
+#define SLOPE_LSB 400  /* up to PULL_USUAL */
+#define STEEP_LSB 1600 /* of any arms */
 
 #define PULL_USUAL_Q20 (40 << 20)
 

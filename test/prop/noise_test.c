@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* Everything upstream of the gate replaced by noise: whatever the modules before it say and whatever
- * is in memory, no code leaves the span of its zero, none but zero leaves a gate that is shut, no
- * drive but those in use is enabled; and behind drive.h the force moves no faster than it may. */
+/* Everything upstream of the gate replaced by noise: whatever the modules before it say and
+ * whatever is in memory, no code leaves the span of its zero, none but zero leaves a gate that is
+ * shut, no drive but those in use is enabled; and behind drive.h the force moves no faster than it
+ * may. */
 #include "exhand/exhand.h"
 
 #include "check.h"

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* Slewed parameters, for any values and shifts: monotone, never beyond, at the goal in no more ticks than the
- * header says, the rest as exact division has it; the guard's sum whatever is staged and applied. */
+/* Slewed parameters, for any values and shifts: monotone, never beyond, at the goal in no more
+ * ticks than the header says, the rest as exact division has it; the guard's sum whatever is staged
+ * and applied. */
 #include "exhand/fix.h"
 #include "exhand/signal.h"
 
 #include "check.h"
-
 
 static int64_t distance(int32_t a, int32_t b)
 {

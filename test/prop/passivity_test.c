@@ -19,7 +19,7 @@ static struct rig {
     struct exh_drive_cfg drive;
     struct exh_passivity_cfg cfg;
     struct exh_passivity s;
-    int64_t bound; /* way * the greatest force held, N counts q20                */
+    int64_t bound; /* way * the greatest force held, N counts q20 */
 } rig;
 
 /* The code nearest to the current for a force, and the current that it stands for. */
@@ -118,8 +118,8 @@ static int32_t any_move(void)
     return check_i32_in(-rig.cfg.way_cnt, rig.cfg.way_cnt);
 }
 
-/* What flowed, reckoned anew from the forces held: of outputs in time, and of outputs late by `late`
- * 16ths of a tick, the string's way divided anyhow between the two forces. Both times 16. */
+/* What flowed, reckoned anew from the forces held: of outputs in time, and of outputs late by
+ * `late` 16ths of a tick, the string's way divided anyhow between the two forces. Both times 16. */
 struct flow {
     int64_t in_time, late;
     int32_t held, before;
@@ -232,7 +232,8 @@ TEST(late_outputs_come_up_to_twice_that)
     }
 }
 
-/* The limit, against its definition: 0..3 LSB below f_max - owed / way, and 0 where that is less. */
+/* The limit, against its definition: 0..3 LSB below f_max - owed / way, and 0 where that is less.
+ */
 TEST(the_limit_is_never_above_and_hardly_below)
 {
     while (check_case(100)) {
@@ -270,9 +271,9 @@ TEST(missed_ticks_count_for_ticks)
     }
 }
 
-/* Every state of a small drive, f_max of 24 LSB and a way of 3 counts: of those that keep what docs/NUMERICS.md
- * says of them, each step leads to one that does, whatever is moved, touched and asked. on = 2; on = 1 is
- * the same with late = held and half the bound. */
+/* Every state of a small drive, f_max of 24 LSB and a way of 3 counts: of those that keep what
+ * docs/NUMERICS.md says of them, each step leads to one that does, whatever is moved, touched and
+ * asked. on = 2; on = 1 is the same with late = held and half the bound. */
 #define SMALL 24
 #define WAY   3
 #define BOUND (SMALL * WAY)

@@ -93,9 +93,8 @@ static struct exh_precontact_cfg set_up(const struct exh_precontact_par *par, in
 TEST(distance_and_limit_are_exact)
 {
     while (check_case(1)) {
-        const struct exh_precontact_par par = {in_row(0), in_row(1),          in_row(2),
-                                               0,         check_i32_in(0, 1), 100,
-                                               MM(5),     100,                50};
+        const struct exh_precontact_par par = {
+            in_row(0), in_row(1), in_row(2), 0, check_i32_in(0, 1), 100, MM(5), 100, 50};
         const int32_t pad = check_i32_in(0, EXH_Q(25, 1000, EXH_Q_POS));
         const struct exh_precontact_cfg cfg = set_up(&par, pad);
         const struct exh_plane p = {EXH_PLANE_HIT, 0, 0, any_unit(), any_vec()};
@@ -129,7 +128,8 @@ TEST(scale_of_the_slope)
     while (check_case(1)) {
         const struct exh_plane p = {EXH_PLANE_HIT, 0, 0, any_unit(), {0, 0, 0}};
         struct exh_precontact_in in = {{0, 0, 0}, {0, 0, 0}, 0, 0, 0};
-        const struct exh_precontact_cfg one = {cfg.par, cfg.material, -(INT64_C(1) << 60), 9, 9, 9, 3};
+        const struct exh_precontact_cfg one = {cfg.par, cfg.material, -(INT64_C(1) << 60), 9, 9, 9,
+                                               3};
         struct exh_precontact s = {0};
         struct wide g;
         int64_t g_q24, kept;
@@ -171,7 +171,7 @@ struct account {
     struct exh_plane now, held;
     uint32_t age;
     int32_t lim;
-    uint32_t doubts; /* ticks in doubt on end                                    */
+    uint32_t doubts; /* ticks in doubt on end */
     uint32_t frozen_n, born_n, refused_n, ignored_n, stale_n, let_go_n;
     int counted;
 };
@@ -288,7 +288,8 @@ TEST(states_against_a_second_account)
 {
     uint64_t freezes = 0, borns = 0, stales = 0, let_gos = 0;
     while (check_case(200)) {
-        const struct exh_precontact_par par = {-MM(5), check_i32_in(0, MM(3)), 1 << 24, 0, 0, 100, MM(1), 4, 50};
+        const struct exh_precontact_par par = {
+            -MM(5), check_i32_in(0, MM(3)), 1 << 24, 0, 0, 100, MM(1), 4, 50};
         const struct exh_precontact_cfg cfg = set_up(&par, MM(7));
         struct exh_plane p = {EXH_PLANE_HIT, 0, 1, {0, 0, 1 << 30}, {0, 0, 0}};
         struct exh_precontact_in in = {{0, 0, MM(20)}, {0, 0, 0}, 0, 0, 0};
@@ -331,7 +332,8 @@ TEST(states_against_a_second_account)
         borns += a.born_n;
         stales += a.stale_n;
     }
-    CHECK(check_count < 1000000 || (freezes > 100 && borns > 100 && stales > 0 && let_gos > 100), "all states seen");
+    CHECK(check_count < 1000000 || (freezes > 100 && borns > 100 && stales > 0 && let_gos > 100),
+          "all states seen");
 }
 
 /* Nothing that is told after the freeze reaches a force, whatever else comes in. */
@@ -376,9 +378,8 @@ TEST(no_touch_before_the_freeze_whatever_comes)
 {
     const struct exh_contact_par law = {1, 1, 0, 0, MM(10)};
     while (check_case(1)) {
-        const struct exh_precontact_par par = {in_row(0),          in_row(1), in_row(2),
-                                               check_i32_in(0, 1), 0,         100,
-                                               in_row(6),          5,        50};
+        const struct exh_precontact_par par = {
+            in_row(0), in_row(1), in_row(2), check_i32_in(0, 1), 0, 100, in_row(6), 5, 50};
         const struct exh_precontact_cfg cfg = set_up(&par, 0);
         const struct exh_plane p = {EXH_PLANE_HIT, 0, 1, any_unit(), any_vec()};
         struct exh_precontact s = {0};
@@ -411,20 +412,20 @@ struct approach {
     struct exh_precontact_par par;
     struct exh_period T;
     struct exh_plane plane;
-    int64_t step_nm_q10; /* normal to the plane, a tick                        */
-    int64_t start_nm_q10; /* d at tick 0, < 0                                  */
-    int32_t lag_ticks; /* of the glove                                       */
-    int32_t noise_m_q30; /* peak, of what the glove says                       */
-    int32_t first_tick; /* first message                                      */
+    int64_t step_nm_q10;  /* normal to the plane, a tick */
+    int64_t start_nm_q10; /* d at tick 0, < 0 */
+    int32_t lag_ticks;    /* of the glove */
+    int32_t noise_m_q30;  /* peak, of what the glove says */
+    int32_t first_tick;   /* first message */
 };
 
 #define NM_Q10_TO_Q30(x) ((int64_t)(x)*1024 / 976563) /* 2^30 / 1e9 / 2^10, within 5e-7 */
 
 struct outcome {
     int32_t freeze_tick, touch_tick;
-    int64_t true_d_m_q30; /* at the freeze                                     */
-    int32_t lim_m_q30; /* frozen; true contact is at q = 0                  */
-    int early; /* touched and not frozen                            */
+    int64_t true_d_m_q30; /* at the freeze */
+    int32_t lim_m_q30;    /* frozen; true contact is at q = 0 */
+    int early;            /* touched and not frozen */
 };
 
 static struct outcome run(const struct approach *a)
@@ -573,7 +574,7 @@ TEST(the_link_is_not_felt)
  * a millisecond a tick. The plane told is the tangent at the point nearest the fingertip. */
 struct slide {
     int64_t R, down, aside, up; /* radius; finger and sphere, a tick */
-    int64_t x0, z0; /* finger at tick 0; the sphere's centre is 0 there */
+    int64_t x0, z0;             /* finger at tick 0; the sphere's centre is 0 there */
 };
 
 static struct exh_plane tangent(const struct slide *m, int64_t t, struct exh_vec3 *n)

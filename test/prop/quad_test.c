@@ -57,8 +57,8 @@ TEST(extension_is_congruent_and_shortest)
         }
         CHECK(((moved ^ (raw - old.raw)) << (32 - bits)) == 0, "bits %" PRId32 ": not congruent",
               bits);
-        CHECK(bits == 32 || moved + half < 2 * half, "bits %" PRId32 ": moved %" PRIu32,
-              bits, moved);
+        CHECK(bits == 32 || moved + half < 2 * half, "bits %" PRId32 ": moved %" PRIu32, bits,
+              moved);
         CHECK(cnt == s.cnt && s.started, "state");
     }
 }

@@ -47,8 +47,8 @@ static int stands_for(const struct exh_drive_par *par, int32_t codes, int32_t co
 {
     const struct wide exact = wide_shl(wide_of(codes), EXH_Q_CUR + EXH_Q_DAC);
     const struct wide err = wide_sub(wide_mul(coded, par->dac_rawpA_q16), exact);
-    const struct wide slack = wide_add(wide_shr_floor(wide_abs(exact), 31),
-                                       wide_of((int64_t)par->dac_rawpA_q16 / 2 + 1));
+    const struct wide slack =
+        wide_add(wide_shr_floor(wide_abs(exact), 31), wide_of((int64_t)par->dac_rawpA_q16 / 2 + 1));
     if (coded == INT32_MAX && wide_negative(err)) { return 1; }
     if (coded == INT32_MIN && !wide_negative(err)) { return 1; }
     return wide_within(err, slack);
@@ -61,8 +61,8 @@ static int nearest_code(const struct exh_drive_par *par, int32_t most, int64_t a
     const int64_t lo = span < par->dac_zero_raw ? -span : -par->dac_zero_raw;
     const int64_t hi = span < 65535 - par->dac_zero_raw ? span : 65535 - par->dac_zero_raw;
     const int32_t in = wide_sat32(wide_of(asked));
-    const int64_t want = wide_sat64(
-        wide_shr_half_up(wide_mul(in, par->dac_rawpA_q16), EXH_Q_CUR + EXH_Q_DAC));
+    const int64_t want =
+        wide_sat64(wide_shr_half_up(wide_mul(in, par->dac_rawpA_q16), EXH_Q_CUR + EXH_Q_DAC));
     return codes == (want < lo ? lo : want > hi ? hi : want);
 }
 
@@ -71,14 +71,14 @@ static void check_finger(const struct box *b, unsigned k, int open, int64_t aske
     const struct exh_drive_par *par = &b->par[k];
     const struct exh_current_ledger *i = &b->i[k];
     const int32_t codes = (int32_t)b->out.dac_raw[k] - par->dac_zero_raw;
-    CHECK(codes <= par->dac_span_raw && codes >= -par->dac_span_raw, "finger %u: %" PRId32
-          " codes, span %" PRId32, k, codes, par->dac_span_raw);
+    CHECK(codes <= par->dac_span_raw && codes >= -par->dac_span_raw,
+          "finger %u: %" PRId32 " codes, span %" PRId32, k, codes, par->dac_span_raw);
     CHECK(i->coded_A_q26 == asked + i->gate_A_q26 + i->dac_A_q26, "finger %u: ledger", k);
     CHECK(stands_for(par, codes, i->coded_A_q26), "finger %u: %" PRId32 " codes are not %" PRId32,
           k, codes, i->coded_A_q26);
     if (open) {
-        CHECK(nearest_code(par, b->most[k], asked, codes), "finger %u: %" PRId64 " A q26 became %" PRId32, k,
-              asked, codes);
+        CHECK(nearest_code(par, b->most[k], asked, codes),
+              "finger %u: %" PRId64 " A q26 became %" PRId32, k, asked, codes);
         CHECK(i->gate_A_q26 == 0 || asked > INT32_MAX || asked < INT32_MIN, "finger %u: gate", k);
     } else {
         CHECK(codes == 0 && i->coded_A_q26 == 0, "finger %u: %" PRId32 " codes outside RUN", k,
@@ -148,7 +148,9 @@ static uint32_t causes_of(const struct exh_safety_in *in, struct memory *m)
 {
     uint32_t now = in->raised;
     m->late = (m->late > 0 ? m->late - 1 : 0) + EXH_LATE_TICKS * (in->missed < 2 ? in->missed : 2);
-    if (m->late > 4 * EXH_LATE_TICKS) { m->late = 4 * EXH_LATE_TICKS; } /* gone after 256 ticks in time */
+    if (m->late > 4 * EXH_LATE_TICKS) {
+        m->late = 4 * EXH_LATE_TICKS;
+    } /* gone after 256 ticks in time */
     now |= m->late > EXH_LATE_TICKS ? EXH_FAULT_OVERRUN : 0u;
     now |= in->din & EXH_DIN_ESTOP ? 0u : EXH_FAULT_ESTOP;
     now |= in->din & EXH_DIN_DEADMAN ? 0u : EXH_FAULT_DEADMAN;
@@ -185,7 +187,8 @@ static void check_step(const struct exh_safety *old, const struct exh_safety *s,
         CHECK(s->first == old->first && s->first_tick == old->first_tick, "first cause changed");
     }
     if (old->state == EXH_STATE_OFF) {
-        CHECK(s->state == EXH_STATE_OFF || (s->state == EXH_STATE_ARM && in->command == EXH_CMD_RUN),
+        CHECK(s->state == EXH_STATE_OFF ||
+                  (s->state == EXH_STATE_ARM && in->command == EXH_CMD_RUN),
               "from OFF to %d", s->state);
     }
     if (now) { m->opened = now == EXH_FAULT_DEADMAN && !(in->din & EXH_DIN_DEADMAN); }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* slots.h in flash whose supply fails at any moment: erased bit by bit in any order, programmed in order by units of
- * which, when it fails, any bits are set. What counts is the image before or the new one, always. */
+/* slots.h in flash whose supply fails at any moment: erased bit by bit in any order, programmed in
+ * order by units of which, when it fails, any bits are set. What counts is the image before or the
+ * new one, always. */
 #include "exhand/slots.h"
 
 #include "exhand/error.h"

@@ -32,7 +32,8 @@ static int32_t next(int32_t last)
     return check_i32_in(-PEAK, PEAK);
 }
 
-/* left of a step from end to end, of a first-order lag of a/2^16 a tick, after n ticks, rounded up. */
+/* left of a step from end to end, of a first-order lag of a/2^16 a tick, after n ticks, rounded up.
+ */
 static int64_t left_of(uint32_t a, uint32_t n)
 {
     int64_t left = 2 * (int64_t)PEAK;

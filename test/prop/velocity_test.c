@@ -201,9 +201,10 @@ static void foaw_run(struct exh_velocity_scale scale, int64_t ramp_max)
 
 TEST(foaw_equals_brute_force)
 {
-    static const struct exh_velocity_scale real[] = {
-        {69049330, {1, 2000}}, {69049330, {1, 20000}}, {7000001, {65, 1193182}},
-        {4398046, {1, 90}}};
+    static const struct exh_velocity_scale real[] = {{69049330, {1, 2000}},
+                                                     {69049330, {1, 20000}},
+                                                     {7000001, {65, 1193182}},
+                                                     {4398046, {1, 90}}};
     while (check_case(50)) { foaw_run(real[check_u64() % 4], 5000); }
 }
 
@@ -275,8 +276,7 @@ TEST(track_poles_are_double)
               cfg.beta_q31);
         CHECK(cfg.beta_q31 > 0, "velocity never corrected: T_f %" PRIu32 " us", tf);
         a = 2 * a - cfg.beta_q31;
-        CHECK(cfg.alpha_q31 >= a - 1 && cfg.alpha_q31 <= a + 1,
-              "alpha %" PRId32, cfg.alpha_q31);
+        CHECK(cfg.alpha_q31 >= a - 1 && cfg.alpha_q31 <= a + 1, "alpha %" PRId32, cfg.alpha_q31);
     }
 }
 

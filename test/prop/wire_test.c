@@ -38,7 +38,9 @@ static struct exh_wire_packet any_packet(uint8_t type)
     } else if (type == EXH_WIRE_TRACE) {
         p.u.trace.first = (uint32_t)check_u64();
         p.u.trace.frames = (uint8_t)(check_u64() % (EXH_WIRE_FRAMES + 1));
-        for (unsigned i = 0; i < p.u.trace.frames; i++) { p.u.trace.frame[i].raw[i & 3] = check_i32(); }
+        for (unsigned i = 0; i < p.u.trace.frames; i++) {
+            p.u.trace.frame[i].raw[i & 3] = check_i32();
+        }
     } else {
         p.u.ack.result = (int16_t)check_i32_in(-12, 0);
     }
@@ -198,5 +200,4 @@ TEST(a_good_peer_is_heard_after_a_silence)
 }
 
 TEST_MAIN("prop/wire", there_and_back, noise_is_no_packet,
-          what_gets_through_is_in_order_and_each_once,
-          a_good_peer_is_heard_after_a_silence);
+          what_gets_through_is_in_order_and_each_once, a_good_peer_is_heard_after_a_silence);

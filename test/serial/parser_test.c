@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The bytes of a stock glove's serial line: whole frames come out, nothing else does, and each thing
- * that goes wrong is counted. The emulated glove knows nothing of the parser. */
+/* The bytes of a stock glove's serial line: whole frames come out, nothing else does, and each
+ * thing that goes wrong is counted. The emulated glove knows nothing of the parser. */
 #include "check.h"
 
 #include "cyberglove.h"
@@ -14,7 +14,7 @@
 static struct emu_cyber glove;
 static struct cyberglove in;
 static uint64_t now_ns;
-static uint32_t wrong; /* frames that came and were none that the glove has sent     */
+static uint32_t wrong; /* frames that came and were none that the glove has sent */
 
 static void tell(const char *command)
 {
@@ -36,7 +36,9 @@ static void drain(uint64_t until_ns)
 {
     int byte;
     while ((byte = emu_cyber_get(&glove, until_ns)) >= 0) {
-        if (cyberglove_take(&in, (uint8_t)byte)) { wrong += memcmp(in.sample, glove.sample, SENSORS) != 0; }
+        if (cyberglove_take(&in, (uint8_t)byte)) {
+            wrong += memcmp(in.sample, glove.sample, SENSORS) != 0;
+        }
     }
 }
 
@@ -92,7 +94,9 @@ TEST(a_frame_that_is_asked_for_is_one)
     for (int k = 0; k < 20; k++) {
         tell("G");
         now_ns += 10000000;
-        for (int byte; (byte = emu_cyber_get(&glove, now_ns)) >= 0;) { (void)cyberglove_take(&in, (uint8_t)byte); }
+        for (int byte; (byte = emu_cyber_get(&glove, now_ns)) >= 0;) {
+            (void)cyberglove_take(&in, (uint8_t)byte);
+        }
         CHECK(memcmp(in.sample, glove.sample, SENSORS) == 0, "frame %d", k);
     }
     CHECK_EQ_I64(in.frames, 20);
@@ -121,8 +125,8 @@ TEST(a_form_that_changes_is_taken_when_it_is_sure_unless_told)
         glove.forced = 2;
         in.frames = 0;
         frames(100);
-        CHECK(told ? in.frames == 0 : in.frames >= 100 - CYBERGLOVE_SURE && wrong == 0, "%d: %lu, wrong %lu", told,
-              (unsigned long)in.frames, (unsigned long)wrong);
+        CHECK(told ? in.frames == 0 : in.frames >= 100 - CYBERGLOVE_SURE && wrong == 0,
+              "%d: %lu, wrong %lu", told, (unsigned long)in.frames, (unsigned long)wrong);
         glove.forced = 0;
         in.frames = 0;
         frames(100);
@@ -136,8 +140,8 @@ TEST(a_form_that_changes_is_taken_when_it_is_sure_unless_told)
 #define EVERY  4
 #define BAD    (FRAMES / EVERY)
 
-/* Of FRAMES frames every EVERY-th: how many come, and what is counted of it; ANY: another cause may have
- * some of them, the sum stands. */
+/* Of FRAMES frames every EVERY-th: how many come, and what is counted of it; ANY: another cause may
+ * have some of them, the sum stands. */
 #define ANY -1
 static const struct {
     enum emu_cyber_kind kind;
@@ -184,13 +188,16 @@ TEST(what_goes_wrong_is_counted_and_does_not_get_in)
     for (size_t i = 0; i < LEN(row); i++) {
         go_wrong(row[i].kind, row[i].status);
         CHECK(wrong == 0, "%zu: %lu wrong frames came", i, (unsigned long)wrong);
-        CHECK((int)in.frames == row[i].come, "%zu: %lu frames of %d", i, (unsigned long)in.frames, row[i].come);
+        CHECK((int)in.frames == row[i].come, "%zu: %lu frames of %d", i, (unsigned long)in.frames,
+              row[i].come);
         if (row[i].count == ANY) {
-            CHECK(in.lost[row[i].cause] > BAD * 9 / 10 && lost() >= BAD && lost() < BAD + BAD / 10, "%zu: %lu, in all %lu", i,
-                  (unsigned long)in.lost[row[i].cause], (unsigned long)lost());
+            CHECK(in.lost[row[i].cause] > BAD * 9 / 10 && lost() >= BAD && lost() < BAD + BAD / 10,
+                  "%zu: %lu, in all %lu", i, (unsigned long)in.lost[row[i].cause],
+                  (unsigned long)lost());
         } else {
-            CHECK((int)in.lost[row[i].cause] == row[i].count && (int)lost() == row[i].count, "%zu: %lu, in all %lu", i,
-                  (unsigned long)in.lost[row[i].cause], (unsigned long)lost());
+            CHECK((int)in.lost[row[i].cause] == row[i].count && (int)lost() == row[i].count,
+                  "%zu: %lu, in all %lu", i, (unsigned long)in.lost[row[i].cause],
+                  (unsigned long)lost());
         }
         CHECK_EQ_I64(in.errors, row[i].kind == EMU_CYBER_ERROR ? BAD : 0);
     }
@@ -201,10 +208,12 @@ TEST(noise_between_frames_is_counted)
 {
     for (int status = 0; status < 2; status++) {
         go_wrong(EMU_CYBER_HEADLESS, status);
-        CHECK(wrong == 0 && in.frames == FRAMES - BAD, "%lu, wrong %lu", (unsigned long)in.frames, (unsigned long)wrong);
+        CHECK(wrong == 0 && in.frames == FRAMES - BAD, "%lu, wrong %lu", (unsigned long)in.frames,
+              (unsigned long)wrong);
         CHECK(in.strays > 20 * (BAD - lost()), "%lu", (unsigned long)in.strays);
         go_wrong(EMU_CYBER_GARBAGE, status);
-        CHECK(wrong == 0 && in.frames == FRAMES - BAD, "%lu, wrong %lu", (unsigned long)in.frames, (unsigned long)wrong);
+        CHECK(wrong == 0 && in.frames == FRAMES - BAD, "%lu, wrong %lu", (unsigned long)in.frames,
+              (unsigned long)wrong);
         CHECK_EQ_I64(in.strays, BAD * (EMU_CYBER_NOISE_B + 24 + status));
     }
 }
@@ -240,8 +249,11 @@ TEST(any_bytes_give_only_what_has_the_form_of_a_frame)
         for (int k = 0; k < 40000; k++) {
             const uint64_t r = check_u64();
             /* mostly in the place where a frame would have it */
-            const uint8_t byte = r % 40 == 0 ? odd[(r >> 8) % LEN(odd)] : in.n == 0 ? 'S' : in.n == 23 ? 1 : in.n == 24 ? 0
-                                                                        : (uint8_t)(1 + (r >> 8) % 255);
+            const uint8_t byte = r % 40 == 0  ? odd[(r >> 8) % LEN(odd)]
+                                 : in.n == 0  ? 'S'
+                                 : in.n == 23 ? 1
+                                 : in.n == 24 ? 0
+                                              : (uint8_t)(1 + (r >> 8) % 255);
             const uint32_t frames_before = in.frames;
             const int came = cyberglove_take(&in, byte);
             memmove(last, last + 1, sizeof last - 1);
@@ -250,14 +262,15 @@ TEST(any_bytes_give_only_what_has_the_form_of_a_frame)
             CHECK_EQ_I64(in.frames - frames_before, came);
             if (came) {
                 const uint8_t *h = last + sizeof last - CYBERGLOVE_FRAME_B + (in.status == 0);
-                CHECK(byte == 0 && (h[0] == 'S' || h[0] == 'G') && memcmp(h + 1, in.sample, SENSORS) == 0 &&
-                      (h[-1] == 0 || bytes < sizeof last) && !memchr(in.sample, 0, SENSORS),
+                CHECK(byte == 0 && (h[0] == 'S' || h[0] == 'G') &&
+                          memcmp(h + 1, in.sample, SENSORS) == 0 &&
+                          (h[-1] == 0 || bytes < sizeof last) && !memchr(in.sample, 0, SENSORS),
                       "byte %lu", (unsigned long)bytes);
                 CHECK(!in.told || in.status & 1, "status %d", in.status);
             }
         }
-        CHECK(in.frames > 300 && 24 * in.frames + in.strays <= bytes, "%lu frames, %lu strays", (unsigned long)in.frames,
-              (unsigned long)in.strays);
+        CHECK(in.frames > 300 && 24 * in.frames + in.strays <= bytes, "%lu frames, %lu strays",
+              (unsigned long)in.frames, (unsigned long)in.strays);
     }
 }
 

@@ -58,9 +58,11 @@ TEST(what_cannot_be_answered)
     said(&s, dir, cli_advise, WORDS("advise", "freeze", "--d-lim", "1"));
     CHECK(s.status == 2 && strstr(s.err, "--d-lim: 1 (allowed -200..-0.1)"), "%s", s.err);
     said(&s, dir, cli_advise, WORDS("advise", "gains", "--judge", "/nowhere/at/all"));
-    CHECK(s.status == 3 && strstr(s.err, "--judge: /nowhere/at/all: No such file"), "%d %s", s.status, s.err);
+    CHECK(s.status == 3 && strstr(s.err, "--judge: /nowhere/at/all: No such file"), "%d %s",
+          s.status, s.err);
     said(&s, dir, cli_advise, WORDS("advise", "gains", "--judge", "/dev/null"));
-    CHECK(s.status == 2 && strstr(s.err, "--judge: /dev/null: no cell in it"), "%d %s", s.status, s.err);
+    CHECK(s.status == 2 && strstr(s.err, "--judge: /dev/null: no cell in it"), "%d %s", s.status,
+          s.err);
     said_clean(dir);
 }
 

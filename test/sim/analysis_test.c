@@ -83,8 +83,8 @@ static int all_finite(const struct fall_stiffness *s)
 {
     const double v[] = {s->fit.a_Npm,    s->fit.b_Npm,   s->fit.r2,      s->fit.q_mean_m,
                         s->fit.f_mean_N, s->fit.q_min_m, s->fit.q_max_m, s->fit.f_min_N,
-                        s->fit.f_max_N,  s->a.lo_Npm,    s->a.hi_Npm,
-                        s->b.lo_Npm,     s->b.hi_Npm};
+                        s->fit.f_max_N,  s->a.lo_Npm,    s->a.hi_Npm,    s->b.lo_Npm,
+                        s->b.hi_Npm};
     for (size_t i = 0; i < sizeof v / sizeof v[0]; i++) {
         if (!(v[i] > -1e300 && v[i] < 1e300)) { return 0; }
     }
@@ -161,9 +161,7 @@ TEST(damaged_logs)
         b.sample[8].q_m = 1.0;
     }
     b.sample[6].t_s = 0.0; /* a new fall may begin at 0 again, if it goes on from there */
-    for (size_t i = 7; i < b.n; i++) {
-        b.sample[i].t_s = (double)(i - 6) * 1e-3;
-    }
+    for (size_t i = 7; i < b.n; i++) { b.sample[i].t_s = (double)(i - 6) * 1e-3; }
     CHECK(status_of(&log, &fall_opt_default) == FALL_OK, "%g", b.sample[7].t_s);
     b.sample[8].t_s = b.sample[7].t_s;
     CHECK(status_of(&log, &fall_opt_default) == FALL_BAD_LOG, "%g", b.sample[8].t_s);
@@ -211,8 +209,8 @@ static void digits(char *text, size_t cap)
     const struct fall_log log = built(&b);
     opt.lag = 0;
     CHECK(fall_stiffness(&log, &opt, &s) == FALL_OK, "%d", (int)s.fit.status);
-    snprintf(text, cap, "%.17g %.17g %.17g | %.17g %.17g | %.17g %.17g", s.fit.a_Npm,
-             s.fit.b_Npm, s.fit.r2, s.a.lo_Npm, s.a.hi_Npm, s.b.lo_Npm, s.b.hi_Npm);
+    snprintf(text, cap, "%.17g %.17g %.17g | %.17g %.17g | %.17g %.17g", s.fit.a_Npm, s.fit.b_Npm,
+             s.fit.r2, s.a.lo_Npm, s.a.hi_Npm, s.b.lo_Npm, s.b.hi_Npm);
     fall_stiffness_free(&s);
     drop(&b);
 }
@@ -262,9 +260,7 @@ TEST(plot_files)
     struct fall_stiffness s;
 
     CHECK(mkdtemp(dir) != NULL, "%s", dir);
-    for (int i = 0; i < 3; i++) {
-        snprintf(path[i], sizeof path[i], "%s/%d.csv", dir, i);
-    }
+    for (int i = 0; i < 3; i++) { snprintf(path[i], sizeof path[i], "%s/%d.csv", dir, i); }
     ramp(&b, 5000.0, 1);
     const struct fall_log log = built(&b);
     struct fall_plot_paths paths = {path[0], path[1], path[2]};
@@ -280,9 +276,7 @@ TEST(plot_files)
     CHECK(lines_of(path[2], "q_m,f_mon_n\n") == 1, "%s", path[2]);
     paths.line = dir;
     CHECK(fall_write_plot(&s, FALL_A, &paths) == FALL_IO, "%s", dir);
-    for (int i = 0; i < 3; i++) {
-        remove(path[i]);
-    }
+    for (int i = 0; i < 3; i++) { remove(path[i]); }
     rmdir(dir);
     fall_stiffness_free(&s);
     drop(&b);

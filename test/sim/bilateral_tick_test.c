@@ -37,7 +37,8 @@ static void start(void)
     }
     world = (struct exh_wire_tx){3, 0};
     tick_n = 0;
-    CHECK_EQ_I64(bilateral_setup(&cfg, &box, &par, (struct exh_scene_board){{1, RATE_HZ}, 16}, NULL), 0);
+    CHECK_EQ_I64(
+        bilateral_setup(&cfg, &box, &par, (struct exh_scene_board){{1, RATE_HZ}, 16}, NULL), 0);
 }
 
 static void post(struct exh_wire_packet *p)
@@ -180,8 +181,8 @@ static void press(int32_t by_m_q30)
           sig.paper[F].f_des_N_q20);
 }
 
-/* The string's zero has slipped, or the hand has let go of the glove: it pulls, whatever the finger does,
- * until the glove has said for long enough that there is nothing. */
+/* The string's zero has slipped, or the hand has let go of the glove: it pulls, whatever the finger
+ * does, until the glove has said for long enough that there is nothing. */
 TEST(a_wall_that_the_glove_denies_does_not_pull_for_ever)
 {
     int n = 0;
@@ -383,8 +384,8 @@ static void no_packet_sets(uint32_t *tried)
         const struct exh_signal *row = exh_signal_at(t, k, &instance);
         const int32_t now = exh_scene_bilateral.params->staged[k];
         if (row->id >> 8 == exh_material_rows[0].id >> 8) { continue; }
-        CHECK(asked(row->id, instance, now == row->max ? row->min : row->max) == -EXH_E_STATE, "%s %d", row->name,
-              instance);
+        CHECK(asked(row->id, instance, now == row->max ? row->min : row->max) == -EXH_E_STATE,
+              "%s %d", row->name, instance);
         ++*tried;
     }
 }
@@ -414,9 +415,10 @@ TEST(no_packet_sets_what_is_the_boxs_own)
     CHECK_EQ_I64(box.wire.set, 1);
 }
 
-/* ---- Traces ------------------------------------------------------------------------------------ */
+/* ---- Traces ------------------------------------------------------------------------------------
+ */
 
-#define TICK_SIGNAL 0u /* q of the thumb: any will do                              */
+#define TICK_SIGNAL 0u /* q of the thumb: any will do */
 
 static struct exh_wire_rx far_end;
 
@@ -483,11 +485,13 @@ static void gapless(uint32_t every)
         CHECK_EQ_I64(exh_wire_trace_missed(next, &t), 0);
         for (unsigned i = 0; i < t.frames; i++, frames++) {
             CHECK_EQ_I64(t.frame[i].tick, from + frames * every);
-            CHECK(t.frame[i].tick - from <= k && memcmp(t.frame[i].raw, was[t.frame[i].tick - from], sizeof was[0]) == 0,
+            CHECK(t.frame[i].tick - from <= k &&
+                      memcmp(t.frame[i].raw, was[t.frame[i].tick - from], sizeof was[0]) == 0,
                   "every %d: other values", (int)every);
         }
         next = t.first + t.frames;
-        CHECK(now - t.frame[0].tick < 100, "a frame has waited for %d ticks", (int)(now - t.frame[0].tick));
+        CHECK(now - t.frame[0].tick < 100, "a frame has waited for %d ticks",
+              (int)(now - t.frame[0].tick));
     }
     CHECK(frames * every + 100 > 500 - every, "every %d: %d frames", (int)every, (int)frames);
 }
@@ -507,12 +511,14 @@ TEST(a_trace_asked_for_again_goes_on_and_ends_as_asked)
     CHECK(traced(&t) == 1 && t.result == -EXH_E_RANGE && t.frames == 0, "%d", t.result);
     for (int k = 0; k < 300; k++) { CHECK_EQ_I64(traced(&t), 0); }
     ask_trace(5, 0);
-    CHECK(traced(&t) == 1 && t.result == 0 && t.frames == 1 && t.request_seq == world.seq - 1, "%d", t.result);
+    CHECK(traced(&t) == 1 && t.result == 0 && t.frames == 1 && t.request_seq == world.seq - 1, "%d",
+          t.result);
     next = t.first + 1;
     runs = box.wire.trace.of.run;
     for (int k = 0; k < 7; k++) { CHECK_EQ_I64(traced(&t), 0); }
     ask_trace(5, 0); /* it did not hear the answer */
-    CHECK(traced(&t) == 1 && t.first == next && t.frames == 1 && t.request_seq == world.seq - 1, "begun anew");
+    CHECK(traced(&t) == 1 && t.first == next && t.frames == 1 && t.request_seq == world.seq - 1,
+          "begun anew");
     CHECK_EQ_I64(box.wire.trace.of.run, runs);
     next = t.first + t.frames;
     for (int k = 0; k < 11; k++) { CHECK_EQ_I64(traced(&t), 0); }
@@ -529,7 +535,8 @@ TEST(a_trace_asked_for_again_goes_on_and_ends_as_asked)
     for (int k = 0; k < 300; k++) { CHECK_EQ_I64(traced(&t), 0); }
 }
 
-/* No room for 40 ticks: the newest 16 frames are held, the 25 before them are seen to be missing. */
+/* No room for 40 ticks: the newest 16 frames are held, the 25 before them are seen to be missing.
+ */
 TEST(frames_that_had_no_room_are_missed_by_number)
 {
     struct exh_wire_trace t;
@@ -551,8 +558,8 @@ TEST(frames_that_had_no_room_are_missed_by_number)
     CHECK_EQ_I64(exh_wire_trace_missed(next, &t), 0);
 }
 
-/* From the bytes of its state it goes on as it would have, to the bit; and of any bytes, and of memory
- * that says anything, without harm. */
+/* From the bytes of its state it goes on as it would have, to the bit; and of any bytes, and of
+ * memory that says anything, without harm. */
 TEST(a_trace_goes_on_from_bytes)
 {
     static uint8_t b[8192], again[8192];
@@ -581,7 +588,8 @@ TEST(a_trace_goes_on_from_bytes)
         if (out.packets && out.byte[out.packets - 1][3] == EXH_WIRE_TRACE) { break; }
     }
     CHECK(out.packets > 0 && out.len_B[out.packets - 1] == sent.len_B[sent.packets - 1] &&
-              memcmp(out.byte[out.packets - 1], sent.byte[sent.packets - 1], out.len_B[out.packets - 1]) == 0,
+              memcmp(out.byte[out.packets - 1], sent.byte[sent.packets - 1],
+                     out.len_B[out.packets - 1]) == 0,
           "another packet");
     memset(&box.wire.trace, 0xFF, sizeof box.wire.trace);
     for (int k = 0; k < 300; k++) { (void)tick(1, 0); }
@@ -590,8 +598,7 @@ TEST(a_trace_goes_on_from_bytes)
 TEST_MAIN("bilateral, tick by tick", a_plane_told_before_the_first_glove_frame_is_not_kept,
           a_finger_whose_sensor_is_not_believed_has_no_contact, a_frozen_contact_outlives_a_sensor,
           a_wall_that_the_glove_denies_does_not_pull_for_ever, an_old_glove_frame,
-          missed_ticks_make_planes_older,
-          a_world_that_has_started_anew_is_greeted_at_once,
+          missed_ticks_make_planes_older, a_world_that_has_started_anew_is_greeted_at_once,
           no_packet_makes_the_box_deaf_for_good, a_world_that_differs_is_told_by_bits,
           a_shorter_time_between_states_acts_at_once, no_packet_sets_what_is_the_boxs_own,
           a_trace_that_is_asked_for_comes_whole, a_trace_asked_for_again_goes_on_and_ends_as_asked,

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The full box and a world in another process, over UDP. Time is virtual: the controller's ticks lead, the world does
- * a frame when it is told to and is waited for. So a slow machine makes the test slow, and nothing else. */
+/* The full box and a world in another process, over UDP. Time is virtual: the controller's ticks
+ * lead, the world does a frame when it is told to and is waited for. So a slow machine makes the
+ * test slow, and nothing else. */
 #include "felt.h"
 
 #include "udp.h"
@@ -12,8 +13,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#define TICKS_A_FRAME 5 /* 400 frames a second at 2 kHz                        */
-#define PATIENCE_MS   60000 /* for one frame: who needs more hangs                 */
+#define TICKS_A_FRAME 5     /* 400 frames a second at 2 kHz */
+#define PATIENCE_MS   60000 /* for one frame: who needs more hangs */
 
 /* ---- The world's process -------------------------------------------------------------------- */
 
@@ -76,15 +77,16 @@ static void be_world(const struct world_cfg *w, uint32_t session, int told)
     _exit(0);
 }
 
-/* ---- The controller's process ----------------------------------------------------------------- */
+/* ---- The controller's process -----------------------------------------------------------------
+ */
 
 static struct {
     struct world_cfg cfg;
-    pid_t pid; /* 0: there is none                                               */
+    pid_t pid; /* 0: there is none */
     int tell;
     uint32_t session;
-    long ticks, die_at, rise_at; /* of this run of the controller; < 0: never    */
-    double before_s; /* what the runs before have taken              */
+    long ticks, die_at, rise_at; /* of this run of the controller; < 0: never */
+    double before_s;             /* what the runs before have taken */
     double t_s;
 } world;
 
@@ -168,9 +170,11 @@ static void put_up(const struct bilateral_run_cfg *c, int confuse_at)
     begin_world();
 }
 
-/* ---- What they do ----------------------------------------------------------------------------- */
+/* ---- What they do -----------------------------------------------------------------------------
+ */
 
-/* The world dies in the contact and another comes; then the controller is started anew, of the same seed. */
+/* The world dies in the contact and another comes; then the controller is started anew, of the same
+ * seed. */
 TEST(two_processes_survive_each_others_restart)
 {
     struct bilateral_run_cfg c = plain(1u << EXH_INDEX, 0.87, 1);
@@ -195,8 +199,8 @@ TEST(two_processes_survive_each_others_restart)
     bilateral_run_free(&alone);
 }
 
-/* After 0.75 s comes what makes a receiver deaf that only counts on: it is deaf for a second and a HELLO's
- * time, and what is felt later is as ever. */
+/* After 0.75 s comes what makes a receiver deaf that only counts on: it is deaf for a second and a
+ * HELLO's time, and what is felt later is as ever. */
 TEST(two_processes_are_not_deaf_for_good)
 {
     struct bilateral_run_cfg c = plain(1u << EXH_INDEX, 0.1, 2);

@@ -13,10 +13,11 @@
 
 #include "exhand/record.h"
 
-struct held { /* of a dump, by reading it                                       */
-    int64_t first, last; /* ticks of its first keyframe and its last frame     */
+/* of a dump, by reading it */
+struct held {
+    int64_t first, last; /* ticks of its first keyframe and its last frame */
     uint32_t frames, keyframes, damaged, gaps;
-    int32_t c; /* contact in the first frame                                    */
+    int32_t c; /* contact in the first frame */
     struct exh_event froze;
     int ended;
 };
@@ -190,7 +191,8 @@ static size_t one_dump(const char *path)
     return slurp(path, dump, sizeof dump);
 }
 
-/* Any byte but the last words': told, exit status 1 or 2, never 0; the timeline is told all the same. */
+/* Any byte but the last words': told, exit status 1 or 2, never 0; the timeline is told all the
+ * same. */
 TEST(a_damaged_dump_is_told)
 {
     const char *path = log_path(), *dir = said_dir();
@@ -310,7 +312,8 @@ static void start_box(int is_alone)
 {
     const struct exh_scene_board board = {{1, 500}, 24};
     exh_scene_drop.defaults();
-    CHECK_EQ_I64(exh_params_stage(exh_scene_drop.params, calib_rows[CALIB_ROWS - 1].id, 0, 1), 0); /* uncalibrated */
+    CHECK_EQ_I64(exh_params_stage(exh_scene_drop.params, calib_rows[CALIB_ROWS - 1].id, 0, 1),
+                 0); /* uncalibrated */
     exh_params_apply(exh_scene_drop.params);
     CHECK_EQ_I64(exh_scene_drop.setup(board), 0);
     exh_scene_drop.params->locked = 1;
@@ -415,7 +418,8 @@ TEST(the_header_has_the_parameters_of_the_fault)
     remove(path);
 }
 
-/* A box that ends for another reason: what it held is there all the same; a run that ends well has none. */
+/* A box that ends for another reason: what it held is there all the same; a run that ends well has
+ * none. */
 TEST(a_halted_box_can_be_read)
 {
     const char *path = log_path();

@@ -61,8 +61,9 @@ static double taken_s(const struct sim_device *d, double ref_A, double at_s, dou
     return at_s - lo;
 }
 
-struct step { /* a step of the D/A code in a run of its own */
-    uint32_t rate_Hz, tick; /* when it is written                                */
+/* a step of the D/A code in a run of its own */
+struct step {
+    uint32_t rate_Hz, tick; /* when it is written */
     double delay_tick, delay_s;
 };
 
@@ -109,8 +110,8 @@ TEST(a_step_acts_at_the_first_sample_after_its_delay)
         double got_s;
         while (want_s < due_s) { want_s += servo_s; }
         got_s = respond(row[i]);
-        CHECK(fabs(got_s - want_s) < 1e-9, "row %zu: due %.9f s, taken %.9f, want %.9f", i,
-              due_s, got_s, want_s);
+        CHECK(fabs(got_s - want_s) < 1e-9, "row %zu: due %.9f s, taken %.9f, want %.9f", i, due_s,
+              got_s, want_s);
     }
 }
 
@@ -209,8 +210,8 @@ TEST(monitor_code_is_the_nearest)
             code = read_codes().mon_raw[0];
             codes = posix_plant()->mon_A / scale_A[i];
             codes = codes > 32767 ? 32767 : codes < -32768 ? -32768 : codes;
-            CHECK(fabs(code - codes) <= 0.5 + 1e-9, "scale %.3g: %d, want %.6f", scale_A[i],
-                  code, codes);
+            CHECK(fabs(code - codes) <= 0.5 + 1e-9, "scale %.3g: %d, want %.6f", scale_A[i], code,
+                  codes);
             moved |= 1 << (code < 0) | 4 << (code > 100);
             write_code((n / 300 % 3 - 1) * 12000, 1);
         }

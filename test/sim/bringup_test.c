@@ -93,8 +93,8 @@ static double limit_A(int stage)
 /* Each fault in each phase of each stage in which it can be met: how late, what it did. In s, m. */
 struct limit {
     enum bringup_wrong wrong;
-    int stage, phase; /* -1: at power-on                                       */
-    int result; /* enum bringup_result                                   */
+    int stage, phase; /* -1: at power-on */
+    int result;       /* enum bringup_result */
     double s, m;
 };
 
@@ -144,7 +144,7 @@ TEST(encoder_unplugged)
         {BRINGUP_UNPLUGGED, 3, -1, EXH_PROBE_STILL, 120.1, 0},
         {BRINGUP_UNPLUGGED, 5, -1, EXH_PROBE_STILL, 120.1, 0},
         {BRINGUP_COMES_OFF, 3, 2, EXH_PROBE_STILL, 3.2, 0.151}, /* the string is in */
-        {BRINGUP_COMES_OFF, 4, 2, EXH_PROBE_JAM, 0.1, 0.151}, /* 0.2 s into home */
+        {BRINGUP_COMES_OFF, 4, 2, EXH_PROBE_JAM, 0.1, 0.151},   /* 0.2 s into home */
         {BRINGUP_COMES_OFF, 4, 3, EXH_PROBE_STILL, 6, 0.001},
         {BRINGUP_COMES_OFF, 5, 2, EXH_PROBE_STILL, 6, 0.003},
         {BRINGUP_STUCK, 3, -1, EXH_PROBE_STILL, 3.2, 0},
@@ -330,7 +330,8 @@ TEST(the_balance_must_read_what_was_commanded)
     CHECK(r.result == BRINGUP_READING, "kf 5: %s", bringup_result_text(r.result));
 }
 
-/* Friction weighed out: kf (1 - b^2) / (1 + a b), as calibrate_test has it. No number comes of it. */
+/* Friction weighed out: kf (1 - b^2) / (1 + a b), as calibrate_test has it. No number comes of it.
+ */
 TEST(a_known_mass_gives_kf)
 {
     static const char *const mass[] = {" mass=0.1", " mass=0.3 f_string=5 i_step=0.02"};

@@ -35,7 +35,8 @@ TEST(figures_by_hand)
     said_clean(dir);
 }
 
-/* The figures are compiled in, from `make hil`: docs/REPORT.md has them too, and one of them alone is stale. */
+/* The figures are compiled in, from `make hil`: docs/REPORT.md has them too, and one of them alone
+ * is stale. */
 TEST(the_reports_table_is_the_same)
 {
     static const struct {

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* Calibrations of fingers in the scenes that pull: a good one vouches for two steps of arming and forces go by
- * its points; one that is damaged, another device's or finger's, too old or made with other scales is refused at
- * set-up by name, and nothing of it is used; without one nothing arms, unless that is waived. */
+/* Calibrations of fingers in the scenes that pull: a good one vouches for two steps of arming and
+ * forces go by its points; one that is damaged, another device's or finger's, too old or made with
+ * other scales is refused at set-up by name, and nothing of it is used; without one nothing arms,
+ * unless that is waived. */
 #include "said.h"
 
 #include "bilateral/bilateral.h"
@@ -14,15 +15,15 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-#define DEVICE  7
-#define DAY     20000
-#define ID_DEVICE  0x8901
-#define ID_DAY     0x8902
-#define ID_WITHOUT 0x8903
-#define ID_FINGERS 0x8610
+#define LEN(a)      (sizeof(a) / sizeof((a)[0]))
+#define DEVICE      7
+#define DAY         20000
+#define ID_DEVICE   0x8901
+#define ID_DAY      0x8902
+#define ID_WITHOUT  0x8903
+#define ID_FINGERS  0x8610
 #define ID_DAC_ZERO 0x0507
-#define MON_ZERO -37
+#define MON_ZERO    -37
 
 static const struct exh_scene_board board = {{1, 2000}, 24};
 
@@ -44,10 +45,17 @@ static struct exh_calib calib(uint32_t finger)
 {
     const struct drop_par *par = (const void *)exh_scene_drop.params->active;
     exh_scene_drop.defaults();
-    return (struct exh_calib){.device_id = DEVICE, .finger = finger, .day = DAY, .valid_days = 90,
-                              .dac_rawpA_q16 = par->drive.dac_rawpA_q16, .dac_zero_raw = par->drive.dac_zero_raw,
-                              .mon_A_q40 = par->drive.mon_A_q40, .mon_zero_raw = MON_ZERO,
-                              .end_A_q26 = EXH_Q(66, 10, EXH_Q_CUR), .point = point, .points = LEN(point)};
+    return (struct exh_calib){.device_id = DEVICE,
+                              .finger = finger,
+                              .day = DAY,
+                              .valid_days = 90,
+                              .dac_rawpA_q16 = par->drive.dac_rawpA_q16,
+                              .dac_zero_raw = par->drive.dac_zero_raw,
+                              .mon_A_q40 = par->drive.mon_A_q40,
+                              .mon_zero_raw = MON_ZERO,
+                              .end_A_q26 = EXH_Q(66, 10, EXH_Q_CUR),
+                              .point = point,
+                              .points = LEN(point)};
 }
 
 static void save(unsigned i, const struct exh_calib *c)
@@ -94,8 +102,8 @@ static void check_refused(const struct exh_scene *sc, int want, const char *what
     const struct exh_scene_calib *k = sc->calib;
     const int32_t zero = exh_signal_find(sc->params->table, 0x050A, 0);
     CHECK(err == want, "%s, %s: %d", sc->name, about, err);
-    CHECK(k->refused == want && k->what && strcmp(k->what, what) == 0, "%s, %s: %d, %s", sc->name, about, k->refused,
-          k->what ? k->what : "");
+    CHECK(k->refused == want && k->what && strcmp(k->what, what) == 0, "%s, %s: %d, %s", sc->name,
+          about, k->refused, k->what ? k->what : "");
     CHECK(sc->params->active[zero] == 0, "%s, %s: its zero was taken", sc->name, about);
 }
 
@@ -105,7 +113,8 @@ static const struct exh_scene *const one[] = {&exh_scene_drop, &exh_scene_guarde
 
 TEST(nothing_arms_without_unless_waived)
 {
-    const struct exh_scene *const all[] = {&exh_scene_drop, &exh_scene_guarded, &exh_scene_bilateral};
+    const struct exh_scene *const all[] = {&exh_scene_drop, &exh_scene_guarded,
+                                           &exh_scene_bilateral};
     for (size_t i = 0; i < LEN(all); i++) {
         for (int32_t waived = 0; waived < 2; waived++) {
             all[i]->defaults();
@@ -113,8 +122,8 @@ TEST(nothing_arms_without_unless_waived)
             CHECK_EQ_I64(exh_params_stage(all[i]->params, ID_WITHOUT, 0, waived), 0);
             CHECK_EQ_I64(set_up(all[i]), 0);
             ticks(all[i], 3);
-            CHECK(all[i]->safety->state == (waived ? EXH_STATE_ARM : EXH_STATE_OFF), "%s, %d: state %d", all[i]->name,
-                  (int)waived, all[i]->safety->state);
+            CHECK(all[i]->safety->state == (waived ? EXH_STATE_ARM : EXH_STATE_OFF),
+                  "%s, %d: state %d", all[i]->name, (int)waived, all[i]->safety->state);
             CHECK_EQ_I64(all[i]->safety->refused, waived ? 0 : EXH_ARM_CALIBRATION);
         }
     }
@@ -138,11 +147,15 @@ TEST(a_good_one_arms_and_forces_go_by_its_points)
     CHECK_EQ_I64(set_up(&exh_scene_drop), 0);
     (void)drop_memory(&cfg);
     for (size_t k = 0; k < LEN(point); k++) {
-        CHECK_EQ_I64(exh_table_at(calib_to_cur(&cfg->calib), point[k].force_N_q20), point[k].cur_A_q26);
-        CHECK_EQ_I64(exh_table_at(calib_to_force(&cfg->calib), point[k].mon_A_q26), point[k].force_N_q20);
-        CHECK_EQ_I64(exh_table_at(calib_to_force(&cfg->calib), -point[k].mon_A_q26), -point[k].force_N_q20);
+        CHECK_EQ_I64(exh_table_at(calib_to_cur(&cfg->calib), point[k].force_N_q20),
+                     point[k].cur_A_q26);
+        CHECK_EQ_I64(exh_table_at(calib_to_force(&cfg->calib), point[k].mon_A_q26),
+                     point[k].force_N_q20);
+        CHECK_EQ_I64(exh_table_at(calib_to_force(&cfg->calib), -point[k].mon_A_q26),
+                     -point[k].force_N_q20);
     }
-    CHECK(exh_table_at(calib_to_cur(&cfg->calib), INT32_MAX) == EXH_Q(66, 10, EXH_Q_CUR), "the table's end");
+    CHECK(exh_table_at(calib_to_cur(&cfg->calib), INT32_MAX) == EXH_Q(66, 10, EXH_Q_CUR),
+          "the table's end");
 }
 
 /* Whatever it is, with `uncalibrated` too: who brings an image means it. */
@@ -169,7 +182,9 @@ TEST(what_does_not_hold_is_refused_by_name)
             const int32_t zero_raw = row[i].zero_raw;
             give(one[s], 0, 1);
             CHECK_EQ_I64(exh_params_stage(one[s]->params, ID_WITHOUT, 0, row[i].waived), 0);
-            if (zero_raw) { CHECK_EQ_I64(exh_params_stage(one[s]->params, ID_DAC_ZERO, 0, zero_raw), 0); }
+            if (zero_raw) {
+                CHECK_EQ_I64(exh_params_stage(one[s]->params, ID_DAC_ZERO, 0, zero_raw), 0);
+            }
             if (zero_raw) {
                 CHECK_EQ_I64(set_up(one[s]), row[i].err);
                 CHECK(strcmp(one[s]->calib->what, row[i].what) == 0, "%s", one[s]->calib->what);
@@ -196,8 +211,10 @@ TEST(every_damaged_bit_and_every_end_is_refused)
     for (uint32_t bit = 0; bit < 8 * image[0].len_B; bit++) {
         give(&exh_scene_drop, 0, 1);
         image[0].byte[bit / 8] ^= (uint8_t)(1u << bit % 8);
-        CHECK(set_up(&exh_scene_drop) < 0 && exh_scene_drop.calib->refused < 0, "bit %u", (unsigned)bit);
-        CHECK(strcmp(exh_scene_drop.calib->what, "image") == 0, "bit %u: %s", (unsigned)bit, exh_scene_drop.calib->what);
+        CHECK(set_up(&exh_scene_drop) < 0 && exh_scene_drop.calib->refused < 0, "bit %u",
+              (unsigned)bit);
+        CHECK(strcmp(exh_scene_drop.calib->what, "image") == 0, "bit %u: %s", (unsigned)bit,
+              exh_scene_drop.calib->what);
         image[0].byte[bit / 8] ^= (uint8_t)(1u << bit % 8);
     }
     for (uint32_t len_B = 0; len_B < image[0].len_B; len_B++) {
@@ -232,21 +249,23 @@ TEST(the_full_box_needs_one_for_every_finger_in_use)
     save_hand();
     for (int32_t fingers = 1; fingers < 1 << EXH_FINGERS; fingers++) {
         for (unsigned n = 0; n <= EXH_FINGERS; n++) {
-            const uint32_t have = ((1u << n) - 1) << (EXH_FINGERS - n); /* the last n, little first */
+            const uint32_t have = ((1u << n) - 1)
+                                  << (EXH_FINGERS - n); /* the last n, little first */
             const int all = ((uint32_t)fingers & ~have) == 0;
             give(sc, 0, n);
             CHECK_EQ_I64(exh_params_stage(sc->params, ID_FINGERS, 0, fingers), 0);
             CHECK_EQ_I64(set_up(sc), 0);
             ticks(sc, 3);
-            CHECK(sc->safety->state == (all ? EXH_STATE_ARM : EXH_STATE_OFF), "fingers %d, %u images: state %d",
-                  (int)fingers, n, sc->safety->state);
+            CHECK(sc->safety->state == (all ? EXH_STATE_ARM : EXH_STATE_OFF),
+                  "fingers %d, %u images: state %d", (int)fingers, n, sc->safety->state);
             CHECK_EQ_I64(sc->safety->refused, all ? 0 : EXH_ARM_CALIBRATION);
         }
     }
     for (unsigned f = 0; f < EXH_FINGERS; f++) {
         const struct calib_tables *t = &cfg->finger[f].calib;
         const int32_t zero = exh_signal_find(sc->params->table, 0x050A, (uint16_t)f);
-        CHECK_EQ_I64(exh_table_at(calib_to_cur(t), point[2].force_N_q20), EXH_Q(2, 1, EXH_Q_CUR) + (int32_t)f);
+        CHECK_EQ_I64(exh_table_at(calib_to_cur(t), point[2].force_N_q20),
+                     EXH_Q(2, 1, EXH_Q_CUR) + (int32_t)f);
         CHECK_EQ_I64(sc->params->active[zero], MON_ZERO + (int32_t)f);
     }
 }
@@ -292,8 +311,9 @@ TEST(a_log_has_them_and_replays)
     said(&s, dir, cli_calibrate, WORDS("calibrate", "--day", "20000", "--out", dir));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     snprintf(path, sizeof path, "%s/calibration.bin", dir);
-    said(&s, dir, cli_drop, WORDS("drop", "--rate", "500", "--falls", "1", "--out", dir, "--calibration", path,
-                                  "--set", "day=20010"));
+    said(&s, dir, cli_drop,
+         WORDS("drop", "--rate", "500", "--falls", "1", "--out", dir, "--calibration", path,
+               "--set", "day=20010"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     snprintf(out, sizeof out, "%s/drop_500Hz.exh", dir);
     said(&s, dir, cli_replay, WORDS("replay", out));
@@ -319,11 +339,13 @@ TEST(a_dump_of_the_black_box_has_them)
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     snprintf(path, sizeof path, "%s/calibration.bin", dir);
     snprintf(box, sizeof box, "%s/box.exh", dir);
-    said(&s, dir, cli_bilateral, WORDS("bilateral", "--rate", "500", "--speed", "fast", "--approaches", "1", "--let-go",
-                                       "1.2", "--blackbox", box, "--calibration", dir));
+    said(&s, dir, cli_bilateral,
+         WORDS("bilateral", "--rate", "500", "--speed", "fast", "--approaches", "1", "--let-go",
+               "1.2", "--blackbox", box, "--calibration", dir));
     CHECK(s.status == 1 && strstr(s.err, "deadman"), "%d: %s", s.status, s.err);
     said(&s, dir, cli_replay, WORDS("replay", box));
-    CHECK(s.status == 0 && strstr(s.out, "fault deadman at tick"), "%d: %s%s", s.status, s.out, s.err);
+    CHECK(s.status == 0 && strstr(s.out, "fault deadman at tick"), "%d: %s%s", s.status, s.out,
+          s.err);
     said_clean(dir);
 }
 
@@ -343,21 +365,23 @@ TEST(the_command_names_file_and_field)
     said(&s, dir, cli_calibrate, WORDS("calibrate", "--day", "20000", "--out", dir));
     snprintf(path, sizeof path, "%s/calibration.bin", dir);
     for (size_t i = 0; i < LEN(row); i++) {
-        said(&s, dir, cli_drop, WORDS("drop", "--rate", "500", "--falls", "1", "--calibration", path, "--set", "day=20000",
-                                      "--set", row[i].set));
+        said(&s, dir, cli_drop,
+             WORDS("drop", "--rate", "500", "--falls", "1", "--calibration", path, "--set",
+                   "day=20000", "--set", row[i].set));
         CHECK(s.status == (row[i].want ? 2 : 0), "%s: %d: %s", row[i].set, s.status, s.err);
-        CHECK(!row[i].want || (strstr(s.err, "calibration.bin: ") && strstr(s.err, row[i].want)), "%s: %s", row[i].set,
-              s.err);
+        CHECK(!row[i].want || (strstr(s.err, "calibration.bin: ") && strstr(s.err, row[i].want)),
+              "%s: %s", row[i].set, s.err);
     }
-    said(&s, dir, cli_drop, WORDS("drop", "--rate", "500", "--falls", "1", "--set", "uncalibrated=0"));
+    said(&s, dir, cli_drop,
+         WORDS("drop", "--rate", "500", "--falls", "1", "--set", "uncalibrated=0"));
     CHECK(s.status == 1 && strstr(s.err, "refused at calibration"), "%d: %s", s.status, s.err);
     said(&s, dir, cli_drop, WORDS("drop", "--rate", "500", "--calibration", "no/such/file"));
     CHECK(s.status == 3 && strstr(s.err, "no/such/file"), "%d: %s", s.status, s.err);
     said_clean(dir);
 }
 
-/* An image of parameters has the day on which it was saved, the device, and what was waived: it is not asked whether a
- * calibration holds today. */
+/* An image of parameters has the day on which it was saved, the device, and what was waived: it is
+ * not asked whether a calibration holds today. */
 TEST(loaded_parameters_do_not_vouch)
 {
     static struct said s;
@@ -366,10 +390,13 @@ TEST(loaded_parameters_do_not_vouch)
     snprintf(path, sizeof path, "%s/calibration.bin", dir);
     snprintf(par, sizeof par, "%s/p.exhp", dir);
     said(&s, dir, cli_calibrate, WORDS("calibrate", "--day", "10000", "--out", dir)); /* 1997 */
-    said(&s, dir, cli_drop, WORDS("drop", "--rate", "500", "--falls", "1", "--calibration", path, "--set", "day=10000",
-                                  "--save-params", par));
+    said(&s, dir, cli_drop,
+         WORDS("drop", "--rate", "500", "--falls", "1", "--calibration", path, "--set", "day=10000",
+               "--save-params", par));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
-    said(&s, dir, cli_drop, WORDS("drop", "--rate", "500", "--falls", "1", "--calibration", path, "--load-params", par));
+    said(&s, dir, cli_drop,
+         WORDS("drop", "--rate", "500", "--falls", "1", "--calibration", path, "--load-params",
+               par));
     CHECK(s.status == 2 && strstr(s.err, "age: "), "%d: %s", s.status, s.err);
     said_clean(dir);
 }
@@ -401,5 +428,5 @@ TEST(an_old_log_is_named)
 TEST_MAIN("calib", nothing_arms_without_unless_waived, a_good_one_arms_and_forces_go_by_its_points,
           what_does_not_hold_is_refused_by_name, every_damaged_bit_and_every_end_is_refused,
           the_full_box_needs_one_for_every_finger_in_use, one_of_five_that_is_refused_refuses_all,
-          a_log_has_them_and_replays, a_dump_of_the_black_box_has_them, the_command_names_file_and_field,
-          loaded_parameters_do_not_vouch, an_old_log_is_named);
+          a_log_has_them_and_replays, a_dump_of_the_black_box_has_them,
+          the_command_names_file_and_field, loaded_parameters_do_not_vouch, an_old_log_is_named);

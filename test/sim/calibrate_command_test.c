@@ -15,7 +15,8 @@ static int command(const char *dir, const char *words)
     size_t n = 0;
     argv[0] = text;
     for (const char *w = words; *w != '\0' && n + 100 < sizeof text; w++) {
-        n += (size_t)snprintf(text + n, sizeof text - n, *w == '@' ? "%s" : "%.1s", *w == '@' ? dir : w);
+        n += (size_t)snprintf(text + n, sizeof text - n, *w == '@' ? "%s" : "%.1s",
+                              *w == '@' ? dir : w);
     }
     text[n] = '\0';
     for (char *word = strtok(text, " "); word != NULL && argc < 20; word = strtok(NULL, " ")) {
@@ -35,41 +36,41 @@ TEST(exit_status_says_what_happened)
         {0, "--params"},
         {0, "--out @ --day 20000 --valid 30 --id 9 --finger 2"},
         {0, "--check @/calibration.bin --day 20030 --id 9 --finger 2"},
-        {1, "--check @/calibration.bin --day 20031 --id 9 --finger 2"}, /* stale              */
+        {1, "--check @/calibration.bin --day 20031 --id 9 --finger 2"}, /* stale */
         {1, "--check @/calibration.bin --day 19999 --id 9 --finger 2"},
         {1, "--check @/calibration.bin --day 20000 --id 8 --finger 2"},
         {1, "--check @/calibration.bin --day 20000 --id 9"},
         {1, "--check @/calibration.bin --day 20000 --id 9 --finger 2 --device dac_scale=1000"},
-        {1, "--check @/calibration.csv --day 20000"}, /* no image                              */
+        {1, "--check @/calibration.csv --day 20000"}, /* no image */
         {3, "--check @/none"},
-        {2, "--check @"}, /* a directory                                                       */
+        {2, "--check @"}, /* a directory */
         {2, "--out @/calibration.bin"},
         {1, "--wrong stuck"},
         {1, "--wrong motor_reversed"},
-        {1, "--mass 0.1,0.2,0.22,0.5 --hung 0.1,0.22,0.2,0.5"}, /* does not rise               */
-        {1, "--mass 0.1,0.2,0.3 --hung 0.1,0.24,0.3"},          /* far from the line           */
+        {1, "--mass 0.1,0.2,0.22,0.5 --hung 0.1,0.22,0.2,0.5"}, /* does not rise */
+        {1, "--mass 0.1,0.2,0.3 --hung 0.1,0.24,0.3"},          /* far from the line */
         {0, "--mass 0.1,0.2,0.3 --hung 0.1,0.24,0.3 --residual 1"},
         {1, "--set wait_time=1300 --out @/nobody"},
         {2, "--mass 0.2,0.1"},
         {2, "--mass 0.2,"},
         {2, "--mass 9"},
-        {2, "--mass 0.5"}, /* one point is on any line                                        */
+        {2, "--mass 0.5"}, /* one point is on any line */
         {0, "--mass 0.1,0.5"},
-        {2, "--mass 0.01,0.5"}, /* i.e. at most 49 mA, but slack_cur is 50                     */
+        {2, "--mass 0.01,0.5"}, /* i.e. at most 49 mA, but slack_cur is 50 */
         {0, "--mass 0.02,0.5 --residual 1"},
-        {2, "--set i_max=0.2"}, /* pol_max                                                    */
-        {2, "--set i_max=0.09 --set pol_max=0.05"}, /* home_cur                                */
-        {2, "--set i_max=0.04 --set pol_max=0.03 --set home_cur=0.03"}, /* slack_cur           */
-        {2, "--set go=1"}, /* the person's word                                               */
+        {2, "--set i_max=0.2"},                                         /* pol_max */
+        {2, "--set i_max=0.09 --set pol_max=0.05"},                     /* home_cur */
+        {2, "--set i_max=0.04 --set pol_max=0.03 --set home_cur=0.03"}, /* slack_cur */
+        {2, "--set go=1"},                                              /* the person's word */
         {2, "--set mass=0.3"},
         {2, "--hung 0.1"},
         {2, "--wrong nothing"},
         {2, "--rate 0"},
-        {2, "--rate 30 --set dwell=10"}, /* less than two ticks a dwell                       */
+        {2, "--rate 30 --set dwell=10"}, /* less than two ticks a dwell */
         {2, "--set nothing=1"},
         {2, "--set i_max=4"},
-        {2, "--set home_min=0.4"}, /* beyond home_max                                         */
-        {2, "--set f0_speed=0.25 --set dwell=1000"}, /* beyond the travel limit                */
+        {2, "--set home_min=0.4"},                   /* beyond home_max */
+        {2, "--set f0_speed=0.25 --set dwell=1000"}, /* beyond the travel limit */
         {2, "--device kf=0"},
         {2, "--device kf"},
         {2, "--out @/calibration.bin/x"},
@@ -77,7 +78,8 @@ TEST(exit_status_says_what_happened)
         {2, "word"},
     };
     char dir[] = "/tmp/exhand_calibrate_XXXXXX", path[64];
-    static const char *const made[] = {"calibration.bin", "calibration.csv", "table.csv", "pictures.gp"};
+    static const char *const made[] = {"calibration.bin", "calibration.csv", "table.csv",
+                                       "pictures.gp"};
     CHECK(mkdtemp(dir) != NULL, "no temporary directory");
     for (size_t i = 0; i < LEN(row); i++) {
         const int status = command(dir, row[i].words);
@@ -97,8 +99,8 @@ TEST(exit_status_says_what_happened)
     do { \
         static struct said s; \
         said(&s, dir, cli_calibrate, WORDS("calibrate", __VA_ARGS__)); \
-        CHECK(s.status == (wanted) && strstr(s.err, text), "status %d: %s, wanted %s", s.status, s.err, \
-              text); \
+        CHECK(s.status == (wanted) && strstr(s.err, text), "status %d: %s, wanted %s", s.status, \
+              s.err, text); \
         CHECK(strstr(s.out, "for the drop experiment") == NULL, "%s", s.out); \
     } while (0)
 
@@ -111,23 +113,28 @@ TEST(what_is_refused_is_named)
     SAYS(dir, 2, "--mass: two of them are the same", "--mass", "0.1,0.1000000001");
     SAYS(dir, 2, "--mass: 0.01 (slack_cur", "--mass", "0.01,0.5");
     SAYS(dir, 2, "(allowed up to i_max: ", "--set", "i_max=0.2");
-    SAYS(dir, 2, "give --device substep=1e-05", "--device", "rotor=0.0001", "--device", "substep=1e-4");
+    SAYS(dir, 2, "give --device substep=1e-05", "--device", "rotor=0.0001", "--device",
+         "substep=1e-4");
     SAYS(dir, 2, "--set: go:", "--set", "go=1");
     SAYS(dir, 1, "mass 0.1 kg: did not move", "--wrong", "fixed_mass");
-    SAYS(dir, 1, "mass 0.1 kg: a limit of the drive acts (peak: i_peak)", "--set", "i_cont=0.15", "--set",
-         "i_peak=0.2");
+    SAYS(dir, 1, "mass 0.1 kg: a limit of the drive acts (peak: i_peak)", "--set", "i_cont=0.15",
+         "--set", "i_peak=0.2");
     SAYS(dir, 1, "nobody prepared the step after 1.30 s", "--set", "wait_time=1300");
-    SAYS(dir, 3, "No such file or directory: give the calibration.bin", "--check", "/nowhere/at/all");
+    SAYS(dir, 3, "No such file or directory: give the calibration.bin", "--check",
+         "/nowhere/at/all");
     SAYS(dir, 2, "Is a directory: give the calibration.bin", "--check", dir);
-    said(&made, dir, cli_calibrate, WORDS("calibrate", "--day", "20000", "--id", "9", "--out", dir));
+    said(&made, dir, cli_calibrate,
+         WORDS("calibrate", "--day", "20000", "--id", "9", "--out", dir));
     CHECK(made.status == 0, "%s", made.err);
     SAYS(dir, 1, "made for device 9, this is 8:", "--check", image, "--day", "20000", "--id", "8");
     SAYS(dir, 1, "made for finger 0, this is 3:", "--check", image, "--day", "20000", "--id", "9",
          "--finger", "3");
-    SAYS(dir, 1, "from the future: made on day 20000, today is day 19999: set the clock right, or give --day",
+    SAYS(dir, 1,
+         "from the future: made on day 20000, today is day 19999: set the clock right, or give "
+         "--day",
          "--check", image, "--day", "19999", "--id", "9");
-    SAYS(dir, 1, "stale: made on day 20000, good for 90 days", "--check", image, "--day", "20091", "--id",
-         "9");
+    SAYS(dir, 1, "stale: made on day 20000, good for 90 days", "--check", image, "--day", "20091",
+         "--id", "9");
     SAYS(dir, 1, "scale or zero", "--check", image, "--day", "20000", "--id", "9", "--device",
          "dac_zero=32767");
     SAYS(dir, 2, "Not a directory", "--out", image); /* before anything runs */
@@ -139,7 +146,8 @@ TEST(what_is_refused_is_named)
 
 TEST(what_cannot_be_written_is_said)
 {
-    static const char *const name[] = {"calibration.bin", "calibration.csv", "table.csv", "pictures.gp"};
+    static const char *const name[] = {"calibration.bin", "calibration.csv", "table.csv",
+                                       "pictures.gp"};
     for (size_t i = 0; i < 2 * LEN(name); i++) {
         char *dir = said_dir();
         const char *path = said_path(dir, name[i / 2]);
@@ -167,14 +175,14 @@ static int line_by_line(int argc, char **argv)
 /* A signal while it waits, within a step, within a mass. */
 TEST(an_interruption_saves_nothing)
 {
-    static const char *const after[] = {"  zero", "  polarity", "  home", "  f0", "  mass 0.1",
-                                        "  mass 0.3"};
+    static const char *const after[] = {"  zero", "  polarity", "  home",
+                                        "  f0",   "  mass 0.1", "  mass 0.3"};
     for (size_t i = 0; i < LEN(after); i++) {
         const struct timespec nap = {0, 1000000};
         char *dir = said_dir();
         static struct said s;
-        const pid_t pid = said_start(dir, line_by_line,
-                                     WORDS("calibrate", "--rate", "20000", "--out", dir));
+        const pid_t pid =
+            said_start(dir, line_by_line, WORDS("calibrate", "--rate", "20000", "--out", dir));
         s.out[0] = '\0';
         for (int n = 0; n < 20000 && strstr(s.out, after[i]) == NULL; n++) {
             nanosleep(&nap, NULL);

@@ -162,7 +162,7 @@ TEST(whatever_is_wrong_stops_at_its_step)
 {
     static const struct {
         unsigned wrong, step, result;
-        double most_A, most_s, most_m; /* until it was seen                        */
+        double most_A, most_s, most_m; /* until it was seen */
     } row[] = {
         {BENCH_MOTOR_REVERSED, CALIBRATE_POLARITY, EXH_PROBE_WRONG_WAY, 0.030, 0.8, 0.0005},
         {BENCH_ENCODER_REVERSED, CALIBRATE_POLARITY, EXH_PROBE_WRONG_WAY, 0.030, 0.8, 0.0005},
@@ -215,7 +215,7 @@ TEST(nobody_after_a_finished_step_is_no_calibration)
 {
     static const struct {
         double wait_ms;
-        unsigned step; /* the first that takes longer to prepare                */
+        unsigned step; /* the first that takes longer to prepare */
     } row[] = {{1, CALIBRATE_ZERO}, {1300, CALIBRATE_MASS + 2}};
     for (size_t i = 0; i < LEN(row); i++) {
         const struct calibration_setting wait = {"wait_time", row[i].wait_ms};

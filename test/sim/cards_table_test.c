@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The table of docs/CARDS.md is what `exhand cards` says now (make cards), and nothing in it is undefined. */
+/* The table of docs/CARDS.md is what `exhand cards` says now (make cards), and nothing in it is
+ * undefined. */
 #include "said.h"
 
 static struct said s;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Causes of faults that are the box's: supply, glove, link; each told when it should be, not before,
- * and not at all where nobody asked. Of one finger's scenes: supply, and memory that changed. */
+/* Causes of faults that are the box's: supply, glove, link; each told when it should be, not
+ * before, and not at all where nobody asked. Of one finger's scenes: supply, and memory that
+ * changed. */
 #include "check.h"
 
 #include "cli/bilateral_run.h"
@@ -12,12 +13,12 @@
 #define LEN(a) (sizeof(a) / sizeof((a)[0]))
 
 static struct {
-    double from_s, until_s; /* the supply is at rail_V                             */
+    double from_s, until_s; /* the supply is at rail_V */
     int16_t rail_raw;
-    double dead_s; /* the index knuckle's wire breaks                              */
+    double dead_s; /* the index knuckle's wire breaks */
 } wrong;
 
-static double at_s[EXH_FAULTS]; /* when a fault was first latched; < 0: never    */
+static double at_s[EXH_FAULTS]; /* when a fault was first latched; < 0: never */
 
 static void wires_in(struct exh_drive_in *in)
 {
@@ -119,7 +120,7 @@ TEST(a_sensor_that_is_not_believed_is_a_fault_after_its_time)
     wrong.dead_s = 1.2;
     CHECK_EQ_I64(faults("glove_time", 0.5 * 1000, "link_time", 0, 1e30), EXH_FAULT_GLOVE);
     told_at(8, 1.7015, 1.7025); /* its frame comes a tick later, and then 501 ticks */
-    CHECK_EQ_I64(faults("glove_time", 0, "link_time", 0, 1e30), 0); /* nobody asked */
+    CHECK_EQ_I64(faults("glove_time", 0, "link_time", 0, 1e30), 0);    /* nobody asked */
     CHECK_EQ_I64(faults("glove_time", 5000, "link_time", 0, 1e30), 0); /* not yet */
 }
 
@@ -171,7 +172,8 @@ static void power_on(const struct exh_scene *sc, int32_t least_V_q20)
     CHECK_EQ_I64(sc->setup(board), 0);
 }
 
-static void ticks(const struct exh_scene *sc, uint32_t n, int16_t supply_raw, enum exh_command command)
+static void ticks(const struct exh_scene *sc, uint32_t n, int16_t supply_raw,
+                  enum exh_command command)
 {
     struct exh_scene_in in = {.command = (uint8_t)command};
     struct exh_drive_out out;

@@ -12,19 +12,19 @@
 
 #include <stdlib.h>
 
-#define FALLS 10
-#define RUNS_MAX 100000
-#define PAIRS_MAX (FALLS * 256)
-#define MANY 10000        /* runs: the shares are judged without an allowance for chance */
-#define BOOTSTRAPPED 1000 /* of many runs, those of which the percentiles are made too  */
-#define REPLICATES 300
+#define FALLS        10
+#define RUNS_MAX     100000
+#define PAIRS_MAX    (FALLS * 256)
+#define MANY         10000 /* runs: the shares are judged without an allowance for chance */
+#define BOOTSTRAPPED 1000  /* of many runs, those of which the percentiles are made too */
+#define REPLICATES   300
 
 /* Falls differ by slope, offset and how much they ring; within one, position scatters,
  * force is noisy, and the damper's force is correlated from tick to tick. */
 struct model {
     const char *name;
     double k_Npm;
-    int pairs_lo, pairs_hi; /* in one fall, most of them in the band            */
+    int pairs_lo, pairs_hi; /* in one fall, most of them in the band */
     double slope, offset_m, ring_N, q_noise_m, f_noise_N;
 };
 
@@ -58,7 +58,8 @@ static void draw_run(const struct model *m, struct sim_random *r, struct fall_pa
     }
 }
 
-static struct fall_pair raw_at[PAIRS_MAX], drawn_at[FALLS * PAIRS_MAX], averaged_at[FALLS * PAIRS_MAX];
+static struct fall_pair raw_at[PAIRS_MAX], drawn_at[FALLS * PAIRS_MAX],
+    averaged_at[FALLS * PAIRS_MAX];
 
 static void estimate(const struct fall_pairs *sorted, double *a, double *slope)
 {
@@ -86,7 +87,9 @@ static void percentiles(const struct fall_pairs *sorted, struct sim_random *r, d
         int times[FALLS] = {0};
         for (int f = 0; f < FALLS; f++) { times[(int)(FALLS * sim_random_unit(r))]++; }
         for (size_t k = 0; k < sorted->n; k++) {
-            for (int t = 0; t < times[sorted->at[k].fall]; t++) { drawn.at[drawn.n++] = sorted->at[k]; }
+            for (int t = 0; t < times[sorted->at[k].fall]; t++) {
+                drawn.at[drawn.n++] = sorted->at[k];
+            }
         }
         estimate(&drawn, &all[0][i], &all[1][i]);
     }
@@ -171,7 +174,8 @@ TEST(ninety_five_of_hundred_intervals_cover_the_mean)
             for (int k = 0; k < runs; k++) { mean += side[d].value[k] / runs; }
             share = covered(&side[d], runs, mean, 0);
             check_note("%-12s %c: %.1f %% of %d intervals cover the estimator's mean; that mean is "
-                       "%+.1f %% off k", m->name, "AB"[d], 100 * share, runs,
+                       "%+.1f %% off k",
+                       m->name, "AB"[d], 100 * share, runs,
                        100 * ((d ? 1 / mean : mean) / m->k_Npm - 1));
             if (runs >= MANY) {
                 check_note("%-12s %c: percentiles of a bootstrap: %.1f %% of %d", m->name, "AB"[d],

@@ -16,7 +16,7 @@
 /* ---- Table II from the CSVs ----------------------------------------------------- */
 
 #define SAMPLES_MAX 200000
-#define FALLS_MAX 64
+#define FALLS_MAX   64
 
 static struct {
     struct fall_sample at[SAMPLES_MAX];
@@ -37,7 +37,8 @@ static void read_csv(const char *path, double T_s)
         struct fall_sample *s = &csv.at[csv.n];
         CHECK(csv.n < SAMPLES_MAX && csv.falls < FALLS_MAX, "%s: too long", path);
         CHECK(sscanf(line, "%lf,%lf,%lf,%lf,%lf,%d,%lf", &s->t_s, &s->q_m, &s->qd_mps, &s->f_des_N,
-                     &s->i_des_A, &s->c, &s->f_mon_N) == 7, "%s", line);
+                     &s->i_des_A, &s->c, &s->f_mon_N) == 7,
+              "%s", line);
         CHECK(csv.n == 0 || s->t_s > s[-1].t_s, "time does not rise: %s", line);
         if (csv.n == 0 || s->t_s > s[-1].t_s + 1.5 * T_s) { csv.start[csv.falls++] = csv.n; }
         csv.n++;
@@ -98,8 +99,9 @@ TEST(falls_are_apart_at_every_rate)
         char text[32];
         static struct said s;
         snprintf(text, sizeof text, "%g", rate_Hz[i]);
-        said(&s, dir, cli_drop,
-             WORDS("drop", "--rate", text, "--falls", "7", "--device", "observe=0.6", "--out", dir));
+        said(
+            &s, dir, cli_drop,
+            WORDS("drop", "--rate", text, "--falls", "7", "--device", "observe=0.6", "--out", dir));
         snprintf(text, sizeof text, "drop_%gHz.csv", rate_Hz[i]);
         read_csv(said_path(dir, text), 1 / rate_Hz[i]);
         CHECK(csv.falls == 7, "%g Hz: %zu falls", rate_Hz[i], csv.falls);
@@ -162,15 +164,19 @@ TEST(csv_destroys_nothing)
         const char *log, *out, *says;
         int status;
     } row[] = {
-        {"a.exh", "a.exh", "is the log itself", 2}, {"a.exh", "alias", "is the log itself", 2},
-        {"twin", "a.exh", "is the log itself", 2},  {"b.exh", "a.csv", "No such file", 3},
-        {"a.csv", "a.exh", "not a log", 2},         {"said.out", "a.csv", "not a log", 2},
+        {"a.exh", "a.exh", "is the log itself", 2},
+        {"a.exh", "alias", "is the log itself", 2},
+        {"twin", "a.exh", "is the log itself", 2},
+        {"b.exh", "a.csv", "No such file", 3},
+        {"a.csv", "a.exh", "not a log", 2},
+        {"said.out", "a.csv", "not a log", 2},
         {".", "a.csv", "read", 2},
     };
     for (size_t i = 0; i < LEN(row); i++) {
         said(&s, dir, cli_csv,
              WORDS("csv", said_path(dir, row[i].log), "--out", said_path(dir, row[i].out)));
-        CHECK(s.status == row[i].status && strstr(s.err, row[i].says), "row %zu: %d: %s", i, s.status, s.err);
+        CHECK(s.status == row[i].status && strstr(s.err, row[i].says), "row %zu: %d: %s", i,
+              s.status, s.err);
         CHECK(strncmp(s.err, "exhand csv: ", 12) == 0, "%s", s.err);
         CHECK_EQ_I64(said_size(said_path(dir, "a.exh")), log_B);
         CHECK_EQ_I64(said_size(said_path(dir, "a.csv")), csv_B);
@@ -251,8 +257,9 @@ TEST(damage_is_said)
              WORDS("csv", said_path(dir, "b.exh"), "--out", said_path(dir, "b.csv")));
         CHECK(s.status == row[i].csv && strstr(s.err, row[i].csv_says), "row %zu: csv %d: %s", i,
               s.status, s.err);
-        CHECK(row[i].csv == 2 ? said_size(said_path(dir, "b.csv")) < 0
-                              : count_lines(said_path(dir, "b.csv")) == lines - (size_t)row[i].fewer,
+        CHECK(row[i].csv == 2
+                  ? said_size(said_path(dir, "b.csv")) < 0
+                  : count_lines(said_path(dir, "b.csv")) == lines - (size_t)row[i].fewer,
               "row %zu: lines", i);
         said(&s, dir, cli_replay, WORDS("replay", said_path(dir, "b.exh")));
         CHECK(s.status == row[i].replay, "row %zu: replay %d: %s%s", i, s.status, s.out, s.err);
@@ -273,8 +280,10 @@ TEST(ticks_go_on_past_the_wrap)
     /* The keyframe at tick 1024 becomes the last before the wrap, that at 2048 the next. */
     static const struct {
         const char *from, *says;
-    } row[] = {{"4294966796", "from tick 4294966796 "}, {"4294967295", "from tick 4294966796 "},
-               {"4294967296", "from tick 4294966796 "}, {"4294967820", "from tick 4294967820 "},
+    } row[] = {{"4294966796", "from tick 4294966796 "},
+               {"4294967295", "from tick 4294966796 "},
+               {"4294967296", "from tick 4294966796 "},
+               {"4294967820", "from tick 4294967820 "},
                {"4294967900", "from tick 4294967820 "}};
     char *dir = said_dir();
     static struct said s;
@@ -288,8 +297,8 @@ TEST(ticks_go_on_past_the_wrap)
     CHECK(csv.at[csv.n - 1].t_s > 4294967296.0 / 500, "%.3f s", csv.at[csv.n - 1].t_s);
     for (size_t i = 0; i < LEN(row); i++) {
         said(&s, dir, cli_replay, WORDS("replay", said_path(dir, "b.exh"), "--from", row[i].from));
-        CHECK(s.status == 0 && strstr(s.out, row[i].says), "from %s: %d: %s%s", row[i].from, s.status,
-              s.out, s.err);
+        CHECK(s.status == 0 && strstr(s.out, row[i].says), "from %s: %d: %s%s", row[i].from,
+              s.status, s.out, s.err);
     }
     said(&s, dir, cli_replay, WORDS("replay", said_path(dir, "b.exh"), "--from", "100"));
     CHECK(s.status == 2 && strstr(s.err, "no keyframe"), "%d: %s", s.status, s.err);

@@ -39,9 +39,10 @@ TEST(docs_hold_what_is_drawn_now)
 
 TEST(a_name_that_is_no_row_is_told)
 {
-    static const struct diagram_box box[] = {
-        {0, 0, 9, 9, "a", {"{p:k}"}}, {0, 0, 9, 9, "a", {"{p:no_such}"}},
-        {0, 0, 9, 9, "a", {"{s:no_such}"}}, {0, 0, 9, 9, "a", {"{d:no_such}"}}};
+    static const struct diagram_box box[] = {{0, 0, 9, 9, "a", {"{p:k}"}},
+                                             {0, 0, 9, 9, "a", {"{p:no_such}"}},
+                                             {0, 0, 9, 9, "a", {"{s:no_such}"}},
+                                             {0, 0, 9, 9, "a", {"{d:no_such}"}}};
     for (int i = 0; i < 4; i++) {
         const struct diagram d = {"test", "test", 9, 9, &box[i], 1, NULL, 0, NULL};
         FILE *f = tmpfile();

@@ -33,8 +33,8 @@ TEST(contacts_are_cut)
     check_contacts("|.#.###.#", 2, "0:3-6 "); /* glitches, also an open one */
     check_contacts("|.##.###", 3, "0:4-7+ ");
     check_contacts("|###.###", 1, "0:0-3 0:4-7+ "); /* a gap of one tick separates */
-    check_contacts("##|.##", 1, "0:3-5+ ");         /* before the first fall       */
-    check_contacts("|##|##", 0, "0:0-2+ 1:2-4+ ");  /* never across two falls      */
+    check_contacts("##|.##", 1, "0:3-5+ ");         /* before the first fall */
+    check_contacts("|##|##", 0, "0:0-2+ 1:2-4+ ");  /* never across two falls */
     check_contacts("|##|##", 3, "");
 }
 
@@ -73,9 +73,7 @@ TEST(band_has_both_ends)
     const struct fall_pairs in = {at, 8};
     struct fall_pairs out;
 
-    for (size_t i = 0; i < in.n; i++) {
-        at[i] = (struct fall_pair){(double)i, f_N[i], i};
-    }
+    for (size_t i = 0; i < in.n; i++) { at[i] = (struct fall_pair){(double)i, f_N[i], i}; }
     CHECK(fall_band(&in, 0.8, 4.5, &out) == FALL_OK, "%zu", out.n);
     CHECK(out.n == 3, "%zu kept", out.n);
     CHECK(out.at[0].fall == 3 && out.at[1].fall == 4 && out.at[2].fall == 1, "order %zu %zu %zu",

@@ -63,9 +63,7 @@ static inline double uniform(uint64_t *rng)
 static inline double normal(uint64_t *rng)
 {
     double sum = -6.0;
-    for (int i = 0; i < 12; i++) {
-        sum += uniform(rng);
-    }
+    for (int i = 0; i < 12; i++) { sum += uniform(rng); }
     return sum;
 }
 
@@ -80,9 +78,7 @@ static inline void ramp(struct log_builder *b, double k_Npm, size_t lag)
     for (int fall = 0; fall < 3; fall++) {
         double last[3] = {0.0, 0.0, 0.0};
         begin_fall(b);
-        for (int i = 0; i < 5; i++) {
-            add(b, 1e-3, 0.07, 2.0, 0);
-        }
+        for (int i = 0; i < 5; i++) { add(b, 1e-3, 0.07, 2.0, 0); }
         for (int i = 0; i < 300; i++) {
             const double q_m = 0.07 + 6.0 / k_Npm * i / 300.0 + 1e-3 / k_Npm * fall;
             memmove(last + 1, last, 2 * sizeof last[0]);
@@ -108,8 +104,8 @@ static inline void draw_log(struct log_builder *b, const char *picture)
 #define SLOPE_NPM 8000.0
 
 /* Falls whose compliance scatters by 10 % around 1/k, some noise on each position. */
-static inline void scattered_falls(struct log_builder *b, size_t falls, size_t pairs, double noise_m,
-                            uint64_t *rng)
+static inline void scattered_falls(struct log_builder *b, size_t falls, size_t pairs,
+                                   double noise_m, uint64_t *rng)
 {
     for (size_t fall = 0; fall < falls; fall++) {
         const double slope_mpN = (1.0 + 0.1 * normal(rng)) / SLOPE_NPM;

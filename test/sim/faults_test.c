@@ -29,7 +29,8 @@ TEST(the_documented_states_are_the_librarys)
               strstr(s.out, "\n| i2t | ") && strstr(s.out, "\n| small_force | ") &&
               strstr(s.out, "\n| limit | "),
           "%s", s.out);
-    CHECK(strstr(s.out, "?") == NULL && strstr(s.out, "|  |") == NULL, "a name is missing: %s", s.out);
+    CHECK(strstr(s.out, "?") == NULL && strstr(s.out, "|  |") == NULL, "a name is missing: %s",
+          s.out);
     rest = strstr(s.out, "\n\n");
     CHECK(rest != NULL, "%s", s.out);
     rest[1] = '\0';
@@ -102,8 +103,8 @@ static void judge_zero(uint32_t rate_Hz, uint32_t told_by)
     CHECK(z.seen.zero_s > 0.008 && z.seen.zero_s < 0.030, "%g s", z.seen.zero_s);
 }
 
-/* Nothing is asked for, and the motor pulls by a zero that is none, until tracking tells or the guard
- * comes by, whichever is earlier. Nothing else is wrong. */
+/* Nothing is asked for, and the motor pulls by a zero that is none, until tracking tells or the
+ * guard comes by, whichever is earlier. Nothing else is wrong. */
 TEST(a_damaged_zero_of_the_da_pulls_until_it_is_told)
 {
     judge_zero(200, EXH_FAULT_TRACKING);

@@ -54,9 +54,9 @@ TEST(drives_of_the_fingers_in_use_are_ready)
         c.drives = 0;
         start(&c, 1000);
         CHECK_EQ_I64(exh_board_wait(), 0);
-        CHECK(read_codes().din == (EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG | EXH_DIN_CARDS |
-                                 EXH_DIN_DRIVE0 * mask), "%#x",
-              mask);
+        CHECK(read_codes().din == (EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG |
+                                   EXH_DIN_CARDS | EXH_DIN_DRIVE0 * mask),
+              "%#x", mask);
         for (unsigned i = 0; i < FINGERS; i++) {
             CHECK((posix_finger(i) != NULL) == (mask >> i & 1), "mask %#x, finger %u", mask, i);
         }
@@ -169,8 +169,8 @@ TEST(the_run_ends_with_the_last_script)
     CHECK(posix_finger(1)->path.number == 1 && posix_finger(3)->path.number == 2, "approaches");
 }
 
-/* The same digits on every machine and from every compiler: a digest of all that a run is. It changes
- * with whatever changes the physics; then say so. */
+/* The same digits on every machine and from every compiler: a digest of all that a run is. It
+ * changes with whatever changes the physics; then say so. */
 TEST(a_run_has_the_committed_digits)
 {
     const uint64_t want = UINT64_C(0x879900e3dd381858);
@@ -206,7 +206,8 @@ TEST(a_run_has_the_committed_digits)
     CHECK(h == want, "%#" PRIx64 ", want %#" PRIx64, h, want);
 }
 
-/* ---- The glove -------------------------------------------------------------------------------- */
+/* ---- The glove --------------------------------------------------------------------------------
+ */
 
 /* A first-order lag over a way of straight pieces of h, exactly: y at each point. */
 struct lagged {
@@ -286,8 +287,7 @@ static void follow_glove(unsigned mask, double interval_s)
             worst = off > worst ? off : worst;
             span = fabs(rad) > span ? fabs(rad) : span;
         }
-        CHECK(fabs(in.raw[20] - code_of(20, 40 / 57.29577951308232)) <= 0.501,
-              "the wrist moved");
+        CHECK(fabs(in.raw[20] - code_of(20, 40 / 57.29577951308232)) <= 0.501, "the wrist moved");
         CHECK(fabs(in.raw[0] - code_of(0, 0)) <= 0.501 &&
                   fabs(in.raw[10] - code_of(10, 0)) <= 0.501,
               "thumb_rotate or abduction moved");
@@ -322,7 +322,8 @@ TEST(a_glove_that_nobody_read_is_right_at_once)
     }
 }
 
-/* ---- A wall -------------------------------------------------------------------------------------- */
+/* ---- A wall
+ * -------------------------------------------------------------------------------------- */
 
 #define WALL_M 0.030
 #define RATE   2000

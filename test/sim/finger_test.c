@@ -71,7 +71,8 @@ TEST(a_finger_without_string_swings_in_closed_form)
             sim_finger_advance(&f, 0.05);
             want = path.start_m + swing_m(row[i].m, row[i].k, row[i].b, 0.01, 0, 0.05);
             err = fabs(f.plant.x_m - want);
-            CHECK(err < 300 * d.substep_s * d.substep_s, "row %zu, %.3g s: off by %.3g m", i, d.substep_s, err);
+            CHECK(err < 300 * d.substep_s * d.substep_s, "row %zu, %.3g s: off by %.3g m", i,
+                  d.substep_s, err);
             if (halved > 2) { /* pieces of 250 us are 5, 10, 20 steps */
                 CHECK(last / err > 3.5 && last / err < 4.5, "row %zu, %.3g s: error falls by %.2f",
                       i, d.substep_s, last / err);
@@ -120,10 +121,10 @@ TEST(pressing_stretches_hand_and_string)
         CHECK(f.path.phase == SIM_PATH_HOLD, "phase %d", (int)f.path.phase);
         force_N = d.cable_npm * (f.plant.x_m - f.plant.q_m);
         want_N = (path.believed_m + path.push_m - path.start_m) / (1 / k_Npm[i] + 1 / d.cable_npm);
-        CHECK(fabs(force_N - want_N) < 1e-6 * want_N, "K %g: %.9f N, want %.9f", k_Npm[i],
-              force_N, want_N);
-        CHECK(fabs(sim_finger_push_N(&f) - want_N) < 1e-6 * want_N,
-              "K %g: the hand feels %.9f N", k_Npm[i], sim_finger_push_N(&f));
+        CHECK(fabs(force_N - want_N) < 1e-6 * want_N, "K %g: %.9f N, want %.9f", k_Npm[i], force_N,
+              want_N);
+        CHECK(fabs(sim_finger_push_N(&f) - want_N) < 1e-6 * want_N, "K %g: the hand feels %.9f N",
+              k_Npm[i], sim_finger_push_N(&f));
         CHECK(f.plant.q_m == path.start_m, "the rotor moved");
     }
 }
@@ -203,8 +204,7 @@ TEST(a_learned_hand_passes_at_the_speed_that_was_asked)
         d.cable_nspm = 50;
         path.speed_mps = want;
         p = pass(&d, &par, &path);
-        CHECK(fabs(p.wanted_mps - want) < 0.005 * want, "%g m/s: wanted %.5f", want,
-              p.wanted_mps);
+        CHECK(fabs(p.wanted_mps - want) < 0.005 * want, "%g m/s: wanted %.5f", want, p.wanted_mps);
         CHECK(fabs(p.finger_mps - want) < 0.02 * want, "%g m/s, K %g: the finger has %.5f", want,
               par.k_Npm, p.finger_mps);
         CHECK(p.late_m < 0.0015, "%g m/s, K %g: %.3g m off", want, par.k_Npm, p.late_m);
@@ -286,8 +286,8 @@ TEST(the_lead_is_what_the_load_takes)
             const double left = load.k_Npm * e1 + load.b_Nspm * (e2 - e0) / (2 * h);
             const double right = load.out_kg * (w2 - 2 * w1 + w0) / (h * h) +
                                  load.out_Nspm * (w2 - w0) / (2 * h) + load.out_N;
-            CHECK(fabs(left - right) < 1e-3, "B %g, %.5f s: %.6f N, want %.6f", b_Nspm[i], t,
-                  left, right);
+            CHECK(fabs(left - right) < 1e-3, "B %g, %.5f s: %.6f N, want %.6f", b_Nspm[i], t, left,
+                  right);
         }
     }
 }
@@ -409,8 +409,8 @@ TEST(a_finger_does_what_it_does_alone)
             sim_exo_latch(&all, amp);
             sim_exo_latch(&one, amp);
             /* The glove cuts its time finer, so the last digits differ, no more. */
-            CHECK(fabs(all.finger[i].plant.x_m - one.finger[i].plant.x_m) < 1e-4,
-                  "finger %u, %d", i, n);
+            CHECK(fabs(all.finger[i].plant.x_m - one.finger[i].plant.x_m) < 1e-4, "finger %u, %d",
+                  i, n);
             for (unsigned k = 0; k < SIM_FINGERS; k++) {
                 CHECK(k == i || one.finger[k].now_s == 0, "an absent finger moved");
             }

@@ -60,13 +60,15 @@ TEST(a_plant_becomes_a_configuration)
             CHECK(got == want, "%s: %.12g, want %.12g", space_row[i].name, got, want);
         } else if (space_row[i].kind == SPACE_SCENE) {
             CHECK(strcmp(setting[settings].name, space_row[i].name) == 0 &&
-                      setting[settings].value == want, "%s", space_row[i].name);
+                      setting[settings].value == want,
+                  "%s", space_row[i].name);
             settings++;
         }
     }
     CHECK(strcmp(setting[settings].name, "kf") == 0, "%s", setting[settings].name);
     CHECK(gap(setting[settings].value / c.board.device.kf_npa,
-              space_value(space_find("kf_gain"), p.u[space_find("kf_gain")])) < 1e-12, "kf");
+              space_value(space_find("kf_gain"), p.u[space_find("kf_gain")])) < 1e-12,
+          "kf");
     CHECK(c.mon_gain == space_value(space_find("mon_gain"), p.u[space_find("mon_gain")]),
           "mon_gain %.12g", c.mon_gain);
     CHECK_EQ_I64(c.settings, settings + 1);
@@ -90,7 +92,8 @@ static struct score score_of(const struct plant_point *p)
     s.done = 1;
     for (int k = 0; k < READINGS; k++) {
         for (int row = 0; row < TABLE2_ROWS; row++) {
-            const double paper = space_ln(table2_paper[row].stiffness_Npm / table2_paper[row].k_Npm);
+            const double paper =
+                space_ln(table2_paper[row].stiffness_Npm / table2_paper[row].k_Npm);
             s.ln_k[row][k] = (float)(paper + 2 * height(p, k));
         }
     }
@@ -173,19 +176,20 @@ TEST(a_search_goes_on_where_it_was_cut_off)
     snprintf(out, sizeof out, "%s/fit", dir);
     snprintf(journal, sizeof journal, "%s/fit/journal", dir);
     said(&whole, dir, cli_fit,
-         WORDS("fit", "--budget", "9", "--runs", "1", "--further", "0", "--variant", "b-aligned-all",
-               "--out", out));
+         WORDS("fit", "--budget", "9", "--runs", "1", "--further", "0", "--variant",
+               "b-aligned-all", "--out", out));
     CHECK(whole.status == 0, "status %d: %s", whole.status, whole.err);
     CHECK(strstr(whole.out, "b-aligned-all") != NULL, "%s", whole.out);
     size = said_size(journal);
     CHECK(size > 0 && truncate(journal, size - size / 3) == 0, "%ld bytes", size);
     said(&again, dir, cli_fit,
-         WORDS("fit", "--budget", "9", "--runs", "1", "--further", "0", "--variant", "b-aligned-all",
-               "--out", out));
+         WORDS("fit", "--budget", "9", "--runs", "1", "--further", "0", "--variant",
+               "b-aligned-all", "--out", out));
     CHECK(again.status == 0 && strcmp(again.out, whole.out) == 0, "%s", again.out);
     CHECK_EQ_I64(said_size(journal), size);
     said(&refused, dir, cli_fit, WORDS("fit", "--budget", "9", "--seed", "2", "--out", out));
-    CHECK(refused.status == 2 && strstr(refused.err, "holds another search") != NULL, "%s", refused.err);
+    CHECK(refused.status == 2 && strstr(refused.err, "holds another search") != NULL, "%s",
+          refused.err);
     snprintf(journal, sizeof journal, "%s/fit/progress.csv", dir);
     CHECK(said_size(journal) > 0, "a refused search wrote over the progress of another");
     for (int i = 0; i < 3; i++) { /* vel_p is whole, 0..2 */

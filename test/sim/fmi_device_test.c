@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The simulated device as an FMI unit, its source as it is, with values of which a step of the table's length would not do. */
+/* The simulated device as an FMI unit, its source as it is, with values of which a step of the
+ * table's length would not do. */
 #include "check.h"
 
 #include "../../ports/fmi/device.c"
@@ -41,9 +42,11 @@ TEST(a_stiff_device_is_as_steady_as_the_programs)
         unit_reset();
         CHECK(put_in(row[i].name, row[i].value) == 0 && put_in("waits", 0) == 0, "%s", row[i].name);
         CHECK(unit_start(&which) == 0, "%s: refused: %s", row[i].name, which);
-        CHECK(sim_device_set(&d, row[i].name, row[i].value, &named) == 0 && assign_step(&d, 0, 0) == 0, "%s", row[i].name);
-        CHECK(unit_get(place_of("substep")) == d.substep_s, "%s: steps of %g s, the program's %g s", row[i].name,
-              unit_get(place_of("substep")), d.substep_s);
+        CHECK(sim_device_set(&d, row[i].name, row[i].value, &named) == 0 &&
+                  assign_step(&d, 0, 0) == 0,
+              "%s", row[i].name);
+        CHECK(unit_get(place_of("substep")) == d.substep_s, "%s: steps of %g s, the program's %g s",
+              row[i].name, unit_get(place_of("substep")), d.substep_s);
         for (int k = 0; k < 3000; k++) {
             CHECK(unit_step() == 0, "%s: step %d", row[i].name, k);
             most_m = off_m() > most_m || !(off_m() < 1) ? off_m() : most_m;
@@ -57,10 +60,13 @@ TEST(a_step_that_is_given_and_will_not_do_is_refused)
     const char *which = "";
     unit_reset();
     CHECK(put_in("rotor", 0.0001) == 0 && put_in("substep", 1e-4) == 0, "values");
-    CHECK(unit_start(&which) == -EXH_E_RANGE && strncmp(which, "substep:", 8) == 0, "taken, or: %s", which);
+    CHECK(unit_start(&which) == -EXH_E_RANGE && strncmp(which, "substep:", 8) == 0, "taken, or: %s",
+          which);
     unit_reset();
     CHECK(put_in("rotor", 0.0001) == 0 && put_in("cable_b", 1000) == 0, "values");
-    CHECK(unit_start(&which) == -EXH_E_RANGE && strncmp(which, "substep:", 8) == 0, "none will do: %s", which);
+    CHECK(unit_start(&which) == -EXH_E_RANGE && strncmp(which, "substep:", 8) == 0,
+          "none will do: %s", which);
 }
 
-TEST_MAIN("fmi_device", a_stiff_device_is_as_steady_as_the_programs, a_step_that_is_given_and_will_not_do_is_refused);
+TEST_MAIN("fmi_device", a_stiff_device_is_as_steady_as_the_programs,
+          a_step_that_is_given_and_will_not_do_is_refused);

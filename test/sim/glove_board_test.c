@@ -100,10 +100,12 @@ TEST(frames_come_every_so_many_ticks_and_age_between)
         run(&c, 1000, every[k]);
         for (unsigned n = 0; n < TICKS; n++) {
             const struct exh_scene_in *in = &seen.in[n];
-            CHECK(in->glove_new == (n % step == 0), "every %u, tick %u: new %u", step, n, in->glove_new);
+            CHECK(in->glove_new == (n % step == 0), "every %u, tick %u: new %u", step, n,
+                  in->glove_new);
             CHECK(in->glove.age_ticks == n % step, "every %u, tick %u: age %u", step, n,
                   in->glove.age_ticks);
-            CHECK(n % step == 0 || memcmp(in->glove.raw, in[-1].glove.raw, sizeof in->glove.raw) == 0,
+            CHECK(n % step == 0 ||
+                      memcmp(in->glove.raw, in[-1].glove.raw, sizeof in->glove.raw) == 0,
                   "every %u, tick %u: codes changed", step, n);
         }
         CHECK(step > TICKS / 2 || memcmp(seen.in[0].glove.raw, seen.in[step].glove.raw, 44) != 0,
@@ -118,7 +120,7 @@ TEST(a_scan_that_does_not_fit_is_older)
         uint32_t rate_Hz;
         double interval_s;
         unsigned every;
-    } row[] = {{20000, 4e-6, 2},  {10000, 4e-6, 1}, {11360, 4e-6, 1}, {11370, 4e-6, 2},
+    } row[] = {{20000, 4e-6, 2}, {10000, 4e-6, 1}, {11360, 4e-6, 1}, {11370, 4e-6, 2},
                {2000, 20e-6, 1}, {2500, 20e-6, 2}, {10000, 20e-6, 5}};
     for (size_t k = 0; k < LEN(row); k++) {
         struct posix_config c = with_glove();
@@ -196,7 +198,7 @@ TEST(recorded_frames_come_one_a_read)
     for (int n = 0; n < 3; n++) {
         for (int i = 0; i < SENSORS; i++) { frame[n][i] = (int16_t)(1000 * n + i); }
     }
-    c.frame = (const int16_t (*)[SENSORS])frame;
+    c.frame = (const int16_t(*)[SENSORS])frame;
     c.frames = 3;
     run(&c, 1000, 2);
     for (unsigned n = 0; n < TICKS; n++) {
@@ -242,7 +244,8 @@ TEST(encoder_jitter_is_one_step)
                 if (v < lo) { lo = v; }
                 if (v > hi) { hi = v; }
             }
-            CHECK(hi - lo <= (jitter[k] > 0) + (jitter[k] > 1), "%g: %d steps", jitter[k], (int)(hi - lo));
+            CHECK(hi - lo <= (jitter[k] > 0) + (jitter[k] > 1), "%g: %d steps", jitter[k],
+                  (int)(hi - lo));
             steps += hi > lo;
         }
         CHECK(jitter[k] < 1 || steps >= 15, "%g: %d of 19 jitter", jitter[k], steps);

@@ -139,7 +139,7 @@ TEST(exit_status_says_what_happened)
 {
     static const struct {
         int status;
-        const char *word[8], *says; /* @ in a word: the directory                  */
+        const char *word[8], *says; /* @ in a word: the directory */
     } row[] = {
         {0, {"--help"}, NULL},
         {0, {"--list"}, NULL},
@@ -178,7 +178,7 @@ TEST(exit_status_says_what_happened)
         {2, {"--device", "nothing=1"}, "no such value"},
         {2, {"--device", "noise=2"}, "allowed 0..1"},
         {2, {"--device", "noise"}, "NAME=VALUE"},
-        {2, {"--mass", "0.1"}, "no such option"}, /* the motors'                          */
+        {2, {"--mass", "0.1"}, "no such option"}, /* the motors' */
         {2, {"word"}, "one word too many"},
     };
     static struct said s;
@@ -269,7 +269,9 @@ TEST(a_glove_of_18_sensors_lacks_the_last_joints)
     char *dir = said_dir();
     said(&s, dir, cli_calibrate, WORDS("calibrate", "--glove", "--sensors", "18"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
-    for (size_t i = 0; i < LEN(line); i++) { CHECK(strstr(s.out, line[i]) != NULL, "no %s: %s", line[i], s.out); }
+    for (size_t i = 0; i < LEN(line); i++) {
+        CHECK(strstr(s.out, line[i]) != NULL, "no %s: %s", line[i], s.out);
+    }
     said_clean(dir);
 }
 
@@ -284,7 +286,8 @@ TEST(bad_lines_are_told_by_number)
     char *dir = said_dir(), text[300];
     const char *path = said_path(dir, "in.csv");
     for (size_t i = 0; i < LEN(row); i++) {
-        snprintf(text, sizeof text, "%sflat,%s%s%s\n", i % 2 ? "\n" : "\r\n", nine, nine, row[i].tail);
+        snprintf(text, sizeof text, "%sflat,%s%s%s\n", i % 2 ? "\n" : "\r\n", nine, nine,
+                 row[i].tail);
         write_text(path, text);
         said(&s, dir, cli_calibrate, WORDS("calibrate", "--glove", "--poses", path));
         CHECK(s.status == 2 && strstr(s.err, "line 2") && strstr(s.err, row[i].says),
@@ -347,5 +350,5 @@ TEST(poses_know_enough)
 
 TEST_MAIN("sim/glove_calibrate", a_good_hand_is_found_back, a_real_hand_is_found_back,
           exit_status_says_what_happened, all_that_is_wrong_is_told_at_once,
-          lines_of_a_pose_are_averaged, a_glove_of_18_sensors_lacks_the_last_joints, bad_lines_are_told_by_number, recorded_poses_give_the_same,
-          poses_know_enough);
+          lines_of_a_pose_are_averaged, a_glove_of_18_sensors_lacks_the_last_joints,
+          bad_lines_are_told_by_number, recorded_poses_give_the_same, poses_know_enough);

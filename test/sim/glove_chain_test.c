@@ -215,8 +215,7 @@ TEST(polynomials_come_as_the_equation_says)
     sim_glove_move(&g, 5, &ramp);
     CHECK(fabs(sim_lag_at(&g.angle_rad[5], 0.4) - 2 * (0.4 - tau)) < 1e-14, "ramp: %.15f",
           sim_lag_at(&g.angle_rad[5], 0.4));
-    CHECK(fabs(sim_lag_at(&g.angle_rad[5], tau) - 2 * tau * 0.36787944117144233) < 1e-15,
-          "knee");
+    CHECK(fabs(sim_lag_at(&g.angle_rad[5], tau) - 2 * tau * 0.36787944117144233) < 1e-15, "knee");
     sim_glove_move(&g, 5, &all);
     for (int n = 1; n < 1000; n++) {
         const double t_s = 0.5 + n * 0.5e-3, h = 1e-7;
@@ -467,8 +466,7 @@ TEST(scripts_go_on_by_themselves)
         CHECK(op.to == pose, "%d: in %s", n, sim_pose[op.to].name);
         for (unsigned i = 0; i < SENSORS; i++) {
             const double rad = sim_lag_at(&g.angle_rad[i], n * 1.0 + 0.45);
-            CHECK(fabs(rad * 180 / PI - sim_pose[pose].deg[i]) < 1e-6, "%d, %u: %.9f", n, i,
-                  rad);
+            CHECK(fabs(rad * 180 / PI - sim_pose[pose].deg[i]) < 1e-6, "%d, %u: %.9f", n, i, rad);
         }
     }
     o.does = SIM_GRASP;

@@ -11,7 +11,9 @@ static struct said s;
 
 /* ---- Recordings ----------------------------------------------------------------------- */
 
-#define SPACED "0.1 0.2\t0.3  0.4 0.5 0.6 0.7 0.8 0.9 1.0 1.1 1.2 1.3 1.4 1.5 -0.1 -0.2 -0.3 -0.4 -0.5 -0.6 -0.7"
+#define SPACED \
+    "0.1 0.2\t0.3  0.4 0.5 0.6 0.7 0.8 0.9 1.0 1.1 1.2 1.3 1.4 1.5 -0.1 -0.2 -0.3 -0.4 -0.5 -0.6 " \
+    "-0.7"
 
 /* The same two rows in every dress give the same lines. */
 TEST(every_line_end_and_header_reads_alike)
@@ -55,21 +57,29 @@ TEST(bad_recordings_are_refused_by_line)
         {"", "in.csv: holds no row"},
         {"S01,S02\n", "in.csv: holds no row"},
         {"S01\nS02\n", "in.csv: line 2, column 1: \"S02\" is no number"},
-        {ROW_A "\n" "0.1,0.2\n", "in.csv: line 2: 2 columns (22 wanted)"},
+        {ROW_A "\n"
+               "0.1,0.2\n",
+         "in.csv: line 2: 2 columns (22 wanted)"},
         {ROW_A "\r\n\r\n" ROW_A "\r\n1,2,3\r\n", "in.csv: line 4: 3 columns (22 wanted)"},
         {ROW_A "\r" ROW_A "\r1,2,x,4\r", "in.csv: line 3, column 3: \"x\" is no number"},
-        {ROW_A "\n" "S01,S02\n", "in.csv: line 2, column 1: \"S01\" is no number"},
+        {ROW_A "\n"
+               "S01,S02\n",
+         "in.csv: line 2, column 1: \"S01\" is no number"},
         {"nan," ROW_A "\n" ROW_A "\n", "in.csv: line 1, column 1: \"nan\" is no number"},
         {"," ROW_A "\n" ROW_A "\n", "in.csv: line 1, column 1: \"\" is no number"},
-        {ROW_A "\n00000000000000000000000000000000000000000000000000000000000000001,2\n", "line 2, column 1: "},
+        {ROW_A "\n00000000000000000000000000000000000000000000000000000000000000001,2\n",
+         "line 2, column 1: "},
         {"1,nan,3\n", "in.csv: line 1, column 2: \"nan\" is no number"},
         {"1,inf,3\n", "in.csv: line 1, column 2: \"inf\""},
         {"1,,3\n", "in.csv: line 1, column 2: \"\" is no number"},
         {ROW_A ",1\n", "in.csv: line 1: more than 22 columns and a label"},
         {ROW_A ",A,B\n", "in.csv: line 1: more than 22 columns and a label"},
         {"t_s,x\n0," ROW_A "\n0.1,0.1,0.2\n", "in.csv: line 3: 3 columns (23 wanted)"},
-        {CODES_22 "\n40000" "," CODES_22 "\n", "line 2: more than 22"},
-        {"t\n40000,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22\n", "codes are whole numbers"},
+        {CODES_22 "\n40000"
+                  "," CODES_22 "\n",
+         "line 2: more than 22"},
+        {"t\n40000,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22\n",
+         "codes are whole numbers"},
         {"t\n4.5,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22\n", "within half a turn"},
     };
     const char *dir = said_dir();
@@ -91,21 +101,29 @@ TEST(units_are_guessed_or_told)
 {
     const char *dir = said_dir();
     const char *csv = said_path(dir, "in.csv");
-    write_text(csv, "10,20,30,40,50,60,70,80,90,100,110,120,130,140,150,-10,-20,-30,-40,-50,-60,-70\n");
-    said(&s, dir, cli_glove, WORDS("glove", "--csv", csv, "--rate", "200", "--unit", "deg", "--deg", "--set",
-                                   "glove_bits=24", "--set", "glove_hyst=0", "--set", "glove_order=0"));
+    write_text(csv,
+               "10,20,30,40,50,60,70,80,90,100,110,120,130,140,150,-10,-20,-30,-40,-50,-60,-70\n");
+    said(&s, dir, cli_glove,
+         WORDS("glove", "--csv", csv, "--rate", "200", "--unit", "deg", "--deg", "--set",
+               "glove_bits=24", "--set", "glove_hyst=0", "--set", "glove_order=0"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     for (int i = 0; i < SENSORS; i++) { /* a code is 0.0055 degrees */
         const double want = i < 15 ? 10 * (i + 1) : -10 * (i - 14);
         const double got = number_after(s.out, "\n0", i);
         CHECK(got > want - 0.003 && got < want + 0.003, "column %d: %g, want %g", i, got, want);
     }
-    write_text(csv, ".25,.01,.02,.03,.04,.05,.06,.07,.08,.09,.1,.11,.12,.13,.14,-.1,-.2,-.3,-.4,-.45,0,0\n");
-    said(&s, dir, cli_glove, WORDS("glove", "--csv", csv, "--rate", "200", "--unit", "turn", "--deg", "--set",
-                                   "glove_bits=24", "--set", "glove_hyst=0", "--set", "glove_order=0"));
-    CHECK(number_after(s.out, "\n0", 0) > 89.99 && number_after(s.out, "\n0", 0) < 90.01, "%s", s.out);
-    CHECK(number_after(s.out, "\n0", 19) > -162.01 && number_after(s.out, "\n0", 19) < -161.99, "%s", s.out);
-    write_text(csv, "10,20,30,40,50,60,70,80,90,100,110,120,130,140,150,-10,-20,-30,-40,-50,-60,-70\n");
+    write_text(
+        csv,
+        ".25,.01,.02,.03,.04,.05,.06,.07,.08,.09,.1,.11,.12,.13,.14,-.1,-.2,-.3,-.4,-.45,0,0\n");
+    said(&s, dir, cli_glove,
+         WORDS("glove", "--csv", csv, "--rate", "200", "--unit", "turn", "--deg", "--set",
+               "glove_bits=24", "--set", "glove_hyst=0", "--set", "glove_order=0"));
+    CHECK(number_after(s.out, "\n0", 0) > 89.99 && number_after(s.out, "\n0", 0) < 90.01, "%s",
+          s.out);
+    CHECK(number_after(s.out, "\n0", 19) > -162.01 && number_after(s.out, "\n0", 19) < -161.99,
+          "%s", s.out);
+    write_text(csv,
+               "10,20,30,40,50,60,70,80,90,100,110,120,130,140,150,-10,-20,-30,-40,-50,-60,-70\n");
     said(&s, dir, cli_glove, WORDS("glove", "--csv", csv, "--rate", "200", "--unit", "radians"));
     CHECK(s.status == 2 && strstr(s.err, "--unit: codes, rad, deg or turn"), "%s", s.err);
     said(&s, dir, cli_glove, WORDS("glove", "--csv", csv, "--rate", "200", "--deg"));
@@ -129,13 +147,15 @@ TEST(angles_pass_a_calibration_and_back)
     cal.sensor[10].cross_q30[1] = 1 << 27;
     CHECK_EQ_I64(exh_glove_cal_save(&cal, image, sizeof image, NULL), EXH_GLOVE_CAL_IMAGE_B);
     f = fopen(cal_path, "wb");
-    CHECK(f != NULL && fwrite(image, 1, sizeof image, f) == sizeof image && fclose(f) == 0, "image");
+    CHECK(f != NULL && fwrite(image, 1, sizeof image, f) == sizeof image && fclose(f) == 0,
+          "image");
     write_text(csv, ".1,.2,.3,.4,.5,.6,.7,.8,.9,1,.3,1.2,1.3,1.4,.4,.6,.7,.8,.3,.2,.1,-.1\n");
-    said(&s, dir, cli_glove, WORDS("glove", "--csv", csv, "--rate", "200", "--calibration", cal_path, "--set",
-                                   "glove_bits=24", "--set", "glove_hyst=0", "--set", "glove_order=0"));
+    said(&s, dir, cli_glove,
+         WORDS("glove", "--csv", csv, "--rate", "200", "--calibration", cal_path, "--set",
+               "glove_bits=24", "--set", "glove_hyst=0", "--set", "glove_order=0"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     for (int i = 0; i < SENSORS; i++) {
-        static const double want[] = {.1, .2, .3, .4, .5,  .6, .7, .8, .9, 1,  .3,
+        static const double want[] = {.1,  .2,  .3,  .4, .5, .6, .7, .8, .9, 1,  .3,
                                       1.2, 1.3, 1.4, .4, .6, .7, .8, .3, .2, .1, -.1};
         const double code_rad = abs(cal.sensor[i].gain_turnpraw_q38) / 274877906944.0 * 6.2832;
         const double off = fabs(number_after(s.out, "\n0", i) - want[i]);
@@ -143,8 +163,10 @@ TEST(angles_pass_a_calibration_and_back)
     }
     image[30] ^= 1;
     f = fopen(cal_path, "wb");
-    CHECK(f != NULL && fwrite(image, 1, sizeof image, f) == sizeof image && fclose(f) == 0, "image");
-    said(&s, dir, cli_glove, WORDS("glove", "--csv", csv, "--rate", "200", "--calibration", cal_path));
+    CHECK(f != NULL && fwrite(image, 1, sizeof image, f) == sizeof image && fclose(f) == 0,
+          "image");
+    said(&s, dir, cli_glove,
+         WORDS("glove", "--csv", csv, "--rate", "200", "--calibration", cal_path));
     CHECK(s.status == 2 && strstr(s.err, "user.glove: ") && strstr(s.err, "damaged"), "%s", s.err);
     said_clean(dir);
 }
@@ -158,16 +180,18 @@ TEST(its_own_output_is_an_input)
     int n = 0;
     for (int k = 0; k < 40; k++) {
         for (int i = 0; i < SENSORS; i++) {
-            n += snprintf(text + n, sizeof text - (size_t)n, "%.5f%c", ((k * 37 + i * 91) % 300) * 0.01 - 1.5,
-                          i < 21 ? ',' : '\r');
+            n += snprintf(text + n, sizeof text - (size_t)n, "%.5f%c",
+                          ((k * 37 + i * 91) % 300) * 0.01 - 1.5, i < 21 ? ',' : '\r');
         }
     }
     write_text(csv, text);
-    said(&s, dir, cli_glove, WORDS("glove", "--csv", csv, "--rate", "60", "--set", "glove_order=0", "--tips"));
+    said(&s, dir, cli_glove,
+         WORDS("glove", "--csv", csv, "--rate", "60", "--set", "glove_order=0", "--tips"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     strcpy(first, s.out);
     write_text(back, first);
-    said(&s, dir, cli_glove, WORDS("glove", "--csv", back, "--rate", "60", "--set", "glove_order=0", "--tips"));
+    said(&s, dir, cli_glove,
+         WORDS("glove", "--csv", back, "--rate", "60", "--set", "glove_order=0", "--tips"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     CHECK(strcmp(first, s.out) == 0, "not the same");
     said_clean(dir);
@@ -190,7 +214,8 @@ TEST(a_real_recording_comes_through)
         said_clean(dir);
         return;
     }
-    said(&s, dir, cli_glove, WORDS("glove", "--csv", in_path, "--rate", "10", "--set", "glove_order=0"));
+    said(&s, dir, cli_glove,
+         WORDS("glove", "--csv", in_path, "--rate", "10", "--set", "glove_order=0"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     out = fopen(said_path(dir, "said.out"), "r");
     CHECK(out != NULL && fgets(out_line, sizeof out_line, out), "no answer");
@@ -224,7 +249,8 @@ TEST(the_low_pass_fits_the_rate)
     const char *csv = said_path(dir, "in.csv");
     write_text(csv, ROW_A "\n" ROW_B "\n");
     said(&s, dir, cli_glove, WORDS("glove", "--csv", csv, "--rate", "60"));
-    CHECK(s.status == 0 && strstr(s.err, "at 60 Hz the low-pass is at 15 Hz"), "%d: %s", s.status, s.err);
+    CHECK(s.status == 0 && strstr(s.err, "at 60 Hz the low-pass is at 15 Hz"), "%d: %s", s.status,
+          s.err);
     said(&s, dir, cli_glove, WORDS("glove", "--csv", csv, "--rate", "60", "--set", "glove_fc=30"));
     CHECK(s.status == 2 && strstr(s.err, "cut-off"), "%d: %s", s.status, s.err);
     said(&s, dir, cli_glove, WORDS("glove", "--csv", csv, "--rate", "60", "--set", "glove_fc=29"));
@@ -254,15 +280,18 @@ TEST(bad_usage_is_refused_by_name)
         {{"--selftest", "--device", "noise=9"}, "noise: 9 (allowed 0..1 v)"},
         {{"--selftest", "--device", "mass=9"}, "mass: 9 (allowed"},
         {{"--selftest", "--device", "none=9"}, "none: no such value"},
-        {{"--selftest", "--device", "rotor=0.0001", "--device", "substep=1e-4"}, "give --device substep=1e-05"},
+        {{"--selftest", "--device", "rotor=0.0001", "--device", "substep=1e-4"},
+         "give --device substep=1e-05"},
         {{"--record", "/nowhere/x"}, "/nowhere/x: No such file"},
         {{"--record", "x", "--pose", "none"}, "--pose: none: no such pose"},
         {{"--record", "x", "--does", "none"}, "--does: none"},
         {{"--selftest", "--set", "present=1"}, "give --calibration"},
         {{"--selftest", "--does", "wave"}, "go with --record"},
         {{"--skew", "--pose", "fist"}, "go with --record, --pose with --serial"},
-        {{"--serial", "x", "--pose", "flat", "--calibration", "x"}, "codes as they come: leave --record"},
-        {{"--serial", "x", "--pose", "flat", "--set", "glove_fc=20"}, "codes as they come: leave --record"},
+        {{"--serial", "x", "--pose", "flat", "--calibration", "x"},
+         "codes as they come: leave --record"},
+        {{"--serial", "x", "--pose", "flat", "--set", "glove_fc=20"},
+         "codes as they come: leave --record"},
         {{"--serial", "x", "--pose", "flat", "--deg"}, "codes as they come: leave --record"},
         {{"--record", "x", "--play", "y", "--does", "wave"}, "--play: says what"},
         {{"--selftest", "--to", "1"}, "of a recording"},

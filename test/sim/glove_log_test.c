@@ -55,7 +55,10 @@ TEST(a_log_replays_bit_for_bit_from_any_keyframe)
         const char *device = i ? row[i].device : "noise=0.0061";
         said(&s, dir, cli_glove,
              WORDS("glove", "--record", log, "--rate", row[i].rate, "--set", row[i].every, "--does",
-                   row[i].does, "--device", device, "--seconds", i == 2 ? "30" : i == 3 ? "0.3" : "3",
+                   row[i].does, "--device", device, "--seconds",
+                   i == 2   ? "30"
+                   : i == 3 ? "0.3"
+                            : "3",
                    i == 2 ? "--set" : "--seed", i == 2 ? "glove_fc=20" : "5"));
         CHECK(s.status == 0, "row %zu: %d: %s", i, s.status, s.err);
         replay_from(dir, log, "0", 0);
@@ -83,22 +86,29 @@ TEST(a_record_is_as_long_as_it_should_be)
     char *dir = said_dir();
     const char *log = said_path(dir, "glove.exh"), *csv = said_path(dir, "in.csv");
     long size;
-    said(&s, dir, cli_glove, WORDS("glove", "--record", log, "--rate", "100", "--seconds", "0.001"));
+    said(&s, dir, cli_glove,
+         WORDS("glove", "--record", log, "--rate", "100", "--seconds", "0.001"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     said(&s, dir, cli_replay, WORDS("replay", log));
     CHECK(s.status == 0 && strstr(s.out, ": 1 ticks "), "%s%s", s.out, s.err);
     size = size_of_file(log);
     said(&s, dir, cli_glove, WORDS("glove", "--record", log, "--set", "glove_fc=5000"));
-    CHECK(s.status == 2 && strstr(s.err, "glove_fc: 5000 Hz (below half the rate of 2000 Hz): --set glove_fc=500"), "%d: %s", s.status, s.err);
+    CHECK(
+        s.status == 2 &&
+            strstr(s.err, "glove_fc: 5000 Hz (below half the rate of 2000 Hz): --set glove_fc=500"),
+        "%d: %s", s.status, s.err);
     CHECK_EQ_I64(size_of_file(log), size);
     for (int n = 0; n < 150; n++) { strcat(text, ROW_A "\n"); }
     write_text(csv, text);
-    said(&s, dir, cli_glove, WORDS("glove", "--record", log, "--play", csv, "--rate", "70", "--set", "glove_fc=9"));
+    said(&s, dir, cli_glove,
+         WORDS("glove", "--record", log, "--play", csv, "--rate", "70", "--set", "glove_fc=9"));
     CHECK(s.status == 0 && s.err[0] == '\0', "%d: %s", s.status, s.err);
     said(&s, dir, cli_replay, WORDS("replay", log));
     CHECK(s.status == 0 && strstr(s.out, ": 150 ticks "), "%s%s", s.out, s.err);
-    said(&s, dir, cli_glove, WORDS("glove", "--record", log, "--rate", "20000", "--seconds", "0.1"));
-    CHECK(s.status == 0 && strstr(s.err, "1000 frames in 2000 ticks: a scan takes longer"), "%s", s.err);
+    said(&s, dir, cli_glove,
+         WORDS("glove", "--record", log, "--rate", "20000", "--seconds", "0.1"));
+    CHECK(s.status == 0 && strstr(s.err, "1000 frames in 2000 ticks: a scan takes longer"), "%s",
+          s.err);
     said_clean(dir);
 }
 
@@ -138,19 +148,19 @@ TEST(angles_are_those_of_the_hand)
     char *dir = said_dir();
     const char *log = said_path(dir, "glove.exh"), *csv = said_path(dir, "glove.csv");
     for (int pose = 0; pose < sim_poses; pose++) {
-        said(&s, dir, cli_glove, WORDS("glove", "--record", log, "--seconds", "0.05", "--pose",
-                                       sim_pose[pose].name, "--device", "couple=0"));
+        said(&s, dir, cli_glove,
+             WORDS("glove", "--record", log, "--seconds", "0.05", "--pose", sim_pose[pose].name,
+                   "--device", "couple=0"));
         CHECK(s.status == 0, "%d: %s", s.status, s.err);
         said(&s, dir, cli_csv, WORDS("csv", log, "--all", "--out", csv));
         CHECK(s.status == 0, "%d: %s", s.status, s.err);
         for (int i = 0; i < SENSORS; i++) {
             const struct sim_glove_sensor *n = &sim_glove_sensor[i];
-            const double deg_per_code =
-                (n->hi_deg - n->lo_deg) / ((n->hi - n->lo) * 18 * 3276.8);
+            const double deg_per_code = (n->hi_deg - n->lo_deg) / ((n->hi - n->lo) * 18 * 3276.8);
             const double off = last_value(csv, i + 1) * 360 - sim_pose[pose].deg[i];
             const double codes = off / deg_per_code;
-            CHECK(codes < 27 && codes > -27, "%s, %s: %.3f deg off, %.1f codes", sim_pose[pose].name, n->name,
-                  off, codes);
+            CHECK(codes < 27 && codes > -27, "%s, %s: %.3f deg off, %.1f codes",
+                  sim_pose[pose].name, n->name, off, codes);
         }
         CHECK(last_value(csv, SENSORS + 1) == 0, "faults: %s", sim_pose[pose].name);
     }
@@ -172,8 +182,9 @@ TEST(a_recording_moves_the_simulated_hand)
         }
     }
     write_text(csv, text);
-    said(&s, dir, cli_glove, WORDS("glove", "--record", log, "--play", csv, "--rate", "100", "--seconds", "1",
-                                   "--set", "glove_fc=20"));
+    said(&s, dir, cli_glove,
+         WORDS("glove", "--record", log, "--play", csv, "--rate", "100", "--seconds", "1", "--set",
+               "glove_fc=20"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     said(&s, dir, cli_csv, WORDS("csv", log, "--out", csv));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
@@ -183,8 +194,9 @@ TEST(a_recording_moves_the_simulated_hand)
     }
     replay_from(dir, log, "0", 0);
     write_text(csv, text); /* and not before its time */
-    said(&s, dir, cli_glove, WORDS("glove", "--record", log, "--play", csv, "--rate", "100", "--seconds",
-                                   "0.49", "--set", "glove_fc=20"));
+    said(&s, dir, cli_glove,
+         WORDS("glove", "--record", log, "--play", csv, "--rate", "100", "--seconds", "0.49",
+               "--set", "glove_fc=20"));
     said(&s, dir, cli_csv, WORDS("csv", log, "--out", csv));
     CHECK(s.status == 0 && last_value(csv, 6) < 0.005, "%g turn", last_value(csv, 6));
     said_clean(dir);

@@ -70,8 +70,8 @@ static int read_rows(const char *name, int *cols)
 /* rad per code of the columns that are on a grid (SOURCE.md of both), 0 of the others. */
 struct recording {
     const char *name;
-    int rows, first, cols; /* expected; where the angles begin, and how many    */
-    int repeated_percent; /* rows that repeat the one before; -1: not said      */
+    int rows, first, cols; /* expected; where the angles begin, and how many */
+    int repeated_percent;  /* rows that repeat the one before; -1: not said */
     const double *step_rad;
 };
 
@@ -248,9 +248,9 @@ TEST(angles_stand_still_while_the_row_repeats)
 
 /* --- a bend-sensor glove at rest --- */
 
-#define VMG_FIRST   2 /* device tick, host time                                     */
+#define VMG_FIRST   2 /* device tick, host time */
 #define VMG_SENSORS 23
-#define VMG_RAW     60 /* A/D codes a count: 0 .. 1000 over 18.3 V of the card          */
+#define VMG_RAW     60 /* A/D codes a count: 0 .. 1000 over 18.3 V of the card */
 
 static int32_t vmg_q16(int row, int i)
 {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* A stock glove on a serial line as the board's glove, on a pseudo-terminal with an emulated one at its
- * other end: frames as they were sent and no others, ages, silence, the device gone and back; and the command. */
+/* A stock glove on a serial line as the board's glove, on a pseudo-terminal with an emulated one at
+ * its other end: frames as they were sent and no others, ages, silence, the device gone and back;
+ * and the command. */
 #define _XOPEN_SOURCE 700 /* pseudo-terminals */
 
 #include "glove_said.h"
@@ -22,8 +23,8 @@
 #include <time.h>
 
 #define RATE_HZ 1000
-#define NS      1000000u /* a tick                                                  */
-#define WAIT_MS 5000 /* longer than any byte takes through the machine's own buffers */
+#define NS      1000000u /* a tick */
+#define WAIT_MS 5000     /* longer than any byte takes through the machine's own buffers */
 
 /* ---- The glove at the other end ------------------------------------------------------ */
 
@@ -33,9 +34,9 @@ static struct {
     struct emu_cyber glove;
     int open;
     unsigned told, rounds; /* bytes of commands it has had; what the other end had told before it */
-    void (*at)(uint64_t tick); /* what happens; NULL: nothing                      */
-    int fixed;                 /* its samples stay as they are                     */
-    uint64_t from_ns;          /* its clock's 0, where it has this machine's       */
+    void (*at)(uint64_t tick); /* what happens; NULL: nothing */
+    int fixed;                 /* its samples stay as they are */
+    uint64_t from_ns;          /* its clock's 0, where it has this machine's */
 } far;
 
 static struct glove_tty tty;
@@ -131,7 +132,9 @@ static void say(uint64_t now_ns)
     }
     if (n == 0) { return; }
     CHECK(write(far.tty.master, byte, (size_t)n) == n, "%s", strerror(errno));
-    for (int ms = 0; ms < WAIT_MS && ioctl(far.tty.slave, FIONREAD, &got) == 0 && got < n; ms++) { (void)poll(NULL, 0, 1); }
+    for (int ms = 0; ms < WAIT_MS && ioctl(far.tty.slave, FIONREAD, &got) == 0 && got < n; ms++) {
+        (void)poll(NULL, 0, 1);
+    }
     CHECK_EQ_I64(got, n);
 }
 
@@ -167,12 +170,17 @@ static void seen_tick(const struct exh_scene_in *in, struct exh_drive_out *out)
     seen.wrong += in->glove_new && !is_one(in->glove.raw);
     if (in->glove_new) { seen.newest = in->glove.age_ticks; }
     if (seen.frames && in->glove.age_ticks > seen.oldest) { seen.oldest = in->glove.age_ticks; }
-    if (seen.ticks < sizeof seen.age / sizeof seen.age[0]) { seen.age[seen.ticks] = in->glove.age_ticks; }
+    if (seen.ticks < sizeof seen.age / sizeof seen.age[0]) {
+        seen.age[seen.ticks] = in->glove.age_ticks;
+    }
     seen.ticks++;
 }
 
-static const struct exh_scene scene = {
-    .name = "seen", .rate_Hz = RATE_HZ, .read_glove = exh_board_read_glove, .setup = seen_setup, .tick = seen_tick};
+static const struct exh_scene scene = {.name = "seen",
+                                       .rate_Hz = RATE_HZ,
+                                       .read_glove = exh_board_read_glove,
+                                       .setup = seen_setup,
+                                       .tick = seen_tick};
 
 static struct posix_config on_the_line(unsigned seconds)
 {
@@ -192,7 +200,8 @@ static void run(unsigned seconds, void (*at)(uint64_t))
     posix_configure(&c);
     CHECK_EQ_I64(exh_loop(&scene, 0, NULL), 0);
     CHECK_EQ_I64(seen.ticks, seconds * RATE_HZ);
-    CHECK(seen.wrong == 0, "kind %d of each %lu: %lu", far.glove.kind, (unsigned long)far.glove.every, (unsigned long)seen.wrong);
+    CHECK(seen.wrong == 0, "kind %d of each %lu: %lu", far.glove.kind,
+          (unsigned long)far.glove.every, (unsigned long)seen.wrong);
 }
 
 /* ---- Frames ------------------------------------------------------------------------------ */
@@ -203,7 +212,8 @@ TEST(frames_come_at_the_rate_that_was_asked_for)
     if (begin() < 0) { return; }
     run(10, NULL);
     CHECK_EQ_I64(far.glove.period_ns, 11111111);
-    CHECK(far.glove.status == 1 && far.glove.refused == 0 && tty.in.told, "its status was not asked for");
+    CHECK(far.glove.status == 1 && far.glove.refused == 0 && tty.in.told,
+          "its status was not asked for");
     CHECK(seen.frames >= 870 && seen.frames <= 880, "%lu frames", (unsigned long)seen.frames);
     CHECK_EQ_I64(tty.in.frames, seen.frames);
     CHECK_EQ_I64(tty.told, 1);
@@ -225,7 +235,8 @@ TEST(a_glove_that_takes_no_command_is_heard_all_the_same)
     far.glove.deaf = 1;
     run(10, NULL);
     CHECK(!tty.in.told && tty.in.status == 0, "status %d", tty.in.status);
-    CHECK(seen.frames >= 99 - CYBERGLOVE_SURE && seen.frames <= 100, "%lu", (unsigned long)seen.frames);
+    CHECK(seen.frames >= 99 - CYBERGLOVE_SURE && seen.frames <= 100, "%lu",
+          (unsigned long)seen.frames);
     CHECK(seen.oldest >= 100 && seen.oldest <= 3 + 101, "%d", seen.oldest);
     glove_tty_close(&tty);
     end();
@@ -264,15 +275,19 @@ TEST(whatever_it_does_no_wrong_frame_comes_and_the_next_good_ones_do)
 {
     for (kind = EMU_CYBER_WELL; kind < EMU_CYBER_KINDS; kind++) {
         for (every = 1; every <= 4; every += 3) {
-            const int harmless = kind == EMU_CYBER_WELL || kind == EMU_CYBER_TWICE || kind == EMU_CYBER_ERROR;
+            const int harmless =
+                kind == EMU_CYBER_WELL || kind == EMU_CYBER_TWICE || kind == EMU_CYBER_ERROR;
             if (begin() < 0) { return; }
             run(5, misbehave);
-            /* silent for so long it ages; with three good ones of four it does not, and in the end it is well */
-            CHECK(harmless || every > 1 ? seen.oldest < 60 : seen.oldest > 1900, "kind %d: %d", kind, seen.oldest);
+            /* silent for so long it ages; with three good ones of four it does not, and in the end
+             * it is well */
+            CHECK(harmless || every > 1 ? seen.oldest < 60 : seen.oldest > 1900, "kind %d: %d",
+                  kind, seen.oldest);
             for (unsigned k = 4 * RATE_HZ + RATE_HZ / 2; k < 5 * RATE_HZ; k++) {
                 CHECK(seen.age[k] <= 3 + 12, "kind %d: tick %u: %d", kind, k, seen.age[k]);
             }
-            CHECK(harmless || every > 1 ? tty.told == 1 : tty.told >= 2, "kind %d: told %lu", kind, (unsigned long)tty.told);
+            CHECK(harmless || every > 1 ? tty.told == 1 : tty.told >= 2, "kind %d: told %lu", kind,
+                  (unsigned long)tty.told);
             glove_tty_close(&tty);
             end();
         }
@@ -301,10 +316,11 @@ TEST(a_device_that_is_pulled_out_ages_and_comes_back)
     end();
 }
 
-/* ---- The full box on it ------------------------------------------------------------------------ */
+/* ---- The full box on it ------------------------------------------------------------------------
+ */
 
 static struct {
-    uint32_t before, silent, after; /* ticks with the fault present                */
+    uint32_t before, silent, after; /* ticks with the fault present */
     int16_t newest[SENSORS];
 } box;
 
@@ -347,10 +363,12 @@ TEST(the_box_takes_its_silence_for_a_lost_glove)
     end();
 }
 
-/* ---- The command -------------------------------------------------------------------------------- */
+/* ---- The command --------------------------------------------------------------------------------
+ */
 
 /* In a process of its own, this one being the glove until it ends. */
-static void command_of(struct said *s, const char *dir, int (*run_it)(int, char **), const char *const *word)
+static void command_of(struct said *s, const char *dir, int (*run_it)(int, char **),
+                       const char *const *word)
 {
     pid_t pid;
     siginfo_t info = {.si_pid = 0};
@@ -361,11 +379,14 @@ static void command_of(struct said *s, const char *dir, int (*run_it)(int, char 
         int n = 0, b;
         hear(1);
         sample();
-        while (n < (int)sizeof byte && (b = emu_cyber_get(&far.glove, clock_ns() - far.from_ns)) >= 0) {
+        while (n < (int)sizeof byte &&
+               (b = emu_cyber_get(&far.glove, clock_ns() - far.from_ns)) >= 0) {
             byte[n++] = (uint8_t)b;
             sample();
         }
-        if (n > 0 && write(far.tty.master, byte, (size_t)n) != n) { break; } /* nobody reads it any more */
+        if (n > 0 && write(far.tty.master, byte, (size_t)n) != n) {
+            break;
+        } /* nobody reads it any more */
     }
     said_end(s, dir, pid);
 }
@@ -390,10 +411,15 @@ TEST(the_command_writes_rows_or_a_log)
     if (begin() < 0) { return; }
     command(&s, dir, WORDS("glove", "--serial", far.link, "--seconds", "2", "--deg", "--tips"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
-    CHECK(strncmp(s.out, "t_s,thumb_rotate_deg,", 21) == 0 && strstr(s.out, "little_z_m") && lines(s.out) > 3, "%s", s.out);
-    CHECK(strstr(s.err, " frames at 90 Hz, discarded: zero sample 0,") && !strstr(s.err, "silent"), "%s", s.err);
+    CHECK(strncmp(s.out, "t_s,thumb_rotate_deg,", 21) == 0 && strstr(s.out, "little_z_m") &&
+              lines(s.out) > 3,
+          "%s", s.out);
+    CHECK(strstr(s.err, " frames at 90 Hz, discarded: zero sample 0,") && !strstr(s.err, "silent"),
+          "%s", s.err);
     command(&s, dir, WORDS("glove", "--serial", far.link, "--seconds", "2", "--record", log));
-    CHECK(s.status == 0 && strstr(s.out, " frames at 90 Hz") && !strstr(s.out, ": 0 frames") && s.err[0] == '\0', "%d: %s", s.status, s.err);
+    CHECK(s.status == 0 && strstr(s.out, " frames at 90 Hz") && !strstr(s.out, ": 0 frames") &&
+              s.err[0] == '\0',
+          "%d: %s", s.status, s.err);
     said(&s, dir, cli_replay, WORDS("replay", log));
     CHECK(s.status == 0, "%s", s.err);
     said(&s, dir, cli_csv, WORDS("csv", log, "--all"));
@@ -411,21 +437,28 @@ TEST(a_box_that_goes_on_has_it_for_its_glove)
         const char *log = said_path(dir, "a.exh");
         if (begin() < 0) { return; }
         far.glove.kind = silent ? EMU_CYBER_SILENT : EMU_CYBER_WELL;
-        command_of(&s, dir, cli_run, WORDS("run", "--scene", "bilateral", "--pace", "--slack", "1", "--rate", "200", "--seconds", "3",
-                                           "--glove-serial", far.link, "--log", log));
-        CHECK(s.status == 0 && strstr(s.out, silent ? "glove" : "faults none"), "%d: %s%s", s.status, s.out, s.err);
+        command_of(&s, dir, cli_run,
+                   WORDS("run", "--scene", "bilateral", "--pace", "--slack", "1", "--rate", "200",
+                         "--seconds", "3", "--glove-serial", far.link, "--log", log));
+        CHECK(s.status == 0 && strstr(s.out, silent ? "glove" : "faults none"), "%d: %s%s",
+              s.status, s.out, s.err);
         said(&s, dir, cli_replay, WORDS("replay", log));
         CHECK(s.status == 0, "%s", s.err);
         end();
     }
     said(&s, dir, cli_run, WORDS("run", "--glove-serial", "/dev/null", "--seconds", "1"));
-    CHECK(s.status == 2 && strstr(s.err, "--glove-serial: goes with --scene bilateral and --pace"), "%d: %s", s.status, s.err);
-    said(&s, dir, cli_run, WORDS("run", "--scene", "bilateral", "--pace", "--glove-serial", "/dev/null", "--seconds", "1"));
-    CHECK(s.status == 3 && strstr(s.err, "--glove-serial: /dev/null: is no serial line"), "%d: %s", s.status, s.err);
+    CHECK(s.status == 2 && strstr(s.err, "--glove-serial: goes with --scene bilateral and --pace"),
+          "%d: %s", s.status, s.err);
+    said(&s, dir, cli_run,
+         WORDS("run", "--scene", "bilateral", "--pace", "--glove-serial", "/dev/null", "--seconds",
+               "1"));
+    CHECK(s.status == 3 && strstr(s.err, "--glove-serial: /dev/null: is no serial line"), "%d: %s",
+          s.status, s.err);
     said_clean(dir);
 }
 
-/* A hand holds this pose (where it leaves a joint free, as in the flat hand), in a glove of which 90 degrees are 90 samples. */
+/* A hand holds this pose (where it leaves a joint free, as in the flat hand), in a glove of which
+ * 90 degrees are 90 samples. */
 static void hand_in(const char *pose)
 {
     const int p = glove_pose_find(pose);
@@ -451,26 +484,39 @@ static int last_is_near(const char *text, unsigned at, double deg, double by)
 /* What an angle must be, by the published file, to half a sample. */
 TEST(its_nominal_calibration_is_the_published_one)
 {
-    static const struct { int at, sample; double deg; } row[] = {
-        {4, 1 + 109 /* .429 */, 0}, {4, 1 + 166 /* .654 */, 90}, {3, 1 + 201 /* .791 */, 0}, {3, 1 + 89 /* .350 */, 50}, {9, 1, 0},
-        {21, 1 + 235 /* .925 */, -30}, {21, 1 + 60 /* .236 */, 10}, {20, 1 + 39, -30}, {20, 1 + 158, 40}};
+    static const struct {
+        int at, sample;
+        double deg;
+    } row[] = {{4, 1 + 109 /* .429 */, 0},
+               {4, 1 + 166 /* .654 */, 90},
+               {3, 1 + 201 /* .791 */, 0},
+               {3, 1 + 89 /* .350 */, 50},
+               {9, 1, 0},
+               {21, 1 + 235 /* .925 */, -30},
+               {21, 1 + 60 /* .236 */, 10},
+               {20, 1 + 39, -30},
+               {20, 1 + 158, 40}};
     for (size_t i = 0; i < LEN(row); i++) {
         const struct exh_glove_sensor *c = &exh_glove_cal_default.sensor[row[i].at];
         const double step_deg = 58982.4 / 254 * 360.0 * c->gain_turnpraw_q38 / 274877906944.0;
-        const double deg = (cyberglove_raw((uint8_t)row[i].sample) - c->zero_raw_q15 / 32768.0) * 360.0 * c->gain_turnpraw_q38 / 274877906944.0;
+        const double deg = (cyberglove_raw((uint8_t)row[i].sample) - c->zero_raw_q15 / 32768.0) *
+                           360.0 * c->gain_turnpraw_q38 / 274877906944.0;
         const double off = deg < row[i].deg ? row[i].deg - deg : deg - row[i].deg;
         CHECK(off <= (step_deg < 0 ? -step_deg : step_deg) / 2 + 0.01, "%zu: %g deg", i, deg);
     }
 }
 
-/* A hand in each of the poses, as this glove samples them: the calibration of it says them again. */
+/* A hand in each of the poses, as this glove samples them: the calibration of it says them again.
+ */
 TEST(a_user_calibrates_it_by_poses)
 {
-    static const char *const pose[] = {"flat", "spread", "knuckles", "hook", "index", "middle", "ring", "little",
-                                       "thumb", "across", "opposed", "cup", "up", "down", "side"};
+    static const char *const pose[] = {"flat",    "spread", "knuckles", "hook",  "index",
+                                       "middle",  "ring",   "little",   "thumb", "across",
+                                       "opposed", "cup",    "up",       "down",  "side"};
     static struct said s;
     char *dir = said_dir();
-    const char *csv = said_path(dir, "poses.csv"), *image = said_path(dir, "glove.bin"), *none = said_path(dir, "none.bin");
+    const char *csv = said_path(dir, "poses.csv"), *image = said_path(dir, "glove.bin"),
+               *none = said_path(dir, "none.bin");
     FILE *f;
     if (begin() < 0) { return; }
     far.fixed = 1;
@@ -479,30 +525,46 @@ TEST(a_user_calibrates_it_by_poses)
         hand_in(pose[p]);
         for (unsigned i = 0; i < SENSORS; i++) { raw[i] = cyberglove_raw(far.glove.sample[i]); }
         if (p < 2) { /* the others would be as these, two seconds each */
-            command(&s, dir, WORDS("glove", "--serial", far.link, "--pose", pose[p], "--glove-rate", "20", "--seconds", "2"));
-            CHECK(s.status == 0 && strncmp(s.out, pose[p], strlen(pose[p])) == 0 && lines(s.out) > 3, "%d: %s%s", s.status, s.out, s.err);
+            command(&s, dir,
+                    WORDS("glove", "--serial", far.link, "--pose", pose[p], "--glove-rate", "20",
+                          "--seconds", "2"));
+            CHECK(s.status == 0 && strncmp(s.out, pose[p], strlen(pose[p])) == 0 &&
+                      lines(s.out) > 3,
+                  "%d: %s%s", s.status, s.out, s.err);
         }
-        f = fopen(csv, "ab"); /* not open while a process is made, which would write its buffer, too */
+        f = fopen(csv,
+                  "ab"); /* not open while a process is made, which would write its buffer, too */
         p < 2 ? (void)fputs(s.out, f) : glove_poses_row(f, pose[p], raw);
         fclose(f);
     }
     said(&s, dir, cli_calibrate, WORDS("calibrate", "--glove", "--poses", csv, "--out", dir));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     hand_in("knuckles");
-    command(&s, dir, WORDS("glove", "--serial", far.link, "--calibration", image, "--deg", "--glove-rate", "20", "--seconds", "2"));
-    CHECK(s.status == 0 && last_is_near(s.out, EXH_GLOVE_INDEX_MPJ, 80, 1.5) && last_is_near(s.out, EXH_GLOVE_PINKIE_PIJ, 0, 1.5), "%d: %s%s",
-          s.status, s.out, s.err);
-    command(&s, dir, WORDS("glove", "--serial", far.link, "--calibration", csv, "--seconds", "0.5"));
-    CHECK(s.status == 2 && strstr(s.err, "--calibration: ") && strstr(s.err, ": give the glove.bin"), "%d: %s", s.status, s.err);
+    command(&s, dir,
+            WORDS("glove", "--serial", far.link, "--calibration", image, "--deg", "--glove-rate",
+                  "20", "--seconds", "2"));
+    CHECK(s.status == 0 && last_is_near(s.out, EXH_GLOVE_INDEX_MPJ, 80, 1.5) &&
+              last_is_near(s.out, EXH_GLOVE_PINKIE_PIJ, 0, 1.5),
+          "%d: %s%s", s.status, s.out, s.err);
+    command(&s, dir,
+            WORDS("glove", "--serial", far.link, "--calibration", csv, "--seconds", "0.5"));
+    CHECK(s.status == 2 && strstr(s.err, "--calibration: ") &&
+              strstr(s.err, ": give the glove.bin"),
+          "%d: %s", s.status, s.err);
     command(&s, dir, WORDS("glove", "--serial", far.link, "--pose", "fist"));
     CHECK(s.status == 2 && strstr(s.err, "--pose: fist: no such pose"), "%d: %s", s.status, s.err);
-    command_of(&s, dir, cli_run, WORDS("run", "--scene", "bilateral", "--pace", "--slack", "1", "--rate", "200", "--seconds", "1",
-                                       "--glove-serial", far.link, "--glove-calibration", image));
+    command_of(&s, dir, cli_run,
+               WORDS("run", "--scene", "bilateral", "--pace", "--slack", "1", "--rate", "200",
+                     "--seconds", "1", "--glove-serial", far.link, "--glove-calibration", image));
     CHECK(s.status == 0 && strstr(s.out, "faults none"), "%d: %s%s", s.status, s.out, s.err);
-    said(&s, dir, cli_run, WORDS("run", "--scene", "bilateral", "--pace", "--glove-serial", far.link, "--glove-calibration", none, "--seconds", "1"));
+    said(&s, dir, cli_run,
+         WORDS("run", "--scene", "bilateral", "--pace", "--glove-serial", far.link,
+               "--glove-calibration", none, "--seconds", "1"));
     CHECK(s.status == 3 && strstr(s.err, "--glove-calibration: "), "%d: %s", s.status, s.err);
-    said(&s, dir, cli_run, WORDS("run", "--scene", "bilateral", "--glove-calibration", image, "--seconds", "1"));
-    CHECK(s.status == 2 && strstr(s.err, "--glove-calibration: the simulated glove is calibrated"), "%d: %s", s.status, s.err);
+    said(&s, dir, cli_run,
+         WORDS("run", "--scene", "bilateral", "--glove-calibration", image, "--seconds", "1"));
+    CHECK(s.status == 2 && strstr(s.err, "--glove-calibration: the simulated glove is calibrated"),
+          "%d: %s", s.status, s.err);
     far.fixed = 0;
     end();
     said_clean(dir);
@@ -512,15 +574,21 @@ TEST(what_it_cannot_use_it_names)
 {
     static struct said s;
     char *dir = said_dir();
-    static const struct { const char *path, *says; } row[] = {
-        {"/tmp/no/such/line", "--serial: /tmp/no/such/line: No such file or directory: is it plugged in?"},
+    static const struct {
+        const char *path, *says;
+    } row[] = {
+        {"/tmp/no/such/line",
+         "--serial: /tmp/no/such/line: No such file or directory: is it plugged in?"},
         {"/dev/null", "--serial: /dev/null: is no serial line: give a serial line"},
     };
     for (size_t i = 0; i < LEN(row); i++) {
         said(&s, dir, cli_glove, WORDS("glove", "--serial", row[i].path, "--seconds", "1"));
         CHECK(s.status == 3 && strstr(s.err, row[i].says), "%d: %s", s.status, s.err);
     }
-    static const struct { uint8_t kind, deaf; const char *says; } far_end[] = {
+    static const struct {
+        uint8_t kind, deaf;
+        const char *says;
+    } far_end[] = {
         {EMU_CYBER_WELL, 1, "silent for 3 s: is the glove's unit on"},
         {EMU_CYBER_EIGHTEEN, 0, "this is the glove of 18 sensors (22 wanted)"},
         {EMU_CYBER_OFF, 0, "no glove is plugged into it"},
@@ -539,13 +607,15 @@ TEST(what_it_cannot_use_it_names)
 
 TEST(a_name_that_is_no_serial_line_is_refused)
 {
-    CHECK(glove_tty_open(&tty, "/tmp/no/such/line", 90) < 0 && errno == ENOENT, "%s", strerror(errno));
+    CHECK(glove_tty_open(&tty, "/tmp/no/such/line", 90) < 0 && errno == ENOENT, "%s",
+          strerror(errno));
     CHECK(glove_tty_open(&tty, "/dev/null", 90) < 0 && errno == ENOTTY, "%s", strerror(errno));
 }
 
-TEST_MAIN("sim/glove_serial", frames_come_at_the_rate_that_was_asked_for, the_line_is_its_own_while_it_is_open,
-          a_glove_that_takes_no_command_is_heard_all_the_same,
+TEST_MAIN("sim/glove_serial", frames_come_at_the_rate_that_was_asked_for,
+          the_line_is_its_own_while_it_is_open, a_glove_that_takes_no_command_is_heard_all_the_same,
           whatever_it_does_no_wrong_frame_comes_and_the_next_good_ones_do,
           a_device_that_is_pulled_out_ages_and_comes_back, a_name_that_is_no_serial_line_is_refused,
-          the_box_takes_its_silence_for_a_lost_glove, the_command_writes_rows_or_a_log, a_box_that_goes_on_has_it_for_its_glove,
-          its_nominal_calibration_is_the_published_one, a_user_calibrates_it_by_poses, what_it_cannot_use_it_names);
+          the_box_takes_its_silence_for_a_lost_glove, the_command_writes_rows_or_a_log,
+          a_box_that_goes_on_has_it_for_its_glove, its_nominal_calibration_is_the_published_one,
+          a_user_calibrates_it_by_poses, what_it_cannot_use_it_names);

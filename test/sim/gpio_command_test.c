@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* --gpio on the command line: what is refused before any line is asked for. Tests are linked without
- * libgpiod, whatever the machine has. */
+/* --gpio on the command line: what is refused before any line is asked for. Tests are linked
+ * without libgpiod, whatever the machine has. */
 #include "said.h"
 
 #define LINES "gpiochip0:estop=4,enable=6"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Scenes of the world simulator in the full box: five fingers hold one ball; a mesh where there are rays for it. */
+/* Scenes of the world simulator in the full box: five fingers hold one ball; a mesh where there are
+ * rays for it. */
 #include "check.h"
 
 #include "cli/bilateral_run.h"
@@ -54,7 +55,9 @@ TEST(five_fingers_hold_one_ball_at_once)
         }
         CHECK_EQ_I64(bilateral_run(&c, &r), 0);
         CHECK_EQ_I64(r.faults, 0);
-        CHECK(held(&r) > 1000, "%g m/s: %zu ticks of half a millisecond with more than 1 N at each of five", mps[k], held(&r));
+        CHECK(held(&r) > 1000,
+              "%g m/s: %zu ticks of half a millisecond with more than 1 N at each of five", mps[k],
+              held(&r));
         for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
             CHECK(r.finger[f].unfrozen == 0, "finger %u: felt before its freeze", f);
         }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Scene guarded in closed loop with the simulated device: what no contact may give out, at gains far
- * beyond the stable border; what is taken away at gains that are stable; its log replays. */
+/* Scene guarded in closed loop with the simulated device: what no contact may give out, at gains
+ * far beyond the stable border; what is taken away at gains that are stable; its log replays. */
 #include "logs.h"
 
 #include "cli/table2.h"
@@ -9,7 +9,8 @@
 #include "guarded/guarded.h"
 
 #define LEN(a) (sizeof(a) / sizeof((a)[0]))
-/* The way of a tick is rounded up, by 2 of 23 counts at most, and half a code may be held above f_max. */
+/* The way of a tick is rounded up, by 2 of 23 counts at most, and half a code may be held above
+ * f_max. */
 #define ROUND 1.09
 
 static struct table2_result run(double rate_Hz, double k, double b, double on, FILE *log)
@@ -114,10 +115,11 @@ static void at(int32_t cnt, uint8_t command)
 {
     struct exh_scene_in in = {.command = command};
     struct exh_drive_out out;
-    in.drive.din = EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG | EXH_DIN_CARDS | EXH_DIN_DRIVE0;
+    in.drive.din =
+        EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG | EXH_DIN_CARDS | EXH_DIN_DRIVE0;
     in.drive.enc_raw[0] = (uint32_t)cnt & 0xFFFFFF;
-    in.drive.mon_raw[0] = (int16_t)((int64_t)told.drop.i_des_A_q26 * 16384 /
-                                     box_cfg.drop.drive.par->mon_A_q40);
+    in.drive.mon_raw[0] =
+        (int16_t)((int64_t)told.drop.i_des_A_q26 * 16384 / box_cfg.drop.drive.par->mon_A_q40);
     guarded_tick(&box, &box_cfg, &in, &out, &told);
 }
 
@@ -150,5 +152,6 @@ TEST(no_run_in_a_wall_that_owes)
           "state %d, step %d", told.drop.state, told.drop.arm_step);
 }
 
-TEST_MAIN("guarded", its_state_is_seen, no_run_in_a_wall_that_owes, no_contact_gives_out_more_than_the_bound, stable_gains_lose_nothing,
+TEST_MAIN("guarded", its_state_is_seen, no_run_in_a_wall_that_owes,
+          no_contact_gives_out_more_than_the_bound, stable_gains_lose_nothing,
           it_damps_what_oscillates, its_log_replays);

@@ -44,8 +44,8 @@ TEST(rows_with_a_clock_go_onto_an_even_grid)
           h.row_hz);
     for (long n = 0; n < h.rows; n++) {
         const double want = arm[0] * ((double)n / 60) + arm[1] * 0.5 + arm[2] * 0.25;
-        CHECK(fabs(h.string_m[1][n] - want) < 1e-6, "row %ld: %.9f, want %.9f", n,
-              h.string_m[1][n], want);
+        CHECK(fabs(h.string_m[1][n] - want) < 1e-6, "row %ld: %.9f, want %.9f", n, h.string_m[1][n],
+              want);
         CHECK(h.string_m[0][n] == 0 && h.string_m[2][n] == 0 && h.string_m[4][n] == 0, "others");
     }
     hand_record_free(&h);
@@ -88,8 +88,7 @@ TEST(rows_without_a_clock_have_the_rate_they_are_given)
     CHECK_EQ_I64(hand_record_read(&h, name, 12.5, &exo_par), 0);
     (void)remove(name);
     CHECK(h.rows == 2 && h.row_hz == 12.5, "%ld rows", h.rows);
-    CHECK(fabs(h.string_m[1][0] - 0.01) < 1e-12 && fabs(h.string_m[1][1] - 0.03) < 1e-12,
-          "string");
+    CHECK(fabs(h.string_m[1][0] - 0.01) < 1e-12 && fabs(h.string_m[1][1] - 0.03) < 1e-12, "string");
     hand_record_use(&h, &exo_par);
     CHECK(exo_par.record[1].string_m == h.string_m[1] && exo_par.record[4].rows == 2, "use");
     hand_record_free(&h);

@@ -16,7 +16,7 @@
  * little finger up. */
 static const struct {
     const char *path;
-    int columns, first; /* in a line; where the angles begin, radians          */
+    int columns, first; /* in a line; where the angles begin, radians */
 } file[] = {{"glove-cyberglove-libras-alphabet/alphabet.csv", 22, 0},
             {"glove-cyberglove-graspdb14/00_calib-rad-su01.txt", 30, 7},
             {"glove-cyberglove-graspdb14/10_ex01-rad-003-grasp-su04.txt", 30, 7},

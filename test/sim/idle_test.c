@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The rest of a fall that need not be run is, digit by digit, what running it gives: over stable, marginal and
- * unstable walls, with little and much friction, at slow and fast rates; and where something would still happen
- * behind a mass that stands, it is run. */
+/* The rest of a fall that need not be run is, digit by digit, what running it gives: over stable,
+ * marginal and unstable walls, with little and much friction, at slow and fast rates; and where
+ * something would still happen behind a mass that stands, it is run. */
 #include "check.h"
 
 #include "cli/table2.h"
@@ -15,7 +15,7 @@
 #include <string.h>
 
 #define LEN(a) (sizeof(a) / sizeof((a)[0]))
-#define FALLS 2
+#define FALLS  2
 
 static struct run_cfg config(double rate_Hz, double k_Npm, double b_Nspm)
 {
@@ -27,24 +27,29 @@ static struct run_cfg config(double rate_Hz, double k_Npm, double b_Nspm)
 
 static int sample_same(const struct fall_sample *a, const struct fall_sample *b)
 {
-    return a->t_s == b->t_s && a->q_m == b->q_m && a->qd_mps == b->qd_mps && a->f_des_N == b->f_des_N &&
-           a->i_des_A == b->i_des_A && a->f_mon_N == b->f_mon_N && a->c == b->c;
+    return a->t_s == b->t_s && a->q_m == b->q_m && a->qd_mps == b->qd_mps &&
+           a->f_des_N == b->f_des_N && a->i_des_A == b->i_des_A && a->f_mon_N == b->f_mon_N &&
+           a->c == b->c;
 }
 
 static void check_same(const struct run *all, const struct run *r, const struct run_cfg *c)
 {
     CHECK(all->ticks == r->ticks && all->faults == r->faults && all->log.falls == r->log.falls &&
               all->log.samples == r->log.samples,
-          "%u Hz, %g N/m, %g Ns/m: %" PRIu64 " and %" PRIu64 " ticks, faults %x and %x", c->rate_Hz, c->k_Npm,
-          c->b_Nspm, all->ticks, r->ticks, all->faults, r->faults);
-    for (size_t i = 0; i < all->log.falls; i++) { CHECK(all->log.start[i] == r->log.start[i], "fall %zu", i); }
+          "%u Hz, %g N/m, %g Ns/m: %" PRIu64 " and %" PRIu64 " ticks, faults %x and %x", c->rate_Hz,
+          c->k_Npm, c->b_Nspm, all->ticks, r->ticks, all->faults, r->faults);
+    for (size_t i = 0; i < all->log.falls; i++) {
+        CHECK(all->log.start[i] == r->log.start[i], "fall %zu", i);
+    }
     for (size_t i = 0; i < all->log.samples; i++) {
-        CHECK(sample_same(&all->log.sample[i], &r->log.sample[i]), "%u Hz, %g N/m, %g Ns/m: sample %zu of %zu",
-              c->rate_Hz, c->k_Npm, c->b_Nspm, i, all->log.samples);
+        CHECK(sample_same(&all->log.sample[i], &r->log.sample[i]),
+              "%u Hz, %g N/m, %g Ns/m: sample %zu of %zu", c->rate_Hz, c->k_Npm, c->b_Nspm, i,
+              all->log.samples);
     }
 }
 
-/* Run either way. Ticks that were known; *all of how many. The scene's memory and the plant are the same at the end, too. */
+/* Run either way. Ticks that were known; *all of how many. The scene's memory and the plant are the
+ * same at the end, too. */
 static uint64_t both(struct run_cfg c, uint64_t *all)
 {
     struct run r[2];
@@ -72,9 +77,10 @@ static uint64_t both(struct run_cfg c, uint64_t *all)
 static int verdicts_same(const struct table2_result *a, const struct table2_result *b)
 {
     return a->falls == b->falls && a->oscillating == b->oscillating && a->buzzing == b->buzzing &&
-           a->incomplete == b->incomplete && a->faults == b->faults && a->line == b->line && a->b_Npm == b->b_Npm &&
-           a->a_Npm == b->a_Npm && a->r2 == b->r2 && a->ci_low_Npm == b->ci_low_Npm &&
-           a->ci_high_Npm == b->ci_high_Npm && a->b_same_Npm == b->b_same_Npm && a->a_same_Npm == b->a_same_Npm &&
+           a->incomplete == b->incomplete && a->faults == b->faults && a->line == b->line &&
+           a->b_Npm == b->b_Npm && a->a_Npm == b->a_Npm && a->r2 == b->r2 &&
+           a->ci_low_Npm == b->ci_low_Npm && a->ci_high_Npm == b->ci_high_Npm &&
+           a->b_same_Npm == b->b_same_Npm && a->a_same_Npm == b->a_same_Npm &&
            memcmp(a->reading_Npm, b->reading_Npm, sizeof a->reading_Npm) == 0;
 }
 
@@ -104,10 +110,14 @@ TEST(what_is_not_run_is_what_running_gives)
         uint64_t ticks, not_run;
         rub(&c.board.device, friction[i / LEN(rate_Hz) / LEN(part)].of);
         not_run = both(c, &ticks);
-        for (c.all = 0; c.all < 2; c.all++) { r[c.all] = table2_measure(&c, NULL, TABLE2_READINGS); }
-        CHECK(r[0].done && r[1].done && verdicts_same(&r[0], &r[1]), "%u Hz, %g N/m, friction %s", c.rate_Hz,
-              c.k_Npm, friction[i / LEN(rate_Hz) / LEN(part)].name);
-        if (r[0].oscillating == r[0].falls) { CHECK(not_run == 0, "%u Hz, %g N/m: %" PRIu64, c.rate_Hz, c.k_Npm, not_run); }
+        for (c.all = 0; c.all < 2; c.all++) {
+            r[c.all] = table2_measure(&c, NULL, TABLE2_READINGS);
+        }
+        CHECK(r[0].done && r[1].done && verdicts_same(&r[0], &r[1]), "%u Hz, %g N/m, friction %s",
+              c.rate_Hz, c.k_Npm, friction[i / LEN(rate_Hz) / LEN(part)].name);
+        if (r[0].oscillating == r[0].falls) {
+            CHECK(not_run == 0, "%u Hz, %g N/m: %" PRIu64, c.rate_Hz, c.k_Npm, not_run);
+        }
         unstable += r[0].oscillating == r[0].falls;
         stable += r[0].oscillating == 0;
         marginal += r[0].oscillating > 0 && r[0].oscillating < r[0].falls;
@@ -118,11 +128,14 @@ TEST(what_is_not_run_is_what_running_gives)
     }
     CHECK(stable > 20 && unstable > 15, "%d stable, %d unstable", stable, unstable);
     CHECK(10 * known > 6 * all, "%" PRIu64 " of %" PRIu64, known, all);
-    check_note("%d walls stable, %d unstable, %d at times: the same either way; of the ticks of stable ones with friction "
-               "%.0f %% need not be run", stable, unstable, marginal, 100.0 * (double)known / (double)all);
+    check_note("%d walls stable, %d unstable, %d at times: the same either way; of the ticks of "
+               "stable ones with friction "
+               "%.0f %% need not be run",
+               stable, unstable, marginal, 100.0 * (double)known / (double)all);
 }
 
-/* A mass that stands while something goes on behind it, or a controller in which more than usual does. */
+/* A mass that stands while something goes on behind it, or a controller in which more than usual
+ * does. */
 TEST(what_still_happens_at_rest_is_run)
 {
     static const struct {
@@ -131,11 +144,37 @@ TEST(what_still_happens_at_rest_is_run)
         struct run_setting set[2];
         unsigned faults;
     } row[] = {
-        {"I2t takes current away, unfelt as yet", 20000, 5000, 30, 0.0472, 10e-3, {{"i_cont", 1.35}, {"peak_time", 300}}, 0},
-        {"I2t lets the mass go", 2000, 5000, 30, 0.0472, 0, {{"i_cont", 1.0}, {"peak_time", 1000}}, 0},
-        {"not one count for a second is a fault", 2000, 5000, 30, 0.0472, 0, {{"stuck_time", 1000}, {"f0", 0.107}},
+        {"I2t takes current away, unfelt as yet",
+         20000,
+         5000,
+         30,
+         0.0472,
+         10e-3,
+         {{"i_cont", 1.35}, {"peak_time", 300}},
+         0},
+        {"I2t lets the mass go",
+         2000,
+         5000,
+         30,
+         0.0472,
+         0,
+         {{"i_cont", 1.0}, {"peak_time", 1000}},
+         0},
+        {"not one count for a second is a fault",
+         2000,
+         5000,
+         30,
+         0.0472,
+         0,
+         {{"stuck_time", 1000}, {"f0", 0.107}},
          EXH_FAULT_STUCK},
-        {"noise adds up to a fault of tracking", 2000, 5000, 30, 0.6, 0, {{"track_tol", 0.1}, {"track_time", 1}},
+        {"noise adds up to a fault of tracking",
+         2000,
+         5000,
+         30,
+         0.6,
+         0,
+         {{"track_tol", 0.1}, {"track_time", 1}},
          EXH_FAULT_TRACKING},
         {"at the force limit", 2000, 5000, 0, 0.0472, 0, {{"f_max", 4.6}, {"f0", 0.107}}, 0},
     };
@@ -151,12 +190,14 @@ TEST(what_still_happens_at_rest_is_run)
         (void)both(c, &all);
         CHECK_EQ_I64(run_drop(&c, &r), 0);
         CHECK((r.faults & row[i].faults) == row[i].faults, "%s: faults %x", row[i].name, r.faults);
-        check_note("%s: %.0f %% of the ticks known", row[i].name, 100.0 * (double)r.known / (double)r.ticks);
+        check_note("%s: %.0f %% of the ticks known", row[i].name,
+                   100.0 * (double)r.known / (double)r.ticks);
         run_free(&r);
     }
 }
 
-/* A count that went by and came back within the window of the velocity: the state is the same for a tick, and then not. */
+/* A count that went by and came back within the window of the velocity: the state is the same for a
+ * tick, and then not. */
 TEST(a_velocity_still_on_its_way_is_run)
 {
     static const struct run_setting set[] = {{"vel_p", 4}, {"f0", 0}};
@@ -218,7 +259,8 @@ TEST(what_is_called_still_does_not_move)
         still += is;
         if (!is) { continue; }
         CHECK(memcmp(&m.plant, &was, sizeof was) == 0, "%d: moved", i);
-        CHECK(m.servo_s == passed.servo_s && m.now_s == passed.now_s && m.ref_A == passed.ref_A, "%d: another time", i);
+        CHECK(m.servo_s == passed.servo_s && m.now_s == passed.now_s && m.ref_A == passed.ref_A,
+              "%d: another time", i);
         CHECK(!sim_mass_pass(&passed, 1), "%d: passed the fall's end", i);
     }
     CHECK(still > 1000 && moved > 2000, "%d still, %d moved", still, moved);
@@ -238,7 +280,8 @@ TEST(an_output_on_its_way_is_waited_for)
 {
     struct posix_config c = posix_config_default();
     const double weight_N = c.device.mass_kg * SIM_GRAVITY;
-    const uint16_t code = (uint16_t)(c.device.dac_zero + c.device.dac_perA * weight_N / c.device.kf_npa);
+    const uint16_t code =
+        (uint16_t)(c.device.dac_zero + c.device.dac_perA * weight_N / c.device.kf_npa);
     struct exh_period T;
     c.device.delay_s = 10e-3;
     c.from_here = 1;

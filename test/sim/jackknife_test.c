@@ -66,9 +66,7 @@ TEST(jackknife_unbounded)
 
     for (size_t fall = 0; fall < 10; fall++) {
         begin_fall(&b);
-        for (int i = 0; i < 40; i++) {
-            add(&b, 1e-3, uniform(&rng), 1.0 + uniform(&rng), 1);
-        }
+        for (int i = 0; i < 40; i++) { add(&b, 1e-3, uniform(&rng), 1.0 + uniform(&rng), 1); }
     }
     const struct fall_log log = built(&b);
     opt.lag = 0;

@@ -38,7 +38,8 @@ static void start(const struct posix_config *c)
 
 /* ---- In this process ------------------------------------------------------------------------ */
 
-struct note { /* a state and its answer */
+/* a state and its answer */
+struct note {
     int number;
     double frame_s; /* of the peer */
 };
@@ -194,7 +195,8 @@ TEST(a_bad_line_is_its_seed)
     }
 }
 
-/* ---- Addresses --------------------------------------------------------------------------------- */
+/* ---- Addresses ---------------------------------------------------------------------------------
+ */
 
 TEST(bad_addresses_are_refused)
 {
@@ -238,7 +240,7 @@ TEST(strangers_and_cut_packets_are_dropped)
     CHECK_EQ_I64(udp_send(&b, buf, 64), 64);
     CHECK_EQ_I64(udp_send(&b, buf, 10), 10);
     CHECK_EQ_I64(udp_recv(&a, buf, 63), 10); /* the one that does not fit is gone */
-    CHECK_EQ_I64(udp_send(&a, buf, 8), 0); /* nobody has looked at it */
+    CHECK_EQ_I64(udp_send(&a, buf, 8), 0);   /* nobody has looked at it */
     udp_learn(&a);
     udp_learn(&b); /* has its peer */
     CHECK_EQ_I64(udp_send(&a, buf, 8), 8);
@@ -298,11 +300,12 @@ TEST(the_peer_is_whose_packet_was_good)
     udp_close(&u);
     c.line.udp_local = at;
     start(&c);
-    CHECK(udp_open(&world, "127.0.0.1:0", at) == 0 && udp_open(&other, "127.0.0.1:0", at) == 0, "sockets");
+    CHECK(udp_open(&world, "127.0.0.1:0", at) == 0 && udp_open(&other, "127.0.0.1:0", at) == 0,
+          "sockets");
     post(&world, &good, EXH_WIRE_HELLO, 0);
     for (int n = 0; n < 20; n++) {
-        post(&other, &bad, EXH_WIRE_HELLO, 1);   /* damaged */
-        post(&other, &bad, EXH_WIRE_PLANES, 0);  /* of nobody who has said HELLO */
+        post(&other, &bad, EXH_WIRE_HELLO, 1);  /* damaged */
+        post(&other, &bad, EXH_WIRE_PLANES, 0); /* of nobody who has said HELLO */
         CHECK_EQ_I64(exh_board_wait(), 0);
         while (exh_board_link_recv(buf, sizeof buf) > 0) {}
         CHECK_EQ_I64(exh_board_link_send(&ours, sizeof ours), sizeof ours);
@@ -319,7 +322,8 @@ TEST(the_peer_is_whose_packet_was_good)
     line_stop();
 }
 
-/* ---- Two processes -------------------------------------------------------------------------------- */
+/* ---- Two processes
+ * -------------------------------------------------------------------------------- */
 
 static void sleep_ms(long ms)
 {
@@ -414,7 +418,8 @@ TEST(two_processes_survive_each_others_restart)
     line_stop();
 }
 
-/* ---- Two computers, nearly: network namespaces with a cable between ------------------------------------ */
+/* ---- Two computers, nearly: network namespaces with a cable between
+ * ------------------------------------ */
 
 #define WORLD_AT "10.77.0.2:4747"
 

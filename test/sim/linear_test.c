@@ -29,16 +29,22 @@ TEST(the_flow_is_the_closed_form)
         const struct {
             double got, want;
         } row[] = {
-            {f.phi[0][0], 1}, {f.phi[0][1], (1 - ep) / p}, {f.phi[1][1], ep}, {f.phi[2][2], eq},
+            {f.phi[0][0], 1},
+            {f.phi[0][1], (1 - ep) / p},
+            {f.phi[1][1], ep},
+            {f.phi[2][2], eq},
             {f.phi[1][2], -(eq - ep) / (p - q) / m},
             {f.phi[0][2], -((1 - eq) / q - (1 - ep) / p) / (p - q) / m},
-            {f.gamma[2], 1 - eq}, {f.phi[1][0], 0}, {f.phi[2][0], 0}, {f.phi[2][1], 0},
+            {f.gamma[2], 1 - eq},
+            {f.phi[1][0], 0},
+            {f.phi[2][0], 0},
+            {f.phi[2][1], 0},
         };
         if (fabs(p - q) < 0.01 * q) { continue; } /* there the closed form cancels */
         for (size_t i = 0; i < LEN(row); i++) {
             CHECK(fabs(row[i].got - row[i].want) <= 1e-10 * (1e-3 + fabs(row[i].want)),
-                  "m %g c %g tau %g t %g, entry %zu: %.15g, want %.15g", m, c, tau, t, i, row[i].got,
-                  row[i].want);
+                  "m %g c %g tau %g t %g, entry %zu: %.15g, want %.15g", m, c, tau, t, i,
+                  row[i].got, row[i].want);
         }
     }
 }
@@ -47,7 +53,8 @@ TEST(the_flow_without_lag_is_the_closed_form)
 {
     while (check_case(200)) {
         const double m = between(0.01, 2), c = between(0.5, 20), t = between(0, 0.02), p = c / m;
-        const struct linear_plant damped = linear_one_mass(m, c, 0), free = linear_one_mass(m, 0, 0);
+        const struct linear_plant damped = linear_one_mass(m, c, 0),
+                                  free = linear_one_mass(m, 0, 0);
         const struct linear_flow f = linear_flow(&damped, t), g = linear_flow(&free, t);
         const double e = 1 - sim_exp_neg(p * t);
         CHECK(fabs(f.gamma[0] + (t - e / p) / c) <= 1e-12, "%.15g", f.gamma[0]);
@@ -72,8 +79,8 @@ TEST(flows_follow_each_other)
                 double sum = 0;
                 g += b.phi[i][j] * a.gamma[j];
                 for (int k = 0; k < p.n; k++) { sum += b.phi[i][k] * a.phi[k][j]; }
-                CHECK(fabs(sum - both.phi[i][j]) <= 1e-9 * (1 + fabs(sum)), "%d %d: %.15g %.15g",
-                      i, j, sum, both.phi[i][j]);
+                CHECK(fabs(sum - both.phi[i][j]) <= 1e-9 * (1 + fabs(sum)), "%d %d: %.15g %.15g", i,
+                      j, sum, both.phi[i][j]);
             }
             CHECK(fabs(g - both.gamma[i]) <= 1e-9 * (1 + fabs(g)), "%d: %.15g", i, g);
         }
@@ -112,16 +119,16 @@ TEST(the_radius_of_known_eigenvalues)
         double rho, error;
     } row[] = {
         {{0.5, -0.25}, 2, {{0, 0}}, 0, 0.5, 1e-13},
-        {{0.5, -0.5}, 2, {{0, 0}}, 0, 0.5, 1e-13},               /* of one size, apart */
+        {{0.5, -0.5}, 2, {{0, 0}}, 0, 0.5, 1e-13}, /* of one size, apart */
         {{-1.25, 1}, 2, {{0, 0}}, 0, 1.25, 1e-13},
-        {{0}, 0, {{0.6, 0.8}}, 1, 1, 1e-13},                     /* a pair on the circle */
+        {{0}, 0, {{0.6, 0.8}}, 1, 1, 1e-13}, /* a pair on the circle */
         {{0.99}, 1, {{0.6, 0.8}}, 1, 1, 1e-12},
         {{0.3}, 1, {{-0.3, 0.4}, {0.1, 1.0}}, 2, 1.004987562112089, 1e-12},
         {{0.3, 0.1}, 2, {{0.96, 0.28}, {0.28, -0.96}, {0, 0.5}}, 3, 1, 1e-11},
         {{1e-3, 1e3}, 2, {{0, 0}}, 0, 1e3, 1e-9},
-        {{0.9, 0.9, 0.9}, 3, {{0, 0}}, 0, 0.9, 1e-5},            /* triple: rounding parts it */
-        {{0}, 0, {{0.6, 0.8}, {0.6, 0.8}}, 2, 1, 1e-7},          /* a double pair */
-        {{0, 0, 0, 0}, 4, {{0, 0}}, 0, 0, 0},                    /* nilpotent */
+        {{0.9, 0.9, 0.9}, 3, {{0, 0}}, 0, 0.9, 1e-5},   /* triple: rounding parts it */
+        {{0}, 0, {{0.6, 0.8}, {0.6, 0.8}}, 2, 1, 1e-7}, /* a double pair */
+        {{0, 0, 0, 0}, 4, {{0, 0}}, 0, 0, 0},           /* nilpotent */
     };
     for (size_t i = 0; i < LEN(row); i++) {
         const struct matrix M = companion(row[i].real, row[i].reals, row[i].pair, row[i].pairs);
@@ -190,8 +197,8 @@ TEST(one_mass_has_the_radii_of_theory)
     } column[] = {{0, 0, 0}, {0, 1, 0}, {0, 1, 0.4e-3}, {5, 1, 0.4e-3}, {10, 0, 0}};
     for (size_t i = 0; i < LEN(row); i++) {
         for (size_t j = 0; j < LEN(column); j++) {
-            const double rho = one_mass(row[i].rate, row[i].k, row[i].b, 0.52, column[j].c, column[j].h,
-                                        column[j].tau);
+            const double rho = one_mass(row[i].rate, row[i].k, row[i].b, 0.52, column[j].c,
+                                        column[j].h, column[j].tau);
             CHECK(fabs(rho - row[i].rho[j]) <= 0.6e-9, "%g Hz, column %zu: %.10f, want %.9f",
                   row[i].rate, j, rho, row[i].rho[j]);
         }
@@ -209,7 +216,8 @@ TEST(one_mass_has_the_border_of_theory)
             const double in = border[d][i] - 1e-4, out = border[d][i] + 1e-4;
             const double rho_in = one_mass(1, in, beta[i], 1, 0, d, 0);
             const double rho_out = one_mass(1, out, beta[i], 1, 0, d, 0);
-            CHECK(rho_in < 1 && rho_out > 1, "delay %d, beta %g: %.9f %.9f", d, beta[i], rho_in, rho_out);
+            CHECK(rho_in < 1 && rho_out > 1, "delay %d, beta %g: %.9f %.9f", d, beta[i], rho_in,
+                  rho_out);
         }
     }
 }
@@ -235,8 +243,9 @@ TEST(two_masses_have_the_radii_of_theory)
 {
     static const struct {
         double m1, kc, rho[2];
-    } row[] = {{.02, 20e3, {1.119, 1.268}}, {.02, 100e3, {1.189, 1.253}}, {.02, 500e3, {1.075, .982}},
-               {.1, 20e3, {.993, .995}},    {.1, 100e3, {.984, 1.039}},   {.1, 500e3, {1.030, 1.057}}};
+    } row[] = {{.02, 20e3, {1.119, 1.268}}, {.02, 100e3, {1.189, 1.253}},
+               {.02, 500e3, {1.075, .982}}, {.1, 20e3, {.993, .995}},
+               {.1, 100e3, {.984, 1.039}},  {.1, 500e3, {1.030, 1.057}}};
     for (size_t i = 0; i < LEN(row); i++) {
         for (int h = 0; h < 2; h++) {
             const double rho = two_masses(row[i].m1, row[i].kc, h);
@@ -251,7 +260,7 @@ TEST(the_device_has_the_radii_found_before)
 {
     static const struct {
         double rate, k, b, rho;
-    } row[] = {{90, 1500, 0, 1.031},   {100, 2000, 0, 1.023},     {200, 2000, 15, 1.144},
+    } row[] = {{90, 1500, 0, 1.031},   {100, 2000, 0, 1.023},    {200, 2000, 15, 1.144},
                {500, 6000, 20, 1.100}, {1000, 10000, 40, 1.060}, {2000, 20000, 60, 1.023}};
     struct sim_device d = sim_device_default();
     d.rotor_kg = 0.056392025322190724;
@@ -283,7 +292,8 @@ TEST(a_stiff_string_is_one_mass)
     p = linear_two_mass(&d);
     CHECK(linear_monodromy(&M, &p, &w) == 0, "two");
     two = eigen_radius(&M);
-    p = linear_one_mass(d.mass_kg + d.rotor_kg, d.viscous_nspm, 1 / (6.283185307179586 * d.current_hz));
+    p = linear_one_mass(d.mass_kg + d.rotor_kg, d.viscous_nspm,
+                        1 / (6.283185307179586 * d.current_hz));
     CHECK(linear_monodromy(&M, &p, &w) == 0, "one");
     one = eigen_radius(&M);
     CHECK(fabs(two - one) < 1e-6, "%.9f, want %.9f", two, one);
@@ -357,9 +367,9 @@ TEST(too_long_a_delay_is_refused)
 }
 
 TEST_MAIN("linear", the_flow_is_the_closed_form, the_flow_without_lag_is_the_closed_form,
-          flows_follow_each_other, the_radius_of_known_eigenvalues,
-          the_root_squared_is_the_number, the_radius_does_not_hang_on_units,
-          one_mass_has_the_radii_of_theory, one_mass_has_the_border_of_theory,
-          two_masses_have_the_radii_of_theory, the_device_has_the_radii_found_before,
-          a_stiff_string_is_one_mass, the_radius_has_no_step_at_a_whole_tick,
-          the_matrix_does_what_the_plant_does, too_long_a_delay_is_refused);
+          flows_follow_each_other, the_radius_of_known_eigenvalues, the_root_squared_is_the_number,
+          the_radius_does_not_hang_on_units, one_mass_has_the_radii_of_theory,
+          one_mass_has_the_border_of_theory, two_masses_have_the_radii_of_theory,
+          the_device_has_the_radii_found_before, a_stiff_string_is_one_mass,
+          the_radius_has_no_step_at_a_whole_tick, the_matrix_does_what_the_plant_does,
+          too_long_a_delay_is_refused);

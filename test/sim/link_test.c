@@ -19,9 +19,9 @@ static struct sim_link_way way;
 
 /* What became of each packet: when its copies arrived, in what order. */
 static struct {
-    double due_s[N]; /* of the first copy, < 0: never                           */
+    double due_s[N]; /* of the first copy, < 0: never */
     int copies[N];
-    int order[2 * N]; /* numbers as they arrived                                 */
+    int order[2 * N]; /* numbers as they arrived */
     int arrived;
 } seen;
 
@@ -167,7 +167,8 @@ TEST(no_delay_is_negative)
     CHECK(fabs(none - 0.5 * N) < 5 * 0.5 * root_of(N), "%d without delay", none);
 }
 
-/* ---- Order --------------------------------------------------------------------------------------- */
+/* ---- Order
+ * --------------------------------------------------------------------------------------- */
 
 /* Arrivals are in the order of their instants; overtaken by brute force: some later number
  * arrived before. */
@@ -254,7 +255,8 @@ TEST(chance_is_drawn_apart)
     CHECK(seen.due_s[0] != alone_s[0] || seen.due_s[1] != alone_s[1], "another seed");
 }
 
-/* ---- Holes, room ------------------------------------------------------------------------------------ */
+/* ---- Holes, room
+ * ------------------------------------------------------------------------------------ */
 
 TEST(nothing_arrives_in_a_hole_and_all_outside)
 {
@@ -341,7 +343,8 @@ TEST(parameters_by_name)
     CHECK(p.trace_scale == 0.5, "the last");
 }
 
-/* ---- Traces --------------------------------------------------------------------------------------------- */
+/* ---- Traces
+ * --------------------------------------------------------------------------------------------- */
 
 TEST(a_trace_replays_exactly)
 {

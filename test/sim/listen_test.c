@@ -80,7 +80,9 @@ static int end(char *got, size_t cap)
     FILE *f;
     (void)waitpid(listener, &status, 0);
     f = fopen(out, "rb");
-    for (int c; f && n + 1 < cap && (c = fgetc(f)) != EOF;) { got[n++] = (char)(c ? '0' + c : '.'); }
+    for (int c; f && n + 1 < cap && (c = fgetc(f)) != EOF;) {
+        got[n++] = (char)(c ? '0' + c : '.');
+    }
     got[n] = '\0';
     if (f) { (void)fclose(f); }
     (void)remove(out);

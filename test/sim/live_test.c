@@ -50,7 +50,8 @@ TEST(the_shortest_time_ends)
     said_clean(dir);
 }
 
-/* The grip is the person's: a fault is cleared, and the box run, by two new ones, and by none unasked. */
+/* The grip is the person's: a fault is cleared, and the box run, by two new ones, and by none
+ * unasked. */
 TEST(after_a_fault_it_runs_again_by_the_grip_alone)
 {
     for (int grip = 0; grip < 2; grip++) {
@@ -127,8 +128,9 @@ static void stopped_for(pid_t pid, struct timespec runs, struct timespec stands)
     CHECK(ends_within(pid, 60) == 0, "it does not end");
 }
 
-/* A stopped program misses the ticks of that time: they are counted, the box lets go, none is made up for.
- * 1: it was in RUN when it was stopped, and stood still while nothing else kept it from its ticks. */
+/* A stopped program misses the ticks of that time: they are counted, the box lets go, none is made
+ * up for. 1: it was in RUN when it was stopped, and stood still while nothing else kept it from its
+ * ticks. */
 static int stopped_in_run(void)
 {
     char *dir = said_dir();
@@ -137,8 +139,9 @@ static int stopped_in_run(void)
     long ticks, missed;
     struct said s;
     int in_run;
-    const pid_t pid = said_start(dir, cli_run, WORDS("run", "--pace", "--rate", "100", "--seconds",
-                                                     "4", "--slack", "0.3", "--log", log));
+    const pid_t pid = said_start(
+        dir, cli_run,
+        WORDS("run", "--pace", "--rate", "100", "--seconds", "4", "--slack", "0.3", "--log", log));
     for (int i = 0; i < 1000 && said_size(log) <= 0; i++) { nanosleep(&a_while, NULL); }
     stopped_for(pid, runs, stands);
     said_end(&s, dir, pid);
@@ -358,7 +361,8 @@ TEST(what_it_cannot_do_is_named)
                {{"run", "--slack", "0.1"}, "only with --pace", 2},
                {{"run", "--pace", "--slack", "1.1"}, "--slack", 2},
                {{"run", "--pace", "--slack", "0.1", "--gpio", "gpiochip9:estop=4,deadman=5"},
-                "not with --gpio", 2},
+                "not with --gpio",
+                2},
                {{"run", "--seconds", "1", "--log", "/dev/full"},
                 "/dev/full: can't be written: No space",
                 1}};

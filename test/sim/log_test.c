@@ -14,7 +14,8 @@
 
 #define LEN(a) (sizeof(a) / sizeof((a)[0]))
 
-struct counted { /* of a log read to its end                                      */
+/* of a log read to its end */
+struct counted {
     uint32_t frames, events, keyframes, last_tick, damaged, gaps;
     int ended, complained;
 };
@@ -120,7 +121,7 @@ static uint32_t record_from(const struct text *t, uint32_t at, uint32_t *len_B)
 TEST(a_damaged_record_is_skipped_and_counted)
 {
     static const struct {
-        int32_t byte; /* of the record, from its end if negative                 */
+        int32_t byte; /* of the record, from its end if negative */
         uint8_t flip;
     } row[] = {{0, 1}, {2, 4}, {4, 0xFF}, {5, 0xFF}, {10, 0x80}, {14, 1}, {-1, 1}, {-5, 0x10}};
     const char *path = log_path();
@@ -221,7 +222,7 @@ TEST(a_refused_keyframe_changes_nothing)
     exh_log_keyframe_bytes(&c, sc);
     memcpy(forged, before, sizeof forged);
     forged[4 * (exh_signal_count(sc->params->table) - 1)] ^= 1; /* kf: sound, and another */
-    forged[3] = 0x80;                                         /* step: out of its range  */
+    forged[3] = 0x80;                                           /* step: out of its range */
     c = exh_bytes_reader(forged, c.at);
     exh_log_keyframe_bytes(&c, sc);
     CHECK(!exh_bytes_ok(&c), "accepted");

@@ -38,19 +38,19 @@ void late_assert_failed(const char *file, int line);
 #undef exh_board_safe
 #undef exh_assert_failed
 
-#define LEN(a)   (sizeof(a) / sizeof((a)[0]))
-#define DAC_ZERO 32768
-#define ID_K     0x0401
-#define ID_STEP  0x0201
-#define ID_Q_LIM 0x8001
-#define ID_ARM   0x0603
-#define ID_TUNE  0x1301
-#define ID_RAMP  0x0604
+#define LEN(a)          (sizeof(a) / sizeof((a)[0]))
+#define DAC_ZERO        32768
+#define ID_K            0x0401
+#define ID_STEP         0x0201
+#define ID_Q_LIM        0x8001
+#define ID_ARM          0x0603
+#define ID_TUNE         0x1301
+#define ID_RAMP         0x0604
 #define ID_UNCALIBRATED 0x8903
-#define AWAY     EXH_Q(70, 1000, EXH_Q_POS)
+#define AWAY            EXH_Q(70, 1000, EXH_Q_POS)
 /* At 1 kHz, armed in so short a time: commanded at tick n, it runs from n + 4. */
 #define ARMED    4
-#define RELEASED 15 /* ticks of the release law, 15 ms                        */
+#define RELEASED 15 /* ticks of the release law, 15 ms */
 
 /* ---- Scripted runs --------------------------------------------------------------- */
 
@@ -59,9 +59,9 @@ struct act {
     uint32_t tick;
     /* OPEN: these inputs; JUMP: counts; NO_READ, NO_WRITE: the board fails */
     enum { STAGE, COMMAND, MISS, OPEN, JUMP, NO_READ, NO_WRITE } what;
-    uint16_t id; /* STAGE: of the parameter                                     */
+    uint16_t id; /* STAGE: of the parameter */
     int32_t value;
-    int want; /* STAGE: what it must return                                     */
+    int want; /* STAGE: what it must return */
 };
 
 /* What the scene gave at a tick. */
@@ -75,8 +75,8 @@ static struct {
     const struct act *act;
     unsigned acts;
     uint32_t ticks;
-    uint32_t writes; /* that went well                                          */
-    uint32_t safe_at; /* ticks when the outputs were first made safe            */
+    uint32_t writes;  /* that went well */
+    uint32_t safe_at; /* ticks when the outputs were first made safe */
     struct seen at[TICKS_MAX];
 } script;
 
@@ -254,9 +254,9 @@ TEST(setup_values_are_refused_while_locked)
     static const struct act act[] = {
         {0, COMMAND, 0, EXH_CMD_RUN, 0},
         {0, STAGE, ID_STEP, EXH_Q(50, 1000000, EXH_Q_STEP), -EXH_E_STATE},
-        {1, STAGE, 0x0301, 0, -EXH_E_STATE}, /* vel_p     */
-        {1, STAGE, 0x0504, EXH_Q(5, 1, EXH_Q_CUR), -EXH_E_STATE}, /* i_peak */
-        {2, STAGE, 0x0507, 0, -EXH_E_STATE}, /* dac_zero  */
+        {1, STAGE, 0x0301, 0, -EXH_E_STATE},                        /* vel_p */
+        {1, STAGE, 0x0504, EXH_Q(5, 1, EXH_Q_CUR), -EXH_E_STATE},   /* i_peak */
+        {2, STAGE, 0x0507, 0, -EXH_E_STATE},                        /* dac_zero */
         {3, STAGE, 0x8002, EXH_Q(5, 1, EXH_Q_FORCE), -EXH_E_STATE}, /* kf */
     };
     static const struct exh_event event[] = {{EXH_EVENT_COMMAND, 0, 0, EXH_CMD_RUN}};

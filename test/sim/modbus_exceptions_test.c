@@ -48,7 +48,7 @@ TEST(bad_requests_get_the_standard_exceptions)
         {{5, 0, 4, 0xFF, 0}, 5, 3}, /* RUN: not allowed */
         {{5, 0, 5, 0xFF, 0}, 5, 3},
         {{15, 0, 0, 0, 2, 1, 3}, 7, 3}, /* APPLY with DISCARD */
-        {{3, 0x50, 0}, 3, 3}, /* cut short; and longer than it says */
+        {{3, 0x50, 0}, 3, 3},           /* cut short; and longer than it says */
         {{3, 0x50, 0, 0, 1, 0}, 6, 3},
         {{4, 0, 0, 0, 2}, 5, 0}, /* and behind all these a good one */
     };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The same bytes to the libmodbus server and to the library's slave, from the same state of the map:
- * the same bytes come back. */
+/* The same bytes to the libmodbus server and to the library's slave, from the same state of the
+ * map: the same bytes come back. */
 #ifndef EXH_MODBUS
 #include "check.h"
 
@@ -183,7 +183,7 @@ static uint32_t some_pdu(uint8_t *p)
         some_registers(p + 10, put_at, put <= 121 ? put : 0);
         len = 10u + p[9];
     }
-    if (below(20) == 0) { len += below(5); } /* longer, */
+    if (below(20) == 0) { len += below(5); }                 /* longer, */
     if (below(20) == 0) { len -= below(len < 5 ? len : 5); } /* or shorter than it says, */
     if (below(30) == 0) { p[below(12)] ^= (uint8_t)(1u << below(8)); } /* or a bit of it turned */
     p[0] &= 0x7F; /* functions of 128 and more are for answers */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand run --modbus: every register of every scene, there and back by a libmodbus client, as integer and
- * as float. */
+/* exhand run --modbus: every register of every scene, there and back by a libmodbus client, as
+ * integer and as float. */
 #define _XOPEN_SOURCE 700
 
 #include "modbus_rig.h"

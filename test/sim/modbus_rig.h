@@ -70,8 +70,8 @@ static inline modbus_t *rig_client(int port)
     return c;
 }
 
-/* word: the command line, its place to serve at being tcp:127.0.0.1:0. A paced one makes up for what is
- * late: these tests are of registers, on machines with other work. */
+/* word: the command line, its place to serve at being tcp:127.0.0.1:0. A paced one makes up for
+ * what is late: these tests are of registers, on machines with other work. */
 static inline void rig_start(struct rig *r, const char *const *word)
 {
     const char *more[32] = {NULL};

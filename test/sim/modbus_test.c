@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand run --modbus: where it serves, also over a serial line, and what it says where it cannot. */
+/* exhand run --modbus: where it serves, also over a serial line, and what it says where it cannot.
+ */
 #define _XOPEN_SOURCE 700
 
 #include "modbus_rig.h"

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Whole scenes upstream of noise: every input of a tick is noise, and again and again their state
- * is restored from random bytes and the box is put into any state there is. No code leaves the span,
- * none but that of 0 A leaves a gate that is shut, and from tick to tick the force moves no faster
- * than slew or release allow. */
+ * is restored from random bytes and the box is put into any state there is. No code leaves the
+ * span, none but that of 0 A leaves a gate that is shut, and from tick to tick the force moves no
+ * faster than slew or release allow. */
 #include "check.h"
 
 #include "bilateral/bilateral.h"

@@ -19,8 +19,8 @@ static int own_nanosleep(clockid_t which, int flags, const struct timespec *t,
 
 static struct {
     int64_t now_ns, due_ns; /* due: what was slept for last */
-    int64_t late_ns; /* it wakes so much later */
-    int interrupts; /* before it does */
+    int64_t late_ns;        /* it wakes so much later */
+    int interrupts;         /* before it does */
     volatile sig_atomic_t end;
 } own;
 

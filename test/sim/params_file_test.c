@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Images of parameters on disk: there and back, whole or not at all, and what is said of bad ones. */
+/* Images of parameters on disk: there and back, whole or not at all, and what is said of bad ones.
+ */
 #include "said.h"
 
 #include "cli/cli.h"
@@ -200,7 +201,8 @@ TEST(experiments_take_and_leave_them)
                "--load-params", file));
     /* But for what is said of d_lim: that takes the string per fingertip for as it was fitted. */
     CHECK(strstr(a.out, "d_lim") != NULL, "%s", a.out);
-    CHECK(b.status == a.status && strncmp(a.out, b.out, (size_t)(strstr(a.out, "d_lim") - a.out)) == 0,
+    CHECK(b.status == a.status &&
+              strncmp(a.out, b.out, (size_t)(strstr(a.out, "d_lim") - a.out)) == 0,
           "%s\nbut\n%s", a.out, b.out);
     remove_dir();
 }

@@ -24,16 +24,37 @@ static void same(const char *text, unsigned frac)
     if (want > (double)INT32_MAX || want < (double)INT32_MIN) {
         CHECK(err == -EXH_E_RANGE, "%s q%u: %d", text, frac, err);
     } else {
-        CHECK(err == 0 && (double)raw == want, "%s q%u: %d, %" PRId32 ", want %.0f", text, frac, err, raw, want);
+        CHECK(err == 0 && (double)raw == want, "%s q%u: %d, %" PRId32 ", want %.0f", text, frac,
+              err, raw, want);
     }
 }
 
 TEST(takes_what_the_host_takes)
 {
-    static const char *const text[] = {"0", "-0", "1", "+1", "-1", "2000", "1234.5", ".5", "5.", "0.07",
-                                       "6.632e-5", "12.5e-3", "1E3", "3.339", "-7.25", "2147483647",
-                                       "-2147483648", "2147483648", "1e18", "1e30", "1e-30", "0e99",
-                                       "0.000000000000000001", "123456789.123456789"};
+    static const char *const text[] = {"0",
+                                       "-0",
+                                       "1",
+                                       "+1",
+                                       "-1",
+                                       "2000",
+                                       "1234.5",
+                                       ".5",
+                                       "5.",
+                                       "0.07",
+                                       "6.632e-5",
+                                       "12.5e-3",
+                                       "1E3",
+                                       "3.339",
+                                       "-7.25",
+                                       "2147483647",
+                                       "-2147483648",
+                                       "2147483648",
+                                       "1e18",
+                                       "1e30",
+                                       "1e-30",
+                                       "0e99",
+                                       "0.000000000000000001",
+                                       "123456789.123456789"};
     for (unsigned i = 0; i < sizeof text / sizeof text[0]; i++) {
         same(text[i], 0);
         same(text[i], 10);
@@ -61,8 +82,9 @@ TEST(takes_random_numbers_alike)
 
 TEST(refuses_what_is_no_number)
 {
-    static const char *const text[] = {"", "-", "+", ".", "e3", "1e", "1e+", "1x", "0x10", "1 2", "--1", "1.2.3",
-                                       "nan", "inf", "1234567890123456789"};
+    static const char *const text[] = {"",    "-",     "+",   ".",    "e3",
+                                       "1e",  "1e+",   "1x",  "0x10", "1 2",
+                                       "--1", "1.2.3", "nan", "inf",  "1234567890123456789"};
     int32_t raw = 7;
     for (unsigned i = 0; i < sizeof text / sizeof text[0]; i++) {
         CHECK(pc104_number(text[i], 10, &raw) == -EXH_E_UNKNOWN, "%s", text[i]);
@@ -70,4 +92,5 @@ TEST(refuses_what_is_no_number)
     CHECK_EQ_I64(raw, 7);
 }
 
-TEST_MAIN("pc104_number", takes_what_the_host_takes, takes_random_numbers_alike, refuses_what_is_no_number);
+TEST_MAIN("pc104_number", takes_what_the_host_takes, takes_random_numbers_alike,
+          refuses_what_is_no_number);

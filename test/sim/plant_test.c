@@ -90,8 +90,8 @@ TEST(a_rotor_slows_the_fall_by_its_share)
         d.substep_s = 1e-6;
         ideal = root_of(2 * SIM_GRAVITY * 0.07 * d.mass_kg / (d.mass_kg + d.rotor_kg));
         got = impact_mps(&d, 0.07, 1e-4);
-        CHECK(fabs(got - ideal) <= 0.005 * ideal, "rotor %.4f kg: %.6f m/s, want %.6f",
-              rotor_kg[i], got, ideal);
+        CHECK(fabs(got - ideal) <= 0.005 * ideal, "rotor %.4f kg: %.6f m/s, want %.6f", rotor_kg[i],
+              got, ideal);
     }
 }
 
@@ -123,8 +123,8 @@ TEST(stiction_holds_without_creep)
 {
     const double weight_N = 0.5 * SIM_GRAVITY;
     static const struct {
-        double tension; /* share of the weight                                */
-        double mu; /* times the tension must be above the load           */
+        double tension; /* share of the weight */
+        double mu;      /* times the tension must be above the load */
         double substep_s;
     } row[] = {
         {0.90, 0.2, 25e-6},   {0.90, 0.1123, 25e-6}, {1.10, 0.0920, 25e-6}, {0.60, 0.7, 25e-6},
@@ -179,8 +179,8 @@ TEST(friction_stops_in_closed_form)
         }
         q_m = p.q_m;
         CHECK(p.w_mps == 0, "still %.3g m/s", p.w_mps);
-        CHECK(fabs(q_m - path_m) <= fabs(speed_mps[i]) * d.substep_s, "path %.9f, want %.9f",
-              q_m, path_m);
+        CHECK(fabs(q_m - path_m) <= fabs(speed_mps[i]) * d.substep_s, "path %.9f, want %.9f", q_m,
+              path_m);
         p.x_m = -1;
         p.v_mps = 0;
         plant_advance(&p, &d, 0.1, 0, 0);
@@ -196,8 +196,8 @@ static double law_N(const struct sim_device *d, double stretch_m, double opening
     return stretch_m < 0 || T < 0 ? 0 : T;
 }
 
-/* Tension as the mass and as the rotor felt it in one sub-step without friction: that of the stretch
- * half a step on, at the speeds that the law's own tension gives by then. */
+/* Tension as the mass and as the rotor felt it in one sub-step without friction: that of the
+ * stretch half a step on, at the speeds that the law's own tension gives by then. */
 TEST(the_string_only_pulls_and_pulls_both_ends_alike)
 {
     while (check_case(10)) {
@@ -242,9 +242,8 @@ TEST(current_loop_is_exact_at_any_substep)
             const long double x = TWO_PI_L * wide(d.current_hz) * n * wide(piece);
             const double want = (double)(1 - exp_neg(x));
             plant_advance(&p, &d, piece, 1, 1);
-            CHECK(fabs(p.cur_A - want) <= 1e-9,
-                  "substep %.3g, %.1f Hz, %.3g s: %.12f, want %.12f", d.substep_s, d.current_hz,
-                  n * piece, p.cur_A, want);
+            CHECK(fabs(p.cur_A - want) <= 1e-9, "substep %.3g, %.1f Hz, %.3g s: %.12f, want %.12f",
+                  d.substep_s, d.current_hz, n * piece, p.cur_A, want);
         }
     }
 }
@@ -286,8 +285,8 @@ TEST(a_monitor_as_fast_as_the_current)
             const double want = (double)(1 - (1 + t) * exp_neg(t));
             const double shift = (double)(t * t * exp_neg(t)) * -off[i] / 2; /* first order */
             plant_advance(&p, &d, 50e-6, 1, 1);
-            CHECK(fabs(p.mon_A - want - shift) <= 2e-8, "%g apart, %d: %.12f, want %.12f", off[i], n,
-                  p.mon_A, want + shift);
+            CHECK(fabs(p.mon_A - want - shift) <= 2e-8, "%g apart, %d: %.12f, want %.12f", off[i],
+                  n, p.mon_A, want + shift);
         }
     }
 }
@@ -314,16 +313,15 @@ TEST(exp_neg_is_good_to_1e_12)
 
 /* ---- Energy ------------------------------------------------------------------ */
 
-/* Leapfrog does not keep the energy E but D = E - h^2/8 dU''(v, v), exactly where the force is linear
- * (E changes by h times the mean speed times what is not of U, and by h^2/8 U'' of the speeds). So D must
- * not grow, except
- *   by 5/8 k (v h)^2 in a sub-step in which the string goes slack or taut,
- *   by h^2/2 (1/m + 1/mr) F Fl where a loss Fl is taken at another speed than the mean, F being all forces,
- * and by rounding. */
+/* Leapfrog does not keep the energy E but D = E - h^2/8 dU''(v, v), exactly where the force is
+ * linear (E changes by h times the mean speed times what is not of U, and by h^2/8 U'' of the
+ * speeds). So D must not grow, except by 5/8 k (v h)^2 in a sub-step in which the string goes slack
+ * or taut, by h^2/2 (1/m + 1/mr) F Fl where a loss Fl is taken at another speed than the mean, F
+ * being all forces, and by rounding. */
 struct energy {
-    double e_J, d_J; /* energy, and the one that the method keeps              */
-    double may_J; /* how much D may grow in the sub-step that begins here   */
-    double edge_J; /* and more if the string goes slack or taut in it        */
+    double e_J, d_J; /* energy, and the one that the method keeps */
+    double may_J;    /* how much D may grow in the sub-step that begins here */
+    double edge_J;   /* and more if the string goes slack or taut in it */
     int taut, taut_mid;
 };
 
@@ -342,8 +340,8 @@ static struct energy energy_of(const struct plant *p, const struct sim_device *d
             weight_N * p->x_m;
     e.edge_J = 0.625 * d->cable_npm * h * h * opening * opening;
     e.d_J = e.e_J - (s > 0 ? e.edge_J / 5 : 0);
-    e.may_J = h * h / 2 * (1 / d->mass_kg + 1 / d->rotor_kg) * all_N * loss_N +
-              1e-13 * (1 + fabs(e.e_J));
+    e.may_J =
+        h * h / 2 * (1 / d->mass_kg + 1 / d->rotor_kg) * all_N * loss_N + 1e-13 * (1 + fabs(e.e_J));
     e.taut = s > 0;
     e.taut_mid = mid > 0;
     return e;
@@ -430,12 +428,14 @@ TEST(a_quarter_of_the_error_with_half_the_substep)
 
 /* ---- Steps that are short enough ------------------------------------------------ */
 
-/* By how many times its first deviation a taut string's force is off after 2000 steps, that of its damping
- * besides; the motor carries the mass's weight, or the mass is held by a hand that stands still. */
+/* By how many times its first deviation a taut string's force is off after 2000 steps, that of its
+ * damping besides; the motor carries the mass's weight, or the mass is held by a hand that stands
+ * still. */
 static double grown(const struct sim_device *d, double hand_npm, double hand_nspm, double step_s)
 {
     const double weight_N = d->mass_kg * SIM_GRAVITY, rest_m = weight_N / d->cable_npm;
-    const struct plant_hand hand = {hand_npm, hand_nspm, weight_N / (hand_npm > 0 ? hand_npm : 1), 0, -1};
+    const struct plant_hand hand = {hand_npm, hand_nspm, weight_N / (hand_npm > 0 ? hand_npm : 1),
+                                    0, -1};
     struct sim_device fixed = *d;
     struct plant p = {1.1 * rest_m, 0, 0, 0, weight_N / d->kf_npa, 0};
     double most = 0, off_N;
@@ -450,8 +450,8 @@ static double grown(const struct sim_device *d, double hand_npm, double hand_nsp
         } else {
             plant_advance(&p, &fixed, 10 * step_s, weight_N / d->kf_npa, 0);
         }
-        off_N = d->cable_npm * fabs(p.x_m - p.q_m - rest_m) +
-                d->cable_nspm * fabs(p.v_mps - p.w_mps);
+        off_N =
+            d->cable_npm * fabs(p.x_m - p.q_m - rest_m) + d->cable_nspm * fabs(p.v_mps - p.w_mps);
         if (!(off_N < 1e6 * weight_N)) { return 1e6; }
         if (i > 150 && off_N > most) { most = off_N; }
     }
@@ -484,15 +484,17 @@ TEST(steps_that_will_do_are_stable)
         CHECK(good <= 1.3,
               "string %g N/m %g Ns/m, rotor %g, mass %g kg, hand %g: grows by %g at %g s",
               d.cable_npm, d.cable_nspm, d.rotor_kg, d.mass_kg, hand_npm, good, step_s);
-        /* Beyond the limit of the spring damping helps; beyond its own nothing does but friction. */
+        /* Beyond the limit of the spring damping helps; beyond its own nothing does but friction.
+         */
         damps = 2.05 * step_s * d.cable_nspm * (1 / d.mass_kg + 1 / d.rotor_kg);
         if (hand_npm > 0 || d.viscous_nspm > 0 || (damps > 0 && damps < 2.02)) { continue; }
         tried[damps > 0]++;
         bad = grown(&d, 0, 0, 2.05 * step_s);
-        CHECK(bad >= 1.5, "string %g N/m, rotor %g, mass %g kg: %g at %g s", d.cable_npm, d.rotor_kg, d.mass_kg,
-              bad, 2.05 * step_s);
+        CHECK(bad >= 1.5, "string %g N/m, rotor %g, mass %g kg: %g at %g s", d.cable_npm,
+              d.rotor_kg, d.mass_kg, bad, 2.05 * step_s);
     }
-    CHECK(tried[0] > 20 && tried[1] > 20, "%d by the spring, %d by its damping", tried[0], tried[1]);
+    CHECK(tried[0] > 20 && tried[1] > 20, "%d by the spring, %d by its damping", tried[0],
+          tried[1]);
 }
 
 /* Where what is damped goes at a steady speed, dry friction takes its share of the force. */
@@ -522,12 +524,14 @@ TEST(friction_beside_strong_damping_takes_what_it_takes)
     finger.mass_kg = 0.005;
     good = off_steady(finger, 100, longest_s(finger, 300, 100));
     bad = off_steady(finger, 100, 250e-6);
-    CHECK(good < 0.004 && bad > 0.01, "finger: off by %g m/s, by %g in steps that are too long", good, bad);
+    CHECK(good < 0.004 && bad > 0.01, "finger: off by %g m/s, by %g in steps that are too long",
+          good, bad);
     rotor.rotor_kg = 0.001;
     rotor.viscous_nspm = 100;
     good = off_steady(rotor, 5, longest_s(rotor, 300, 5));
     bad = off_steady(rotor, 5, 250e-6);
-    CHECK(good < 0.004 && bad > 0.01, "rotor: off by %g m/s, by %g in steps that are too long", good, bad);
+    CHECK(good < 0.004 && bad > 0.01, "rotor: off by %g m/s, by %g in steps that are too long",
+          good, bad);
 }
 
 TEST(the_step_that_is_named_will_do)
@@ -555,8 +559,8 @@ TEST(the_step_that_is_named_will_do)
 TEST_MAIN("plant", impact_speed_is_that_of_a_free_fall, a_rotor_slows_the_fall_by_its_share,
           what_is_held_does_not_move, stiction_holds_without_creep, stiction_lets_go_at_its_limit,
           friction_stops_in_closed_form, the_string_only_pulls_and_pulls_both_ends_alike,
-          current_loop_is_exact_at_any_substep, monitor_lags_behind_the_current, a_monitor_as_fast_as_the_current,
-          exp_neg_is_good_to_1e_12, energy_never_grows_with_the_motor_off,
-          a_quarter_of_the_error_with_half_the_substep, steps_that_will_do_are_stable,
-          friction_beside_strong_damping_takes_what_it_takes,
+          current_loop_is_exact_at_any_substep, monitor_lags_behind_the_current,
+          a_monitor_as_fast_as_the_current, exp_neg_is_good_to_1e_12,
+          energy_never_grows_with_the_motor_off, a_quarter_of_the_error_with_half_the_substep,
+          steps_that_will_do_are_stable, friction_beside_strong_damping_takes_what_it_takes,
           the_step_that_is_named_will_do);

@@ -386,7 +386,8 @@ TEST(input_that_is_none)
               i, s.status, s.out, s.err);
     }
     quad(dir, "/dev/null", WORDS("quad", "--csv", make_file(dir, "in.csv", "0,1,1\0,9\n", 9)));
-    CHECK(s.status == 2 && strstr(s.err, "line 1: b is not"), "what a NUL hides: %d: %s", s.status, s.err);
+    CHECK(s.status == 2 && strstr(s.err, "line 1: b is not"), "what a NUL hides: %d: %s", s.status,
+          s.err);
     memset(wide, ' ', sizeof wide);
     quad(dir, "/dev/null", WORDS("quad", "--csv", make_file(dir, "in.csv", wide, sizeof wide)));
     CHECK(s.status == 2 && strstr(s.err, "line 1: far too long"), "%d: %s", s.status, s.err);

@@ -71,9 +71,7 @@ TEST(the_stop_is_where_counting_ends)
 
 TEST(names_are_found)
 {
-    for (int i = 0; i < READINGS; i++) {
-        CHECK_EQ_I64(reading_find(reading_table[i].name), i);
-    }
+    for (int i = 0; i < READINGS; i++) { CHECK_EQ_I64(reading_find(reading_table[i].name), i); }
     CHECK_EQ_I64(reading_find("a-same"), -1);
     CHECK(strcmp(reading_table[READING_DEFAULT].name, "b-aligned-all") == 0, "%s",
           reading_table[READING_DEFAULT].name);
@@ -102,7 +100,7 @@ TEST(all_at_once_is_one_by_one)
         opt.scope = x->scope;
         opt.step_m = c.board.device.step_m;
         CHECK(fall_stiffness(&r.log, &opt, &s) == FALL_OK, "%s", x->name);
-        const double one = s.fit.status != FALL_OK ? 0
+        const double one = s.fit.status != FALL_OK  ? 0
                            : x->direction == FALL_A ? s.fit.a_Npm
                                                     : s.fit.b_Npm;
         CHECK(all[i] == one, "%s: %.17g, alone %.17g", x->name, all[i], one);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand regs: what it prints is where the library has it, of every scene; docs/MODBUS.md has it. */
+/* exhand regs: what it prints is where the library has it, of every scene; docs/MODBUS.md has it.
+ */
 #include "said.h"
 
 #include "bilateral/bilateral.h"
@@ -72,7 +73,8 @@ static double float_of(uint32_t bits)
     return (double)f;
 }
 
-/* A line of the CSV names registers that can be read; those of parameters hold the default it says. */
+/* A line of the CSV names registers that can be read; those of parameters hold the default it says.
+ */
 static void line_holds(const struct exh_regs *r, const char *line, int *lines)
 {
     char table[64], address[64], reference[64], format[64], dflt[64];

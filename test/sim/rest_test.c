@@ -11,13 +11,13 @@
 struct trace {
     const char *name;
     enum fall_rest_class label;
-    double swing_m, swing_N; /* peak-to-peak                                  */
-    double from_s, until_s;  /* when they swing                               */
-    double decay_per_s;      /* relative loss of the swing, 1/s                */
+    double swing_m, swing_N; /* peak-to-peak */
+    double from_s, until_s;  /* when they swing */
+    double decay_per_s;      /* relative loss of the swing, 1/s */
     double creep_mps;
-    int counts;      /* random counts 0 .. counts on the position      */
-    double noise_N;  /* peak-to-peak of the monitor's noise            */
-    double length_s; /* of the log, from the first contact             */
+    int counts;      /* random counts 0 .. counts on the position */
+    double noise_N;  /* peak-to-peak of the monitor's noise */
+    double length_s; /* of the log, from the first contact */
 };
 
 static const struct trace traces[] = {
@@ -56,9 +56,7 @@ static void play(struct log_builder *b, const struct trace *tr, double rate_Hz, 
     double sin_t = 0.0, cos_t = 1.0, left = 1.0;
 
     begin_fall(b);
-    for (int i = 0; i < 20; i++) {
-        add(b, 1.0 / rate_Hz, -0.01 + 5e-4 * i, 0.1, 0);
-    }
+    for (int i = 0; i < 20; i++) { add(b, 1.0 / rate_Hz, -0.01 + 5e-4 * i, 0.1, 0); }
     for (size_t i = 0; i < ticks; i++) {
         const double t_s = ((double)i + 0.25) / rate_Hz;
         const double on = t_s >= tr->from_s && t_s < tr->until_s ? 0.5 * left : 0.0;
@@ -80,9 +78,7 @@ static void check_traces(double rate_Hz, double freq_Hz, uint64_t *rng)
     struct fall_contacts contacts;
     struct fall_rest rest[TRACES];
 
-    for (size_t i = 0; i < TRACES; i++) {
-        play(&b, &traces[i], rate_Hz, freq_Hz, rng);
-    }
+    for (size_t i = 0; i < TRACES; i++) { play(&b, &traces[i], rate_Hz, freq_Hz, rng); }
     const struct fall_log log = built(&b);
     opt.encoder_step_m = STEP_M;
     CHECK(fall_dissect(&log, 1, &contacts) == FALL_OK, "%g Hz", rate_Hz);
@@ -191,9 +187,12 @@ TEST(a_mass_that_ran_away_is_not_at_rest)
     static const struct {
         double q0_m, q1_m;
         enum fall_rest_class want;
-    } row[] = {{2 - 0x1p-30, 2 - 0x1p-30, FALL_INCOMPLETE}, {-2, -2, FALL_INCOMPLETE},
-               {2 - 0x1p-30, 1.2, FALL_OSCILLATES},         {1.98, 1.98, FALL_AT_REST},
-               {-1.98, -1.98, FALL_AT_REST},                {-2, -1.9999, FALL_INCOMPLETE}};
+    } row[] = {{2 - 0x1p-30, 2 - 0x1p-30, FALL_INCOMPLETE},
+               {-2, -2, FALL_INCOMPLETE},
+               {2 - 0x1p-30, 1.2, FALL_OSCILLATES},
+               {1.98, 1.98, FALL_AT_REST},
+               {-1.98, -1.98, FALL_AT_REST},
+               {-2, -1.9999, FALL_INCOMPLETE}};
     for (size_t i = 0; i < sizeof row / sizeof row[0]; i++) {
         const enum fall_rest_class got = rest_between(0.002, row[i].q0_m, row[i].q1_m);
         CHECK(got == row[i].want, "%g and %g m: %s", row[i].q0_m, row[i].q1_m, fall_rest_text(got));

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* docs/SAFETY.md: every test it names is there, every fault, limit and step of arming has its row, the
- * checklist has its 26 lines. And what it says of the D/A: one file of the library makes codes, and what
- * else writes them moves codes that were made there. */
+/* docs/SAFETY.md: every test it names is there, every fault, limit and step of arming has its row,
+ * the checklist has its 26 lines. And what it says of the D/A: one file of the library makes codes,
+ * and what else writes them moves codes that were made there. */
 #include "exhand/safety.h"
 
 #include "check.h"
@@ -100,9 +100,9 @@ TEST(reactions_are_the_librarys)
 
 /* Lines outside the gate that put a code into a frame, and why none is made there. */
 static const char *const moved[] = {
-    "out->dac_raw[f] = placed->dac_raw[k];", /* the gate's, from place to finger */
+    "out->dac_raw[f] = placed->dac_raw[k];",                /* the gate's, from place to finger */
     "out->dac_raw[0] = out->dac_raw[1]; /* that of 0 A */", /* the gate's, of a finger not in use */
-    "out->dac_raw[finger] = code;", /* the gate's, of finger 0 */
+    "out->dac_raw[finger] = code;",                         /* the gate's, of finger 0 */
     "out->dac_raw[0] = (uint16_t)par->drive.dac_zero_raw;",
 };
 

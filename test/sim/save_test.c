@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* SAVE is done if it was answered, whichever tick was the last; and what it keeps is what is wanted. */
+/* SAVE is done if it was answered, whichever tick was the last; and what it keeps is what is
+ * wanted. */
 #include "said.h"
 
 #include "cli/modbus.h"

@@ -82,7 +82,8 @@ static int next_frame(const struct bytes *b, uint32_t *at, struct exh_scene_in *
     return 0;
 }
 
-struct wrap { /* what two runs that differ in enc_start have in common */
+/* what two runs that differ in enc_start have in common */
+struct wrap {
     int frames, wraps;
 };
 
@@ -115,7 +116,7 @@ TEST(the_counters_wrap_is_nowhere_seen)
 {
     static const struct {
         uint32_t start;
-        int wraps; /* at least; -1 none at all                                   */
+        int wraps; /* at least; -1 none at all */
     } row[] = {{0, 2},    {5, 2},         {0xFFFFFF, 2}, {0xFFFFFF - 10, 2},
                {1000, 2}, {0x800000, -1}, {0x400000, -1}};
     struct sim_device d = sim_device_default();

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* A box with flash, as slots.h has it in its example: tuned, saved, its supply cut at every byte, started again. */
+/* A box with flash, as slots.h has it in its example: tuned, saved, its supply cut at every byte,
+ * started again. */
 #include "exhand/slots.h"
 
 #include "drop/drop.h"

@@ -10,8 +10,8 @@
 #define LEN(a) (sizeof(a) / sizeof((a)[0]))
 
 /* A sweep of the smallest size: two rates, one fall a cell, watched for 1 s. */
-#define SMALL(dir)                                                                            \
-    "drop", "--sweep", "--rate", "90,500", "--falls", "1", "--grid", "3x3", "--jobs", "2",    \
+#define SMALL(dir) \
+    "drop", "--sweep", "--rate", "90,500", "--falls", "1", "--grid", "3x3", "--jobs", "2", \
         "--device", "observe=0.9", "--out", dir
 
 static char whole[SAID_B], again[SAID_B];
@@ -22,7 +22,8 @@ static void copy(const char *from, const char *to, long bytes)
     FILE *f;
     said_read(text, from);
     f = fopen(to, "a");
-    CHECK(f != NULL && fwrite(text, 1, (size_t)bytes, f) == (size_t)bytes && fclose(f) == 0, "%s", to);
+    CHECK(f != NULL && fwrite(text, 1, (size_t)bytes, f) == (size_t)bytes && fclose(f) == 0, "%s",
+          to);
 }
 
 /* The sweep at one go, into `whole`. */
@@ -55,15 +56,20 @@ TEST(a_sweep_finds_a_border_and_says_so)
     const char *dir = said_dir();
     static struct said s;
     one_go(dir, &s);
-    CHECK(strncmp(whole, "# exhand drop --sweep version=1 falls=1 seed=1 columns=3 rows=3 ", 64) == 0, "%s",
-          whole);
-    CHECK(strstr(whole, "\nrate_hz,k_n_per_m,b_ns_per_m,stable_falls,falls,stiffness_n_per_m,rho\n90,"),
+    CHECK(strncmp(whole, "# exhand drop --sweep version=1 falls=1 seed=1 columns=3 rows=3 ", 64) ==
+              0,
           "%s", whole);
-    CHECK(strstr(s.out, "largest stable k") && strstr(s.out, "\n    90 |") && strstr(s.out, "\n   500 |"),
+    CHECK(strstr(whole,
+                 "\nrate_hz,k_n_per_m,b_ns_per_m,stable_falls,falls,stiffness_n_per_m,rho\n90,"),
+          "%s", whole);
+    CHECK(strstr(s.out, "largest stable k") && strstr(s.out, "\n    90 |") &&
+              strstr(s.out, "\n   500 |"),
           "%s", s.out);
     said_read(again, said_path(dir, "border.csv"));
-    CHECK(strstr(again, "\n90,k,") && strstr(again, "\n90,b,") && strstr(again, "\n500,k,"), "%s", again);
-    CHECK(said_size(said_path(dir, "rho.csv")) > 100000 && said_size(said_path(dir, "sweep.gp")) > 100,
+    CHECK(strstr(again, "\n90,k,") && strstr(again, "\n90,b,") && strstr(again, "\n500,k,"), "%s",
+          again);
+    CHECK(said_size(said_path(dir, "rho.csv")) > 100000 &&
+              said_size(said_path(dir, "sweep.gp")) > 100,
           "pictures");
     said_clean(dir);
 }
@@ -86,8 +92,8 @@ TEST(the_linear_border_does_not_hang_on_the_grid)
         static struct said s;
         const char *dir = said_dir();
         said(&s, dir, cli_drop,
-             WORDS("drop", "--sweep", "--rate", "90,2000", "--falls", "1", "--grid", grid[i], "--device",
-                   "observe=0.6", "--device", "substep=0.0001", "--out", dir));
+             WORDS("drop", "--sweep", "--rate", "90,2000", "--falls", "1", "--grid", grid[i],
+                   "--device", "observe=0.6", "--device", "substep=0.0001", "--out", dir));
         CHECK(s.status == 0, "%d: %s", s.status, s.err);
         linear_columns(s.out, "\n    90 |", text[i][0]);
         linear_columns(s.out, "\n  2000 |", text[i][1]);
@@ -96,10 +102,10 @@ TEST(the_linear_border_does_not_hang_on_the_grid)
     CHECK(strcmp(text[0][0], text[1][0]) == 0, "%s, %s", text[0][0], text[1][0]);
     CHECK(strcmp(text[0][1], text[1][1]) == 0, "%s, %s", text[0][1], text[1][1]);
     /* By an exhaustive scan, k in 3 % and b in 0.5 steps: 1822 and 43.5, 29333 and 86.5. */
-    CHECK(sscanf(text[0][0], "%lf %lf", &k, &b) == 2 && k > 1800 && k < 1860 && b > 43 && b < 45, "%s",
-          text[0][0]);
-    CHECK(sscanf(text[0][1], "%lf %lf", &k, &b) == 2 && k > 29300 && k < 30300 && b > 86 && b < 89, "%s",
-          text[0][1]);
+    CHECK(sscanf(text[0][0], "%lf %lf", &k, &b) == 2 && k > 1800 && k < 1860 && b > 43 && b < 45,
+          "%s", text[0][0]);
+    CHECK(sscanf(text[0][1], "%lf %lf", &k, &b) == 2 && k > 29300 && k < 30300 && b > 86 && b < 89,
+          "%s", text[0][1]);
 }
 
 TEST(the_end_of_the_grid_is_no_border)
@@ -107,9 +113,10 @@ TEST(the_end_of_the_grid_is_no_border)
     static struct said s;
     const char *dir = said_dir();
     said(&s, dir, cli_drop,
-         WORDS("drop", "--sweep", "--rate", "5", "--falls", "1", "--device", "substep=0.001", "--out", dir));
-    CHECK(s.status == 0 && strstr(s.out, ">= 8 ") && strstr(s.out, ">=: stable up to"), "%d: %s%s", s.status,
-          s.err, s.out);
+         WORDS("drop", "--sweep", "--rate", "5", "--falls", "1", "--device", "substep=0.001",
+               "--out", dir));
+    CHECK(s.status == 0 && strstr(s.out, ">= 8 ") && strstr(s.out, ">=: stable up to"), "%d: %s%s",
+          s.status, s.err, s.out);
     said_read(again, said_path(dir, "border.csv"));
     CHECK(strstr(again, "\n5,b,") && strstr(again, "\n5,b,12.5,") == NULL, "%s", again);
     said_clean(dir);
@@ -121,8 +128,8 @@ TEST(a_slow_rate_has_a_border)
     const char *dir = said_dir();
     double k = 0;
     said(&s, dir, cli_drop,
-         WORDS("drop", "--sweep", "--rate", "5", "--falls", "1", "--grid", "3x3", "--device", "observe=2",
-               "--out", dir));
+         WORDS("drop", "--sweep", "--rate", "5", "--falls", "1", "--grid", "3x3", "--device",
+               "observe=2", "--out", dir));
     for (const char *at = strstr(s.out, "\n     5 |"); at != NULL; at = NULL) { k = atof(at + 9); }
     CHECK(s.status == 0 && k > 20 && k < 35, "%d: %s%s", s.status, s.err, s.out);
     said_read(again, said_path(dir, "border.csv"));
@@ -139,8 +146,9 @@ TEST(a_resumed_sweep_gives_the_same_file)
     after_one_go(dir, &s);
     for (size_t i = 0; i < 8; i++) {
         const long size = (long)strlen(whole);
-        const long cut[] = {0, 30, (long)(strchr(whole, '\n') - whole) + 5, size / 3, size / 2, size - 1,
-                            size, (long)(strstr(whole, "\n500,") - whole) + 1};
+        const long cut[] = {
+            0,        30,   (long)(strchr(whole, '\n') - whole) + 5,    size / 3, size / 2,
+            size - 1, size, (long)(strstr(whole, "\n500,") - whole) + 1};
         strcpy(rest, said_dir());
         copy(said_path(dir, "stability.csv"), said_path(rest, "stability.csv"), cut[i]);
         said(&s, rest, cli_drop, WORDS(SMALL(rest)));
@@ -227,9 +235,12 @@ TEST(shards_make_the_whole)
         said(&s, shards, cli_drop, WORDS(SMALL(shards), "--shard", part[i]));
         CHECK(s.status == 0, "%d: %s", s.status, s.err);
         said_read(again, said_path(shards, file[i]));
-        CHECK(lines(again) < lines(whole), "part %d has %d lines of %d", i, lines(again), lines(whole));
-        /* The rows of 90 Hz are a third of the work: who has no row of a rate looks for no octave of it. */
-        CHECK((strstr(again, "\n90,") != NULL) == (i == 0) && (strstr(again, "\n500,") != NULL) == (i > 0),
+        CHECK(lines(again) < lines(whole), "part %d has %d lines of %d", i, lines(again),
+              lines(whole));
+        /* The rows of 90 Hz are a third of the work: who has no row of a rate looks for no octave
+         * of it. */
+        CHECK((strstr(again, "\n90,") != NULL) == (i == 0) &&
+                  (strstr(again, "\n500,") != NULL) == (i > 0),
               "part %d has both rates", i);
         copy(said_path(shards, file[i]), said_path(strung, "stability.csv"),
              said_size(said_path(shards, file[i])));
@@ -244,8 +255,8 @@ TEST(shards_make_the_whole)
         goes_on = strstr(s.err, "goes on from");
         CHECK(goes_on && sscanf(goes_on, "goes on from %d", &known) == 1, "%s", s.err);
         /* Left is to halve the borders of three columns of two rates. */
-        CHECK(known <= lines(whole) - 2 && known >= lines(whole) - 2 - 2 * 3 * 4, "%d of %d cells", known,
-              lines(whole) - 2);
+        CHECK(known <= lines(whole) - 2 && known >= lines(whole) - 2 - 2 * 3 * 4, "%d of %d cells",
+              known, lines(whole) - 2);
     }
     said_clean(dir);
     said_clean(shards);
@@ -288,7 +299,7 @@ TEST(a_damaged_file_is_refused_by_line)
         {"rate,k\n1,2\n", "stability.csv: not a file of a sweep"},
         {"90,1000,abc,1,1,,\n", "stability.csv:3: 90,1000,abc"},
         {"90,1000,0,2,1,,0.9\n", "stability.csv:3: 90,1000,0,2,1"}, /* two of one fall */
-        {"90,1000,0,1,1,0.9\n", "stability.csv:3: "},                /* a field is missing */
+        {"90,1000,0,1,1,0.9\n", "stability.csv:3: "},               /* a field is missing */
         {"90,1000,0,1,1,,0.9,\n", "stability.csv:3: "},
         {"90,nan,0,1,1,,0.9\n", "stability.csv:3: "},
         {"90,inf,0,1,1,,0.9\n", "stability.csv:3: "},
@@ -319,12 +330,18 @@ TEST(bad_usage_is_refused_by_name)
     static const struct {
         const char *word[4], *says;
     } row[] = {
-        {{"--grid", "20"}, "--grid: 20 (KxB"},         {{"--grid", "1x5"}, "--grid: 1x5"},
-        {{"--grid", "5x201"}, "--grid: 5x201"},        {{"--grid", "5x5x"}, "--grid: 5x5x"},
-        {{"--shard", "0/2"}, "--shard: 0/2 (I/N"},     {{"--shard", "3/2"}, "--shard: 3/2"},
-        {{"--shard", "1"}, "--shard: 1 "},             {{"--k", "500"}, "--sweep: chooses k and b"},
-        {{"--spread", "3"}, "--sweep: chooses k and b"}, {{"--pace"}, "--sweep: chooses k and b"},
-        {{"--out", "/dev/null"}, "--out: /dev/null: "}, {{"--out", "/nowhere/at/all"}, "--out: /nowhere"},
+        {{"--grid", "20"}, "--grid: 20 (KxB"},
+        {{"--grid", "1x5"}, "--grid: 1x5"},
+        {{"--grid", "5x201"}, "--grid: 5x201"},
+        {{"--grid", "5x5x"}, "--grid: 5x5x"},
+        {{"--shard", "0/2"}, "--shard: 0/2 (I/N"},
+        {{"--shard", "3/2"}, "--shard: 3/2"},
+        {{"--shard", "1"}, "--shard: 1 "},
+        {{"--k", "500"}, "--sweep: chooses k and b"},
+        {{"--spread", "3"}, "--sweep: chooses k and b"},
+        {{"--pace"}, "--sweep: chooses k and b"},
+        {{"--out", "/dev/null"}, "--out: /dev/null: "},
+        {{"--out", "/nowhere/at/all"}, "--out: /nowhere"},
     };
     const char *dir = said_dir();
     static struct said s;
@@ -335,9 +352,11 @@ TEST(bad_usage_is_refused_by_name)
     said(&s, dir, cli_drop, WORDS("drop", "--sweep"));
     CHECK(s.status == 2 && strstr(s.err, "--sweep: needs --out DIR"), "%d: %s", s.status, s.err);
     said(&s, dir, cli_drop, WORDS("drop", "--grid", "5x5"));
-    CHECK(s.status == 2 && strstr(s.err, "--grid and --shard: only with --sweep"), "%d: %s", s.status, s.err);
+    CHECK(s.status == 2 && strstr(s.err, "--grid and --shard: only with --sweep"), "%d: %s",
+          s.status, s.err);
     said(&s, dir, cli_drop, WORDS("drop", "--border-check", "--falls", "5"));
-    CHECK(s.status == 2 && strstr(s.err, "--falls and --border-check: "), "%d: %s", s.status, s.err);
+    CHECK(s.status == 2 && strstr(s.err, "--falls and --border-check: "), "%d: %s", s.status,
+          s.err);
     said_clean(dir);
 }
 
@@ -370,14 +389,16 @@ TEST(the_simulated_border_is_the_linear_one)
     }
     CHECK(cells > 30 && agree == cells, "%d of %d agree", agree, cells);
     CHECK(strstr(s.out, "\ndry friction ") && strstr(s.out, "\nall: the device "), "%s", s.out);
-    check_note("500 and 2000 Hz: simulated and linear border agree in %d of %d cells", agree, cells);
+    check_note("500 and 2000 Hz: simulated and linear border agree in %d of %d cells", agree,
+               cells);
     said_read(again, said_path(dir, "check.csv"));
     for (int i = 0; i < 4; i++) { /* friction carries the border outwards, however it began */
         static const char *const rate[] = {"500", "2000"};
         const char *start = i < 2 ? "let_go" : "dropped";
         const int none = at_rest(again, start, "none", rate[i % 2]);
         const int friction = at_rest(again, start, "friction", rate[i % 2]);
-        CHECK(none >= 0 && friction > none, "%s, %s Hz: %d with, %d without", start, rate[i % 2], friction, none);
+        CHECK(none >= 0 && friction > none, "%s, %s Hz: %d with, %d without", start, rate[i % 2],
+              friction, none);
     }
     said_clean(dir);
 }
@@ -388,14 +409,16 @@ TEST(a_border_that_cannot_be_checked_is_refused)
         const char *word[4], *says;
     } row[] = {
         {{"--rate", "1"}, "--border-check: 1 Hz: watches 2500 ticks"},
-        {{"--rate", "20000", "--device", "delay=0.01"}, "--border-check: 20000 Hz: no linear border"},
+        {{"--rate", "20000", "--device", "delay=0.01"},
+         "--border-check: 20000 Hz: no linear border"},
         {{"--rate", "25", "--grid", "200x4"}, "--border-check: 25 Hz: at k = 1."},
     };
     static struct said s;
     const char *dir = said_dir();
     for (size_t i = 0; i < LEN(row); i++) {
         said(&s, dir, cli_drop,
-             WORDS("drop", "--border-check", row[i].word[0], row[i].word[1], row[i].word[2], row[i].word[3]));
+             WORDS("drop", "--border-check", row[i].word[0], row[i].word[1], row[i].word[2],
+                   row[i].word[3]));
         CHECK(s.status == 2 && strstr(s.err, row[i].says), "row %zu: %d: %s", i, s.status, s.err);
         CHECK(lines(s.err) == 1, "row %zu: %s", i, s.err);
     }
@@ -409,7 +432,8 @@ TEST(friction_moves_the_border_outwards)
     double most[3][3];
     const char *at;
     strcpy(dir, said_dir());
-    said(&s, dir, cli_drop, WORDS("drop", "--friction", "3", "--falls", "1", "--rate", "200", "--out", dir));
+    said(&s, dir, cli_drop,
+         WORDS("drop", "--friction", "3", "--falls", "1", "--rate", "200", "--out", dir));
     CHECK(s.status == 0 && s.err[0] == '\0', "%d: %s", s.status, s.err);
     said_read(again, said_path(dir, "friction.csv"));
     at = again;
@@ -434,23 +458,25 @@ TEST(a_ray_ends_where_the_scene_does)
     static struct said s;
     strcpy(dir, said_dir());
     said(&s, dir, cli_drop, /* sticks at any gain; the b of 2000 Hz meets the scene's limit first */
-         WORDS("drop", "--friction", "2", "--falls", "1", "--rate", "90,2000", "--device", "coulomb=1",
-               "--device", "mu_motor=0.2", "--device", "mu_mass=0.2", "--device", "observe=0.6", "--out", dir));
-    CHECK(s.status == 0 && s.err[0] == '\0' && strstr(s.out, ">= 16.94"), "%d: %s%s", s.status, s.err, s.out);
+         WORDS("drop", "--friction", "2", "--falls", "1", "--rate", "90,2000", "--device",
+               "coulomb=1", "--device", "mu_motor=0.2", "--device", "mu_mass=0.2", "--device",
+               "observe=0.6", "--out", dir));
+    CHECK(s.status == 0 && s.err[0] == '\0' && strstr(s.out, ">= 16.94"), "%d: %s%s", s.status,
+          s.err, s.out);
     said_read(again, said_path(dir, "friction.csv"));
     CHECK(strstr(again, "\ndry,90,2,16.9407,,"), "%s", again);
     said(&s, dir, cli_drop,
-         WORDS("drop", "--friction", "2", "--falls", "1", "--rate", "2000", "--device", "coulomb=10",
-               "--device", "observe=0.6", "--out", dir));
+         WORDS("drop", "--friction", "2", "--falls", "1", "--rate", "2000", "--device",
+               "coulomb=10", "--device", "observe=0.6", "--out", dir));
     CHECK(s.status == 0 && s.err[0] == '\0', "%d: %s", s.status, s.err);
     said_clean(dir);
 }
 
-TEST_MAIN("sweep", a_sweep_finds_a_border_and_says_so,
-          the_linear_border_does_not_hang_on_the_grid,
-          the_end_of_the_grid_is_no_border, a_slow_rate_has_a_border, a_resumed_sweep_gives_the_same_file,
-          an_interrupted_sweep_keeps_its_cells, a_killed_sweep_goes_on, shards_make_the_whole,
+TEST_MAIN("sweep", a_sweep_finds_a_border_and_says_so, the_linear_border_does_not_hang_on_the_grid,
+          the_end_of_the_grid_is_no_border, a_slow_rate_has_a_border,
+          a_resumed_sweep_gives_the_same_file, an_interrupted_sweep_keeps_its_cells,
+          a_killed_sweep_goes_on, shards_make_the_whole,
           a_file_of_other_settings_is_refused_by_name, a_damaged_file_is_refused_by_line,
           bad_usage_is_refused_by_name, the_simulated_border_is_the_linear_one,
-          a_border_that_cannot_be_checked_is_refused,
-          friction_moves_the_border_outwards, a_ray_ends_where_the_scene_does);
+          a_border_that_cannot_be_checked_is_refused, friction_moves_the_border_outwards,
+          a_ray_ends_where_the_scene_does);

@@ -13,21 +13,21 @@
 #include "sim/eigen.h"
 #include "sim/plant.h"
 
-#define STEP_M   66.32e-6 /* the device's */
-#define FINE_M   1e-6
-#define LIMIT_M  0.25e-3
-#define LIMIT_N  4.0
-#define START_S  4.5 /* of the window */
-#define TRACES   1200 /* a label */
+#define STEP_M  66.32e-6 /* the device's */
+#define FINE_M  1e-6
+#define LIMIT_M 0.25e-3
+#define LIMIT_N 4.0
+#define START_S 4.5  /* of the window */
+#define TRACES  1200 /* a label */
 
 struct trace {
     double rate_Hz, step_m, freq_Hz;
-    double swing_m, swing_N; /* peak to peak at the start of the window          */
-    double growth_per_s;     /* e-fold; < 0: it decays                           */
+    double swing_m, swing_N; /* peak to peak at the start of the window */
+    double growth_per_s;     /* e-fold; < 0: it decays */
     double creep_mps, noise_N;
-    int toggle;              /* counts to and fro                                */
-    double toggle_s;         /* half a period of it                              */
-    double place;            /* within a count                                   */
+    int toggle;      /* counts to and fro */
+    double toggle_s; /* half a period of it */
+    double place;    /* within a count */
 };
 
 static uint64_t rng = 77;
@@ -60,7 +60,8 @@ static enum fall_rest_class judged(const struct trace *t)
     struct fall_contacts contacts;
     struct fall_rest rest = {0};
     const double half = 3.14159265358979323846 * t->freq_Hz / t->rate_Hz; /* of the angle a tick */
-    const double tan_half = half + half * half * half / 3 + 2 * half * half * half * half * half / 15;
+    const double tan_half =
+        half + half * half * half / 3 + 2 * half * half * half * half * half / 15;
     const double u2 = tan_half * tan_half;
     const double c1 = (1 - u2) / (1 + u2), s1 = 2 * tan_half / (1 + u2);
     double s = between(-0.7, 0.7), c = 0.7; /* a phase of chance */
@@ -113,9 +114,11 @@ static double shown(const struct trace *t, double swing)
 static void check_label(const char *kind, const struct trace *t, enum fall_rest_class label)
 {
     const enum fall_rest_class got = judged(t);
-    CHECK(got == label, "%s: %s: %g Hz, step %g, %g Hz, %g m, %g N, growth %g, creep %g, noise %g, "
-          "toggle %d in %g s", kind, fall_rest_text(got), t->rate_Hz, t->step_m, t->freq_Hz, t->swing_m,
-          t->swing_N, t->growth_per_s, t->creep_mps, t->noise_N, t->toggle, t->toggle_s);
+    CHECK(got == label,
+          "%s: %s: %g Hz, step %g, %g Hz, %g m, %g N, growth %g, creep %g, noise %g, "
+          "toggle %d in %g s",
+          kind, fall_rest_text(got), t->rate_Hz, t->step_m, t->freq_Hz, t->swing_m, t->swing_N,
+          t->growth_per_s, t->creep_mps, t->noise_N, t->toggle, t->toggle_s);
 }
 
 TEST(what_rests_is_never_mistaken)
@@ -123,16 +126,15 @@ TEST(what_rests_is_never_mistaken)
     for (int i = 0; i < TRACES; i++) {
         struct trace t = any();
         switch (i % 5) {
-        case 0: /* noise alone, up to the limit */
-            t.noise_N = between(0, 0.94 * LIMIT_N);
-            break;
+        case 0: /* noise alone, up to the limit */ t.noise_N = between(0, 0.94 * LIMIT_N); break;
         case 1: /* creep within a count, and over three of them or many fine ones */
             t.place = 0.1;
             t.creep_mps = between(-0.5, 0.5) * 0.1 * t.step_m;
             if (one_of(2)) {
                 t.place = 0.5;
-                t.creep_mps = (one_of(2) ? 1 : -1) * (t.step_m == FINE_M ? between(10e-6, 0.94 * LIMIT_M)
-                                                                         : 3.0 * STEP_M) / 0.5;
+                t.creep_mps = (one_of(2) ? 1 : -1) *
+                              (t.step_m == FINE_M ? between(10e-6, 0.94 * LIMIT_M) : 3.0 * STEP_M) /
+                              0.5;
             }
             break;
         case 2: /* swings below the limits, on an encoder that shows them */

@@ -16,7 +16,7 @@
 
 #define LEN(a)  (sizeof(a) / sizeof((a)[0]))
 #define NOISE   EXH_Q(3, 100, EXH_Q_CUR) /* of the monitor, either way, and its steps */
-#define CODES_A (324900 / 176.0) /* D/A codes an ampere */
+#define CODES_A (324900 / 176.0)         /* D/A codes an ampere */
 
 static uint64_t rng = 1;
 
@@ -125,8 +125,8 @@ static void set_up(struct stuck *b, const struct posix_config *c, struct exh_per
     CHECK_EQ_I64(drop_setup(&b->cfg, &b->par, (struct exh_scene_board){T, 24}, NULL), 0);
 }
 
-/* The mass hangs at rest in the wall, then the D/A stands; somebody pulls. Ticks from the first current
- * coded that is off by more than tolerance and noise to no current and no enable. */
+/* The mass hangs at rest in the wall, then the D/A stands; somebody pulls. Ticks from the first
+ * current coded that is off by more than tolerance and noise to no current and no enable. */
 static uint32_t ticks_to_safe(uint32_t rate_Hz, uint32_t *limit, double *stood_A)
 {
     static struct stuck b;

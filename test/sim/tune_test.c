@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Parameters that change while a finger presses: no force step beyond the slew limit, whatever is staged
- * in whichever tick; what a finger feels of one change; a log of it replays from the middle of it. */
+/* Parameters that change while a finger presses: no force step beyond the slew limit, whatever is
+ * staged in whichever tick; what a finger feels of one change; a log of it replays from the middle
+ * of it. */
 #include "logs.h"
 
 #include "cli/run.h"
@@ -15,25 +16,25 @@
 #define LEN(a) (sizeof(a) / sizeof((a)[0]))
 
 enum how {
-    ONE, /* k from 500 to 5000 N/m, in equal parts                              */
-    HALT, /* as ONE in one part, and where it is 40 ticks later it is to stay  */
-    FORCE, /* every slewed row at random, in every tick                         */
-    ALL, /* every row that may change, in every tick                           */
-    SELDOM, /* the slewed ones every 10 ticks                                    */
-    LOWER /* f_max to 0.5 N, with a tune_time of a second                        */
+    ONE,    /* k from 500 to 5000 N/m, in equal parts */
+    HALT,   /* as ONE in one part, and where it is 40 ticks later it is to stay */
+    FORCE,  /* every slewed row at random, in every tick */
+    ALL,    /* every row that may change, in every tick */
+    SELDOM, /* the slewed ones every 10 ticks */
+    LOWER   /* f_max to 0.5 N, with a tune_time of a second */
 };
 
 static struct {
     enum how how;
-    uint32_t at, parts; /* ONE: from this tick on, in so many parts             */
+    uint32_t at, parts; /* ONE: from this tick on, in so many parts */
     uint64_t seed;
     struct exh_period T;
     int32_t last_N_q20, k_Npm_q10;
     int was_open;
     uint32_t open_ticks, contact_ticks, over;
     int64_t most_N_q20, most_part; /* step of force; as a part of what is allowed, q10 */
-    int64_t tuned_N_q20; /* step of force by k alone, where the finger is      */
-    uint32_t settled; /* the last tick with a value on its way                   */
+    int64_t tuned_N_q20;           /* step of force by k alone, where the finger is */
+    uint32_t settled;              /* the last tick with a value on its way */
 } see;
 
 static uint64_t any(void)
@@ -73,10 +74,13 @@ static void before(uint32_t tick, struct exh_scene_in *in)
     if (see.how == FORCE || see.how == ALL) { stage_any(see.how == ALL); }
     if (see.how == SELDOM && tick % 10 == 0) { stage_any(0); }
     if (see.how == LOWER && tick == see.at) {
-        CHECK(s->f_des_N_q20 > EXH_Q(1, 1, EXH_Q_FORCE), "%.3f N to be lowered", newton(s->f_des_N_q20));
+        CHECK(s->f_des_N_q20 > EXH_Q(1, 1, EXH_Q_FORCE), "%.3f N to be lowered",
+              newton(s->f_des_N_q20));
         CHECK_EQ_I64(exh_params_stage(p, 0x0501, 0, EXH_Q(1, 2, EXH_Q_FORCE)), 0);
     }
-    if (see.how == HALT && n == 40) { CHECK_EQ_I64(exh_params_stage(p, 0x0401, 0, see.k_Npm_q10), 0); }
+    if (see.how == HALT && n == 40) {
+        CHECK_EQ_I64(exh_params_stage(p, 0x0401, 0, see.k_Npm_q10), 0);
+    }
     if ((see.how == ONE || see.how == HALT) && tick >= see.at && n < see.parts) {
         const int64_t part = (int64_t)EXH_Q(4500, 1, EXH_Q_K) * (n + 1) / see.parts;
         CHECK_EQ_I64(exh_params_stage(p, 0x0401, 0, EXH_Q(500, 1, EXH_Q_K) + (int32_t)part), 0);
@@ -164,9 +168,10 @@ static void press(const struct run_cfg *c, enum how how, uint32_t at, uint32_t p
     run_free(&r);
 }
 
-/* k from 500 to 5000 N/m under a finger that presses: the largest step of force in a tick that k makes where
- * the finger is, and that of the force commanded, which moves the finger, too: at 90 Hz 5000 N/m swings by
- * itself. At once; 2^-s of the rest; and a straight ramp that takes as long as 95 % of that do. */
+/* k from 500 to 5000 N/m under a finger that presses: the largest step of force in a tick that k
+ * makes where the finger is, and that of the force commanded, which moves the finger, too: at 90 Hz
+ * 5000 N/m swings by itself. At once; 2^-s of the rest; and a straight ramp that takes as long as
+ * 95 % of that do. */
 TEST(what_a_finger_feels)
 {
     static const struct {
@@ -201,7 +206,8 @@ TEST(what_a_finger_feels)
     }
 }
 
-/* Whatever is staged, in every tick: the drive's slew limit stands above it. It is set low, so that it acts. */
+/* Whatever is staged, in every tick: the drive's slew limit stands above it. It is set low, so that
+ * it acts. */
 TEST(no_step_beyond_the_slew_limit)
 {
     static const uint32_t rates[] = {90, 100, 200, 500, 1000, 2000};
@@ -240,7 +246,8 @@ TEST(no_step_beyond_the_slew_limit)
     }
 }
 
-/* Lowered under a finger that presses, the limit holds in the same tick: slew_down is 100 N a tick here. */
+/* Lowered under a finger that presses, the limit holds in the same tick: slew_down is 100 N a tick
+ * here. */
 TEST(a_lowered_limit_is_never_late)
 {
     static const struct run_setting set[] = {

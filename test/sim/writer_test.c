@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Bytes to a file by a thread of its own: a pipe that nobody reads, one that is slow, one that ends. */
+/* Bytes to a file by a thread of its own: a pipe that nobody reads, one that is slow, one that
+ * ends. */
 #include "check.h"
 
 #include "cli/writer.h"
@@ -76,8 +77,8 @@ static void check_record(uint32_t k)
     for (size_t i = 2; i < n; i++) { CHECK_EQ_I64(got[i], (uint8_t)(k * 31 + i)); }
 }
 
-/* Nobody reads: pipe and ring fill, what finds no room is refused whole and at once; then all that was
- * taken comes, in its order, and nothing else. */
+/* Nobody reads: pipe and ring fill, what finds no room is refused whole and at once; then all that
+ * was taken comes, in its order, and nothing else. */
 TEST(a_full_pipe_refuses_and_waits_for_nobody)
 {
     static uint32_t taken[4096];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Memory of what cannot be left out of the full box when it is built, for costs.py: the size of each array, by nm. Parameters count
- * twice: active and staged. */
+/* Memory of what cannot be left out of the full box when it is built, for costs.py: the size of
+ * each array, by nm. Parameters count twice: active and staged. */
 #include "bilateral/bilateral.h"
 
 struct finger_par {

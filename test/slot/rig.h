@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Scene custom with the model that this binary was linked with, in closed loop with the simulated device. */
+/* Scene custom with the model that this binary was linked with, in closed loop with the simulated
+ * device. */
 #ifndef TEST_SLOT_RIG_H
 #define TEST_SLOT_RIG_H
 
@@ -30,7 +31,8 @@ static inline const struct custom_signals *rig_signals(void)
     return (const struct custom_signals *)(const void *)exh_scene_custom.signal;
 }
 
-/* A run whose log replays: from the beginning, and from a keyframe, where the controller's memory is another. */
+/* A run whose log replays: from the beginning, and from a keyframe, where the controller's memory
+ * is another. */
 static inline void rig_replays(struct run_cfg c)
 {
     struct table2_result r;

@@ -1,17 +1,28 @@
 /* SPDX-License-Identifier: MIT */
-/* Whatever a controller answers, what goes out is the gate's: not a number, infinite, huge, negative, late. */
+/* Whatever a controller answers, what goes out is the gate's: not a number, infinite, huge,
+ * negative, late. */
 #include "rig.h"
 
 #include "exhand/safety.h"
 
-enum { GOOD, NOT_A_NUMBER, INFINITE, MINUS_INFINITE, HUGE_PULL, HUGE_PUSH, SAYS_FAILED, LATE, ROOT = 9 };
+enum {
+    GOOD,
+    NOT_A_NUMBER,
+    INFINITE,
+    MINUS_INFINITE,
+    HUGE_PULL,
+    HUGE_PUSH,
+    SAYS_FAILED,
+    LATE,
+    ROOT = 9
+};
 
 static struct {
-    int code_min, code_max; /* of all ticks, from the code of 0 A                */
+    int code_min, code_max; /* of all ticks, from the code of 0 A */
     int32_t f_max_N_q20;
     uint32_t limits, faults;
-    int dumb_at, dead_at;   /* ticks: first without answer, first in FAULT       */
-    int still_out;          /* after that a code that is not 0 A                 */
+    int dumb_at, dead_at; /* ticks: first without answer, first in FAULT */
+    int still_out;        /* after that a code that is not 0 A */
     int ticks;
 } seen;
 
@@ -31,7 +42,8 @@ static void before(uint32_t tick, struct exh_scene_in *in)
 
 static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
 {
-    const struct drop_par *p = (const struct drop_par *)(const void *)exh_scene_custom.params->active;
+    const struct drop_par *p =
+        (const struct drop_par *)(const void *)exh_scene_custom.params->active;
     const struct custom_signals *s = rig_signals();
     const int code = out->dac_raw[0] - p->drive.dac_zero_raw;
     (void)tick;
@@ -58,14 +70,15 @@ static void run_rude(int what, int pace)
     c.board.falls = 1;
     c.board.max_ticks = 8000;
     if (pace) { c.board.device.height_m = 0.01; } /* nobody waits for more */
-    c.board.slack_s = 0.05; /* other programs may be about */
+    c.board.slack_s = 0.05;                       /* other programs may be about */
     (void)run_drop(&c, &r);
     run_free(&r);
 }
 
 static int32_t f_limit(void)
 {
-    const struct drop_par *p = (const struct drop_par *)(const void *)exh_scene_custom.params->active;
+    const struct drop_par *p =
+        (const struct drop_par *)(const void *)exh_scene_custom.params->active;
     return p->drive.f_max_N_q20;
 }
 
@@ -74,7 +87,8 @@ TEST(good_answers_go_out)
     static const int what[] = {GOOD, ROOT};
     for (size_t i = 0; i < sizeof what / sizeof what[0]; i++) {
         run_rude(what[i], 0);
-        CHECK(seen.faults == 0 && seen.dumb_at < 0 && seen.code_max > 0, "faults %lx", (unsigned long)seen.faults);
+        CHECK(seen.faults == 0 && seen.dumb_at < 0 && seen.code_max > 0, "faults %lx",
+              (unsigned long)seen.faults);
         CHECK_EQ_I64(seen.f_max_N_q20, EXH_Q(5, 1, EXH_Q_FORCE));
     }
 }
@@ -85,11 +99,11 @@ TEST(no_answer_is_a_fault)
     static const int what[] = {NOT_A_NUMBER, INFINITE, MINUS_INFINITE, SAYS_FAILED};
     for (size_t i = 0; i < sizeof what / sizeof what[0]; i++) {
         run_rude(what[i], 0);
-        CHECK(seen.dumb_at > 0 && seen.dead_at == seen.dumb_at + 1, "%d: dumb at %d, FAULT at %d", what[i], seen.dumb_at,
-              seen.dead_at);
+        CHECK(seen.dumb_at > 0 && seen.dead_at == seen.dumb_at + 1, "%d: dumb at %d, FAULT at %d",
+              what[i], seen.dumb_at, seen.dead_at);
         CHECK_EQ_I64(seen.faults & EXH_FAULT_LOGIC, EXH_FAULT_LOGIC);
-        CHECK(seen.code_max == 0 && seen.code_min == 0 && seen.f_max_N_q20 == 0, "%d: codes %d..%d", what[i], seen.code_min,
-              seen.code_max);
+        CHECK(seen.code_max == 0 && seen.code_min == 0 && seen.f_max_N_q20 == 0, "%d: codes %d..%d",
+              what[i], seen.code_min, seen.code_max);
     }
 }
 
@@ -98,18 +112,22 @@ TEST(what_is_too_much_is_held_back)
     run_rude(HUGE_PULL, 0);
     CHECK(seen.f_max_N_q20 > 0 && seen.f_max_N_q20 <= f_limit(), "%ld", (long)seen.f_max_N_q20);
     CHECK_EQ_I64(seen.limits & EXH_LIMIT_FORCE, EXH_LIMIT_FORCE);
-    CHECK(seen.code_min >= 0 && seen.code_max <= 12184 && seen.dumb_at < 0, "codes %d..%d", seen.code_min, seen.code_max);
+    CHECK(seen.code_min >= 0 && seen.code_max <= 12184 && seen.dumb_at < 0, "codes %d..%d",
+          seen.code_min, seen.code_max);
     run_rude(HUGE_PUSH, 0);
     CHECK_EQ_I64(seen.limits & EXH_LIMIT_PULL, EXH_LIMIT_PULL);
-    CHECK(seen.code_min == 0 && seen.code_max == 0 && seen.f_max_N_q20 == 0, "codes %d..%d", seen.code_min, seen.code_max);
+    CHECK(seen.code_min == 0 && seen.code_max == 0 && seen.f_max_N_q20 == 0, "codes %d..%d",
+          seen.code_min, seen.code_max);
 }
 
-/* By the wall clock: 10^8 additions, one after the other, are more than a tick and the slack on any machine. */
+/* By the wall clock: 10^8 additions, one after the other, are more than a tick and the slack on any
+ * machine. */
 TEST(who_takes_too_long_loses_the_force)
 {
     run_rude(LATE, 1);
     CHECK_EQ_I64(seen.faults & EXH_FAULT_OVERRUN, EXH_FAULT_OVERRUN);
-    CHECK(seen.dead_at > 0 && seen.still_out == 0, "FAULT at %d, then %d codes", seen.dead_at, seen.still_out);
+    CHECK(seen.dead_at > 0 && seen.still_out == 0, "FAULT at %d, then %d codes", seen.dead_at,
+          seen.still_out);
 }
 
 TEST_MAIN("slot/rude", good_answers_go_out, no_answer_is_a_fault, what_is_too_much_is_held_back,

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The example's model, a spring and a damper in doubles, is drop's law: in every tick, and in what comes of it. */
+/* The example's model, a spring and a damper in doubles, is drop's law: in every tick, and in what
+ * comes of it. */
 #include "rig.h"
 
 static struct exh_contact law;
@@ -22,7 +23,8 @@ static void before(uint32_t tick, struct exh_scene_in *in)
 
 static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
 {
-    const struct drop_par *p = (const struct drop_par *)(const void *)exh_scene_custom.params->active;
+    const struct drop_par *p =
+        (const struct drop_par *)(const void *)exh_scene_custom.params->active;
     const struct custom_signals *s = rig_signals();
     const struct exh_contact_in q = {s->drop.q_m_q30, s->drop.qd_mps_q27, p->own.q_lim_m_q30};
     struct exh_force_ledger f;
@@ -48,8 +50,8 @@ TEST(asks_what_the_law_asks)
         c.more = &hooks;
         CHECK_EQ_I64(run_drop(&c, &r), 0);
         run_free(&r);
-        CHECK(contact > 100 && worst <= 1, "%g Hz: %d ticks in contact, off by %lld LSB", table2_paper[i].rate_Hz, contact,
-              (long long)worst);
+        CHECK(contact > 100 && worst <= 1, "%g Hz: %d ticks in contact, off by %lld LSB",
+              table2_paper[i].rate_Hz, contact, (long long)worst);
     }
 }
 
@@ -61,9 +63,10 @@ TEST(its_table_is_drops)
         struct table2_result drop;
         c.scene = &exh_scene_drop;
         drop = table2_measure(&c, NULL, TABLE2_SAME);
-        CHECK(ours.done && drop.done && ours.oscillating == drop.oscillating && ours.faults == 0, "%g Hz", ours.rate_Hz);
-        CHECK(ours.b_Npm >= 0.999 * drop.b_Npm && ours.b_Npm <= 1.001 * drop.b_Npm, "%g Hz: %g and %g N/m", ours.rate_Hz,
-              ours.b_Npm, drop.b_Npm);
+        CHECK(ours.done && drop.done && ours.oscillating == drop.oscillating && ours.faults == 0,
+              "%g Hz", ours.rate_Hz);
+        CHECK(ours.b_Npm >= 0.999 * drop.b_Npm && ours.b_Npm <= 1.001 * drop.b_Npm,
+              "%g Hz: %g and %g N/m", ours.rate_Hz, ours.b_Npm, drop.b_Npm);
     }
 }
 

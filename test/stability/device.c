@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-/* The same cells with what a device adds, one by one: dry and viscous friction, encoder steps, a string that only pulls and no
- * further than a peak. Linear theory no longer says what happens; what must still hold is said below. */
+/* The same cells with what a device adds, one by one: dry and viscous friction, encoder steps, a
+ * string that only pulls and no further than a peak. Linear theory no longer says what happens;
+ * what must still hold is said below. */
 #include "stability.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-#define START_M   1e-3 /* into the wall                                         */
-#define STEP_M    66.32e-6 /* the device's encoder                                  */
+#define START_M   1e-3     /* into the wall */
+#define STEP_M    66.32e-6 /* the device's encoder */
 #define COULOMB_N 1.0
 #define VISCOUS   3.557
 #define PEAK_N    22.0
@@ -62,8 +63,8 @@ static double range_of(struct wall *w, int ticks)
     return s.high - s.low;
 }
 
-/* Over the last 1000 ticks of 7000, or a quarter second of two, whichever is longer: at rest within a tenth of a step, within
- * three steps, or in a swing. */
+/* Over the last 1000 ticks of 7000, or a quarter second of two, whichever is longer: at rest within
+ * a tenth of a step, within three steps, or in a swing. */
 static enum ends run(struct wall w, unsigned parts)
 {
     const int settle = (int)fmax(6000, 1.75 / ((double)w.T.num / w.T.den));

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* Drift: laws that are cheap enough to run for 10^9 ticks, at 20 kHz half a day. The input repeats every 1000 ticks, so once
- * what was before has died away every period must give the bits of an early one, and what is summed must grow by the same
- * number in each. Where a state has bits below those that come out, these may go round on their own, and the last bits of what
- * comes out with them: so much is allowed, and no more after 10^9 ticks than early on. Counters begin just below their ends and pass them in
- * every period. */
+/* Drift: laws that are cheap enough to run for 10^9 ticks, at 20 kHz half a day. The input repeats
+ * every 1000 ticks, so once what was before has died away every period must give the bits of an
+ * early one, and what is summed must grow by the same number in each. Where a state has bits below
+ * those that come out, these may go round on their own, and the last bits of what comes out with
+ * them: so much is allowed, and no more after 10^9 ticks than early on. Counters begin just below
+ * their ends and pass them in every period. */
 #include "stability.h"
 
 #include <math.h>
@@ -11,11 +12,11 @@
 #include <string.h>
 
 #define PERIOD  1000u
-#define SETTLED 1200u /* periods after which one is kept, to compare with            */
+#define SETTLED 1200u /* periods after which one is kept, to compare with */
 #define OUTS    3
 #define PI      3.14159265358979323846
 
-static int32_t wave[PERIOD]; /* counts: two sines, from 0 back to 0                 */
+static int32_t wave[PERIOD]; /* counts: two sines, from 0 back to 0 */
 
 static void make_wave(void)
 {
@@ -182,7 +183,7 @@ static const struct law {
 struct seen {
     int32_t early[PERIOD][OUTS];
     int64_t first_sum, each;
-    int64_t off, sum_off, late; /* the most; of the last hundredth alone        */
+    int64_t off, sum_off, late; /* the most; of the last hundredth alone */
 };
 
 static void period(const struct law *one, struct seen *y, uint64_t p, int late)

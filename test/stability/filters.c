@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Filters at rest: from any state that inputs can cause, a constant input must bring each to a state that does not change
- * any more, or to states that follow each other in a circle while the output stands: then nothing moves ever again. Beside them
- * direct forms, as others build them. */
+/* Filters at rest: from any state that inputs can cause, a constant input must bring each to a
+ * state that does not change any more, or to states that follow each other in a circle while the
+ * output stands: then nothing moves ever again. Beside them direct forms, as others build them. */
 #include "stability.h"
 
 #include <math.h>
@@ -10,8 +10,8 @@
 
 #define PI      3.14159265358979323846
 #define STARTS  6
-#define LIMIT   70 /* time constants: 64 bits are 44                           */
-#define LSB_ADC 32768.0 /* of 16 bits, in a signal of 2^30                       */
+#define LIMIT   70      /* time constants: 64 bits are 44 */
+#define LSB_ADC 32768.0 /* of 16 bits, in a signal of 2^30 */
 
 /* One that is looked at: its state, bytes that are equal when it is. */
 union state {
@@ -24,7 +24,7 @@ struct kind {
     int32_t (*step)(union state *s, const void *cfg, int32_t x);
     void (*start)(union state *s, int32_t x);
     const void *cfg;
-    double tau; /* ticks                                                         */
+    double tau; /* ticks */
 };
 
 /* Ticks until the state stands, x held; -1: it does not within 70 time constants and 200 ticks. */
@@ -41,7 +41,8 @@ static int64_t to_rest(const struct kind *k, union state *s, int32_t x)
     return -1;
 }
 
-/* How many states follow each other in a circle from here on; 0: more than 10000. *exact: in all of them the output is `at`. */
+/* How many states follow each other in a circle from here on; 0: more than 10000. *exact: in all of
+ * them the output is `at`. */
 static int circle(const struct kind *k, union state *s, int32_t x, int32_t at, int *exact)
 {
     const union state first = *s;
@@ -96,7 +97,8 @@ static void count_start(union state *s, int32_t x)
     (void)x;
 }
 
-/* Ticks in which the poles shrink by e: beyond a quarter of the rate they alternate, and near half of it they last. */
+/* Ticks in which the poles shrink by e: beyond a quarter of the rate they alternate, and near half
+ * of it they last. */
 static double time_constant(double ratio, int order)
 {
     const double g = tan(PI * ratio);
@@ -109,7 +111,7 @@ static double time_constant(double ratio, int order)
 
 struct direct {
     int64_t b[3], a[2];
-    int64_t half; /* 2^29 rounds, 0 truncates                                  */
+    int64_t half; /* 2^29 rounds, 0 truncates */
     int32_t x[2], y[2];
 };
 
@@ -135,7 +137,8 @@ static int32_t direct_step(struct direct *d, int32_t x)
     return d->y[0] = y;
 }
 
-/* The most that is left 60 time constants after a step of 10923 codes and back to 0, in codes of 16 bits. */
+/* The most that is left 60 time constants after a step of 10923 codes and back to 0, in codes of 16
+ * bits. */
 static double direct_left(double fc_per_fs, int rounds)
 {
     struct direct d;

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-/* Stability: stiff and extreme cases against theory. `make stability`; parts of it are sections of `make report`.
+/* Stability: stiff and extreme cases against theory. `make stability`; parts of it are sections of
+ * `make report`.
  *
- *   map      every rate, k to 10^6 N/m, b to 10^3 Ns/m, 1 g to 5 kg, 0 to 3 ticks of delay: does the library's law with an exact
- *            mass grow or decay as the spectral radius says?
- *   device   the same with dry friction, encoder steps and a string that only pulls and a peak force, one by one and together
- *   plane    limit cycles of encoder steps over friction and damping (the sigma-beta plane), against its borders
- *   filters  every filter and velocity estimator comes to rest, exactly, from any state; beside direct forms
- *   drift    10^9 ticks of cheap laws: the last period gives the bits of the first, counters wrap on the way
+ *   map      every rate, k to 10^6 N/m, b to 10^3 Ns/m, 1 g to 5 kg, 0 to 3 ticks of delay: does
+ * the library's law with an exact mass grow or decay as the spectral radius says? device   the same
+ * with dry friction, encoder steps and a string that only pulls and a peak force, one by one and
+ * together plane    limit cycles of encoder steps over friction and damping (the sigma-beta plane),
+ * against its borders filters  every filter and velocity estimator comes to rest, exactly, from any
+ * state; beside direct forms drift    10^9 ticks of cheap laws: the last period gives the bits of
+ * the first, counters wrap on the way
  *
  * Prints one line a rule: what must hold, what held, ok or FAIL; exit status 1 on any FAIL. */
 #include "stability.h"
@@ -21,7 +23,7 @@
 #include <string.h>
 
 static const char *out_dir;
-static FILE *rules; /* the same lines as Markdown, in that directory                  */
+static FILE *rules; /* the same lines as Markdown, in that directory */
 static struct sim_random rng = {1};
 
 void exh_assert_failed(const char *file, int line);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The map: with friction, saturation and steps off, is the wall stable where rho < 1, and as fast? */
+/* The map: with friction, saturation and steps off, is the wall stable where rho < 1, and as fast?
+ */
 #include "stability.h"
 
 #include "sim/linear.h"
@@ -8,24 +9,25 @@
 #include <stdlib.h>
 
 #define NEAR  0.005
-#define GROWN 64.0 /* and shrunk: by so much it is decided                   */
+#define GROWN 64.0 /* and shrunk: by so much it is decided */
 #define START_S \
-    0.125 /* metres a second of period: grown, it is twice as fast as 16 m/s at most, the end of the format */
+    0.125 /* metres a second of period: grown, it is twice as fast as 16 m/s at most, the end of \
+             the format */
 #define WINDOW   128
 #define WINDOWS  32
-#define DISAGREE 8 /* shown                                                      */
+#define DISAGREE 8 /* shown */
 
 static const uint32_t rate_Hz[] = {90, 100, 200, 500, 1000, 2000, 5000, 10000, 20000};
 static const double mass_kg[] = {0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1, 2, 5};
 
 struct seen {
     int stable;
-    double rho; /* of the peaks of windows; 0: decayed or grown too soon         */
+    double rho; /* of the peaks of windows; 0: decayed or grown too soon */
 };
 
 struct peak {
     double m;
-    int at; /* tick                                                              */
+    int at; /* tick */
 };
 
 /* What the peaks of two windows say a tick does. */
@@ -34,7 +36,8 @@ static double per_tick(struct peak a, struct peak b)
     return b.at - a.at >= 2 * WINDOW ? pow(b.m / a.m, 1.0 / (b.at - a.at)) : 0;
 }
 
-/* Peaks of windows of 128 ticks, until they are 64 times what it began with, or a 64th, or 4096 ticks are over. */
+/* Peaks of windows of 128 ticks, until they are 64 times what it began with, or a 64th, or 4096
+ * ticks are over. */
 static struct seen watch(struct wall *w)
 {
     const double start_m = START_S * w->T_s;

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* The sigma-beta plane: a virtual spring alone, steps of D, dry friction Fc = sigma K D, viscous friction c = beta K T. Where it
- * rests, where it cycles by a step or so, and from where it grows. Theory: rest at sigma >= 1/2; nothing grows where rho < 1, that is from beta = 1/2 + d on where the swing is
- * slow beside the rate; below, what starts larger than A* = 4 sigma D / (pi sqrt(alpha) (that - beta)) grows, alpha = K T^2 / m; without dry friction
- * cycles of at most (2 / pi) (1 + d) / beta steps either side. */
+/* The sigma-beta plane: a virtual spring alone, steps of D, dry friction Fc = sigma K D, viscous
+ * friction c = beta K T. Where it rests, where it cycles by a step or so, and from where it grows.
+ * Theory: rest at sigma >= 1/2; nothing grows where rho < 1, that is from beta = 1/2 + d on where
+ * the swing is slow beside the rate; below, what starts larger than A* = 4 sigma D / (pi
+ * sqrt(alpha) (that - beta)) grows, alpha = K T^2 / m; without dry friction cycles of at most (2 /
+ * pi) (1 + d) / beta steps either side. */
 #include "stability.h"
 
 #include <math.h>
@@ -11,7 +13,7 @@
 #define STEP_M  20e-6
 #define K_NPM   1000.0
 #define OFFSETS 8
-#define LARGE   20.0 /* steps from rest, where it begins                        */
+#define LARGE   20.0 /* steps from rest, where it begins */
 #define PI      3.14159265358979323846
 
 enum ends { REST, CYCLE, GROWS };
@@ -19,7 +21,7 @@ static const char *const end_name[] = {"rest", "cycle", "grows"};
 
 struct result {
     enum ends ends;
-    double steps; /* peak to peak, of the worst load                           */
+    double steps; /* peak to peak, of the worst load */
 };
 
 static double range_of(struct wall *w, int ticks)
@@ -70,7 +72,8 @@ static struct result run(double alpha, int delay, double sigma, double beta, dou
     return worst;
 }
 
-/* Where rho is 1: 1/2 + d where the swing is slow beside the rate (alpha small), a little less where it is not. */
+/* Where rho is 1: 1/2 + d where the swing is slow beside the rate (alpha small), a little less
+ * where it is not. */
 static double border_of(double alpha, int delay)
 {
     double low = 0, high = 2 + delay;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Stability: what theory says of the sampled wall, of filters at rest and of drift, against the library's own code. */
+/* Stability: what theory says of the sampled wall, of filters at rest and of drift, against the
+ * library's own code. */
 #ifndef STABILITY_H
 #define STABILITY_H
 

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Wall: one mass in sustained contact with the library's law, tick by tick.
  *
- * The plant is exact: between two ticks the force is constant, so speed and way are closed forms, with a stop where
- * dry friction stops. It shares nothing with ports/posix/sim/linear.c, which says what must come of it. The law is the library's
- * as it is shipped; what a device adds is switched on one by one. */
+ * The plant is exact: between two ticks the force is constant, so speed and way are closed forms,
+ * with a stop where dry friction stops. It shares nothing with ports/posix/sim/linear.c, which says
+ * what must come of it. The law is the library's as it is shipped; what a device adds is switched
+ * on one by one. */
 #ifndef STABILITY_WALL_H
 #define STABILITY_WALL_H
 
@@ -17,13 +18,13 @@ struct wall {
     /* what is asked for */
     struct exh_period T;
     double k_Npm, b_Nspm, mass_kg;
-    int delay; /* whole ticks until a command acts                      */
-    double viscous_Nspm, coulomb_N; /* 0: no friction                                        */
-    double step_m; /* encoder; 0: the position itself, to 0.93 nm           */
-    double phase; /* of the encoder, counts                                */
-    double f_max_N; /* 0: none; else the string only pulls, and so far       */
-    double load_N; /* pulls into the wall                                   */
-    double x_m, v_mps; /* where it begins, from rest in the wall                */
+    int delay;                      /* whole ticks until a command acts */
+    double viscous_Nspm, coulomb_N; /* 0: no friction */
+    double step_m;                  /* encoder; 0: the position itself, to 0.93 nm */
+    double phase;                   /* of the encoder, counts */
+    double f_max_N;                 /* 0: none; else the string only pulls, and so far */
+    double load_N;                  /* pulls into the wall */
+    double x_m, v_mps;              /* where it begins, from rest in the wall */
     /* its state */
     struct exh_contact_par par;
     struct exh_contact contact;

@@ -15,7 +15,7 @@
 #define QUADRATURE_X4 0x0480
 
 static struct {
-    struct emu_box none; /* the emulator is outside the machine                        */
+    struct emu_box none; /* the emulator is outside the machine */
     unsigned fingers;
 } cards;
 
@@ -127,7 +127,7 @@ int cards_start(const struct posix_cards *c, unsigned fingers, int glove)
 
 void cards_at(double t_s)
 {
-    (void)t_s; /* the cards' time is the machine's                                     */
+    (void)t_s; /* the cards' time is the machine's */
 }
 
 static int16_t ad(unsigned card, unsigned channel)

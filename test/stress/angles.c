@@ -43,8 +43,8 @@ static struct circle sum_of(struct circle a, struct circle b)
 }
 
 struct seen {
-    uint64_t angles, beyond; /* looked at; of them with a value beyond 1      */
-    double sin_lsb, cos_lsb; /* worst errors                                  */
+    uint64_t angles, beyond; /* looked at; of them with a value beyond 1 */
+    double sin_lsb, cos_lsb; /* worst errors */
     uint32_t sin_at, cos_at;
 };
 

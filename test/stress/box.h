@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Stress: the box as docs/SAFETY.md and NUMERICS.md describe it, written once more and in another way: no
- * table, no triggers. What the library does in a tick must be what this says. */
+/* Stress: the box as docs/SAFETY.md and NUMERICS.md describe it, written once more and in another
+ * way: no table, no triggers. What the library does in a tick must be what this says. */
 #ifndef STRESS_BOX_H
 #define STRESS_BOX_H
 
@@ -10,21 +10,22 @@
 enum box_gate { BOX_SHUT, BOX_OPEN, BOX_FALLS };
 
 struct box {
-    int state; /* enum exh_state                                            */
+    int state; /* enum exh_state */
     uint32_t faults, present;
     unsigned late, opened;
-    uint64_t armed, ramped, gone; /* ticks in ARM, in its ramp, in RELEASE      */
-    uint64_t calm; /* ticks on end, up to the last, with a small force asked for */
-    uint64_t fast, still; /* ticks on end beyond the speed limit; pulled without a count */
+    uint64_t armed, ramped, gone; /* ticks in ARM, in its ramp, in RELEASE */
+    uint64_t calm;                /* ticks on end, up to the last, with a small force asked for */
+    uint64_t fast, still;         /* ticks on end beyond the speed limit; pulled without a count */
     int32_t cnt;
-    int32_t held, from; /* force of the last tick; when the release began         */
-    int32_t off; /* code of the last tick, from dac_zero                   */
-    int limited; /* a limit acted in the last tick, PULL aside             */
+    int32_t held, from; /* force of the last tick; when the release began */
+    int32_t off;        /* code of the last tick, from dac_zero */
+    int limited;        /* a limit acted in the last tick, PULL aside */
 };
 
-struct box_times { /* in ticks                                                */
+/* in ticks */
+struct box_times {
     uint64_t arm, ramp, release, fast, still;
-    int64_t share; /* of 2^30 a tick of the ramp                              */
+    int64_t share; /* of 2^30 a tick of the ramp */
     int late_most;
     int32_t small_N_q20;
 };

@@ -14,7 +14,7 @@ struct closed {
     double k_Npm, b_Nspm, mass_kg;
     struct exh_period T;
     enum tweak tweak;
-    double lo_mm, hi_mm; /* the motor's travel must stay between; 0, 0: not asked   */
+    double lo_mm, hi_mm; /* the motor's travel must stay between; 0, 0: not asked */
     double enc_start;
 };
 
@@ -50,7 +50,9 @@ static struct posix_config device_of(const struct closed *c)
         p.device.mu_motor = p.device.mu_mass = p.device.coulomb_n = p.device.viscous_nspm = 0;
     }
     if (c->tweak == STIFF_CABLE) { p.device.cable_npm = 1e6; }
-    if (!plant_step_will_do(&p.device, 0, 0)) { p.device.substep_s = plant_step_that_will_do(&p.device, 0, 0); }
+    if (!plant_step_will_do(&p.device, 0, 0)) {
+        p.device.substep_s = plant_step_that_will_do(&p.device, 0, 0);
+    }
     return p;
 }
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* All inputs at their ends at once, the other end in the next tick; all parameters likewise; in every scene that takes
- * defaults. What has to hold
- * is what no scene may ever do: a code that pushes or is beyond its span, a drive that is not enabled and has one, a count
- * of ticks that stands still. Besides, the signs of what saturates. */
+/* All inputs at their ends at once, the other end in the next tick; all parameters likewise; in
+ * every scene that takes defaults. What has to hold is what no scene may ever do: a code that
+ * pushes or is beyond its span, a drive that is not enabled and has one, a count of ticks that
+ * stands still. Besides, the signs of what saturates. */
 #include "stress.h"
 
 #include <math.h>
@@ -10,10 +10,10 @@
 #define ID_DAC_ZERO 0x0507
 #define ID_DAC_SPAN 0x0508
 #define ID_MON_ZERO 0x050A
-#define ROUND       2400 /* ticks: calm until the gate is open, then the ends       */
+#define ROUND       2400 /* ticks: calm until the gate is open, then the ends */
 
-extern const struct exh_scene exh_scene_guarded, exh_scene_custom, exh_scene_glove, exh_scene_bilateral,
-    exh_scene_bringup;
+extern const struct exh_scene exh_scene_guarded, exh_scene_custom, exh_scene_glove,
+    exh_scene_bilateral, exh_scene_bringup;
 
 /* --- scenes --- */
 
@@ -124,7 +124,8 @@ static void set_up(const struct exh_scene *sc)
     if (sc->params != NULL) { sc->params->locked = 1; }
 }
 
-/* Rounds: calm until the gate opens, 20 ticks more, then the ends for 40, and again; every fourth round everything from the start. */
+/* Rounds: calm until the gate opens, 20 ticks more, then the ends for 40, and again; every fourth
+ * round everything from the start. */
 static void scene_at_its_ends(const struct exh_scene *sc, uint64_t ticks, int opens)
 {
     struct exh_drive_out out;
@@ -263,7 +264,8 @@ static void signs_of_drive(void)
               ((double)mon - p->mon_zero_raw) * p->mon_A_q40 / 16384);
 }
 
-/* One low-pass rail to rail: where the ideal one is clear of 0 by 64 LSB, and within the word or beyond it, so is ours. */
+/* One low-pass rail to rail: where the ideal one is clear of 0 by 64 LSB, and within the word or
+ * beyond it, so is ours. */
 static void signs_of_filter(uint64_t samples)
 {
     const double ratio = 0.001 * pow(440, any(1000) / 1000.0),
@@ -310,10 +312,9 @@ static void signs(void)
 
 void all_at_their_ends(void)
 {
-    static const struct exh_scene *const scene[] = {&exh_scene_drop,  &exh_scene_guarded,
-                                                    &exh_scene_custom, &exh_scene_glove,
-                                                    &exh_scene_bilateral,
-                                                    &exh_scene_bringup};
+    static const struct exh_scene *const scene[] = {&exh_scene_drop,      &exh_scene_guarded,
+                                                    &exh_scene_custom,    &exh_scene_glove,
+                                                    &exh_scene_bilateral, &exh_scene_bringup};
     for (size_t i = 0; i < LEN(scene); i++) {
         scene_at_its_ends(scene[i], cases < 200000 ? 20000 : cases / 10,
                           scene[i] != &exh_scene_glove && scene[i] != &exh_scene_bringup);

@@ -106,7 +106,8 @@ void arm(void)
     must(rig.sig.state == EXH_STATE_RUN, "arming", "state %ld", (long)rig.sig.state);
 }
 
-/* What a value that goes little by little is next. 2^s ticks are the first power of two no shorter than tune_time. */
+/* What a value that goes little by little is next. 2^s ticks are the first power of two no shorter
+ * than tune_time. */
 static int64_t next_of(int64_t now, int64_t goal, int slewed)
 {
     const double T_ms = 1000.0 * rig.T.num / rig.T.den;
@@ -127,7 +128,8 @@ void apply(void)
     for (uint32_t i = 0; i < exh_signal_count(rig.params.table); i++) {
         const struct exh_signal *row = exh_signal_at(rig.params.table, i, NULL);
         const int up = goal[i] > was[i], when = row->when;
-        const int64_t next = next_of(was[i], goal[i], when == EXH_WHEN_SLEWED || (when == EXH_WHEN_LIMIT && up));
+        const int64_t next =
+            next_of(was[i], goal[i], when == EXH_WHEN_SLEWED || (when == EXH_WHEN_LIMIT && up));
         must(is[i] == next, "slewed", "%s: %ld, from %ld to %ld is %" PRId64, row->name,
              (long)is[i], (long)was[i], (long)goal[i], next);
     }

@@ -2,13 +2,14 @@
 /* The rules that must hold in every tick, listed in stress.c. */
 #include "stress.h"
 
-#define LIMITS_ALL 0x3FF /* PASSIVITY is not in this scene                        */
+#define LIMITS_ALL 0x3FF /* PASSIVITY is not in this scene */
 
-struct hidden { /* what the scene does not show */
+/* what the scene does not show */
+struct hidden {
     struct exh_force_ledger f;
     struct exh_current_ledger i;
     enum box_gate gate;
-    int32_t vel, cnt; /* as measured                                           */
+    int32_t vel, cnt; /* as measured */
     uint32_t limits;
     int touching;
     struct exh_drive_out out;

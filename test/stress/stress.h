@@ -16,28 +16,29 @@
 
 #define LEN(a) (sizeof(a) / sizeof((a)[0]))
 
-enum { /* parameters that cases set, by id */
-       ID_K = 0x0401,
-       ID_B = 0x0402,
-       ID_F0 = 0x0403,
-       ID_SLEW_UP = 0x0502,
-       ID_SLEW_DOWN = 0x0503,
-       ID_PEAK_TIME = 0x0506,
-       ID_ARM_TIME = 0x0603,
-       ID_RAMP_TIME = 0x0604,
-       ID_SUPPLY_MIN = 0x0D11,
-       ID_TUNE_TIME = 0x1301,
-       ID_Q_LIM = 0x8001
+/* parameters that cases set, by id */
+enum {
+    ID_K = 0x0401,
+    ID_B = 0x0402,
+    ID_F0 = 0x0403,
+    ID_SLEW_UP = 0x0502,
+    ID_SLEW_DOWN = 0x0503,
+    ID_PEAK_TIME = 0x0506,
+    ID_ARM_TIME = 0x0603,
+    ID_RAMP_TIME = 0x0604,
+    ID_SUPPLY_MIN = 0x0D11,
+    ID_TUNE_TIME = 0x1301,
+    ID_Q_LIM = 0x8001
 };
 
 struct watch {
     uint64_t ticks, broken;
-    char first[160]; /* the first rule that broke, with its values              */
+    char first[160]; /* the first rule that broke, with its values */
     int32_t force_max, q_min, q_max;
-    int code_max; /* from dac_zero                                            */
+    int code_max; /* from dac_zero */
     double slew_share, cur_max_A, heat_share;
-    uint32_t crc; /* of all outputs and signals                               */
-    uint64_t in[EXH_STATES]; /* ticks in each state of the box                */
+    uint32_t crc;            /* of all outputs and signals */
+    uint64_t in[EXH_STATES]; /* ticks in each state of the box */
 };
 
 struct rig {
@@ -47,9 +48,9 @@ struct rig {
     struct drop state, shadow;
     struct drop_signals sig;
     struct exh_period T;
-    uint8_t enc_bits; /* of the board's counter, 24 unless a case says so       */
-    int blind;        /* 1: no movement is a fault, so that wild inputs act      */
-    double heat; /* A^2 s above continuous, in doubles                       */
+    uint8_t enc_bits; /* of the board's counter, 24 unless a case says so */
+    int blind;        /* 1: no movement is a fault, so that wild inputs act */
+    double heat;      /* A^2 s above continuous, in doubles */
     struct box box;
     struct box_times times;
     struct watch w;
@@ -93,7 +94,8 @@ uint64_t any_u64(void);
 uint32_t any(uint32_t n);
 /* A healthy box; tick 0 has the command to run. */
 struct exh_scene_in idle_in(uint64_t n, uint32_t enc_raw);
-/* With encoder and monitor at their ends or anywhere, turn and turn about, while the gate is open; else mostly a string far in and a person who clears, lets go and arms. */
+/* With encoder and monitor at their ends or anywhere, turn and turn about, while the gate is open;
+ * else mostly a string far in and a person who clears, lets go and arms. */
 struct exh_scene_in handled_in(uint64_t n);
 
 /* --- the cases, a file each --- */

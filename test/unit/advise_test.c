@@ -20,7 +20,7 @@ TEST(advice)
     struct exh_precontact_advice a;
     const struct exh_period slow = {1, 90}, fast = {1, 2000};
     CHECK_EQ_I64(exh_precontact_advise(&a, &n, fast, -MM(5)), 0);
-    CHECK_EQ_I64(um(a.d_lim_m_q30), -435); /* one sample at 0.87 m/s and 2 kHz */
+    CHECK_EQ_I64(um(a.d_lim_m_q30), -435);             /* one sample at 0.87 m/s and 2 kHz */
     CHECK_EQ_I64(um(a.ray_m_q30), 5000 + 13920 + 435); /* 100 frames a second, 1 + 5 ms */
     CHECK_EQ_I64(um(a.error_m_q30), 0);
     CHECK_EQ_I64(a.speed_mps_q27, INT64_C(250) * MM(5)); /* 5 mm in 0.5 ms */

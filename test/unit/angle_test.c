@@ -74,4 +74,5 @@ TEST(odd_eighths_change_places)
     }
 }
 
-TEST_MAIN("unit/angle", quarters_are_exact, odd_eighths_change_places, known_angles, degrees_and_radians);
+TEST_MAIN("unit/angle", quarters_are_exact, odd_eighths_change_places, known_angles,
+          degrees_and_radians);

@@ -210,5 +210,6 @@ TEST(the_largest_buffer)
 }
 
 TEST_MAIN("unit/bytes", layout_is_little_endian, round_trip_of_extremes_and_random,
-          measuring_needs_no_buffer, measuring_leaves_a_buffer, short_buffers_at_every_length, short_reads_are_zeros,
-          a_failed_cursor_stays_failed, crc_check_value_and_definition, counting_does_not_wrap, the_largest_buffer);
+          measuring_needs_no_buffer, measuring_leaves_a_buffer, short_buffers_at_every_length,
+          short_reads_are_zeros, a_failed_cursor_stays_failed, crc_check_value_and_definition,
+          counting_does_not_wrap, the_largest_buffer);

@@ -27,12 +27,19 @@ static void set_up(struct fixture *f)
     };
     memset(f, 0, sizeof *f);
     memcpy(f->point, p, sizeof p);
-    f->c = (struct exh_calib){.device_id = 7, .finger = 1, .day = 20000, .valid_days = 30,
+    f->c = (struct exh_calib){.device_id = 7,
+                              .finger = 1,
+                              .day = 20000,
+                              .valid_days = 30,
                               .dac_rawpA_q16 = EXH_Q(324900, 176, EXH_Q_DAC),
                               .dac_zero_raw = 32768,
-                              .mon_A_q40 = EXH_Q(5164, 10000000, EXH_Q_MON), .mon_zero_raw = -3,
-                              .f0_A_q26 = A(40), .end_A_q26 = A(6600), .point = f->point,
-                              .points = POINTS, .cap = EXH_CALIB_POINTS_MAX};
+                              .mon_A_q40 = EXH_Q(5164, 10000000, EXH_Q_MON),
+                              .mon_zero_raw = -3,
+                              .f0_A_q26 = A(40),
+                              .end_A_q26 = A(6600),
+                              .point = f->point,
+                              .points = POINTS,
+                              .cap = EXH_CALIB_POINTS_MAX};
 }
 
 TEST(mean_rounds_half_up_once)
@@ -110,7 +117,7 @@ TEST(tables_need_room)
 TEST(refusals_name_table_and_point)
 {
     static const struct {
-        unsigned at, field; /* point; force, current, monitor, friction        */
+        unsigned at, field; /* point; force, current, monitor, friction */
         int32_t v;
         int err;
         unsigned what;
@@ -128,7 +135,7 @@ TEST(refusals_name_table_and_point)
         {2, 2, A(606), -EXH_E_MONOTONE, EXH_CALIB_MONITOR_TABLE},
         {3, 2, A(1), -EXH_E_MONOTONE, EXH_CALIB_MONITOR_TABLE},
         {3, 2, A(10001), -EXH_E_RANGE, EXH_CALIB_MONITOR_TABLE},
-        {0, 0, N(30) - 100, -EXH_E_RANGE, EXH_CALIB_FORCE_TABLE}, /* 0.1 N/A of 300 mA       */
+        {0, 0, N(30) - 100, -EXH_E_RANGE, EXH_CALIB_FORCE_TABLE}, /* 0.1 N/A of 300 mA */
         {0, 1, EXH_Q(990, 2047000, EXH_Q_CUR) - 2, -EXH_E_RANGE, EXH_CALIB_FORCE_TABLE},
         {0, 2, EXH_Q(990, 2047000, EXH_Q_CUR) - 2, -EXH_E_RANGE, EXH_CALIB_MONITOR_TABLE},
     };
@@ -180,7 +187,7 @@ TEST(values_out_of_range_are_refused)
 TEST(another_device_and_stale_ones_are_refused)
 {
     static const struct {
-        struct exh_calib_here here; /* scales: difference from the fixture's   */
+        struct exh_calib_here here; /* scales: difference from the fixture's */
         int err;
         unsigned what;
     } row[] = {
@@ -209,13 +216,13 @@ TEST(another_device_and_stale_ones_are_refused)
         here.dac_zero_raw += f.c.dac_zero_raw;
         here.mon_zero_raw += f.c.mon_zero_raw;
         CHECK(exh_calib_check(&f.c, &here, &bad) == row[i].err, "row %zu", i);
-        CHECK(bad.what == row[i].what && bad.at == (row[i].err == 0 ? 99 : 0), "row %zu: %s of %d", i,
-              exh_calib_what_text(bad.what), bad.at);
+        CHECK(bad.what == row[i].what && bad.at == (row[i].err == 0 ? 99 : 0), "row %zu: %s of %d",
+              i, exh_calib_what_text(bad.what), bad.at);
         CHECK_EQ_I64(exh_calib_check(&f.c, &here, NULL), row[i].err);
     }
     f.c.valid_days = UINT32_MAX; /* for ever, but not before it was made */
-    here = (struct exh_calib_here){7, 1, UINT32_MAX, f.c.dac_rawpA_q16, f.c.dac_zero_raw,
-                                   f.c.mon_A_q40, f.c.mon_zero_raw};
+    here = (struct exh_calib_here){
+        7, 1, UINT32_MAX, f.c.dac_rawpA_q16, f.c.dac_zero_raw, f.c.mon_A_q40, f.c.mon_zero_raw};
     CHECK_EQ_I64(exh_calib_check(&f.c, &here, NULL), 0);
     here.day = 19999;
     CHECK_EQ_I64(exh_calib_check(&f.c, &here, NULL), -EXH_E_STALE);
@@ -273,7 +280,10 @@ TEST(any_bit_flipped_any_byte_missing_is_refused)
         buf[i / 8] ^= (uint8_t)(1u << i % 8);
         err = exh_calib_load(&b.c, buf, (size_t)len, &bad);
         buf[i / 8] ^= (uint8_t)(1u << i % 8);
-        CHECK(err == (i < 48 ? -EXH_E_VERSION : i >= 64 ? -EXH_E_CRC : err) && err < 0,
+        CHECK(err == (i < 48    ? -EXH_E_VERSION
+                      : i >= 64 ? -EXH_E_CRC
+                                : err) &&
+                  err < 0,
               "bit %" PRId32 ": %d", i, err);
         CHECK(bad.what == EXH_CALIB_IMAGE && bad.at == 0 && b.c.points == 0, "bit %" PRId32, i);
     }
@@ -331,7 +341,8 @@ TEST(fit_by_hand)
     set_up(&f);
     CHECK_EQ_I64(exh_calib_fit(&fit, f.point, 3, EXH_CALIB_CURRENT), 0);
     CHECK(fit.kf_NpA_q20 - EXH_Q(33, 10, EXH_Q_FORCE) <= 1 &&
-              fit.kf_NpA_q20 - EXH_Q(33, 10, EXH_Q_FORCE) >= -1, "%" PRId32, fit.kf_NpA_q20);
+              fit.kf_NpA_q20 - EXH_Q(33, 10, EXH_Q_FORCE) >= -1,
+          "%" PRId32, fit.kf_NpA_q20);
     /* the bent point lies 100 mN below that line */
     CHECK((exh_calib_residual_N_q20(&fit, &f.point[3], EXH_CALIB_CURRENT) + N(100)) / 4 == 0,
           "%" PRId32, exh_calib_residual_N_q20(&fit, &f.point[3], EXH_CALIB_CURRENT));
@@ -346,7 +357,8 @@ TEST(fit_by_hand)
     CHECK_EQ_I64(exh_calib_fit(&fit, f.point, 1, EXH_CALIB_CURRENT), -EXH_E_RANGE);
 }
 
-/* What goes straight on from the last point must rise, and have room; a monitor's table both ways. */
+/* What goes straight on from the last point must rise, and have room; a monitor's table both ways.
+ */
 TEST(tables_that_cannot_go_on_are_refused)
 {
     static const struct {
@@ -354,12 +366,18 @@ TEST(tables_that_cannot_go_on_are_refused)
         int32_t end_A_q26;
         uint8_t what;
     } row[] = {
-        {{N(1000), A(5000), A(5000), 0}, A(5000) + 1, EXH_CALIB_FORCE_TABLE},       /* by less than an LSB */
-        {{N(100000), A(50), A(50), 0}, A(6600), EXH_CALIB_FORCE_TABLE},             /* to 13 kN */
-        {{N(10000), A(1000), A(5), 0}, A(3000), EXH_CALIB_MONITOR_TABLE},           /* to 4 kN by the monitor */
-        {{N(10000), A(1000), A(10), 0}, A(3000), EXH_CALIB_MONITOR_TABLE},          /* from -2 kN to 2 kN */
-        {{N(10000), A(1000), A(10000), 0}, A(6600), EXH_CALIB_WHATS},               /* from -15.6 A to 15.6 A */
-        {{N(10000), A(100), A(10000), 0}, A(6600), EXH_CALIB_MONITOR_TABLE},        /* from -16.5 A to 16.5 A */
+        {{N(1000), A(5000), A(5000), 0},
+         A(5000) + 1,
+         EXH_CALIB_FORCE_TABLE},                                        /* by less than an LSB */
+        {{N(100000), A(50), A(50), 0}, A(6600), EXH_CALIB_FORCE_TABLE}, /* to 13 kN */
+        {{N(10000), A(1000), A(5), 0},
+         A(3000),
+         EXH_CALIB_MONITOR_TABLE}, /* to 4 kN by the monitor */
+        {{N(10000), A(1000), A(10), 0}, A(3000), EXH_CALIB_MONITOR_TABLE}, /* from -2 kN to 2 kN */
+        {{N(10000), A(1000), A(10000), 0}, A(6600), EXH_CALIB_WHATS}, /* from -15.6 A to 15.6 A */
+        {{N(10000), A(100), A(10000), 0},
+         A(6600),
+         EXH_CALIB_MONITOR_TABLE}, /* from -16.5 A to 16.5 A */
     };
     for (size_t i = 0; i < LEN(row); i++) {
         struct exh_calib_bad bad = {99, 99};
@@ -373,8 +391,8 @@ TEST(tables_that_cannot_go_on_are_refused)
         if (row[i].what == EXH_CALIB_WHATS) {
             CHECK(err == 0, "row %zu: %d", i, err);
         } else {
-            CHECK(err == -EXH_E_RANGE && bad.what == row[i].what && bad.at == 0, "row %zu: %d, %s", i, err,
-                  exh_calib_what_text(bad.what));
+            CHECK(err == -EXH_E_RANGE && bad.what == row[i].what && bad.at == 0, "row %zu: %d, %s",
+                  i, err, exh_calib_what_text(bad.what));
         }
     }
 }
@@ -404,7 +422,8 @@ TEST(an_image_needs_room)
     CHECK(len > 0, "%" PRId32, len);
     for (int32_t cap = 0; cap < len; cap++) {
         bad.what = 99;
-        CHECK(exh_calib_save(&f.c, image, (size_t)cap, &bad) == -EXH_E_SHORT && bad.what == EXH_CALIB_IMAGE,
+        CHECK(exh_calib_save(&f.c, image, (size_t)cap, &bad) == -EXH_E_SHORT &&
+                  bad.what == EXH_CALIB_IMAGE,
               "%" PRId32 " bytes", cap);
     }
     CHECK_EQ_I64(exh_calib_save(&f.c, NULL, 0, NULL), -EXH_E_SHORT); /* not looked at */
@@ -415,20 +434,25 @@ TEST(values_at_the_ends_of_their_ranges)
 {
     static const struct {
         int32_t lo, hi;
-    } row[] = {{1, INT32_MAX}, {0, 65535}, {1, INT32_MAX}, {-32768, 32767}, {0, A(6600)}, {0, A(6600)}};
+    } row[] = {{1, INT32_MAX},  {0, 65535},   {1, INT32_MAX},
+               {-32768, 32767}, {0, A(6600)}, {0, A(6600)}};
     for (unsigned i = 0; i < LEN(row); i++) {
         for (unsigned end = 0; end < 4; end++) {
             struct exh_calib_bad bad = {99, 99};
             struct fixture f;
-            int32_t *const of[] = {&f.c.dac_rawpA_q16, &f.c.dac_zero_raw, &f.c.mon_A_q40, &f.c.mon_zero_raw,
-                                   &f.c.f0_A_q26,      &f.c.end_A_q26};
+            int32_t *const of[] = {&f.c.dac_rawpA_q16, &f.c.dac_zero_raw, &f.c.mon_A_q40,
+                                   &f.c.mon_zero_raw,  &f.c.f0_A_q26,     &f.c.end_A_q26};
             const int beyond = end >= 2;
             set_up(&f);
             if (end == 3 && row[i].hi == INT32_MAX) { continue; }
-            *of[i] = end == 0 ? row[i].lo : end == 1 ? row[i].hi : end == 2 ? row[i].lo - 1 : row[i].hi + 1;
-            CHECK(exh_calib_valid(&f.c, &bad) == (beyond ? -EXH_E_RANGE : 0), "value %u, %u", i, end);
-            CHECK(!beyond || (bad.what == EXH_CALIB_VALUE && bad.at == 0), "value %u, %u: %d of %d", i, end, bad.what,
-                  bad.at);
+            *of[i] = end == 0   ? row[i].lo
+                     : end == 1 ? row[i].hi
+                     : end == 2 ? row[i].lo - 1
+                                : row[i].hi + 1;
+            CHECK(exh_calib_valid(&f.c, &bad) == (beyond ? -EXH_E_RANGE : 0), "value %u, %u", i,
+                  end);
+            CHECK(!beyond || (bad.what == EXH_CALIB_VALUE && bad.at == 0), "value %u, %u: %d of %d",
+                  i, end, bad.what, bad.at);
         }
     }
 }
@@ -501,7 +525,8 @@ TEST(most_and_least_points)
     CHECK_EQ_I64(exh_calib_valid(&f.c, NULL), 0);
 }
 
-/* Of two points that cannot go on there is no shorter table either; up to the last force that fits there is one. */
+/* Of two points that cannot go on there is no shorter table either; up to the last force that fits
+ * there is one. */
 TEST(no_table_ends_early)
 {
     static const struct {
@@ -510,10 +535,19 @@ TEST(no_table_ends_early)
         int err;
         uint8_t what;
     } row[] = {
-        {{{N(500), A(2500), A(2500), 0}, {N(1000), A(5000), A(5000), 0}}, A(5000) + 1, -EXH_E_RANGE, EXH_CALIB_FORCE_TABLE},
-        {{{N(5000), A(500), A(3), 0}, {N(10000), A(1000), A(5), 0}}, A(3000), -EXH_E_RANGE, EXH_CALIB_MONITOR_TABLE},
+        {{{N(500), A(2500), A(2500), 0}, {N(1000), A(5000), A(5000), 0}},
+         A(5000) + 1,
+         -EXH_E_RANGE,
+         EXH_CALIB_FORCE_TABLE},
+        {{{N(5000), A(500), A(3), 0}, {N(10000), A(1000), A(5), 0}},
+         A(3000),
+         -EXH_E_RANGE,
+         EXH_CALIB_MONITOR_TABLE},
         {{{94988559, 13330173, 39990519, 0}, {0, 0, 0, 0}}, 301366068, 0, 99}, /* to 2^31 - 1 */
-        {{{94988559, 13330173, 39990519, 0}, {0, 0, 0, 0}}, 301366069, -EXH_E_RANGE, EXH_CALIB_FORCE_TABLE},
+        {{{94988559, 13330173, 39990519, 0}, {0, 0, 0, 0}},
+         301366069,
+         -EXH_E_RANGE,
+         EXH_CALIB_FORCE_TABLE},
     };
     for (size_t i = 0; i < LEN(row); i++) {
         struct exh_calib_bad bad = {99, 99};
@@ -523,7 +557,8 @@ TEST(no_table_ends_early)
         f.point[1] = row[i].point[1];
         f.c.points = row[i].point[1].force_N_q20 > 0 ? 2 : 1;
         f.c.end_A_q26 = row[i].end_A_q26;
-        CHECK(exh_calib_valid(&f.c, &bad) == row[i].err && bad.what == row[i].what, "row %zu: %d", i, bad.what);
+        CHECK(exh_calib_valid(&f.c, &bad) == row[i].err && bad.what == row[i].what, "row %zu: %d",
+              i, bad.what);
         CHECK(row[i].err == 0 || bad.at == f.c.points - 1, "row %zu: point %d", i, bad.at);
     }
 }
@@ -542,7 +577,8 @@ TEST(the_least_way_on)
         f.c.point = &p;
         f.c.points = 1;
         f.c.end_A_q26 = p.cur_A_q26 + row[i].more;
-        CHECK(exh_calib_valid(&f.c, NULL) == row[i].err, "row %zu: %d", i, exh_calib_valid(&f.c, NULL));
+        CHECK(exh_calib_valid(&f.c, NULL) == row[i].err, "row %zu: %d", i,
+              exh_calib_valid(&f.c, NULL));
     }
 }
 
@@ -550,8 +586,9 @@ TEST_MAIN("unit/calibrate", mean_rounds_half_up_once, mean_stops_before_it_overf
           tables_meet_every_point_and_go_straight_on, tables_need_room,
           refusals_name_table_and_point, values_out_of_range_are_refused,
           another_device_and_stale_ones_are_refused, image_round_trip,
-          any_bit_flipped_any_byte_missing_is_refused,
-          a_sound_image_of_a_bad_table_is_refused, every_name_has_its_text, fit_by_hand,
-          tables_that_cannot_go_on_are_refused, points_that_are_none_are_not_fitted, an_image_needs_room,
+          any_bit_flipped_any_byte_missing_is_refused, a_sound_image_of_a_bad_table_is_refused,
+          every_name_has_its_text, fit_by_hand, tables_that_cannot_go_on_are_refused,
+          points_that_are_none_are_not_fitted, an_image_needs_room,
           values_at_the_ends_of_their_ranges, the_least_point_is_fitted, the_ends_of_a_ratio,
-          more_points_than_there_may_be, most_and_least_points, no_table_ends_early, the_least_way_on);
+          more_points_than_there_may_be, most_and_least_points, no_table_ends_early,
+          the_least_way_on);

@@ -63,7 +63,8 @@ TEST(setup_rejections)
         {5, 2701, "a peak longer than the drive's"},
         {9, 32768, "a monitor zero beyond 16 bits"},
     };
-    /* None, one whose newtons a tick have no room, one in which 2.7 s are more heat than there is room for. */
+    /* None, one whose newtons a tick have no room, one in which 2.7 s are more heat than there is
+     * room for. */
     static const struct exh_period period[] = {{0, 2000}, {1, 0}, {UINT32_MAX, 1}, {1, 1000000000}};
     struct axis a;
     axis_par(&a.par);
@@ -88,8 +89,7 @@ TEST(setup_refuses_tables_that_pull_at_no_force)
         {{1, 0, {0, 1}}, {9, 9, {0, 1}}},   /* begins above no force */
         {{0, 1, {0, 1}}, {9, 9, {0, 1}}},   /* a current at no force */
         {{-9, -9, {0, 1}}, {9, 5, {0, 1}}}, /* a push at no force */
-        {{-9, -9, {0, 1}}, {-1, -1, {0, 1}}},
-        {{-9, -9, {0, 1}}, {0, 0, {0, 1}}}, /* ends there */
+        {{-9, -9, {0, 1}}, {-1, -1, {0, 1}}}, {{-9, -9, {0, 1}}, {0, 0, {0, 1}}}, /* ends there */
         {{-9, -9, {0, 1}}, {-1, 0, {0, 1}}},
     };
     const struct exh_table none = {NULL, 0};
@@ -111,8 +111,12 @@ TEST(setup_refuses_tables_that_pull_at_no_force)
 
 TEST(setup_takes_every_documented_period)
 {
-    static const struct exh_period T[] = {{1, 20000}, {1, 1},           {65, 1193182},
-                                          {1, 90},    {4294967, 4294967295}, {214748, 4294967295},
+    static const struct exh_period T[] = {{1, 20000},
+                                          {1, 1},
+                                          {65, 1193182},
+                                          {1, 90},
+                                          {4294967, 4294967295},
+                                          {214748, 4294967295},
                                           {4294967295, 4294967295}};
     for (size_t i = 0; i < LEN(T); i++) {
         struct axis a;
@@ -211,7 +215,9 @@ TEST(not_running_is_no_force)
     for (int sign = -1; sign <= 1; sign++) {
         f = (struct exh_force_ledger){sign * (INT64_C(1) << 40), 0, 0, 0, 7, 7, 7, 7};
         CHECK_EQ_I64(exh_drive_force(&a.s, &a.cfg, &closed, &f),
-                     sign > 0 ? EXH_LIMIT_GATE | EXH_LIMIT_FORCE : sign < 0 ? EXH_LIMIT_PULL : 0);
+                     sign > 0   ? EXH_LIMIT_GATE | EXH_LIMIT_FORCE
+                     : sign < 0 ? EXH_LIMIT_PULL
+                                : 0);
         CHECK(f.force_N_q20 == 0 && f.slew_N_q20 == 0 && f.clamp_N_q20 == -f.spring_N_q20,
               "ledger");
         CHECK_EQ_I64(a.s.force_N_q20, 0);
@@ -220,8 +226,9 @@ TEST(not_running_is_no_force)
     CHECK_EQ_I64(f.force_N_q20, NEWTON); /* rises from nothing */
 }
 
-/* The release against its definition, at every number of ticks that any rate and time give, from any
- * force: in every tick no more than force/R + 1 LSB goes, whatever the law says, and R are enough. */
+/* The release against its definition, at every number of ticks that any rate and time give, from
+ * any force: in every tick no more than force/R + 1 LSB goes, whatever the law says, and R are
+ * enough. */
 TEST(release_is_bounded_and_ends)
 {
     struct axis a;
@@ -242,9 +249,8 @@ TEST(release_is_bounded_and_ends)
             const int64_t asked = f.spring_N_q20 + f.damper_N_q20;
             p.ticks = check_u64() % 8 ? 1 : 1 + (uint32_t)(check_u64() % 3);
             CHECK_EQ_I64(exh_drive_force(&a.s, &a.cfg, &p, &f), EXH_LIMIT_RELEASE);
-            CHECK(last - f.force_N_q20 >= 0 &&
-                      (int64_t)(last - f.force_N_q20) * ticks <=
-                          ((int64_t)from + ticks) * (int64_t)p.ticks,
+            CHECK(last - f.force_N_q20 >= 0 && (int64_t)(last - f.force_N_q20) * ticks <=
+                                                   ((int64_t)from + ticks) * (int64_t)p.ticks,
                   "%" PRId32 " of %" PRId32 " in %" PRId32, last - f.force_N_q20, from, ticks);
             CHECK((int64_t)f.force_N_q20 * ticks <= (int64_t)from * (ticks - n), "late");
             CHECK(f.force_N_q20 == asked + f.clamp_N_q20 + f.slew_N_q20 + f.release_N_q20, "sum");
@@ -469,8 +475,10 @@ TEST(monitor_by_hand)
 
 TEST(frames_round_trip)
 {
-    struct exh_drive_in in = {{1, 0xFFFFFF, 0x80000000u, 7, 9}, {INT16_MIN, -1, 0, 1, INT16_MAX},
-                              -12345, EXH_DIN_ESTOP | (EXH_DIN_DRIVE0 << 4)};
+    struct exh_drive_in in = {{1, 0xFFFFFF, 0x80000000u, 7, 9},
+                              {INT16_MIN, -1, 0, 1, INT16_MAX},
+                              -12345,
+                              EXH_DIN_ESTOP | (EXH_DIN_DRIVE0 << 4)};
     struct exh_drive_out out = {{0, 65535, 32768, 1, 2}, 0x1F, 200};
     for (unsigned n = 0; n <= EXH_FINGERS; n++) {
         struct exh_drive_in in2 = {{0}, {0}, 0, 0};
@@ -504,14 +512,17 @@ TEST(state_round_trip)
     CHECK_EQ_I64(c.at, 16);
     c = exh_bytes_reader(buf, c.at);
     exh_drive_bytes(&c, &back);
-    CHECK(back.force_N_q20 == s.force_N_q20 && back.fall_N_q20 == 9 && back.i2t_q32 == s.i2t_q32, "state differs");
+    CHECK(back.force_N_q20 == s.force_N_q20 && back.fall_N_q20 == 9 && back.i2t_q32 == s.i2t_q32,
+          "state differs");
     memset(buf, 0xFF, sizeof buf); /* damaged: no push, and as hot as can be */
     c = exh_bytes_reader(buf, sizeof buf);
     exh_drive_bytes(&c, &back);
-    CHECK(back.force_N_q20 == 0 && back.fall_N_q20 == 0 && back.i2t_q32 == INT64_MAX / 2, "damaged state");
+    CHECK(back.force_N_q20 == 0 && back.fall_N_q20 == 0 && back.i2t_q32 == INT64_MAX / 2,
+          "damaged state");
 }
 
-/* Whatever the bytes: no pull but what current limits allow, and none rises while it is released. */
+/* Whatever the bytes: no pull but what current limits allow, and none rises while it is released.
+ */
 TEST(hostile_bytes_come_into_range)
 {
     struct axis a;
@@ -550,13 +561,16 @@ TEST(the_greatest_budget)
     const int64_t excess = peak_q16 * peak_q16 - cont_q16 * cont_q16, most = INT64_MAX / 2 / excess;
     struct exh_drive_par par;
     struct exh_drive_cfg cfg;
-    for (unsigned i = 0; i < EXH_DRIVE_ROWS; i++) { ((int32_t *)(void *)&par)[i] = exh_drive_rows[i].dflt; }
+    for (unsigned i = 0; i < EXH_DRIVE_ROWS; i++) {
+        ((int32_t *)(void *)&par)[i] = exh_drive_rows[i].dflt;
+    }
     CHECK_EQ_I64(exh_table_set(k, 2), 0);
     par.peak_ms = 1000;
     for (int64_t more = -1; more <= 1; more++) { /* and one tick by itself */
         const struct exh_period T = {1, (uint32_t)(most - 1 + more)};
-        CHECK_EQ_I64(exh_drive_setup(&cfg, &par, T, (struct exh_table){k, 2}, (struct exh_table){NULL, 0}),
-                     more > 0 ? -EXH_E_RANGE : 0);
+        CHECK_EQ_I64(
+            exh_drive_setup(&cfg, &par, T, (struct exh_table){k, 2}, (struct exh_table){NULL, 0}),
+            more > 0 ? -EXH_E_RANGE : 0);
         CHECK(more > 0 || cfg.i2t_budget_q32 == excess * (most + more), "budget");
     }
 }
@@ -567,14 +581,18 @@ TEST(no_peak_no_budget)
     struct exh_knot k[2] = {{0, 0, {0, 1}}, {1 << 20, 1 << 26, {0, 1}}};
     struct exh_drive_par par;
     struct exh_drive_cfg cfg;
-    for (unsigned i = 0; i < EXH_DRIVE_ROWS; i++) { ((int32_t *)(void *)&par)[i] = exh_drive_rows[i].dflt; }
+    for (unsigned i = 0; i < EXH_DRIVE_ROWS; i++) {
+        ((int32_t *)(void *)&par)[i] = exh_drive_rows[i].dflt;
+    }
     CHECK_EQ_I64(exh_table_set(k, 2), 0);
     memset(&cfg, 0x55, sizeof cfg);
     par.i_peak_A_q26 = par.i_cont_A_q26;
     CHECK_EQ_I64(exh_drive_setup(&cfg, &par, (struct exh_period){1, 1000}, (struct exh_table){k, 2},
                                  (struct exh_table){NULL, 0}),
                  0);
-    CHECK(cfg.i2t_budget_q32 == 0 && cfg.i2t_shift == 0 && cfg.i2t_fold.mant == 0 && cfg.i2t_fold.shift == 1, "a budget");
+    CHECK(cfg.i2t_budget_q32 == 0 && cfg.i2t_shift == 0 && cfg.i2t_fold.mant == 0 &&
+              cfg.i2t_fold.shift == 1,
+          "a budget");
 }
 
 TEST_MAIN("unit/drive", setup_rejections, setup_refuses_tables_that_pull_at_no_force,

@@ -51,11 +51,22 @@ TEST(shr_round_is_half_up)
         unsigned n;
         int64_t want;
     } row[] = {
-        {1, 1, 1},   {-1, 1, 0},  {3, 1, 2},  {-3, 1, -1}, {5, 2, 1},
-        {6, 2, 2},   {-6, 2, -1}, {-7, 2, -2}, {INT64_MAX, 1, INT64_C(1) << 62},
-        {INT64_MIN, 1, -(INT64_C(1) << 62)},  {INT64_MAX, 63, 1}, {INT64_MIN, 63, -1},
-        {INT64_C(1) << 62, 63, 1}, {(INT64_C(1) << 62) - 1, 63, 0},
-        {-(INT64_C(1) << 62), 63, 0}, {-(INT64_C(1) << 62) - 1, 63, -1},
+        {1, 1, 1},
+        {-1, 1, 0},
+        {3, 1, 2},
+        {-3, 1, -1},
+        {5, 2, 1},
+        {6, 2, 2},
+        {-6, 2, -1},
+        {-7, 2, -2},
+        {INT64_MAX, 1, INT64_C(1) << 62},
+        {INT64_MIN, 1, -(INT64_C(1) << 62)},
+        {INT64_MAX, 63, 1},
+        {INT64_MIN, 63, -1},
+        {INT64_C(1) << 62, 63, 1},
+        {(INT64_C(1) << 62) - 1, 63, 0},
+        {-(INT64_C(1) << 62), 63, 0},
+        {-(INT64_C(1) << 62) - 1, 63, -1},
     };
     for (size_t i = 0; i < LEN(row); i++) {
         CHECK_EQ_I64(exh_shr_round(row[i].v, row[i].n), row[i].want);
@@ -148,7 +159,8 @@ TEST(gain_set_at_its_upper_end)
     CHECK_EQ_I64(exh_gain_mul(g, 3), 3 * (INT64_C(1) << 30));
     CHECK(exh_gain_set(&g, INT32_MAX, 1) == 0, "2^31 - 1");
     CHECK_EQ_I64(exh_gain_mul(g, -2), -2 * (int64_t)INT32_MAX);
-    CHECK(exh_gain_set(&g, (UINT64_C(1) << 32) - 1, 2) == -EXH_E_RANGE, "2^31 - 1/2 rounds to 2^31");
+    CHECK(exh_gain_set(&g, (UINT64_C(1) << 32) - 1, 2) == -EXH_E_RANGE,
+          "2^31 - 1/2 rounds to 2^31");
 }
 
 TEST(gain_mul_is_exact_for_powers_of_two)
@@ -175,7 +187,8 @@ TEST(udiv64_by_hand)
         {UINT64_MAX, (UINT64_C(1) << 63) + 1, 1, (UINT64_C(1) << 63) - 2},
         {1000000007, 10, 100000000, 7},
         {UINT64_MAX, UINT64_MAX - 1, 1, 1},
-        {UINT64_C(0xFEDCBA9876543210), UINT64_C(0xC000000000000001), 1, UINT64_C(0x3EDCBA987654320F)},
+        {UINT64_C(0xFEDCBA9876543210), UINT64_C(0xC000000000000001), 1,
+         UINT64_C(0x3EDCBA987654320F)},
         /* Twice the remainder needs bit 64 and is less than the divisor without it. */
         {UINT64_C(0xFFFFFFFFFFFFFFFE), UINT64_MAX, 0, UINT64_C(0xFFFFFFFFFFFFFFFE)},
     };
@@ -199,4 +212,5 @@ TEST(high_words_by_hand)
 TEST_MAIN("unit/fix", sat32_keeps_the_sign_and_is_audited, clamp_is_a_limit_not_an_overflow,
           shr_round_is_half_up, mul_shr_is_half_up, mul64_q31_at_its_ends,
           from_u32_is_twos_complement, counters_wrap_both_ways, gain_set_at_its_ends,
-          gain_set_at_its_upper_end, gain_mul_is_exact_for_powers_of_two, udiv64_by_hand, high_words_by_hand);
+          gain_set_at_its_upper_end, gain_mul_is_exact_for_powers_of_two, udiv64_by_hand,
+          high_words_by_hand);

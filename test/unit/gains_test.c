@@ -169,7 +169,8 @@ TEST(staging_refuses_what_is_outside)
     CHECK_EQ_I64(exh_gains_stage(&params, &rule, 0x9999, 0, 0), -EXH_E_UNKNOWN);
     CHECK_EQ_I64(exh_params_apply(&params), 1);
     CHECK_EQ_I64(active.contact[1].k_Npm_q10, K(20000));
-    /* A pair that is outside already, as of damaged memory: what is wrong with the value comes first, and others go. */
+    /* A pair that is outside already, as of damaged memory: what is wrong with the value comes
+     * first, and others go. */
     staged.contact[1].b_Nspm_q20 = 0;
     CHECK_EQ_I64(exh_gains_stage(&params, &rule, 0x0401, 1, -1), -EXH_E_RANGE);
     CHECK_EQ_I64(exh_gains_stage(&params, &rule, 0x0401, 1, K(20000)), -EXH_E_GAINS);
@@ -191,8 +192,8 @@ TEST(a_whole_image_is_asked_and_dropped)
     CHECK_EQ_I64(exh_gains_staged(&params, &rule, &instance), 0);
 }
 
-/* From (10000, 0) over the valley to the same k at b = 40: k down to the valley's, through, up again; never up and
- * down by turns. What is dropped half way stands inside. */
+/* From (10000, 0) over the valley to the same k at b = 40: k down to the valley's, through, up
+ * again; never up and down by turns. What is dropped half way stands inside. */
 TEST(through_a_valley)
 {
     static const struct exh_gains_par valley = {
@@ -225,7 +226,8 @@ TEST(through_a_valley)
     CHECK(low < K(2500) && was == K(10000) && now->b_Nspm_q20 == B(40), "low %d", (int)low);
 }
 
-/* A bit of what is staged that turns over by itself: nothing goes there, and the guard's look tells in one round. */
+/* A bit of what is staged that turns over by itself: nothing goes there, and the guard's look tells
+ * in one round. */
 TEST(a_damaged_goal_is_not_gone_to)
 {
     const struct exh_contact_par *now = &active.contact[0];
@@ -306,7 +308,8 @@ TEST(rows_are_of_the_struct)
     }
 }
 
-/* Scenes with no contact, or half of one: nothing is asked of what is not there, and nothing moves. */
+/* Scenes with no contact, or half of one: nothing is asked of what is not there, and nothing moves.
+ */
 TEST(half_a_pair_is_none)
 {
     for (unsigned k = 0; k < 2; k++) { /* k alone, b alone */
@@ -357,7 +360,8 @@ TEST(a_damaged_pair_becomes_none)
 /* A table may have b before k, and either first of all. */
 TEST(rows_may_stand_in_any_order)
 {
-    const struct exh_signal_group turned[] = {{&exh_contact_rows[1], 1, 1}, {&exh_contact_rows[0], 1, 1}};
+    const struct exh_signal_group turned[] = {{&exh_contact_rows[1], 1, 1},
+                                              {&exh_contact_rows[0], 1, 1}};
     const struct exh_signal_table t = {turned, 2};
     int32_t now[2], want[2];
     exh_params_init(&params, &t, now, want);
@@ -373,6 +377,6 @@ TEST(rows_may_stand_in_any_order)
 TEST_MAIN("gains", pieces_and_ends, setup_refuses, setup_refuses_two_halves,
           setup_asks_for_its_rate, staging_refuses_what_is_outside,
           a_whole_image_is_asked_and_dropped, through_a_valley, a_damaged_goal_is_not_gone_to,
-          a_goal_that_became_none_is_waited_for,
-          no_wall_is_a_jump_away, rows_are_of_the_struct, half_a_pair_is_none, without_the_lead_both_go_by_themselves,
-          a_damaged_pair_becomes_none, rows_may_stand_in_any_order);
+          a_goal_that_became_none_is_waited_for, no_wall_is_a_jump_away, rows_are_of_the_struct,
+          half_a_pair_is_none, without_the_lead_both_go_by_themselves, a_damaged_pair_becomes_none,
+          rows_may_stand_in_any_order);

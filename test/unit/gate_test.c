@@ -70,8 +70,8 @@ TEST(gate_in_every_state)
     }
 }
 
-/* A table, a scale, a limit that is damaged while a force is let go: the code stays where it was, and
- * once it was nearer to zero it is no further again. */
+/* A table, a scale, a limit that is damaged while a force is let go: the code stays where it was,
+ * and once it was nearer to zero it is no further again. */
 TEST(a_release_never_rises)
 {
     static const int32_t amp[] = {2, 3, -3, 1, 2, -6, 0, 1};

@@ -49,8 +49,8 @@ TEST(valid_names_the_culprit)
         {7, {0, 1 << 20, {0, 0}, INT16_MAX, INT16_MIN, {255, 255}}, EXH_GLOVE_SPAN},
         {3, {0, 1 << 20, {1, 0}, 0, 1000, {22, 255}}, EXH_GLOVE_CROSS},
         {3, {0, 1 << 20, {0, 1}, 0, 1000, {255, 254}}, EXH_GLOVE_CROSS},
-        {3, {0, 1 << 20, {1, 0}, 0, 1000, {3, 255}}, EXH_GLOVE_CROSS}, /* itself */
-        {3, {0, 1 << 20, {1, 0}, 0, 1000, {10, 255}}, EXH_GLOVE_CROSS}, /* has some itself */
+        {3, {0, 1 << 20, {1, 0}, 0, 1000, {3, 255}}, EXH_GLOVE_CROSS},   /* itself */
+        {3, {0, 1 << 20, {1, 0}, 0, 1000, {10, 255}}, EXH_GLOVE_CROSS},  /* has some itself */
         {3, {0, 1 << 20, {1, 0}, 0, 1000, {255, 255}}, EXH_GLOVE_CROSS}, /* of none */
         {3, {0, 1 << 20, {INT32_MIN, INT32_MAX}, 0, 1000, {0, 21}}, EXH_GLOVE_WHATS},
     };
@@ -77,8 +77,11 @@ TEST(present_and_absent)
     cal.present = ALL | 1u << 22;
     CHECK_EQ_I64(exh_glove_cal_valid(&cal, &bad), -EXH_E_RANGE);
     CHECK_EQ_I64(bad.what, EXH_GLOVE_PRESENT);
-    cal = (struct exh_glove_cal){7, 3, 20000, 30, 1u << 22, {{0}}}; /* that bit alone, of no sensor that is */
-    for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) { cal.sensor[i].of[0] = cal.sensor[i].of[1] = EXH_GLOVE_NONE; }
+    cal = (struct exh_glove_cal){7,  3,        20000,
+                                 30, 1u << 22, {{0}}}; /* that bit alone, of no sensor that is */
+    for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
+        cal.sensor[i].of[0] = cal.sensor[i].of[1] = EXH_GLOVE_NONE;
+    }
     CHECK_EQ_I64(exh_glove_cal_valid(&cal, &bad), -EXH_E_RANGE);
     CHECK_EQ_I64(bad.what, EXH_GLOVE_PRESENT);
     cal = sound();
@@ -120,8 +123,8 @@ TEST(check_tells_whose_and_when)
     struct exh_glove_bad bad = {99, 99};
     for (size_t i = 0; i < LEN(row); i++) {
         const int err = exh_glove_cal_check(&cal, row[i].user, row[i].glove, row[i].day, &bad);
-        CHECK(err == row[i].err && (err == 0 || (bad.what == row[i].what && bad.at == 0)), "row %zu: %d, %s", i, err,
-              exh_glove_what_text(bad.what));
+        CHECK(err == row[i].err && (err == 0 || (bad.what == row[i].what && bad.at == 0)),
+              "row %zu: %d, %s", i, err, exh_glove_what_text(bad.what));
     }
     cal.valid_days = UINT32_MAX; /* for ever, but not before */
     CHECK_EQ_I64(exh_glove_cal_check(&cal, 7, 3, UINT32_MAX, &bad), 0);
@@ -224,39 +227,46 @@ TEST(an_image_of_nonsense_is_refused)
 
 /* --- the glove that the library has by itself --- */
 
-/* Ends of each channel in thousandths of the converter's -9 .. 9 V of +-10 V, and the joint's angles there. */
+/* Ends of each channel in thousandths of the converter's -9 .. 9 V of +-10 V, and the joint's
+ * angles there. */
 TEST(the_default_goes_through_its_ends)
 {
     static const int16_t of[EXH_GLOVE_SENSORS][4] = {
-        {335, 697, -60, 60}, {311, 736, -30, 30}, {461, 909, 0, 90}, {791, 350, 0, 50},  {429, 654, 0, 90},
-        {181, 654, 0, 90},   {185, 469, 0, 90},   {417, 630, 0, 90}, {268, 591, 0, 90},  {0, 323, 0, 90},
-        {468, 390, 0, 50},   {323, 571, 0, 90},   {240, 618, 0, 90}, {177, 390, 0, 90},  {610, 283, 0, 50},
-        {354, 591, 0, 90},   {154, 602, 0, 90},   {319, 579, 0, 90}, {516, 209, 0, 50},  {357, 650, 0, 40},
+        {335, 697, -60, 60}, {311, 736, -30, 30}, {461, 909, 0, 90}, {791, 350, 0, 50},
+        {429, 654, 0, 90},   {181, 654, 0, 90},   {185, 469, 0, 90}, {417, 630, 0, 90},
+        {268, 591, 0, 90},   {0, 323, 0, 90},     {468, 390, 0, 50}, {323, 571, 0, 90},
+        {240, 618, 0, 90},   {177, 390, 0, 90},   {610, 283, 0, 50}, {354, 591, 0, 90},
+        {154, 602, 0, 90},   {319, 579, 0, 90},   {516, 209, 0, 50}, {357, 650, 0, 40},
         {154, 622, -30, 40}, {925, 236, -30, 10}};
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
         const struct exh_glove_sensor *s = &exh_glove_cal_default.sensor[i];
         int16_t end[2];
         for (unsigned e = 0; e < 2; e++) {
             const int64_t code_q15 = (2 * of[i][e] - 1000) * (INT64_C(294912) << 15) / 10000;
-            const int64_t turn_q32 = (code_q15 - s->zero_raw_q15) * s->gain_turnpraw_q38 / (1 << 21);
+            const int64_t turn_q32 =
+                (code_q15 - s->zero_raw_q15) * s->gain_turnpraw_q38 / (1 << 21);
             const int64_t off_q32 = turn_q32 - of[i][2 + e] * (INT64_C(1) << 32) / 360;
             CHECK(off_q32 <= 1 << 15 && -off_q32 <= 1 << 15, "sensor %u, end %u", i, e);
             end[e] = (int16_t)((2 * of[i][e] - 1000) * INT64_C(294912) / 10000);
         }
         { /* 58982.4 codes times 360 degrees; the last gain below */
             const int64_t n = (of[i][3] - of[i][2]) * (INT64_C(1) << 38) * 1000;
-            const int64_t d = (of[i][1] > of[i][0] ? of[i][1] - of[i][0] : of[i][0] - of[i][1]) * INT64_C(21233664);
+            const int64_t d = (of[i][1] > of[i][0] ? of[i][1] - of[i][0] : of[i][0] - of[i][1]) *
+                              INT64_C(21233664);
             const int64_t g = of[i][1] > of[i][0] ? s->gain_turnpraw_q38 : -s->gain_turnpraw_q38;
             CHECK(g * d <= n && (g + 1) * d > n, "sensor %u: gain", i);
         }
         CHECK(s->low_raw == (end[0] < end[1] ? end[0] : end[1]), "sensor %u: low", i);
         CHECK(s->high_raw == (end[0] < end[1] ? end[1] : end[0]), "sensor %u: high", i);
-        CHECK(s->cross_q30[0] == 0 && s->cross_q30[1] == 0 && s->of[0] == EXH_GLOVE_NONE && s->of[1] == EXH_GLOVE_NONE,
+        CHECK(s->cross_q30[0] == 0 && s->cross_q30[1] == 0 && s->of[0] == EXH_GLOVE_NONE &&
+                  s->of[1] == EXH_GLOVE_NONE,
               "sensor %u: cross", i);
     }
-    CHECK(exh_glove_cal_default.user_id == 0 && exh_glove_cal_default.glove_id == 0 && exh_glove_cal_default.day == 0,
+    CHECK(exh_glove_cal_default.user_id == 0 && exh_glove_cal_default.glove_id == 0 &&
+              exh_glove_cal_default.day == 0,
           "somebody's");
-    CHECK(exh_glove_cal_default.valid_days == UINT32_MAX && exh_glove_cal_default.present == ALL, "for ever, and all");
+    CHECK(exh_glove_cal_default.valid_days == UINT32_MAX && exh_glove_cal_default.present == ALL,
+          "for ever, and all");
 }
 
 /* A bit beyond the last sensor does not make it one. */

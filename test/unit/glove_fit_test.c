@@ -342,7 +342,8 @@ TEST(a_fit_begins_anew)
     }
 }
 
-/* Two poses will do where nothing couples, 5 degrees apart and no less; what was there stays there. */
+/* Two poses will do where nothing couples, 5 degrees apart and no less; what was there stays there.
+ */
 TEST(two_poses_five_degrees_apart)
 {
     for (int32_t less = 0; less < 2; less++) {
@@ -412,7 +413,8 @@ TEST(a_zero_at_the_end)
     }
 }
 
-/* A knuckle that moves in one pose of five, by 2^-8 turn to the bit: four times the square of that is the least that counts. */
+/* A knuckle that moves in one pose of five, by 2^-8 turn to the bit: four times the square of that
+ * is the least that counts. */
 TEST(a_knuckle_that_just_moved_enough)
 {
     static const int8_t deg[5] = {-20, 20, -20, 20,

@@ -115,7 +115,7 @@ TEST(abductions_lose_what_knuckles_add)
     f.cal.sensor[10].of[0] = 4;
     f.cal.sensor[10].of[1] = 7;
     f.cal.sensor[10].cross_q30[0] = -(INT32_C(1) << 28); /* -1/4 */
-    f.cal.sensor[10].cross_q30[1] = INT32_C(1) << 29; /* 1/2  */
+    f.cal.sensor[10].cross_q30[1] = INT32_C(1) << 29;    /* 1/2 */
     f.cal.sensor[18].of[1] = 15;
     f.cal.sensor[18].cross_q30[1] = INT32_MIN; /* -2 */
     ready(&f);
@@ -642,7 +642,8 @@ TEST(a_second_cross_term_alone)
     f.cal.sensor[5].of[1] = 2;
     f.cal.sensor[5].cross_q30[1] = INT32_C(1) << 29;
     ready(&f);
-    CHECK(f.cfg.crosses == 1 && f.cfg.crossed[0] == 5, "%u of %u", (unsigned)f.cfg.crossed[0], (unsigned)f.cfg.crosses);
+    CHECK(f.cfg.crosses == 1 && f.cfg.crossed[0] == 5, "%u of %u", (unsigned)f.cfg.crossed[0],
+          (unsigned)f.cfg.crosses);
     f.in.raw[2] = 1100;
     (void)frame(&f);
     CHECK(f.angle[5] == 3276800 && f.angle[2] == 6553600, "%" PRId32, f.angle[5]);
@@ -662,5 +663,5 @@ TEST_MAIN("unit/glove", codes_become_angles, a_gain_below_zero_falls,
           a_spike_leaves_no_trace, after_a_fault_the_angle_glides,
           noise_within_the_hysteresis_moves_no_angle_twice, default_calibration_runs_at_the_default,
           default_calibration_gives_its_end_points, setup_rejections, state_round_trip,
-          damaged_state_finds_back, a_state_that_has_not_begun_is_empty, every_cause_has_a_word, the_first_and_the_last_have_cross_terms,
-          a_second_cross_term_alone);
+          damaged_state_finds_back, a_state_that_has_not_begun_is_empty, every_cause_has_a_word,
+          the_first_and_the_last_have_cross_terms, a_second_cross_term_alone);

@@ -4,7 +4,6 @@
 
 #include "check.h"
 
-
 #define LEN(a) (sizeof(a) / sizeof((a)[0]))
 
 static const struct exh_signal rows[] = {

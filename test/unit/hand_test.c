@@ -147,7 +147,9 @@ TEST(setup_refuses)
             for (unsigned c = 0; c < 3; c++) { b.rot_q30[2][c] /= 2; }
             break;
         case 10:
-            for (unsigned c = 0; c < 3; c++) { b.rot_q30[2][c] = b.rot_q30[2][c] / 2 + b.rot_q30[1][c] / 2; }
+            for (unsigned c = 0; c < 3; c++) {
+                b.rot_q30[2][c] = b.rot_q30[2][c] / 2 + b.rot_q30[1][c] / 2;
+            }
             break;
         case 8: b.rot_q30[0][0] = -(1 << 30) - 1; break;
         default: b.rot_q30[2][0] = INT32_MIN; break;
@@ -244,7 +246,8 @@ TEST(map_check_refuses)
     }
 }
 
-/* Robot joints and tip of a finger of which so much string is out, as the wearer's joints share it. */
+/* Robot joints and tip of a finger of which so much string is out, as the wearer's joints share it.
+ */
 static void pulled(const struct exh_hand_finger *own, const struct exh_hand_finger *f, unsigned i,
                    int64_t out_um, int32_t *q, struct exh_vec3 *tip)
 {
@@ -295,7 +298,7 @@ TEST(follow_by_hand)
     struct exh_hand_finger f = own;
     struct exh_hand_joint *j = m.joint[EXH_THUMB];
     const int32_t w1 = own.pull_radpm_q20[0], w2 = own.pull_radpm_q20[1];
-    j[1].gain_q24[0] = 3 << 23; /* 1.5 of the knuckle */
+    j[1].gain_q24[0] = 3 << 23;    /* 1.5 of the knuckle */
     j[1].gain_q24[1] = -(1 << 24); /* and abduction, which no string moves */
     j[2].gain_q24[0] = 1 << 24;
     j[2].gain_q24[1] = -(1 << 25);
@@ -321,7 +324,8 @@ TEST(mirror_images_are_no_turns)
 {
     const struct exh_hand_par par = defaults();
     for (unsigned i = 0; i < 6 * 8; i++) {
-        static const uint8_t to[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
+        static const uint8_t to[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1},
+                                         {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
         const unsigned way = i / 8, negative = i % 8;
         const unsigned odd = (way >= 3) ^ (negative & 1) ^ (negative >> 1 & 1) ^ (negative >> 2);
         struct exh_hand_bones b = exh_hit2_bones[EXH_INDEX];
@@ -330,7 +334,8 @@ TEST(mirror_images_are_no_turns)
         for (unsigned r = 0; r < 3; r++) {
             b.rot_q30[r][to[way][r]] = negative >> r & 1 ? -(INT32_C(1) << 30) : INT32_C(1) << 30;
         }
-        CHECK(exh_hand_setup(&f, &b, &par) == (odd ? -EXH_E_RANGE : 0), "way %u, signs %u", way, negative);
+        CHECK(exh_hand_setup(&f, &b, &par) == (odd ? -EXH_E_RANGE : 0), "way %u, signs %u", way,
+              negative);
     }
 }
 
@@ -345,10 +350,13 @@ TEST(what_a_hand_does_not_use_is_zero)
             }
         }
     }
-    for (unsigned f = EXH_INDEX; f < EXH_HAND_FINGERS; f++) { /* fingers bend about an axis of the palm */
+    for (unsigned f = EXH_INDEX; f < EXH_HAND_FINGERS;
+         f++) { /* fingers bend about an axis of the palm */
         const int32_t(*r)[3] = exh_hit2_bones[f].rot_q30;
-        CHECK(r[0][0] == 0 && r[1][0] == 0 && r[2][0] == 1 << 30 && r[2][1] == 0 && r[2][2] == 0, "finger %u", f);
-        CHECK(r[0][1] == r[1][2] && r[0][2] == -r[1][1], "finger %u: an angle and its complement", f);
+        CHECK(r[0][0] == 0 && r[1][0] == 0 && r[2][0] == 1 << 30 && r[2][1] == 0 && r[2][2] == 0,
+              "finger %u", f);
+        CHECK(r[0][1] == r[1][2] && r[0][2] == -r[1][1], "finger %u: an angle and its complement",
+              f);
     }
 }
 
@@ -384,5 +392,5 @@ TEST(ends_to_the_bit)
 
 TEST_MAIN("unit/hand", published_vectors, turns_are_turns, slope_on_paper, setup_refuses,
           map_of_the_hand_is_sound, a_finger_follows_its_own_sensors, spans_end_at_the_limits,
-          map_check_refuses, slope_is_that_of_the_string_through_the_map, follow_by_hand, mirror_images_are_no_turns, what_a_hand_does_not_use_is_zero,
-          ends_to_the_bit);
+          map_check_refuses, slope_is_that_of_the_string_through_the_map, follow_by_hand,
+          mirror_images_are_no_turns, what_a_hand_does_not_use_is_zero, ends_to_the_bit);

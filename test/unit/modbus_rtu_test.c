@@ -56,7 +56,8 @@ TEST(silence_by_baud)
 {
     static const struct {
         uint32_t baud, us;
-    } want[] = {{300, 128334}, {9600, 4011}, {9625, 4000}, {7521, 5120}, {19200, 2006}, {19201, 1750}, {115200, 1750}};
+    } want[] = {{300, 128334}, {9600, 4011},  {9625, 4000},  {7521, 5120},
+                {19200, 2006}, {19201, 1750}, {115200, 1750}};
     for (size_t i = 0; i < sizeof want / sizeof want[0]; i++) {
         begin(1, want[i].baud);
         CHECK_EQ_I64(g.u.silence_us, want[i].us);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* modbus.h: the slave, request by request. The examples of the Modbus specification (V1.1b3, chapter
- * 6) with its addresses replaced by ours, each exception, and each edge of a count. */
+/* modbus.h: the slave, request by request. The examples of the Modbus specification (V1.1b3,
+ * chapter 6) with its addresses replaced by ours, each exception, and each edge of a count. */
 #include "exhand/modbus.h"
 
 #include "exhand/error.h"
@@ -8,14 +8,15 @@
 
 #include "check.h"
 
-#define VALUES  100 /* parameters: enough for the longest request               */
+#define VALUES  100 /* parameters: enough for the longest request */
 #define SIGNALS 70
 
 static const struct exh_signal par_row[4] = {
     {0x7101, 10, EXH_WHEN_ANY, -1024000, 1024000, 1024, "k", "n_per_m", "may change at any time"},
     {0x7102, 0, EXH_WHEN_SETUP, 0, 1000, 500, "window", "", "before the loop"},
     {0x7103, 20, EXH_WHEN_ANY, INT32_MIN, INT32_MAX, 0, "wide", "n", "any raw value"},
-    {0x7104, 30, EXH_WHEN_ANY, 5 - INT32_MAX, INT32_MAX - 5, 0, "long", "m", "ends between two binary32"},
+    {0x7104, 30, EXH_WHEN_ANY, 5 - INT32_MAX, INT32_MAX - 5, 0, "long", "m",
+     "ends between two binary32"},
 };
 static const struct exh_signal out_row[7] = {
     {0x7201, 30, EXH_WHEN_OUTPUT, INT32_MIN, INT32_MAX, 0, "q", "m", ""},
@@ -35,7 +36,7 @@ struct rig {
     struct exh_regs r;
     int32_t active[VALUES], wanted[VALUES], staged[VALUES], signal[SIGNALS];
     uint32_t touched[EXH_REGS_WORDS(VALUES)];
-    uint8_t resp[EXH_MODBUS_PDU_B + 8]; /* with a fence                        */
+    uint8_t resp[EXH_MODBUS_PDU_B + 8]; /* with a fence */
     int len;
 };
 
@@ -190,7 +191,9 @@ TEST(says_who_it_is)
     ASK(43, 14, 4, 2);
     GIVES(43, 14, 4, 0x81, 0, 0, 1, 2, 5, '0' + EXH_VERSION_MAJOR, '.', '0' + EXH_VERSION_MINOR,
           '.', '0' + EXH_VERSION_PATCH);
-    for (int i = g.len; i < EXH_MODBUS_PDU_B; i++) { CHECK(g.resp[i] == 0xA5, "behind the answer, at %d", i); }
+    for (int i = g.len; i < EXH_MODBUS_PDU_B; i++) {
+        CHECK(g.resp[i] == 0xA5, "behind the answer, at %d", i);
+    }
     ASK(43, 14, 3, 2);
     CHECK_EQ_I64(g.len, 14);
     ASK(43, 14, 1, 77); /* unknown: from the first on */
@@ -367,17 +370,17 @@ TEST(nothing_is_there)
     REFUSES(2, 2, 0, 0, 0, 193);
     REFUSES(2, 2, 0, 192, 0, 1);
     REFUSES(2, 2, 0xFF, 0xFF, 0, 2);
-    REFUSES(2, 4, 0, 0x3C, 0, 1); /* behind the head                      */
-    REFUSES(2, 4, 0x04, 0x00, 0, 1); /* kept for traces                      */
-    REFUSES(2, 4, 0x0F, 0xFF, 0, 2); /* into the outputs                     */
-    REFUSES(2, 4, 0x10, 0x8C, 0, 1); /* behind the outputs                   */
+    REFUSES(2, 4, 0, 0x3C, 0, 1);    /* behind the head */
+    REFUSES(2, 4, 0x04, 0x00, 0, 1); /* kept for traces */
+    REFUSES(2, 4, 0x0F, 0xFF, 0, 2); /* into the outputs */
+    REFUSES(2, 4, 0x10, 0x8C, 0, 1); /* behind the outputs */
     REFUSES(2, 4, 0x10, 0x8B, 0, 2);
     REFUSES(2, 4, 0x2F, 0xFF, 0, 2);
     REFUSES(2, 4, 0x50, 0xC8, 0, 1);
     REFUSES(2, 4, 0x70, 0xC7, 0, 2);
     REFUSES(2, 4, 0x90, 0x00, 0, 1);
     REFUSES(2, 4, 0xFF, 0xFF, 0, 1);
-    REFUSES(2, 4, 0xFF, 0xFF, 0, 2); /* and not round to 0                   */
+    REFUSES(2, 4, 0xFF, 0xFF, 0, 2); /* and not round to 0 */
     REFUSES(2, 3, 0, 0, 0, 1);
     REFUSES(2, 3, 0x10, 0, 0, 1);
     REFUSES(2, 3, 0x30, 0, 0, 1);
@@ -399,19 +402,19 @@ TEST(what_may_not_be)
     begin();
     REFUSES(3, 5, 0, 0, 0x12, 0x34);
     REFUSES(3, 5, 0, 0, 0, 1);
-    REFUSES(3, 5, 0, 4, 0xFF, 0); /* RUN, which nobody has allowed        */
-    REFUSES(3, 5, 0, 5, 0xFF, 0); /* CLEAR                                */
-    REFUSES(3, 5, 0, 2, 0xFF, 0); /* SAVE, with no place                  */
-    REFUSES(3, 15, 0, 0, 0, 6, 1, 0x18); /* OFF and RUN: all or none           */
-    REFUSES(3, 15, 0, 0, 0, 2, 1, 3); /* APPLY what is discarded              */
-    REFUSES(3, 16, 0x50, 2, 0, 2, 4, 0, 0, 0x03, 0xE9); /* 1001 of 0..1000     */
-    REFUSES(3, 6, 0x50, 2, 0x80, 0); /* its high half makes it negative      */
+    REFUSES(3, 5, 0, 4, 0xFF, 0);                       /* RUN, which nobody has allowed */
+    REFUSES(3, 5, 0, 5, 0xFF, 0);                       /* CLEAR */
+    REFUSES(3, 5, 0, 2, 0xFF, 0);                       /* SAVE, with no place */
+    REFUSES(3, 15, 0, 0, 0, 6, 1, 0x18);                /* OFF and RUN: all or none */
+    REFUSES(3, 15, 0, 0, 0, 2, 1, 3);                   /* APPLY what is discarded */
+    REFUSES(3, 16, 0x50, 2, 0, 2, 4, 0, 0, 0x03, 0xE9); /* 1001 of 0..1000 */
+    REFUSES(3, 6, 0x50, 2, 0x80, 0);                    /* its high half makes it negative */
     REFUSES(3, 16, 0x50, 0, 0, 4, 8, 0, 0, 0, 1, 0, 0, 0x03, 0xE9); /* the second of two */
     REFUSES(3, 23, 0x50, 0, 0, 2, 0x50, 2, 0, 2, 4, 0, 0, 0x03, 0xE9);
     REFUSES(3, 22, 0x50, 2, 0x7F, 0xFF, 0x80, 0);
     g.r.locked = 1;
     REFUSES(3, 16, 0x50, 2, 0, 2, 4, 0, 0, 0x01, 0xF5); /* 501 for 500, before the loop only */
-    ASK(16, 0x50, 2, 0, 2, 4, 0, 0, 0x01, 0xF4); /* as it is            */
+    ASK(16, 0x50, 2, 0, 2, 4, 0, 0, 0x01, 0xF4);        /* as it is */
     GIVES(16, 0x50, 2, 0, 2);
     untouched(__LINE__);
 }
@@ -419,15 +422,15 @@ TEST(what_may_not_be)
 TEST(floats_that_may_not_be)
 {
     begin();
-    REFUSES(3, 6, 0x70, 4, 0x40, 0); /* halves                       */
+    REFUSES(3, 6, 0x70, 4, 0x40, 0); /* halves */
     REFUSES(3, 6, 0x70, 5, 0, 0);
     REFUSES(3, 22, 0x70, 5, 0, 0, 0, 0);
     REFUSES(3, 16, 0x70, 4, 0, 3, 6, 0x40, 0, 0, 0, 0x40, 0);
-    REFUSES(3, 16, 0x70, 4, 0, 2, 4, 0x7F, 0x80, 0, 0); /* infinite            */
+    REFUSES(3, 16, 0x70, 4, 0, 2, 4, 0x7F, 0x80, 0, 0); /* infinite */
     REFUSES(3, 16, 0x70, 4, 0, 2, 4, 0xFF, 0x80, 0, 0);
-    REFUSES(3, 16, 0x70, 4, 0, 2, 4, 0x7F, 0xC0, 0, 0); /* no number           */
+    REFUSES(3, 16, 0x70, 4, 0, 2, 4, 0x7F, 0xC0, 0, 0); /* no number */
     REFUSES(3, 16, 0x70, 4, 0, 2, 4, 0x7F, 0x80, 0, 1);
-    REFUSES(3, 16, 0x70, 4, 0, 2, 4, 0x45, 0x00, 0, 1); /* beyond 2048         */
+    REFUSES(3, 16, 0x70, 4, 0, 2, 4, 0x45, 0x00, 0, 1); /* beyond 2048 */
     REFUSES(3, 16, 0x70, 4, 0, 2, 4, 0xC5, 0x00, 0, 1);
     REFUSES(3, 16, 0x70, 4, 0, 2, 4, 0x7F, 0x7F, 0xFF, 0xFF);
     REFUSES(3, 16, 0x70, 0, 0, 2, 4, 0x44, 0x7A, 0x08, 0); /* 1000.125 of 1000 */
@@ -449,7 +452,8 @@ TEST(what_reads_the_same_stays)
     untouched(__LINE__);
     ASK(16, 0x70, 6, 0, 2, 4, 0x3E, 0x91, 0xA2, 0xB5);
     CHECK_EQ_I64(g.staged[3], 0x123456A0);
-    ASK(16, 0x70, 6, 0, 2, 4, 0xC0, 0x00, 0x00, 0x00); /* an end reads as -2 m, a little beyond it */
+    ASK(16, 0x70, 6, 0, 2, 4, 0xC0, 0x00, 0x00,
+        0x00); /* an end reads as -2 m, a little beyond it */
     CHECK_EQ_I64(g.staged[3], 5 - INT32_MAX);
     ASK(16, 0x70, 6, 0, 2, 4, 0x40, 0x00, 0x00, 0x00);
     CHECK_EQ_I64(g.staged[3], INT32_MAX - 5);
@@ -645,7 +649,8 @@ TEST(words_for_people_are_all_there)
     for (unsigned i = 0; i < EXH_COILS; i++) { CHECK(exh_regs_coil_row[i].name, "coil %u", i); }
     for (unsigned i = 0; i < EXH_REGS_BLOCKS; i++) {
         CHECK(exh_regs_blocks[i].name, "block %u", i);
-        CHECK(exh_regs_blocks[i].kind > EXH_REGS_DISCRETE || exh_regs_blocks[i].at == 0, "bits begin at 0: block %u", i);
+        CHECK(exh_regs_blocks[i].kind > EXH_REGS_DISCRETE || exh_regs_blocks[i].at == 0,
+              "bits begin at 0: block %u", i);
     }
 }
 
@@ -686,7 +691,8 @@ TEST(a_word_full_of_values)
     GIVES(16, 0x50, 62, 0, 2);
     CHECK_EQ_I64(g.touched[0], UINT32_C(1) << 31);
     CHECK_EQ_I64(exh_regs_apply(&g.r, &g.p), 0);
-    CHECK(g.wanted[31] == 7 && g.touched[0] == 0 && g.touched[1] == UINT32_MAX, "%" PRId32, g.wanted[31]);
+    CHECK(g.wanted[31] == 7 && g.touched[0] == 0 && g.touched[1] == UINT32_MAX, "%" PRId32,
+          g.wanted[31]);
 }
 
 /* A table of parameters with a row that is computed: it may be written as it reads. */
@@ -712,5 +718,5 @@ TEST_MAIN("modbus", head_says_what_this_is, a_value_is_high_word_first_and_start
           what_reads_the_same_stays, apply_hands_over_all_or_none,
           what_is_staged_reads_back_and_is_counted, while_apply_is_pending_nothing_changes,
           commands_in_order_of_caution, bits_are_the_box, set_up_refuses,
-          without_tables_the_head_alone_is_there, words_for_people_are_all_there, requests_of_nothing,
-          a_word_full_of_values, outputs_among_parameters_stay);
+          without_tables_the_head_alone_is_there, words_for_people_are_all_there,
+          requests_of_nothing, a_word_full_of_values, outputs_among_parameters_stay);

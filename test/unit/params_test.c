@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Parameters that go little by little (signal.h): where they are in each tick, that they end where they are
- * wanted, in mid-way saved, restored and guarded. */
+/* Parameters that go little by little (signal.h): where they are in each tick, that they end where
+ * they are wanted, in mid-way saved, restored and guarded. */
 #include "exhand/error.h"
 #include "exhand/fix.h"
 #include "exhand/guard.h"
@@ -70,7 +70,7 @@ TEST(slewed_and_not)
     CHECK_EQ_I64(active[GAIN], 125);
     CHECK_EQ_I64(p.moving, 1);
     CHECK_EQ_I64(exh_params_apply(&p), 1);
-    CHECK_EQ_I64(active[GAIN], 144); /* 18.75 of 75 */
+    CHECK_EQ_I64(active[GAIN], 144);                        /* 18.75 of 75 */
     CHECK_EQ_I64(exh_params_stage(&p, 0x7201, 0, -100), 0); /* back again, from where it is */
     CHECK_EQ_I64(exh_params_apply(&p), 1);
     CHECK_EQ_I64(active[GAIN], 83);
@@ -80,7 +80,8 @@ TEST(slewed_and_not)
     CHECK_EQ_I64(exh_params_apply(&p), 0);
 }
 
-/* A value that is not staged and differs is a damaged one: while another moves it stays, for the guard to tell. */
+/* A value that is not staged and differs is a damaged one: while another moves it stays, for the
+ * guard to tell. */
 TEST(damaged_while_another_moves)
 {
     start(2);
@@ -214,8 +215,8 @@ TEST(bad_keyframes)
     }
 }
 
-/* Every tick anything is staged: the guard says nothing. One bit turned over, in either array, in mid-way,
- * is told within two rounds, though all goes on. */
+/* Every tick anything is staged: the guard says nothing. One bit turned over, in either array, in
+ * mid-way, is told within two rounds, though all goes on. */
 TEST(guard_in_mid_way)
 {
     for (unsigned bit = 0; bit < 2 * 32 * VALUES; bit++) {
@@ -244,7 +245,8 @@ TEST(guard_in_mid_way)
     }
 }
 
-/* What a rule refuses is taken back: the value that is on its way goes on, and the guard has nothing to tell. */
+/* What a rule refuses is taken back: the value that is on its way goes on, and the guard has
+ * nothing to tell. */
 TEST(taken_back)
 {
     int32_t was[VALUES];
@@ -278,7 +280,8 @@ TEST(keyframe_at_rest)
     CHECK(p.moving && p.pending, "nothing to take away");
     c = exh_bytes_reader(b, c.at);
     exh_params_bytes(&c, &p);
-    CHECK(exh_bytes_ok(&c) && !p.moving && !p.pending, "moving %d, pending %d", p.moving, p.pending);
+    CHECK(exh_bytes_ok(&c) && !p.moving && !p.pending, "moving %d, pending %d", p.moving,
+          p.pending);
     CHECK(active[GAIN] == 100 && staged[GAIN] == 100 && staged[1] == 3, "values");
 }
 
@@ -288,7 +291,9 @@ TEST(images_of_a_head)
     uint8_t image[16 + 4 * VALUES];
     start(0);
     CHECK_EQ_I64(exh_params_save(&p, image, sizeof image), sizeof image);
-    for (uint32_t n = 0; n < sizeof image; n++) { CHECK_EQ_I64(exh_params_load(&p, image, n, NULL), -EXH_E_SHORT); }
+    for (uint32_t n = 0; n < sizeof image; n++) {
+        CHECK_EQ_I64(exh_params_load(&p, image, n, NULL), -EXH_E_SHORT);
+    }
     CHECK_EQ_I64(exh_params_save(&p, NULL, 0), -EXH_E_SHORT); /* not looked at */
     image[0] ^= 1u;
     CHECK_EQ_I64(exh_params_load(&p, image, 11, NULL), -EXH_E_SHORT);
@@ -304,8 +309,8 @@ TEST(a_table_of_none)
     for (int k = 0; k < 5; k++) { CHECK_EQ_I64(exh_guard_step(&g), 0); }
 }
 
-/* A limit of force rises little by little and has fallen in the next tick, wherever it was on its way to; in a keyframe as
- * a slewed one. */
+/* A limit of force rises little by little and has fallen in the next tick, wherever it was on its
+ * way to; in a keyframe as a slewed one. */
 TEST(a_limit_falls_at_once)
 {
     static const struct exh_signal row[] = {
@@ -330,7 +335,8 @@ TEST(a_limit_falls_at_once)
 
 TEST(what_may_be_staged)
 {
-    static const struct exh_signal out[] = {{0x7401, 0, EXH_WHEN_OUTPUT, 0, 9, 4, "out", "", "computed"}};
+    static const struct exh_signal out[] = {
+        {0x7401, 0, EXH_WHEN_OUTPUT, 0, 9, 4, "out", "", "computed"}};
     static const struct exh_signal_group group[] = {{out, 1, 1}};
     static const struct exh_signal_table outputs = {group, 1};
     start(0);
@@ -356,8 +362,7 @@ TEST(the_sum_is_of_both_arrays)
     CHECK_EQ_I64(p.sum, sum);
 }
 
-TEST_MAIN("unit/params", steps_worked_out, slewed_and_not, damaged_while_another_moves, before_the_loop_at_once,
-          shift_of_a_time,
-          image_in_mid_way, keyframe_in_mid_way, bad_keyframes, guard_in_mid_way, taken_back,
-          keyframe_at_rest, images_of_a_head, a_table_of_none, a_limit_falls_at_once, what_may_be_staged,
-          the_sum_is_of_both_arrays);
+TEST_MAIN("unit/params", steps_worked_out, slewed_and_not, damaged_while_another_moves,
+          before_the_loop_at_once, shift_of_a_time, image_in_mid_way, keyframe_in_mid_way,
+          bad_keyframes, guard_in_mid_way, taken_back, keyframe_at_rest, images_of_a_head,
+          a_table_of_none, a_limit_falls_at_once, what_may_be_staged, the_sum_is_of_both_arrays);

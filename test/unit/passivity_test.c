@@ -93,7 +93,7 @@ TEST(what_is_held_times_what_moves)
     (void)tick(1, 1, 8, 0); /* 24 * 4 are given back: 40 are owed */
     CHECK_EQ_I64(energy(), 8 * 3 + 16 * 2 - 24 * 4);
     CHECK_EQ_I64(exh_passivity_J_q24(&rig.s, &rig.cfg), -8389); /* 5 N of 0.1 mm: 0.5 mJ */
-    (void)tick(-2, 0, 0, 0); /* seen to its end */
+    (void)tick(-2, 0, 0, 0);                                    /* seen to its end */
     CHECK_EQ_I64(energy(), -40 - 8 * 3);
     (void)tick(-9, 0, 0, 0);
     CHECK_EQ_I64(energy(), 0);
@@ -103,7 +103,7 @@ TEST(what_is_held_times_what_moves)
 TEST(what_is_owed_lowers_the_limit)
 {
     static const struct {
-        int32_t owed; /* N counts */
+        int32_t owed;        /* N counts */
         int32_t asked, left; /* N/8 */
     } row[] = {{0, 160, 160},  {0, 1000, 160},  {31, 160, 152}, {31, 152, 152}, {31, 151, 151},
                {310, 160, 80}, {310, 79, 79},   {310, 1, 1},    {589, 160, 8},  {620, 160, 0},
@@ -258,7 +258,8 @@ TEST(what_cannot_be_proved_is_refused)
     /* A count a tick is 2^-27 m/s: the longest way, and one count more. */
     CHECK_EQ_I64(SETUP(held(), ((struct exh_velocity_scale){1 << 15, {1, 1}}), (1 << 24) - 1), 0);
     CHECK_EQ_I64(rig.cfg.way_cnt, 1 << 24);
-    CHECK_EQ_I64(SETUP(held(), ((struct exh_velocity_scale){1 << 15, {1, 1}}), 1 << 24), -EXH_E_RANGE);
+    CHECK_EQ_I64(SETUP(held(), ((struct exh_velocity_scale){1 << 15, {1, 1}}), 1 << 24),
+                 -EXH_E_RANGE);
     rig.held[0].y = 1; /* a force without a current */
     CHECK_EQ_I64(exh_table_set(rig.held, 2), 0);
     CHECK_EQ_I64(setup(), -EXH_E_RANGE);
@@ -318,8 +319,8 @@ TEST(what_has_to_fall_is_no_more_than_the_highest_limit)
     rig.to_cur[1] = (struct exh_knot){200 * NEWTON, 6 * AMPERE, {0, 0}};
     CHECK_EQ_I64(exh_table_set(rig.to_cur, 2), 0);
     rig.drive_par.slew_down_Nps = 100001; /* of a tick of 1 ms, rounded: 100 N */
-    CHECK_EQ_I64(exh_drive_setup(&rig.drive, &rig.drive_par, rig.T, (struct exh_table){rig.to_cur, 2},
-                                 (struct exh_table){NULL, 0}),
+    CHECK_EQ_I64(exh_drive_setup(&rig.drive, &rig.drive_par, rig.T,
+                                 (struct exh_table){rig.to_cur, 2}, (struct exh_table){NULL, 0}),
                  0);
     CHECK_EQ_I64(setup(), 0);
     rig.drive_par.slew_down_Nps = 99999;
@@ -364,11 +365,12 @@ TEST(energies_and_ways_at_their_ends)
     start(1);
     rig.T = scale.T;
     rig.drive_par.slew_down_Nps = 10000000;
-    CHECK_EQ_I64(exh_drive_setup(&rig.drive, &rig.drive_par, rig.T, (struct exh_table){rig.to_cur, 2},
-                                 (struct exh_table){NULL, 0}),
+    CHECK_EQ_I64(exh_drive_setup(&rig.drive, &rig.drive_par, rig.T,
+                                 (struct exh_table){rig.to_cur, 2}, (struct exh_table){NULL, 0}),
                  0);
     CHECK_EQ_I64(exh_passivity_setup(&rig.cfg, &rig.par, &rig.drive, held(), scale, SPEED), 0);
-    CHECK(rig.cfg.way_cnt == 1 && rig.cfg.shift == 0, "way %" PRId32 ", shift %d", rig.cfg.way_cnt, rig.cfg.shift);
+    CHECK(rig.cfg.way_cnt == 1 && rig.cfg.shift == 0, "way %" PRId32 ", shift %d", rig.cfg.way_cnt,
+          rig.cfg.shift);
 }
 
 /* A table of one knot is none, and nothing of an earlier set-up stays. */
@@ -380,14 +382,15 @@ TEST(set_up_anew)
     scale = (struct exh_velocity_scale){STEP, rig.T};
     for (uint8_t n = 0; n < 2; n++) {
         const struct exh_table few = {rig.held, n};
-        CHECK_EQ_I64(exh_passivity_setup(&rig.cfg, &rig.par, &rig.drive, few, scale, SPEED), -EXH_E_RANGE);
+        CHECK_EQ_I64(exh_passivity_setup(&rig.cfg, &rig.par, &rig.drive, few, scale, SPEED),
+                     -EXH_E_RANGE);
     }
     CHECK_EQ_I64(setup(), 0);
     first = rig.cfg;
     memset(&rig.cfg, 0x0F, sizeof rig.cfg);
     CHECK_EQ_I64(setup(), 0);
-    CHECK(rig.cfg.shift == first.shift && rig.cfg.way_cnt == first.way_cnt && rig.cfg.share.mant == first.share.mant &&
-              rig.cfg.share.shift == first.share.shift,
+    CHECK(rig.cfg.shift == first.shift && rig.cfg.way_cnt == first.way_cnt &&
+              rig.cfg.share.mant == first.share.mant && rig.cfg.share.shift == first.share.shift,
           "shift %d", rig.cfg.shift);
 }
 
@@ -395,5 +398,7 @@ TEST_MAIN("passivity", what_is_held_times_what_moves, what_is_owed_lowers_the_li
           the_bit_says_when_and_the_term_what, the_pull_back_is_not_the_contacts,
           contacts_are_reckoned_one_by_one, late_outputs_count_for_the_worse, counts_wrap,
           what_cannot_be_proved_is_refused, force_has_to_be_able_to_fall_in_one_tick,
-          bytes_come_back, damaged_bytes_do_no_harm, what_has_to_fall_is_no_more_than_the_highest_limit, the_least_energy_is_forgotten_and_the_first_tick_moves_nothing, energies_and_ways_at_their_ends,
-          set_up_anew);
+          bytes_come_back, damaged_bytes_do_no_harm,
+          what_has_to_fall_is_no_more_than_the_highest_limit,
+          the_least_energy_is_forgotten_and_the_first_tick_moves_nothing,
+          energies_and_ways_at_their_ends, set_up_anew);

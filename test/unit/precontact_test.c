@@ -117,7 +117,7 @@ TEST(tracks_freezes_and_releases)
     {
         const int32_t lim = s.lim_m_q30;
         in.tip_m_q30.x = MM(3); /* along the plane: nothing */
-        at(MM(100) + MM(15)); /* d = -5 mm, and a rounding less or more */
+        at(MM(100) + MM(15));   /* d = -5 mm, and a rounding less or more */
         at(MM(114));
         CHECK(bits & EXH_PRECONTACT_STANDS, "frozen");
         CHECK_EQ_I64(s.frozen_n, 1);
@@ -189,7 +189,8 @@ TEST(a_contact_that_the_glove_denies_is_let_go)
         in.touching = (uint8_t)c;
     }
     CHECK(n == 12 && f.spring_N_q20 == 0, "force in %d ticks", n);
-    CHECK(bits == (EXH_PRECONTACT_RELEASE | EXH_PRECONTACT_DOUBT | EXH_PRECONTACT_LETGO), "%" PRIx32, bits);
+    CHECK(bits == (EXH_PRECONTACT_RELEASE | EXH_PRECONTACT_DOUBT | EXH_PRECONTACT_LETGO),
+          "%" PRIx32, bits);
     CHECK(s.let_go_n == 1 && s.lim_m_q30 == EXH_PRECONTACT_NEVER, "counted");
     tell(floor_plane);
     at(MM(150));
@@ -223,7 +224,8 @@ TEST(an_unknown_fingertip)
     in.tip_age_ticks = 21;
     at(MM(150));
     CHECK(bits == EXH_PRECONTACT_BLIND && s.lim_m_q30 == EXH_PRECONTACT_NEVER &&
-              s.d_m_q30 == INT32_MIN && s.stale_n == 0, "tracking: no contact, %" PRIx32, bits);
+              s.d_m_q30 == INT32_MIN && s.stale_n == 0,
+          "tracking: no contact, %" PRIx32, bits);
     in.tip_age_ticks = 0;
     at(MM(112));
     CHECK(bits == EXH_PRECONTACT_AROUND, "came near unseen");
@@ -511,13 +513,15 @@ TEST(set_up_refuses)
         CHECK(exh_precontact_setup(&cfg, &par, odd, 1, 0, TICK) == 0, "row %d unused", i);
         memcpy(odd, material, sizeof odd);
         ((int32_t *)&odd[0])[i] = exh_material_rows[i].max + 1;
-        CHECK(exh_precontact_setup(&cfg, &par, odd, 2, 0, TICK) == -EXH_E_RANGE, "row %d of the first", i);
+        CHECK(exh_precontact_setup(&cfg, &par, odd, 2, 0, TICK) == -EXH_E_RANGE,
+              "row %d of the first", i);
     }
     CHECK_EQ_I64(exh_precontact_setup(&cfg, &par, material, 0, 0, TICK), -EXH_E_RANGE);
     CHECK_EQ_I64(exh_precontact_setup(&cfg, &par, material, 256, 0, TICK), -EXH_E_RANGE);
     CHECK_EQ_I64(exh_precontact_setup(&cfg, &par, material, 2, -1, TICK), -EXH_E_RANGE);
     CHECK_EQ_I64(exh_precontact_setup(&cfg, &par, material, 2, MM(25) + 1, TICK), -EXH_E_RANGE);
-    CHECK_EQ_I64(exh_precontact_setup(&cfg, &par, material, 2, 0, (struct exh_period){0, 1000}), -EXH_E_RANGE);
+    CHECK_EQ_I64(exh_precontact_setup(&cfg, &par, material, 2, 0, (struct exh_period){0, 1000}),
+                 -EXH_E_RANGE);
     for (int i = 0; i < EXH_PRECONTACT_ROWS; i++) {
         CHECK(exh_precontact_rows[i].dflt >= exh_precontact_rows[i].min &&
                   exh_precontact_rows[i].dflt <= exh_precontact_rows[i].max,
@@ -575,7 +579,8 @@ TEST(damaged_state_comes_back_into_range)
         exh_precontact_bytes(&c, &s);
         c = exh_bytes_reader(buf, sizeof buf);
         exh_precontact_bytes(&c, &back);
-        CHECK(back.phase == EXH_PRECONTACT_FROZEN && back.held.offset_m_q60 == s.held.offset_m_q60, "sign %d", sign);
+        CHECK(back.phase == EXH_PRECONTACT_FROZEN && back.held.offset_m_q60 == s.held.offset_m_q60,
+              "sign %d", sign);
     }
     frozen_at_116();
     s.newest = s.held;

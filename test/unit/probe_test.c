@@ -12,11 +12,17 @@
 
 /* 100 um a count, 1 kHz: a dwell of 10 ms is 10 ticks, 1 mm is 10 counts. */
 static const struct exh_probe_scale scale = {EXH_Q(1, 10000, EXH_Q_STEP), {1, 1000}};
-static const struct exh_probe_par par = {.step_A_q26 = MA(10), .end_A_q26 = MA(1000),
-                                         .dwell_ms = 10, .time_ms = 5000,
-                                         .move_m_q30 = MM(1) + 64, .travel_m_q30 = MM(50)};
-static const struct exh_home_par home_par = {.cur_A_q26 = MA(100), .dwell_ms = 10, .time_ms = 2000,
-                                             .move_m_q30 = MM(1) + 64, .least_m_q30 = MM(20) + 64,
+static const struct exh_probe_par par = {.step_A_q26 = MA(10),
+                                         .end_A_q26 = MA(1000),
+                                         .dwell_ms = 10,
+                                         .time_ms = 5000,
+                                         .move_m_q30 = MM(1) + 64,
+                                         .travel_m_q30 = MM(50)};
+static const struct exh_home_par home_par = {.cur_A_q26 = MA(100),
+                                             .dwell_ms = 10,
+                                             .time_ms = 2000,
+                                             .move_m_q30 = MM(1) + 64,
+                                             .least_m_q30 = MM(20) + 64,
                                              .most_m_q30 = MM(100)};
 
 /* A string: in above `in`, out below `out` (a weight's; none: INT32_MIN), 2 counts a
@@ -41,7 +47,8 @@ static struct string slack(int32_t in_A_q26)
     return (struct string){0, in_A_q26, INT32_MIN, INT32_MIN, INT32_MIN, 2, 1, INT32_MAX};
 }
 
-struct found { /* at the end of a motion */
+/* at the end of a motion */
+struct found {
     unsigned result, ticks;
     int32_t cur_A_q26, most_A_q26;
 };
@@ -140,9 +147,9 @@ TEST(set_up_refuses_what_is_out_of_range)
     static const struct {
         int field;
         int32_t v;
-    } row[] = {{0, 0},       {0, 66}, {0, -66},        {0, MA(501)}, {0, INT32_MIN}, {1, -1},
-               {1, MA(3301)}, {2, 0},  {2, 10001},      {3, 0},       {3, 1000001},   {4, 0},
-               {4, INT32_MIN}, {5, MM(1)}, {5, INT32_MAX}};
+    } row[] = {{0, 0},       {0, 66},       {0, -66},       {0, MA(501)}, {0, INT32_MIN},
+               {1, -1},      {1, MA(3301)}, {2, 0},         {2, 10001},   {3, 0},
+               {3, 1000001}, {4, 0},        {4, INT32_MIN}, {5, MM(1)},   {5, INT32_MAX}};
     struct exh_probe_cfg cfg;
     struct exh_home_cfg home;
     struct exh_weigh_cfg weigh;
@@ -160,8 +167,8 @@ TEST(set_up_refuses_what_is_out_of_range)
     for (unsigned i = 0; i < 6; i++) {
         const int32_t v[] = {0, 0, 0, 0, -1, INT32_MAX};
         struct exh_home_par p = home_par;
-        int32_t *const field[] = {&p.cur_A_q26, &p.dwell_ms, &p.time_ms, &p.move_m_q30,
-                                  &p.least_m_q30, &p.most_m_q30};
+        int32_t *const field[] = {&p.cur_A_q26,  &p.dwell_ms,    &p.time_ms,
+                                  &p.move_m_q30, &p.least_m_q30, &p.most_m_q30};
         *field[i] = v[i];
         CHECK(exh_home_setup(&home, &p, scale) == -EXH_E_RANGE, "home, row %u", i);
     }
@@ -193,7 +200,8 @@ TEST(set_up_refuses_what_is_out_of_range)
     bad.step_m_q42 = INT32_MAX; /* 488 um a count: `move` is still two of them */
     CHECK_EQ_I64(exh_probe_setup(&cfg, &par, bad), 0);
     CHECK_EQ_I64(cfg.move_cnt, 2);
-    CHECK_EQ_I64(exh_probe_setup(&cfg, &par, (struct exh_probe_scale){1, {1, 20000}}), -EXH_E_RANGE);
+    CHECK_EQ_I64(exh_probe_setup(&cfg, &par, (struct exh_probe_scale){1, {1, 20000}}),
+                 -EXH_E_RANGE);
     CHECK_EQ_I64(exh_home_setup(&home, &home_par, (struct exh_probe_scale){100, {1, 1000}}),
                  -EXH_E_RANGE); /* 4.4 * 10^9 counts to the limit: beyond any counter */
     CHECK_EQ_I64(exh_probe_setup(&cfg, &par, (struct exh_probe_scale){1000, {1, 1}}), 0);
@@ -226,8 +234,8 @@ TEST(home_is_the_end_of_the_string)
     static const struct {
         int32_t end_cnt;
         unsigned result;
-    } row[] = {{-500, EXH_PROBE_DONE}, {-202, EXH_PROBE_DONE},   {-990, EXH_PROBE_DONE},
-               {-198, EXH_PROBE_JAM},  {0, EXH_PROBE_JAM},       {-20, EXH_PROBE_JAM},
+    } row[] = {{-500, EXH_PROBE_DONE},    {-202, EXH_PROBE_DONE},       {-990, EXH_PROBE_DONE},
+               {-198, EXH_PROBE_JAM},     {0, EXH_PROBE_JAM},           {-20, EXH_PROBE_JAM},
                {-1100, EXH_PROBE_TRAVEL}, {INT32_MIN, EXH_PROBE_TRAVEL}};
     for (size_t i = 0; i < LEN(row); i++) {
         struct string w = slack(MA(20));
@@ -326,10 +334,12 @@ TEST(weighing_brackets_friction)
                   exh_probe_text(f.result));
             off = p.cur_A_q26 - MA(2 * sink + band) / 2;
             half = p.friction_A_q26 - MA(band) / 2;
-            CHECK(off <= MA(6) && off >= -MA(6), "%" PRId32 "+%" PRId32 " mA: middle off by %" PRId32
-                  " uA", sink, band, off / (MA(1) / 1000));
-            CHECK(half >= 0 && half <= MA(11), "%" PRId32 "+%" PRId32 " mA: friction off by %" PRId32,
-                  sink, band, half / (MA(1) / 1000));
+            CHECK(off <= MA(6) && off >= -MA(6),
+                  "%" PRId32 "+%" PRId32 " mA: middle off by %" PRId32 " uA", sink, band,
+                  off / (MA(1) / 1000));
+            CHECK(half >= 0 && half <= MA(11),
+                  "%" PRId32 "+%" PRId32 " mA: friction off by %" PRId32, sink, band,
+                  half / (MA(1) / 1000));
             CHECK(p.mon_A_q26 == p.cur_A_q26 + MA(1) && p.force_N_q20 == 77, "monitor");
         }
     }
@@ -347,7 +357,8 @@ TEST(what_stops_weighing)
     w = slack(MA(500)); /* lifted, and never comes down again */
     f = weigh(&w, &p, 0);
     CHECK(f.result == EXH_PROBE_STILL && f.most_A_q26 <= MA(520), "%s", exh_probe_text(f.result));
-    w = (struct string){0, MA(500), MA(499), INT32_MIN, INT32_MIN, 2, 1, INT32_MAX}; /* pulls at once */
+    w = (struct string){0,         MA(500), MA(499), INT32_MIN,
+                        INT32_MIN, 2,       1,       INT32_MAX}; /* pulls at once */
     f = weigh(&w, &p, 0);
     CHECK(f.result == EXH_PROBE_WRONG_WAY && f.most_A_q26 <= MA(20), "%s",
           exh_probe_text(f.result));
@@ -429,7 +440,8 @@ TEST(means_begin_anew_after_a_movement)
             moved = 1;
             w.cnt += 10;
         }
-        r = exh_weigh_step(&w.s, &w.cfg, w.cnt, moved ? MA(200) : MA(100), moved ? MA(220) : MA(110));
+        r = exh_weigh_step(&w.s, &w.cfg, w.cnt, moved ? MA(200) : MA(100),
+                           moved ? MA(220) : MA(110));
     }
     CHECK(r == EXH_PROBE_DONE && moved, "%s", exh_probe_text(r));
     p = exh_weigh_point(&w.s, 1);
@@ -464,7 +476,8 @@ TEST(any_counts_stay_within_the_bounds)
         exh_weigh_start(&w, &wcfg, cnt);
         for (int n = 0; n < 2500; n++) {
             const int32_t was = s.cur_A_q26;
-            const int32_t jump = check_u64() % 512 ? check_i32_in(-1, 1) : check_i32_in(-wild, wild);
+            const int32_t jump =
+                check_u64() % 512 ? check_i32_in(-1, 1) : check_i32_in(-wild, wild);
             int64_t far;
             cnt = exh_wrap_add(cnt, wild == 30 && check_u64() % 1024 == 0 ? check_i32() : jump);
             far = exh_wrap_diff(cnt, start);
@@ -507,7 +520,8 @@ TEST(creeping_out_ends_at_the_travel)
         cnt += k % 10 == 0; /* one a dwell */
         (void)exh_probe_step(&s, &cfg, cnt);
     }
-    CHECK(s.result == EXH_PROBE_TRAVEL && cnt == 21, "%s at %" PRId32, exh_probe_text(s.result), cnt);
+    CHECK(s.result == EXH_PROBE_TRAVEL && cnt == 21, "%s at %" PRId32, exh_probe_text(s.result),
+          cnt);
     CHECK_EQ_I64(s.cur_A_q26, 0);
 }
 
@@ -520,12 +534,14 @@ TEST(holding_stays_within_the_way)
     for (int32_t way = -1; way <= 1; way += 2) {
         struct exh_weigh s = {.phase = 2, .result = EXH_PROBE_BUSY};
         CHECK_EQ_I64(exh_weigh_step(&s, &cfg, way * cfg.up.travel_cnt, 0, 0), EXH_PROBE_BUSY);
-        CHECK_EQ_I64(exh_weigh_step(&s, &cfg, way * (cfg.up.travel_cnt + 1), 0, 0), EXH_PROBE_TRAVEL);
+        CHECK_EQ_I64(exh_weigh_step(&s, &cfg, way * (cfg.up.travel_cnt + 1), 0, 0),
+                     EXH_PROBE_TRAVEL);
     }
     CHECK_EQ_I64(cfg.down.end_A_q26, 0);
 }
 
-/* The current at the end is tried too, from either side; a dwell has a tick; steps of a count may be as fine as they are told. */
+/* The current at the end is tried too, from either side; a dwell has a tick; steps of a count may
+ * be as fine as they are told. */
 TEST(ends_to_the_bit)
 {
     struct exh_probe_par p = par;
@@ -550,7 +566,8 @@ TEST(ends_to_the_bit)
             tried += s.cur_A_q26 != last;
             last = s.cur_A_q26;
         }
-        CHECK(s.result == EXH_PROBE_STILL && tried == 3 && last == from + 3 * step, "%u, last %" PRId32, tried, last);
+        CHECK(s.result == EXH_PROBE_STILL && tried == 3 && last == from + 3 * step,
+              "%u, last %" PRId32, tried, last);
     }
 }
 
@@ -559,5 +576,6 @@ TEST_MAIN("unit/probe", finds_the_current_that_moves_within_a_step,
           set_up_refuses_what_is_out_of_range, home_is_the_end_of_the_string, what_stops_homing,
           homing_takes_no_longer_than_allowed, weighing_brackets_friction, what_stops_weighing,
           travel_is_of_all_phases_together, a_mass_that_swings_is_not_waited_for,
-          means_begin_anew_after_a_movement, any_counts_stay_within_the_bounds, every_result_has_its_text, creeping_out_ends_at_the_travel, homing_from_the_end_and_all_the_way, holding_stays_within_the_way,
-          ends_to_the_bit);
+          means_begin_anew_after_a_movement, any_counts_stay_within_the_bounds,
+          every_result_has_its_text, creeping_out_ends_at_the_travel,
+          homing_from_the_end_and_all_the_way, holding_stays_within_the_way, ends_to_the_bit);

@@ -8,7 +8,7 @@
 #include "check.h"
 
 #define LEN(a) (sizeof(a) / sizeof((a)[0]))
-#define ILL 99
+#define ILL    99
 
 /* Place of A<<1|B in the upward sequence 00 01 11 10. */
 static const int place[4] = {0, 1, 3, 2};
@@ -241,12 +241,18 @@ TEST(position_by_hand)
     static const struct {
         int32_t step_m_q42, cnt, want;
     } row[] = {
-        {4096, 7, 7},                    {4096, -7, -7},
-        {2048, 1, 1},                    {2048, -1, 0}, /* halves go up */
-        {1, 2047, 0},                    {1, 2048, 1},
-        {INT32_MAX, 1, 524288},          {INT32_MAX, INT32_MAX, INT32_MAX},
-        {INT32_MAX, INT32_MIN, INT32_MIN}, {4096, INT32_MIN, INT32_MIN},
-        {4097, INT32_MIN, INT32_MIN},    {4097, INT32_MAX, INT32_MAX},
+        {4096, 7, 7},
+        {4096, -7, -7},
+        {2048, 1, 1},
+        {2048, -1, 0}, /* halves go up */
+        {1, 2047, 0},
+        {1, 2048, 1},
+        {INT32_MAX, 1, 524288},
+        {INT32_MAX, INT32_MAX, INT32_MAX},
+        {INT32_MAX, INT32_MIN, INT32_MIN},
+        {4096, INT32_MIN, INT32_MIN},
+        {4097, INT32_MIN, INT32_MIN},
+        {4097, INT32_MAX, INT32_MAX},
         {43980465, 100000, 1073741821}, /* 10 um a count, 1 m */
     };
     for (size_t i = 0; i < LEN(row); i++) {
@@ -317,7 +323,8 @@ TEST(a_jump_is_told_at_every_rate)
     static const struct {
         struct exh_period T;
         int32_t jump;
-    } row[] = {{{1, 1000}, 152}, {{1, 2000}, 76}, {{1, 20000}, 9}, {{1, 1}, 150785}, {{597, 1193182}, 76}};
+    } row[] = {
+        {{1, 1000}, 152}, {{1, 2000}, 76}, {{1, 20000}, 9}, {{1, 1}, 150785}, {{597, 1193182}, 76}};
     const struct exh_quad_par par = {EXH_Q(6632, 100000000, EXH_Q_STEP), EXH_Q(10, 1, EXH_Q_VEL)};
     for (size_t i = 0; i < LEN(row); i++) {
         struct exh_quad_cfg cfg;
@@ -374,5 +381,7 @@ TEST(setup_rejections)
 
 TEST_MAIN("unit/quad", all_transitions_in_all_modes, a_turn_and_back, chatter_does_not_drift,
           count_wraps_without_a_jump, runs_of_one_kind, a_run_of_nothing_starts_nothing,
-          words_hang_together, index_latches_the_count, first_value_is_count_zero, wraps_at_both_ends, bits_above_the_counter_are_ignored, long_walks, position_by_hand, state_round_trip,
-          lines_round_trip, index_round_trip, a_jump_is_told_at_every_rate, setup_rejections);
+          words_hang_together, index_latches_the_count, first_value_is_count_zero,
+          wraps_at_both_ends, bits_above_the_counter_are_ignored, long_walks, position_by_hand,
+          state_round_trip, lines_round_trip, index_round_trip, a_jump_is_told_at_every_rate,
+          setup_rejections);

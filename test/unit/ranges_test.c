@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Set-ups take the ends of their parameters' documented ranges and refuse what is one beyond: each field of the struct by itself,
- * the others as they are usual. */
+/* Set-ups take the ends of their parameters' documented ranges and refuse what is one beyond: each
+ * field of the struct by itself, the others as they are usual. */
 #include "exhand/drive.h"
 #include "exhand/error.h"
 #include "exhand/precontact.h"
@@ -303,7 +303,8 @@ TEST(of_drive)
     CHECK(drive(par) == -EXH_E_RANGE, "for ever more than at the peak");
 }
 
-/* What is as long as it may be is what the result cannot hold, so each is shown with the others small. */
+/* What is as long as it may be is what the result cannot hold, so each is shown with the others
+ * small. */
 TEST(of_advise)
 {
     int32_t par[] = {0, 0, 0, 0, 0, 0, 0, -M(5, 1000)};

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The positive reals of set-ups (lib/src/real.h): where they end. What they come to is in unit/filter and golden. */
+/* The positive reals of set-ups (lib/src/real.h): where they end. What they come to is in
+ * unit/filter and golden. */
 #include "../../lib/src/real.h"
 
 #include "check.h"
@@ -78,8 +79,10 @@ TEST(rounds_half_up_once)
 TEST(products_are_exact_in_64_bits)
 {
     for (uint32_t i = 0; i < 1000; i++) {
-        const struct exh_real a = {TOP | (UINT64_C(0x9E3779B97F4A7C15) * (i + 1) >> 2), (int32_t)i - 500};
-        const struct exh_real b = {TOP | (i == 0 ? TOP - 1 : UINT64_C(0xD1342543DE82EF95) * (i + 7) >> 2), 3};
+        const struct exh_real a = {TOP | (UINT64_C(0x9E3779B97F4A7C15) * (i + 1) >> 2),
+                                   (int32_t)i - 500};
+        const struct exh_real b = {
+            TOP | (i == 0 ? TOP - 1 : UINT64_C(0xD1342543DE82EF95) * (i + 7) >> 2), 3};
         uint64_t m = wide_mulu(a.m, b.m).hi;
         int32_t e = a.e + b.e + 64;
         for (; m < TOP; m <<= 1) { e--; }
@@ -93,12 +96,15 @@ TEST(quotients_to_the_last_bit)
 {
     for (uint64_t i = 1; i < 200; i++) {
         for (uint64_t k = 1; k < 200; k++) {
-            const struct exh_real a = exh_real_of(i), b = exh_real_of(k), q = exh_real_div(exh_real_of(i * k), b);
+            const struct exh_real a = exh_real_of(i), b = exh_real_of(k),
+                                  q = exh_real_div(exh_real_of(i * k), b);
             CHECK(same(q, a.m, a.e), "%" PRIu64 " times %" PRIu64, i, k);
         }
     }
-    CHECK(same(exh_real_div(exh_real_of(1), exh_real_of(3)), UINT64_C(0x5555555555555555), -64), "1/3");
-    CHECK(same(exh_real_div(exh_real_of(2), exh_real_of(3)), UINT64_C(0x5555555555555555), -63), "2/3");
+    CHECK(same(exh_real_div(exh_real_of(1), exh_real_of(3)), UINT64_C(0x5555555555555555), -64),
+          "1/3");
+    CHECK(same(exh_real_div(exh_real_of(2), exh_real_of(3)), UINT64_C(0x5555555555555555), -63),
+          "2/3");
 }
 
 /* Of 80 digits, beside a flat and a right angle too: within 2^-56. */

@@ -25,9 +25,8 @@ static uint32_t make(uint8_t *buf, size_t cap, uint8_t type, uint32_t seq, uint3
 
 TEST(layout_by_hand)
 {
-    static const uint8_t want[16] = {0x45, 0x58, EXH_RECORD_EVENT, EXH_RECORD_VERSION, 2, 0,
-                                     4,    3,    2,                1,                  12, 9,
-                                     6,    3,    1,                2};
+    static const uint8_t want[16] = {
+        0x45, 0x58, EXH_RECORD_EVENT, EXH_RECORD_VERSION, 2, 0, 4, 3, 2, 1, 12, 9, 6, 3, 1, 2};
     uint8_t buf[20] = {0};
     struct exh_bytes c = exh_bytes_reader(buf + 16, 4);
     uint32_t crc = 0;
@@ -136,8 +135,8 @@ TEST(resync_after_damage)
             buf[i] = (uint8_t)(u % 4 == 0 ? 0x45 : u % 4 == 1 ? 0x58 : u >> 8 & 0xFF);
         }
         for (uint32_t k = 0; k < 6; k++) {
-            const uint32_t size = make(buf + at, sizeof buf - at, EXH_RECORD_FRAME, k,
-                                       (uint32_t)(check_u64() % 40));
+            const uint32_t size =
+                make(buf + at, sizeof buf - at, EXH_RECORD_FRAME, k, (uint32_t)(check_u64() % 40));
             if (k == 3) { buf[at + check_u64() % size] ^= 0x10; }
             good += k != 3;
             at += size + (uint32_t)(check_u64() % 20);
@@ -171,8 +170,8 @@ TEST(any_bytes_are_safe_to_read)
 
 TEST(header_and_event_round_trip)
 {
-    struct exh_record_header h = {"drop", "posix-sim-16ch!", 0x000100, 0xDEADBEEF,
-                                  {65, 1193182}, 5, 24, 40000};
+    struct exh_record_header h = {
+        "drop", "posix-sim-16ch!", 0x000100, 0xDEADBEEF, {65, 1193182}, 5, 24, 40000};
     struct exh_record_header h2;
     struct exh_event e = {EXH_EVENT_PARAM, 0x0401, 4, INT32_MIN}, e2;
     uint8_t buf[80];
@@ -209,7 +208,9 @@ TEST(every_byte_of_a_name)
             memcpy(&h.scene[i], &u, 1);
         }
         exh_record_header_bytes(&c, &h);
-        for (unsigned i = 0; i < 16; i++) { CHECK(buf[i] == first + i, "written %u: %u", first + i, buf[i]); }
+        for (unsigned i = 0; i < 16; i++) {
+            CHECK(buf[i] == first + i, "written %u: %u", first + i, buf[i]);
+        }
         c = exh_bytes_reader(buf, sizeof buf);
         exh_record_header_bytes(&c, &h2);
         CHECK(memcmp(h.scene, h2.scene, 16) == 0, "read from %u", first);
@@ -252,4 +253,5 @@ TEST(begins_at_the_beginning)
 TEST_MAIN("unit/record", layout_by_hand, round_trip_of_every_type_and_size,
           largest_payload_and_one_more, does_not_fit_at_any_size, truncated_at_every_byte,
           every_flipped_bit_is_detected, another_version_is_named, resync_after_damage,
-          any_bytes_are_safe_to_read, header_and_event_round_trip, measuring_a_record, what_was_not_begun_does_not_end, begins_at_the_beginning, every_byte_of_a_name);
+          any_bytes_are_safe_to_read, header_and_event_round_trip, measuring_a_record,
+          what_was_not_begun_does_not_end, begins_at_the_beginning, every_byte_of_a_name);

@@ -1,17 +1,16 @@
 /* SPDX-License-Identifier: MIT */
-/* safety.h: every cell of the state machine, every fault in every state, arming, release, clearing. */
+/* safety.h: every cell of the state machine, every fault in every state, arming, release, clearing.
+ */
 #include "exhand/safety.h"
 
 #include "exhand/error.h"
 
 #include "check.h"
 
-
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
+#define LEN(a)     (sizeof(a) / sizeof((a)[0]))
 #define ALL_DRIVES (31u * EXH_DIN_DRIVE0)
-#define HEALTHY \
-    (EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG | EXH_DIN_CARDS | ALL_DRIVES)
-#define FULL (1 << 30)
+#define HEALTHY    (EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG | EXH_DIN_CARDS | ALL_DRIVES)
+#define FULL       (1 << 30)
 
 /* 1 kHz: 4 ticks of small force, 8 of ramp, 15 of release. */
 static const struct exh_safety_par par = {1, 1 << 20, 3, 7, 15};
@@ -48,21 +47,16 @@ static struct exh_safety_in with_cause(uint32_t fault, uint8_t command)
 
 /* --- the table, against a second one, written from what each state means --- */
 
-#define NO EXH_STATE_FAULT /* cannot be: no such trigger in that state                 */
+#define NO EXH_STATE_FAULT /* cannot be: no such trigger in that state */
 static const struct cell {
     uint8_t trigger;
-    uint8_t to[EXH_STATES]; /* from off, arm, run, limit, release, fault          */
+    uint8_t to[EXH_STATES]; /* from off, arm, run, limit, release, fault */
 } cell[] = {
-    {EXH_ON_REFUSED, {0, 0, NO, NO, NO, NO}},
-    {EXH_ON_CUT, {0, 5, 5, 5, 5, 5}},
-    {EXH_ON_CAUSE, {0, 4, 4, 4, 4, 5}},
-    {EXH_ON_OFF, {0, 4, 4, 4, 4, 5}},
-    {EXH_ON_RELEASED, {NO, NO, NO, NO, 0, NO}},
-    {EXH_ON_LATCHED, {NO, NO, NO, NO, 5, NO}},
-    {EXH_ON_RUN, {1, 1, 2, 2, 4, 5}},
-    {EXH_ON_ARMED, {NO, 2, NO, NO, NO, NO}},
-    {EXH_ON_LIMITED, {NO, NO, 3, 3, NO, NO}},
-    {EXH_ON_CLEAR, {NO, NO, NO, NO, NO, 0}},
+    {EXH_ON_REFUSED, {0, 0, NO, NO, NO, NO}},   {EXH_ON_CUT, {0, 5, 5, 5, 5, 5}},
+    {EXH_ON_CAUSE, {0, 4, 4, 4, 4, 5}},         {EXH_ON_OFF, {0, 4, 4, 4, 4, 5}},
+    {EXH_ON_RELEASED, {NO, NO, NO, NO, 0, NO}}, {EXH_ON_LATCHED, {NO, NO, NO, NO, 5, NO}},
+    {EXH_ON_RUN, {1, 1, 2, 2, 4, 5}},           {EXH_ON_ARMED, {NO, 2, NO, NO, NO, NO}},
+    {EXH_ON_LIMITED, {NO, NO, 3, 3, NO, NO}},   {EXH_ON_CLEAR, {NO, NO, NO, NO, NO, 0}},
     {EXH_ON_NONE, {0, 1, 2, 2, 4, 5}},
 };
 
@@ -129,8 +123,8 @@ TEST(every_fault_in_every_state)
                              : cut                    ? EXH_STATE_FAULT
                                                       : EXH_STATE_RELEASE;
         const uint32_t before = s.faults, tick = s.tick;
-        const struct exh_permit p = exh_safety_step(
-            &s, &cfg, with_cause(fault, command[k / EXH_FAULTS / EXH_STATES / 2]));
+        const struct exh_permit p =
+            exh_safety_step(&s, &cfg, with_cause(fault, command[k / EXH_FAULTS / EXH_STATES / 2]));
         const int latches = open || state == EXH_STATE_FAULT;
         CHECK(s.state == want, "%s in %s: %s", exh_fault_name(k % EXH_FAULTS),
               exh_state_name(state), exh_state_name(s.state));
@@ -249,7 +243,8 @@ TEST(arming_takes_its_time_at_every_rate)
         int64_t last = 0;
         struct exh_permit p = exh_safety_step(&s, &cfg, healthy(EXH_CMD_RUN));
         for (uint32_t k = 1; k < small; k++) {
-            CHECK(p.mode == EXH_PERMIT_CLOSED && p.small_N_q20 == 1 << 20, "early, tick %" PRIu32, k);
+            CHECK(p.mode == EXH_PERMIT_CLOSED && p.small_N_q20 == 1 << 20, "early, tick %" PRIu32,
+                  k);
             p = exh_safety_step(&s, &cfg, healthy(EXH_CMD_NONE));
         }
         for (int64_t k = 1; k <= ramp; k++) {
@@ -324,7 +319,7 @@ TEST(missed_ticks_are_tolerated_up_to_the_limit)
 TEST(late_too_often_is_an_overrun)
 {
     static const struct {
-        uint32_t every; /* one missed in so many ticks                          */
+        uint32_t every; /* one missed in so many ticks */
         int fault;
     } row[] = {{1, 1}, {2, 1}, {3, 1}, {5, 1}, {20, 1}, {63, 1}, {65, 0}, {1000, 0}};
     const struct exh_safety_cfg cfg = cfg_of(par, 1000);
@@ -384,7 +379,8 @@ TEST(release_ends_at_every_rate)
         const uint32_t rate_Hz = 1 + k % 2000, missed = k / 2000 / LEN(ms) == 2;
         const struct exh_safety_par p = {1, 1 << 20, 3, 7, ms[k / 2000 % LEN(ms)]};
         const struct exh_safety_cfg cfg = cfg_of(p, rate_Hz);
-        const uint32_t floor = (uint32_t)p.release_ms * rate_Hz / 1000, most = rate_Hz < 500 ? 4 : 36;
+        const uint32_t floor = (uint32_t)p.release_ms * rate_Hz / 1000,
+                       most = rate_Hz < 500 ? 4 : 36;
         const uint32_t want = floor < 3 ? 3 : floor > most ? most : floor;
         const int fault = k / 2000 / LEN(ms) > 0;
         struct exh_safety s = {0};
@@ -405,8 +401,8 @@ TEST(release_ends_at_every_rate)
 /* --- clearing --- */
 
 /* All sequences of six ticks, each healthy with a command to clear, healthy, let go, or with the
- * cause: FAULT is left by the first tick that clears, held, with no cause, after a tick let go since
- * the cause was there. */
+ * cause: FAULT is left by the first tick that clears, held, with no cause, after a tick let go
+ * since the cause was there. */
 TEST(clearing_in_every_order)
 {
     const struct exh_safety_cfg cfg = cfg_of(par, 1000);
@@ -471,7 +467,7 @@ TEST(a_state_that_cannot_be_is_a_fault)
     const struct exh_safety_cfg cfg = cfg_of(par, 1000);
     for (unsigned v = 0; v < 256; v++) {
         for (uint32_t faults = 0; faults < 2; faults++) {
-            const int sane = v == EXH_STATE_FAULT    ? faults != 0
+            const int sane = v == EXH_STATE_FAULT     ? faults != 0
                              : v == EXH_STATE_RELEASE ? 1
                                                       : v < EXH_STATES && faults == 0;
             struct exh_safety s = {0};
@@ -585,7 +581,8 @@ TEST(a_buffer_too_short_changes_no_state)
         uint8_t buf[128];
         struct exh_bytes c = exh_bytes_writer(buf, cap);
         exh_safety_bytes(&c, &s);
-        CHECK(s.state == EXH_STATE_RUN && s.faults == 0 && s.opened == opened, "%" PRIu32 " bytes", cap);
+        CHECK(s.state == EXH_STATE_RUN && s.faults == 0 && s.opened == opened, "%" PRIu32 " bytes",
+              cap);
     }
 }
 
@@ -604,10 +601,12 @@ TEST(damage_forgets_no_fault)
 
 TEST_MAIN("unit/safety", every_cell_is_what_it_should_be, every_state_is_reached,
           every_fault_in_every_state, several_causes_cut_if_one_of_them_does, power_on_is_off,
-          each_step_is_named_where_it_does_not_hold, the_first_of_several_steps_is_named, a_refusal_is_forgotten_once_it_runs,
-          a_step_lost_in_the_ramp_releases, off_while_arming, arming_takes_its_time_at_every_rate,
-          limits_are_told_and_counted, missed_ticks_are_tolerated_up_to_the_limit,
-          late_too_often_is_an_overrun, an_overrun_is_gone_in_time, only_drives_in_use_count, release_ends_at_every_rate,
-          clearing_in_every_order, a_cause_that_comes_back_asks_for_the_hand_again, a_fault_never_clears_by_itself,
-          a_state_that_cannot_be_is_a_fault, no_byte_of_a_state_opens_the_gate, state_round_trip,
-          setup_refuses_what_is_out_of_range, names_are_all_there, a_buffer_too_short_changes_no_state, damage_forgets_no_fault);
+          each_step_is_named_where_it_does_not_hold, the_first_of_several_steps_is_named,
+          a_refusal_is_forgotten_once_it_runs, a_step_lost_in_the_ramp_releases, off_while_arming,
+          arming_takes_its_time_at_every_rate, limits_are_told_and_counted,
+          missed_ticks_are_tolerated_up_to_the_limit, late_too_often_is_an_overrun,
+          an_overrun_is_gone_in_time, only_drives_in_use_count, release_ends_at_every_rate,
+          clearing_in_every_order, a_cause_that_comes_back_asks_for_the_hand_again,
+          a_fault_never_clears_by_itself, a_state_that_cannot_be_is_a_fault,
+          no_byte_of_a_state_opens_the_gate, state_round_trip, setup_refuses_what_is_out_of_range,
+          names_are_all_there, a_buffer_too_short_changes_no_state, damage_forgets_no_fault);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The known answers of guard.h's self-test: each of them wrong alone is told, by its group. What computes them is spoiled
- * here, by names that lib/src/selftest.c is compiled with once more. */
+/* The known answers of guard.h's self-test: each of them wrong alone is told, by its group. What
+ * computes them is spoiled here, by names that lib/src/selftest.c is compiled with once more. */
 #include "exhand/angle.h"
 #include "exhand/bytes.h"
 #include "exhand/filter.h"
@@ -9,7 +9,7 @@
 
 #include "check.h"
 
-static int calls, wrong; /* how many results there were, which of them is spoiled       */
+static int calls, wrong; /* how many results there were, which of them is spoiled */
 
 static int64_t spoiled(int64_t v)
 {

@@ -26,12 +26,12 @@ static const struct exh_signal row_b[] = {
 };
 static const struct exh_signal_group groups[] = {{row_a, 2, 1}, {row_b, 3, 2}};
 static const struct exh_signal_table table = {groups, 2};
-#define VALUES 8
+#define VALUES  8
 #define IMAGE_B (12 + 4 * VALUES + 4)
 
 struct fixture {
     struct exh_params p;
-    int32_t active[VALUES + 1], staged[VALUES + 1]; /* one more as a fence     */
+    int32_t active[VALUES + 1], staged[VALUES + 1]; /* one more as a fence */
 };
 
 static void setup(struct fixture *f)
@@ -99,8 +99,14 @@ TEST(crc_tells_tables_apart)
         case 4: row[1].max--; break;
         case 5: group[1].instances = 3; break;
         case 6: group[1].rows = 2; break;
-        case 7: row[0].name = "other"; row[0].help = "words carry no meaning"; break;
-        case 8: row[0] = row_a[1]; row[1] = row_a[0]; break;
+        case 7:
+            row[0].name = "other";
+            row[0].help = "words carry no meaning";
+            break;
+        case 8:
+            row[0] = row_a[1];
+            row[1] = row_a[0];
+            break;
         default: break;
         }
         CHECK((exh_signal_crc(&t) == same) == (change == 0 || change == 7), "change %d", change);
@@ -139,14 +145,10 @@ TEST(refusals_stage_nothing)
         int32_t raw;
         int locked, want;
     } row[] = {
-        {0x7101, 0, 11, 0, -EXH_E_RANGE},
-        {0x7101, 0, -11, 0, -EXH_E_RANGE},
-        {0x7101, 0, INT32_MIN, 0, -EXH_E_RANGE},
-        {0x7202, 1, 4, 0, -EXH_E_RANGE},
-        {0x7202, 1, 6, 0, -EXH_E_RANGE},
-        {0x7101, 1, 0, 0, -EXH_E_UNKNOWN},
-        {0x0000, 0, 0, 0, -EXH_E_UNKNOWN},
-        {0x7102, 0, 499, 1, -EXH_E_STATE},
+        {0x7101, 0, 11, 0, -EXH_E_RANGE},        {0x7101, 0, -11, 0, -EXH_E_RANGE},
+        {0x7101, 0, INT32_MIN, 0, -EXH_E_RANGE}, {0x7202, 1, 4, 0, -EXH_E_RANGE},
+        {0x7202, 1, 6, 0, -EXH_E_RANGE},         {0x7101, 1, 0, 0, -EXH_E_UNKNOWN},
+        {0x0000, 0, 0, 0, -EXH_E_UNKNOWN},       {0x7102, 0, 499, 1, -EXH_E_STATE},
         {0x7101, 0, 11, 1, -EXH_E_RANGE},
     };
     for (size_t i = 0; i < LEN(row); i++) {
@@ -288,9 +290,8 @@ TEST(honest_image_with_bad_values)
         int32_t v;
         int locked, want;
     } row[] = {
-        {0, 11, 0, -EXH_E_RANGE},        {7, 101, 0, -EXH_E_RANGE},
-        {3, INT32_MIN, 0, -EXH_E_RANGE}, {1, 499, 1, -EXH_E_STATE},
-        {6, 6, 1, -EXH_E_RANGE},
+        {0, 11, 0, -EXH_E_RANGE},  {7, 101, 0, -EXH_E_RANGE}, {3, INT32_MIN, 0, -EXH_E_RANGE},
+        {1, 499, 1, -EXH_E_STATE}, {6, 6, 1, -EXH_E_RANGE},
     };
     for (size_t k = 0; k < LEN(row); k++) {
         uint8_t image[IMAGE_B] = {0};
@@ -324,9 +325,9 @@ TEST(locked_image_without_setup_changes)
 /* --- the library's own rows --- */
 
 static const struct exh_signal_group lib_groups[] = {
-    {exh_quad_rows, EXH_QUAD_ROWS, 1},         {exh_velocity_rows, EXH_VELOCITY_ROWS, 1},
-    {exh_contact_rows, EXH_CONTACT_ROWS, 1},   {exh_drive_rows, EXH_DRIVE_ROWS, 1},
-    {exh_safety_rows, EXH_SAFETY_ROWS, 1},     {exh_track_rows, EXH_TRACK_ROWS, 1},
+    {exh_quad_rows, EXH_QUAD_ROWS, 1},       {exh_velocity_rows, EXH_VELOCITY_ROWS, 1},
+    {exh_contact_rows, EXH_CONTACT_ROWS, 1}, {exh_drive_rows, EXH_DRIVE_ROWS, 1},
+    {exh_safety_rows, EXH_SAFETY_ROWS, 1},   {exh_track_rows, EXH_TRACK_ROWS, 1},
     {exh_tune_rows, EXH_TUNE_ROWS, 1},
 };
 static const struct exh_signal_table lib_table = {lib_groups, 7};
@@ -354,8 +355,7 @@ TEST(library_rows_are_well_formed)
         const struct exh_signal *r = exh_signal_at(&lib_table, i, NULL);
         CHECK(is_name(r->name), "row %" PRIu32, i);
         CHECK(r->unit != NULL && (*r->unit == '\0' || is_name(r->unit)), "%s: unit", r->name);
-        CHECK(r->help != NULL && is_line(r->help), "%s: help",
-              r->name);
+        CHECK(r->help != NULL && is_line(r->help), "%s: help", r->name);
         CHECK(r->min <= r->dflt, "%s: default below its range", r->name);
         CHECK(r->dflt <= r->max, "%s: default above its range", r->name);
         CHECK(r->frac < 64 && r->when <= EXH_WHEN_LIMIT, "%s", r->name);
@@ -389,7 +389,6 @@ TEST(library_rows_match_their_structs)
 TEST_MAIN("unit/signal", rows_and_instances_in_order, empty_table, crc_tells_tables_apart,
           crc_sees_how_rows_are_grouped, staging_waits_for_apply, refusals_stage_nothing,
           ends_of_the_range_are_allowed, lock_spares_what_may_change, image_layout,
-          image_round_trip_and_short_buffers, truncated_at_every_byte,
-          every_flipped_bit_is_refused, honest_image_with_bad_values,
-          locked_image_without_setup_changes, library_rows_are_well_formed,
-          library_rows_match_their_structs);
+          image_round_trip_and_short_buffers, truncated_at_every_byte, every_flipped_bit_is_refused,
+          honest_image_with_bad_values, locked_image_without_setup_changes,
+          library_rows_are_well_formed, library_rows_match_their_structs);

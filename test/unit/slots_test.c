@@ -10,7 +10,7 @@
 #include "check.h"
 
 #define IMAGE_B 24u
-#define SLOT    64u /* B of a slot: more than what is in it                     */
+#define SLOT    64u /* B of a slot: more than what is in it */
 #define WHOLE   EXH_SLOT_B(IMAGE_B)
 
 static uint8_t slot[2][SLOT];
@@ -369,7 +369,8 @@ TEST(the_longest_slot)
     begin();
     memset(buf, 1, sizeof buf);
     CHECK_EQ_I64(exh_slots_next(&to, slot[0], slot[1], INT32_MAX, buf, INT32_MAX, IMAGE_B), WHOLE);
-    CHECK_EQ_I64(exh_slots_next(&to, slot[0], slot[1], (size_t)INT32_MAX + 1, buf, (size_t)INT32_MAX + 1, IMAGE_B),
+    CHECK_EQ_I64(exh_slots_next(&to, slot[0], slot[1], (size_t)INT32_MAX + 1, buf,
+                                (size_t)INT32_MAX + 1, IMAGE_B),
                  -EXH_E_SHORT);
 }
 
@@ -377,5 +378,4 @@ TEST_MAIN("slots", a_worked_example, blank_slots_have_nothing, each_goes_to_the_
           what_stands_there_is_not_saved_again, the_sequence_goes_round, the_one_ahead_counts,
           two_sequences_are_none, each_bit_of_one_slot, cut_off_at_every_byte,
           cut_off_in_the_erasure, what_does_not_fit_is_refused, parameters_come_back,
-          a_calibration_comes_back,
-          the_byte_behind_the_image_says_nothing, the_longest_slot);
+          a_calibration_comes_back, the_byte_behind_the_image_says_nothing, the_longest_slot);

@@ -123,7 +123,7 @@ TEST(what_cannot_be_judged_is_refused)
         {V(20), V(28), -1, 10},
         {V(20), V(28), QUARTER, 0},
         {V(20), V(28), QUARTER, 1001},
-        {V(20), V(40), QUARTER, 10}, /* the converter ends there */
+        {V(20), V(40), QUARTER, 10},                            /* the converter ends there */
         {V(20), V(20) + 100, EXH_Q(1, 1, EXH_Q_VPRAW) / 3, 10}, /* no code between them */
         {V(20), INT32_MIN, QUARTER, 10}};
     struct exh_supply_cfg cfg;
@@ -187,7 +187,8 @@ TEST(what_comes_of_refusals_and_damage)
 TEST(the_highest_limits)
 {
     const struct exh_supply_par most = {V(100), V(100), INT32_C(1) << (EXH_Q_VPRAW - 6), 10};
-    const struct exh_supply_par more = {V(100) + 1, V(100) + 1, INT32_C(1) << (EXH_Q_VPRAW - 6), 10};
+    const struct exh_supply_par more = {V(100) + 1, V(100) + 1, INT32_C(1) << (EXH_Q_VPRAW - 6),
+                                        10};
     struct exh_supply_cfg cfg;
     CHECK_EQ_I64(exh_supply_setup(&cfg, &most, kHz), 0);
     CHECK(cfg.min_raw == 6400 && cfg.max_raw == 6400, "%d .. %d", cfg.min_raw, cfg.max_raw);
@@ -198,5 +199,4 @@ TEST_MAIN("supply", limits_become_codes, a_code_is_within_the_limits_exactly_whe
           it_is_told_after_its_time_and_not_before, one_tick_within_the_limits_begins_anew,
           missed_ticks_count, without_a_least_voltage_nothing_is_judged,
           what_cannot_be_judged_is_refused, its_rows_are_its_parameters,
-          its_state_goes_through_a_cursor, what_comes_of_refusals_and_damage,
-          the_highest_limits);
+          its_state_goes_through_a_cursor, what_comes_of_refusals_and_damage, the_highest_limits);

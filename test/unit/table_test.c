@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* drive.h, tables: at, between and outside knots, what is refused, and the way back, on numbers worked out by hand. */
+/* drive.h, tables: at, between and outside knots, what is refused, and the way back, on numbers
+ * worked out by hand. */
 #include "exhand/drive.h"
 
 #include "exhand/error.h"
@@ -80,7 +81,7 @@ TEST(table_rejections)
         {-1, 0, 1, 1, INT32_MAX, 2, 3, -EXH_E_RANGE},
         {0, -1, 1, 1, 2, INT32_MAX, 3, -EXH_E_RANGE},
         {INT32_MIN, 0, 0, 1, 5, 2, 3, -EXH_E_RANGE},
-        {INT32_MIN, INT32_MIN, -2, -2, -1, -1, 3, 0}, /* spans 2^31-1 */
+        {INT32_MIN, INT32_MIN, -2, -2, -1, -1, 3, 0},        /* spans 2^31-1 */
         {0, INT32_MIN, 1, INT32_MAX, 2, 2, 2, -EXH_E_RANGE}, /* a slope beyond 2^31 */
         {0, 0, 1, 1, 2, 2, 256, -EXH_E_RANGE},
         {0, 0, INT32_MAX - 1, 1, INT32_MAX, 2, 3, 0},

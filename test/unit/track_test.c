@@ -158,7 +158,8 @@ TEST(state_through_bytes)
     uint8_t b[12];
     struct exh_bytes c = exh_bytes_writer(b, sizeof b);
     exh_track_bytes(&c, &s);
-    CHECK(c.at == sizeof b && b[0] == 0xFB && b[4] == 4 && b[8] == 7, "%" PRIu32 " bytes", (uint32_t)c.at);
+    CHECK(c.at == sizeof b && b[0] == 0xFB && b[4] == 4 && b[8] == 7, "%" PRIu32 " bytes",
+          (uint32_t)c.at);
     c = exh_bytes_reader(b, sizeof b);
     exh_track_bytes(&c, &back);
     CHECK(back.lo_A_q26 == was.lo_A_q26 && back.hi_A_q26 == was.hi_A_q26 &&

@@ -18,7 +18,7 @@ static const struct exh_velocity_scale scale_pit = {7000001, {65, 1193182}};
 /* One estimator behind one face, so that each claim is written once. */
 struct any {
     enum kind { WINDOW, POLE, FOAW, TRACK } kind;
-    uint32_t arg; /* p, tau_us, n, tf_us                                       */
+    uint32_t arg; /* p, tau_us, n, tf_us */
     struct exh_velocity_window_cfg window_cfg;
     struct exh_velocity_window window;
     struct exh_velocity_pole_cfg pole_cfg;
@@ -59,10 +59,10 @@ static int32_t any_step(struct any *e, int32_t cnt)
 static const struct {
     enum kind kind;
     uint32_t arg;
-    int settle; /* ticks after which it stands                                 */
+    int settle; /* ticks after which it stands */
 } every[] = {
-    {WINDOW, 0, 2}, {WINDOW, 1, 3},  {WINDOW, 2, 5},    {WINDOW, 3, 9},     {WINDOW, 4, 17},
-    {POLE, 0, 3},   {POLE, 500, 80}, {POLE, 5000, 600}, {FOAW, 1, 3},       {FOAW, 16, 20},
+    {WINDOW, 0, 2}, {WINDOW, 1, 3},   {WINDOW, 2, 5},     {WINDOW, 3, 9}, {WINDOW, 4, 17},
+    {POLE, 0, 3},   {POLE, 500, 80},  {POLE, 5000, 600},  {FOAW, 1, 3},   {FOAW, 16, 20},
     {TRACK, 0, 4},  {TRACK, 500, 90}, {TRACK, 5000, 900},
 };
 
@@ -120,7 +120,7 @@ TEST(constant_velocity_is_exact_across_the_wrap)
 TEST(quantisation_error_stays_in_its_bound)
 {
     static const struct {
-        int64_t num, den; /* counts per tick                                   */
+        int64_t num, den; /* counts per tick */
     } speed[] = {{1, 31}, {-1, 31}, {2, 7}, {-9, 10}, {355, 113}, {-1000, 333}, {99999, 1000}};
     for (size_t i = 0; i < LEN(every) * LEN(speed); i++) {
         const size_t row = i / LEN(speed);
@@ -144,10 +144,10 @@ TEST(lag_is_the_documented_one)
     static const struct {
         enum kind kind;
         uint32_t arg;
-        int64_t lag_x10; /* tenths of a tick                                   */
+        int64_t lag_x10; /* tenths of a tick */
     } row[] = {
-        {WINDOW, 0, 5}, {WINDOW, 2, 20},  {WINDOW, 4, 80},   {POLE, 0, 5},      {POLE, 500, 15},
-        {POLE, 5000, 105}, {TRACK, 0, 5}, {TRACK, 500, 25}, {TRACK, 5000, 205},
+        {WINDOW, 0, 5},    {WINDOW, 2, 20}, {WINDOW, 4, 80},  {POLE, 0, 5},       {POLE, 500, 15},
+        {POLE, 5000, 105}, {TRACK, 0, 5},   {TRACK, 500, 25}, {TRACK, 5000, 205},
     };
     /* Fine counts, 0.157 um, so that 400 ticks of 8 counts per tick^2 reach 1 m/s. */
     const struct exh_velocity_scale s = {690493, {1, 2000}};
@@ -206,8 +206,8 @@ TEST(slow_observer_rests_within_its_residual)
         (void)any_setup(&e, TRACK, row[i].tf_us, s);
         for (int64_t k = 0; k < 2 * ticks; k++) { (void)any_step(&e, (int32_t)(k / 3)); }
         for (int64_t k = 0; k < 40 * ticks; k++) { got = any_step(&e, (int32_t)(2 * ticks / 3)); }
-        CHECK(near(got, s, 0, INT64_C(1) << 32, ticks + 1, 1),
-              "row %zu: %" PRId32 " LSB at rest", i, got);
+        CHECK(near(got, s, 0, INT64_C(1) << 32, ticks + 1, 1), "row %zu: %" PRId32 " LSB at rest",
+              i, got);
     }
 }
 
@@ -234,13 +234,19 @@ TEST(setup_refuses)
         uint32_t arg;
         struct exh_velocity_scale s;
     } bad[] = {
-        {WINDOW, 5, {69049330, {1, 2000}}},       {WINDOW, UINT32_MAX, {69049330, {1, 2000}}},
-        {WINDOW, 0, {0, {1, 2000}}},              {WINDOW, 0, {-1, {1, 2000}}},
-        {WINDOW, 0, {INT32_MAX, {1, 40000}}},     /* 19.5 m/s a count */
-        {POLE, 1000001, {69049330, {1, 2000}}},   {POLE, 0, {0, {1, 2000}}},
-        {FOAW, 0, {69049330, {1, 2000}}},         {FOAW, 17, {69049330, {1, 2000}}},
-        {FOAW, 16, {0, {1, 2000}}},               {TRACK, 1000001, {69049330, {1, 2000}}},
-        {TRACK, 0, {-5, {1, 2000}}},              {WINDOW, 0, {69049330, {0, 2000}}},
+        {WINDOW, 5, {69049330, {1, 2000}}},
+        {WINDOW, UINT32_MAX, {69049330, {1, 2000}}},
+        {WINDOW, 0, {0, {1, 2000}}},
+        {WINDOW, 0, {-1, {1, 2000}}},
+        {WINDOW, 0, {INT32_MAX, {1, 40000}}}, /* 19.5 m/s a count */
+        {POLE, 1000001, {69049330, {1, 2000}}},
+        {POLE, 0, {0, {1, 2000}}},
+        {FOAW, 0, {69049330, {1, 2000}}},
+        {FOAW, 17, {69049330, {1, 2000}}},
+        {FOAW, 16, {0, {1, 2000}}},
+        {TRACK, 1000001, {69049330, {1, 2000}}},
+        {TRACK, 0, {-5, {1, 2000}}},
+        {WINDOW, 0, {69049330, {0, 2000}}},
         {POLE, 0, {69049330, {1, 0}}},
     };
     struct any e;
@@ -326,7 +332,8 @@ TEST(ends_to_the_bit)
 {
     const int64_t most = INT64_C(16) << 55;
     struct exh_velocity_pole_cfg cfg;
-    CHECK_EQ_I64(exh_velocity_pole_setup(&cfg, (struct exh_velocity_scale){1, {1, UINT32_MAX}}, 1000000), 0);
+    CHECK_EQ_I64(
+        exh_velocity_pole_setup(&cfg, (struct exh_velocity_scale){1, {1, UINT32_MAX}}, 1000000), 0);
     CHECK_EQ_I64(cfg.a_q31, 1);
     for (int64_t more = -1; more <= 1; more++) {
         for (int sign = -1; sign <= 1; sign += 2) {

@@ -8,7 +8,7 @@
 #include "check.h"
 
 #define LEN(a) (sizeof(a) / sizeof((a)[0]))
-#define MPS (1 << 27)
+#define MPS    (1 << 27)
 #define AMPERE (1 << 26)
 
 static const struct exh_watch_par par = {3 * MPS, 20, 2000, AMPERE / 4};
@@ -42,7 +42,8 @@ TEST(velocity_is_held_within_the_limit)
     }
 }
 
-/* Told after more than speed_time on end at every rate, and not before; one slow tick begins anew. */
+/* Told after more than speed_time on end at every rate, and not before; one slow tick begins anew.
+ */
 TEST(too_fast_for_too_long)
 {
     for (uint32_t rate_Hz = 1; rate_Hz <= 2000; rate_Hz++) {
@@ -65,7 +66,8 @@ TEST(standing_while_pulled)
     struct exh_watch s = {0, 0, 0};
     uint32_t limits = 0;
     for (int32_t k = 0; k < 10000; k++) {
-        /* 0: it moves once a second; 1: too little current; 2: pushed, which is no pull; 3: stands */
+        /* 0: it moves once a second; 1: too little current; 2: pushed, which is no pull; 3: stands
+         */
         const int kind = k / 2500;
         const int32_t cnt = kind == 0 ? k / 1000 : 2;
         const int32_t coded = kind == 1 ? AMPERE / 4 : kind == 2 ? -AMPERE : AMPERE / 4 + 1;

@@ -5,9 +5,9 @@
 
 #include "check.h"
 
-static const int64_t corner[] = {INT64_MIN,  INT64_MIN + 1, -4294967296, -4294967295, -2147483648,
-                                 -65536,     -1,            0,           1,           65535,
-                                 2147483647, 4294967295,    4294967296,  INT64_MAX - 1, INT64_MAX};
+static const int64_t corner[] = {
+    INT64_MIN, INT64_MIN + 1, -4294967296, -4294967295, -2147483648, -65536,        -1,       0,
+    1,         65535,         2147483647,  4294967295,  4294967296,  INT64_MAX - 1, INT64_MAX};
 #define CORNERS (sizeof corner / sizeof corner[0])
 
 TEST(known_products)
@@ -26,8 +26,8 @@ TEST(known_products)
     };
     for (size_t i = 0; i < sizeof row / sizeof row[0]; i++) {
         const struct wide w = wide_mul(row[i].a, row[i].b);
-        CHECK(w.hi == row[i].hi && w.lo == row[i].lo,
-              "row %zu: %016" PRIx64 " %016" PRIx64, i, w.hi, w.lo);
+        CHECK(w.hi == row[i].hi && w.lo == row[i].lo, "row %zu: %016" PRIx64 " %016" PRIx64, i,
+              w.hi, w.lo);
     }
 }
 
@@ -38,9 +38,17 @@ TEST(known_shifts)
         unsigned n;
         int64_t floor, half_up;
     } row[] = {
-        {5, 1, 2, 3},       {-5, 1, -3, -2},  {-1, 127, -1, 0},      {1, 127, 0, 0},
-        {6, 2, 1, 2},       {-6, 2, -2, -1},  {INT64_MIN, 63, -1, -1}, {INT64_MAX, 63, 0, 1},
-        {INT64_MIN, 64, -1, 0}, {INT64_MAX, 64, 0, 0}, {-3, 65, -1, 0},
+        {5, 1, 2, 3},
+        {-5, 1, -3, -2},
+        {-1, 127, -1, 0},
+        {1, 127, 0, 0},
+        {6, 2, 1, 2},
+        {-6, 2, -2, -1},
+        {INT64_MIN, 63, -1, -1},
+        {INT64_MAX, 63, 0, 1},
+        {INT64_MIN, 64, -1, 0},
+        {INT64_MAX, 64, 0, 0},
+        {-3, 65, -1, 0},
     };
     for (size_t i = 0; i < sizeof row / sizeof row[0]; i++) {
         CHECK_EQ_I64(wide_sat64(wide_shr_floor(wide_of(row[i].v), row[i].n)), row[i].floor);

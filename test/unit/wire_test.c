@@ -155,21 +155,21 @@ TEST(values_that_cannot_be)
         uint8_t byte;
         int want;
     } bad[] = {
-        {EXH_WIRE_HELLO, 18, 2, -EXH_E_CRC}, /* role */
-        {EXH_WIRE_STATE, 18 + 4, 32, -EXH_E_CRC}, /* sixth finger */
+        {EXH_WIRE_HELLO, 18, 2, -EXH_E_CRC},              /* role */
+        {EXH_WIRE_STATE, 18 + 4, 32, -EXH_E_CRC},         /* sixth finger */
         {EXH_WIRE_STATE, 18 + 5, EXH_STATES, -EXH_E_CRC}, /* no such state */
         {EXH_WIRE_STATE, 18 + 5, 255, -EXH_E_CRC},
         {EXH_WIRE_STATE, 18 + 6, 128, -EXH_E_CRC},
         {EXH_WIRE_STATE, 18 + 7, 64, -EXH_E_CRC},
         {EXH_WIRE_PLANES, 18 + 8, 35, -EXH_E_CRC},
-        {EXH_WIRE_PLANES, 18 + 9, 3, -EXH_E_CRC}, /* kind */
+        {EXH_WIRE_PLANES, 18 + 9, 3, -EXH_E_CRC},          /* kind */
         {EXH_WIRE_PLANES, 18 + 9 + 2 * 40, 1, -EXH_E_CRC}, /* told of a finger not in the mask */
         {EXH_WIRE_PARAM, 2, 1, -EXH_E_VERSION},
         {EXH_WIRE_PARAM, 3, 0, -EXH_E_UNKNOWN},
-        {EXH_WIRE_TRACE, 18 + 8, 1, -EXH_E_CRC}, /* no result is positive */
+        {EXH_WIRE_TRACE, 18 + 8, 1, -EXH_E_CRC},    /* no result is positive */
         {EXH_WIRE_TRACE, 18 + 9, 0xFF, -EXH_E_CRC}, /* refused, and frames */
-        {EXH_WIRE_TRACE, 18 + 10, 2, -EXH_E_CRC}, /* fewer frames than there are */
-        {EXH_WIRE_TRACE, 18 + 10, 4, -EXH_E_CRC}, /* more */
+        {EXH_WIRE_TRACE, 18 + 10, 2, -EXH_E_CRC},   /* fewer frames than there are */
+        {EXH_WIRE_TRACE, 18 + 10, 4, -EXH_E_CRC},   /* more */
         {EXH_WIRE_TRACE, 18 + 10, EXH_WIRE_FRAMES + 1, -EXH_E_CRC},
         {EXH_WIRE_TRACE, 18 + 10, 255, -EXH_E_CRC},
         {EXH_WIRE_TRACE_ASK, 3, EXH_WIRE_PARAM, -EXH_E_CRC}, /* longer than that one */
@@ -301,7 +301,8 @@ TEST(no_packet_makes_it_deaf_for_good)
 {
     struct exh_wire_rx rx = met(8, 5);
     CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_HELLO, 9, 100)), EXH_WIRE_HELLO);
-    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_HELLO, 7, 3)), EXH_WIRE_HELLO); /* long gone, and late */
+    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_HELLO, 7, 3)),
+                 EXH_WIRE_HELLO); /* long gone, and late */
     recovers(&rx);
 
     rx = met(9, 100);
@@ -366,10 +367,12 @@ TEST(a_step_over_all_that_is_remembered)
         CHECK_EQ_I64(rx.missing, step - 1);
         for (uint32_t late = 1; late < 63; late++) {
             CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PARAM, 9, step - late)), -EXH_E_STALE);
-            CHECK(rx.reordered == late && rx.duplicate == 0, "step %" PRIu32 ": %" PRIu32 " late", step, late);
+            CHECK(rx.reordered == late && rx.duplicate == 0, "step %" PRIu32 ": %" PRIu32 " late",
+                  step, late);
         }
         CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PARAM, 9, step - 63)), -EXH_E_STALE);
-        CHECK(rx.duplicate == (step == 63) && rx.missing == step - rx.reordered - 1, "step %" PRIu32, step);
+        CHECK(rx.duplicate == (step == 63) && rx.missing == step - rx.reordered - 1,
+              "step %" PRIu32, step);
     }
 }
 
@@ -475,6 +478,6 @@ TEST_MAIN("unit/wire", bytes_are_those_of_the_document, there_and_back,
           every_bit_flipped_and_every_byte_cut_off, values_that_cannot_be,
           a_trace_fits_a_packet_whole_and_no_frame_is_missed_unseen, only_what_is_newer,
           sequence_numbers_wrap, far_ahead_is_not_believed, no_packet_makes_it_deaf_for_good,
-          silence_is_only_what_is_heard_of_nobody, what_differs_is_said_by_name, a_step_over_all_that_is_remembered,
-          a_restart_is_seen_by_its_hello, writing_refuses,
+          silence_is_only_what_is_heard_of_nobody, what_differs_is_said_by_name,
+          a_step_over_all_that_is_remembered, a_restart_is_seen_by_its_hello, writing_refuses,
           planes_and_round_trip, parameters_are_staged_and_answered, state_round_trip);

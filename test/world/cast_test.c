@@ -13,7 +13,8 @@
 
 #define STEP 1e-3
 
-static struct hit one_ray(const struct body *b, int n, const struct ray *r, int cull, struct cast_stats *s)
+static struct hit one_ray(const struct body *b, int n, const struct ray *r, int cull,
+                          struct cast_stats *s)
 {
     struct hit h;
     cast(b, n, r, 1, cull, &h, s);
@@ -39,23 +40,27 @@ static int inside(const struct body *b, struct v3 p)
     case SHAPE_PLANE: return l.z <= 0;
     case SHAPE_SPHERE: return v3_len(l) <= b->is.radius_m;
     case SHAPE_BOX:
-        return fabs(l.x) <= b->is.half_m.x && fabs(l.y) <= b->is.half_m.y && fabs(l.z) <= b->is.half_m.z;
+        return fabs(l.x) <= b->is.half_m.x && fabs(l.y) <= b->is.half_m.y &&
+               fabs(l.z) <= b->is.half_m.z;
     case SHAPE_CAPSULE: return v3_len(v3(l.x, l.y, l.z - z)) <= b->is.radius_m;
     case SHAPE_MESH: break;
     }
     return 0;
 }
 
-/* The entry that counts: of the stretch that holds the origin, else of the first one ahead. NAN: none. */
+/* The entry that counts: of the stretch that holds the origin, else of the first one ahead. NAN:
+ * none. */
 static double walked(const struct body *b, const struct ray *r)
 {
     const int in = inside(b, r->from);
     double lo, hi;
     if (in) {
-        for (lo = 0; lo >= -r->back - STEP && inside(b, v3_along(r->from, lo, r->along)); lo -= STEP) {}
+        for (lo = 0; lo >= -r->back - STEP && inside(b, v3_along(r->from, lo, r->along));
+             lo -= STEP) {}
         hi = lo + STEP;
     } else {
-        for (hi = 0; hi <= r->len + STEP && !inside(b, v3_along(r->from, hi, r->along)); hi += STEP) {}
+        for (hi = 0; hi <= r->len + STEP && !inside(b, v3_along(r->from, hi, r->along));
+             hi += STEP) {}
         lo = hi - STEP;
     }
     if (inside(b, v3_along(r->from, lo, r->along)) || !inside(b, v3_along(r->from, hi, r->along))) {
@@ -63,7 +68,11 @@ static double walked(const struct body *b, const struct ray *r)
     }
     for (int i = 0; i < 60; i++) {
         const double mid = (lo + hi) / 2;
-        if (inside(b, v3_along(r->from, mid, r->along))) { hi = mid; } else { lo = mid; }
+        if (inside(b, v3_along(r->from, mid, r->along))) {
+            hi = mid;
+        } else {
+            lo = mid;
+        }
     }
     return hi >= -r->back && hi <= r->len ? hi : (double)NAN;
 }
@@ -75,15 +84,18 @@ static void random_body(struct body *b, enum shape_kind kind)
     at.turn = rpy_turn(vec_in(3));
     at.at = vec_in(0.08);
     is.half_m = v3(real_in(0.005, 0.06), real_in(0.005, 0.06), real_in(0.005, 0.06));
-    is.bound_m = kind == SHAPE_BOX ? v3_len(is.half_m)
-                 : kind == SHAPE_CAPSULE ? is.half_m.z + is.radius_m : is.radius_m;
+    is.bound_m = kind == SHAPE_BOX       ? v3_len(is.half_m)
+                 : kind == SHAPE_CAPSULE ? is.half_m.z + is.radius_m
+                                         : is.radius_m;
     body_set(b, &is, &at, 0);
 }
 
 static void random_ray(struct ray *r)
 {
     r->from = vec_in(0.1);
-    do { r->along = vec_in(1); } while (v3_len(r->along) < 0.1);
+    do {
+        r->along = vec_in(1);
+    } while (v3_len(r->along) < 0.1);
     r->along = v3_unit(r->along);
     if ((check_u64() & 7) == 0) { r->along = v3(0, 0, check_u64() & 1 ? 1 : -1); }
     r->len = 0.2;
@@ -106,8 +118,9 @@ static void against_walk(enum shape_kind kind)
         cases++;
         if (isnan(t)) {
             /* the walk steps over chords shorter than a step */
-            CHECK(h.body < 0 || !inside(&b, v3_along(r.from, h.t + STEP, r.along)) || h.t > r.len - STEP ||
-                  h.t < -r.back + STEP, "entry at %g that is none", h.t);
+            CHECK(h.body < 0 || !inside(&b, v3_along(r.from, h.t + STEP, r.along)) ||
+                      h.t > r.len - STEP || h.t < -r.back + STEP,
+                  "entry at %g that is none", h.t);
             continue;
         }
         hits++;
@@ -137,8 +150,8 @@ TEST(a_ray_enters_a_capsule_where_a_walk_does)
     against_walk(SHAPE_CAPSULE);
 }
 
-/* The plane touches the body where the ray enters: unit normal, against the ray, and a little out along
- * it is outside, a little in is inside. */
+/* The plane touches the body where the ray enters: unit normal, against the ray, and a little out
+ * along it is outside, a little in is inside. */
 TEST(the_plane_lies_on_the_surface)
 {
     while (check_case(1000)) {
@@ -182,7 +195,8 @@ TEST(of_many_the_first_whatever_their_order_and_culling)
         }
         h = one_ray(b, MANY, &r, 1, &s);
         t = one_ray(turned, MANY, &r, 0, &s);
-        CHECK(h.body == one.body && (h.body < 0 || h.t == one.t), "body %d, not %d", h.body, one.body);
+        CHECK(h.body == one.body && (h.body < 0 || h.t == one.t), "body %d, not %d", h.body,
+              one.body);
         CHECK(t.body < 0 ? h.body < 0 : MANY - 1 - t.body == h.body, "another order, another body");
     }
 }
@@ -195,14 +209,18 @@ TEST(rays_together_find_what_each_finds_alone)
         struct hit h[CAST_MAX];
         struct cast_stats together = {0, 0}, alone = {0, 0};
         const int rays = 1 + (int)(check_u64() % CAST_MAX), cull = (int)(check_u64() & 1);
-        for (int i = 0; i < MANY; i++) { random_body(&b[i], (enum shape_kind)(check_u64() % SHAPE_MESH)); }
+        for (int i = 0; i < MANY; i++) {
+            random_body(&b[i], (enum shape_kind)(check_u64() % SHAPE_MESH));
+        }
         for (int i = 0; i < rays; i++) { random_ray(&r[i]); }
         cast(b, MANY, r, rays, cull, h, &together);
         for (int i = 0; i < rays; i++) {
             const struct hit a = one_ray(b, MANY, &r[i], cull, &alone);
-            CHECK(a.body == h[i].body && a.t == h[i].t && a.face == h[i].face, "ray %d of %d", i, rays);
+            CHECK(a.body == h[i].body && a.t == h[i].t && a.face == h[i].face, "ray %d of %d", i,
+                  rays);
         }
-        CHECK(alone.tested == together.tested && alone.culled == together.culled, "counted otherwise");
+        CHECK(alone.tested == together.tested && alone.culled == together.culled,
+              "counted otherwise");
     }
 }
 
@@ -260,7 +278,8 @@ TEST(a_mesh_is_hit_where_its_triangles_are)
         struct ray r;
         double t = 0, want;
         int face = 0;
-        const int there = (random_ray(&r), r.from = v3_times(v3_unit(r.from), 0.1), brute(m, &r, &want));
+        const int there =
+            (random_ray(&r), r.from = v3_times(v3_unit(r.from), 0.1), brute(m, &r, &want));
         const int hit = mesh_cast(m, &r, &t, &face);
         hits += hit;
         CHECK(hit == (there >= 0), "hit %d, not %d", hit, there);
@@ -274,7 +293,9 @@ TEST(a_mesh_is_hit_where_its_triangles_are)
     mesh_free(m);
 }
 
-TEST_MAIN("world: rays", a_ray_enters_a_plane_where_a_walk_does, a_ray_enters_a_sphere_where_a_walk_does,
-          a_ray_enters_a_box_where_a_walk_does, a_ray_enters_a_capsule_where_a_walk_does,
-          the_plane_lies_on_the_surface, of_many_the_first_whatever_their_order_and_culling,
-          rays_together_find_what_each_finds_alone, two_at_one_place_are_told_apart_by_number, a_mesh_is_hit_where_its_triangles_are);
+TEST_MAIN("world: rays", a_ray_enters_a_plane_where_a_walk_does,
+          a_ray_enters_a_sphere_where_a_walk_does, a_ray_enters_a_box_where_a_walk_does,
+          a_ray_enters_a_capsule_where_a_walk_does, the_plane_lies_on_the_surface,
+          of_many_the_first_whatever_their_order_and_culling,
+          rays_together_find_what_each_finds_alone, two_at_one_place_are_told_apart_by_number,
+          a_mesh_is_hit_where_its_triangles_are);

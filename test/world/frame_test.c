@@ -33,7 +33,8 @@ static void random_state(struct exh_wire_state *in)
     memset(in, 0, sizeof *in);
     in->fingers = (uint8_t)(check_u64() & 31);
     for (int i = 0; i < FINGERS * 3; i++) {
-        in->joint_turn_q32[i / 3][i % 3] = turn(real_in(finger_lo_rad[i % 3], finger_hi_rad[i % 3]));
+        in->joint_turn_q32[i / 3][i % 3] =
+            turn(real_in(finger_lo_rad[i % 3], finger_hi_rad[i % 3]));
     }
 }
 
@@ -63,8 +64,8 @@ TEST(the_fingertips_are_where_the_published_chain_has_them)
         const int32_t joint[3] = {turn(q[0]), turn(q[1]), turn(q[2])};
         struct finger f;
         finger_at(&f, &h, known[i].finger, joint);
-        CHECK(v3_len(v3_sub(f.tip, v3(p[0], p[1], p[2]))) < 1e-6, "%d: %.6f %.6f %.6f", (int)i, f.tip.x,
-              f.tip.y, f.tip.z);
+        CHECK(v3_len(v3_sub(f.tip, v3(p[0], p[1], p[2]))) < 1e-6, "%d: %.6f %.6f %.6f", (int)i,
+              f.tip.x, f.tip.y, f.tip.z);
     }
 }
 
@@ -84,7 +85,8 @@ TEST(the_controllers_hand_is_the_same_one)
             CHECK_EQ_I64(exh_hand_setup(&lib, &exh_hit2_bones[i], &par), 0);
             exh_hand_tip(&lib, in.joint_turn_q32[i], &tip);
             finger_at(&f, &h, i, in.joint_turn_q32[i]);
-            most = fmax(most, v3_len(v3_sub(f.tip, v3(tip.x * 0x1p-30, tip.y * 0x1p-30, tip.z * 0x1p-30))));
+            most = fmax(
+                most, v3_len(v3_sub(f.tip, v3(tip.x * 0x1p-30, tip.y * 0x1p-30, tip.z * 0x1p-30))));
         }
     }
     CHECK(most < 100e-9, "%g m apart", most); /* the published angles have six digits */
@@ -117,8 +119,9 @@ TEST(the_ray_is_square_to_the_last_link_and_points_to_where_the_finger_closes)
 
 TEST(a_static_plane_has_the_same_bits_whatever_the_fingers_do)
 {
-    static const char *const text[] = {TABLE, ("hand at 0 0 0.1\nmaterial m\nbox b at 0 0.1 0.0 rpy 3 4 5 size "
-                                               "0.4 0.4 0.06 material m\n")};
+    static const char *const text[] = {
+        TABLE, ("hand at 0 0 0.1\nmaterial m\nbox b at 0 0.1 0.0 rpy 3 4 5 size "
+                "0.4 0.4 0.06 material m\n")};
     for (int k = 0; k < 2; k++) {
         struct world *w = load(text[k]);
         struct exh_wire_plane first[6];
@@ -142,7 +145,8 @@ TEST(a_static_plane_has_the_same_bits_whatever_the_fingers_do)
             }
         }
         CHECK(hits > 10 || hits == 0, "%d hits", hits);
-        CHECK(n <= (k == 0 ? 1 : 5), "%d different planes of %s", n, k == 0 ? "one plane" : "a box");
+        CHECK(n <= (k == 0 ? 1 : 5), "%d different planes of %s", n,
+              k == 0 ? "one plane" : "a box");
         world_free(w);
     }
 }
@@ -155,9 +159,12 @@ TEST(the_canonical_point_is_the_planes_nearest_to_the_origin)
     world_frame(w, &in, 0, &out, NULL);
     for (int f = 1; f < FINGERS; f++) {
         const struct exh_wire_plane *p = &out.plane[f];
-        const struct v3 n = v3(p->normal_q30[0] * 0x1p-30, p->normal_q30[1] * 0x1p-30, p->normal_q30[2] * 0x1p-30);
-        const struct v3 q = v3(p->point_m_q30[0] * 0x1p-30, p->point_m_q30[1] * 0x1p-30, p->point_m_q30[2] * 0x1p-30);
-        const struct v3 c = v3(p->hit_m_q30[0] * 0x1p-30, p->hit_m_q30[1] * 0x1p-30, p->hit_m_q30[2] * 0x1p-30);
+        const struct v3 n =
+            v3(p->normal_q30[0] * 0x1p-30, p->normal_q30[1] * 0x1p-30, p->normal_q30[2] * 0x1p-30);
+        const struct v3 q = v3(p->point_m_q30[0] * 0x1p-30, p->point_m_q30[1] * 0x1p-30,
+                               p->point_m_q30[2] * 0x1p-30);
+        const struct v3 c =
+            v3(p->hit_m_q30[0] * 0x1p-30, p->hit_m_q30[1] * 0x1p-30, p->hit_m_q30[2] * 0x1p-30);
         const double off = (0.07 - 0) / sqrt(1 + 0.01 + 0.0025);
         CHECK_EQ_I64(p->kind, EXH_PLANE_HIT);
         CHECK(fabs(v3_len(n) - 1) < 2e-9, "%.12g", v3_len(n));
@@ -180,7 +187,8 @@ TEST(fingers_that_are_off_are_untold_and_cost_no_ray)
     CHECK_EQ_I64((int64_t)s.rays, 1);
     CHECK_EQ_I64((int64_t)s.tests, 1);
     for (int f = 0; f < FINGERS; f++) {
-        CHECK(out.plane[f].kind == (f == 1 ? EXH_PLANE_HIT : EXH_PLANE_UNTOLD), "%d: %d", f, out.plane[f].kind);
+        CHECK(out.plane[f].kind == (f == 1 ? EXH_PLANE_HIT : EXH_PLANE_UNTOLD), "%d: %d", f,
+              out.plane[f].kind);
     }
     world_free(w);
 }
@@ -204,9 +212,10 @@ TEST(beyond_the_ray_there_is_no_plane)
 
 static int object(char *to, size_t to_B, int k, double far)
 {
-    static const char *const how[] = {"sphere o%d at %.3f %.3f %.3f radius 0.03 material m\n",
-                                      "box o%d at %.3f %.3f %.3f rpy 10 20 30 size 0.03 0.05 0.04 material m\n",
-                                      "capsule o%d at %.3f %.3f %.3f rpy 30 20 10 radius 0.02 length 0.05 material m\n"};
+    static const char *const how[] = {
+        "sphere o%d at %.3f %.3f %.3f radius 0.03 material m\n",
+        "box o%d at %.3f %.3f %.3f rpy 10 20 30 size 0.03 0.05 0.04 material m\n",
+        "capsule o%d at %.3f %.3f %.3f rpy 30 20 10 radius 0.02 length 0.05 material m\n"};
     const double x = real_in(-far, far), y = real_in(-far, far), z = real_in(-far, far);
     const double a = real_in(-far, far), b = real_in(-far, far), c = real_in(-far, far);
     int n;
@@ -216,21 +225,39 @@ static int object(char *to, size_t to_B, int k, double far)
 #pragma GCC diagnostic pop
     switch (check_u64() % 4) {
     case 0: break;
-    case 1: n += snprintf(to + n, to_B - (size_t)n, "motion o%d linear move %.3f %.3f %.3f turn 9 0 40\n", k, a, b, c); break;
-    case 2: n += snprintf(to + n, to_B - (size_t)n, "motion o%d sine move %.3f %.3f %.3f hz 0.7\n", k, a, b, c); break;
+    case 1:
+        n += snprintf(to + n, to_B - (size_t)n,
+                      "motion o%d linear move %.3f %.3f %.3f turn 9 0 40\n", k, a, b, c);
+        break;
+    case 2:
+        n += snprintf(to + n, to_B - (size_t)n, "motion o%d sine move %.3f %.3f %.3f hz 0.7\n", k,
+                      a, b, c);
+        break;
     default:
-        n += snprintf(to + n, to_B - (size_t)n, "motion o%d keys loop\nkey o%d t 0\nkey o%d t 1 move %.3f %.3f "
-                      "%.3f\nkey o%d t 1.5 move %.3f 0 0\nkey o%d t 4\n", k, k, k, a, b, c, k, c, k);
+        n += snprintf(to + n, to_B - (size_t)n,
+                      "motion o%d keys loop\nkey o%d t 0\nkey o%d t 1 move %.3f %.3f "
+                      "%.3f\nkey o%d t 1.5 move %.3f 0 0\nkey o%d t 4\n",
+                      k, k, k, a, b, c, k, c, k);
     }
     return n;
 }
 
 static void random_world(char *to, size_t to_B)
 {
-    int at = snprintf(to, to_B, "hand at 0 -0.1 0\nmaterial m\nplane low at 0 0 -0.2 normal 0.2 0 1 material m\n");
-    if (check_u64() & 1) { at += snprintf(to + at, to_B - (size_t)at, "motion hand sine move 0.2 0.1 0 hz 0.3 turn 0 30 60\n"); }
-    if (check_u64() & 1) { at += snprintf(to + at, to_B - (size_t)at, "motion low sine turn 20 30 0 hz 0.4 move 0 0 0.1\n"); }
-    for (int k = 0; k < OBJECTS; k++) { at += object(to + at, to_B - (size_t)at, k, k < 20 ? 0.15 : 1); }
+    int at =
+        snprintf(to, to_B,
+                 "hand at 0 -0.1 0\nmaterial m\nplane low at 0 0 -0.2 normal 0.2 0 1 material m\n");
+    if (check_u64() & 1) {
+        at += snprintf(to + at, to_B - (size_t)at,
+                       "motion hand sine move 0.2 0.1 0 hz 0.3 turn 0 30 60\n");
+    }
+    if (check_u64() & 1) {
+        at += snprintf(to + at, to_B - (size_t)at,
+                       "motion low sine turn 20 30 0 hz 0.4 move 0 0 0.1\n");
+    }
+    for (int k = 0; k < OBJECTS; k++) {
+        at += object(to + at, to_B - (size_t)at, k, k < 20 ? 0.15 : 1);
+    }
 }
 
 TEST(culling_changes_no_plane_and_spares_work)
@@ -259,15 +286,18 @@ TEST(culling_changes_no_plane_and_spares_work)
         world_free(culled), world_free(all);
     }
     CHECK(a.rays == b.rays && a.hits == b.hits && a.hits > 0, "%lu rays, %lu hits", a.rays, a.hits);
-    CHECK(b.slept == 0 && a.slept > 0 && a.moved < b.moved, "asleep %lu, placed %lu of %lu", a.slept, a.moved, b.moved);
+    CHECK(b.slept == 0 && a.slept > 0 && a.moved < b.moved, "asleep %lu, placed %lu of %lu",
+          a.slept, a.moved, b.moved);
     CHECK(3 * (a.tests - a.culled) < b.tests, "%lu of %lu", a.tests - a.culled, b.tests);
     check_note("culling: %.1f bodies a ray instead of %.1f; %lu places computed instead of %lu",
-               (double)(a.tests - a.culled) / (double)a.rays, (double)b.tests / (double)b.rays, a.moved, b.moved);
+               (double)(a.tests - a.culled) / (double)a.rays, (double)b.tests / (double)b.rays,
+               a.moved, b.moved);
 }
 
 TEST(an_object_out_of_reach_costs_nothing)
 {
-    struct world *w = load("hand at 0 0 0\nmaterial m\nsphere far at 5 0 0 radius 1 material m\nsphere coming at 3 0.1 "
+    struct world *w = load("hand at 0 0 0\nmaterial m\nsphere far at 5 0 0 radius 1 material "
+                           "m\nsphere coming at 3 0.1 "
                            "0 radius 0.05 material m\nmotion coming linear move -1 0 0\n");
     struct exh_wire_state in = {.fingers = 31};
     struct exh_wire_planes out;
@@ -282,8 +312,9 @@ TEST(an_object_out_of_reach_costs_nothing)
 
 TEST(a_hand_that_only_turns_finds_what_it_turns_to)
 {
-    static const char text[] = "hand at 0 0 0\nmaterial m\nbox b at 0 -0.34 -0.03 size 0.1 0.3 0.02 material m\n"
-                               "motion hand linear turn 0 0 90\n";
+    static const char text[] =
+        "hand at 0 0 0\nmaterial m\nbox b at 0 -0.34 -0.03 size 0.1 0.3 0.02 material m\n"
+        "motion hand linear turn 0 0 90\n";
     struct world *culled = load(text), *all = load(text);
     struct world_stats s = {0};
     world_cull(all, 0);
@@ -355,5 +386,5 @@ TEST_MAIN("world: frames", the_fingertips_are_where_the_published_chain_has_them
           the_canonical_point_is_the_planes_nearest_to_the_origin,
           fingers_that_are_off_are_untold_and_cost_no_ray, beyond_the_ray_there_is_no_plane,
           culling_changes_no_plane_and_spares_work, an_object_out_of_reach_costs_nothing,
-          a_hand_that_only_turns_finds_what_it_turns_to,
-          the_same_inputs_give_the_same_bits, five_fingers_hold_the_ball);
+          a_hand_that_only_turns_finds_what_it_turns_to, the_same_inputs_give_the_same_bits,
+          five_fingers_hold_the_ball);

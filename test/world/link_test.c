@@ -53,7 +53,8 @@ static void say(struct controller *c, int type, int32_t joint)
     if (type == EXH_WIRE_HELLO) { p.u.hello = said_hello; }
     if (type == EXH_WIRE_STATE) { p.u.state.joint_turn_q32[0][0] = joint; }
     n = exh_wire_write(&c->tx, &p, 1234, buf, sizeof buf);
-    CHECK(n > 0 && sendto(c->fd, buf, (size_t)n, 0, (struct sockaddr *)&c->to, sizeof c->to) == n, "%d", (int)n);
+    CHECK(n > 0 && sendto(c->fd, buf, (size_t)n, 0, (struct sockaddr *)&c->to, sizeof c->to) == n,
+          "%d", (int)n);
 }
 
 static void hear(struct controller *c)
@@ -93,7 +94,8 @@ TEST(a_state_is_taken_and_answered_with_its_own_number)
     CHECK(frame(&s, 1000) && s.joint_turn_q32[0][0] == 42, "not the newest");
     hear(&c);
     CHECK(c.hellos == 1 && c.answers == 1, "%d hellos, %d answers", c.hellos, c.answers);
-    CHECK(c.planes.echo_seq == 2 && c.planes.echo_stamp_us == 1234, "echo %u", (unsigned)c.planes.echo_seq);
+    CHECK(c.planes.echo_seq == 2 && c.planes.echo_stamp_us == 1234, "echo %u",
+          (unsigned)c.planes.echo_seq);
     CHECK(!frame(&s, 2000), "an old state is new");
     hear(&c);
     CHECK_EQ_I64(c.answers, 2);
@@ -116,7 +118,8 @@ TEST(either_end_may_start_anew)
     CHECK(!frame(&s, 1000), "of a stranger");
     say(&c, EXH_WIRE_HELLO, 0);
     say(&c, EXH_WIRE_STATE, 8);
-    CHECK(frame(&s, 2000) && s.joint_turn_q32[0][0] == 8, "the controller's second life is not heard");
+    CHECK(frame(&s, 2000) && s.joint_turn_q32[0][0] == 8,
+          "the controller's second life is not heard");
     hear(&c);
     CHECK(c.answers > 0, "nor answered");
 
@@ -149,7 +152,8 @@ TEST(without_planes_it_says_hello_alone)
 
 static char heard[2000];
 static struct scene scene;
-static struct scene_material material[3] = {{"wood", 50000, 60, 10, {0}}, {"tar", 1500, 2000, 6, {0}}, {"air", 0, 0, 0, {0}}};
+static struct scene_material material[3] = {
+    {"wood", 50000, 60, 10, {0}}, {"tar", 1500, 2000, 6, {0}}, {"air", 0, 0, 0, {0}}};
 
 static void listen_to(const char *text)
 {
@@ -198,8 +202,11 @@ TEST(materials_are_asked_for_until_answered)
     struct controller c;
     struct exh_wire_param asked[200];
     open_wanting(1);
-    CHECK(world.wants == 8 && strcmp(heard, "material tar: mat_b 2000 ns_per_m: not between 0 and 1000: not sent, the "
-                                            "controller's own holds\n") == 0, "%s", heard);
+    CHECK(world.wants == 8 &&
+              strcmp(heard,
+                     "material tar: mat_b 2000 ns_per_m: not between 0 and 1000: not sent, the "
+                     "controller's own holds\n") == 0,
+          "%s", heard);
     for (uint32_t life = 2; life < 5; life++) {
         unsigned seen = 0, most = 0;
         int t = 0;
@@ -220,13 +227,17 @@ TEST(materials_are_asked_for_until_answered)
                 }
             }
         }
-        CHECK(seen == 0x1EF && world.waiting == 0 && t < 800, "life %d: %#x, %d wait", (int)life, seen, world.waiting);
+        CHECK(seen == 0x1EF && world.waiting == 0 && t < 800, "life %d: %#x, %d wait", (int)life,
+              seen, world.waiting);
         CHECK(most <= 2, "%u at once", most);
         CHECK(strstr(heard, "material air: mat_k 0 n_per_m: refused by the controller: ") &&
-                  !strstr(heard, "wood") && !strstr(heard, "tar"), "%s", heard);
+                  !strstr(heard, "wood") && !strstr(heard, "tar"),
+              "%s", heard);
         (void)frame(&s, (int64_t)life * 100000000 + t * 2500);
         CHECK(params(&c, asked, 0) == 0 && c.answers > 0, "it asks on, or tells no planes");
-        for (int k = 0; k < 100; k++) { (void)frame(&s, (int64_t)life * 100000000 + (t + k) * 2500); }
+        for (int k = 0; k < 100; k++) {
+            (void)frame(&s, (int64_t)life * 100000000 + (t + k) * 2500);
+        }
         CHECK_EQ_I64(params(&c, asked, 0), 0);
         close(c.fd);
     }
@@ -249,7 +260,7 @@ TEST(who_answers_nothing_gets_planes_all_the_same)
         n += params(&c, asked, 10);
         if (first < 0 && c.answers > 0) { first = t; }
     }
-    CHECK_EQ_I64(first, 400); /* a second */
+    CHECK_EQ_I64(first, 400);                           /* a second */
     CHECK(n > 180 && n <= 200, "%d asked in 2.5 s", n); /* 8 ten times a second */
     CHECK(strstr(heard, "no answer (8 of 8 are without)"), "%s", heard);
     close(c.fd), link_close(&world);
@@ -266,7 +277,9 @@ TEST(a_peer_that_differs_is_named)
     heard[0] = '\0';
     say(&c, EXH_WIRE_HELLO, 0);
     (void)frame(&s, 0);
-    CHECK(strstr(heard, "is a world, too") && strstr(heard, "of the library") && strstr(heard, "00004321"), "%s", heard);
+    CHECK(strstr(heard, "is a world, too") && strstr(heard, "of the library") &&
+              strstr(heard, "00004321"),
+          "%s", heard);
     CHECK_EQ_I64((int64_t)world.odd, 1);
     said_hello = (struct exh_wire_hello){EXH_WIRE_CONTROLLER, EXH_VERSION_NUMBER, 0};
     close(c.fd), link_close(&world);
@@ -340,7 +353,8 @@ static void hear_asks(struct controller *c)
     }
 }
 
-static void send_trace(struct controller *c, uint32_t request_seq, uint32_t first, uint8_t frames, int16_t result)
+static void send_trace(struct controller *c, uint32_t request_seq, uint32_t first, uint8_t frames,
+                       int16_t result)
 {
     unsigned char buf[EXH_WIRE_MAX_B];
     struct exh_wire_packet p;
@@ -357,7 +371,8 @@ static void send_trace(struct controller *c, uint32_t request_seq, uint32_t firs
         p.u.trace.frame[i].raw[1] = 5;
     }
     n = exh_wire_write(&c->tx, &p, 1234, buf, sizeof buf);
-    CHECK(n > 0 && sendto(c->fd, buf, (size_t)n, 0, (struct sockaddr *)&c->to, sizeof c->to) == n, "%d", (int)n);
+    CHECK(n > 0 && sendto(c->fd, buf, (size_t)n, 0, (struct sockaddr *)&c->to, sizeof c->to) == n,
+          "%d", (int)n);
 }
 
 static const struct exh_signal traced_rows[] = {
@@ -384,11 +399,12 @@ static void read_all(const char *path, char *to, size_t cap_B)
     to[n] = '\0';
 }
 
-/* Asked for until it is answered; what comes is lines, what does not is counted; a controller that has started
- * anew is asked anew, and frames of what was asked of the one before are nobody's. */
+/* Asked for until it is answered; what comes is lines, what does not is counted; a controller that
+ * has started anew is asked anew, and frames of what was asked of the one before are nobody's. */
 TEST(a_trace_is_asked_for_and_written)
 {
-    static const char want[] = "number,tick,q[1]_m,state\n7,121,-0.75,5\n8,124,-0.75,5\n10,130,-0.75,5\n0,100,-0.75,5\n";
+    static const char want[] =
+        "number,tick,q[1]_m,state\n7,121,-0.75,5\n8,124,-0.75,5\n10,130,-0.75,5\n0,100,-0.75,5\n";
     char path[] = "/tmp/exhand-trace-XXXXXX", why[300] = "", text[400];
     struct exh_wire_state s;
     struct controller c;
@@ -404,15 +420,15 @@ TEST(a_trace_is_asked_for_and_written)
     say(&c, EXH_WIRE_HELLO, 0);
     for (int64_t t_us = 0; t_us < 250000; t_us += 10000) { (void)frame(&s, t_us); }
     hear_asks(&c);
-    CHECK(asks == 3 && asked.every == 3 && asked.index[0] == 2 && asked.index[1] == 6, "%d, %d, %d", asks,
-          asked.index[0], asked.index[1]);
-    send_trace(&c, ask_seq + 1, 1, 1, 0);  /* of nothing that was asked */
+    CHECK(asks == 3 && asked.every == 3 && asked.index[0] == 2 && asked.index[1] == 6, "%d, %d, %d",
+          asks, asked.index[0], asked.index[1]);
+    send_trace(&c, ask_seq + 1, 1, 1, 0); /* of nothing that was asked */
     send_trace(&c, ask_seq - 1, 7, 2, 0);
     send_trace(&c, ask_seq, 10, 1, 0);
     for (int64_t t_us = 250000; t_us < 900000; t_us += 10000) { (void)frame(&s, t_us); }
     hear_asks(&c);
-    CHECK(asks == 3 && world.trace.frames == 3 && world.trace.missed == 1, "%d asks, %lu frames, %lu missed", asks,
-          world.trace.frames, world.trace.missed);
+    CHECK(asks == 3 && world.trace.frames == 3 && world.trace.missed == 1,
+          "%d asks, %lu frames, %lu missed", asks, world.trace.frames, world.trace.missed);
     before = ask_seq;
     close(c.fd);
     open_controller(&c, 3);
@@ -433,16 +449,19 @@ TEST(a_trace_is_asked_for_and_written)
 
 TEST(a_trace_that_cannot_be_is_refused_in_words)
 {
-    static const char *const bad[] = {"", "w", "q[3]", "q[1", "q[]", "q[1]x", "state[1]", "c,c,c,c,c"};
+    static const char *const bad[] = {"",    "w",     "q[3]",     "q[1",
+                                      "q[]", "q[1]x", "state[1]", "c,c,c,c,c"};
     char path[] = "/tmp/exhand-trace-XXXXXX", why[300];
     struct exh_wire_state s;
     struct controller c;
     close(mkstemp(path));
     open_world(1);
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
-        CHECK(open_trace(path, bad[i], why) == 2 && strstr(why, "--trace-signals: "), "%s: %s", bad[i], why);
+        CHECK(open_trace(path, bad[i], why) == 2 && strstr(why, "--trace-signals: "), "%s: %s",
+              bad[i], why);
     }
-    CHECK(open_trace("/nowhere/at/all", "c", why) == 1 && strstr(why, "/nowhere/at/all: "), "%s", why);
+    CHECK(open_trace("/nowhere/at/all", "c", why) == 1 && strstr(why, "/nowhere/at/all: "), "%s",
+          why);
     heard[0] = '\0';
     world.say = listen_to;
     CHECK(open_trace(path, "c", why) == 0, "%s", why);
@@ -479,15 +498,15 @@ TEST(bad_addresses_are_refused_in_words)
     static const char *const bad[] = {"", "x:y:z", "127.0.0.1:", "999.999.1.1:7", "8.8.8.8:70"};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         char why[300] = "";
-        CHECK(link_open(&world, bad[i], NULL, 1, why, sizeof why) == 1 && strstr(why, ": "), "%s: %s", bad[i], why);
+        CHECK(link_open(&world, bad[i], NULL, 1, why, sizeof why) == 1 && strstr(why, ": "),
+              "%s: %s", bad[i], why);
         link_close(&world);
     }
 }
 
-TEST_MAIN("world: the link", a_state_is_taken_and_answered_with_its_own_number, either_end_may_start_anew,
-          without_planes_it_says_hello_alone,
-          materials_are_asked_for_until_answered,
-          who_answers_nothing_gets_planes_all_the_same, a_peer_that_differs_is_named,
-          it_is_not_deaf_for_good,
-          noise_changes_nothing, a_trace_is_asked_for_and_written, a_trace_that_cannot_be_is_refused_in_words,
+TEST_MAIN("world: the link", a_state_is_taken_and_answered_with_its_own_number,
+          either_end_may_start_anew, without_planes_it_says_hello_alone,
+          materials_are_asked_for_until_answered, who_answers_nothing_gets_planes_all_the_same,
+          a_peer_that_differs_is_named, it_is_not_deaf_for_good, noise_changes_nothing,
+          a_trace_is_asked_for_and_written, a_trace_that_cannot_be_is_refused_in_words,
           a_given_peer_is_the_only_one_listened_to, bad_addresses_are_refused_in_words);

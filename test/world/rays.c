@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* What a ray costs: the performance sheet's scene, a plane, a sphere of 40 mm and a box, five rays an
- * operation from a hand whose fingers are bent at random: above them, so that nearly every ray hits, or
- * beside sphere and box. Run under callgrind by rays.sh, which counts the instructions of cast(), and of
- * plain() beside it. Prints rays and hits. */
+/* What a ray costs: the performance sheet's scene, a plane, a sphere of 40 mm and a box, five rays
+ * an operation from a hand whose fingers are bent at random: above them, so that nearly every ray
+ * hits, or beside sphere and box. Run under callgrind by rays.sh, which counts the instructions of
+ * cast(), and of plain() beside it. Prints rays and hits. */
 #include "world/rpy.h"
 #include "world/shape.h"
 #include "world/finger.h"
@@ -23,11 +23,14 @@ static double in(struct sim_random *r, double lo, double hi)
 __attribute__((noinline)) double plain(const struct ray *r, const struct body *b, struct v3 *n);
 double plain(const struct ray *r, const struct body *b, struct v3 *n)
 {
-    const struct v3 up = b[0].at.turn.z, o = v3_sub(r->from, b[1].at.at), p = v3_sub(r->from, b[2].at.at);
+    const struct v3 up = b[0].at.turn.z, o = v3_sub(r->from, b[1].at.at),
+                    p = v3_sub(r->from, b[2].at.at);
     const double down = v3_dot(up, r->along), to = v3_dot(o, r->along);
     const double d = to * to - v3_dot(o, o) + b[1].radius2;
-    const double kx = 1 / (r->along.x + 1e-300), ky = 1 / (r->along.y + 1e-300), kz = 1 / (r->along.z + 1e-300);
-    const double x = b[2].is.half_m.x * fabs(kx), y = b[2].is.half_m.y * fabs(ky), z = b[2].is.half_m.z * fabs(kz);
+    const double kx = 1 / (r->along.x + 1e-300), ky = 1 / (r->along.y + 1e-300),
+                 kz = 1 / (r->along.z + 1e-300);
+    const double x = b[2].is.half_m.x * fabs(kx), y = b[2].is.half_m.y * fabs(ky),
+                 z = b[2].is.half_m.z * fabs(kz);
     double best = r->len, in, out, t;
     if (down < 0) {
         t = (b[0].offset - v3_dot(up, r->from)) / down;
@@ -75,7 +78,9 @@ int main(int argc, char **argv)
             int32_t q[3];
             struct finger tip;
             for (int k = 0; k < 3; k++) {
-                q[k] = (int32_t)(in(&rng, finger_lo_rad[k], (k && near ? 0.4 : 1) * finger_hi_rad[k]) / RAD_PER_TURN_Q32);
+                q[k] =
+                    (int32_t)(in(&rng, finger_lo_rad[k], (k && near ? 0.4 : 1) * finger_hi_rad[k]) /
+                              RAD_PER_TURN_Q32);
             }
             finger_at(&tip, &h, f, q);
             r[f].from = tip.tip;
@@ -90,7 +95,7 @@ int main(int argc, char **argv)
             hits[hit[f].body + 1]++;
         }
     }
-    printf("%d rays: %d%% hit the plane, %d%% the sphere, %d%% the box", 5 * OPS, hits[1] / (OPS / 20),
-           hits[2] / (OPS / 20), hits[3] / (OPS / 20));
+    printf("%d rays: %d%% hit the plane, %d%% the sphere, %d%% the box", 5 * OPS,
+           hits[1] / (OPS / 20), hits[2] / (OPS / 20), hits[3] / (OPS / 20));
     return sum > 1e300; /* never; but so it is needed */
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The window and its keys, on a screen of its own (Xvfb), pressed as somebody would (xdotool). What was on it is
- * read from the draw list that the program leaves. */
+/* The window and its keys, on a screen of its own (Xvfb), pressed as somebody would (xdotool). What
+ * was on it is read from the draw list that the program leaves. */
 #include "check.h"
 
 #include "world/draw.h"
@@ -39,7 +39,10 @@ static int showed(const char *what)
         int kind, thing, which;
         struct v3 at;
         found |= strncmp(line, "text", 4) == 0 && strstr(line, what) != NULL;
-        if (sscanf(line, "item %d %d %d %lf %lf %lf", &kind, &thing, &which, &at.x, &at.y, &at.z) != 6) { continue; }
+        if (sscanf(line, "item %d %d %d %lf %lf %lf", &kind, &thing, &which, &at.x, &at.y, &at.z) !=
+            6) {
+            continue;
+        }
         if (thing != DRAW_HAND) { continue; }
         if (which < 0 && palms++ == 0) { palm = at; }
         if (which >= 0) { tip[which] = at; } /* the last link's comes last */
@@ -57,20 +60,23 @@ TEST(keys_bend_carry_pause_help_and_leave)
     CHECK(dir != NULL, "no directory in /tmp");
     status = run("");
     if (status == 77 || status == 3) {
-        check_note("not tried: %s", status == 3 ? "built without pictures" : "install xvfb and xdotool");
+        check_note("not tried: %s",
+                   status == 3 ? "built without pictures" : "install xvfb and xdotool");
     } else {
         CHECK_EQ_I64(status, 0);
-        CHECK(showed("Collision with simple bodies") && showed(" frames/s, ") && showed("no link"), "what is always there");
+        CHECK(showed("Collision with simple bodies") && showed(" frames/s, ") && showed("no link"),
+              "what is always there");
         CHECK(!showed("paused") && !showed("turn the view"), "what no key asked for");
         palm_before = palm;
         memcpy(tip_before, tip, sizeof tip);
         CHECK_EQ_I64(run("3 3 3 w w w h space"), 0);
         CHECK(showed("paused") && showed("turn the view"), "space, h");
-        CHECK(fabs(palm.y - palm_before.y - 0.012) < 2e-6 && fabs(palm.x - palm_before.x) < 2e-6, "w: %g m to y",
-              palm.y - palm_before.y);
+        CHECK(fabs(palm.y - palm_before.y - 0.012) < 2e-6 && fabs(palm.x - palm_before.x) < 2e-6,
+              "w: %g m to y", palm.y - palm_before.y);
         for (int f = 0; f < FINGERS; f++) {
             const struct v3 way = v3_sub(v3_sub(tip[f], tip_before[f]), v3_sub(palm, palm_before));
-            CHECK((v3_len(way) > 0.01) == (f == 2), "3 bends the middle alone, not finger %d by %g m", f, v3_len(way));
+            CHECK((v3_len(way) > 0.01) == (f == 2),
+                  "3 bends the middle alone, not finger %d by %g m", f, v3_len(way));
         }
     }
     snprintf(line, sizeof line, "rm -r %s", dir);

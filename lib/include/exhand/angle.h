@@ -21,14 +21,14 @@ extern "C" {
 
 /* Sine and cosine of one angle. */
 struct exh_sincos {
-    int32_t sin_q30, cos_q30; /* -2^30 .. 2^30                                 */
+    int32_t sin_q30, cos_q30; /* -2^30 .. 2^30 */
 };
 
 /* Sine and cosine of any angle. Error <= 2.25 LSB of q30 (0.0021 ppm), found over all 2^32
- * angles; 0 and +-2^30 exactly at whole quarters of a turn, never beyond +-2^30. Symmetric to the last bit:
- * sin(-x) = -sin(x), cos(-x) = cos(x), but at the four odd eighths, where the two are 2 LSB apart and
- * change places; a quarter turn on makes them cos(x), -sin(x) at every angle. The work is the
- * same for every angle: no table, no branch, nine products. */
+ * angles; 0 and +-2^30 exactly at whole quarters of a turn, never beyond +-2^30. Symmetric to the
+ * last bit: sin(-x) = -sin(x), cos(-x) = cos(x), but at the four odd eighths, where the two are 2
+ * LSB apart and change places; a quarter turn on makes them cos(x), -sin(x) at every angle. The
+ * work is the same for every angle: no table, no branch, nine products. */
 void exh_sincos(int32_t x_turn_q32, struct exh_sincos *y);
 
 #ifdef __cplusplus

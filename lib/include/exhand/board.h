@@ -24,11 +24,11 @@ extern "C" {
 
 /* What a port is, constant: the loop asks it before anything else. */
 struct exh_board_info {
-    const char *name;     /* at most 15 characters                             */
-    uint16_t version;     /* EXH_BOARD_VERSION it was written against          */
-    uint8_t fingers;      /* axes present                                      */
-    uint8_t enc_bits;     /* width of its counters, 16 .. 32                   */
-    uint32_t rate_max_Hz; /* highest rate it accepts                           */
+    const char *name;     /* at most 15 characters */
+    uint16_t version;     /* EXH_BOARD_VERSION it was written against */
+    uint8_t fingers;      /* axes present */
+    uint8_t enc_bits;     /* width of its counters, 16 .. 32 */
+    uint32_t rate_max_Hz; /* highest rate it accepts */
 };
 extern const struct exh_board_info exh_board_info;
 

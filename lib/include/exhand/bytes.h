@@ -19,17 +19,17 @@ extern "C" {
 
 /* Which way a cursor goes. */
 enum exh_bytes_mode {
-    EXH_BYTES_WRITE,  /* from the fields into the buffer                       */
-    EXH_BYTES_READ,   /* from the buffer into the fields                       */
-    EXH_BYTES_MEASURE /* nowhere: the bytes are counted                        */
+    EXH_BYTES_WRITE,  /* from the fields into the buffer */
+    EXH_BYTES_READ,   /* from the buffer into the fields */
+    EXH_BYTES_MEASURE /* nowhere: the bytes are counted */
 };
 
 /* A cursor: made by the three functions below, on the caller's stack. */
 struct exh_bytes {
-    uint8_t *p;   /* the caller's buffer; may be NULL when only measuring     */
-    uint32_t cap; /* its size, B                                              */
-    uint32_t at;  /* bytes done so far; goes on counting past cap             */
-    uint8_t mode; /* enum exh_bytes_mode                                      */
+    uint8_t *p;   /* the caller's buffer; may be NULL when only measuring */
+    uint32_t cap; /* its size, B */
+    uint32_t at;  /* bytes done so far; goes on counting past cap */
+    uint8_t mode; /* enum exh_bytes_mode */
 };
 
 /* Cursors over a buffer. A reader never writes to what it reads. */

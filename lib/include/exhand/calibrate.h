@@ -25,8 +25,8 @@ extern "C" {
 
 /* A mean on its way. All zeros: of none. */
 struct exh_mean {
-    int64_t sum; /* of the values, exact, |sum| <= n 2^31                      */
-    uint32_t n;  /* < 2^31: |sum| stays below 2^62                              */
+    int64_t sum; /* of the values, exact, |sum| <= n 2^31 */
+    uint32_t n;  /* < 2^31: |sum| stays below 2^62 */
 };
 
 /* One value; after 2^31-1 of them further ones are ignored. */
@@ -37,27 +37,27 @@ int32_t exh_mean_value(const struct exh_mean *m);
 
 /* --- points --- */
 
-#define EXH_CALIB_POINTS_MAX 16 /* sums of squares stay below 2^63                 */
+#define EXH_CALIB_POINTS_MAX 16 /* sums of squares stay below 2^63 */
 
 /* What one mass gave. Force over either current is 0.1 .. 2047 N/A. */
 struct exh_calib_point {
-    int32_t force_N_q20;    /* known force m g, N, > 0 .. 100                  */
-    int32_t cur_A_q26;      /* coded current that balances it, A, > 0 .. 6.6   */
-    int32_t mon_A_q26;      /* its mean by the monitor, A, > 0 .. 10           */
-    int32_t friction_A_q26; /* half of what friction holds, A, 0 .. 6.6        */
+    int32_t force_N_q20;    /* known force m g, N, > 0 .. 100 */
+    int32_t cur_A_q26;      /* coded current that balances it, A, > 0 .. 6.6 */
+    int32_t mon_A_q26;      /* its mean by the monitor, A, > 0 .. 10 */
+    int32_t friction_A_q26; /* half of what friction holds, A, 0 .. 6.6 */
 };
 
 /* Which of a point's two currents. */
 enum exh_calib_which {
-    EXH_CALIB_CURRENT, /* cur_A_q26, coded                                     */
-    EXH_CALIB_MONITOR  /* mon_A_q26, monitored                                 */
+    EXH_CALIB_CURRENT, /* cur_A_q26, coded */
+    EXH_CALIB_MONITOR  /* mon_A_q26, monitored */
 };
 
 /* The straight line through the origin nearest to n points: least squares of force,
  * N per A = sum(F I) / sum(I^2), relative error of the division 2^-31. */
 struct exh_calib_fit {
-    struct exh_gain gain; /* force raw per current raw                         */
-    int32_t kf_NpA_q20;   /* N/A; error <= 1 LSB                               */
+    struct exh_gain gain; /* force raw per current raw */
+    int32_t kf_NpA_q20;   /* N/A; error <= 1 LSB */
 };
 
 /* -EXH_E_RANGE: n not 1 .. EXH_CALIB_POINTS_MAX, a value outside its range above, as is
@@ -73,41 +73,41 @@ int32_t exh_calib_residual_N_q20(const struct exh_calib_fit *fit, const struct e
 
 /* A calibration of one finger. What is out of range is refused, never limited. */
 struct exh_calib {
-    uint32_t device_id; /* of the box, given by whoever calibrates            */
-    uint32_t finger;    /* 0 .. EXH_FINGERS - 1                                */
-    uint32_t day;       /* when: days since 1970-01-01, or any serial number that grows */
-    uint32_t valid_days; /* good on days day .. day + valid_days               */
+    uint32_t device_id;    /* of the box, given by whoever calibrates */
+    uint32_t finger;       /* 0 .. EXH_FINGERS - 1 */
+    uint32_t day;          /* when: days since 1970-01-01, or any serial number that grows */
+    uint32_t valid_days;   /* good on days day .. day + valid_days */
     int32_t dac_rawpA_q16; /* scales and zero it was measured with (exh_drive_par): with
-                            * others it is no longer true. Codes per ampere    */
-    int32_t dac_zero_raw;  /* code of no current, 0 .. 65535                   */
-    int32_t mon_A_q40;     /* ampere per monitor code                          */
+                            * others it is no longer true. Codes per ampere */
+    int32_t dac_zero_raw;  /* code of no current, 0 .. 65535 */
+    int32_t mon_A_q40;     /* ampere per monitor code */
     int32_t mon_zero_raw;  /* monitor code at no current as measured, -32768 .. 32767: the
                             * points are less this, so whoever uses the monitor table
-                            * must copy it to the drive's mon_zero_raw         */
-    int32_t f0_A_q26;   /* current at which the slack string returns, A, 0 .. 6.6 */
-    int32_t end_A_q26;  /* tables go on straight to here, A; at or below the last
-                         * point: they end there. 0 .. 6.6                    */
-    struct exh_calib_point *point; /* the caller's, in order of rising force  */
-    uint8_t points;     /* how many are used                                  */
-    uint8_t cap;        /* how many there is room for                         */
+                            * must copy it to the drive's mon_zero_raw */
+    int32_t f0_A_q26;      /* current at which the slack string returns, A, 0 .. 6.6 */
+    int32_t end_A_q26;     /* tables go on straight to here, A; at or below the last
+                            * point: they end there. 0 .. 6.6 */
+    struct exh_calib_point *point; /* the caller's, in order of rising force */
+    uint8_t points;                /* how many are used */
+    uint8_t cap;                   /* how many there is room for */
 };
 
 /* What an error is about. */
 enum exh_calib_what {
-    EXH_CALIB_IMAGE,   /* the bytes                                           */
-    EXH_CALIB_DEVICE,  /* it was made for another one                         */
-    EXH_CALIB_FINGER,  /* or for another finger of it                          */
-    EXH_CALIB_AGE,     /* older than valid_days, or from the future            */
-    EXH_CALIB_SCALE,   /* scale or zero of D/A or monitor differ from those it was made with */
-    EXH_CALIB_VALUE,   /* zero, F0, end or number of points                   */
-    EXH_CALIB_FORCE_TABLE,   /* force -> current; at: the point               */
-    EXH_CALIB_MONITOR_TABLE, /* monitor -> force; at: the point               */
-    EXH_CALIB_WHATS    /* how many there are                                   */
+    EXH_CALIB_IMAGE,       /* the bytes */
+    EXH_CALIB_DEVICE,      /* it was made for another one */
+    EXH_CALIB_FINGER,      /* or for another finger of it */
+    EXH_CALIB_AGE,         /* older than valid_days, or from the future */
+    EXH_CALIB_SCALE,       /* scale or zero of D/A or monitor differ from those it was made with */
+    EXH_CALIB_VALUE,       /* zero, F0, end or number of points */
+    EXH_CALIB_FORCE_TABLE, /* force -> current; at: the point */
+    EXH_CALIB_MONITOR_TABLE, /* monitor -> force; at: the point */
+    EXH_CALIB_WHATS          /* how many there are */
 };
 /* The culprit: why a calibration was refused. */
 struct exh_calib_bad {
-    uint8_t what; /* enum exh_calib_what                                       */
-    uint8_t at;   /* point, from 0, for the tables                             */
+    uint8_t what; /* enum exh_calib_what */
+    uint8_t at;   /* point, from 0, for the tables */
 };
 
 /* "force-to-current table", ...; never NULL. */
@@ -130,7 +130,7 @@ int exh_calib_valid(const struct exh_calib *c, struct exh_calib_bad *bad);
 /* Where and when it is to be used. */
 struct exh_calib_here {
     uint32_t device_id, finger, day; /* this box, this finger of it, today; as in exh_calib */
-    int32_t dac_rawpA_q16, dac_zero_raw, mon_A_q40; /* of the drive parameters in use    */
+    int32_t dac_rawpA_q16, dac_zero_raw, mon_A_q40; /* of the drive parameters in use */
     int32_t mon_zero_raw; /* likewise, after copying the calibration's: without, it's stale */
 };
 
@@ -145,7 +145,7 @@ int exh_calib_check(const struct exh_calib *c, const struct exh_calib_here *here
  * "EXHC", version u16, points u16, ten values of 4 bytes in the order above, points of four i32,
  * CRC-32 of all before it; little-endian. */
 
-#define EXH_CALIB_VERSION 2 /* 1 had no dac_zero_raw */
+#define EXH_CALIB_VERSION 2                                            /* 1 had no dac_zero_raw */
 #define EXH_CALIB_IMAGE_B (8u + 40u + 16u * EXH_CALIB_POINTS_MAX + 4u) /* the largest */
 
 /* Bytes written, or -EXH_E_SHORT; or what exh_calib_valid() refuses: nothing that

@@ -23,28 +23,29 @@ extern "C" {
 /* Parameters of one finger's law; rows in exh_contact_rows[]. May change between
  * any two ticks. */
 struct exh_contact_par {
-    int32_t k_Npm_q10;    /* stiffness, N/m, 0 .. 10^6                          */
-    int32_t b_Nspm_q20;   /* damping, Ns/m, 0 .. 1000                           */
-    int32_t f0_N_q20;     /* pull-back force, N, 0 .. 20                        */
-    int32_t f0_band_m_q30; /* movement that reverses F0, m, 0 .. 10 mm          */
-    int32_t hyst_m_q30;   /* contact ends at q < q_lim - hyst, m, 0 .. 10 mm    */
+    int32_t k_Npm_q10;     /* stiffness, N/m, 0 .. 10^6 */
+    int32_t b_Nspm_q20;    /* damping, Ns/m, 0 .. 1000 */
+    int32_t f0_N_q20;      /* pull-back force, N, 0 .. 20 */
+    int32_t f0_band_m_q30; /* movement that reverses F0, m, 0 .. 10 mm */
+    int32_t hyst_m_q30;    /* contact ends at q < q_lim - hyst, m, 0 .. 10 mm */
 };
 #define EXH_CONTACT_ROWS 5
 extern const struct exh_signal exh_contact_rows[EXH_CONTACT_ROWS];
 
-/* What one finger's law remembers. A state of zeros is a string not yet seen: the first tick's position is its first turn. */
+/* What one finger's law remembers. A state of zeros is a string not yet seen: the first tick's
+ * position is its first turn. */
 struct exh_contact {
-    int32_t turn_m_q30; /* farthest position since the last reversal          */
-    uint8_t inward;     /* 1: string runs in, F0 acts                          */
-    uint8_t touching;   /* 1: the contact condition applies (the paper's c)    */
-    uint8_t started;    /* 1: turn is of a position that was seen              */
+    int32_t turn_m_q30; /* farthest position since the last reversal */
+    uint8_t inward;     /* 1: string runs in, F0 acts */
+    uint8_t touching;   /* 1: the contact condition applies (the paper's c) */
+    uint8_t started;    /* 1: turn is of a position that was seen */
 };
 
 /* What the law goes by in a tick. */
 struct exh_contact_in {
-    int32_t pos_m_q30;   /* string position q, any int32_t                      */
-    int32_t vel_mps_q27; /* its velocity, any int32_t                          */
-    int32_t lim_m_q30;   /* virtual contact q_lim, any int32_t                 */
+    int32_t pos_m_q30;   /* string position q, any int32_t */
+    int32_t vel_mps_q27; /* its velocity, any int32_t */
+    int32_t lim_m_q30;   /* virtual contact q_lim, any int32_t */
 };
 
 /* The force ledger: why there is each newton. The law fills the first three,
@@ -54,12 +55,12 @@ struct exh_contact_in {
 struct exh_force_ledger {
     int64_t spring_N_q20;    /* k (q - q_lim) while it touches, below 0 within hyst; else 0 */
     int64_t damper_N_q20;    /* b qd while it touches, negative as the string runs in; else 0 */
-    int64_t pullback_N_q20;  /* F0: f0 while the string runs in, else 0       */
-    int64_t passivity_N_q20; /* 0 where that module is not linked             */
-    int64_t clamp_N_q20;     /* pull only, and the force limit                */
-    int64_t slew_N_q20;      /* what its rise or fall is held back by         */
+    int64_t pullback_N_q20;  /* F0: f0 while the string runs in, else 0 */
+    int64_t passivity_N_q20; /* 0 where that module is not linked */
+    int64_t clamp_N_q20;     /* pull only, and the force limit */
+    int64_t slew_N_q20;      /* what its rise or fall is held back by */
     int64_t release_N_q20;   /* from what was asked to what the release law gives */
-    int32_t force_N_q20;     /* the force commanded                           */
+    int32_t force_N_q20;     /* the force commanded */
 };
 
 /* One tick. Fills spring, damper and pullback, zeroes the rest. Each term is

@@ -20,30 +20,31 @@
 extern "C" {
 #endif
 
-#define EXH_FINGERS 5 /* thumb, index, middle, ring, little                    */
+#define EXH_FINGERS 5 /* thumb, index, middle, ring, little */
 
 /* --- frames: raw codes of the device's own five axes, as a board moves them --- */
 
-enum exh_din { /* digital inputs; every contact is normally closed: 1 = healthy */
-    EXH_DIN_ESTOP = 1u << 0,   /* emergency-stop loop closed                   */
-    EXH_DIN_DEADMAN = 1u << 1, /* dead-man switch held                         */
-    EXH_DIN_WATCHDOG = 1u << 2, /* no watchdog has fired since power-on        */
-    EXH_DIN_CARDS = 1u << 3,   /* the cards answer and do what they are told   */
-    EXH_DIN_DRIVE0 = 1u << 8   /* drive of finger i ready: EXH_DIN_DRIVE0 << i */
+/* digital inputs; every contact is normally closed: 1 = healthy */
+enum exh_din {
+    EXH_DIN_ESTOP = 1u << 0,    /* emergency-stop loop closed */
+    EXH_DIN_DEADMAN = 1u << 1,  /* dead-man switch held */
+    EXH_DIN_WATCHDOG = 1u << 2, /* no watchdog has fired since power-on */
+    EXH_DIN_CARDS = 1u << 3,    /* the cards answer and do what they are told */
+    EXH_DIN_DRIVE0 = 1u << 8    /* drive of finger i ready: EXH_DIN_DRIVE0 << i */
 };
 
 /* What a board reads in a tick, latched together. */
 struct exh_drive_in {
     uint32_t enc_raw[EXH_FINGERS]; /* counter value, the board's width, low bits */
-    int16_t mon_raw[EXH_FINGERS];  /* current monitor, two's complement        */
-    int16_t supply_raw;            /* supply monitor                           */
-    uint32_t din;                  /* enum exh_din                             */
+    int16_t mon_raw[EXH_FINGERS];  /* current monitor, two's complement */
+    int16_t supply_raw;            /* supply monitor */
+    uint32_t din;                  /* enum exh_din */
 };
 
 /* What it writes in a tick; made by exh_gate() alone. */
 struct exh_drive_out {
-    uint16_t dac_raw[EXH_FINGERS]; /* offset binary                            */
-    uint8_t enable;                /* bit i: drive of finger i enabled         */
+    uint16_t dac_raw[EXH_FINGERS]; /* offset binary */
+    uint8_t enable;                /* bit i: drive of finger i enabled */
     uint8_t alive;                 /* changes once per completed tick: the watchdog's kick */
 };
 
@@ -55,17 +56,17 @@ void exh_drive_out_bytes(struct exh_bytes *c, struct exh_drive_out *out, unsigne
 
 /* Bits of what a step returns, collected over a tick; names by exh_limit_name(). */
 enum exh_limit {
-    EXH_LIMIT_PULL = 1u << 0,  /* law asked to push: a string only pulls       */
-    EXH_LIMIT_FORCE = 1u << 1, /* above f_max, or the end of the table; closed: above small_N_q20,
-                                * without passivity, which may take the wall away for a while */
-    EXH_LIMIT_SLEW = 1u << 2, /* rise or fall of force above slew_up, slew_down */
-    EXH_LIMIT_PEAK = 1u << 3, /* above i_peak                                  */
-    EXH_LIMIT_I2T = 1u << 4,  /* held back by heat: more than 3/4 of its budget is used */
-    EXH_LIMIT_DAC = 1u << 5, /* code at the end of its span                    */
-    EXH_LIMIT_GATE = 1u << 6, /* closed: force and current held at zero        */
-    EXH_LIMIT_RAMP = 1u << 7, /* above the share of f_max that arming allows yet */
-    EXH_LIMIT_RELEASE = 1u << 8,  /* the release law has the force             */
-    EXH_LIMIT_SPEED = 1u << 9,    /* velocity into the law (watch.h)           */
+    EXH_LIMIT_PULL = 1u << 0,    /* law asked to push: a string only pulls */
+    EXH_LIMIT_FORCE = 1u << 1,   /* above f_max, or the end of the table; closed: above small_N_q20,
+                                  * without passivity, which may take the wall away for a while */
+    EXH_LIMIT_SLEW = 1u << 2,    /* rise or fall of force above slew_up, slew_down */
+    EXH_LIMIT_PEAK = 1u << 3,    /* above i_peak */
+    EXH_LIMIT_I2T = 1u << 4,     /* held back by heat: more than 3/4 of its budget is used */
+    EXH_LIMIT_DAC = 1u << 5,     /* code at the end of its span */
+    EXH_LIMIT_GATE = 1u << 6,    /* closed: force and current held at zero */
+    EXH_LIMIT_RAMP = 1u << 7,    /* above the share of f_max that arming allows yet */
+    EXH_LIMIT_RELEASE = 1u << 8, /* the release law has the force */
+    EXH_LIMIT_SPEED = 1u << 9,   /* velocity into the law (watch.h) */
     EXH_LIMIT_PASSIVITY = 1u << 10 /* contact gave out more than it took (passivity.h) */
 };
 #define EXH_LIMITS 11 /* bits of enum exh_limit, from 0 on */
@@ -74,35 +75,36 @@ enum exh_limit {
 
 /* Which of the three rules of exh_drive_force() holds. */
 enum exh_permit_mode {
-    EXH_PERMIT_CLOSED, /* no force                                             */
-    EXH_PERMIT_OPEN,   /* what the law asks for, within limits                 */
-    EXH_PERMIT_RELEASE /* what was held goes, whatever the law asks for        */
+    EXH_PERMIT_CLOSED, /* no force */
+    EXH_PERMIT_OPEN,   /* what the law asks for, within limits */
+    EXH_PERMIT_RELEASE /* what was held goes, whatever the law asks for */
 };
 
 /* Made by exh_safety_step(), one for all fingers. */
 struct exh_permit {
-    uint8_t mode;         /* enum exh_permit_mode                              */
-    int32_t share_q30;    /* open: of the force limit, 0 .. 2^30               */
+    uint8_t mode;         /* enum exh_permit_mode */
+    int32_t share_q30;    /* open: of the force limit, 0 .. 2^30 */
     int32_t small_N_q20;  /* closed: a force asked for above it is told, FORCE */
-    uint32_t ticks;       /* 1, and one for each missed before it              */
-    struct exh_gain fall; /* release: of the force held at its start, a tick   */
+    uint32_t ticks;       /* 1, and one for each missed before it */
+    struct exh_gain fall; /* release: of the force held at its start, a tick */
 };
 
 /* --- conversion tables: strictly rising, linear between knots --- */
 
 /* One knot; units and formats are the table's, any int32_t. */
 struct exh_knot {
-    int32_t x, y;          /* both above those of the knot before              */
-    struct exh_gain slope; /* to the next knot; exh_table_set() fills it       */
+    int32_t x, y;          /* both above those of the knot before */
+    struct exh_gain slope; /* to the next knot; exh_table_set() fills it */
 };
 /* A table; passed by value. */
 struct exh_table {
-    const struct exh_knot *knot; /* n of them, the caller's; may live in ROM   */
-    uint8_t n;                   /* >= 2                                       */
+    const struct exh_knot *knot; /* n of them, the caller's; may live in ROM */
+    uint8_t n;                   /* >= 2 */
 };
 
 /* Checks n knots and fills the slopes. -EXH_E_RANGE (n not 2 .. 255, x or y spans
- * more than 2^31-1, or a slope is 2^31 or more or below 2^-32), -EXH_E_MONOTONE (x or y does not rise strictly). */
+ * more than 2^31-1, or a slope is 2^31 or more or below 2^-32), -EXH_E_MONOTONE (x or y does not
+ * rise strictly). */
 int exh_table_set(struct exh_knot *knot, unsigned n);
 
 /* The inverse table: dst may be src. Where all segments are at least (or all at most)
@@ -119,59 +121,57 @@ int32_t exh_table_at(struct exh_table t, int32_t x);
 
 /* Parameters of one axis; rows in exh_drive_rows[]. */
 struct exh_drive_par {
-    int32_t f_max_N_q20;   /* force limit, N, 0 .. 100                         */
-    int32_t slew_up_Nps;   /* rise of force, N/s, 1 .. 10^7                    */
-    int32_t slew_down_Nps; /* fall of force, N/s, 1000 .. 10^7                 */
-    int32_t i_peak_A_q26;  /* never more than this, A, 0.1 .. 6.6              */
-    int32_t i_cont_A_q26;  /* for ever, A, 0 .. 3.3 and <= i_peak              */
-    int32_t peak_ms;       /* how long i_peak from cold, ms, 1 .. 2700         */
-    int32_t dac_zero_raw;  /* code of 0 A, 0 .. 65535                          */
+    int32_t f_max_N_q20;   /* force limit, N, 0 .. 100 */
+    int32_t slew_up_Nps;   /* rise of force, N/s, 1 .. 10^7 */
+    int32_t slew_down_Nps; /* fall of force, N/s, 1000 .. 10^7 */
+    int32_t i_peak_A_q26;  /* never more than this, A, 0.1 .. 6.6 */
+    int32_t i_cont_A_q26;  /* for ever, A, 0 .. 3.3 and <= i_peak */
+    int32_t peak_ms;       /* how long i_peak from cold, ms, 1 .. 2700 */
+    int32_t dac_zero_raw;  /* code of 0 A, 0 .. 65535 */
     int32_t dac_span_raw;  /* codes either side of it that may be used, 0 .. 32767 */
-    int32_t dac_rawpA_q16; /* codes per ampere, 1 .. 32768                     */
-    int32_t mon_zero_raw;  /* monitor code at 0 A, -32768 .. 32767             */
-    int32_t mon_A_q40;     /* ampere per monitor code, > 0 .. 1.95 mA          */
+    int32_t dac_rawpA_q16; /* codes per ampere, 1 .. 32768 */
+    int32_t mon_zero_raw;  /* monitor code at 0 A, -32768 .. 32767 */
+    int32_t mon_A_q40;     /* ampere per monitor code, > 0 .. 1.95 mA */
 };
 #define EXH_DRIVE_ROWS 11
 extern const struct exh_signal exh_drive_rows[EXH_DRIVE_ROWS];
 
 /* One axis as it is set up; constant in the tick. */
 struct exh_drive_cfg {
-    const struct exh_drive_par *par; /* read at every tick                     */
-    struct exh_table force_to_cur;   /* N q20 -> A q26                         */
-    struct exh_table cur_to_force;   /* monitor: A q26 -> N q20                */
-    int32_t f_top_N_q20;             /* end of that table: no force beyond it  */
-    struct exh_gain tick_N_q20;      /* N q20 per tick, per N/s                */
-    int64_t i2t_budget_q32;          /* A^2 ticks above i_cont^2               */
-    struct exh_gain i2t_fold;        /* A q26 per (budget left >> i2t_shift)   */
-    uint8_t i2t_shift;               /* brings the budget below 2^31           */
-    struct exh_gain dac_A_q26;       /* A per code                             */
+    const struct exh_drive_par *par; /* read at every tick */
+    struct exh_table force_to_cur;   /* N q20 -> A q26 */
+    struct exh_table cur_to_force;   /* monitor: A q26 -> N q20 */
+    int32_t f_top_N_q20;             /* end of that table: no force beyond it */
+    struct exh_gain tick_N_q20;      /* N q20 per tick, per N/s */
+    int64_t i2t_budget_q32;          /* A^2 ticks above i_cont^2 */
+    struct exh_gain i2t_fold;        /* A q26 per (budget left >> i2t_shift) */
+    uint8_t i2t_shift;               /* brings the budget below 2^31 */
+    struct exh_gain dac_A_q26;       /* A per code */
 };
 
 /* One axis from tick to tick. */
 struct exh_drive {
-    int32_t force_N_q20; /* last commanded                                     */
-    int32_t fall_N_q20;  /* release: taken away a tick; else 0                 */
+    int32_t force_N_q20; /* last commanded */
+    int32_t fall_N_q20;  /* release: taken away a tick; else 0 */
     int64_t i2t_q32;     /* heat above continuous, A^2 ticks, 0 .. budget + 1 tick at peak */
 };
 
 /* The current ledger: coded = table + peak + i2t + gate + dac, exactly, always. */
 struct exh_current_ledger {
-    int64_t table_A_q26; /* what the force asks for                            */
-    int64_t peak_A_q26;  /* taken away by the peak limit                       */
-    int64_t i2t_A_q26;   /* by I2t                                             */
-    int64_t gate_A_q26;  /* by the gate                                        */
-    int64_t dac_A_q26;   /* rounding to a code, and the end of its span        */
-    int32_t coded_A_q26; /* what the code stands for                           */
+    int64_t table_A_q26; /* what the force asks for */
+    int64_t peak_A_q26;  /* taken away by the peak limit */
+    int64_t i2t_A_q26;   /* by I2t */
+    int64_t gate_A_q26;  /* by the gate */
+    int64_t dac_A_q26;   /* rounding to a code, and the end of its span */
+    int32_t coded_A_q26; /* what the code stands for */
 };
 
 /* Set-up (divides). Tables must have passed exh_table_set() and outlive cfg, as
- * must par; force_to_cur must reach above 0 N and give 0 A there; cur_to_force may be {NULL, 0} where
- * no monitor is read. -EXH_E_RANGE when a table is not so, a parameter lies outside
- * its range above (parameters in ROM have passed no other check), or
- * i_peak < i_cont. */
-int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par,
-                    struct exh_period T, struct exh_table force_to_cur,
-                    struct exh_table cur_to_force);
+ * must par; force_to_cur must reach above 0 N and give 0 A there; cur_to_force may be {NULL, 0}
+ * where no monitor is read. -EXH_E_RANGE when a table is not so, a parameter lies outside its range
+ * above (parameters in ROM have passed no other check), or i_peak < i_cont. */
+int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par, struct exh_period T,
+                    struct exh_table force_to_cur, struct exh_table cur_to_force);
 
 /* Completes the force ledger, by the permit's mode, any other being CLOSED.
  * OPEN: 0 <= force <= the share of f_max and of the table's end, |change| <=
@@ -213,22 +213,22 @@ void exh_drive_bytes(struct exh_bytes *c, struct exh_drive *s);
 
 /* Parameters of one axis's tracking; rows in exh_track_rows[]. */
 struct exh_track_par {
-    int32_t tol_A_q26; /* monitor off by no more, A, 0.1 .. 1                  */
-    int32_t time_ms;   /* for no longer, ms, 1 .. 100, and 4 ticks             */
+    int32_t tol_A_q26; /* monitor off by no more, A, 0.1 .. 1 */
+    int32_t time_ms;   /* for no longer, ms, 1 .. 100, and 4 ticks */
 };
 #define EXH_TRACK_ROWS 2
 extern const struct exh_signal exh_track_rows[EXH_TRACK_ROWS];
 
 /* One axis's tracking as it is set up. */
 struct exh_track_cfg {
-    int32_t tol_A_q26; /* the parameter                                        */
-    uint32_t ticks;    /* time + 4 ticks, rounded up                           */
+    int32_t tol_A_q26; /* the parameter */
+    uint32_t ticks;    /* time + 4 ticks, rounded up */
 };
 
 /* One axis's tracking from tick to tick. */
 struct exh_track {
     int32_t lo_A_q26, hi_A_q26; /* least and most that was coded since the monitor met it */
-    uint32_t off_ticks;         /* since when it does not, 0 .. ticks          */
+    uint32_t off_ticks;         /* since when it does not, 0 .. ticks */
 };
 
 /* Set-up (divides). -EXH_E_RANGE: a parameter outside its range above; -EXH_E_RATE: T. */
@@ -253,26 +253,26 @@ void exh_track_bytes(struct exh_bytes *c, struct exh_track *s);
 /* Parameters of the supply; rows in exh_supply_rows[]. */
 struct exh_supply_par {
     int32_t min_V_q20;   /* V, 0 .. 100; 0: the box has no monitor of it, it is not judged */
-    int32_t max_V_q20;   /* V, min .. 100                                      */
-    int32_t scale_V_q30; /* volt per code of supply_raw, > 0 .. 2              */
-    int32_t time_ms;     /* ms, 1 .. 1000                                      */
+    int32_t max_V_q20;   /* V, min .. 100 */
+    int32_t scale_V_q30; /* volt per code of supply_raw, > 0 .. 2 */
+    int32_t time_ms;     /* ms, 1 .. 1000 */
 };
 #define EXH_SUPPLY_ROWS 4
 extern const struct exh_signal exh_supply_rows[EXH_SUPPLY_ROWS];
 
 /* The supply's limits as they are set up, in codes: no product in the tick. */
 struct exh_supply_cfg {
-    int16_t min_raw, max_raw; /* codes within the limits, both included         */
-    uint32_t ticks;           /* the time, rounded down, and one more           */
+    int16_t min_raw, max_raw; /* codes within the limits, both included */
+    uint32_t ticks;           /* the time, rounded down, and one more */
 };
 
 /* The supply from tick to tick. */
 struct exh_supply {
-    uint32_t off_ticks; /* outside on end, 0 .. ticks                           */
+    uint32_t off_ticks; /* outside on end, 0 .. ticks */
 };
 
-/* Set-up (divides). -EXH_E_RANGE: a parameter outside its range above, or limits between which there
- * is no code, or of which the upper is not below the highest code; -EXH_E_RATE: T. */
+/* Set-up (divides). -EXH_E_RANGE: a parameter outside its range above, or limits between which
+ * there is no code, or of which the upper is not below the highest code; -EXH_E_RATE: T. */
 int exh_supply_setup(struct exh_supply_cfg *cfg, const struct exh_supply_par *par,
                      struct exh_period T);
 

@@ -28,8 +28,9 @@
 #ifndef EXHAND_EXHAND_H
 #define EXHAND_EXHAND_H
 
-/* The library's version, as semver has it; the number, major << 16 | minor << 8 | patch, is what a HELLO, a log and a register
- * carry. Wire, records, images and the map of registers have versions of their own, in their headers. */
+/* The library's version, as semver has it; the number, major << 16 | minor << 8 | patch, is what a
+ * HELLO, a log and a register carry. Wire, records, images and the map of registers have versions
+ * of their own, in their headers. */
 #define EXH_VERSION_MAJOR 0
 #define EXH_VERSION_MINOR 1
 #define EXH_VERSION_PATCH 0

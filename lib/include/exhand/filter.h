@@ -21,31 +21,33 @@ extern "C" {
 
 /* Parameters of all channels; rows in exh_filter_rows[]. */
 struct exh_filter_par {
-    int32_t order; /* 1 or 2                                              */
-    int32_t fc_Hz_q16; /* -3.01 dB, Hz, 0.01 .. 10^4, below half the rate     */
+    int32_t order;     /* 1 or 2 */
+    int32_t fc_Hz_q16; /* -3.01 dB, Hz, 0.01 .. 10^4, below half the rate */
 };
 #define EXH_FILTER_ROWS 2
 extern const struct exh_signal exh_filter_rows[EXH_FILTER_ROWS];
 
-enum exh_filter_kind { /* docs/NUMERICS.md, "low-pass" */
-                       EXH_FILTER_LOW2,  /* low fc, order 2             */
-                       EXH_FILTER_LOW1,  /* low fc, order 1             */
-                       EXH_FILTER_HIGH2, /* high fc, order 2            */
-                       EXH_FILTER_HIGH1  /* high fc, order 1            */
+/* docs/NUMERICS.md, "low-pass" */
+enum exh_filter_kind {
+    EXH_FILTER_LOW2,  /* low fc, order 2 */
+    EXH_FILTER_LOW1,  /* low fc, order 1 */
+    EXH_FILTER_HIGH2, /* high fc, order 2 */
+    EXH_FILTER_HIGH1  /* high fc, order 1 */
 };
 
 /* Coefficients; what each means depends on the kind. */
 struct exh_filter_cfg {
-    int32_t a, b, c, d; /* docs/NUMERICS.md, "low-pass" has what is rounded to them; 0 where unused */
-    uint8_t shift; /* 0 .. 31                                                 */
-    uint8_t kind; /* enum exh_filter_kind: low is fc up to 0.105 of the rate */
+    int32_t a, b, c,
+        d;         /* docs/NUMERICS.md, "low-pass" has what is rounded to them; 0 where unused */
+    uint8_t shift; /* 0 .. 31 */
+    uint8_t kind;  /* enum exh_filter_kind: low is fc up to 0.105 of the rate */
 };
 
 /* One channel. */
 struct exh_filter {
-    int64_t pos; /* low-pass state, LSB of x in q31, and half an LSB more       */
-    int64_t vel; /* band-pass state, 23/16 LSB of x in q32                      */
-    uint8_t wide; /* 1: of a high kind, both in q26                              */
+    int64_t pos;  /* low-pass state, LSB of x in q31, and half an LSB more */
+    int64_t vel;  /* band-pass state, 23/16 LSB of x in q32 */
+    uint8_t wide; /* 1: of a high kind, both in q26 */
 };
 
 /* Set-up (divides). Coefficients for the period T. -EXH_E_CUTOFF: fc at or above half
@@ -71,7 +73,8 @@ void exh_filter_step(struct exh_filter *s, const struct exh_filter_cfg *cfg, con
 /* From one set of coefficients to another, between two ticks, of n channels. A settled
  * channel stays exactly where it is; one that moves goes on from its place, and with its
  * speed if both are of order 2. So the next output is at most from->c + to->c LSB away from
- * the last, LOW2 both: 23/16 tan(pi fc T) of full scale each; any tick may add two thirds of that. */
+ * the last, LOW2 both: 23/16 tan(pi fc T) of full scale each; any tick may add two thirds of that.
+ */
 void exh_filter_retune(struct exh_filter *s, unsigned n, const struct exh_filter_cfg *from,
                        const struct exh_filter_cfg *to);
 

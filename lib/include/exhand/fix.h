@@ -27,7 +27,8 @@ void exh_fix_saturated(const char *file, int line);
 /* C99 leaves >> of a negative number to the compiler; we need the floor. */
 typedef char exh_needs_arithmetic_shift[((-3) >> 1) == -2 ? 1 : -1];
 
-/* int may have 16 bits: a constant or product that needs more says so (INT32_C(1) << 30, one factor cast). */
+/* int may have 16 bits: a constant or product that needs more says so (INT32_C(1) << 30, one factor
+ * cast). */
 
 /* The value of a 32-bit pattern read as two's complement, by arithmetic alone. */
 static inline int32_t exh_from_u32(uint32_t u)
@@ -35,8 +36,8 @@ static inline int32_t exh_from_u32(uint32_t u)
     return u <= INT32_MAX ? (int32_t)u : -(int32_t)(UINT32_MAX - u) - 1;
 }
 
-/* v limited to int32_t, not audited. Asked of the low word: behind two comparisons of 64 bits compilers for 32 go on
- * with 64. */
+/* v limited to int32_t, not audited. Asked of the low word: behind two comparisons of 64 bits
+ * compilers for 32 go on with 64. */
 static inline int32_t exh_limit32(int64_t v)
 {
     const int32_t low = exh_from_u32((uint32_t)((uint64_t)v & UINT32_MAX));
@@ -123,7 +124,8 @@ static inline int32_t exh_wrap_add(int32_t a, int32_t b)
     return exh_from_u32((uint32_t)a + (uint32_t)b);
 }
 
-/* a - b limited to int32_t. By masks: of a choice of constants a compiler makes 64 bits in the products behind it. */
+/* a - b limited to int32_t. By masks: of a choice of constants a compiler makes 64 bits in the
+ * products behind it. */
 static inline int32_t exh_diff_sat32(int32_t a, int32_t b)
 {
     const int32_t d = exh_wrap_diff(a, b);
@@ -147,17 +149,18 @@ static inline int64_t exh_wrap_diff64(int64_t a, int64_t b)
 /* A positive factor mant * 2^-shift with 31 significant bits: what a division
  * at set-up leaves behind for the tick. */
 struct exh_gain {
-    int32_t mant;  /* 2^30 .. 2^31-1, or 0                     */
-    uint8_t shift; /* 0 .. 62                                  */
+    int32_t mant;  /* 2^30 .. 2^31-1, or 0 */
+    uint8_t shift; /* 0 .. 62 */
 };
 
 /* x times the gain, rounded half up. Relative error of the gain <= 2^-31 (and
- * half an LSB of the result); never overflows, the caller saturates. The mask: a gain whose memory was
- * damaged is a wrong one, and no more. */
+ * half an LSB of the result); never overflows, the caller saturates. The mask: a gain whose memory
+ * was damaged is a wrong one, and no more. */
 static inline int64_t exh_gain_mul(struct exh_gain g, int32_t x)
 {
     const int64_t v = (int64_t)x * g.mant;
-    /* Of twice v: one shift of 64 bits by a variable, where half of 2^n costs two. Nothing wraps but of damaged gains. */
+    /* Of twice v: one shift of 64 bits by a variable, where half of 2^n costs two. Nothing wraps
+     * but of damaged gains. */
     return exh_wrap_add64(exh_wrap_add64(v, v) >> (g.shift & 63u), 1) >> 1;
 }
 

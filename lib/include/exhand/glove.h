@@ -30,13 +30,29 @@ extern "C" {
 /* The CyberGlove's sensors in the order of its wires. Flexion counts up from the flat hand,
  * abduction from fingers together; the three abductions of fingers are between two of them. */
 enum exh_glove_sensor_id {
-    EXH_GLOVE_THUMB_ROTATE, EXH_GLOVE_THUMB_MPJ, EXH_GLOVE_THUMB_IJ, EXH_GLOVE_THUMB_AB, /* 0 .. 3: across, knuckle, tip's joint, aside */
-    EXH_GLOVE_INDEX_MPJ, EXH_GLOVE_INDEX_PIJ, EXH_GLOVE_INDEX_DIJ, /* 4 .. 6: knuckle, middle joint, tip's joint */
-    EXH_GLOVE_MIDDLE_MPJ, EXH_GLOVE_MIDDLE_PIJ, EXH_GLOVE_MIDDLE_DIJ, EXH_GLOVE_MIDDLE_INDEX_AB, /* 7 .. 10 */
-    EXH_GLOVE_RING_MPJ, EXH_GLOVE_RING_PIJ, EXH_GLOVE_RING_DIJ, EXH_GLOVE_RING_MIDDLE_AB, /* 11 .. 14 */
-    EXH_GLOVE_PINKIE_MPJ, EXH_GLOVE_PINKIE_PIJ, EXH_GLOVE_PINKIE_DIJ, EXH_GLOVE_PINKIE_RING_AB, /* 15 .. 18 */
-    EXH_GLOVE_PALM_ARCH, EXH_GLOVE_WRIST_PITCH, EXH_GLOVE_WRIST_YAW, /* 19 .. 21: of the hand as a whole */
-    EXH_GLOVE_SENSORS /* how many there are: 22 */
+    EXH_GLOVE_THUMB_ROTATE,
+    EXH_GLOVE_THUMB_MPJ,
+    EXH_GLOVE_THUMB_IJ,
+    EXH_GLOVE_THUMB_AB, /* 0 .. 3: across, knuckle, tip's joint, aside */
+    EXH_GLOVE_INDEX_MPJ,
+    EXH_GLOVE_INDEX_PIJ,
+    EXH_GLOVE_INDEX_DIJ, /* 4 .. 6: knuckle, middle joint, tip's joint */
+    EXH_GLOVE_MIDDLE_MPJ,
+    EXH_GLOVE_MIDDLE_PIJ,
+    EXH_GLOVE_MIDDLE_DIJ,
+    EXH_GLOVE_MIDDLE_INDEX_AB, /* 7 .. 10 */
+    EXH_GLOVE_RING_MPJ,
+    EXH_GLOVE_RING_PIJ,
+    EXH_GLOVE_RING_DIJ,
+    EXH_GLOVE_RING_MIDDLE_AB, /* 11 .. 14 */
+    EXH_GLOVE_PINKIE_MPJ,
+    EXH_GLOVE_PINKIE_PIJ,
+    EXH_GLOVE_PINKIE_DIJ,
+    EXH_GLOVE_PINKIE_RING_AB, /* 15 .. 18 */
+    EXH_GLOVE_PALM_ARCH,
+    EXH_GLOVE_WRIST_PITCH,
+    EXH_GLOVE_WRIST_YAW, /* 19 .. 21: of the hand as a whole */
+    EXH_GLOVE_SENSORS    /* how many there are: 22 */
 };
 
 /* "ThumbRotate", ...; never NULL. */
@@ -44,22 +60,22 @@ const char *exh_glove_sensor_text(unsigned sensor);
 
 /* What a board delivers. */
 struct exh_glove_in {
-    int16_t raw[EXH_GLOVE_SENSORS]; /* A/D codes, +-10 V card: 305 uV each      */
-    uint16_t age_ticks;             /* 0 = converted for this tick             */
+    int16_t raw[EXH_GLOVE_SENSORS]; /* A/D codes, +-10 V card: 305 uV each */
+    uint16_t age_ticks;             /* 0 = converted for this tick */
 };
 
 /* --- parameters --- */
 
 /* Parameters of one glove; rows in exh_glove_rows[]. */
 struct exh_glove_par {
-    int32_t order;           /* of the low-pass: 1, 2; 0 = none                 */
-    int32_t fc_Hz_q16;       /* its cut-off, below half the glove's own rate    */
-    int32_t bits;            /* stable bits of the card's range, 1 .. 24        */
+    int32_t order;           /* of the low-pass: 1, 2; 0 = none */
+    int32_t fc_Hz_q16;       /* its cut-off, below half the glove's own rate */
+    int32_t bits;            /* stable bits of the card's range, 1 .. 24 */
     int32_t hyst_raw_q16;    /* hysteresis, codes q16, at most a step of 2^(16-bits)
                               * codes; at or above the noise's peak to peak behind
-                              * the filter: an angle moves once and stays       */
+                              * the filter: an angle moves once and stays */
     int32_t low_raw;         /* a code at or below: the amplifier is at its lower rail */
-    int32_t high_raw;        /* a code at or above: at its upper                */
+    int32_t high_raw;        /* a code at or above: at its upper */
     int32_t open_high;       /* 1: an open wire reads high, a short low; 0: the other way */
     int32_t debounce_frames; /* that many frames in a row make and end a fault, 1 .. 255 */
     int32_t margin_q16;      /* a code may leave the calibrated span by this share of it, 0 .. 8 */
@@ -73,21 +89,21 @@ extern const struct exh_signal exh_glove_rows[EXH_GLOVE_ROWS];
 
 /* A user's calibration of one sensor. */
 struct exh_glove_sensor {
-    int32_t zero_raw_q15;      /* code at which its own angle is 0, -32768 .. 32767  */
+    int32_t zero_raw_q15;      /* code at which its own angle is 0, -32768 .. 32767 */
     int32_t gain_turnpraw_q38; /* turn per code, 2^-21 .. 2^-7 either way; < 0: falls */
-    int32_t cross_q30[2];      /* of the own angle of of[0], of[1], each +-2    */
+    int32_t cross_q30[2];      /* of the own angle of of[0], of[1], each +-2 */
     int16_t low_raw, high_raw; /* lowest and highest code when it was calibrated */
     uint8_t of[2];             /* sensors without cross terms, or EXH_GLOVE_NONE */
 };
 
 /* A user's calibration of a glove. What is out of range is refused, never limited. */
 struct exh_glove_cal {
-    uint32_t user_id, glove_id; /* given by whoever calibrates                 */
-    uint32_t day;               /* when: days since 1970-01-01                 */
-    uint32_t valid_days;        /* good on days day .. day + valid_days        */
+    uint32_t user_id, glove_id; /* given by whoever calibrates */
+    uint32_t day;               /* when: days since 1970-01-01 */
+    uint32_t valid_days;        /* good on days day .. day + valid_days */
     uint32_t present;           /* bit i: there is a sensor i. Where not, its gain is 0, so
                                  * its angle is what cross terms make it, and it has no
-                                 * faults. 0: no calibration                    */
+                                 * faults. 0: no calibration */
     struct exh_glove_sensor sensor[EXH_GLOVE_SENSORS]; /* enum exh_glove_sensor_id */
 };
 
@@ -97,26 +113,26 @@ extern const struct exh_glove_cal exh_glove_cal_default;
 
 /* What an error is about. */
 enum exh_glove_what {
-    EXH_GLOVE_IMAGE,    /* the bytes                                           */
-    EXH_GLOVE_USER,     /* made for another user                               */
-    EXH_GLOVE_GLOVE,    /* or another glove                                    */
-    EXH_GLOVE_AGE,      /* older than valid_days, or from the future            */
-    EXH_GLOVE_PRESENT,  /* no sensors, or one that there is none of            */
-    EXH_GLOVE_GAIN,     /* zero or implausible; at: the sensor, also below      */
-    EXH_GLOVE_ZERO,     /* its zero lies beyond the card's range               */
+    EXH_GLOVE_IMAGE,    /* the bytes */
+    EXH_GLOVE_USER,     /* made for another user */
+    EXH_GLOVE_GLOVE,    /* or another glove */
+    EXH_GLOVE_AGE,      /* older than valid_days, or from the future */
+    EXH_GLOVE_PRESENT,  /* no sensors, or one that there is none of */
+    EXH_GLOVE_GAIN,     /* zero or implausible; at: the sensor, also below */
+    EXH_GLOVE_ZERO,     /* its zero lies beyond the card's range */
     EXH_GLOVE_SPAN,     /* calibrated over fewer than EXH_GLOVE_SPAN_MIN_RAW codes */
     EXH_GLOVE_CROSS,    /* cross term beyond +-2, or of no sensor to have one of; in a fit
                          * also one that a pose leaves more than half a turn after */
     EXH_GLOVE_POSES,    /* too few poses, or poses that do not tell its terms apart */
-    EXH_GLOVE_MOVE,     /* the hand did not move enough                        */
-    EXH_GLOVE_NOISE,    /* codes varied too much while a pose was held         */
-    EXH_GLOVE_RESIDUAL, /* a pose lies too far off the line through all        */
-    EXH_GLOVE_WHATS     /* how many there are; of a sensor: nothing is wrong   */
+    EXH_GLOVE_MOVE,     /* the hand did not move enough */
+    EXH_GLOVE_NOISE,    /* codes varied too much while a pose was held */
+    EXH_GLOVE_RESIDUAL, /* a pose lies too far off the line through all */
+    EXH_GLOVE_WHATS     /* how many there are; of a sensor: nothing is wrong */
 };
 /* The culprit: why a calibration was refused. */
 struct exh_glove_bad {
-    uint8_t what; /* enum exh_glove_what                                       */
-    uint8_t at;   /* sensor, where it is about one                             */
+    uint8_t what; /* enum exh_glove_what */
+    uint8_t at;   /* sensor, where it is about one */
 };
 
 /* "gain", ...; never NULL. */
@@ -155,37 +171,37 @@ int exh_glove_cal_load(struct exh_glove_cal *cal, const void *buf, size_t len_B,
 
 /* Why a channel is not believed. */
 enum exh_glove_cause {
-    EXH_GLOVE_GOOD,    /* it is believed                                       */
-    EXH_GLOVE_OPEN,    /* at the rail that an open wire goes to                */
-    EXH_GLOVE_SHORT,   /* at the other rail                                    */
-    EXH_GLOVE_OUTSIDE, /* beyond the calibrated span and its margin            */
-    EXH_GLOVE_CAUSES   /* how many there are                                   */
+    EXH_GLOVE_GOOD,    /* it is believed */
+    EXH_GLOVE_OPEN,    /* at the rail that an open wire goes to */
+    EXH_GLOVE_SHORT,   /* at the other rail */
+    EXH_GLOVE_OUTSIDE, /* beyond the calibrated span and its margin */
+    EXH_GLOVE_CAUSES   /* how many there are */
 };
-const char *exh_glove_cause_text(unsigned cause); /* "open", ...; never NULL   */
+const char *exh_glove_cause_text(unsigned cause); /* "open", ...; never NULL */
 
 /* A glove as it is set up; constant in the tick. */
 struct exh_glove_cfg {
-    const struct exh_glove_cal *cal;  /* the caller's                          */
-    struct exh_filter_cfg filter;     /* of all channels; not made at order 0  */
-    struct exh_quantizer_cfg quantizer; /* of all channels                     */
+    const struct exh_glove_cal *cal;    /* the caller's */
+    struct exh_filter_cfg filter;       /* of all channels; not made at order 0 */
+    struct exh_quantizer_cfg quantizer; /* of all channels */
     int16_t lo_raw[EXH_GLOVE_SENSORS], hi_raw[EXH_GLOVE_SENSORS]; /* codes that are believed */
-    int16_t low_raw, high_raw;        /* the rails                             */
-    uint8_t low_cause, high_cause;    /* what a code there means               */
-    uint8_t debounce_frames;          /* the parameter, 1 .. 255               */
-    uint8_t order;                    /* the parameter; 0: the filter is left out */
-    uint8_t crossed[EXH_GLOVE_SENSORS]; /* those with cross terms, in order    */
-    uint8_t crosses;                    /* how many                            */
+    int16_t low_raw, high_raw;                                    /* the rails */
+    uint8_t low_cause, high_cause;                                /* what a code there means */
+    uint8_t debounce_frames;                                      /* the parameter, 1 .. 255 */
+    uint8_t order;                      /* the parameter; 0: the filter is left out */
+    uint8_t crossed[EXH_GLOVE_SENSORS]; /* those with cross terms, in order */
+    uint8_t crosses;                    /* how many */
 };
 
 /* A glove from frame to frame. A state of zeros has seen none. */
 struct exh_glove {
-    struct exh_filter filter[EXH_GLOVE_SENSORS];       /* of codes q16          */
+    struct exh_filter filter[EXH_GLOVE_SENSORS];       /* of codes q16 */
     struct exh_quantizer quantizer[EXH_GLOVE_SENSORS]; /* of the filter's output */
     int16_t good_raw[EXH_GLOVE_SENSORS]; /* last code that was believed: the filter's input */
     uint16_t faults[EXH_GLOVE_SENSORS];  /* how often it became faulty; stays at 65535 */
     uint8_t run[EXH_GLOVE_SENSORS];      /* frames in a row that speak against `cause` */
-    uint8_t cause[EXH_GLOVE_SENSORS];    /* enum exh_glove_cause                */
-    uint8_t started;                     /* the first frame settles all         */
+    uint8_t cause[EXH_GLOVE_SENSORS];    /* enum exh_glove_cause */
+    uint8_t started;                     /* the first frame settles all */
 };
 
 /* Set-up (divides); cal must outlive cfg. T is the time between frames, which is the
@@ -221,29 +237,29 @@ void exh_glove_bytes(struct exh_bytes *c, struct exh_glove *s);
 
 /* --- a calibration from poses --- */
 
-#define EXH_GLOVE_POSES_MAX 16 /* sums of products stay within 2^62            */
+#define EXH_GLOVE_POSES_MAX 16 /* sums of products stay within 2^62 */
 
 /* The hand held still in one pose: what is known of it, and what was measured. */
 struct exh_glove_pose {
-    uint32_t known; /* bit i: the pose says what the angle of sensor i is      */
-    int32_t angle_turn_q32[EXH_GLOVE_SENSORS]; /* of those known               */
-    int32_t mean_raw_q16[EXH_GLOVE_SENSORS]; /* mean code                      */
-    int32_t noise_raw[EXH_GLOVE_SENSORS];    /* highest less lowest code       */
+    uint32_t known; /* bit i: the pose says what the angle of sensor i is */
+    int32_t angle_turn_q32[EXH_GLOVE_SENSORS]; /* of those known */
+    int32_t mean_raw_q16[EXH_GLOVE_SENSORS];   /* mean code */
+    int32_t noise_raw[EXH_GLOVE_SENSORS];      /* highest less lowest code */
 };
 
 /* What a fit is to be believed at. */
 struct exh_glove_fit_par {
-    int32_t move_min_raw;          /* codes between two of its poses at least  */
-    int32_t noise_max_raw;         /* noise_raw of each pose at most           */
-    int32_t residual_max_turn_q32; /* of each pose at most                     */
+    int32_t move_min_raw;          /* codes between two of its poses at least */
+    int32_t noise_max_raw;         /* noise_raw of each pose at most */
+    int32_t residual_max_turn_q32; /* of each pose at most */
 };
 extern const struct exh_glove_fit_par exh_glove_fit_default; /* 256 codes, 128 codes, 6 deg */
 
 /* How one sensor came out. */
 struct exh_glove_fit {
-    int32_t residual_turn_q32; /* the worst: known less fitted angle           */
-    uint8_t pose;              /* of that pose                                 */
-    uint8_t poses;             /* how many say its angle                       */
+    int32_t residual_turn_q32; /* the worst: known less fitted angle */
+    uint8_t pose;              /* of that pose */
+    uint8_t poses;             /* how many say its angle */
     uint8_t what;              /* enum exh_glove_what, or EXH_GLOVE_WHATS: fine */
 };
 

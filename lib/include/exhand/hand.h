@@ -21,25 +21,30 @@
 extern "C" {
 #endif
 
-#define EXH_HAND_FINGERS 5 /* thumb, index, middle, ring, little */
-#define EXH_HAND_JOINTS  3 /* driven, of one finger: q0, q1, q2 */
+#define EXH_HAND_FINGERS 5  /* thumb, index, middle, ring, little */
+#define EXH_HAND_JOINTS  3  /* driven, of one finger: q0, q1, q2 */
 #define EXH_HAND_SENSORS 22 /* of the glove, in the order of glove.h */
-#define EXH_HAND_TERMS   2 /* sensors that move one joint, at most */
+#define EXH_HAND_TERMS   2  /* sensors that move one joint, at most */
 
 /* A finger's number, in every array and mask by finger. */
 enum exh_hand_finger_id {
-    EXH_THUMB, EXH_INDEX, EXH_MIDDLE, EXH_RING, EXH_LITTLE /* 0 .. 4 */
+    EXH_THUMB,
+    EXH_INDEX,
+    EXH_MIDDLE,
+    EXH_RING,
+    EXH_LITTLE /* 0 .. 4 */
 };
 
 /* --- sensors to joints --- */
 
-#define EXH_HAND_GAIN_MAX_Q24 (8 * (INT32_C(1) << 24)) /* 8: no gain of a joint is larger, either way */
+#define EXH_HAND_GAIN_MAX_Q24 \
+    (8 * (INT32_C(1) << 24)) /* 8: no gain of a joint is larger, either way */
 
 /* How one joint follows the sensors. */
 struct exh_hand_joint {
-    int32_t bias_turn_q32; /* the joint's angle when all sensors are at 0 */
+    int32_t bias_turn_q32;            /* the joint's angle when all sensors are at 0 */
     int32_t gain_q24[EXH_HAND_TERMS]; /* -8 .. 8; 0: no term */
-    uint8_t sensor[EXH_HAND_TERMS]; /* below EXH_HAND_SENSORS */
+    uint8_t sensor[EXH_HAND_TERMS];   /* below EXH_HAND_SENSORS */
     int32_t lo_turn_q32, hi_turn_q32; /* the joint's limits, lo <= hi */
 };
 /* How all of a hand's joints follow them; data, in ROM or the caller's. */
@@ -50,8 +55,8 @@ struct exh_hand_map {
 };
 extern const struct exh_hand_map exh_hit2_map; /* of the DLR/HIT Hand II, right */
 
-/* 0 if every sensor, also those bent, gain and pair of limits is as said above, -EXH_E_RANGE otherwise: for
- * maps that come from outside. Set-up. */
+/* 0 if every sensor, also those bent, gain and pair of limits is as said above, -EXH_E_RANGE
+ * otherwise: for maps that come from outside. Set-up. */
 int exh_hand_map_check(const struct exh_hand_map *map);
 
 /* The three driven joints of one finger (0 .. 4) from all 22 sensors: bias + sum of gain times
@@ -64,7 +69,7 @@ uint32_t exh_hand_joints(const struct exh_hand_map *map, unsigned finger,
 
 /* One finger as it is built, in the frame of the palm. */
 struct exh_hand_bones {
-    int32_t len_m_q34[3]; /* q1 to q2, to q3, to the pad's middle; each > 0, sum <= 0.12 m */
+    int32_t len_m_q34[3];  /* q1 to q2, to q3, to the pad's middle; each > 0, sum <= 0.12 m */
     int32_t rot_q30[3][3]; /* rows x, y, z of the palm: the base frame's axes are the columns */
     int32_t base_m_q32[3]; /* where q0 and q1 are; within +-0.125 m */
 };
@@ -76,7 +81,7 @@ struct exh_hand_par {
                            measured. With exh_hand_setup() alone q1 is that knuckle */
     int32_t arm2_m_q30; /* of the joint beyond it; q2 */
     int32_t arm3_m_q30; /* of the last; q3 */
-    int32_t pad_m_q30; /* radius of the pad, m, 0 .. 25 mm: so far from P_F is the skin */
+    int32_t pad_m_q30;  /* radius of the pad, m, 0 .. 25 mm: so far from P_F is the skin */
 };
 #define EXH_HAND_ROWS 4
 extern const struct exh_signal exh_hand_rows[EXH_HAND_ROWS];
@@ -88,14 +93,15 @@ struct exh_hand_finger {
 };
 
 /* Set-up (divides); bones must outlive f. -EXH_E_RANGE: a parameter or a bone outside its range
- * above, rot no rotation (axes not of length 1 or not square to each other, within 1e-6, or left-handed), or
- * both arm1 and arm2 + arm3 so small that a metre of string would turn them by more than 250 rad:
- * arm1^2 + (arm2 + arm3)^2 below (4 mm)^2. */
+ * above, rot no rotation (axes not of length 1 or not square to each other, within 1e-6, or
+ * left-handed), or both arm1 and arm2 + arm3 so small that a metre of string would turn them by
+ * more than 250 rad: arm1^2 + (arm2 + arm3)^2 below (4 mm)^2. */
 int exh_hand_setup(struct exh_hand_finger *f, const struct exh_hand_bones *bones,
                    const struct exh_hand_par *par);
 
-/* Set-up, behind it: the string bends the wearer's joints, and the robot's follow them as the map has it,
- * each by gain times as much. A joint at its limit does not turn: the caller makes its pull 0. Error
+/* Set-up, behind it: the string bends the wearer's joints, and the robot's follow them as the map
+ * has it, each by gain times as much. A joint at its limit does not turn: the caller makes its pull
+ * 0. Error
  * <= 1/2 LSB more, and that of the gains. -EXH_E_RANGE: above 250 rad/m; f is as it was. */
 int exh_hand_follow(struct exh_hand_finger *f, const struct exh_hand_map *map, unsigned finger);
 

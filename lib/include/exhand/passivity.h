@@ -13,13 +13,14 @@
  *
  *   owed <= way * (f_max + half a code), always: the work of one tick at the speed limit.
  *
- * It holds from the beginning of a contact to any later tick, for every law, every gain and every movement
- * that keeps the speed limit; m ticks missed on end make it m + 1 times that. Where energy goes
- * in first, as in any spring that is pressed, nothing is taken.
+ * It holds from the beginning of a contact to any later tick, for every law, every gain and every
+ * movement that keeps the speed limit; m ticks missed on end make it m + 1 times that. Where energy
+ * goes in first, as in any spring that is pressed, nothing is taken.
  *
  * Outputs that act late: with on = 2 the force may stand up to one tick after it was commanded;
- * of the two forces that may have been held over a tick the worse one counts. What is owed by any such output
- * then stays below twice that bound, and what is owed by one in time below the bound itself.
+ * of the two forces that may have been held over a tick the worse one counts. What is owed by any
+ * such output then stays below twice that bound, and what is owed by one in time below the bound
+ * itself.
  *
  * Not counted as the contact's: the pull-back force, which is meant to draw the string in; and
  * what the finger does within one count: in true position up to half a count times the
@@ -52,31 +53,31 @@ extern const struct exh_signal exh_passivity_rows[EXH_PASSIVITY_ROWS];
 
 /* One finger as it is set up. */
 struct exh_passivity_cfg {
-    const struct exh_passivity_par *par; /* read at every tick                 */
-    const struct exh_drive_par *drive; /* likewise: f_max                    */
-    int32_t f_top_N_q20; /* end of the force table             */
-    struct exh_table held; /* what a coded current holds: A q26 -> N q20 */
-    int32_t step_m_q42; /* string per count, for energy in J */
-    int32_t way_cnt; /* of one tick at the speed limit, rounded up */
-    uint8_t shift; /* f_max 100 N * way >> shift fits a word */
-    struct exh_gain share; /* 2^shift / way                      */
+    const struct exh_passivity_par *par; /* read at every tick */
+    const struct exh_drive_par *drive;   /* likewise: f_max */
+    int32_t f_top_N_q20;                 /* end of the force table */
+    struct exh_table held;               /* what a coded current holds: A q26 -> N q20 */
+    int32_t step_m_q42;                  /* string per count, for energy in J */
+    int32_t way_cnt;                     /* of one tick at the speed limit, rounded up */
+    uint8_t shift;                       /* f_max 100 N * way >> shift fits a word */
+    struct exh_gain share;               /* 2^shift / way */
 };
 
 /* One finger from tick to tick. */
 struct exh_passivity {
     int64_t energy_Ncnt_q20; /* taken up since the contact began; negative: owed */
-    int32_t held_N_q20; /* held since the last tick, the pull-back aside  */
-    int32_t late_N_q20; /* held before that, where it may still act       */
-    int32_t cnt; /* position at the last tick                      */
-    uint8_t touching; /* the contact condition then                     */
-    uint8_t started; /* 1: cnt is of a tick that was                   */
+    int32_t held_N_q20;      /* held since the last tick, the pull-back aside */
+    int32_t late_N_q20;      /* held before that, where it may still act */
+    int32_t cnt;             /* position at the last tick */
+    uint8_t touching;        /* the contact condition then */
+    uint8_t started;         /* 1: cnt is of a tick that was */
 };
 
-/* Set-up (divides). `held` is the inverse of the drive's force_to_cur (exh_table_invert), gives 0 N at
- * 0 A and outlives cfg, as must par and what `drive` points to. speed: the fastest movement, m/s q27,
- * 0.1 or more: what is faster is not covered. -EXH_E_RANGE: a table or a value that is not so, a way
- * of more than 2^24 counts, or slew_down so low that force could not fall from its highest to none in one tick (lowered
- * later, it adds the work of its fall to the bound); -EXH_E_RATE: T. */
+/* Set-up (divides). `held` is the inverse of the drive's force_to_cur (exh_table_invert), gives 0 N
+ * at 0 A and outlives cfg, as must par and what `drive` points to. speed: the fastest movement, m/s
+ * q27, 0.1 or more: what is faster is not covered. -EXH_E_RANGE: a table or a value that is not so,
+ * a way of more than 2^24 counts, or slew_down so low that force could not fall from its highest to
+ * none in one tick (lowered later, it adds the work of its fall to the bound); -EXH_E_RATE: T. */
 int exh_passivity_setup(struct exh_passivity_cfg *cfg, const struct exh_passivity_par *par,
                         const struct exh_drive_cfg *drive, struct exh_table held,
                         struct exh_velocity_scale scale, int32_t speed_mps_q27);

@@ -41,15 +41,15 @@
 extern "C" {
 #endif
 
-#define EXH_PRECONTACT_NEVER INT32_MAX /* q_lim, m, q30: 2 m of string             */
+#define EXH_PRECONTACT_NEVER INT32_MAX /* q_lim, m, q30: 2 m of string */
 
 /* --- what the world tells --- */
 
 /* What is told of one finger. */
 enum exh_plane_kind {
-    EXH_PLANE_UNTOLD, /* nothing about this finger                             */
-    EXH_PLANE_NONE,   /* the ray hit nothing                                   */
-    EXH_PLANE_HIT     /* it hit the surface that the plane touches             */
+    EXH_PLANE_UNTOLD, /* nothing about this finger */
+    EXH_PLANE_NONE,   /* the ray hit nothing */
+    EXH_PLANE_HIT     /* it hit the surface that the plane touches */
 };
 
 /* For one finger, in the frame of the palm, which is the paper's {R}. Canonical is the plane
@@ -57,11 +57,11 @@ enum exh_plane_kind {
  * about one plane are then the same bits, and so is the force. Any other point of the plane is
  * taken as well, at an error of <= 1 LSB of d. */
 struct exh_plane {
-    uint8_t kind;     /* enum exh_plane_kind                                   */
-    uint8_t material; /* index                                                 */
-    uint16_t object;  /* whose surface: another number is another object       */
-    struct exh_vec3 normal_q30;  /* outward, of length 1 within 2^-17          */
-    struct exh_vec3 point_m_q30; /* any values                                 */
+    uint8_t kind;                /* enum exh_plane_kind */
+    uint8_t material;            /* index */
+    uint16_t object;             /* whose surface: another number is another object */
+    struct exh_vec3 normal_q30;  /* outward, of length 1 within 2^-17 */
+    struct exh_vec3 point_m_q30; /* any values */
 };
 
 /* --- parameters --- */
@@ -69,8 +69,8 @@ struct exh_plane {
 /* One material; rows in exh_material_rows[]. Taken at the freeze, so a change never
  * reaches a contact that is there. */
 struct exh_material_par {
-    int32_t k_Npm_q10;   /* stiffness, N/m, 0 .. 10^6                          */
-    int32_t b_Nspm_q20;  /* damping, Ns/m, 0 .. 1000                           */
+    int32_t k_Npm_q10;   /* stiffness, N/m, 0 .. 10^6 */
+    int32_t b_Nspm_q20;  /* damping, Ns/m, 0 .. 1000 */
     int32_t f_max_N_q20; /* its force limit, N, 0 .. 100; the drive's holds too */
 };
 #define EXH_MATERIAL_ROWS 3
@@ -78,88 +78,89 @@ extern const struct exh_signal exh_material_rows[EXH_MATERIAL_ROWS];
 
 /* One finger; rows in exh_precontact_rows[]. */
 struct exh_precontact_par {
-    int32_t d_lim_m_q30;  /* freeze at d >= d_lim, m, -0.2 .. -10^-4            */
-    int32_t hyst_m_q30;   /* release at d < d_lim - hyst, m, 0 .. 0.05          */
-    int32_t scale_q24;    /* s: string metres per fingertip metre, 1/8 .. 8     */
-    int32_t from_slope;   /* 1: s from the fingertip's slope along the string
-                             instead, limited to 1/8 .. 8                      */
-    int32_t printed_sign; /* 1: d = (P_C - P_F).n - t, as the paper prints it   */
-    int32_t age_max_ms;   /* an older plane is none, ms, 1 .. 60000             */
-    int32_t doubt_m_q30;  /* touching at d < d_lim - hyst - this is in doubt, m, 0 .. 0.05 */
-    int32_t doubt_ms;     /* let go after so long in doubt, ms, 1 .. 60000      */
-    int32_t tip_age_max_ms; /* an older fingertip is unknown, ms, 1 .. 60000    */
+    int32_t d_lim_m_q30;    /* freeze at d >= d_lim, m, -0.2 .. -10^-4 */
+    int32_t hyst_m_q30;     /* release at d < d_lim - hyst, m, 0 .. 0.05 */
+    int32_t scale_q24;      /* s: string metres per fingertip metre, 1/8 .. 8 */
+    int32_t from_slope;     /* 1: s from the fingertip's slope along the string
+                               instead, limited to 1/8 .. 8 */
+    int32_t printed_sign;   /* 1: d = (P_C - P_F).n - t, as the paper prints it */
+    int32_t age_max_ms;     /* an older plane is none, ms, 1 .. 60000 */
+    int32_t doubt_m_q30;    /* touching at d < d_lim - hyst - this is in doubt, m, 0 .. 0.05 */
+    int32_t doubt_ms;       /* let go after so long in doubt, ms, 1 .. 60000 */
+    int32_t tip_age_max_ms; /* an older fingertip is unknown, ms, 1 .. 60000 */
 };
 #define EXH_PRECONTACT_ROWS 9
 extern const struct exh_signal exh_precontact_rows[EXH_PRECONTACT_ROWS];
 
 /* One finger as it is set up. */
 struct exh_precontact_cfg {
-    const struct exh_precontact_par *par; /* read at every tick                */
+    const struct exh_precontact_par *par;    /* read at every tick */
     const struct exh_material_par *material; /* the caller's, materials of them */
-    int64_t pad_m_q60; /* t with its sign                                      */
-    uint32_t age_ticks, doubt_ticks, tip_ticks; /* age_max, doubt_ms, tip_age_max, rounded down, and one: a plane so old is
-                                                 * too old; more than so long in doubt, let go; a tip so old is unknown */
-    uint8_t materials; /* 1 .. 255                                             */
+    int64_t pad_m_q60;                       /* t with its sign */
+    uint32_t age_ticks, doubt_ticks,
+        tip_ticks;     /* age_max, doubt_ms, tip_age_max, rounded down, and one: a plane so old is
+                        * too old; more than so long in doubt, let go; a tip so old is unknown */
+    uint8_t materials; /* 1 .. 255 */
 };
 
 /* --- one finger --- */
 
 /* A plane as the tick uses it: n.P_C + t is what matters of its point. */
 struct exh_precontact_plane {
-    int64_t offset_m_q60;       /* and half an LSB of d                        */
-    struct exh_vec3 normal_q30; /* (0, 0, 0): no plane                         */
-    uint16_t object;            /* of the plane told                           */
-    uint8_t material;           /* index, below materials                      */
+    int64_t offset_m_q60;       /* and half an LSB of d */
+    struct exh_vec3 normal_q30; /* (0, 0, 0): no plane */
+    uint16_t object;            /* of the plane told */
+    uint8_t material;           /* index, below materials */
 };
 
 /* Where a finger is with its plane. */
 enum exh_precontact_phase {
-    EXH_PRECONTACT_IDLE,   /* no plane, or too old                             */
-    EXH_PRECONTACT_INSIDE, /* born at d >= d_lim                               */
-    EXH_PRECONTACT_TRACK,  /* q_lim moves along                                */
-    EXH_PRECONTACT_FROZEN  /* q_lim stands                                     */
+    EXH_PRECONTACT_IDLE,   /* no plane, or too old */
+    EXH_PRECONTACT_INSIDE, /* born at d >= d_lim */
+    EXH_PRECONTACT_TRACK,  /* q_lim moves along */
+    EXH_PRECONTACT_FROZEN  /* q_lim stands */
 };
 
 /* A state of zeros is a finger that has been told nothing. The first four are the
  * results of exh_precontact_step(). */
 struct exh_precontact {
-    int32_t d_m_q30;                /* INT32_MIN: there is no plane             */
-    int32_t lim_m_q30;              /* q_lim                                    */
-    struct exh_material_par taken;  /* at the last freeze; zeros before         */
-    uint8_t phase;                  /* enum exh_precontact_phase                */
-    struct exh_precontact_plane newest, held; /* told last; frozen              */
-    uint32_t left_ticks; /* until the newest is too old                         */
-    uint32_t frozen_n;   /* freezes; this and the counts below modulo 2^32      */
-    uint32_t born_n;     /* planes born at d >= d_lim                           */
-    uint32_t refused_n;  /* normal no unit vector, or no such material          */
-    uint32_t ignored_n;  /* told while frozen, and not what was frozen          */
-    uint32_t stale_n;    /* became too old while q_lim moved along              */
-    uint32_t doubt_ticks; /* in doubt on end                                    */
-    uint32_t let_go_n;   /* contacts let go                                     */
-    uint8_t resumed;     /* read from bytes, no step yet; not in the bytes      */
+    int32_t d_m_q30;                          /* INT32_MIN: there is no plane */
+    int32_t lim_m_q30;                        /* q_lim */
+    struct exh_material_par taken;            /* at the last freeze; zeros before */
+    uint8_t phase;                            /* enum exh_precontact_phase */
+    struct exh_precontact_plane newest, held; /* told last; frozen */
+    uint32_t left_ticks;                      /* until the newest is too old */
+    uint32_t frozen_n;                        /* freezes; this and the counts below modulo 2^32 */
+    uint32_t born_n;                          /* planes born at d >= d_lim */
+    uint32_t refused_n;                       /* normal no unit vector, or no such material */
+    uint32_t ignored_n;                       /* told while frozen, and not what was frozen */
+    uint32_t stale_n;                         /* became too old while q_lim moved along */
+    uint32_t doubt_ticks;                     /* in doubt on end */
+    uint32_t let_go_n;                        /* contacts let go */
+    uint8_t resumed;                          /* read from bytes, no step yet; not in the bytes */
 };
 
 /* What a tick goes by. */
 struct exh_precontact_in {
-    struct exh_vec3 tip_m_q30; /* P_F, of exh_hand_tip(); any values            */
+    struct exh_vec3 tip_m_q30; /* P_F, of exh_hand_tip(); any values */
     struct exh_vec3 slope_q24; /* of exh_hand_tip_slope(); read with from_slope only */
-    int32_t pos_m_q30;         /* q, the same that the contact law gets         */
+    int32_t pos_m_q30;         /* q, the same that the contact law gets */
     uint32_t tip_age_ticks;    /* since P_F was measured; UINT32_MAX: it is unknown */
-    uint8_t touching;          /* what the contact law returned last            */
+    uint8_t touching;          /* what the contact law returned last */
 };
 
 /* What a tick did. None of the first four: there is no plane, or no fingertip. */
 enum exh_precontact_bit {
-    EXH_PRECONTACT_STANDS = 1u << 0,  /* phase FROZEN                           */
-    EXH_PRECONTACT_TRACKS = 1u << 1,  /* phase TRACK                            */
-    EXH_PRECONTACT_AROUND = 1u << 2,  /* phase INSIDE                           */
+    EXH_PRECONTACT_STANDS = 1u << 0,  /* phase FROZEN */
+    EXH_PRECONTACT_TRACKS = 1u << 1,  /* phase TRACK */
+    EXH_PRECONTACT_AROUND = 1u << 2,  /* phase INSIDE */
     EXH_PRECONTACT_STALE = 1u << 3,   /* phase IDLE: the newest plane is too old */
     EXH_PRECONTACT_BENT = 1u << 4,    /* s was limited: string and approach do not fit */
-    EXH_PRECONTACT_FREEZE = 1u << 5,  /* frozen in this tick: `taken` is new    */
+    EXH_PRECONTACT_FREEZE = 1u << 5,  /* frozen in this tick: `taken` is new */
     EXH_PRECONTACT_RELEASE = 1u << 6, /* released in this tick: the newest plane counts again,
-                                         as one that has just come             */
-    EXH_PRECONTACT_BLIND = 1u << 7,   /* the fingertip is too old, or unknown   */
-    EXH_PRECONTACT_DOUBT = 1u << 8,   /* what stands is in doubt                */
+                                         as one that has just come */
+    EXH_PRECONTACT_BLIND = 1u << 7,   /* the fingertip is too old, or unknown */
+    EXH_PRECONTACT_DOUBT = 1u << 8,   /* what stands is in doubt */
     EXH_PRECONTACT_LETGO = 1u << 9    /* let go in this tick, RELEASE with it: no contact in
                                          this one; in the next the newest plane counts again */
 };
@@ -196,13 +197,13 @@ void exh_precontact_bytes(struct exh_bytes *c, struct exh_precontact *s);
 
 /* What moves how fast, and is known how late. */
 struct exh_precontact_need {
-    int32_t speed_mps_q27;  /* fastest approach, m/s, 0 .. 16                   */
+    int32_t speed_mps_q27;  /* fastest approach, m/s, 0 .. 16 */
     int32_t lag_us;         /* of the fingertip behind the string: glove frame, filter */
-    int32_t noise_m_q30;    /* of d, peak, m                                    */
+    int32_t noise_m_q30;    /* of d, peak, m */
     int32_t age_us;         /* oldest the newest plane may be: frame + latency + jitter */
     int32_t object_mps_q27; /* speed of the object (or of the hand's base in the world), m/s */
     int32_t slide_m_q30;    /* tangential way from where the plane was taken to the contact, m */
-    int32_t radius_m_q30;   /* of the object's surface, m; 0: plane              */
+    int32_t radius_m_q30;   /* of the object's surface, m; 0: plane */
 };
 /* What d_lim, ray and error come of it. */
 struct exh_precontact_advice {

@@ -29,15 +29,15 @@ extern "C" {
 
 /* How a motion stands or ended. */
 enum exh_probe_result {
-    EXH_PROBE_BUSY,   /* goes on                                                */
-    EXH_PROBE_DONE,   /* found what it was for                                  */
+    EXH_PROBE_BUSY,      /* goes on */
+    EXH_PROBE_DONE,      /* found what it was for */
     EXH_PROBE_WRONG_WAY, /* the string goes out though it is pulled in: motor or
-                          * encoder reversed, or somebody pulls                */
-    EXH_PROBE_STILL,  /* nothing has moved at the last of the currents          */
-    EXH_PROBE_TRAVEL, /* farther from the start than allowed                    */
-    EXH_PROBE_TIME,   /* it took too long                                       */
-    EXH_PROBE_JAM,    /* stopped before the end can have been reached           */
-    EXH_PROBE_RESULTS /* how many there are                                     */
+                          * encoder reversed, or somebody pulls */
+    EXH_PROBE_STILL,     /* nothing has moved at the last of the currents */
+    EXH_PROBE_TRAVEL,    /* farther from the start than allowed */
+    EXH_PROBE_TIME,      /* it took too long */
+    EXH_PROBE_JAM,       /* stopped before the end can have been reached */
+    EXH_PROBE_RESULTS    /* how many there are */
 };
 
 /* "went the wrong way", ...; never NULL. */
@@ -45,8 +45,8 @@ const char *exh_probe_text(unsigned result);
 
 /* What a count and a millisecond are. */
 struct exh_probe_scale {
-    int32_t step_m_q42; /* m per count, > 0                                    */
-    struct exh_period T; /* of the loop                                        */
+    int32_t step_m_q42;  /* m per count, > 0 */
+    struct exh_period T; /* of the loop */
 };
 
 /* Ticks in ms > 0 milliseconds, rounded down, at least 1. Set-up only (divides). */
@@ -59,27 +59,27 @@ uint32_t exh_probe_ticks(int32_t ms, struct exh_period T);
 /* Parameters of a probe, given by whoever calibrates. */
 struct exh_probe_par {
     int32_t step_A_q26;   /* added after each dwell, A, +-1 uA .. +-0.5; < 0 lowers */
-    int32_t end_A_q26;    /* not beyond this, A, 0 .. 3.3                       */
+    int32_t end_A_q26;    /* not beyond this, A, 0 .. 3.3 */
     int32_t dwell_ms;     /* time at each current, ms, 1 .. 10^4; at least 2 ticks */
-    int32_t time_ms;      /* of it all, ms, 1 .. 10^6                           */
+    int32_t time_ms;      /* of it all, ms, 1 .. 10^6 */
     int32_t move_m_q30;   /* this far within a dwell is movement, m, > 0 .. 1; at
-                           * least 2 counts, as one may be noise               */
+                           * least 2 counts, as one may be noise */
     int32_t travel_m_q30; /* not farther from the start, m, > move .. 1; at most
-                           * 2^30 counts                                       */
+                           * 2^30 counts */
 };
 /* A probe as it is set up. */
 struct exh_probe_cfg {
-    int32_t step_A_q26, end_A_q26; /* the parameters                           */
-    uint32_t dwell_ticks, ticks;   /* of a dwell, 2 at least; of it all        */
+    int32_t step_A_q26, end_A_q26; /* the parameters */
+    uint32_t dwell_ticks, ticks;   /* of a dwell, 2 at least; of it all */
     int32_t move_cnt, travel_cnt;  /* in counts, rounded down; move 2 at least */
 };
 /* A probe from tick to tick. */
 struct exh_probe {
-    int32_t cur_A_q26; /* asked for now                                        */
+    int32_t cur_A_q26;            /* asked for now */
     int32_t start_cnt, dwell_cnt; /* where it began; where the present dwell did */
-    uint32_t dwell, tick; /* ticks: of this dwell; of it all                    */
-    uint8_t settled;   /* it was quiet for a dwell: from now on currents change */
-    uint8_t result;    /* enum exh_probe_result                                */
+    uint32_t dwell, tick;         /* ticks: of this dwell; of it all */
+    uint8_t settled;              /* it was quiet for a dwell: from now on currents change */
+    uint8_t result;               /* enum exh_probe_result */
 };
 
 /* Set-up (divides). -EXH_E_RANGE: a parameter outside its range. */
@@ -99,26 +99,26 @@ uint8_t exh_probe_step(struct exh_probe *s, const struct exh_probe_cfg *cfg, int
 
 /* Parameters of homing, given by whoever calibrates. */
 struct exh_home_par {
-    int32_t cur_A_q26;    /* pulls with this, A, > 0 .. 0.5                     */
-    int32_t dwell_ms;     /* slower than `move` a dwell is the end, ms, 1 .. 10^4 */
-    int32_t time_ms;      /* ms, 1 .. 10^6                                      */
-    int32_t move_m_q30;   /* m, as above                                        */
-    int32_t least_m_q30;  /* an end nearer than this is a jam, m, 0 .. most     */
-    int32_t most_m_q30;   /* travel limit, m, > move .. 1                       */
+    int32_t cur_A_q26;   /* pulls with this, A, > 0 .. 0.5 */
+    int32_t dwell_ms;    /* slower than `move` a dwell is the end, ms, 1 .. 10^4 */
+    int32_t time_ms;     /* ms, 1 .. 10^6 */
+    int32_t move_m_q30;  /* m, as above */
+    int32_t least_m_q30; /* an end nearer than this is a jam, m, 0 .. most */
+    int32_t most_m_q30;  /* travel limit, m, > move .. 1 */
 };
 /* Homing as it is set up. */
 struct exh_home_cfg {
-    int32_t cur_A_q26;             /* the parameter                            */
-    uint32_t dwell_ticks, ticks;   /* as of a probe                            */
+    int32_t cur_A_q26;                     /* the parameter */
+    uint32_t dwell_ticks, ticks;           /* as of a probe */
     int32_t move_cnt, least_cnt, most_cnt; /* in counts, rounded down; move 2 at least, most 1 */
 };
 /* Homing from tick to tick. */
 struct exh_home {
-    int32_t cur_A_q26; /* asked for now                                        */
+    int32_t cur_A_q26;            /* asked for now */
     int32_t start_cnt, dwell_cnt; /* where it began; where the present dwell did */
-    int32_t home_cnt;  /* the end, once DONE                                   */
-    uint32_t dwell, tick; /* ticks: of this dwell; of it all                    */
-    uint8_t result;    /* enum exh_probe_result                                */
+    int32_t home_cnt;             /* the end, once DONE */
+    uint32_t dwell, tick;         /* ticks: of this dwell; of it all */
+    uint8_t result;               /* enum exh_probe_result */
 };
 
 /* Set-up (divides). -EXH_E_RANGE as above. */
@@ -138,26 +138,26 @@ uint8_t exh_home_step(struct exh_home *s, const struct exh_home_cfg *cfg, int32_
 /* Parameters of weighing, given by whoever calibrates. */
 struct exh_weigh_par {
     struct exh_probe_par probe; /* step > 0; it is also the step of the way down */
-    int32_t slack_A_q26;  /* takes up the slack first, lifts no mass, A, 0 .. end */
-    int32_t hold_ms;      /* means are taken over this, ms, 1 .. 10^5           */
+    int32_t slack_A_q26;        /* takes up the slack first, lifts no mass, A, 0 .. end */
+    int32_t hold_ms;            /* means are taken over this, ms, 1 .. 10^5 */
 };
 /* Weighing as it is set up. */
 struct exh_weigh_cfg {
-    struct exh_probe_cfg up, down; /* that lifts; that lets sink, down to 0 A  */
-    int32_t slack_A_q26;           /* the parameter                            */
-    uint32_t hold_ticks;           /* over which means are taken               */
+    struct exh_probe_cfg up, down; /* that lifts; that lets sink, down to 0 A */
+    int32_t slack_A_q26;           /* the parameter */
+    uint32_t hold_ticks;           /* over which means are taken */
 };
 
 /* Weighing from tick to tick. */
 struct exh_weigh {
-    struct exh_probe probe; /* of this phase; start_cnt is that of the first   */
-    int32_t cur_A_q26;  /* asked for now                                       */
-    int32_t lift_A_q26; /* at which the mass rose                              */
-    int32_t sink_A_q26; /* at which it sank                                    */
-    struct exh_mean coded, mon; /* currents while it hangs still, A q26        */
-    uint32_t tick;      /* of holding, in all                                  */
-    uint8_t phase;      /* 0 up, 1 down, 2 coming to rest, 3 means             */
-    uint8_t result;     /* enum exh_probe_result                               */
+    struct exh_probe probe;     /* of this phase; start_cnt is that of the first */
+    int32_t cur_A_q26;          /* asked for now */
+    int32_t lift_A_q26;         /* at which the mass rose */
+    int32_t sink_A_q26;         /* at which it sank */
+    struct exh_mean coded, mon; /* currents while it hangs still, A q26 */
+    uint32_t tick;              /* of holding, in all */
+    uint8_t phase;              /* 0 up, 1 down, 2 coming to rest, 3 means */
+    uint8_t result;             /* enum exh_probe_result */
 };
 
 /* Set-up (divides). -EXH_E_RANGE as above. */

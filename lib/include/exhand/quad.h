@@ -17,7 +17,7 @@ extern "C" {
 /* Parameters of one encoder; rows in exh_quad_rows[]. */
 struct exh_quad_par {
     int32_t step_m_q42;        /* string per count, m, 1 .. 488 um, LSB 0.23 pm */
-    int32_t speed_max_mps_q27; /* faster is no hand, m/s, 0.1 .. 16            */
+    int32_t speed_max_mps_q27; /* faster is no hand, m/s, 0.1 .. 16 */
 };
 #define EXH_QUAD_ROWS 2
 extern const struct exh_signal exh_quad_rows[EXH_QUAD_ROWS];
@@ -29,19 +29,20 @@ extern const struct exh_signal exh_quad_rows[EXH_QUAD_ROWS];
  * and is counted. The first sample sets the state and counts nothing, a repeated one
  * counts nothing. Sample faster than the shortest distance of two edges. */
 struct exh_quad_ab {
-    int32_t cnt;      /* counts since the first sample; wraps modulo 2^32        */
-    uint32_t edges;   /* legal transitions seen, of every mode alike; wraps      */
-    uint32_t illegal; /* both lines changed at once: direction lost; wraps       */
-    uint8_t ab;       /* the last sample                                         */
-    uint8_t started;  /* 1 after the first                                       */
+    int32_t cnt;      /* counts since the first sample; wraps modulo 2^32 */
+    uint32_t edges;   /* legal transitions seen, of every mode alike; wraps */
+    uint32_t illegal; /* both lines changed at once: direction lost; wraps */
+    uint8_t ab;       /* the last sample */
+    uint8_t started;  /* 1 after the first */
 };
 
 /* What each transition adds, index previous<<2 | now: count << 16 (two's
  * complement), edge << 8, illegal. Only the modes that are used are linked. */
 struct exh_quad_mode {
-    uint32_t adds[16]; /* one for each pair of samples                           */
+    uint32_t adds[16]; /* one for each pair of samples */
 };
-extern const struct exh_quad_mode exh_quad_x1, exh_quad_x2, exh_quad_x4; /* A edges at B = 1; all A edges; all edges */
+extern const struct exh_quad_mode exh_quad_x1, exh_quad_x2,
+    exh_quad_x4; /* A edges at B = 1; all A edges; all edges */
 
 /* One sample. */
 void exh_quad_ab_step(struct exh_quad_ab *s, const struct exh_quad_mode *mode, unsigned ab);
@@ -57,9 +58,9 @@ void exh_quad_ab_word(struct exh_quad_ab *s, uint64_t a, uint64_t b);
 
 /* Index mark: the count at its last rising edge. Only for whom it has one. */
 struct exh_quad_index {
-    int32_t cnt;     /* at the last rising edge                                 */
-    uint32_t seen;   /* rising edges; wraps                                     */
-    uint8_t level;   /* the last                                                */
+    int32_t cnt;     /* at the last rising edge */
+    uint32_t seen;   /* rising edges; wraps */
+    uint8_t level;   /* the last */
     uint8_t started; /* 1 after the first: a level that is high there is no edge */
 };
 
@@ -69,17 +70,17 @@ void exh_quad_index_step(struct exh_quad_index *s, int32_t cnt, unsigned level);
 
 /* Extension of a hardware counter of 16 to 32 bits across its wrap. */
 struct exh_quad_cfg {
-    const struct exh_quad_par *par; /* the caller's                             */
-    int32_t jump_cnt; /* what speed_max moves in one tick, rounded, plus 1; a
-                         smaller error of the encoder is not seen              */
-    uint8_t unused;   /* 32 less the counter's width                           */
+    const struct exh_quad_par *par; /* the caller's */
+    int32_t jump_cnt;               /* what speed_max moves in one tick, rounded, plus 1; a
+                                       smaller error of the encoder is not seen */
+    uint8_t unused;                 /* 32 less the counter's width */
 };
 struct exh_quad {
-    uint32_t raw;    /* last counter value as given; its low bits count       */
-    int32_t cnt;     /* counts since the first sample; wraps modulo 2^32       */
-    uint8_t started; /* the first sample is count 0                            */
+    uint32_t raw;    /* last counter value as given; its low bits count */
+    int32_t cnt;     /* counts since the first sample; wraps modulo 2^32 */
+    uint8_t started; /* the first sample is count 0 */
     uint8_t lost;    /* 1: a sample moved more than speed_max. cnt left it out and
-                        is not to be trusted until the next set-up: a fault    */
+                        is not to be trusted until the next set-up: a fault */
 };
 
 /* Set-up (divides); par must outlive cfg. bits: the counter's width, from the

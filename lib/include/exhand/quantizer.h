@@ -14,9 +14,9 @@ extern "C" {
 
 /* Parameters; rows in exh_quantizer_rows[]. */
 struct exh_quantizer_par {
-    int32_t bits; /* stable bits of the full int32 range, 1 .. 24        */
+    int32_t bits;         /* stable bits of the full int32 range, 1 .. 24 */
     int32_t hyst_raw_q16; /* hysteresis, LSB of the input, 0 .. 2^(32-bits): noise,
-                             peak to peak, that shall not show                  */
+                             peak to peak, that shall not show */
 };
 #define EXH_QUANTIZER_ROWS 2
 extern const struct exh_signal exh_quantizer_rows[EXH_QUANTIZER_ROWS];
@@ -24,12 +24,12 @@ extern const struct exh_signal exh_quantizer_rows[EXH_QUANTIZER_ROWS];
 /* Set up; one for any number of channels. */
 struct exh_quantizer_cfg {
     uint32_t keep; /* a code is kept while the input is within this of its value */
-    uint32_t half; /* half a code, LSB of the input                           */
+    uint32_t half; /* half a code, LSB of the input */
 };
 /* One channel. A state of zeros has seen nothing. */
 struct exh_quantizer {
-    int32_t value; /* of the code kept, in units of the input               */
-    uint8_t started; /* the first call takes the nearest code                 */
+    int32_t value;   /* of the code kept, in units of the input */
+    uint8_t started; /* the first call takes the nearest code */
 };
 
 /* Set-up. -EXH_E_RANGE: bits not 1 .. 24, or a hysteresis that is negative or more than one

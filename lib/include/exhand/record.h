@@ -21,60 +21,60 @@
 extern "C" {
 #endif
 
-#define EXH_RECORD_VERSION 2   /* 1: keyframes had no values on their way         */
-#define EXH_RECORD_SYNC 0x5845u /* first bytes of every record, "EX"            */
-#define EXH_RECORD_HEAD_B 14   /* bytes before a payload                         */
-#define EXH_RECORD_OVERHEAD 18 /* bytes around a payload                         */
+#define EXH_RECORD_VERSION  2       /* 1: keyframes had no values on their way */
+#define EXH_RECORD_SYNC     0x5845u /* first bytes of every record, "EX" */
+#define EXH_RECORD_HEAD_B   14      /* bytes before a payload */
+#define EXH_RECORD_OVERHEAD 18      /* bytes around a payload */
 
 /* What a record's payload is. */
 enum exh_record_type {
-    EXH_RECORD_HEADER = 1,  /* struct exh_record_header, images                 */
-    EXH_RECORD_FRAME = 2,   /* a tick: raw inputs, outputs, signals             */
-    EXH_RECORD_EVENT = 3,   /* struct exh_event, at its tick                    */
-    EXH_RECORD_KEYFRAME = 4, /* the scene's state: a replay may start here      */
-    EXH_RECORD_DROPPED = 5, /* u32: records lost before this one                */
-    EXH_RECORD_END = 6,     /* u32: records lost in all                         */
-    EXH_RECORD_PACKET = 7   /* bytes: came over the link for the frame that follows */
+    EXH_RECORD_HEADER = 1,   /* struct exh_record_header, images */
+    EXH_RECORD_FRAME = 2,    /* a tick: raw inputs, outputs, signals */
+    EXH_RECORD_EVENT = 3,    /* struct exh_event, at its tick */
+    EXH_RECORD_KEYFRAME = 4, /* the scene's state: a replay may start here */
+    EXH_RECORD_DROPPED = 5,  /* u32: records lost before this one */
+    EXH_RECORD_END = 6,      /* u32: records lost in all */
+    EXH_RECORD_PACKET = 7    /* bytes: came over the link for the frame that follows */
 };
 
 /* What came in that is no input of every tick. */
 enum exh_event_type {
-    EXH_EVENT_PARAM = 1,   /* id u16, instance u16, value: staged and applied    */
-    EXH_EVENT_COMMAND = 2, /* value: enum exh_command                           */
-    EXH_EVENT_MISSED = 3,  /* value: ticks missed before this tick               */
-    EXH_EVENT_MARK = 4,    /* value: the operator's own mark                     */
+    EXH_EVENT_PARAM = 1,   /* id u16, instance u16, value: staged and applied */
+    EXH_EVENT_COMMAND = 2, /* value: enum exh_command */
+    EXH_EVENT_MISSED = 3,  /* value: ticks missed before this tick */
+    EXH_EVENT_MARK = 4,    /* value: the operator's own mark */
     EXH_EVENT_FROZE = 5    /* the black box, at its end. value: enum exh_fault, what it froze for,
                             * 0: the box was halted; instance: ticks since then; id: causes that
-                            * came later; both at most 65535                    */
+                            * came later; both at most 65535 */
 };
 
 /* An event's payload, in this order; what a field is, is said of the type, 0 where nothing is. */
 struct exh_event {
-    uint16_t type;     /* enum exh_event_type                                  */
-    uint16_t id;       /* of a signal's row                                    */
-    uint16_t instance; /* of it: finger                                        */
-    int32_t value;     /* raw                                                  */
+    uint16_t type;     /* enum exh_event_type */
+    uint16_t id;       /* of a signal's row */
+    uint16_t instance; /* of it: finger */
+    int32_t value;     /* raw */
 };
 
 /* The fixed part of the header's payload; the parameter image follows it, and behind that whole
  * calibration images of fingers (calibrate.h), none or one each. */
 struct exh_record_header {
-    char scene[16]; /* zero-padded                                             */
-    char board[16]; /* exh_board_info.name, likewise                           */
-    uint32_t lib_version;  /* EXH_VERSION_NUMBER                                */
-    uint32_t signal_crc;   /* of the scene's output table                       */
-    struct exh_period T;   /* achieved                                          */
-    uint16_t fingers;      /* codes of so many are in a frame                   */
-    uint16_t enc_bits; /* width of the board's counters                        */
-    uint16_t signals; /* int32 values in a frame after the raw codes           */
+    char scene[16];       /* zero-padded */
+    char board[16];       /* exh_board_info.name, likewise */
+    uint32_t lib_version; /* EXH_VERSION_NUMBER */
+    uint32_t signal_crc;  /* of the scene's output table */
+    struct exh_period T;  /* achieved */
+    uint16_t fingers;     /* codes of so many are in a frame */
+    uint16_t enc_bits;    /* width of the board's counters */
+    uint16_t signals;     /* int32 values in a frame after the raw codes */
 };
 
 /* A record found in a buffer; payload points into it. */
 struct exh_record {
-    uint8_t type, version; /* enum exh_record_type; EXH_RECORD_VERSION          */
-    uint16_t len_B;        /* of the payload                                    */
-    uint32_t seq, tick;    /* of the record; of the loop; both modulo 2^32      */
-    const uint8_t *payload; /* len_B bytes                                      */
+    uint8_t type, version;  /* enum exh_record_type; EXH_RECORD_VERSION */
+    uint16_t len_B;         /* of the payload */
+    uint32_t seq, tick;     /* of the record; of the loop; both modulo 2^32 */
+    const uint8_t *payload; /* len_B bytes */
 };
 
 /* Starts a record in c; the payload follows through c. */
@@ -96,20 +96,20 @@ void exh_event_bytes(struct exh_bytes *c, struct exh_event *e);
 
 /* A record on its way out. */
 struct exh_record_out {
-    const uint8_t *mem; /* the payload's, where it may wrap                    */
-    uint32_t cap_B, at; /* the memory's; where the next byte lies              */
-    uint32_t done_B;    /* bytes out, of the head, payload and CRC together     */
-    uint32_t crc;       /* CRC-32 of head and payload so far                   */
-    uint16_t len_B;     /* the payload's                                       */
-    uint8_t head[EXH_RECORD_HEAD_B]; /* ready to go out                         */
+    const uint8_t *mem;              /* the payload's, where it may wrap */
+    uint32_t cap_B, at;              /* the memory's; where the next byte lies */
+    uint32_t done_B;                 /* bytes out, of the head, payload and CRC together */
+    uint32_t crc;                    /* CRC-32 of head and payload so far */
+    uint16_t len_B;                  /* the payload's */
+    uint8_t head[EXH_RECORD_HEAD_B]; /* ready to go out */
 };
 
 /* The payload lies in mem from `at` on, and from its start behind its end: at < cap_B,
  * len_B <= cap_B. It has to stay as it is until it is out. */
 struct exh_record_place {
-    const uint8_t *mem; /* the caller's                                        */
-    uint32_t cap_B, at; /* bytes of it; where the payload begins               */
-    uint16_t len_B;     /* the payload's                                       */
+    const uint8_t *mem; /* the caller's */
+    uint32_t cap_B, at; /* bytes of it; where the payload begins */
+    uint16_t len_B;     /* the payload's */
 };
 
 /* Makes ready a record of this type, sequence number and tick; nothing goes out yet. */
@@ -129,18 +129,18 @@ uint32_t exh_record_out(struct exh_record_out *o, uint8_t *to, uint32_t cap_B);
  * cap_B - cap_B / EXH_RING_PARTS - (the records of a tick and two keyframes), as stored: 7 bytes
  * and the payload each. Who breaks it loses what does not fit: that is counted. */
 
-#define EXH_RING_PARTS 8  /* that a full ring is kept in                         */
-#define EXH_RING_HEAD_B 7 /* length u16, type u8, tick u32 before each payload     */
-#define EXH_RING_MIN_B 64u /* memory, B: at least                                */
-#define EXH_RING_MAX_B 0x40000000u /* at most                                    */
+#define EXH_RING_PARTS  8           /* that a full ring is kept in */
+#define EXH_RING_HEAD_B 7           /* length u16, type u8, tick u32 before each payload */
+#define EXH_RING_MIN_B  64u         /* memory, B: at least */
+#define EXH_RING_MAX_B  0x40000000u /* at most */
 
 /* A ring; all but mem and cap_B is written by exh_ring_put() alone. */
 struct exh_ring {
-    uint8_t *mem;                       /* the caller's                         */
-    uint32_t cap_B;                     /* bytes of it                          */
-    uint32_t start[EXH_RING_PARTS + 2]; /* where parts begin, a queue:          */
-    volatile uint32_t live;             /* the oldest, times 256, and how many  */
-    volatile uint32_t head;             /* where the next byte goes             */
+    uint8_t *mem;                       /* the caller's */
+    uint32_t cap_B;                     /* bytes of it */
+    uint32_t start[EXH_RING_PARTS + 2]; /* where parts begin, a queue: */
+    volatile uint32_t live;             /* the oldest, times 256, and how many */
+    volatile uint32_t head;             /* where the next byte goes */
     uint32_t lost; /* records that found no room or no keyframe before them, saturating */
 };
 
@@ -158,7 +158,7 @@ int exh_ring_put(struct exh_ring *r, uint8_t type, uint32_t tick, const void *pa
 
 /* Reading, oldest first; nothing may be put meanwhile. */
 struct exh_ring_place {
-    uint32_t at, left_B; /* where the next one lies; bytes from it to the end  */
+    uint32_t at, left_B; /* where the next one lies; bytes from it to the end */
 };
 
 /* The oldest; of an empty ring a place that has no next. */

@@ -25,36 +25,36 @@ extern "C" {
 
 /* When a value may be changed. */
 enum exh_signal_when {
-    EXH_WHEN_OUTPUT, /* not a parameter: read only                            */
-    EXH_WHEN_SETUP,  /* before the loop starts; refused once locked           */
-    EXH_WHEN_ANY,    /* between any two ticks, at once                        */
-    EXH_WHEN_SLEWED, /* likewise, but little by little: force hangs on it     */
+    EXH_WHEN_OUTPUT, /* not a parameter: read only */
+    EXH_WHEN_SETUP,  /* before the loop starts; refused once locked */
+    EXH_WHEN_ANY,    /* between any two ticks, at once */
+    EXH_WHEN_SLEWED, /* likewise, but little by little: force hangs on it */
     EXH_WHEN_LIMIT   /* likewise, a limit of force: it rises little by little and falls at once */
 };
 
 /* One row: what a value is. Constant, in ROM. */
 struct exh_signal {
     uint16_t id;      /* stable for ever, unique in the library; 0xMMNN: module, row */
-    uint8_t frac;     /* fraction bits: value = raw * 2^-frac                  */
-    uint8_t when;     /* enum exh_signal_when                                  */
-    int32_t min, max; /* allowed raw values, both included                     */
-    int32_t dflt;     /* raw value after exh_params_init                       */
-    const char *name; /* "k", [a-z0-9_]+, unique in a scene                    */
+    uint8_t frac;     /* fraction bits: value = raw * 2^-frac */
+    uint8_t when;     /* enum exh_signal_when */
+    int32_t min, max; /* allowed raw values, both included */
+    int32_t dflt;     /* raw value after exh_params_init */
+    const char *name; /* "k", [a-z0-9_]+, unique in a scene */
     const char *unit; /* SI in ASCII as in CSV headers: "n_per_m"; "" for none */
-    const char *help; /* one line                                              */
+    const char *help; /* one line */
 };
 
 /* The rows of one module, once per instance (per finger). */
 struct exh_signal_group {
     const struct exh_signal *row; /* rows of them, in the order of the struct's fields */
-    uint16_t rows;                /* how many                                  */
-    uint16_t instances;           /* >= 1; instance-major in the value array   */
+    uint16_t rows;                /* how many */
+    uint16_t instances;           /* >= 1; instance-major in the value array */
 };
 
 /* A scene's values: the groups in order, one int32_t a row and instance. */
 struct exh_signal_table {
-    const struct exh_signal_group *group; /* groups of them                    */
-    uint16_t groups;                      /* how many                          */
+    const struct exh_signal_group *group; /* groups of them */
+    uint16_t groups;                      /* how many */
 };
 
 /* How many values the table describes. */
@@ -73,18 +73,19 @@ int32_t exh_signal_find(const struct exh_signal_table *t, uint16_t id, uint16_t 
 uint32_t exh_signal_crc(const struct exh_signal_table *t);
 
 /* A scene's parameters. The caller owns both arrays, exh_signal_count() long; the active one is the
- * scene's parameter struct, the staged one what is wanted. Zero, or as exh_params_init() leaves it; both
- * arrays are written by the functions below only, or before exh_params_seal(). */
+ * scene's parameter struct, the staged one what is wanted. Zero, or as exh_params_init() leaves it;
+ * both arrays are written by the functions below only, or before exh_params_seal(). */
 struct exh_params {
-    const struct exh_signal_table *table; /* of what the values are            */
-    int32_t *active; /* raw values in effect                                   */
-    int32_t *staged; /* raw values wanted                                      */
-    uint8_t locked;  /* set-up values are refused from now on                 */
-    uint8_t pending; /* something was staged since the last apply             */
-    uint8_t moving;  /* a slewed value is not yet where it is wanted          */
-    uint8_t shift;   /* a slewed value goes by 2^-shift of what is left       */
-    uint16_t led[2]; /* ids of slewed rows that somebody else moves while locked (gains.h); 0: none */
-    uint32_t count;  /* exh_signal_count()                                    */
+    const struct exh_signal_table *table; /* of what the values are */
+    int32_t *active;                      /* raw values in effect */
+    int32_t *staged;                      /* raw values wanted */
+    uint8_t locked;                       /* set-up values are refused from now on */
+    uint8_t pending;                      /* something was staged since the last apply */
+    uint8_t moving;                       /* a slewed value is not yet where it is wanted */
+    uint8_t shift;                        /* a slewed value goes by 2^-shift of what is left */
+    uint16_t
+        led[2]; /* ids of slewed rows that somebody else moves while locked (gains.h); 0: none */
+    uint32_t count;           /* exh_signal_count() */
     uint32_t sum, passed, at; /* exh_params_look(): of all, of those looked at, the next */
 };
 
@@ -92,19 +93,20 @@ struct exh_params {
 
 /* How fast slewed values go. Set-up only. */
 struct exh_tune_par {
-    int32_t time_ms; /* 0..1000 ms; 0: at once                                 */
+    int32_t time_ms; /* 0..1000 ms; 0: at once */
 };
 #define EXH_TUNE_ROWS 1
 extern const struct exh_signal exh_tune_rows[EXH_TUNE_ROWS];
-#define EXH_TUNE_SHIFT_MAX 15 /* 2^15 ticks are more than 1 s at 20 kHz     */
+#define EXH_TUNE_SHIFT_MAX 15 /* 2^15 ticks are more than 1 s at 20 kHz */
 
 /* Defaults into both arrays, unlocked, shift 0. */
 void exh_params_init(struct exh_params *p, const struct exh_signal_table *table, int32_t *active,
                      int32_t *staged);
 
-/* At the end of set-up, in scenes that want it: the least shift with 2^shift * T >= par->time_ms, at most
- * EXH_TUNE_SHIFT_MAX. So in a tick a value goes by no more than T/time of what is left (and 1 LSB), and
- * 63 % of the way takes time to 2 * time. A scene that never calls it changes at once. */
+/* At the end of set-up, in scenes that want it: the least shift with 2^shift * T >= par->time_ms,
+ * at most EXH_TUNE_SHIFT_MAX. So in a tick a value goes by no more than T/time of what is left (and
+ * 1 LSB), and 63 % of the way takes time to 2 * time. A scene that never calls it changes at once.
+ */
 void exh_params_slew(struct exh_params *p, const struct exh_tune_par *par, struct exh_period T);
 
 /* Stages one raw value. -EXH_E_UNKNOWN, -EXH_E_RANGE (outside min..max), or
@@ -116,36 +118,38 @@ int exh_params_stage(struct exh_params *p, uint16_t id, uint16_t instance, int32
 int exh_params_stage_at(struct exh_params *p, uint32_t i, int32_t raw);
 int exh_params_may(const struct exh_params *p, uint32_t i, int32_t raw);
 
-/* One step from `now` towards `goal`: by 2^-shift of what is left, rounded up to whole LSB. shift 0..31.
- * Never beyond; at the goal after at most 2^shift * (1 + 0.7 * (32 - shift)) + 1 steps, from anywhere;
- * from d LSB away, d > 2^shift, after at most 2^shift * (1 + ln(d / 2^shift)) + 1. */
+/* One step from `now` towards `goal`: by 2^-shift of what is left, rounded up to whole LSB. shift
+ * 0..31. Never beyond; at the goal after at most 2^shift * (1 + 0.7 * (32 - shift)) + 1 steps, from
+ * anywhere; from d LSB away, d > 2^shift, after at most 2^shift * (1 + ln(d / 2^shift)) + 1. */
 int32_t exh_params_toward(int32_t now, int32_t goal, unsigned shift);
 
-/* Makes active what is staged; call between ticks only, once. Slewed values go one step while locked, and
- * at once before. 1 if there was anything to do: while 1 comes back its cost is one of two constants of the
- * table, that of what is just staged (all values), and that of what is on its way (slewed rows). */
+/* Makes active what is staged; call between ticks only, once. Slewed values go one step while
+ * locked, and at once before. 1 if there was anything to do: while 1 comes back its cost is one of
+ * two constants of the table, that of what is just staged (all values), and that of what is on its
+ * way (slewed rows). */
 int exh_params_apply(struct exh_params *p);
 
-/* Between apply and tick, for who moves rows in `led`: value i is active as raw, and on its way if that is not what is
- * wanted. i below count. */
+/* Between apply and tick, for who moves rows in `led`: value i is active as raw, and on its way if
+ * that is not what is wanted. i below count. */
 void exh_params_put(struct exh_params *p, uint32_t i, int32_t raw);
 
 /* Wanted becomes what is active now: what was staged, or is on its way, stops here. */
 void exh_params_drop(struct exh_params *p);
 
-/* Takes back what was staged since the caller copied all of `staged` and `pending`: what is on its way goes on. In
- * the place of a copy back, which the guard would tell as damage. */
+/* Takes back what was staged since the caller copied all of `staged` and `pending`: what is on its
+ * way goes on. In the place of a copy back, which the guard would tell as damage. */
 void exh_params_unstage(struct exh_params *p, const int32_t *was, uint8_t pending);
 
-/* Both arrays through a cursor, as a keyframe has them: every value as it is active, a slewed one followed by
- * what is wanted. Read: all of them are checked as exh_params_stage() does, and taken whole; else the
- * cursor is not ok and nothing is. */
+/* Both arrays through a cursor, as a keyframe has them: every value as it is active, a slewed one
+ * followed by what is wanted. Read: all of them are checked as exh_params_stage() does, and taken
+ * whole; else the cursor is not ok and nothing is. */
 void exh_params_bytes(struct exh_bytes *c, struct exh_params *p);
 
-/* Redundancy, for a guard (exhand/guard.h): seal takes both arrays as they are now; look then looks at the
- * next value, in turn. 1: it is another one than was staged or applied (while nothing is on its way), or at
- * the end of a round, the sum over both arrays is not what the changes made of it. A change of one
- * bit in either array is told within two rounds, in mid-slew too; no change through these functions is. */
+/* Redundancy, for a guard (exhand/guard.h): seal takes both arrays as they are now; look then looks
+ * at the next value, in turn. 1: it is another one than was staged or applied (while nothing is on
+ * its way), or at the end of a round, the sum over both arrays is not what the changes made of it.
+ * A change of one bit in either array is told within two rounds, in mid-slew too; no change through
+ * these functions is. */
 void exh_params_seal(struct exh_params *p);
 int exh_params_look(struct exh_params *p);
 

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Trace: a few signals of every n-th tick, in memory of the caller's, until somebody fetches them.
  *
- * It reads what a tick has made and changes nothing. Modbus keeps one that is no part of a scene, in
- * no keyframe and no log; one whose frames go out over the wire is its scene's state. Each frame has
- * a number, one more than the frame before it; numbers go on when another trace is started, so that
- * whoever reads sees each frame that he did not get.
+ * It reads what a tick has made and changes nothing. Modbus keeps one that is no part of a scene,
+ * in no keyframe and no log; one whose frames go out over the wire is its scene's state. Each frame
+ * has a number, one more than the frame before it; numbers go on when another trace is started, so
+ * that whoever reads sees each frame that he did not get.
  */
 #ifndef EXHAND_TRACE_H
 #define EXHAND_TRACE_H
@@ -18,31 +18,31 @@ extern "C" {
 #endif
 
 #define EXH_TRACE_SIGNALS 4    /* values in a frame, always; who wants fewer names one again */
-#define EXH_TRACE_FRAMES  128u /* in memory, at most                            */
+#define EXH_TRACE_FRAMES  128u /* in memory, at most */
 
 /* What is kept of one tick. */
 struct exh_trace_frame {
-    uint32_t number; /* modulo 2^32                                            */
-    uint32_t tick;   /* of the loop, as exh_trace_tick() was told it           */
+    uint32_t number;                /* modulo 2^32 */
+    uint32_t tick;                  /* of the loop, as exh_trace_tick() was told it */
     int32_t raw[EXH_TRACE_SIGNALS]; /* the signals asked for, in their order and rows' formats */
 };
 
 /* What is to be traced. */
 struct exh_trace_what {
-    uint32_t every; /* ticks from frame to frame; 0: none                      */
+    uint32_t every;                    /* ticks from frame to frame; 0: none */
     uint32_t index[EXH_TRACE_SIGNALS]; /* of values in the scene's table of outputs */
 };
 
 /* A trace; all but frame, mask and signals is its state. */
 struct exh_trace {
     struct exh_trace_frame *frame; /* the caller's; number k is in frame[k & mask] */
-    uint32_t mask; /* frames - 1                                               */
-    uint32_t signals; /* values in the table                                   */
-    struct exh_trace_what what; /* what is traced now                          */
-    uint32_t first; /* number of this trace's first frame                      */
-    uint32_t head; /* number of the next frame, modulo 2^32                    */
-    uint32_t run; /* traces started, modulo 2^32                               */
-    uint32_t left; /* ticks without a frame until the next                     */
+    uint32_t mask;                 /* frames - 1 */
+    uint32_t signals;              /* values in the table */
+    struct exh_trace_what what;    /* what is traced now */
+    uint32_t first;                /* number of this trace's first frame */
+    uint32_t head;                 /* number of the next frame, modulo 2^32 */
+    uint32_t run;                  /* traces started, modulo 2^32 */
+    uint32_t left;                 /* ticks without a frame until the next */
 };
 
 /* Nothing is traced, nothing is held. -EXH_E_RANGE: frames is no power of two from 2 to
@@ -68,9 +68,9 @@ static inline uint32_t exh_trace_oldest(const struct exh_trace *t)
  * the frames that `shown` has not yet are copied, at most all that `own` holds. */
 void exh_trace_pass(struct exh_trace *own, struct exh_trace *shown);
 
-/* State through a cursor, the frames in memory with it; t is set up, for as many frames and signals.
- * What is read is brought back into range: an index of none of the signals is 0, no wait is longer
- * than the trace has. 36 bytes and 24 more a frame. */
+/* State through a cursor, the frames in memory with it; t is set up, for as many frames and
+ * signals. What is read is brought back into range: an index of none of the signals is 0, no wait
+ * is longer than the trace has. 36 bytes and 24 more a frame. */
 void exh_trace_bytes(struct exh_bytes *c, struct exh_trace *t);
 
 #ifdef __cplusplus

@@ -26,21 +26,21 @@
 
 #include <stdint.h>
 
-#define EXH_Q_POS 30   /* m        */
-#define EXH_Q_VEL 27   /* m/s      */
-#define EXH_Q_FORCE 20 /* N        */
-#define EXH_Q_CUR 26   /* A        */
-#define EXH_Q_K 10     /* N/m      */
-#define EXH_Q_B 20     /* Ns/m     */
-#define EXH_Q_STEP 42  /* m/count  */
-#define EXH_Q_DAC 16   /* codes/A  */
-#define EXH_Q_MON 40   /* A/code   */
-#define EXH_Q_TURN 32  /* turn     */
-#define EXH_Q_RAW 16   /* codes    */
-#define EXH_Q_ZERO 15  /* codes    */
-#define EXH_Q_TPRAW 38 /* turn/code */
-#define EXH_Q_SUPPLY 20 /* V       */
-#define EXH_Q_VPRAW 30 /* V/code   */
+#define EXH_Q_POS    30 /* m */
+#define EXH_Q_VEL    27 /* m/s */
+#define EXH_Q_FORCE  20 /* N */
+#define EXH_Q_CUR    26 /* A */
+#define EXH_Q_K      10 /* N/m */
+#define EXH_Q_B      20 /* Ns/m */
+#define EXH_Q_STEP   42 /* m/count */
+#define EXH_Q_DAC    16 /* codes/A */
+#define EXH_Q_MON    40 /* A/code */
+#define EXH_Q_TURN   32 /* turn */
+#define EXH_Q_RAW    16 /* codes */
+#define EXH_Q_ZERO   15 /* codes */
+#define EXH_Q_TPRAW  38 /* turn/code */
+#define EXH_Q_SUPPLY 20 /* V */
+#define EXH_Q_VPRAW  30 /* V/code */
 
 /* num/den in format q, for initialisers: an integer constant expression,
  * truncated towards zero. |num| * 2^q < 2^63 and the result fits int32_t.
@@ -50,13 +50,13 @@
 /* The loop's period as the exact ratio of two integers, in seconds. What a
  * timer was programmed to, never a measurement (docs/DESIGN.md 4). */
 struct exh_period {
-    uint32_t num; /* 1 .. 2^32-1                                               */
-    uint32_t den; /* num/den within 50 us .. 1 s                               */
+    uint32_t num; /* 1 .. 2^32-1 */
+    uint32_t den; /* num/den within 50 us .. 1 s */
 };
 
 /* A point or a direction; which, and its unit and format, is in the name of the value. */
 struct exh_vec3 {
-    int32_t x, y, z; /* in the frame that whoever has it says                  */
+    int32_t x, y, z; /* in the frame that whoever has it says */
 };
 
 /* 1 if T is within 50 us .. 1 s, but for the 1000 ppm by which a timer may miss it: what

@@ -33,29 +33,29 @@ extern "C" {
 
 /* What every estimator's set-up needs. */
 struct exh_velocity_scale {
-    int32_t step_m_q42; /* m per count, > 0                                    */
-    struct exh_period T; /* of the loop                                        */
+    int32_t step_m_q42;  /* m per count, > 0 */
+    struct exh_period T; /* of the loop */
 };
 
 /* --- difference and window: n = 2^p, p = 0 is the plain backward difference --- */
 /* The window's parameter; row in exh_velocity_rows[]. */
 struct exh_velocity_par {
-    int32_t p; /* 0 .. 4                                                       */
+    int32_t p; /* 0 .. 4 */
 };
 #define EXH_VELOCITY_ROWS 1
 extern const struct exh_signal exh_velocity_rows[EXH_VELOCITY_ROWS];
 
 /* The window as it is set up; one for any number of fingers of one scale. */
 struct exh_velocity_window_cfg {
-    struct exh_gain gain; /* m/s q27 per count over the window                 */
-    uint8_t n;            /* 1, 2, 4, 8 or 16                                  */
+    struct exh_gain gain; /* m/s q27 per count over the window */
+    uint8_t n;            /* 1, 2, 4, 8 or 16 */
 };
 
 /* One finger's window. A state of zeros has seen no count, of this and of the estimators below. */
 struct exh_velocity_window {
-    int32_t cnt[EXH_VELOCITY_N]; /* the last n counts                          */
-    uint8_t at;                  /* oldest of them                             */
-    uint8_t started;             /* 1: behind the first call                   */
+    int32_t cnt[EXH_VELOCITY_N]; /* the last n counts */
+    uint8_t at;                  /* oldest of them */
+    uint8_t started;             /* 1: behind the first call */
 };
 
 /* Set-up (divides); the velocity, m/s, q27, in a tick of this count; state through a cursor.
@@ -69,15 +69,15 @@ void exh_velocity_window_bytes(struct exh_bytes *c, struct exh_velocity_window *
 /* --- pole: v += (diff - v) * T/(T + tau) --- */
 /* The pole as it is set up, likewise. */
 struct exh_velocity_pole_cfg {
-    struct exh_gain gain; /* m/s q27 per count                                 */
-    int32_t a_q31;        /* T/(T + tau), > 0 .. 1-2^-31                       */
+    struct exh_gain gain; /* m/s q27 per count */
+    int32_t a_q31;        /* T/(T + tau), > 0 .. 1-2^-31 */
 };
 
 /* One finger's pole. */
 struct exh_velocity_pole {
-    int64_t v_mps_q55; /* q27 plus 28 bits, so that it settles exactly         */
-    int32_t cnt;       /* of the last tick                                     */
-    uint8_t started;   /* 1: behind the first call                             */
+    int64_t v_mps_q55; /* q27 plus 28 bits, so that it settles exactly */
+    int32_t cnt;       /* of the last tick */
+    uint8_t started;   /* 1: behind the first call */
 };
 
 /* As those of the window; tau_us: 0 .. 10^6, else -EXH_E_RANGE too. */
@@ -94,15 +94,15 @@ void exh_velocity_pole_bytes(struct exh_bytes *c, struct exh_velocity_pole *s);
 /* FOAW as it is set up, likewise. */
 struct exh_velocity_foaw_cfg {
     struct exh_gain gain[EXH_VELOCITY_N]; /* [n-1]: m/s q27 per unit of n*S0-2*S1 */
-    uint8_t n;                            /* longest window, 1 .. 16            */
-    uint8_t tol_cnt;                      /* 1 .. 255, usually 1                */
+    uint8_t n;                            /* longest window, 1 .. 16 */
+    uint8_t tol_cnt;                      /* 1 .. 255, usually 1 */
 };
 
 /* One finger's FOAW. */
 struct exh_velocity_foaw {
-    int32_t cnt[EXH_VELOCITY_N + 1]; /* the last n + 1 counts, a ring           */
-    uint8_t at;   /* newest                                                    */
-    uint8_t have; /* samples held                                              */
+    int32_t cnt[EXH_VELOCITY_N + 1]; /* the last n + 1 counts, a ring */
+    uint8_t at;                      /* newest */
+    uint8_t have;                    /* samples held */
 };
 
 /* As those of the window; n: 1 .. 16, tol_cnt: 1 .. 255, else -EXH_E_RANGE too. */
@@ -117,20 +117,21 @@ void exh_velocity_foaw_bytes(struct exh_bytes *c, struct exh_velocity_foaw *s);
  * counts a tick of 0; movements beyond 2^28 counts a tick read as that. --- */
 /* The observer as it is set up, likewise. */
 struct exh_velocity_track_cfg {
-    struct exh_gain gain; /* m/s q27 per count and tick                        */
-    int32_t alpha_q31;    /* share of the error that position takes, > 0 .. 1  */
-    int32_t beta_q31;     /* that velocity takes a tick, likewise              */
+    struct exh_gain gain; /* m/s q27 per count and tick */
+    int32_t alpha_q31;    /* share of the error that position takes, > 0 .. 1 */
+    int32_t beta_q31;     /* that velocity takes a tick, likewise */
 };
 
 /* One finger's observer. */
 struct exh_velocity_track {
-    int64_t err_cnt_q32; /* estimated position minus the last count            */
-    int64_t vel_cnt_q32; /* counts per tick; both saturate at +-2^28 counts    */
-    int32_t cnt;         /* of the last tick                                   */
-    uint8_t started;     /* 1: behind the first call                           */
+    int64_t err_cnt_q32; /* estimated position minus the last count */
+    int64_t vel_cnt_q32; /* counts per tick; both saturate at +-2^28 counts */
+    int32_t cnt;         /* of the last tick */
+    uint8_t started;     /* 1: behind the first call */
 };
 
-/* As those of the window; tf_us: time constant T_f of each pole, 0 .. 10^6, else -EXH_E_RANGE too. */
+/* As those of the window; tf_us: time constant T_f of each pole, 0 .. 10^6, else -EXH_E_RANGE too.
+ */
 int exh_velocity_track_setup(struct exh_velocity_track_cfg *cfg, struct exh_velocity_scale s,
                              uint32_t tf_us);
 int32_t exh_velocity_track_mps_q27(struct exh_velocity_track *s,

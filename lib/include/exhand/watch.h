@@ -21,25 +21,25 @@ extern "C" {
 /* Parameters of one finger; rows in exh_watch_rows[]. */
 struct exh_watch_par {
     int32_t speed_mps_q27;   /* velocity into the law is no more, m/s, 0.1 .. 10 */
-    int32_t speed_ms;        /* beyond it for longer: fault, ms, 1 .. 1000     */
+    int32_t speed_ms;        /* beyond it for longer: fault, ms, 1 .. 1000 */
     int32_t stuck_ms;        /* not one count for longer: fault, ms, 100 .. 60000; 0: never */
-    int32_t stuck_cur_A_q26; /* while more than this is coded, A, 0.05 .. 6.6  */
+    int32_t stuck_cur_A_q26; /* while more than this is coded, A, 0.05 .. 6.6 */
 };
 #define EXH_WATCH_ROWS 4
 extern const struct exh_signal exh_watch_rows[EXH_WATCH_ROWS];
 
 /* One finger as it is set up. */
 struct exh_watch_cfg {
-    const struct exh_watch_par *par; /* read at every tick                     */
-    uint32_t speed_ticks; /* times, rounded up                                 */
-    uint32_t stuck_ticks; /* 0: never                                          */
+    const struct exh_watch_par *par; /* read at every tick */
+    uint32_t speed_ticks;            /* times, rounded up */
+    uint32_t stuck_ticks;            /* 0: never */
 };
 
 /* One finger from tick to tick. */
 struct exh_watch {
-    uint32_t fast_ticks;  /* beyond the limit since, 0 .. speed_ticks          */
-    uint32_t stuck_ticks; /* pulled, and not a count since, 0 .. stuck_ticks   */
-    int32_t cnt;          /* of the last tick                                  */
+    uint32_t fast_ticks;  /* beyond the limit since, 0 .. speed_ticks */
+    uint32_t stuck_ticks; /* pulled, and not a count since, 0 .. stuck_ticks */
+    int32_t cnt;          /* of the last tick */
 };
 
 /* Set-up (divides). -EXH_E_RANGE: a parameter outside its range above; -EXH_E_RATE: T. */
@@ -49,8 +49,8 @@ int exh_watch_setup(struct exh_watch_cfg *cfg, const struct exh_watch_par *par,
 /* First thing of a tick, with the velocity measured: brings it within the limit, adds
  * EXH_LIMIT_SPEED to limits where it was not, and returns the faults that are due
  * (EXH_FAULT_SPEED, EXH_FAULT_STUCK). Ticks missed are no evidence and do not count. */
-uint32_t exh_watch_step(struct exh_watch *s, const struct exh_watch_cfg *cfg,
-                        int32_t *vel_mps_q27, uint32_t *limits);
+uint32_t exh_watch_step(struct exh_watch *s, const struct exh_watch_cfg *cfg, int32_t *vel_mps_q27,
+                        uint32_t *limits);
 
 /* Behind the gate, with the count of this tick and the current coded. */
 void exh_watch_coded(struct exh_watch *s, const struct exh_watch_cfg *cfg, int32_t cnt,

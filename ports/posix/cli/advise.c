@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand advise: gains is in gains.c; freeze is d_lim and the length of the ray, for a hand and a link. */
+/* exhand advise: gains is in gains.c; freeze is d_lim and the length of the ray, for a hand and a
+ * link. */
 #include "cli.h"
 
 #include "option.h"

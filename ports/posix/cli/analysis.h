@@ -35,14 +35,14 @@ struct fall_log {
 enum fall_status {
     FALL_OK = 0,
     FALL_NO_MEMORY,
-    FALL_BAD_LOG,   /* starts or times do not rise, or a value beyond +-1e9      */
-    FALL_BAD_OPT,   /* an option outside its range                              */
-    FALL_TOO_FEW,   /* fewer than FALL_MIN_PAIRS pairs in the band               */
-    FALL_FLAT,      /* position or force does not vary: no line                 */
-    FALL_NO_RISE,   /* force does not rise with position: no stiffness          */
-    FALL_UNBOUNDED, /* the interval has no upper end                            */
-    FALL_FEW_FALLS, /* fewer than two falls, or one alone makes the line  */
-    FALL_IO         /* a file could not be written                              */
+    FALL_BAD_LOG,   /* starts or times do not rise, or a value beyond +-1e9 */
+    FALL_BAD_OPT,   /* an option outside its range */
+    FALL_TOO_FEW,   /* fewer than FALL_MIN_PAIRS pairs in the band */
+    FALL_FLAT,      /* position or force does not vary: no line */
+    FALL_NO_RISE,   /* force does not rise with position: no stiffness */
+    FALL_UNBOUNDED, /* the interval has no upper end */
+    FALL_FEW_FALLS, /* fewer than two falls, or one alone makes the line */
+    FALL_IO         /* a file could not be written */
 };
 
 /* One line of plain English. Never NULL. */
@@ -51,9 +51,9 @@ const char *fall_status_text(enum fall_status status);
 /* ---- Contacts ------------------------------------------------------------ */
 
 struct fall_contact {
-    size_t first, end; /* samples [first, end), c true in all of them           */
+    size_t first, end; /* samples [first, end), c true in all of them */
     size_t fall;
-    int open;          /* fall or log ended while still in contact              */
+    int open; /* fall or log ended while still in contact */
 };
 
 struct fall_contacts {
@@ -71,10 +71,10 @@ void fall_contacts_free(struct fall_contacts *contacts);
 
 /* Which samples belong to the "contact situations" of the paper. */
 enum fall_scope {
-    FALL_SCOPE_ALL,   /* those of all contacts                                  */
-    FALL_SCOPE_FIRST, /* of the first contact of each fall                      */
-    FALL_SCOPE_MOVES, /* of all contacts, up to where the motor has stopped      */
-    FALL_SCOPE_WHOLE, /* of the whole fall, in contact or not                   */
+    FALL_SCOPE_ALL,   /* those of all contacts */
+    FALL_SCOPE_FIRST, /* of the first contact of each fall */
+    FALL_SCOPE_MOVES, /* of all contacts, up to where the motor has stopped */
+    FALL_SCOPE_WHOLE, /* of the whole fall, in contact or not */
     FALL_SCOPES
 };
 
@@ -85,7 +85,7 @@ enum fall_status fall_dissect_scope(const struct fall_log *log, const struct fal
 
 /* ---- Stiffness ----------------------------------------------------------- */
 
-#define FALL_WINDOW    10 /* positions in one average                              */
+#define FALL_WINDOW    10 /* positions in one average */
 #define FALL_MIN_PAIRS 12 /* pairs in the band: three averages, the least for a fit */
 
 struct fall_pair {
@@ -106,13 +106,13 @@ struct fall_pairs {
 enum fall_force { FALL_FORCE_CENTRE, FALL_FORCE_NEWEST, FALL_FORCE_MEAN };
 
 struct fall_opt {
-    size_t min_samples;    /* shortest contact, samples                            */
-    size_t lag;            /* pair F_mon(n) with q(n - lag); see fall_pool()       */
-    double band_lo_N;      /* both ends belong to the band                         */
+    size_t min_samples; /* shortest contact, samples */
+    size_t lag;         /* pair F_mon(n) with q(n - lag); see fall_pool() */
+    double band_lo_N;   /* both ends belong to the band */
     double band_hi_N;
     enum fall_force force;
-    enum fall_scope scope; /* which samples belong to a contact                    */
-    double step_m;         /* of the encoder, for FALL_SCOPE_MOVES                 */
+    enum fall_scope scope; /* which samples belong to a contact */
+    double step_m;         /* of the encoder, for FALL_SCOPE_MOVES */
 };
 
 /* 1 sample, lag 1, 0.8 .. 4.5 N, centre, all contacts. */
@@ -142,11 +142,11 @@ void fall_pairs_free(struct fall_pairs *pairs);
  * status; what the status denies is 0 (TOO_FEW, FLAT: a, b and r2; NO_RISE: b). */
 struct fall_fit {
     enum fall_status status;
-    size_t n;                      /* averaged pairs                            */
-    double a_Npm;                  /* slope of F over mean q                    */
-    double b_Npm;                  /* inverse slope of mean q over F            */
+    size_t n;     /* averaged pairs */
+    double a_Npm; /* slope of F over mean q */
+    double b_Npm; /* inverse slope of mean q over F */
     double r2;
-    double q_mean_m, f_mean_N;     /* both lines pass here                      */
+    double q_mean_m, f_mean_N; /* both lines pass here */
     double q_min_m, q_max_m, f_min_N, f_max_N;
 };
 
@@ -157,7 +157,7 @@ void fall_fit_line(const struct fall_pairs *averaged, struct fall_fit *out);
 struct fall_interval {
     enum fall_status status;
     double lo_Npm, hi_Npm;
-    size_t falls; /* that have pairs in the band                                */
+    size_t falls; /* that have pairs in the band */
 };
 
 /* Leaves out one fall after the other and repeats average and fit: the interval is the
@@ -173,8 +173,8 @@ enum fall_status fall_jackknife(const struct fall_pairs *sorted, size_t falls,
 
 struct fall_stiffness {
     size_t contacts;
-    struct fall_pairs raw;      /* all pairs, in log order                       */
-    struct fall_pairs band;     /* in the band, sorted                           */
+    struct fall_pairs raw;  /* all pairs, in log order */
+    struct fall_pairs band; /* in the band, sorted */
     struct fall_pairs averaged;
     struct fall_fit fit;
     struct fall_interval a, b;
@@ -190,9 +190,9 @@ void fall_stiffness_free(struct fall_stiffness *s);
 enum fall_direction { FALL_A, FALL_B };
 
 struct fall_plot_paths {
-    const char *raw;      /* q_m,f_mon_n: all pairs, in and out of the band        */
-    const char *averaged; /* q_m,f_mon_n: the pairs of the regression             */
-    const char *line;     /* q_m,f_mon_n: two rows, the ends of the line          */
+    const char *raw;      /* q_m,f_mon_n: all pairs, in and out of the band */
+    const char *averaged; /* q_m,f_mon_n: the pairs of the regression */
+    const char *line;     /* q_m,f_mon_n: two rows, the ends of the line */
 };
 
 /* The line spans the averaged data in the direction's own free variable: q for A,
@@ -203,27 +203,27 @@ enum fall_status fall_write_plot(const struct fall_stiffness *s, enum fall_direc
 /* ---- Rest ------------------------------------------------------------------ */
 
 struct fall_rest_opt {
-    double observe_s;      /* from the first contact of the fall                 */
-    double window_s;       /* the end of the observation that is judged          */
-    double travel_m;       /* peak-to-peak of q above this: oscillates           */
-    double force_N;        /* peak-to-peak of F_mon above this: oscillates       */
-    double encoder_step_m; /* 0 = do not tell buzz from rest                     */
+    double observe_s;      /* from the first contact of the fall */
+    double window_s;       /* the end of the observation that is judged */
+    double travel_m;       /* peak-to-peak of q above this: oscillates */
+    double force_N;        /* peak-to-peak of F_mon above this: oscillates */
+    double encoder_step_m; /* 0 = do not tell buzz from rest */
     double range_m;        /* |q| from here on is the end of its format, not a place */
 };
 
-/* 5 s, 0.5 s, 0.25 mm, 4 N, no encoder step, 1.99 m of the format's 2. The rule belongs to a string that
- * only pulls: log with F >= 0 on. */
+/* 5 s, 0.5 s, 0.25 mm, 4 N, no encoder step, 1.99 m of the format's 2. The rule belongs to a string
+ * that only pulls: log with F >= 0 on. */
 extern const struct fall_rest_opt fall_rest_opt_default;
 
 enum fall_rest_class {
     FALL_AT_REST,
-    FALL_BUZZ,       /* at rest, but the encoder moves by one or two counts: no more
-                        than a position on the edge of a count does by itself. Counts
-                        as rest; three counts, below travel_m, are slow creep: rest  */
+    FALL_BUZZ, /* at rest, but the encoder moves by one or two counts: no more
+                  than a position on the edge of a count does by itself. Counts
+                  as rest; three counts, below travel_m, are slow creep: rest */
     FALL_OSCILLATES,
     FALL_INCOMPLETE, /* no contact, the log ends before the observation does, or the
                         mass is in flight through the whole window, or ran away to
-                        where position is no longer measured                       */
+                        where position is no longer measured */
     FALL_REST_CLASSES
 };
 
@@ -232,8 +232,8 @@ const char *fall_rest_text(enum fall_rest_class rest);
 
 struct fall_rest {
     enum fall_rest_class rest;
-    double t_contact_s;       /* of the first contact; 0 without                 */
-    double travel_m, force_N; /* peak-to-peak over the window; 0 if incomplete    */
+    double t_contact_s;       /* of the first contact; 0 without */
+    double travel_m, force_N; /* peak-to-peak over the window; 0 if incomplete */
 };
 
 /* Judges every fall of the log into out[log->falls]. Time is compared at half

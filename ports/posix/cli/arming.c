@@ -36,7 +36,8 @@ static unsigned first_of(uint32_t bits)
 
 void arming_complain(int32_t arm_step, int32_t present)
 {
-    /* The ramp is over when it is not refused any more: a cause in it is no refusal, but its end. */
+    /* The ramp is over when it is not refused any more: a cause in it is no refusal, but its end.
+     */
     const unsigned step = first_of(arm_step ? (uint32_t)arm_step : (uint32_t)EXH_ARM_RAMP);
     char causes[128] = "";
     size_t at = 0;
@@ -45,5 +46,6 @@ void arming_complain(int32_t arm_step, int32_t present)
         at += (size_t)snprintf(causes + at, sizeof causes - at, " %s", exh_fault_name(k));
     }
     cli_complain("arming: refused at %s%s%s: %s", step < EXH_ARMS ? exh_arm_name(step) : "none",
-                 causes[0] ? ", causes" : "", causes, step < EXH_ARMS ? advice[step] : "nobody asked");
+                 causes[0] ? ", causes" : "", causes,
+                 step < EXH_ARMS ? advice[step] : "nobody asked");
 }

@@ -12,14 +12,15 @@ int assign_split(const char *option, const char *text, char name[ASSIGN_NAME_B],
 
 /* What sim_device_set() or sim_glove_set() refused, row being what it left there: says so, and
  * which command lists what there is. 2. */
-int assign_refused(const char *command, const char *name, double value, const struct sim_device_row *row);
+int assign_refused(const char *command, const char *name, double value,
+                   const struct sim_device_row *row);
 
 /* NAME=VALUE into the device of this command: 0, or 2 after a line on stderr. */
 int assign_device(struct sim_device *d, const char *command, const char *text);
 
-/* That the device is integrated in steps that are short enough (plant.h), hand_npm being the stiffness of
- * a hand, 0 without. The table's own step is shortened to one that will do; another is refused: 0, or 2
- * after a line on stderr with the step that would do. */
+/* That the device is integrated in steps that are short enough (plant.h), hand_npm being the
+ * stiffness of a hand, 0 without. The table's own step is shortened to one that will do; another is
+ * refused: 0, or 2 after a line on stderr with the step that would do. */
 int assign_step(struct sim_device *d, double hand_npm, double hand_nspm);
 
 #endif

@@ -13,7 +13,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The device is simulated, so a tick that another program delayed is made up for: both ends are to be tried, not this machine. */
+/* The device is simulated, so a tick that another program delayed is made up for: both ends are to
+ * be tried, not this machine. */
 #define UDP_SLACK_S 1.0
 
 static int load_scene(struct bilateral_options *o)
@@ -27,7 +28,8 @@ static int load_scene(struct bilateral_options *o)
     }
     o->run.board.exo.fingers &= world_scene(o->run.scene)->fingers;
     if (o->run.board.exo.fingers == 0) {
-        cli_complain("--scene: %s: holds none of the fingers in use: choose others with --fingers", o->scene);
+        cli_complain("--scene: %s: holds none of the fingers in use: choose others with --fingers",
+                     o->scene);
         return 2;
     }
     return 0;
@@ -65,7 +67,9 @@ static int probe(const struct bilateral_options *o)
     c.blackbox = NULL;
     err = bilateral_run(&c, &r);
     bilateral_run_free(&r);
-    if (err == 0 && o->params.save) { return params_save_file(o->params.save, exh_scene_bilateral.params); }
+    if (err == 0 && o->params.save) {
+        return params_save_file(o->params.save, exh_scene_bilateral.params);
+    }
     return err < 0 ? 2 : 0;
 }
 
@@ -76,7 +80,8 @@ static int take_gains(struct bilateral_options *o)
     uint32_t k, b;
     exh_scene_bilateral.defaults();
     if (params_take(o->params.load, p, o->params.image, o->params.len_B) < 0) { return 2; }
-    if (o->scene || !cli_signal_find(p->table, "mat_k", &k) || !cli_signal_find(p->table, "mat_b", &b)) {
+    if (o->scene || !cli_signal_find(p->table, "mat_k", &k) ||
+        !cli_signal_find(p->table, "mat_b", &b)) {
         return 0;
     }
     o->run.k_Npm = cli_signal_value(&exh_material_rows[0], p->staged[k]);
@@ -97,7 +102,8 @@ static int load_params(struct bilateral_options *o)
         return 2;
     }
     if (o->params.load && (o->run.k_Npm >= 0 || o->run.b_Nspm >= 0)) {
-        cli_complain("--load-params: the image has stiffness and damping: leave out --k and --b; --set mat_k=... "
+        cli_complain("--load-params: the image has stiffness and damping: leave out --k and --b; "
+                     "--set mat_k=... "
                      "comes behind it");
         return 2;
     }
@@ -117,7 +123,8 @@ static int load_record(struct bilateral_options *o)
     int err;
     if (o->record == NULL) { return 0; }
     if (o->sweep || o->check || o->hands || o->crisp) {
-        cli_complain("--record: what was recorded is played once: leave out --sweep, --check, --hands, --crisp");
+        cli_complain("--record: what was recorded is played once: leave out --sweep, --check, "
+                     "--hands, --crisp");
         return 2;
     }
     err = hand_record_read(&o->hand, o->record, o->record_Hz, &o->run.board.exo);
@@ -128,7 +135,8 @@ static int load_record(struct bilateral_options *o)
     return 0;
 }
 
-/* Each finger is the mass on its string, and held by the hand: the lightest and the stiffest decide. */
+/* Each finger is the mass on its string, and held by the hand: the lightest and the stiffest
+ * decide. */
 static int steps_too_long(struct bilateral_options *o)
 {
     const struct sim_finger_par *const p = o->run.board.exo.finger;
@@ -151,10 +159,12 @@ static int take_preset(const struct bilateral_options *o, double rate_Hz)
 {
     int err = o->preset ? original_take(o->preset) : 0;
     if (o->preset == NULL || err) { return err; }
-    if (rate_Hz != ORIGINAL_BOX_HZ || o->run.k_Npm >= 0 || o->run.b_Nspm >= 0 || o->scene || o->record || o->udp || o->params.load ||
-        o->params.save || o->run.trace_every || o->run.blackbox || o->sweep || o->check || o->hands || o->crisp ||
+    if (rate_Hz != ORIGINAL_BOX_HZ || o->run.k_Npm >= 0 || o->run.b_Nspm >= 0 || o->scene ||
+        o->record || o->udp || o->params.load || o->params.save || o->run.trace_every ||
+        o->run.blackbox || o->sweep || o->check || o->hands || o->crisp ||
         2 * o->speeds > ORIGINAL_COLUMNS) {
-        cli_complain("--preset: goes with up to three --speed, --fingers, --approaches, --at, --pose, --link, --fps, --set, --device, "
+        cli_complain("--preset: goes with up to three --speed, --fingers, --approaches, --at, "
+                     "--pose, --link, --fps, --set, --device, "
                      "--calibration, --cards, --seed and --out alone");
         err = 2;
     }
@@ -195,10 +205,10 @@ static int go(struct bilateral_options *o, double rate_Hz)
     if (err) { return err; }
     err = probe(o);
     if (err) { return err; }
-    err = o->sweep   ? bilateral_sweep(o)
-          : o->check ? bilateral_check(o)
-          : o->hands ? bilateral_hands(o)
-          : o->crisp ? bilateral_crisp(o)
+    err = o->sweep    ? bilateral_sweep(o)
+          : o->check  ? bilateral_check(o)
+          : o->hands  ? bilateral_hands(o)
+          : o->crisp  ? bilateral_crisp(o)
           : o->preset ? bilateral_original(o)
                       : bilateral_experiment(o);
     world_free(o->run.scene);
@@ -212,55 +222,85 @@ int cli_bilateral(int argc, char **argv)
     static struct bilateral_options o;
     int list = 0, err;
     double rate_Hz = 2000;
-    const struct cli_call speeds = {bilateral_take_speeds, &o}, fingers = {bilateral_take_fingers, &o}, link = {bilateral_take_link, &o};
+    const struct cli_call speeds = {bilateral_take_speeds, &o},
+                          fingers = {bilateral_take_fingers, &o}, link = {bilateral_take_link, &o};
     const struct cli_call calibration = {images_take, &o.images};
-    const struct cli_call setting = {bilateral_take_setting, &o}, device = {bilateral_take_device, &o}, pose = {bilateral_take_pose, &o};
+    const struct cli_call setting = {bilateral_take_setting, &o},
+                          device = {bilateral_take_device, &o}, pose = {bilateral_take_pose, &o};
     union {
         const struct cli_call *view;
         void *to;
     } u[7] = {{&speeds}, {&fingers}, {&link}, {&setting}, {&device}, {&pose}, {&calibration}};
     const struct cli_option option[] = {
-        {"speed", CLI_CALL, u[0].to, 0, 0, "V[,V...]", "slow, natural, fast or m/s of string (these three)"},
-        {"fingers", CLI_CALL, u[1].to, 0, 0, "F[,F...]", "thumb, index, middle, ring, little or all (index)"},
-        {"record", CLI_TEXT, &o.record, 0, 0, "FILE", "the fingers do what a glove recorded, instead of approaches"},
-        {"record-rate", CLI_REAL, &o.record_Hz, 0.1, 10000, "HZ", "of its rows, if they have no clock (100)"},
+        {"speed", CLI_CALL, u[0].to, 0, 0, "V[,V...]",
+         "slow, natural, fast or m/s of string (these three)"},
+        {"fingers", CLI_CALL, u[1].to, 0, 0, "F[,F...]",
+         "thumb, index, middle, ring, little or all (index)"},
+        {"record", CLI_TEXT, &o.record, 0, 0, "FILE",
+         "the fingers do what a glove recorded, instead of approaches"},
+        {"record-rate", CLI_REAL, &o.record_Hz, 0.1, 10000, "HZ",
+         "of its rows, if they have no clock (100)"},
         {"approaches", CLI_INT, &o.approaches, 1, BILATERAL_CONTACTS_MAX, "N", "at each speed (5)"},
-        {"at", CLI_REAL, &o.run.at_m, 0.008, 0.06, "M", "the wall stands where so much string is out (0.030)"},
-        {"pose", CLI_CALL, u[5].to, 0, 0, "NAME", "the hand, where no finger in use bends it (flat)"},
-        {"scene", CLI_TEXT, &o.scene, 0, 0, "FILE", "a scene of the world simulator instead of walls"},
+        {"at", CLI_REAL, &o.run.at_m, 0.008, 0.06, "M",
+         "the wall stands where so much string is out (0.030)"},
+        {"pose", CLI_CALL, u[5].to, 0, 0, "NAME",
+         "the hand, where no finger in use bends it (flat)"},
+        {"scene", CLI_TEXT, &o.scene, 0, 0, "FILE",
+         "a scene of the world simulator instead of walls"},
         {"rate", CLI_REAL, &rate_Hz, 1, 20000, "HZ", "of the loop (2000)"},
-        {"k", CLI_REAL, &o.run.k_Npm, 0, 1e6, "N/M", "stiffness (20000; with --scene its materials')"},
+        {"k", CLI_REAL, &o.run.k_Npm, 0, 1e6, "N/M",
+         "stiffness (20000; with --scene its materials')"},
         {"b", CLI_REAL, &o.run.b_Nspm, 0, 1e3, "NS/M", "damping (60; with --scene its materials')"},
-        {"link", CLI_CALL, u[2].to, 0, 0, "SPEC", "none, trace=FILE (round trips), delay=S,jitter=S,loss=SHARE,... (none)"},
+        {"link", CLI_CALL, u[2].to, 0, 0, "SPEC",
+         "none, trace=FILE (round trips), delay=S,jitter=S,loss=SHARE,... (none)"},
         {"fps", CLI_REAL, &o.run.fps, 1, 2000, "N", "frames of the world a second (400)"},
-        {"trace", CLI_INT, &o.run.trace_every, 1, 1e6, "N", "the world asks for a trace of every N-th tick, over the link (none)"},
-        {"ray", CLI_REAL, &o.run.ray_m, 0, 1, "M", "a wall is not seen from farther off (no limit)"},
+        {"trace", CLI_INT, &o.run.trace_every, 1, 1e6, "N",
+         "the world asks for a trace of every N-th tick, over the link (none)"},
+        {"ray", CLI_REAL, &o.run.ray_m, 0, 1, "M",
+         "a wall is not seen from farther off (no limit)"},
         {"world-from", CLI_REAL, &o.run.from_s, 0, 1e9, "S", "the world is not there before (0)"},
         {"world-until", CLI_REAL, &o.run.until_s, 0, 1e30, "S", "it dies then (never)"},
-        {"udp", CLI_TEXT, &o.udp, 0, 0, "HOST:PORT", "the world is another process there; in real time"},
-        {"cards", CLI_FLAG, &o.cards, 0, 0, NULL, "through the drivers and emulated cards: the same bits"},
+        {"udp", CLI_TEXT, &o.udp, 0, 0, "HOST:PORT",
+         "the world is another process there; in real time"},
+        {"cards", CLI_FLAG, &o.cards, 0, 0, NULL,
+         "through the drivers and emulated cards: the same bits"},
         {"seed", CLI_INT, &o.seed, 0, 1e9, "N", "of all chance in the simulation (1)"},
         {"out", CLI_TEXT, &o.out, 0, 0, "DIR", "write logs, CSVs and what pictures need there"},
-        {"blackbox", CLI_TEXT, &o.run.blackbox, 0, 0, "FILE", "the last seconds before a fault, a log (with --out beside the others)"},
-        {"let-go", CLI_REAL, &o.run.board.let_go_s, 0, 1e9, "S", "the dead-man switch opens then: a fault (never)"},
+        {"blackbox", CLI_TEXT, &o.run.blackbox, 0, 0, "FILE",
+         "the last seconds before a fault, a log (with --out beside the others)"},
+        {"let-go", CLI_REAL, &o.run.board.let_go_s, 0, 1e9, "S",
+         "the dead-man switch opens then: a fault (never)"},
         {"set", CLI_CALL, u[3].to, 0, 0, "NAME=VALUE", "a parameter of the scene, of all fingers"},
-        {"device", CLI_CALL, u[4].to, 0, 0, "NAME=VALUE", "a value of the simulated hand, glove or motors"},
+        {"device", CLI_CALL, u[4].to, 0, 0, "NAME=VALUE",
+         "a value of the simulated hand, glove or motors"},
         PARAMS_FILE_OPTIONS(o.params),
-        {"calibration", CLI_CALL, u[6].to, 0, 0, "FILE[,FILE...]", "of the fingers, or a directory of them (none: the simulated device as it is, uncalibrated=1)"},
-        {"preset", CLI_TEXT, &o.preset, 0, 0, "NAME", "original: the commercial system at 90 Hz, beside this box at 2 kHz"},
-        {"sweep", CLI_FLAG, &o.sweep, 0, 0, NULL, "stiffness and missed contacts over delay, jitter and loss"},
-        {"check", CLI_INT, &o.check, 1, 1e6, "N", "random approaches: none may be felt before its freeze"},
-        {"hands", CLI_FLAG, &o.hands, 0, 0, NULL, "80 fingers and hands: settling and stiffness of each"},
+        {"calibration", CLI_CALL, u[6].to, 0, 0, "FILE[,FILE...]",
+         "of the fingers, or a directory of them (none: the simulated device as it is, "
+         "uncalibrated=1)"},
+        {"preset", CLI_TEXT, &o.preset, 0, 0, "NAME",
+         "original: the commercial system at 90 Hz, beside this box at 2 kHz"},
+        {"sweep", CLI_FLAG, &o.sweep, 0, 0, NULL,
+         "stiffness and missed contacts over delay, jitter and loss"},
+        {"check", CLI_INT, &o.check, 1, 1e6, "N",
+         "random approaches: none may be felt before its freeze"},
+        {"hands", CLI_FLAG, &o.hands, 0, 0, NULL,
+         "80 fingers and hands: settling and stiffness of each"},
         {"crisp", CLI_FLAG, &o.crisp, 0, 0, NULL, "how fast force rises, over a grid of k and b"},
-        {"jobs", CLI_INT, &o.jobs, 1, 1024, "N", "processes at a time, of all but the experiment (one a core)"},
+        {"jobs", CLI_INT, &o.jobs, 1, 1024, "N",
+         "processes at a time, of all but the experiment (one a core)"},
         {"params", CLI_FLAG, &list, 0, 0, NULL, "list all values, with units and ranges"},
     };
     const struct cli_command c = {
-        "bilateral", "[options]",
-        "The paper's second experiment: a hand in glove and exoskeleton approaches a virtual object at\n"
-        "three speeds. A world simulator at the other end of a link says where its surface is; the\n"
+        "bilateral",
+        "[options]",
+        "The paper's second experiment: a hand in glove and exoskeleton approaches a virtual "
+        "object at\n"
+        "three speeds. A world simulator at the other end of a link says where its surface is; "
+        "the\n"
         "contact is frozen before it is touched and rendered here alone, whatever the link does.",
-        option, (int)(sizeof option / sizeof option[0]), 0};
+        option,
+        (int)(sizeof option / sizeof option[0]),
+        0};
 
     bilateral_defaults(&o);
     err = cli_parse(&c, argc, argv, NULL);

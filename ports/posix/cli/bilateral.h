@@ -20,11 +20,11 @@ struct bilateral_speed {
 };
 
 struct bilateral_options {
-    struct bilateral_run_cfg run; /* all but the speed                           */
+    struct bilateral_run_cfg run; /* all but the speed */
     struct bilateral_speed speed[BILATERAL_SPEEDS_MAX];
     int speeds;
     int64_t approaches, seed, jobs, check;
-    int sweep, hands, crisp, cards, own_scale;  /* own_scale: s was set, it is not fitted      */
+    int sweep, hands, crisp, cards, own_scale; /* own_scale: s was set, it is not fitted */
     const char *scene, *out, *udp, *link, *record, *preset;
     double record_Hz;
     struct run_setting setting[BILATERAL_SETTINGS_MAX];
@@ -66,7 +66,7 @@ struct bilateral_result {
     unsigned finger;
     struct bilateral_contact *contact;
     int contacts;
-    double stiffness_Npm, settle_s; /* pooled; median of those that settled        */
+    double stiffness_Npm, settle_s; /* pooled; median of those that settled */
     int settled, missed, early;
     double scale, touch_m;
 };
@@ -82,14 +82,16 @@ void bilateral_print_advice(FILE *f, const struct bilateral_options *o,
                             const struct bilateral_result *r, int n);
 
 /* After a run: what the advice for d_lim and the ray goes by, over a perfect link. */
-struct exh_precontact_need bilateral_need(const struct bilateral_options *o, double scale, double mps);
+struct exh_precontact_need bilateral_need(const struct bilateral_options *o, double scale,
+                                          double mps);
 
 /* bilateral_out.c: DIR. 0, or 1 or 2 after a line on stderr. */
 int bilateral_out_open(const char *dir);
 FILE *bilateral_out_file(const char *dir, const char *name);
 void bilateral_out_name(char *to, size_t cap_B, const char *dir, const char *speed, int finger,
                         const char *suffix);
-int bilateral_out_csv(const char *dir, const struct bilateral_run *r, unsigned f, const char *speed);
+int bilateral_out_csv(const char *dir, const struct bilateral_run *r, unsigned f,
+                      const char *speed);
 int bilateral_out_pictures(const char *dir, const struct bilateral_result *r, int n, double k_Npm,
                            double b_Nspm, const char *link);
 

@@ -14,7 +14,7 @@
 
 struct outcome {
     int done, felt, unfrozen, early, late, missed, unplanned;
-    int foreseen; /* by the advice the world looks too near, or answers too late   */
+    int foreseen; /* by the advice the world looks too near, or answers too late */
     double speed_mps, at_m, off_m, want_m, ray_m, loss;
     unsigned finger;
 };
@@ -43,7 +43,8 @@ static void random_link(struct sim_random *r, struct sim_link_par *p)
 }
 
 /* One approach: any finger, wall, speed, hand, link and world. */
-static struct bilateral_run_cfg random_cfg(const struct bilateral_options *o, int i, struct outcome *out)
+static struct bilateral_run_cfg random_cfg(const struct bilateral_options *o, int i,
+                                           struct outcome *out)
 {
     struct sim_random r = {.state = (uint64_t)o->seed * UINT64_C(0x9E3779B97F4A7C15) + (uint64_t)i};
     struct bilateral_run_cfg c = bilateral_at_speed(o, decades(&r, 0.03, 1.2));
@@ -79,8 +80,8 @@ static double age_s(const struct bilateral_run_cfg *c, int state_every)
 }
 
 /* Whether the advice foretells that the plane may not be there in time. */
-static void advise(const struct bilateral_options *given, const struct bilateral_run_cfg *c, double scale,
-                   struct outcome *out)
+static void advise(const struct bilateral_options *given, const struct bilateral_run_cfg *c,
+                   double scale, struct outcome *out)
 {
     const struct bilateral_par *par = (const void *)exh_scene_bilateral.params->active;
     const struct exh_period T = {1, c->rate_Hz};
@@ -89,13 +90,17 @@ static void advise(const struct bilateral_options *given, const struct bilateral
     struct exh_precontact_need need;
     struct exh_precontact_advice a;
     o.run = *c;
-    need = bilateral_need(&o, scale > 0 ? scale : 1, out->speed_mps * (1 + c->board.exo.path[out->finger].vary));
+    need = bilateral_need(&o, scale > 0 ? scale : 1,
+                          out->speed_mps * (1 + c->board.exo.path[out->finger].vary));
     need.age_us = old_s < 2 ? (int32_t)(1e6 * old_s) : 2000000;
     out->ray_m = c->ray_m;
     out->loss = c->board.line.way[0].loss;
-    if (exh_precontact_advise(&a, &need, T, par->precontact[out->finger].d_lim_m_q30) < 0) { return; }
+    if (exh_precontact_advise(&a, &need, T, par->precontact[out->finger].d_lim_m_q30) < 0) {
+        return;
+    }
     out->want_m = ldexp(a.ray_m_q30, -EXH_Q_POS);
-    out->foreseen = c->ray_m > 0 ? out->want_m > c->ray_m : old_s > c->board.exo.path[out->finger].first_s;
+    out->foreseen =
+        c->ray_m > 0 ? out->want_m > c->ray_m : old_s > c->board.exo.path[out->finger].first_s;
 }
 
 static void work(const void *ctx, int i, void *result)
@@ -141,16 +146,20 @@ static void say_missed(const struct outcome *r, int n)
         }
     }
     if (missed == 0) { return; }
-    printf("not felt: %d, %d of them foretold by the advice (the world has to see walls from %.0f .. %.0f mm, and saw them\n"
-           "from 15 .. 60), %d others with packets lost, %d without; foretold and felt all the same: %d of %d\n", missed, foreseen,
-           1e3 * shortest_m, 1e3 * longest_m, lossy, missed - foreseen - lossy, cautious, told);
+    printf("not felt: %d, %d of them foretold by the advice (the world has to see walls from %.0f "
+           ".. %.0f mm, and saw them\n"
+           "from 15 .. 60), %d others with packets lost, %d without; foretold and felt all the "
+           "same: %d of %d\n",
+           missed, foreseen, 1e3 * shortest_m, 1e3 * longest_m, lossy, missed - foreseen - lossy,
+           cautious, told);
 }
 
 int bilateral_check(const struct bilateral_options *o)
 {
     const int n = (int)o->check;
     struct outcome *r = calloc((size_t)n, sizeof *r);
-    const struct jobs jobs = {n, (int)o->jobs, sizeof *r, r, work, o, "approaches", posix_interrupt};
+    const struct jobs jobs = {n, (int)o->jobs, sizeof *r,      r, work,
+                              o, "approaches", posix_interrupt};
     int done = 0, felt = 0, unfrozen = 0, early = 0, late = 0, missed = 0, ran;
     double low_m = 0, high_m = 0;
     if (r == NULL) {
@@ -172,9 +181,12 @@ int bilateral_check(const struct bilateral_options *o)
                    bilateral_finger_name[r[i].finger], r[i].speed_mps, r[i].at_m);
         }
     }
-    printf("%d random approaches in closed loop: %d felt, %d before the freeze; %d missed: no plane in time\n"
-           "place, less where pad and object touch: %.2f .. %.2f mm of string (%d more than 1 mm early, %d "
-           "more than 2 mm late)\n", done, felt, unfrozen, missed, 1e3 * low_m, 1e3 * high_m, early, late);
+    printf("%d random approaches in closed loop: %d felt, %d before the freeze; %d missed: no "
+           "plane in time\n"
+           "place, less where pad and object touch: %.2f .. %.2f mm of string (%d more than 1 mm "
+           "early, %d "
+           "more than 2 mm late)\n",
+           done, felt, unfrozen, missed, 1e3 * low_m, 1e3 * high_m, early, late);
     say_missed(r, n);
     free(r);
     return ran ? ran : unfrozen || done < n ? 1 : 0;

@@ -31,7 +31,8 @@ static int by_size(const void *a, const void *b)
     return d < 0 ? -1 : d > 0;
 }
 
-static void judge(const struct bilateral_run *r, unsigned f, const char *plot, struct bilateral_result *out)
+static void judge(const struct bilateral_run *r, unsigned f, const char *plot,
+                  struct bilateral_result *out)
 {
     static double settle[BILATERAL_CONTACTS_MAX];
     const int n = bilateral_judge(r, f, out->contact, BILATERAL_CONTACTS_MAX);
@@ -64,7 +65,8 @@ static double local_Npm(const struct bilateral_options *o)
 }
 
 /* The same approaches over a perfect link: which fingers had every bit of theirs. */
-static void print_beside_perfect(const struct bilateral_run_cfg *given, const struct bilateral_run *r)
+static void print_beside_perfect(const struct bilateral_run_cfg *given,
+                                 const struct bilateral_run *r)
 {
     struct bilateral_run_cfg c = *given;
     struct bilateral_run perfect;
@@ -80,7 +82,7 @@ static void print_beside_perfect(const struct bilateral_run_cfg *given, const st
             const struct bilateral_track *a = &r->finger[f], *b = &perfect.finger[f];
             if (!(c.board.exo.fingers >> f & 1)) { continue; }
             printf(" %s %s;", bilateral_finger_name[f],
-                   a->freezes == 0       ? "felt nothing"
+                   a->freezes == 0          ? "felt nothing"
                    : a->digest == b->digest ? "the same bits from the first freeze on"
                                             : "not the same");
         }
@@ -90,7 +92,8 @@ static void print_beside_perfect(const struct bilateral_run_cfg *given, const st
 }
 
 /* One speed: its results of all fingers in use behind the others'. */
-static int one_speed(const struct bilateral_options *o, int i, struct bilateral_result *result, int *n)
+static int one_speed(const struct bilateral_options *o, int i, struct bilateral_result *result,
+                     int *n)
 {
     struct bilateral_run_cfg c = bilateral_at_speed(o, o->speed[i].mps);
     struct bilateral_run r;
@@ -134,23 +137,27 @@ static int one_speed(const struct bilateral_options *o, int i, struct bilateral_
     }
     if (err == 0 && r.faults) {
         names_faults(what, sizeof what, r.faults);
-        cli_complain("%s: the box stopped with faults %#x: %s", o->speed[i].name, (unsigned)r.faults, what);
+        cli_complain("%s: the box stopped with faults %#x: %s", o->speed[i].name,
+                     (unsigned)r.faults, what);
         err = 1;
     }
     if (err == 0) {
-        printf("  packets: %d came, %d missing, %d reordered, %d duplicate, %d too old, %d refused; newest trip "
-               "%.1f ms\n", r.box.accepted, r.box.missing, r.box.reordered, r.box.duplicate, r.box.old,
+        printf("  packets: %d came, %d missing, %d reordered, %d duplicate, %d too old, %d "
+               "refused; newest trip "
+               "%.1f ms\n",
+               r.box.accepted, r.box.missing, r.box.reordered, r.box.duplicate, r.box.old,
                r.box.corrupt + r.box.version + r.box.unknown + r.box.stranger, r.box.trip_us / 1e3);
     }
     if (err == 0 && c.trace_every) {
-        printf("  trace: %lu frames of every %d ticks, ticks %lu to %lu; %lu missed\n", (unsigned long)r.trace.frames,
-               c.trace_every, (unsigned long)r.trace.first_tick, (unsigned long)r.trace.last_tick,
-               (unsigned long)r.trace.missed);
+        printf("  trace: %lu frames of every %d ticks, ticks %lu to %lu; %lu missed\n",
+               (unsigned long)r.trace.frames, c.trace_every, (unsigned long)r.trace.first_tick,
+               (unsigned long)r.trace.last_tick, (unsigned long)r.trace.missed);
     }
     if (err == 0 && (o->scene || o->record || o->udp)) {
         bilateral_print_session(stdout, &r, c.board.exo.fingers);
     }
-    if (err == 0 && o->udp == NULL && (strcmp(o->link, "none") != 0 || c.from_s > 0 || c.until_s < 1e29)) {
+    if (err == 0 && o->udp == NULL &&
+        (strcmp(o->link, "none") != 0 || c.from_s > 0 || c.until_s < 1e29)) {
         print_beside_perfect(&c, &r);
     }
     bilateral_run_free(&r);
@@ -167,7 +174,8 @@ int bilateral_experiment(const struct bilateral_options *o)
     if (o->run.k_Npm < 0 || o->run.b_Nspm < 0) {
         printf("%.6g Hz, %s's own k and b", (double)o->run.rate_Hz, o->scene);
     } else {
-        printf("%.6g Hz, k %.6g N/m, b %.6g Ns/m", (double)o->run.rate_Hz, o->run.k_Npm, o->run.b_Nspm);
+        printf("%.6g Hz, k %.6g N/m, b %.6g Ns/m", (double)o->run.rate_Hz, o->run.k_Npm,
+               o->run.b_Nspm);
     }
     printf(", link %s, world at %.6g frames/s\n\n", o->udp ? o->udp : o->link, o->run.fps);
     bilateral_print_head(stdout);

@@ -7,15 +7,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define KEEP      64  /* contacts of a cell */
+#define KEEP      64     /* contacts of a cell */
 #define HALF_MS   0.5e-3 /* "approximately 25 ms" */
-#define CRISP_MPS 0.2 /* faster, and the drive's limit is what is felt, not k and b */
+#define CRISP_MPS 0.2    /* faster, and the drive's limit is what is felt, not k and b */
 
 struct cell {
-    double at[3]; /* mass, hand_k, hand_b; or k, b                              */
+    double at[3];                                       /* mass, hand_k, hand_b; or k, b */
     int done, contacts, settled, rested, missed, quick; /* quick: at rest in the paper's time */
     double settle_s, rest_s, stiffness_Npm, rise_per_mps, speed_mps; /* medians; stiffness of all */
-    double quickest_s; /* to rest                                              */
+    double quickest_s;                                               /* to rest */
 };
 
 static int by_size(const void *a, const void *b)
@@ -83,7 +83,8 @@ static struct bilateral_run_cfg base(const struct bilateral_options *o, double o
 static int run_cells(struct cell *cell, int n, void (*work)(const void *, int, void *),
                      const struct bilateral_options *o)
 {
-    const struct jobs jobs = {n, (int)o->jobs, sizeof *cell, cell, work, o, "cells", posix_interrupt};
+    const struct jobs jobs = {n, (int)o->jobs, sizeof *cell,   cell, work,
+                              o, "cells",      posix_interrupt};
     int err = jobs_run(&jobs);
     for (int i = 0; err == 0 && i < n; i++) { err = !cell[i].done; }
     return err;
@@ -91,8 +92,8 @@ static int run_cells(struct cell *cell, int n, void (*work)(const void *, int, v
 
 /* --- hands --- */
 
-/* From the light finger of a child to a heavy one with the exoskeleton; from a hand that lets itself
- * be pushed to one that is clenched. All press alike. */
+/* From the light finger of a child to a heavy one with the exoskeleton; from a hand that lets
+ * itself be pushed to one that is clenched. All press alike. */
 static const double mass_kg[] = {0.02, 0.05, 0.1, 0.2}, hand_Npm[] = {150, 300, 600, 1200},
                     hand_Nspm[] = {2, 5, 10, 20, 40};
 #define HANDS   80
@@ -132,7 +133,8 @@ static int has_line(const struct cell *c)
 
 static int is_near(const struct cell *c)
 {
-    return c->stiffness_Npm >= (1 - NEAR) * PAPER_STIFFNESS_NPM && c->stiffness_Npm <= (1 + NEAR) * PAPER_STIFFNESS_NPM;
+    return c->stiffness_Npm >= (1 - NEAR) * PAPER_STIFFNESS_NPM &&
+           c->stiffness_Npm <= (1 + NEAR) * PAPER_STIFFNESS_NPM;
 }
 
 static void say_hands(const struct cell *cell)
@@ -153,15 +155,18 @@ static void say_hands(const struct cell *cell)
     (void)median(rest, rests);
     (void)median(stiff, stiffs);
     printf("\nrest, median of a hand: %.0f .. %.0f ms, half of them by %.0f; paper 25 ms\n"
-           "contacts: %d, at rest before the end of the hold %d, in 25 ms %d; hands with one such contact and within\n"
+           "contacts: %d, at rest before the end of the hold %d, in 25 ms %d; hands with one such "
+           "contact and within\n"
            "%.0f %% of the paper's stiffness %d, with half of their contacts in 25 ms %d\n"
-           "stiffness: %.0f .. %.0f N/m, median %.0f, %d of %d with a line, %d within %.0f %% of the paper's 41250 N/m\n",
-           1e3 * rest[0], 1e3 * rest[rests - 1], 1e3 * rest[rests / 2], contacts, rested, quick, 100 * NEAR, both, half,
-           stiff[0], stiff[stiffs - 1], stiff[stiffs / 2], stiffs, HANDS, near, 100 * NEAR);
+           "stiffness: %.0f .. %.0f N/m, median %.0f, %d of %d with a line, %d within %.0f %% of "
+           "the paper's 41250 N/m\n",
+           1e3 * rest[0], 1e3 * rest[rests - 1], 1e3 * rest[rests / 2], contacts, rested, quick,
+           100 * NEAR, both, half, stiff[0], stiff[stiffs - 1], stiff[stiffs / 2], stiffs, HANDS,
+           near, 100 * NEAR);
 }
 
-static int leave(const struct bilateral_options *o, const struct cell *cell, int n, const char *name,
-                 const char *columns, int at)
+static int leave(const struct bilateral_options *o, const struct cell *cell, int n,
+                 const char *name, const char *columns, int at)
 {
     char file[64];
     FILE *f, *g;
@@ -170,7 +175,9 @@ static int leave(const struct bilateral_options *o, const struct cell *cell, int
     snprintf(file, sizeof file, "%s.gp", name);
     g = f ? bilateral_out_file(o->out, file) : NULL;
     if (g == NULL) { return 1; }
-    fprintf(f, "%s,contacts,settled,rested,settle_s,rest_s,stiffness_n_per_m,rise_n_per_m,speed_m_per_s,quick,quickest_s\n",
+    fprintf(f,
+            "%s,contacts,settled,rested,settle_s,rest_s,stiffness_n_per_m,rise_n_per_m,speed_m_per_"
+            "s,quick,quickest_s\n",
             columns);
     for (int i = 0; i < n; i++) {
         const struct cell *c = &cell[i];
@@ -185,9 +192,11 @@ static int leave(const struct bilateral_options *o, const struct cell *cell, int
         if (c->rested) { fprintf(f, "%.9g", c->quickest_s); }
         fputc('\n', f);
     }
-    fprintf(g, "# Made by exhand bilateral --%s: gnuplot -c %s.gp PLOTS\nplots=ARG1\ndata='%s.csv'\n"
-               "k='%.6g'; b='%.6g'; speed='%.3g'\nload plots.'/bilateral_%s.gp'\n", name, name, name,
-            o->run.k_Npm, o->run.b_Nspm, speed_of(o, at == 3 ? sim_path_speed("natural") : CRISP_MPS), name);
+    fprintf(g,
+            "# Made by exhand bilateral --%s: gnuplot -c %s.gp PLOTS\nplots=ARG1\ndata='%s.csv'\n"
+            "k='%.6g'; b='%.6g'; speed='%.3g'\nload plots.'/bilateral_%s.gp'\n",
+            name, name, name, o->run.k_Npm, o->run.b_Nspm,
+            speed_of(o, at == 3 ? sim_path_speed("natural") : CRISP_MPS), name);
     return (fclose(f) | fclose(g)) != 0;
 }
 
@@ -196,8 +205,10 @@ int bilateral_hands(const struct bilateral_options *o)
     static struct cell cell[HANDS];
     const int err = run_cells(cell, HANDS, work_hands, o);
     if (err) { return err; }
-    printf("finger   hand K   hand B  contacts  settled, ms  rest, ms  quickest, ms  came to rest  in 25 ms  stiffness\n"
-           "    kg      N/m     Ns/m                                                                             N/m\n");
+    printf("finger   hand K   hand B  contacts  settled, ms  rest, ms  quickest, ms  came to rest  "
+           "in 25 ms  stiffness\n"
+           "    kg      N/m     Ns/m                                                               "
+           "              N/m\n");
     for (int i = 0; i < HANDS; i++) {
         const struct cell *c = &cell[i];
         printf("%6.2f %8.0f %8.0f %9d    ", c->at[0], c->at[1], c->at[2], c->contacts);
@@ -235,7 +246,8 @@ int bilateral_crisp(const struct bilateral_options *o)
     static struct cell cell[COLUMNS * ROWS];
     const int err = run_cells(cell, COLUMNS * ROWS, work_crisp, o);
     if (err) { return err; }
-    printf("Crispness: steepest millisecond of F_mon in the first three of a contact, per speed, kN/m; () did\n"
+    printf("Crispness: steepest millisecond of F_mon in the first three of a contact, per speed, "
+           "kN/m; () did\n"
            "not always come to rest.\n\n  b, Ns/m \\ k, kN/m\n       ");
     for (int k = 0; k < COLUMNS; k++) { printf(" %6.1f", cell[k].at[0] / 1e3); }
     printf("\n");

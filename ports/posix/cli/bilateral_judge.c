@@ -84,8 +84,9 @@ static void judge_contact(const struct bilateral_run *r, const struct bilateral_
     c->t_s = (double)c->first * r->T.num / r->T.den;
     c->speed_mps = si(s->raw.qd_mps_q27, EXH_Q_VEL);
     c->lim_m = si(s->raw.q_lim_m_q30, EXH_Q_POS);
-    c->off_m = t->touch_m < 0 ? 0 : c->lim_m - t->touch_m + t->at[0].x_m -
-               si(t->at[0].raw.q_m_q30, EXH_Q_POS);
+    c->off_m = t->touch_m < 0
+                   ? 0
+                   : c->lim_m - t->touch_m + t->at[0].x_m - si(t->at[0].raw.q_m_q30, EXH_Q_POS);
     c->early = t->touch_m >= 0 && c->off_m < -EARLY_M;
     c->held_N = 0;
     for (size_t i = held_from(c, r->T); i < c->hold_end; i++) {
@@ -103,7 +104,8 @@ int bilateral_judge(const struct bilateral_run *r, unsigned f, struct bilateral_
     const struct bilateral_track *t = &r->finger[f];
     int n = 0;
     for (size_t i = 0; i < t->n;) {
-        struct bilateral_contact k = {.finger = f, .approach = t->at[i].approach, .settle_s = -1, .rest_s = -1};
+        struct bilateral_contact k = {
+            .finger = f, .approach = t->at[i].approach, .settle_s = -1, .rest_s = -1};
         double deepest_m = 0;
         int touched = 0;
         for (; i < t->n && t->at[i].approach == k.approach; i++) {
@@ -153,7 +155,8 @@ static double line_of(const struct fall_log *log, const char *plot)
 
 /* Where each approach froze its q_lim is its own: positions are counted from there, or places that
  * differ would be read as softness. Before the freeze q_lim moves, and no pair is taken. */
-static struct fall_sample past_lim(const struct bilateral_sample *s, size_t tick, struct exh_period T)
+static struct fall_sample past_lim(const struct bilateral_sample *s, size_t tick,
+                                   struct exh_period T)
 {
     struct fall_sample f = bilateral_si(s, tick, T);
     f.q_m -= si(s->raw.q_lim_m_q30, EXH_Q_POS);

@@ -11,7 +11,8 @@
 
 static int bad(const char *text, const char *why)
 {
-    cli_complain("--link: %s: %s: e.g. none, trace=FILE, delay=0.02,jitter=0.005,loss=0.1", text, why);
+    cli_complain("--link: %s: %s: e.g. none, trace=FILE, delay=0.02,jitter=0.005,loss=0.1", text,
+                 why);
     return 2;
 }
 
@@ -44,11 +45,13 @@ static int take_value(struct bilateral_options *o, const char *name, const char 
     for (int w = 0; w < SIM_LINK_WAYS; w++) {
         struct sim_link_par *p = &o->run.board.line.way[w];
         err |= sim_link_set(p, name, v, &row);
-        if (strcmp(name, "jitter") == 0 && p->jitter == SIM_LINK_CONSTANT) { p->jitter = SIM_LINK_UNIFORM; }
+        if (strcmp(name, "jitter") == 0 && p->jitter == SIM_LINK_CONSTANT) {
+            p->jitter = SIM_LINK_UNIFORM;
+        }
     }
     if (err && row) {
-        cli_complain("--link: %s: %.12g (allowed %.12g..%.12g%s%s): choose a value in that range", name,
-                     v, row->min, row->max, row->unit[0] ? " " : "", row->unit);
+        cli_complain("--link: %s: %.12g (allowed %.12g..%.12g%s%s): choose a value in that range",
+                     name, v, row->min, row->max, row->unit[0] ? " " : "", row->unit);
     }
     return err == 0 ? 0 : row ? 2 : bad(name, "no such property of a link: --params lists them");
 }
@@ -69,7 +72,8 @@ int bilateral_take_link(void *ctx, const char *text)
         equals = strchr(name, '=');
         if (equals == NULL) { return bad(name, "give NAME=VALUE"); }
         *equals = '\0';
-        err = strcmp(name, "trace") == 0 ? take_trace(o, equals + 1) : take_value(o, name, equals + 1);
+        err = strcmp(name, "trace") == 0 ? take_trace(o, equals + 1)
+                                         : take_value(o, name, equals + 1);
         if (err) { return err; }
     }
     return 0;

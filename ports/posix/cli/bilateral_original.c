@@ -10,7 +10,26 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum row { RATE, K, B, APPROACHES, EARLY, MISSED, PLACE, PLACE_LEAST, PLACE_MOST, PEAK, DEEPEST, HELD, SETTLED, SETTLE, STIFFNESS, ERROR, SHARE, ROWS };
+enum row {
+    RATE,
+    K,
+    B,
+    APPROACHES,
+    EARLY,
+    MISSED,
+    PLACE,
+    PLACE_LEAST,
+    PLACE_MOST,
+    PEAK,
+    DEEPEST,
+    HELD,
+    SETTLED,
+    SETTLE,
+    STIFFNESS,
+    ERROR,
+    SHARE,
+    ROWS
+};
 
 static const struct original_row row[ROWS] = {
     [RATE] = {"loop", "Hz", 0},
@@ -83,7 +102,8 @@ static void fill_samples(const struct column *to, const struct bilateral_run *r,
     *at(to, SHARE) = c.rms_N > 0 ? 100 * c.err_N / c.rms_N : 2 * ORIGINAL_NONE;
 }
 
-static int trace(const char *dir, int n, const struct bilateral_run *r, unsigned f, const struct bilateral_contact *k)
+static int trace(const char *dir, int n, const struct bilateral_run *r, unsigned f,
+                 const struct bilateral_contact *k)
 {
     const struct bilateral_track *t = &r->finger[f];
     struct fall_sample *s = calloc(t->n + 1, sizeof *s);
@@ -95,7 +115,8 @@ static int trace(const char *dir, int n, const struct bilateral_run *r, unsigned
     return err;
 }
 
-static int column(const struct column *to, const struct bilateral_run_cfg *c, const char *dir, int n)
+static int column(const struct column *to, const struct bilateral_run_cfg *c, const char *dir,
+                  int n)
 {
     static struct bilateral_contact contact[BILATERAL_CONTACTS_MAX];
     struct bilateral_run r;
@@ -118,9 +139,11 @@ static int column(const struct column *to, const struct bilateral_run_cfg *c, co
 }
 
 /* Of 90 Hz and a glove of 8 bits, a frame late, with nothing that smooths it. */
-static struct bilateral_run_cfg original_of(const struct bilateral_run_cfg *box, struct run_setting setting[BILATERAL_SETTINGS_MAX + 3])
+static struct bilateral_run_cfg original_of(const struct bilateral_run_cfg *box,
+                                            struct run_setting setting[BILATERAL_SETTINGS_MAX + 3])
 {
-    static const struct run_setting plain[3] = {{"glove_order", 0}, {"glove_bits", 16}, {"glove_hyst", 0}};
+    static const struct run_setting plain[3] = {
+        {"glove_order", 0}, {"glove_bits", 16}, {"glove_hyst", 0}};
     const struct table2_row *g = table2_gains(ORIGINAL_RATE_HZ);
     struct bilateral_run_cfg c = *box;
     memcpy(setting, plain, sizeof plain);
@@ -150,15 +173,18 @@ int bilateral_original(const struct bilateral_options *o)
         const int draw = n / 2 == o->speeds / 2;
         c.keep = 1;
         if (n % 2 == 0) { c = original_of(&c, setting); }
-        (void)snprintf(name[n], sizeof name[n], "%s %s", speed->name, n % 2 ? "this box" : "original");
+        (void)snprintf(name[n], sizeof name[n], "%s %s", speed->name,
+                       n % 2 ? "this box" : "original");
         names[n] = name[n];
         err = column(&to, &c, draw ? o->out : NULL, n % 2);
         if (posix_interrupted()) { return 130; }
     }
     if (err) { return err; }
     original_print(&t);
-    printf("\nOriginal: a loop at 90 Hz with the paper's gains for it, a glove of 8 bits (1..255 at -9..9 V) whose frame is one late, nothing\n"
-           "that smooths it; contact is frozen by the same law as here. Force less what it should be: monitored less demanded in\n"
+    printf("\nOriginal: a loop at 90 Hz with the paper's gains for it, a glove of 8 bits (1..255 "
+           "at -9..9 V) whose frame is one late, nothing\n"
+           "that smooths it; contact is frozen by the same law as here. Force less what it should "
+           "be: monitored less demanded in\n"
            "the same tick, of all ticks in contact.\n");
     return o->out ? original_out(o->out, &t, drawn, 2) : 0;
 }

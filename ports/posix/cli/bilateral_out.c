@@ -13,8 +13,10 @@
 
 int bilateral_out_open(const char *dir)
 {
-    static const char *const made[] = {"contact.png", "force.png", "sweep.png", "contacts.csv", "crisp.png", "hands.png",
-                                       "crisp.csv", "hands.csv", "crisp.gp", "hands.gp", "sweep.csv", "bilateral.gp", "sweep.gp"};
+    static const char *const made[] = {"contact.png", "force.png", "sweep.png", "contacts.csv",
+                                       "crisp.png",   "hands.png", "crisp.csv", "hands.csv",
+                                       "crisp.gp",    "hands.gp",  "sweep.csv", "bilateral.gp",
+                                       "sweep.gp"};
     const int err = outfile_dir(dir, "bilateral_natural_index_raw.csv");
     if (err) { return err; }
     for (size_t i = 0; i < sizeof made / sizeof made[0]; i++) {
@@ -35,7 +37,9 @@ FILE *bilateral_out_file(const char *dir, const char *name)
         return NULL;
     }
     f = fopen(path, "wb");
-    if (f == NULL) { cli_complain("%s: %s: make room or give another --out", path, strerror(errno)); }
+    if (f == NULL) {
+        cli_complain("%s: %s: make room or give another --out", path, strerror(errno));
+    }
     return f;
 }
 
@@ -67,8 +71,8 @@ int bilateral_out_csv(const char *dir, const struct bilateral_run *r, unsigned f
     for (size_t i = 0; i < t->n; i++) {
         const struct fall_sample s = bilateral_si(&t->at[i], i, r->T);
         const struct bilateral_paper *p = &t->at[i].raw;
-        fprintf(to, "%.9f,%.9g,%.9g,%.9g,%.9g,%d,%.9g,", s.t_s, s.q_m, s.qd_mps, s.f_des_N, s.i_des_A, s.c,
-                s.f_mon_N);
+        fprintf(to, "%.9f,%.9g,%.9g,%.9g,%.9g,%d,%.9g,", s.t_s, s.q_m, s.qd_mps, s.f_des_N,
+                s.i_des_A, s.c, s.f_mon_N);
         if (p->d_m_q30 != INT32_MIN) { fprintf(to, "%.9g", ldexp(p->d_m_q30, -EXH_Q_POS)); }
         fputc(',', to);
         if (p->q_lim_m_q30 != EXH_PRECONTACT_NEVER) {
@@ -99,9 +103,12 @@ int bilateral_out_pictures(const char *dir, const struct bilateral_result *r, in
     FILE *f = bilateral_out_file(dir, "bilateral.gp");
     char name[PATH_B];
     if (f == NULL) { return 1; }
-    fprintf(f, "# Made by exhand bilateral. Inside this directory, PLOTS the way to ports/posix/cli/plot:\n"
-               "#   gnuplot -c bilateral.gp PLOTS\nplots=ARG1\nk='%.6g'; b='%.6g'; link=\"%s\"; names='", k_Npm,
-            b_Nspm, link);
+    fprintf(
+        f,
+        "# Made by exhand bilateral. Inside this directory, PLOTS the way to "
+        "ports/posix/cli/plot:\n"
+        "#   gnuplot -c bilateral.gp PLOTS\nplots=ARG1\nk='%.6g'; b='%.6g'; link=\"%s\"; names='",
+        k_Npm, b_Nspm, link);
     for (int i = 0; i < n; i++) { fprintf(f, " %s", r[i].speed->name); }
     list(f, "fingers");
     for (int i = 0; i < n; i++) { fprintf(f, " %s", bilateral_finger_name[r[i].finger]); }
@@ -116,7 +123,8 @@ int bilateral_out_pictures(const char *dir, const struct bilateral_result *r, in
     for (int i = 0; i < n; i++) { fprintf(f, " %.3f", shown(&r[i]) ? shown(&r[i])->speed_mps : 0); }
     list(f, "settles");
     for (int i = 0; i < n; i++) {
-        fprintf(f, " %.1f", shown(&r[i]) && shown(&r[i])->settle_s >= 0 ? 1e3 * shown(&r[i])->settle_s : -1);
+        fprintf(f, " %.1f",
+                shown(&r[i]) && shown(&r[i])->settle_s >= 0 ? 1e3 * shown(&r[i])->settle_s : -1);
     }
     list(f, "stiffnesses");
     for (int i = 0; i < n; i++) { fprintf(f, " %.0f", r[i].stiffness_Npm); }

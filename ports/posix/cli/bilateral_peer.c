@@ -10,8 +10,9 @@
 
 #define HELLO_EVERY_S 0.5
 #define PARAM_EVERY_S 0.05
-#define TRACE_EVERY_S 0.5  /* longer than the way there and back: an answer is of the newest request */
-#define QUIET_US      1000000 /* nothing heard for so long: any HELLO begins anew */
+#define TRACE_EVERY_S \
+    0.5 /* longer than the way there and back: an answer is of the newest request */
+#define QUIET_US 1000000 /* nothing heard for so long: any HELLO begins anew */
 
 double peer_gap_m(const struct exh_wire_plane *p, const int32_t tip_m_q30[3])
 {
@@ -33,7 +34,9 @@ void peer_look(const struct peer_world *w, const struct exh_wire_state *in, doub
     *out = w->wall;
     for (unsigned f = 0; w->jump_s > 0 && t_s >= w->jump_s && f < EXH_WIRE_FINGERS; f++) {
         struct exh_wire_plane *p = &out->plane[f];
-        for (int i = 0; i < 3; i++) { p->point_m_q30[i] += (int32_t)(w->jump_m * p->normal_q30[i]); }
+        for (int i = 0; i < 3; i++) {
+            p->point_m_q30[i] += (int32_t)(w->jump_m * p->normal_q30[i]);
+        }
     }
     out->fingers &= in->fingers;
     for (unsigned f = 0; f < EXH_WIRE_FINGERS; f++) {
@@ -93,7 +96,8 @@ static void take(struct peer *p, const void *buf, size_t len_B)
     }
 }
 
-static void put_spoiled(struct peer *p, struct sim_link *link, const uint8_t *good, size_t len_B, double t_s)
+static void put_spoiled(struct peer *p, struct sim_link *link, const uint8_t *good, size_t len_B,
+                        double t_s)
 {
     uint8_t buf[EXH_WIRE_MAX_B + 1];
     for (int k = 0; k < p->cfg.hostile; k++) {
@@ -185,8 +189,11 @@ void peer_frame(void *ctx, struct sim_link *link, double t_s)
     p->frames++;
     if (p->hello_s < 0 || t_s - p->hello_s >= HELLO_EVERY_S) { put_hello(p, link, t_s); }
     if (p->rx.session == 0) { return; }
-    if (t_s >= p->cfg.param_from_s && (p->param_s < 0 || t_s - p->param_s >= PARAM_EVERY_S)) { put_params(p, link, t_s); }
-    if (p->cfg.trace.every && !p->trace.answered && (p->trace_s < 0 || t_s - p->trace_s >= TRACE_EVERY_S)) {
+    if (t_s >= p->cfg.param_from_s && (p->param_s < 0 || t_s - p->param_s >= PARAM_EVERY_S)) {
+        put_params(p, link, t_s);
+    }
+    if (p->cfg.trace.every && !p->trace.answered &&
+        (p->trace_s < 0 || t_s - p->trace_s >= TRACE_EVERY_S)) {
         put_trace_ask(p, link, t_s);
     }
     if (p->told) { answer(p, link, t_s); }

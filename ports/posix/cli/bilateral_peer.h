@@ -16,10 +16,10 @@ struct world;
 
 /* A world: walls, one a finger, which all stand still; or what a scene holds. */
 struct peer_world {
-    struct world *scene; /* NULL: the walls                                     */
+    struct world *scene; /* NULL: the walls */
     struct exh_wire_planes wall;
-    double ray_m; /* walls farther off than this are not seen; 0: all are       */
-    double jump_s, jump_m; /* from then on (0: never) walls stand so much nearer     */
+    double ray_m;          /* walls farther off than this are not seen; 0: all are */
+    double jump_s, jump_m; /* from then on (0: never) walls stand so much nearer */
 };
 
 /* d of a tip, n.(P - tip) + pad, m; of a plane that is none: -1e3. */
@@ -29,12 +29,12 @@ double peer_gap_m(const struct exh_wire_plane *p, const int32_t tip_m_q30[3]);
 void peer_look(const struct peer_world *w, const struct exh_wire_state *in, double t_s,
                struct exh_wire_planes *out);
 
-/* It is there from from_s to until_s, and again, started anew, from again_s on (0: not): else packets to it
- * are lost. It sets the parameters until each was acknowledged. */
+/* It is there from from_s to until_s, and again, started anew, from again_s on (0: not): else
+ * packets to it are lost. It sets the parameters until each was acknowledged. */
 struct peer_cfg {
     const struct peer_world *world;
     double from_s, until_s, again_s;
-    double param_from_s; /* it sets none before                                 */
+    double param_from_s; /* it sets none before */
     int hostile;         /* each packet comes again so often: a bit flipped, cut short, too long */
     struct exh_wire_param param[PEER_PARAMS];
     int params;
@@ -45,9 +45,9 @@ struct peer_cfg {
 struct peer_trace {
     int answered;
     uint32_t request_seq, next;
-    uint32_t frames, missed;       /* that came; that never will: by their numbers */
+    uint32_t frames, missed; /* that came; that never will: by their numbers */
     uint32_t first_tick, last_tick;
-    uint32_t unruly;               /* frames not `every` ticks behind the one before */
+    uint32_t unruly; /* frames not `every` ticks behind the one before */
 };
 
 struct peer {
@@ -56,15 +56,15 @@ struct peer {
     struct exh_wire_rx rx;
     struct exh_wire_state state;
     uint32_t echo_seq, echo_stamp_us;
-    double hello_s, param_s;       /* when the last went out                     */
-    double heard_s;                /* when it last looked what came              */
-    unsigned acked, refused;       /* masks of parameters                       */
+    double hello_s, param_s; /* when the last went out */
+    double heard_s;          /* when it last looked what came */
+    unsigned acked, refused; /* masks of parameters */
     uint64_t frames, answers;
-    int told;                      /* a state has come                          */
+    int told; /* a state has come */
     int born_again;
     struct peer_trace trace;
-    double trace_s;                /* when it last asked                        */
-    uint32_t spoiled;              /* packets                                   */
+    double trace_s;   /* when it last asked */
+    uint32_t spoiled; /* packets */
 };
 
 void peer_start(struct peer *p, const struct peer_cfg *cfg, uint32_t session);

@@ -28,8 +28,10 @@ void bilateral_cal_of(struct exh_glove_cal *cal, const struct sim_glove_par *p)
         struct exh_glove_sensor *s = &cal->sensor[i];
         const double per_rad = (n->hi - n->lo) / ((n->hi_deg - n->lo_deg) * DEG);
         const double raw_per_share = p->gain * p->excite_V * (1 - 2 * p->dead) * 32768 / p->span_V;
-        const double raw_at_0 = (p->gain * p->excite_V * (p->dead + (1 - 2 * p->dead) * n->lo) +
-                                 p->offset_V) * 32768 / p->span_V - n->lo_deg * DEG * per_rad * raw_per_share;
+        const double raw_at_0 =
+            (p->gain * p->excite_V * (p->dead + (1 - 2 * p->dead) * n->lo) + p->offset_V) * 32768 /
+                p->span_V -
+            n->lo_deg * DEG * per_rad * raw_per_share;
         const double raw_per_turn = per_rad * raw_per_share * TWO_PI;
         const double lo = raw_at_0 + n->lo_deg * DEG * per_rad * raw_per_share;
         const double hi = raw_at_0 + n->hi_deg * DEG * per_rad * raw_per_share;
@@ -93,8 +95,8 @@ void bilateral_wall(struct exh_wire_plane *to, const struct bilateral_finger_is 
     }
 }
 
-double bilateral_gap_m(const struct peer_world *world, const struct bilateral_finger_is *w, double x_m,
-                       double t_s)
+double bilateral_gap_m(const struct peer_world *world, const struct bilateral_finger_is *w,
+                       double x_m, double t_s)
 {
     struct exh_wire_state in = {.fingers = (uint8_t)(1u << w->f)};
     struct exh_wire_planes out;
@@ -107,8 +109,8 @@ double bilateral_gap_m(const struct peer_world *world, const struct bilateral_fi
     return peer_gap_m(&out.plane[w->f], in.tip_m_q30[w->f]);
 }
 
-double bilateral_string_m(const struct peer_world *world, const struct bilateral_finger_is *w, double t_s,
-                          double d_m)
+double bilateral_string_m(const struct peer_world *world, const struct bilateral_finger_is *w,
+                          double t_s, double d_m)
 {
     double lo, hi, x = 0;
     while (x <= TOP_M && bilateral_gap_m(world, w, x, t_s) < d_m) { x += STEP_M; }

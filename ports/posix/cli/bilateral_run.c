@@ -20,7 +20,7 @@
 #include <string.h>
 
 #define PATIENCE_S 0.5 /* a link that has to be heard of, and the like */
-#define AFTER_S 0.2 /* the last thing that is kept after the last approach */
+#define AFTER_S    0.2 /* the last thing that is kept after the last approach */
 
 static struct {
     const struct bilateral_run_cfg *cfg;
@@ -29,7 +29,7 @@ static struct {
     struct peer_world world;
     int logged, no_memory;
     uint32_t last_tick;
-    double done_s; /* when all fingers had done; < 0: not yet */
+    double done_s;  /* when all fingers had done; < 0: not yet */
     int ran, again; /* the box came to run; what stood in its way is gone */
 } run;
 
@@ -67,12 +67,13 @@ static void keep(struct bilateral_track *t, const struct bilateral_sample *s)
 
 static uint32_t digest_of(uint32_t digest, const struct bilateral_paper *p)
 {
-    const int32_t v[] = {p->q_m_q30, p->qd_mps_q27, p->f_des_N_q20, p->i_des_A_q26,
-                         p->c,       p->f_mon_N_q20};
+    const int32_t v[] = {p->q_m_q30,     p->qd_mps_q27, p->f_des_N_q20,
+                         p->i_des_A_q26, p->c,          p->f_mon_N_q20};
     return exh_crc32(digest, v, sizeof v);
 }
 
-static void widen(struct bilateral_range *g, const struct bilateral_sample *s, const int32_t *joint, int first)
+static void widen(struct bilateral_range *g, const struct bilateral_sample *s, const int32_t *joint,
+                  int first)
 {
     if (first || s->x_m < g->lo_m) { g->lo_m = s->x_m; }
     if (first || s->x_m > g->hi_m) { g->hi_m = s->x_m; }
@@ -92,9 +93,12 @@ static int one_finger(unsigned f)
     const struct sim_finger *plant = posix_finger(f);
     const enum sim_path_phase phase = plant->path.phase;
     const int plays = phase == SIM_PATH_PLAY;
-    const int under_way = phase == SIM_PATH_APPROACH || phase == SIM_PATH_HOLD || phase == SIM_PATH_WITHDRAW;
+    const int under_way =
+        phase == SIM_PATH_APPROACH || phase == SIM_PATH_HOLD || phase == SIM_PATH_WITHDRAW;
     const struct bilateral_sample s = {sig->paper[f], sig->more[f].bits,
-                                       plays ? 1 : under_way ? (int32_t)plant->path.number : 0,
+                                       plays       ? 1
+                                       : under_way ? (int32_t)plant->path.number
+                                                   : 0,
                                        phase == SIM_PATH_HOLD, plant->plant.x_m};
     widen(&t->range, &s, sig->more[f].joint_turn_q32, run.r->ticks == 1);
     t->freezes += (s.bits & EXH_PRECONTACT_FREEZE) != 0;
@@ -146,9 +150,9 @@ static struct bilateral_finger_is finger_is(const struct bilateral_run_cfg *c, u
     return w;
 }
 
-/* String per way of the fingertip from where q_lim is frozen, or from rest if that is nearer, to the touch,
- * as somebody would find by closing the hand once, slowly. 1 where there is no such way: nothing is there, it
- * is touched at rest, or the finger goes along it. */
+/* String per way of the fingertip from where q_lim is frozen, or from rest if that is nearer, to
+ * the touch, as somebody would find by closing the hand once, slowly. 1 where there is no such way:
+ * nothing is there, it is touched at rest, or the finger goes along it. */
 static double scale_to(const struct bilateral_finger_is *w, double touch_m, double d_lim_m)
 {
     const struct exh_signal *row = &exh_precontact_rows[2];
@@ -157,7 +161,9 @@ static double scale_to(const struct bilateral_finger_is *w, double touch_m, doub
     const double way_m = at_rest ? -bilateral_gap_m(&run.world, w, 0, 0) : -d_lim_m;
     const double scale = (touch_m - (at_rest ? 0 : from_m)) / way_m;
     if (touch_m <= 0 || way_m <= 0) { return 1; }
-    return scale >= cli_signal_value(row, row->min) && scale <= cli_signal_value(row, row->max) ? scale : 1;
+    return scale >= cli_signal_value(row, row->min) && scale <= cli_signal_value(row, row->max)
+               ? scale
+               : 1;
 }
 
 static int fit_scale(const struct bilateral_run_cfg *c, struct bilateral_run *r)
@@ -168,7 +174,8 @@ static int fit_scale(const struct bilateral_run_cfg *c, struct bilateral_run *r)
         const struct bilateral_finger_is w = finger_is(c, f);
         struct bilateral_track *t = &r->finger[f];
         const int32_t index = exh_signal_find(p->table, exh_precontact_rows[0].id, (uint16_t)f);
-        t->scale = scale_to(&w, t->touch_m, cli_signal_value(&exh_precontact_rows[0], p->staged[index]));
+        t->scale =
+            scale_to(&w, t->touch_m, cli_signal_value(&exh_precontact_rows[0], p->staged[index]));
         if (err == 0) {
             err = exh_params_stage(p, exh_precontact_rows[2].id, (uint16_t)f,
                                    (int32_t)(t->scale * (1 << exh_precontact_rows[2].frac)));
@@ -189,8 +196,9 @@ static int set_parameters(const struct bilateral_run_cfg *c)
 {
     const struct sim_device *d = &c->board.device;
     const struct run_setting known[] = {
-        {"step", d->step_m / d->decode}, {"kf", d->kf_npa},          {"dac_scale", d->dac_perA},
-        {"dac_zero", d->dac_zero},       {"mon_scale", d->mon_apc},  {"fingers", c->board.exo.fingers},
+        {"step", d->step_m / d->decode}, {"kf", d->kf_npa},
+        {"dac_scale", d->dac_perA},      {"dac_zero", d->dac_zero},
+        {"mon_scale", d->mon_apc},       {"fingers", c->board.exo.fingers},
         {"session", session_of(c)},
     };
     struct exh_params *p = exh_scene_bilateral.params;
@@ -198,7 +206,8 @@ static int set_parameters(const struct bilateral_run_cfg *c)
     int err = 0;
     exh_scene_bilateral.defaults();
     bilateral_cal_of(&cal, &c->board.glove_par);
-    err = c->board.glove_tty ? glove_serial_stage(&exh_scene_bilateral, c->glove_cal, c->rate_Hz, c->board.glove_tty->rate_Hz)
+    err = c->board.glove_tty ? glove_serial_stage(&exh_scene_bilateral, c->glove_cal, c->rate_Hz,
+                                                  c->board.glove_tty->rate_Hz)
                              : bilateral_stage_cal(&cal, NULL);
     if (err == 0) { err = images_give(c->images, &exh_scene_bilateral); }
     for (size_t i = 0; err == 0 && i < sizeof known / sizeof known[0]; i++) {
@@ -208,9 +217,12 @@ static int set_parameters(const struct bilateral_run_cfg *c)
     if (err == 0 && c->b_Nspm >= 0) { err = cli_param_set(p, "mat_b", c->b_Nspm); }
     if (err == 0) { err = run_image(&c->live, p); }
     /* Today is not the day on which that was saved, and what was waived then is not now. */
-    if (err == 0 && c->images && c->images->n) { err = images_give(c->images, &exh_scene_bilateral); }
+    if (err == 0 && c->images && c->images->n) {
+        err = images_give(c->images, &exh_scene_bilateral);
+    }
     /* Who is there now, whatever was there when that was saved. */
-    for (size_t i = sizeof known / sizeof known[0] - 2; err == 0 && i < sizeof known / sizeof known[0]; i++) {
+    for (size_t i = sizeof known / sizeof known[0] - 2;
+         err == 0 && i < sizeof known / sizeof known[0]; i++) {
         err = cli_param_set(p, known[i].name, known[i].value);
     }
     for (int i = 0; err == 0 && i < c->settings; i++) {
@@ -240,13 +252,15 @@ static void want_materials(const struct bilateral_run_cfg *c, struct peer_cfg *p
 /* The table of outputs is struct bilateral_signals. */
 static void want_trace(const struct bilateral_run_cfg *c, struct peer_cfg *p)
 {
-    static const size_t at[] = {offsetof(struct bilateral_paper, q_m_q30), offsetof(struct bilateral_paper, f_des_N_q20),
-                                offsetof(struct bilateral_paper, i_des_A_q26), offsetof(struct bilateral_paper, c)};
+    static const size_t at[] = {
+        offsetof(struct bilateral_paper, q_m_q30), offsetof(struct bilateral_paper, f_des_N_q20),
+        offsetof(struct bilateral_paper, i_des_A_q26), offsetof(struct bilateral_paper, c)};
     unsigned f = 0;
     while (f + 1 < BILATERAL_FINGERS && !(c->board.exo.fingers >> f & 1)) { f++; }
     p->trace.every = (uint32_t)c->trace_every;
     for (unsigned i = 0; i < EXH_TRACE_SIGNALS; i++) {
-        p->trace.index[i] = (uint16_t)((f * sizeof(struct bilateral_paper) + at[i]) / sizeof(int32_t));
+        p->trace.index[i] =
+            (uint16_t)((f * sizeof(struct bilateral_paper) + at[i]) / sizeof(int32_t));
     }
 }
 
@@ -269,11 +283,17 @@ static void put_up(const struct bilateral_run_cfg *c)
 static struct posix_config board_of(const struct bilateral_run_cfg *c)
 {
     struct posix_config b = c->board;
-    struct peer_cfg p = {.world = &run.world, .from_s = c->from_s, .until_s = c->until_s,
-                         .again_s = c->again_s, .param_from_s = c->param_from_s, .hostile = c->hostile};
+    struct peer_cfg p = {.world = &run.world,
+                         .from_s = c->from_s,
+                         .until_s = c->until_s,
+                         .again_s = c->again_s,
+                         .param_from_s = c->param_from_s,
+                         .hostile = c->hostile};
     want_materials(c, &p);
     want_trace(c, &p);
-    for (int i = 0; i < c->wants && p.params < PEER_PARAMS; i++) { p.param[p.params++] = c->want[i]; }
+    for (int i = 0; i < c->wants && p.params < PEER_PARAMS; i++) {
+        p.param[p.params++] = c->want[i];
+    }
     peer_start(&run.peer, &p, 1 + (uint32_t)(b.seed % 1000000));
     b.glove = 1;
     if (b.line.udp_local == NULL) {
@@ -316,7 +336,8 @@ int bilateral_run(const struct bilateral_run_cfg *c, struct bilateral_run *r)
     r->dumps = dumpfile_close(err < 0);
     if (err == 0 && r->unarmed) {
         err = -EXH_E_STATE; /* that was told */
-    } else if (err < 0 && !c->board.cards.quiet && !images_complain(c->images, &exh_scene_bilateral)) {
+    } else if (err < 0 && !c->board.cards.quiet &&
+               !images_complain(c->images, &exh_scene_bilateral)) {
         cli_setup_complain(exh_scene_bilateral.params, (double)c->rate_Hz, err);
     }
     if (run.logged && r->T.num != 0) { r->lost = exh_log_end(run.last_tick + 1); }

@@ -12,8 +12,10 @@
 
 static int bad_speeds(const char *text)
 {
-    cli_complain("--speed: %s: give slow, natural, fast or 0.001..3 m/s of string, commas between, at "
-                 "most %d", text, BILATERAL_SPEEDS_MAX);
+    cli_complain(
+        "--speed: %s: give slow, natural, fast or 0.001..3 m/s of string, commas between, at "
+        "most %d",
+        text, BILATERAL_SPEEDS_MAX);
     return 2;
 }
 
@@ -55,8 +57,10 @@ int bilateral_take_fingers(void *ctx, const char *text)
             if (strlen(name) == len && strncmp(at, name, len) == 0) { hit |= 1u << f; }
         }
         if (hit == 0) {
-            cli_complain("--fingers: %s: give all, or some of thumb, index, middle, ring, little, commas "
-                         "between", text);
+            cli_complain(
+                "--fingers: %s: give all, or some of thumb, index, middle, ring, little, commas "
+                "between",
+                text);
             return 2;
         }
         mask |= hit;
@@ -76,7 +80,9 @@ int bilateral_take_pose(void *ctx, const char *text)
         return 0;
     }
     cli_complain("--pose: %s: no such pose:", text);
-    for (int i = 0; i < sim_poses; i++) { fprintf(stderr, "  %-11s %s\n", sim_pose[i].name, sim_pose[i].say); }
+    for (int i = 0; i < sim_poses; i++) {
+        fprintf(stderr, "  %-11s %s\n", sim_pose[i].name, sim_pose[i].say);
+    }
     return 2;
 }
 
@@ -88,16 +94,20 @@ int bilateral_take_setting(void *ctx, const char *text)
     if (assign_split("set", text, name, &value)) { return 2; }
     if (o->settings == BILATERAL_SETTINGS_MAX || strncmp(name, "cal_", 4) == 0 ||
         strcmp(name, "fingers") == 0) {
-        cli_complain("--set: %s: not here: --fingers says which, the glove is calibrated, and there may be "
-                     "%d settings", text, BILATERAL_SETTINGS_MAX);
+        cli_complain(
+            "--set: %s: not here: --fingers says which, the glove is calibrated, and there may be "
+            "%d settings",
+            text, BILATERAL_SETTINGS_MAX);
         return 2;
     }
     exh_scene_bilateral.defaults();
     if (cli_param_set(exh_scene_bilateral.params, name, value) < 0) { return 2; }
     if (strcmp(name, exh_precontact_rows[2].name) == 0 ||
-        strcmp(name, exh_precontact_rows[3].name) == 0) { o->own_scale = 1; }
-    o->setting[o->settings++] =
-        (struct run_setting){cli_signal_find(exh_scene_bilateral.params->table, name, NULL)->name, value};
+        strcmp(name, exh_precontact_rows[3].name) == 0) {
+        o->own_scale = 1;
+    }
+    o->setting[o->settings++] = (struct run_setting){
+        cli_signal_find(exh_scene_bilateral.params->table, name, NULL)->name, value};
     return 0;
 }
 
@@ -122,19 +132,21 @@ int bilateral_take_device(void *ctx, const char *text)
     char name[ASSIGN_NAME_B];
     double value;
     if (assign_split("device", text, name, &value)) { return 2; }
-    if (strcmp(name, "speed") == 0 || strcmp(name, "approaches") == 0 || strcmp(name, "believed") == 0) {
+    if (strcmp(name, "speed") == 0 || strcmp(name, "approaches") == 0 ||
+        strcmp(name, "believed") == 0) {
         cli_complain("--device: %s: give --speed, --approaches or --at", name);
         return 2;
     }
-    return set_device(ctx, name, value, &row) == 0 ? 0 : assign_refused("bilateral", name, value, row);
+    return set_device(ctx, name, value, &row) == 0 ? 0
+                                                   : assign_refused("bilateral", name, value, row);
 }
 
 static void print_rows(const char *title, const struct sim_device_row *row, int n)
 {
     printf("\n%s\n", title);
     for (int i = 0; i < n; i++) {
-        printf("  %-15s %-8s %12.9g  %12.9g .. %-12.9g %-7s %s\n", row[i].name, row[i].unit, row[i].value,
-               row[i].min, row[i].max, row[i].sure, row[i].help);
+        printf("  %-15s %-8s %12.9g  %12.9g .. %-12.9g %-7s %s\n", row[i].name, row[i].unit,
+               row[i].value, row[i].min, row[i].max, row[i].sure, row[i].help);
     }
 }
 

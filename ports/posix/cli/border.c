@@ -12,14 +12,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define TICKS     2500  /* watched when let go: 0.995^2500 = 4e-6                 */
-#define OFFSET    0.2   /* let go this share of the penetration above rest        */
-#define NEAR      0.005 /* |rho - 1| below this is on the border                  */
+#define TICKS     2500  /* watched when let go: 0.995^2500 = 4e-6 */
+#define OFFSET    0.2   /* let go this share of the penetration above rest */
+#define NEAR      0.005 /* |rho - 1| below this is on the border */
 #define AGREE_MIN 0.99
-#define DROPS     3     /* falls a cell of the second table                       */
+#define DROPS     3 /* falls a cell of the second table */
 #define SETTINGS  80
-#define OVER      1.5 /* the agreement's grid, times the linear border            */
-#define WIDE      2.6 /* how far friction moves the border at most, and more      */
+#define OVER      1.5 /* the agreement's grid, times the linear border */
+#define WIDE      2.6 /* how far friction moves the border at most, and more */
 #define HIGH      1.6
 
 /* What the scene and the device take. */
@@ -47,8 +47,8 @@ static const struct {
 /* Runs 0.. are the agreement's grid at each rate, then each start and variant's. */
 struct plan {
     const struct sweep_opt *o;
-    double *k_top, *b_top; /* of the linear border, per rate                     */
-    int columns, rows;     /* of the second table's grid                         */
+    double *k_top, *b_top; /* of the linear border, per rate */
+    int columns, rows;     /* of the second table's grid */
 };
 
 struct check {
@@ -181,11 +181,12 @@ static int print_agreement(const struct plan *p, const struct check *x, int n)
 {
     const struct sweep_opt *o = p->o;
     int all[2] = {0, 0};
-    printf("\nLet go a fifth above rest, %d ticks: comes to rest, and rho < 1?\n"
-           "(no dry friction, saturation, steps, pull-back; %d x %d cells over 1.5 times the linear "
-           "border)\n\n"
-           "  rate | cells | |rho - 1| >= %.3f: agree        | nearer: agree\n", TICKS, o->columns,
-           o->rows, NEAR);
+    printf(
+        "\nLet go a fifth above rest, %d ticks: comes to rest, and rho < 1?\n"
+        "(no dry friction, saturation, steps, pull-back; %d x %d cells over 1.5 times the linear "
+        "border)\n\n"
+        "  rate | cells | |rho - 1| >= %.3f: agree        | nearer: agree\n",
+        TICKS, o->columns, o->rows, NEAR);
     for (int r = 0; r < o->rates; r++) {
         int away[2] = {0, 0}, near[2] = {0, 0};
         for (int i = 0; i < n; i++) {
@@ -197,8 +198,8 @@ static int print_agreement(const struct plan *p, const struct check *x, int n)
             to[1] += agree;
         }
         printf("%6.6g | %5d | %5d of %5d = %6.2f %%       | %4d of %4d\n", o->rate_Hz[r],
-               away[0] + near[0], away[1], away[0], away[0] ? 100.0 * away[1] / away[0] : 0, near[1],
-               near[0]);
+               away[0] + near[0], away[1], away[0], away[0] ? 100.0 * away[1] / away[0] : 0,
+               near[1], near[0]);
         all[0] += away[0];
         all[1] += away[1];
     }
@@ -210,12 +211,17 @@ static int print_agreement(const struct plan *p, const struct check *x, int n)
 static void print_parts(const struct plan *p, const struct check *x, int n, int start)
 {
     if (start == LET_GO) {
-        printf("\nThe same with one of these switched on, alone: cells at rest, in %% of those with "
-               "rho < 1\n(in brackets: at rest though rho >= 1, not at rest though rho < 1; %d x %d cells "
-               "over 2.6 times\nthe linear k and 1.6 times b)\n\n%-38s", p->columns, p->rows, "");
+        printf(
+            "\nThe same with one of these switched on, alone: cells at rest, in %% of those with "
+            "rho < 1\n(in brackets: at rest though rho >= 1, not at rest though rho < 1; %d x %d "
+            "cells "
+            "over 2.6 times\nthe linear k and 1.6 times b)\n\n%-38s",
+            p->columns, p->rows, "");
     } else {
-        printf("\nThe same dropped from the height, %d falls a cell: the string goes slack, force only "
-               "pulls\n\n%-38s", DROPS, "");
+        printf("\nThe same dropped from the height, %d falls a cell: the string goes slack, force "
+               "only "
+               "pulls\n\n%-38s",
+               DROPS, "");
     }
     for (int r = 0; r < p->o->rates; r++) { printf(" %9.6g Hz   ", p->o->rate_Hz[r]); }
     printf("\n");
@@ -225,7 +231,8 @@ static void print_parts(const struct plan *p, const struct check *x, int n, int 
             int rest = 0, within = 0, won = 0, lost = 0;
             char text[32];
             for (int i = 0; i < n; i++) {
-                if (x[i].agreement || x[i].rate_i != r || x[i].variant != v || x[i].start != start) {
+                if (x[i].agreement || x[i].rate_i != r || x[i].variant != v ||
+                    x[i].start != start) {
                     continue;
                 }
                 rest += x[i].stable;
@@ -233,7 +240,8 @@ static void print_parts(const struct plan *p, const struct check *x, int n, int 
                 won += x[i].stable && !linear(&x[i]);
                 lost += !x[i].stable && linear(&x[i]);
             }
-            snprintf(text, sizeof text, "%4.0f (+%d -%d)", within ? 100.0 * rest / within : 0, won, lost);
+            snprintf(text, sizeof text, "%4.0f (+%d -%d)", within ? 100.0 * rest / within : 0, won,
+                     lost);
             printf(" %-14s", text);
         }
         printf("\n");
@@ -272,15 +280,17 @@ static int refuse(const struct plan *p, int rate_i)
     const double k_least = k_agree < k_parts ? k_agree : k_parts;
     const double hang_m = (1 - OFFSET) * o->base.board.device.mass_kg * SIM_GRAVITY / k_least;
     if (hang_m > Q_LIM_MAX_M) {
-        cli_complain("--border-check: %.6g Hz: at k = %.3g N/m the mass would hang %.3g m deep, the scene "
-                     "takes %.0f m: a higher --rate, fewer columns in --grid", rate_Hz, k_least, hang_m,
-                     Q_LIM_MAX_M);
+        cli_complain(
+            "--border-check: %.6g Hz: at k = %.3g N/m the mass would hang %.3g m deep, the scene "
+            "takes %.0f m: a higher --rate, fewer columns in --grid",
+            rate_Hz, k_least, hang_m, Q_LIM_MAX_M);
         return 2;
     }
     if (WIDE * k_top > K_MAX_NPM || HIGH * b_top > B_MAX_NSPM) {
-        cli_complain("--border-check: %.6g Hz: the grid would reach k = %.3g N/m, b = %.3g Ns/m, the scene "
-                     "takes %.0f, %.0f: a lower --rate", rate_Hz, WIDE * k_top, HIGH * b_top, K_MAX_NPM,
-                     B_MAX_NSPM);
+        cli_complain(
+            "--border-check: %.6g Hz: the grid would reach k = %.3g N/m, b = %.3g Ns/m, the scene "
+            "takes %.0f, %.0f: a lower --rate",
+            rate_Hz, WIDE * k_top, HIGH * b_top, K_MAX_NPM, B_MAX_NSPM);
         return 2;
     }
     return 0;
@@ -292,13 +302,16 @@ static int plan_rates(struct plan *p)
     const struct sweep_opt *o = p->o;
     for (int r = 0; r < o->rates; r++) {
         if (TICKS / o->rate_Hz[r] > OBSERVE_MAX_S) {
-            cli_complain("--border-check: %.6g Hz: watches %d ticks, at most %d s: --rate %d or higher",
-                         o->rate_Hz[r], TICKS, OBSERVE_MAX_S, TICKS / OBSERVE_MAX_S);
+            cli_complain(
+                "--border-check: %.6g Hz: watches %d ticks, at most %d s: --rate %d or higher",
+                o->rate_Hz[r], TICKS, OBSERVE_MAX_S, TICKS / OBSERVE_MAX_S);
             return 2;
         }
         if (!linear_top(o, o->rate_Hz[r], &p->k_top[r], &p->b_top[r])) {
-            cli_complain("--border-check: %.6g Hz: no linear border, rho < 1 nowhere, or the delay is too "
-                         "long to tell: another --rate or --device", o->rate_Hz[r]);
+            cli_complain(
+                "--border-check: %.6g Hz: no linear border, rho < 1 nowhere, or the delay is too "
+                "long to tell: another --rate or --device",
+                o->rate_Hz[r]);
             return 2;
         }
         if (refuse(p, r)) { return 2; }

@@ -34,11 +34,11 @@ const struct bringup_wrong_row bringup_wrong_row[BRINGUP_WRONGS] = {
 static struct {
     const struct bringup_run_cfg *cfg;
     struct bringup_run *out;
-    struct exh_drive_out last; /* of the box                                     */
-    uint16_t held_raw; /* the D/A's code when it stopped moving          */
-    int phase; /* that the person knows of, */
-    int began; /* whether it has begun, */
-    double since_s, from_m; /* and since when, and from where                 */
+    struct exh_drive_out last; /* of the box */
+    uint16_t held_raw;         /* the D/A's code when it stopped moving */
+    int phase;                 /* that the person knows of, */
+    int began;                 /* whether it has begun, */
+    double since_s, from_m;    /* and since when, and from where */
     double wrong_s, end_s, ended_m, turn_s;
     int hooked, held, wrong;
 } run;
@@ -292,7 +292,7 @@ static void place(struct posix_config *board)
     if (stage <= 2 || w == BRINGUP_STUCK) { board->wrong |= BENCH_STUCK; } /* a load */
     if (stage == 4 && w != BRINGUP_SLIPPED && !weighs()) {
         board->wrong |= BENCH_FIXED_MASS;
-    } /* a stiff balance */
+    }                 /* a stiff balance */
     if (stage == 5) { /* a finger that stays where it is, bent */
         board->exo.fingers = 1;
         board->exo.path[0].start_m = 0.03;

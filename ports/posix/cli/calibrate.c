@@ -19,7 +19,7 @@
 #include <time.h>
 
 #define SETTINGS_MAX 64
-#define DAY_S 86400
+#define DAY_S        86400
 
 struct calibrate_options {
     int64_t rate_Hz, seed, id, finger, day, valid_days; /* as CLI_INT writes them */
@@ -61,7 +61,7 @@ static int masses(const char *option, const char *text, double *kg, int rising)
         if (n == CALIBRATE_MASSES || end == from || !(v >= 0.001 && v <= 5) ||
             (rising && n > 0 && v <= kg[n - 1]) || (*end != ',' && *end != '\0')) {
             cli_complain("--%s: %s (0.001..5 kg%s, commas between, at most %d): e.g. --%s 0.1,0.5",
-                    option, text, rising ? ", rising" : "", CALIBRATE_MASSES, option);
+                         option, text, rising ? ", rising" : "", CALIBRATE_MASSES, option);
             return 0;
         }
         kg[n++] = v;
@@ -74,7 +74,8 @@ static int take_masses(void *ctx, const char *text)
     struct calibrate_options *o = ctx;
     o->masses = masses("mass", text, o->mass_kg, 1);
     if (o->masses == 1) { /* any one point lies on its own line: nothing would be checked */
-        cli_complain("--mass: %s: one mass alone can't be checked against a line: give two or more", text);
+        cli_complain("--mass: %s: one mass alone can't be checked against a line: give two or more",
+                     text);
         return 2;
     }
     return o->masses ? 0 : 2;
@@ -134,13 +135,15 @@ static int take_wrong(void *ctx, const char *text)
 static void print_params(void)
 {
     exh_scene_calibrate.defaults();
-    printf("Parameters of the scene (--set NAME=VALUE; f_max and slew in A for N: there is no table yet)\n");
+    printf("Parameters of the scene (--set NAME=VALUE; f_max and slew in A for N: there is no "
+           "table yet)\n");
     cli_signal_print(stdout, exh_scene_calibrate.params->table);
-    printf("\nThe simulated device (--device NAME=VALUE); step and the scales are known to the scene\n");
+    printf("\nThe simulated device (--device NAME=VALUE); step and the scales are known to the "
+           "scene\n");
     for (int i = 0; i < sim_device_rows; i++) {
         const struct sim_device_row *r = &sim_device_row[i];
-        printf("  %-13s %-8s %12.7g  %12.7g .. %-12.7g %-8s %s\n", r->name, r->unit, r->value, r->min,
-               r->max, r->sure, r->help);
+        printf("  %-13s %-8s %12.7g  %12.7g .. %-12.7g %-8s %s\n", r->name, r->unit, r->value,
+               r->min, r->max, r->sure, r->help);
     }
     printf("\nWhat may be wrong at the bench (--wrong NAME)\n");
     for (size_t i = 0; i < WRONGS; i++) { printf("  %-17s %s\n", wrong[i].name, wrong[i].what); }
@@ -159,7 +162,8 @@ static int complain(const char *what, int err, const struct exh_calib_bad *bad)
     return 1;
 }
 
-struct results { /* what is written into the files */
+/* what is written into the files */
+struct results {
     const struct exh_calib *c;
     const struct calibration_lines *l;
     uint8_t image[EXH_CALIB_IMAGE_B];
@@ -187,16 +191,18 @@ static void write_table(FILE *f, const void *ctx)
 static void write_pictures(FILE *f, const void *ctx)
 {
     const struct results *r = ctx;
-    fprintf(f, "# Made by exhand calibrate. In this directory: gnuplot -c pictures.gp PLOTS, where\n"
-               "# PLOTS is the path of ports/posix/cli/plot.\n"
-               "out='calibration.png'; points='calibration.csv'; table='table.csv'\n"
-               "kf=%.9g; kf_mon=%.9g\nload ARG1.'/calibration.gp'\n",
+    fprintf(f,
+            "# Made by exhand calibrate. In this directory: gnuplot -c pictures.gp PLOTS, where\n"
+            "# PLOTS is the path of ports/posix/cli/plot.\n"
+            "out='calibration.png'; points='calibration.csv'; table='table.csv'\n"
+            "kf=%.9g; kf_mon=%.9g\nload ARG1.'/calibration.gp'\n",
             (double)r->l->cur.kf_NpA_q20 / (1 << EXH_Q_FORCE),
             (double)r->l->mon.kf_NpA_q20 / (1 << EXH_Q_FORCE));
 }
 
 /* All of them or the first that fails. 0, or 1 after a line on stderr. */
-static int write_files(const char *dir, const struct exh_calib *c, const struct calibration_lines *l)
+static int write_files(const char *dir, const struct exh_calib *c,
+                       const struct calibration_lines *l)
 {
     static const struct {
         const char *name;
@@ -242,16 +248,21 @@ static int not_here(const struct calibrate_options *o, const struct exh_calib *c
                     const struct exh_calib_bad *bad)
 {
     if (bad->what == EXH_CALIB_DEVICE) {
-        cli_complain("%s: made for device %lu, this is %" PRId64 ": give its --id, or calibrate this one", o->check,
-                     (unsigned long)c->device_id, o->id);
+        cli_complain("%s: made for device %lu, this is %" PRId64
+                     ": give its --id, or calibrate this one",
+                     o->check, (unsigned long)c->device_id, o->id);
     } else if (bad->what == EXH_CALIB_FINGER) {
-        cli_complain("%s: made for finger %lu, this is %" PRId64 ": give its --finger, or calibrate this one",
+        cli_complain("%s: made for finger %lu, this is %" PRId64
+                     ": give its --finger, or calibrate this one",
                      o->check, (unsigned long)c->finger, o->finger);
     } else if (bad->what == EXH_CALIB_AGE && (uint32_t)o->day < c->day) {
-        cli_complain("%s: from the future: made on day %lu, today is day %" PRId64 ": set the clock right, or "
-                     "give --day", o->check, (unsigned long)c->day, o->day);
+        cli_complain("%s: from the future: made on day %lu, today is day %" PRId64
+                     ": set the clock right, or "
+                     "give --day",
+                     o->check, (unsigned long)c->day, o->day);
     } else if (bad->what == EXH_CALIB_AGE) {
-        cli_complain("%s: stale: made on day %lu, good for %lu days, today is day %" PRId64 ": calibrate again",
+        cli_complain("%s: stale: made on day %lu, good for %lu days, today is day %" PRId64
+                     ": calibrate again",
                      o->check, (unsigned long)c->day, (unsigned long)c->valid_days, o->day);
     } else {
         return complain(o->check, err, bad);
@@ -267,13 +278,16 @@ static int check_image(const struct calibrate_options *o)
     struct calibration_lines l;
     struct exh_calib_bad bad = {0, 0};
     uint8_t image[EXH_CALIB_IMAGE_B];
-    const long len = outfile_read("check", o->check, "calibration.bin that `exhand calibrate --out` wrote", image, sizeof image);
+    const long len =
+        outfile_read("check", o->check, "calibration.bin that `exhand calibrate --out` wrote",
+                     image, sizeof image);
     int err;
     if (len < 0) { return (int)-len; }
     err = exh_calib_load(&c, image, (size_t)len, &bad);
     if (err < 0) { return complain(o->check, err, &bad); }
-    printf("%s: device %lu, finger %lu, made on day %lu, good for %lu days; today is day %" PRId64 "\n", o->check,
-           (unsigned long)c.device_id, (unsigned long)c.finger, (unsigned long)c.day,
+    printf("%s: device %lu, finger %lu, made on day %lu, good for %lu days; today is day %" PRId64
+           "\n",
+           o->check, (unsigned long)c.device_id, (unsigned long)c.finger, (unsigned long)c.day,
            (unsigned long)c.valid_days, o->day);
     fflush(stdout);
     here = here_and_now(o, &c);
@@ -317,7 +331,7 @@ static int judge(const struct calibrate_options *o, struct calibration *r)
     err = l.cur_worst_N > o->residual_N || l.mon_worst_N > o->residual_N;
     if (err) {
         cli_complain("residual: %.4g N (allowed 0..%.4g): weigh that mass again, or --residual",
-                l.cur_worst_N > l.mon_worst_N ? l.cur_worst_N : l.mon_worst_N, o->residual_N);
+                     l.cur_worst_N > l.mon_worst_N ? l.cur_worst_N : l.mon_worst_N, o->residual_N);
         return 1;
     }
     if (posix_interrupted()) {
@@ -336,9 +350,11 @@ static void say_failure(const struct calibrate_options *o, const struct calibrat
     char which[24] = "", why[CALIBRATION_WHY_B];
     if (mass < (unsigned)o->masses) { snprintf(which, sizeof which, " %.4g kg", o->mass_kg[mass]); }
     calibration_why(why, r);
-    cli_complain("%s%s: %s after %.2f s at up to %.1f mA, %.1f mm: stopped, no current; put it right and "
-                 "calibrate again", calibrate_step_text(r->step), which, why, r->last_s,
-                 r->last_most_A * 1e3, r->last_travel_m * 1e3);
+    cli_complain(
+        "%s%s: %s after %.2f s at up to %.1f mA, %.1f mm: stopped, no current; put it right and "
+        "calibrate again",
+        calibrate_step_text(r->step), which, why, r->last_s, r->last_most_A * 1e3,
+        r->last_travel_m * 1e3);
 }
 
 static int calibrate(const struct calibrate_options *o)
@@ -404,19 +420,24 @@ int cli_calibrate(int argc, char **argv)
         void *to;
     } u[5] = {{&known}, {&setting}, {&device}, {&fault}, {&hung}};
     const struct cli_option option[] = {
-        {"glove", CLI_FLAG, &glove, 0, 0, NULL, "the glove, from poses: --glove --help lists its options"},
-        {"mass", CLI_CALL, u[0].to, 0, 0, "KG[,KG...]", "known masses, rising (0.1,0.2,0.3,0.5,0.7)"},
-        {"hung", CLI_CALL, u[4].to, 0, 0, "KG[,KG...]", "what really hangs on the string, as many (the same)"},
+        {"glove", CLI_FLAG, &glove, 0, 0, NULL,
+         "the glove, from poses: --glove --help lists its options"},
+        {"mass", CLI_CALL, u[0].to, 0, 0, "KG[,KG...]",
+         "known masses, rising (0.1,0.2,0.3,0.5,0.7)"},
+        {"hung", CLI_CALL, u[4].to, 0, 0, "KG[,KG...]",
+         "what really hangs on the string, as many (the same)"},
         {"rate", CLI_INT, &o.rate_Hz, 20, 20000, "HZ", "loop rate (2000)"},
         {"out", CLI_TEXT, &o.out, 0, 0, "DIR", "write image, CSVs and a picture's script there"},
-        {"check", CLI_TEXT, &o.check, 0, 0, "FILE", "only say whether this image may be used here today"},
+        {"check", CLI_TEXT, &o.check, 0, 0, "FILE",
+         "only say whether this image may be used here today"},
         {"residual", CLI_REAL, &o.residual_N, 0, 100, "N", "no point farther from the line (0.1)"},
         {"id", CLI_INT, &o.id, 0, 4294967295.0, "N", "of the device (1)"},
         {"finger", CLI_INT, &o.finger, 0, EXH_FINGERS - 1, "N", "thumb 0 .. little 4 (0)"},
         {"day", CLI_INT, &o.day, 0, 4294967295.0, "N", "today, in days since 1970 (the clock's)"},
         {"valid", CLI_INT, &o.valid_days, 0, 36525, "DAYS", "stale after that (90)"},
         {"seed", CLI_INT, &o.seed, 0, 1e9, "N", "of all chance in the simulation (1)"},
-        {"cards", CLI_FLAG, &o.cards, 0, 0, NULL, "through the drivers and emulated cards: the same bits"},
+        {"cards", CLI_FLAG, &o.cards, 0, 0, NULL,
+         "through the drivers and emulated cards: the same bits"},
         {"pace", CLI_FLAG, &o.pace, 0, 0, NULL, "follow the wall clock, for people who watch"},
         {"set", CLI_CALL, u[1].to, 0, 0, "NAME=VALUE", "a parameter of the scene"},
         {"device", CLI_CALL, u[2].to, 0, 0, "NAME=VALUE", "a value of the simulated device"},
@@ -424,9 +445,12 @@ int cli_calibrate(int argc, char **argv)
         {"params", CLI_FLAG, &list, 0, 0, NULL, "list these three, with units and ranges"},
     };
     const struct cli_command c = {
-        "calibrate", "[options]",
+        "calibrate",
+        "[options]",
         "Polarity, home, F0, then masses: tables from force to current and from monitor to force.",
-        option, (int)(sizeof option / sizeof option[0]), 0};
+        option,
+        (int)(sizeof option / sizeof option[0]),
+        0};
 
     for (int i = 1; i < argc; i++) {
         if (strcmp(argv[i], "--glove") == 0) { return cli_calibrate_glove(argc, argv); }

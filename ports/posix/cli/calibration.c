@@ -12,16 +12,16 @@
 
 #include <string.h>
 
-#define GO_ID 0x8211
+#define GO_ID   0x8211
 #define MASS_ID 0x8220
 
 static struct {
     const struct calibration_cfg *cfg;
     struct calibration *out;
     struct exh_period T;
-    int asked;           /* steps that the person was asked to prepare           */
-    int32_t step;        /* as of the last tick                                 */
-    uint32_t begin;      /* tick at which the step began                         */
+    int asked;      /* steps that the person was asked to prepare */
+    int32_t step;   /* as of the last tick */
+    uint32_t begin; /* tick at which the step began */
     int32_t begin_m_q30;
     int busy;
 } run;
@@ -56,7 +56,8 @@ static void before(uint32_t tick, struct exh_scene_in *in)
     if (tick == 0 || !s.waits) { return; }
     if (run.asked == s.step) {
         run.asked++;
-        posix_bench(calibrate_ask((unsigned)s.step) == CALIBRATE_ASK_MASS ? BENCH_MASS : BENCH_SLACK,
+        posix_bench(calibrate_ask((unsigned)s.step) == CALIBRATE_ASK_MASS ? BENCH_MASS
+                                                                          : BENCH_SLACK,
                     mass >= 0 && mass < run.cfg->masses ? hung_kg[mass] : 0);
     } else if (posix_bench_ready()) {
         (void)exh_params_stage(exh_scene_calibrate.params, GO_ID, 0, s.step + 1);
@@ -85,7 +86,8 @@ static void say_result(FILE *f, int32_t step, unsigned result)
     } else if (step == CALIBRATE_HOME) {
         fprintf(f, "its end lies %.2f mm in from where it was\n", -run.out->home_m * 1e3);
     } else if (step == CALIBRATE_F0) {
-        fprintf(f, "the slack string returns at %.1f mA\n", si(run.out->c.f0_A_q26, EXH_Q_CUR) * 1e3);
+        fprintf(f, "the slack string returns at %.1f mA\n",
+                si(run.out->c.f0_A_q26, EXH_Q_CUR) * 1e3);
     } else {
         const struct exh_weigh *w = &s->weigh[step - CALIBRATE_MASS];
         fprintf(f, "lifts at %.1f mA, sinks at %.1f mA\n", si(w->lift_A_q26, EXH_Q_CUR) * 1e3,
@@ -159,12 +161,31 @@ static void names(char *to, size_t size, uint32_t bits, const char *const *name,
 
 void calibration_why(char to[CALIBRATION_WHY_B], const struct calibration *r)
 {
-    static const char *const fault[] = {"emergency stop", "drive not ready", "ticks missed", "encoder",
-                                        "dead-man released", "current tracking", "encoder stands",
-                                        "too fast", "glove", "card", "link", "supply", "watchdog",
-                                        "configuration", "state of the box"};
-    static const char *const limit[] = {"pull", "force: f_max, or i_max", "slew", "peak: i_peak",
-                                        "I2t: i_cont, i_peak, peak_time", "D/A span", "gate", "ramp", "release", "speed",
+    static const char *const fault[] = {"emergency stop",
+                                        "drive not ready",
+                                        "ticks missed",
+                                        "encoder",
+                                        "dead-man released",
+                                        "current tracking",
+                                        "encoder stands",
+                                        "too fast",
+                                        "glove",
+                                        "card",
+                                        "link",
+                                        "supply",
+                                        "watchdog",
+                                        "configuration",
+                                        "state of the box"};
+    static const char *const limit[] = {"pull",
+                                        "force: f_max, or i_max",
+                                        "slew",
+                                        "peak: i_peak",
+                                        "I2t: i_cont, i_peak, peak_time",
+                                        "D/A span",
+                                        "gate",
+                                        "ramp",
+                                        "release",
+                                        "speed",
                                         "passivity"};
     char list[120] = "";
     if (r->result == CALIBRATE_OFF) {
@@ -174,16 +195,18 @@ void calibration_why(char to[CALIBRATION_WHY_B], const struct calibration *r)
         names(list, sizeof list, r->limits & ~(uint32_t)EXH_LIMIT_SLEW, limit,
               sizeof limit / sizeof limit[0]);
     }
-    snprintf(to, CALIBRATION_WHY_B, "%s%s%s%s", calibrate_result_text(r->result), list[0] ? " (" : "", list,
-             list[0] ? ")" : "");
+    snprintf(to, CALIBRATION_WHY_B, "%s%s%s%s", calibrate_result_text(r->result),
+             list[0] ? " (" : "", list, list[0] ? ")" : "");
 }
 
 static int set_parameters(const struct calibration_cfg *c)
 {
     const struct sim_device *d = &c->board.device;
     const struct calibration_setting known[] = {
-        {"step", d->step_m / d->decode}, {"dac_scale", d->dac_perA},
-        {"dac_zero", d->dac_zero},       {"mon_scale", d->mon_apc},
+        {"step", d->step_m / d->decode},
+        {"dac_scale", d->dac_perA},
+        {"dac_zero", d->dac_zero},
+        {"mon_scale", d->mon_apc},
     };
     struct exh_params *p = exh_scene_calibrate.params;
     int err = 0;
@@ -215,14 +238,17 @@ static int say_product(const struct exh_params *p)
     const double least_kg = active(p, "slack_cur") * active(p, "kf_min") / active(p, "gravity");
     const double v = active(p, "f0_speed") * active(p, "dwell") / 1000;
     if (run.cfg->mass_kg[0] < least_kg + 1e-6) {
-        cli_complain("--mass: %.9g (slack_cur %.9g a takes at least %.9g kg, by kf_min %.9g n_per_a): "
-                     "choose a heavier one, or a lower slack_cur", run.cfg->mass_kg[0],
-                     active(p, "slack_cur"), least_kg, active(p, "kf_min"));
+        cli_complain(
+            "--mass: %.9g (slack_cur %.9g a takes at least %.9g kg, by kf_min %.9g n_per_a): "
+            "choose a heavier one, or a lower slack_cur",
+            run.cfg->mass_kg[0], active(p, "slack_cur"), least_kg, active(p, "kf_min"));
         return 1;
     }
     if (v >= active(p, "travel")) {
-        cli_complain("f0_speed: %.9g (in a dwell it goes %.9g m, allowed up to travel: %.9g m): choose "
-                     "a lower one", active(p, "f0_speed"), v, active(p, "travel"));
+        cli_complain(
+            "f0_speed: %.9g (in a dwell it goes %.9g m, allowed up to travel: %.9g m): choose "
+            "a lower one",
+            active(p, "f0_speed"), v, active(p, "travel"));
         return 1;
     }
     return 0;
@@ -242,12 +268,13 @@ static void say_pair(void)
         if (row == NULL || cli_signal_find(p->table, pair[i][1], &b) == NULL) { continue; }
         if (p->active[a] <= p->active[b]) { continue; }
         cli_complain("%s: %.9g (allowed up to %s: %.9g %s): choose a lower one", pair[i][0],
-                cli_signal_value(row, p->active[a]), pair[i][1], cli_signal_value(row, p->active[b]),
-                row->unit);
+                     cli_signal_value(row, p->active[a]), pair[i][1],
+                     cli_signal_value(row, p->active[b]), row->unit);
         return;
     }
     if (!say_product(p)) {
-        cli_complain("%s: `exhand calibrate --params` lists the ranges", exh_error_text(-EXH_E_RANGE));
+        cli_complain("%s: `exhand calibrate --params` lists the ranges",
+                     exh_error_text(-EXH_E_RANGE));
     }
 }
 
@@ -269,12 +296,14 @@ int calibration_run(const struct calibration_cfg *cfg, struct calibration *out)
     posix_configure(&board);
     err = exh_loop(&exh_scene_calibrate, cfg->rate_Hz, &hooks);
     if (err == -EXH_E_RATE) {
-        cli_complain("rate: %lu Hz (allowed 20..%lu, and two ticks a dwell): choose one in that range",
-                (unsigned long)cfg->rate_Hz, (unsigned long)exh_board_info.rate_max_Hz);
+        cli_complain(
+            "rate: %lu Hz (allowed 20..%lu, and two ticks a dwell): choose one in that range",
+            (unsigned long)cfg->rate_Hz, (unsigned long)exh_board_info.rate_max_Hz);
     } else if (err == -EXH_E_RANGE) {
         say_pair();
     } else if (err == -EXH_E_MONOTONE) {
-        cli_complain("--mass: two of them are the same to within a milligram: give masses that rise");
+        cli_complain(
+            "--mass: two of them are the same to within a milligram: give masses that rise");
     } else if (err < 0) {
         cli_complain("%s", exh_error_text(err));
     } else if (posix_interrupted() || run.out->result == EXH_PROBE_BUSY) {
@@ -319,7 +348,9 @@ static struct point_si point_si(const struct exh_calib *c, const struct calibrat
 {
     const struct exh_calib_point *p = &c->point[i];
     return (struct point_si){
-        si(p->force_N_q20, EXH_Q_FORCE), si(p->cur_A_q26, EXH_Q_CUR), si(p->mon_A_q26, EXH_Q_CUR),
+        si(p->force_N_q20, EXH_Q_FORCE),
+        si(p->cur_A_q26, EXH_Q_CUR),
+        si(p->mon_A_q26, EXH_Q_CUR),
         si(p->friction_A_q26, EXH_Q_CUR) * si(l->cur.kf_NpA_q20, EXH_Q_FORCE),
         si(exh_calib_residual_N_q20(&l->cur, p, EXH_CALIB_CURRENT), EXH_Q_FORCE),
         si(exh_calib_residual_N_q20(&l->mon, p, EXH_CALIB_MONITOR), EXH_Q_FORCE)};
@@ -331,13 +362,15 @@ void calibration_print(FILE *f, const struct exh_calib *c, const struct calibrat
                "       N         A         mN           A         mN          N\n");
     for (int i = 0; i < c->points; i++) {
         const struct point_si p = point_si(c, l, i);
-        fprintf(f, "%8.4f %9.4f %10.1f %11.4f %10.1f %10.3f\n", p.force_N, p.cur_A, p.cur_off_N * 1e3,
-                p.mon_A, p.mon_off_N * 1e3, p.friction_N);
+        fprintf(f, "%8.4f %9.4f %10.1f %11.4f %10.1f %10.3f\n", p.force_N, p.cur_A,
+                p.cur_off_N * 1e3, p.mon_A, p.mon_off_N * 1e3, p.friction_N);
     }
-    fprintf(f, "\nforce over current %.4f N/A (worst residual %.1f mN), over monitored current %.4f N/A "
-               "(%.1f mN)\n",
-            si(l->cur.kf_NpA_q20, EXH_Q_FORCE), l->cur_worst_N * 1e3,
-            si(l->mon.kf_NpA_q20, EXH_Q_FORCE), l->mon_worst_N * 1e3);
+    fprintf(
+        f,
+        "\nforce over current %.4f N/A (worst residual %.1f mN), over monitored current %.4f N/A "
+        "(%.1f mN)\n",
+        si(l->cur.kf_NpA_q20, EXH_Q_FORCE), l->cur_worst_N * 1e3,
+        si(l->mon.kf_NpA_q20, EXH_Q_FORCE), l->mon_worst_N * 1e3);
     fprintf(f, "F0 %.1f mA = %.3f N\n", si(c->f0_A_q26, EXH_Q_CUR) * 1e3, l->f0_N);
     if (c->points > 0 && c->end_A_q26 > c->point[c->points - 1].cur_A_q26) {
         fprintf(f, "the tables go straight on from %.3f A to %.3f A: not measured there\n",

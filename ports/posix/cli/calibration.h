@@ -9,34 +9,35 @@
 
 #include <stdio.h>
 
-struct calibration_setting { /* a parameter of the scene, by name, in SI */
+/* a parameter of the scene, by name, in SI */
+struct calibration_setting {
     const char *name;
     double value;
 };
 
 struct calibration_cfg {
     uint32_t rate_Hz;
-    const double *mass_kg; /* what the person says hangs on the string         */
-    const double *hung_kg; /* and what does; NULL: the same                    */
+    const double *mass_kg; /* what the person says hangs on the string */
+    const double *hung_kg; /* and what does; NULL: the same */
     int masses;
     const struct calibration_setting *setting;
     int settings;
-    struct posix_config board; /* device, seed, bench, what is wrong           */
-    FILE *progress;            /* a line per step; NULL: none                  */
+    struct posix_config board; /* device, seed, bench, what is wrong */
+    FILE *progress;            /* a line per step; NULL: none */
 };
 
 struct calibration {
-    struct exh_calib c; /* points below; whose and when is the caller's         */
+    struct exh_calib c; /* points below; whose and when is the caller's */
     struct exh_calib_point point[EXH_CALIB_POINTS_MAX];
-    unsigned step, result; /* the step in which it ended, and why (examples/calibrate): DONE
-                            * if all of it is done; BUSY: it was ended before    */
-    uint32_t faults, limits; /* all faults; the limits that ended it            */
-    double home_m;      /* the end, from where the string was at first          */
-    double polarity_A;  /* current that moved the string                        */
-    double most_A;      /* the highest current coded in all                     */
-    double last_s;      /* how long the last step took                          */
-    double last_most_A; /* and the highest current in it                        */
-    double last_travel_m; /* and the farthest from its start                    */
+    unsigned step, result;   /* the step in which it ended, and why (examples/calibrate): DONE
+                              * if all of it is done; BUSY: it was ended before */
+    uint32_t faults, limits; /* all faults; the limits that ended it */
+    double home_m;           /* the end, from where the string was at first */
+    double polarity_A;       /* current that moved the string */
+    double most_A;           /* the highest current coded in all */
+    double last_s;           /* how long the last step took */
+    double last_most_A;      /* and the highest current in it */
+    double last_travel_m;    /* and the farthest from its start */
 };
 
 /* 0, or -EXH_E… after a line on stderr: it could not begin, or (-EXH_E_STATE) it was

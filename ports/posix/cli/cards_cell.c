@@ -12,8 +12,8 @@
 #define RATE_HZ       1000
 #define PRESSED_N     2
 #define PRESSED_TICKS 20
-#define SLACK_TICKS   100 /* a contact may end so much later                        */
-#define AXIS          0 /* whose line is stuck or noisy: thumb on A, little finger on B */
+#define SLACK_TICKS   100 /* a contact may end so much later */
+#define AXIS          0   /* whose line is stuck or noisy: thumb on A, little finger on B */
 
 /* --- the box in a scene: five fingers press once against walls --- */
 

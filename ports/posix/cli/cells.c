@@ -12,7 +12,8 @@
 
 #define LINE_B 4096 /* the settings are the longest */
 
-static const char header[] = "rate_hz,k_n_per_m,b_ns_per_m,stable_falls,falls,stiffness_n_per_m,rho\n";
+static const char header[] =
+    "rate_hz,k_n_per_m,b_ns_per_m,stable_falls,falls,stiffness_n_per_m,rho\n";
 
 int cell_stable(const struct cell *c)
 {
@@ -102,7 +103,9 @@ static void format(char line[LINE_B], const struct cell *c)
 {
     int n = snprintf(line, LINE_B, "%.9g,%.9g,%.9g,%d,%d,", c->rate_Hz, c->k_Npm, c->b_Nspm,
                      c->stable_falls, c->falls);
-    if (c->stiffness_Npm > 0) { n += snprintf(line + n, LINE_B - (size_t)n, "%.6g", c->stiffness_Npm); }
+    if (c->stiffness_Npm > 0) {
+        n += snprintf(line + n, LINE_B - (size_t)n, "%.6g", c->stiffness_Npm);
+    }
     n += snprintf(line + n, LINE_B - (size_t)n, ",");
     if (c->rho >= 0) { n += snprintf(line + n, LINE_B - (size_t)n, "%.6f", c->rho); }
     snprintf(line + n, LINE_B - (size_t)n, "\n");
@@ -132,7 +135,8 @@ static int parse(const char *line, struct cell *c)
                    take(&line, '\n', -1, &c->rho) && *line == '\0';
     if (!ok || !(c->rate_Hz >= 1 && c->rate_Hz <= 20000) || !(c->k_Npm >= 0 && c->k_Npm <= 1e6) ||
         !(c->b_Nspm >= 0 && c->b_Nspm <= 1e3) || !(falls >= 1 && falls < 1e6) ||
-        !(stable >= 0 && stable <= falls) || !(c->stiffness_Npm >= 0 && c->stiffness_Npm <= DBL_MAX) ||
+        !(stable >= 0 && stable <= falls) ||
+        !(c->stiffness_Npm >= 0 && c->stiffness_Npm <= DBL_MAX) ||
         !(c->rho >= -1 && c->rho <= DBL_MAX)) {
         return 0;
     }
@@ -153,8 +157,8 @@ static int other_settings(const char *path, const char *there, const char *here)
     if (there[i] + here[i] == ' ') { start = i; } /* one has ended, with a whole word */
     there += start + (there[start] == ' ');
     here += start + (here[start] == ' ');
-    cli_complain("%s: made with %.*s, not with %.*s: choose another --out, or remove the file", path,
-                 *there ? (int)strcspn(there, " ") : 15, *there ? there : "nothing further",
+    cli_complain("%s: made with %.*s, not with %.*s: choose another --out, or remove the file",
+                 path, *there ? (int)strcspn(there, " ") : 15, *there ? there : "nothing further",
                  *here ? (int)strcspn(here, " ") : 15, *here ? here : "nothing further");
     return 2;
 }
@@ -176,8 +180,8 @@ static int load(struct cells *c, FILE *f, const char *path)
             if (strcmp(line, c->settings) != 0) { return other_settings(path, line, c->settings); }
         } else if (strcmp(line, header) != 0) {
             if (!parse(line, &cell)) {
-                cli_complain("%s:%d: %.40s: no cell: remove this line, it will be run again", path, number,
-                             line);
+                cli_complain("%s:%d: %.40s: no cell: remove this line, it will be run again", path,
+                             number, line);
                 return 2;
             }
             if (cells_add(c, &cell)) { return 1; }

@@ -11,17 +11,17 @@
 struct cell {
     double rate_Hz, k_Npm, b_Nspm;
     int stable_falls, falls;
-    double stiffness_Npm; /* 0: none worth the name                             */
-    double rho;           /* of the linear test; < 0: not computed               */
+    double stiffness_Npm; /* 0: none worth the name */
+    double rho;           /* of the linear test; < 0: not computed */
 };
 
 /* Stable: at least nine falls in ten came to rest. */
 int cell_stable(const struct cell *c);
 
 struct cells {
-    struct cell *at; /* sorted by rate, k, b                                    */
+    struct cell *at; /* sorted by rate, k, b */
     int n, cap;
-    const char *settings; /* what a file must have been made with               */
+    const char *settings; /* what a file must have been made with */
 };
 
 /* Takes up the cells of a file; one that does not exist has none. 0, 1 after a line

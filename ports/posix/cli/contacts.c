@@ -6,7 +6,8 @@
 
 #include <time.h>
 
-/* Pull-downs that were just switched on, and a cable's capacitance: what is read before is anything. */
+/* Pull-downs that were just switched on, and a cable's capacitance: what is read before is
+ * anything. */
 #define SETTLE_MS 50
 
 int contacts_take(void *ctx, const char *text)
@@ -55,8 +56,8 @@ static void say_differed(void)
         uint32_t times;
         const double longest_s = gpio_differed_s((enum gpio_channel)i, &times);
         if (times) {
-            cli_complain("--gpio: %s: its two contacts disagreed %lu times, at most for %.3g s", gpio_channel_name[i],
-                         (unsigned long)times, longest_s);
+            cli_complain("--gpio: %s: its two contacts disagreed %lu times, at most for %.3g s",
+                         gpio_channel_name[i], (unsigned long)times, longest_s);
         }
     }
 }

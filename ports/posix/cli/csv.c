@@ -18,12 +18,12 @@
 struct walk {
     struct logfile *log;
     unsigned what;
-    uint64_t tick;  /* of the row                                              */
+    uint64_t tick; /* of the row */
     struct exh_scene_in in;
-    int32_t fall;   /* the last mark: 0 between falls                          */
+    int32_t fall; /* the last mark: 0 between falls */
     uint32_t rows;
-    uint32_t malformed; /* records of another length than they must have        */
-    uint32_t unordered; /* frames whose tick does not rise                      */
+    uint32_t malformed; /* records of another length than they must have */
+    uint32_t unordered; /* frames whose tick does not rise */
 };
 
 static void take_mark(struct walk *w, const struct exh_record *r)
@@ -125,7 +125,8 @@ static int survey(struct logfile *l, unsigned what)
     logfile_rewind(l, begin);
     if (w.malformed || w.unordered) {
         cli_complain("%s: %lu records of a wrong length and %lu frames whose tick does not rise: "
-                     "left out", l->path, (unsigned long)w.malformed, (unsigned long)w.unordered);
+                     "left out",
+                     l->path, (unsigned long)w.malformed, (unsigned long)w.unordered);
     }
     if (w.rows > 0) { return w.malformed || w.unordered; }
     cli_complain("%s: holds no %s", l->path, what & CSV_FALLS ? "fall" : "frame");
@@ -175,8 +176,8 @@ int cli_csv(int argc, char **argv)
         {"falls", CLI_FLAG, &falls, 0, 0, NULL,
          "falls under observation alone, a gap in t_s between two: what Table II is made of"},
     };
-    const struct cli_command c = {"csv", "LOG [options]", "A log as comma-separated values.",
-                                  option, 3, 1};
+    const struct cli_command c = {
+        "csv", "LOG [options]", "A log as comma-separated values.", option, 3, 1};
     const char *log = NULL;
     const int err = cli_parse(&c, argc, argv, &log);
 

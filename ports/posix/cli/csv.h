@@ -6,7 +6,7 @@
 enum csv_what {
     CSV_ALL = 1,  /* the scene's further signals too, not only the paper's; codes */
     CSV_FALLS = 2 /* only falls under observation, by the log's marks: what the
-                     experimenter's hand did between them leaves a gap in time   */
+                     experimenter's hand did between them leaves a gap in time */
 };
 
 /* Exit status, after a line on stderr unless 0. Opens the output (NULL: stdout)

@@ -12,13 +12,13 @@
 struct diagram_box {
     int x, y, w, h;
     const char *title;
-    const char *line[6]; /* NULL ends them                                       */
+    const char *line[6]; /* NULL ends them */
 };
 struct diagram_wire {
-    int n; /* corners                                                          */
+    int n; /* corners */
     int at[4][2];
     const char *label;
-    int x, y; /* where the label is centred                                       */
+    int x, y; /* where the label is centred */
 };
 struct diagram {
     const char *name, *title;

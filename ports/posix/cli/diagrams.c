@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What is wired to what: the paper's overview, set-up, both controller models, and what the second of
- * them measures. */
+/* What is wired to what: the paper's overview, set-up, both controller models, and what the second
+ * of them measures. */
 #include "diagram.h"
 
 #define LEN(a) ((int)(sizeof(a) / sizeof((a)[0])))
@@ -128,7 +128,8 @@ static const struct diagram_wire bilateral_wire[] = {
     {2, {{120, 53}, {136, 53}}, "{S:i_des}", 128, 51},
 };
 
-/* The paper's geometry with its own letters: a finger from J_d to its tip, the object, the plane. */
+/* The paper's geometry with its own letters: a finger from J_d to its tip, the object, the plane.
+ */
 static const char *const geometry_svg[] = {
     "<style>.l{stroke:#333333;stroke-width:2.5;fill:none}.t{text-anchor:start}.d{stroke-dasharray:"
     "7,6}"

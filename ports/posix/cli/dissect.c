@@ -36,14 +36,10 @@ static int next_contact(const struct fall_log *log, size_t fall, size_t from,
     const size_t end = part_fall_end(log, fall);
     size_t i = from;
 
-    while (i < end && !log->sample[i].c) {
-        i++;
-    }
+    while (i < end && !log->sample[i].c) { i++; }
     if (i == end) { return 0; }
     out->first = i;
-    while (i < end && log->sample[i].c) {
-        i++;
-    }
+    while (i < end && log->sample[i].c) { i++; }
     out->end = i;
     out->fall = fall;
     out->open = i == end;

@@ -29,14 +29,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define RATES_MAX 64
+#define RATES_MAX    64
 #define SETTINGS_MAX 64
 
 struct drop_options {
     struct params_file params;
     double rate_Hz[RATES_MAX];
     int rates, rates_given;
-    double k_Npm, b_Nspm, scale; /* < 0: the paper's at that rate                 */
+    double k_Npm, b_Nspm, scale; /* < 0: the paper's at that rate */
     int64_t falls, seed, jobs, spread, friction;
     int pace, cards, sweep, check, readings, guarded, custom;
     const char *out, *grid, *shard, *blackbox, *preset;
@@ -58,8 +58,10 @@ static const struct exh_scene *scene_of(const struct drop_options *o)
 
 static int bad_rates(const char *text, const char *why)
 {
-    cli_complain("--rate: %s: %s (whole numbers 1..20000 Hz, each once, commas between, at most %d): "
-                 "e.g. --rate 90,2000", text, why, RATES_MAX);
+    cli_complain(
+        "--rate: %s: %s (whole numbers 1..20000 Hz, each once, commas between, at most %d): "
+        "e.g. --rate 90,2000",
+        text, why, RATES_MAX);
     return 2;
 }
 
@@ -100,7 +102,8 @@ static int take_period(void *ctx, const char *text)
     if (end && end[0] == '/' && is_digit(end[1])) { den = strtoull(end + 1, &end, 10); }
     if (den == 0 || *end != '\0' || num < 1 || num > den || den > UINT32_MAX || den > 20000 * num) {
         cli_complain("--period: %s (N/D seconds, 1/20000..1, both whole and below 2^32): "
-                     "e.g. --period 597/1193182", text);
+                     "e.g. --period 597/1193182",
+                     text);
         return 2;
     }
     o->T = (struct exh_period){(uint32_t)num, (uint32_t)den};
@@ -139,12 +142,13 @@ static void print_params(const struct exh_scene *scene)
     scene->defaults();
     printf("Parameters of the scene (--set NAME=VALUE)\n");
     cli_signal_print(stdout, scene->params->table);
-    printf("\nThe simulated device (--device NAME=VALUE); step, kf and the scales also calibrate the "
-           "scene\n");
+    printf(
+        "\nThe simulated device (--device NAME=VALUE); step, kf and the scales also calibrate the "
+        "scene\n");
     for (int i = 0; i < sim_device_rows; i++) {
         const struct sim_device_row *r = &sim_device_row[i];
-        printf("  %-13s %-8s %14.12g  %14.12g .. %-14.12g %-8s %s\n", r->name, r->unit, r->value, r->min,
-               r->max, r->sure, r->help);
+        printf("  %-13s %-8s %14.12g  %14.12g .. %-14.12g %-8s %s\n", r->name, r->unit, r->value,
+               r->min, r->max, r->sure, r->help);
     }
 }
 
@@ -250,12 +254,15 @@ static int check(const struct drop_options *o, const struct table2_result *r, in
         if (r[i].faults) {
             char what[NAMES_B];
             names_faults(what, sizeof what, r[i].faults);
-            cli_complain("%.6g Hz: the box stopped with faults %#x: %s", r[i].rate_Hz, r[i].faults, what);
+            cli_complain("%.6g Hz: the box stopped with faults %#x: %s", r[i].rate_Hz, r[i].faults,
+                         what);
             err = 1;
         }
         if (i < o->rates && r[i].incomplete) {
-            cli_complain("%.6g Hz: %d of %d falls were not seen to their end: no contact, or the mass ran "
-                         "away", r[i].rate_Hz, r[i].incomplete, r[i].falls);
+            cli_complain(
+                "%.6g Hz: %d of %d falls were not seen to their end: no contact, or the mass ran "
+                "away",
+                r[i].rate_Hz, r[i].incomplete, r[i].falls);
             err = 1;
         }
     }
@@ -329,9 +336,9 @@ static void report_guard(const struct drop_options *o, const struct table2_resul
     for (int i = 0; i < o->rates; i++) {
         const struct table2_result off = observed(o, i);
         if (!r[i].done || !off.done) { continue; }
-        row[rows++] = (struct guard_row){r[i].rate_Hz, r[i].k_Npm, r[i].b_Nspm, r[i].guard, off.guard,
-                                         r[i].b_Npm, off.b_Npm, r[i].falls, r[i].oscillating,
-                                         off.oscillating};
+        row[rows++] = (struct guard_row){r[i].rate_Hz,     r[i].k_Npm,     r[i].b_Nspm, r[i].guard,
+                                         off.guard,        r[i].b_Npm,     off.b_Npm,   r[i].falls,
+                                         r[i].oscillating, off.oscillating};
     }
     guard_print(stdout, row, rows);
 }
@@ -369,7 +376,9 @@ static int in_plane(const struct drop_options *o)
 static int can_write(const char *path)
 {
     FILE *was = fopen(path, "rb"), *f = fopen(path, "ab");
-    if (f == NULL) { cli_complain("--blackbox: %s: %s: give a file that can be written", path, strerror(errno)); }
+    if (f == NULL) {
+        cli_complain("--blackbox: %s: %s: give a file that can be written", path, strerror(errno));
+    }
     if (f != NULL) { fclose(f); }
     if (f != NULL && was == NULL) { (void)remove(path); }
     if (was != NULL) { fclose(was); }
@@ -404,9 +413,12 @@ static int refuse(struct drop_options *o)
         cli_complain("--period and --rate: a period is a rate: give one of them");
         return 2;
     }
-    if (o->preset && (o->T.num != 0 || o->rates_given || o->k_Npm >= 0 || o->b_Nspm >= 0 || o->scale != 1 || o->spread > 0 ||
-                      o->pace || o->blackbox || o->gpio.given || o->params.load || o->params.save || o->readings || o->guarded || o->custom || in_plane(o))) {
-        cli_complain("--preset: goes with --falls, --seed, --out, --set, --device, --calibration, --cards and --let-go alone");
+    if (o->preset &&
+        (o->T.num != 0 || o->rates_given || o->k_Npm >= 0 || o->b_Nspm >= 0 || o->scale != 1 ||
+         o->spread > 0 || o->pace || o->blackbox || o->gpio.given || o->params.load ||
+         o->params.save || o->readings || o->guarded || o->custom || in_plane(o))) {
+        cli_complain("--preset: goes with --falls, --seed, --out, --set, --device, --calibration, "
+                     "--cards and --let-go alone");
         return 2;
     }
     if (o->preset) {
@@ -419,13 +431,15 @@ static int refuse(struct drop_options *o)
         o->rates = 1;
     }
     if (o->blackbox && (o->rates != 1 || in_plane(o))) {
-        cli_complain("--blackbox: one rate, and no plane of gains: --out names a dump for each rate");
+        cli_complain(
+            "--blackbox: one rate, and no plane of gains: --out names a dump for each rate");
         return 2;
     }
     if (o->blackbox && !can_write(o->blackbox)) { return 2; }
     if (o->gpio.given && (o->rates != 1 || o->spread > 0 || in_plane(o))) {
-        cli_complain("--gpio: one rate and one run at a time, since lines are one program's: leave out "
-                     "--spread and planes of gains");
+        cli_complain(
+            "--gpio: one rate and one run at a time, since lines are one program's: leave out "
+            "--spread and planes of gains");
         return 2;
     }
     if (o->gpio.given) { o->jobs = 1; } /* the process that holds the lines */
@@ -435,7 +449,8 @@ static int refuse(struct drop_options *o)
         return 2;
     }
     if (o->params.load && in_plane(o)) {
-        cli_complain("--load-params: no plane of gains, which chooses k and b itself: leave out one of them");
+        cli_complain("--load-params: no plane of gains, which chooses k and b itself: leave out "
+                     "one of them");
         return 2;
     }
     if (o->params.save && (o->rates != 1 || in_plane(o))) {
@@ -458,7 +473,8 @@ static int refuse(struct drop_options *o)
 
 static int beside_original(const struct drop_options *o)
 {
-    const struct run_cfg original = job_cfg(o, 0, 1, (uint64_t)o->seed), box = job_cfg(o, 1, 1, (uint64_t)o->seed);
+    const struct run_cfg original = job_cfg(o, 0, 1, (uint64_t)o->seed),
+                         box = job_cfg(o, 1, 1, (uint64_t)o->seed);
     return drop_original(&original, &box, o->out);
 }
 
@@ -466,26 +482,38 @@ static int beside_original(const struct drop_options *o)
 
 static int plane(const struct drop_options *o)
 {
-    struct sweep_opt s = {.rate_Hz = o->rate_Hz, .rates = o->rates, .jobs = (int)o->jobs,
-                          .base = job_cfg(o, 0, 1, (uint64_t)o->seed), .dir = o->out};
+    struct sweep_opt s = {.rate_Hz = o->rate_Hz,
+                          .rates = o->rates,
+                          .jobs = (int)o->jobs,
+                          .base = job_cfg(o, 0, 1, (uint64_t)o->seed),
+                          .dir = o->out};
     if (o->sweep + o->check + (o->friction > 0) > 1) {
         cli_complain("--sweep, --border-check, --friction: one at a time");
         return 2;
     }
-    if (o->k_Npm >= 0 || o->b_Nspm >= 0 || o->scale != 1 || o->spread > 0 || o->pace || o->let_go_s > 0) {
-        cli_complain("--%s: chooses k and b itself: leave out --k, --b, --scale, --spread, --pace, --let-go",
-                     o->sweep ? "sweep" : o->check ? "border-check" : "friction");
+    if (o->k_Npm >= 0 || o->b_Nspm >= 0 || o->scale != 1 || o->spread > 0 || o->pace ||
+        o->let_go_s > 0) {
+        cli_complain(
+            "--%s: chooses k and b itself: leave out --k, --b, --scale, --spread, --pace, --let-go",
+            o->sweep   ? "sweep"
+            : o->check ? "border-check"
+                       : "friction");
         return 2;
     }
     if (o->check && o->falls >= 0) {
         cli_complain("--falls and --border-check: it has its own falls: leave out one of them");
         return 2;
     }
-    if (sweep_take_grid(o->grid ? o->grid : o->sweep ? "20x16" : "16x16", &s.columns, &s.rows) ||
+    if (sweep_take_grid(o->grid    ? o->grid
+                        : o->sweep ? "20x16"
+                                   : "16x16",
+                        &s.columns, &s.rows) ||
         sweep_take_shard(o->shard ? o->shard : "1/1", &s.shard, &s.shards)) {
         return 2;
     }
-    return o->sweep ? sweep_run(&s) : o->check ? border_check(&s) : friction_run(&s, (int)o->friction);
+    return o->sweep   ? sweep_run(&s)
+           : o->check ? border_check(&s)
+                      : friction_run(&s, (int)o->friction);
 }
 
 int cli_drop(int argc, char **argv)
@@ -501,42 +529,62 @@ int cli_drop(int argc, char **argv)
     } u[6] = {{&rates}, {&period}, {&setting}, {&device}, {&gpio}, {&calibration}};
     const struct cli_option option[] = {
         {"rate", CLI_CALL, u[0].to, 0, 0, "HZ[,HZ...]", "loop rates, 1..20000 (the paper's six)"},
-        {"period", CLI_CALL, u[1].to, 0, 0, "N/D", "one exact period in s, as a timer makes it; not with --rate"},
+        {"period", CLI_CALL, u[1].to, 0, 0, "N/D",
+         "one exact period in s, as a timer makes it; not with --rate"},
         {"k", CLI_REAL, &o.k_Npm, 0, 1e6, "N/M", "stiffness (the paper's at that rate)"},
         {"b", CLI_REAL, &o.b_Nspm, 0, 1e3, "NS/M", "damping (the paper's at that rate)"},
         {"scale", CLI_REAL, &o.scale, 0, 100, "G", "multiplies both (1)"},
         {"falls", CLI_INT, &o.falls, 1, 1000, "N", "falls a run (10); not with --border-check"},
-        {"spread", CLI_INT, &o.spread, 0, 1000, "N", "further runs, at 1 and 1.5 times both gains (0)"},
+        {"spread", CLI_INT, &o.spread, 0, 1000, "N",
+         "further runs, at 1 and 1.5 times both gains (0)"},
         {"seed", CLI_INT, &o.seed, 0, 1e9, "N", "of all chance in the simulation (1)"},
         {"out", CLI_TEXT, &o.out, 0, 0, "DIR", "write logs, CSVs of the falls and tables there"},
-        {"blackbox", CLI_TEXT, &o.blackbox, 0, 0, "FILE", "the last seconds before a fault, a log (with --out beside the others)"},
-        {"let-go", CLI_REAL, &o.let_go_s, 0, 1e9, "S", "the dead-man switch opens then: a fault (never)"},
+        {"blackbox", CLI_TEXT, &o.blackbox, 0, 0, "FILE",
+         "the last seconds before a fault, a log (with --out beside the others)"},
+        {"let-go", CLI_REAL, &o.let_go_s, 0, 1e9, "S",
+         "the dead-man switch opens then: a fault (never)"},
         {"jobs", CLI_INT, &o.jobs, 1, 1024, "N", "processes at a time (one a core)"},
-        {"cards", CLI_FLAG, &o.cards, 0, 0, NULL, "through the drivers and emulated cards: the same bits"},
+        {"cards", CLI_FLAG, &o.cards, 0, 0, NULL,
+         "through the drivers and emulated cards: the same bits"},
         {"pace", CLI_FLAG, &o.pace, 0, 0, NULL, "follow the wall clock, for people who watch"},
         {"gpio", CLI_CALL, u[4].to, 0, 0, CONTACTS_ARG, CONTACTS_HELP},
         {"set", CLI_CALL, u[2].to, 0, 0, "NAME=VALUE", "a parameter of the scene"},
         {"device", CLI_CALL, u[3].to, 0, 0, "NAME=VALUE", "a value of the simulated device"},
         PARAMS_FILE_OPTIONS(o.params),
-        {"calibration", CLI_CALL, u[5].to, 0, 0, "FILE", "of finger 0, by `exhand calibrate` (none: the simulated device as it is, uncalibrated=1)"},
-        {"sweep", CLI_FLAG, &o.sweep, 0, 0, NULL, "the stability border in the k-b plane, in DIR/stability.csv; stopped or killed, it goes on from there"},
-        {"grid", CLI_TEXT, &o.grid, 0, 0, "KxB", "cells at each rate of --sweep (20x16), --border-check (16x16)"},
-        {"shard", CLI_TEXT, &o.shard, 0, 0, "I/N", "the I-th of N parts of the sweep, in a file of its own; then without: one map of all"},
-        {"border-check", CLI_FLAG, &o.check, 0, 0, NULL, "the simulated border beside that of the linear test"},
-        {"friction", CLI_INT, &o.friction, 2, FRICTION_POINTS_MAX, "N", "the border against N amounts of friction, 0..2 times"},
-        {"preset", CLI_TEXT, &o.preset, 0, 0, "NAME", "original: the commercial system at 90 Hz, beside this box at 2 kHz"},
-        {"guarded", CLI_FLAG, &o.guarded, 0, 0, NULL, "the scene with passivity, and what that takes away"},
-        {"custom", CLI_FLAG, &o.custom, 0, 0, NULL, "the scene with a controller of your own (examples/custom)"},
-        {"readings", CLI_FLAG, &o.readings, 0, 0, NULL, "the stiffness by every reading of the paper's analysis"},
+        {"calibration", CLI_CALL, u[5].to, 0, 0, "FILE",
+         "of finger 0, by `exhand calibrate` (none: the simulated device as it is, "
+         "uncalibrated=1)"},
+        {"sweep", CLI_FLAG, &o.sweep, 0, 0, NULL,
+         "the stability border in the k-b plane, in DIR/stability.csv; stopped or killed, it goes "
+         "on from there"},
+        {"grid", CLI_TEXT, &o.grid, 0, 0, "KxB",
+         "cells at each rate of --sweep (20x16), --border-check (16x16)"},
+        {"shard", CLI_TEXT, &o.shard, 0, 0, "I/N",
+         "the I-th of N parts of the sweep, in a file of its own; then without: one map of all"},
+        {"border-check", CLI_FLAG, &o.check, 0, 0, NULL,
+         "the simulated border beside that of the linear test"},
+        {"friction", CLI_INT, &o.friction, 2, FRICTION_POINTS_MAX, "N",
+         "the border against N amounts of friction, 0..2 times"},
+        {"preset", CLI_TEXT, &o.preset, 0, 0, "NAME",
+         "original: the commercial system at 90 Hz, beside this box at 2 kHz"},
+        {"guarded", CLI_FLAG, &o.guarded, 0, 0, NULL,
+         "the scene with passivity, and what that takes away"},
+        {"custom", CLI_FLAG, &o.custom, 0, 0, NULL,
+         "the scene with a controller of your own (examples/custom)"},
+        {"readings", CLI_FLAG, &o.readings, 0, 0, NULL,
+         "the stiffness by every reading of the paper's analysis"},
         {"params", CLI_FLAG, &list, 0, 0, NULL, "list both, with units and ranges"},
     };
     const struct cli_command c = {
-        "drop", "[options]",
+        "drop",
+        "[options]",
         "The paper's experiment: 0.5 kg falls 7 cm onto a virtual wall, ten times, at each rate.\n"
         "A fall oscillates when in the last 0.5 s of its observation position moves by more than\n"
         "0.25 mm or the monitored force by more than 4 N; else it has come to rest. Buzz is rest\n"
         "in which the encoder still moves, by one or two counts.",
-        option, (int)(sizeof option / sizeof option[0]), 0};
+        option,
+        (int)(sizeof option / sizeof option[0]),
+        0};
 
     memset(&o, 0, sizeof o);
     o.k_Npm = o.b_Nspm = -1;
@@ -552,7 +600,8 @@ int cli_drop(int argc, char **argv)
     if (err) { return err == 1 ? 0 : err; }
     if (o.custom && (o.guarded || cli_scene_more == NULL)) {
         cli_complain(o.guarded ? "--custom and --guarded: one scene at a time"
-                               : "--custom: no controller in this program: make SCENE=custom MODEL=FOLDER links one");
+                               : "--custom: no controller in this program: make SCENE=custom "
+                                 "MODEL=FOLDER links one");
         return 2;
     }
     if (list) {
@@ -562,7 +611,9 @@ int cli_drop(int argc, char **argv)
     err = refuse(&o);
     if (err == 0) { err = contacts_begin(&o.gpio); }
     if (o.gpio.given && err == 0) { words_begin(1); }
-    if (err == 0) { err = in_plane(&o) ? plane(&o) : o.preset ? beside_original(&o) : experiment(&o); }
+    if (err == 0) {
+        err = in_plane(&o) ? plane(&o) : o.preset ? beside_original(&o) : experiment(&o);
+    }
     words_end();
     contacts_end();
     return err;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand drop --preset original: the falling mass on the wall of the system before, and on this box's. */
+/* exhand drop --preset original: the falling mass on the wall of the system before, and on this
+ * box's. */
 #include "drop_original.h"
 
 #include "original.h"
@@ -11,7 +12,22 @@
 
 #define COLUMNS 3
 
-enum row { RATE, K, B, STIFFNESS, LOW, HIGH, PEAK, DEEPEST, FIRST, LATEST, ERROR, SHARE, OSCILLATING, ROWS };
+enum row {
+    RATE,
+    K,
+    B,
+    STIFFNESS,
+    LOW,
+    HIGH,
+    PEAK,
+    DEEPEST,
+    FIRST,
+    LATEST,
+    ERROR,
+    SHARE,
+    OSCILLATING,
+    ROWS
+};
 
 static const struct original_row row[ROWS] = {
     [RATE] = {"loop", "Hz", 0},
@@ -97,8 +113,10 @@ int drop_original(const struct run_cfg *original, const struct run_cfg *box, con
     for (int k = 0; err == 0 && k < COLUMNS; k++) { err = column(value + k, &c[k], dir, k); }
     if (err) { return posix_interrupted() ? 130 : 1; }
     original_print(&t);
-    printf("\nOriginal: a loop at 90 Hz with the paper's gains for it. Its glove, of 8 bits and a frame late, has no part in a fall;\n"
-           "a frame late: were that frame between encoder and motor as well. Force less what it should be: monitored less\n"
+    printf("\nOriginal: a loop at 90 Hz with the paper's gains for it. Its glove, of 8 bits and a "
+           "frame late, has no part in a fall;\n"
+           "a frame late: were that frame between encoder and motor as well. Force less what it "
+           "should be: monitored less\n"
            "demanded in the same tick, of all ticks in contact.\n");
     return dir ? original_out(dir, &t, name, COLUMNS) : 0;
 }

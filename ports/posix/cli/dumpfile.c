@@ -12,7 +12,7 @@
 
 #define PIECE_B 4096u
 #define RING_B  (64u * PIECE_B)
-#define WAITS_S 2.0 /* at the end, for a file that takes nothing                   */
+#define WAITS_S 2.0 /* at the end, for a file that takes nothing */
 
 static struct {
     char path[DUMPFILE_PATH_B];
@@ -67,7 +67,8 @@ void dumpfile_start(const struct exh_scene *sc, struct exh_scene_board board)
     if (box.on) {
         exh_blackbox_start(sc, board);
         if (exh_blackbox_is().state == EXH_BLACKBOX_OFF) {
-            cli_complain("black box: none: its memory is too small at this rate, or the scene has no state");
+            cli_complain(
+                "black box: none: its memory is too small at this rate, or the scene has no state");
         }
     } else {
         exh_log_tap(NULL, 0);

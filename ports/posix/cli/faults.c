@@ -10,8 +10,8 @@
 
 #include <inttypes.h>
 
-/* The force of so many times must have fallen nearly as fast as the law has it: who sees no fall, or
- * a slower one, does not see what he judges. */
+/* The force of so many times must have fallen nearly as fast as the law has it: who sees no fall,
+ * or a slower one, does not see what he judges. */
 #define ENOUGH 100
 #define NEAR   0.99
 

@@ -10,31 +10,34 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#define SMALL_A  0.02 /* in the motor: none                                           */
-#define AFTER_S  2e-3 /* and so much after the code, besides two ticks: delay, servo, current loop */
+#define SMALL_A 0.02 /* in the motor: none */
+#define AFTER_S \
+    2e-3 /* and so much after the code, besides two ticks: delay, servo, current loop \
+          */
 #define BACK_S   0.05
-#define ASTRAY_A 0.26 /* more than tracking tolerates, and its noise                   */
-#define ASTRAY_S 20e-3 /* and that for so long, and some ticks                       */
+#define ASTRAY_A 0.26  /* more than tracking tolerates, and its noise */
+#define ASTRAY_S 20e-3 /* and that for so long, and some ticks */
 #define DAC_ZERO 32768
 #define DAC_SPAN 12184
 
-static struct { /* of the child */
-    int to; /* its parent                                                             */
+/* of the child */
+static struct {
+    int to; /* its parent */
     const struct faults_base *base;
-    const struct faults_case *c; /* NULL: this is no child                             */
+    const struct faults_case *c; /* NULL: this is no child */
     struct faults_case own;
     struct faults_seen *seen;
     struct faults_view last;
-    uint32_t at_tick, tick; /* of the branch; now                                    */
-    uint32_t missed; /* before this tick                                       */
-    uint32_t gone[2]; /* ticks since the causes began, this one too              */
-    int closing; /* since a tick that saw a cause nothing may rise any more   */
-    uint32_t steps, came; /* since then, missed ones too; and without               */
+    uint32_t at_tick, tick; /* of the branch; now */
+    uint32_t missed;        /* before this tick */
+    uint32_t gone[2];       /* ticks since the causes began, this one too */
+    int closing;            /* since a tick that saw a cause nothing may rise any more */
+    uint32_t steps, came;   /* since then, missed ones too; and without */
     int zero, cut;
-    double from_s, close_s, zero_s; /* the branch, the tick that saw it, no code         */
-    double cut_s; /* the drives were disabled                                   */
+    double from_s, close_s, zero_s; /* the branch, the tick that saw it, no code */
+    double cut_s;                   /* the drives were disabled */
     double v_mps, a_mps2;
-    int known; /* how many of these two                                               */
+    int known; /* how many of these two */
 } in;
 
 static int has(unsigned source)

@@ -12,21 +12,22 @@
 #define RATES_MAX 3
 static uint32_t rate_Hz[RATES_MAX] = {90, 1000, 2000};
 static size_t rates = RATES_MAX;
-#define SOURCES   (FAULTS_OFF - 1) /* from FAULTS_ESTOP on                                 */
+#define SOURCES   (FAULTS_OFF - 1) /* from FAULTS_ESTOP on */
 #define PASSES    4
-#define GIVE_UP_S 8u /* it never presses                                                */
+#define GIVE_UP_S 8u /* it never presses */
 #define WELL_S    0.25
 
 struct cell {
     uint8_t tried, right;
-    uint8_t before, state, end; /* enum exh_state: before it was seen, then, in the end      */
+    uint8_t before, state, end; /* enum exh_state: before it was seen, then, in the end */
     uint8_t refused;
     uint16_t bad;
     uint32_t latched;
     int32_t seen_ticks, zero_ticks;
 };
 
-struct row { /* of one source at one rate                                              */
+/* of one source at one rate */
+struct row {
     int32_t err;
     struct cell in[FAULTS_INS];
 };
@@ -35,10 +36,10 @@ struct plan {
     struct faults_base base;
     uint8_t source;
     int pass;
-    uint32_t press_for; /* ticks on end in the state that the finger presses in      */
-    int32_t latency[FAULTS_INS]; /* < 0: not known                                      */
-    uint32_t small_at, ramp_at; /* of the pass before; 0: not known                     */
-    uint32_t press_at[2]; /* likewise: a limit holds, none does                          */
+    uint32_t press_for;          /* ticks on end in the state that the finger presses in */
+    int32_t latency[FAULTS_INS]; /* < 0: not known */
+    uint32_t small_at, ramp_at;  /* of the pass before; 0: not known */
+    uint32_t press_at[2];        /* likewise: a limit holds, none does */
     struct row *row;
 };
 

@@ -10,7 +10,7 @@
 
 #define BEFORE_S  0.010
 #define AFTER_S   0.045
-#define GIVE_UP_S 10u /* it never presses                                               */
+#define GIVE_UP_S 10u /* it never presses */
 #define PATH_B    1024
 
 static const uint32_t rate_Hz[] = {90, 200, 500, 1000, 2000};

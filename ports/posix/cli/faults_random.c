@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Any fault at any tick: random times in closed loop, two causes, contacts that close again, somebody
- * who will not stop commanding RUN. */
+/* Any fault at any tick: random times in closed loop, two causes, contacts that close again,
+ * somebody who will not stop commanding RUN. */
 #include "faults_part.h"
 
 #include "jobs.h"
@@ -15,10 +15,10 @@
 
 static const uint32_t rate_Hz[] = {90, 200, 400, 500, 1000, 2000};
 #define RATES     (sizeof rate_Hz / sizeof rate_Hz[0])
-#define CASES_MAX 400 /* of one run                                                      */
-#define CONTROL   32 /* one of so many has no fault                                    */
+#define CASES_MAX 400 /* of one run */
+#define CONTROL   32  /* one of so many has no fault */
 #define UNTIL_S   2.2
-#define QUIET_S   0.25 /* nothing may open by itself for so long                          */
+#define QUIET_S   0.25 /* nothing may open by itself for so long */
 
 struct one {
     uint32_t tick;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Arming that does not come to RUN: every step of it that does not hold, and which one the box names. */
+/* Arming that does not come to RUN: every step of it that does not hold, and which one the box
+ * names. */
 #include "faults_part.h"
 
 #include "jobs.h"
@@ -11,17 +12,17 @@
 
 #define RATES     3
 #define WELL_S    0.25
-#define GIVE_UP_S 4u /* it never comes to that                                      */
+#define GIVE_UP_S 4u /* it never comes to that */
 
 enum when {
-    ASKED, /* in OFF, before RUN is asked for                               */
-    INSIDE, /* in OFF, RUN asked for while a finger is inside a wall            */
-    RISING /* while the force limit rises                                    */
+    ASKED,  /* in OFF, before RUN is asked for */
+    INSIDE, /* in OFF, RUN asked for while a finger is inside a wall */
+    RISING  /* while the force limit rises */
 };
 
 static const struct row {
     uint8_t step, loses; /* enum exh_arm: which is named; which does not hold in memory */
-    uint8_t source; /* or what goes wrong                                     */
+    uint8_t source;      /* or what goes wrong */
     uint8_t when;
     const char *what;
 } step[] = {
@@ -39,7 +40,7 @@ static const struct row {
 struct refused {
     int32_t err;
     uint8_t tried, right;
-    uint8_t end, named, opened, released; /* what came of it                       */
+    uint8_t end, named, opened, released; /* what came of it */
     uint32_t bad, faults;
     int32_t zero_ticks;
 };

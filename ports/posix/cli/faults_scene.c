@@ -15,7 +15,7 @@
 
 #include <string.h>
 
-#define RUN_AT_S 0.05 /* until then nobody commands anything                           */
+#define RUN_AT_S 0.05 /* until then nobody commands anything */
 
 static struct {
     const struct faults_base *base;
@@ -207,8 +207,8 @@ static int run_finger(const struct faults_base *b)
     c.board.exo.fingers = 1u << FAULTS_FINGER;
     path = &c.board.exo.path[FAULTS_FINGER];
     path->speed_mps = 0.1 + 0.7 * sim_random_unit(&rng);
-    path->approaches = 0; /* for ever */
-    path->first_s = 0.75 + b->wait_ms / 1000.0; /* armed by then */
+    path->approaches = 0;                             /* for ever */
+    path->first_s = 0.75 + b->wait_ms / 1000.0;       /* armed by then */
     path->hold_s = 0.3 + 0.3 * sim_random_unit(&rng); /* this finger does not tremble */
     path->back_s = path->rest_s = 0.25;
     path->push_m = 0.010 + 0.010 * sim_random_unit(&rng);

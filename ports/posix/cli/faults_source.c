@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Where each fault comes from: contacts, encoder, monitor, D/A, glove, cards, link, time, memory. */
+/* Where each fault comes from: contacts, encoder, monitor, D/A, glove, cards, link, time, memory.
+ */
 #include "faults.h"
 
 #include "posix.h"
@@ -11,27 +12,27 @@
 
 #include <string.h>
 
-#define SENSOR 5 /* one that moves the index                                          */
+#define SENSOR 5 /* one that moves the index */
 
 struct on {
     struct faults_what what;
-    uint32_t from_tick, to_tick; /* first tick that can see it, first that can't     */
-    int64_t moved_cnt; /* what is added to the encoder                     */
-    uint32_t enc_raw; /* where it stands                                 */
-    struct exh_drive_out out; /* what the D/A stands at                           */
+    uint32_t from_tick, to_tick; /* first tick that can see it, first that can't */
+    int64_t moved_cnt;           /* what is added to the encoder */
+    uint32_t enc_raw;            /* where it stands */
+    struct exh_drive_out out;    /* what the D/A stands at */
     int begun;
 };
 
 static struct {
-    const struct faults_base *base; /* NULL: nothing is wrong                         */
+    const struct faults_base *base; /* NULL: nothing is wrong */
     struct sim_device device;
     struct on on[2];
-    uint32_t tick; /* that is to come                                               */
-    uint32_t gone; /* ticks of a dead loop                                           */
-    double fed_s; /* the watchdog's                                                */
+    uint32_t tick; /* that is to come */
+    uint32_t gone; /* ticks of a dead loop */
+    double fed_s;  /* the watchdog's */
     uint8_t alive, fired, dead;
-    struct exh_drive_in in; /* the last, of a device with nothing wrong             */
-    struct exh_drive_out out; /* and what it was given                               */
+    struct exh_drive_in in;   /* the last, of a device with nothing wrong */
+    struct exh_drive_out out; /* and what it was given */
 } src;
 
 static double period_s(void)
@@ -196,7 +197,7 @@ static void lose_card(const struct on *o)
     box->fault.phase = (uint8_t)(o->what.how >> 2 & 1 ? EMU_PHASE_WRITE : EMU_PHASE_READ);
 }
 
-#define AHEAD_TICKS 8u /* until it comes to the parameter                             */
+#define AHEAD_TICKS 8u /* until it comes to the parameter */
 
 static uint32_t bit_at(uint32_t size_B, uint32_t how)
 {

@@ -77,7 +77,8 @@ uint32_t faults_seen_within(unsigned scene, unsigned source, uint32_t rate_Hz)
     return s->ticks + (s->ms * rate_Hz + 999) / 1000 + rounds_of(scene, source);
 }
 
-/* Packets that came while the loop was dead are taken so many a tick, and until then it hears them. */
+/* Packets that came while the loop was dead are taken so many a tick, and until then it hears them.
+ */
 uint32_t faults_seen_beside(unsigned scene, unsigned source, unsigned beside, uint32_t rate_Hz)
 {
     const uint32_t waiting = FAULTS_DEAD_TICKS * FAULTS_LINK_HZ / rate_Hz + 1;

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define GAIN_FIRST 0.1 /* of the paper's gains: the ray is climbed from here      */
+#define GAIN_FIRST 0.1 /* of the paper's gains: the ray is climbed from here */
 #define GAIN_STEP  1.25
 #define GAIN_MOST  20
 #define K_MAX_NPM  1e6 /* what the scene takes */
@@ -31,9 +31,9 @@ struct ray {
 struct limit {
     int done, error, kind, rate_i;
     double scale;
-    double stable, unstable; /* gains, of the paper's; 0: at rest at none tried         */
-    int open;                /* the ray ended first: there is no unstable        */
-    double linear;           /* the largest with rho < 1                          */
+    double stable, unstable; /* gains, of the paper's; 0: at rest at none tried */
+    int open;                /* the ray ended first: there is no unstable */
+    double linear;           /* the largest with rho < 1 */
 };
 
 static struct sim_device with_friction(const struct sim_device *d, int kind, double scale)
@@ -99,8 +99,8 @@ static double linear_limit(const struct run_cfg *base, double rate_Hz)
     const int window = sweep_window(base);
     double below = 0, above = GAIN_MOST;
     for (double g = 0.02; g < GAIN_MOST; g *= 1.02) {
-        const double rho = linear_rho(&base->board.device, 1 / rate_Hz, g * row->k_Npm, g * row->b_Nspm,
-                                      window);
+        const double rho =
+            linear_rho(&base->board.device, 1 / rate_Hz, g * row->k_Npm, g * row->b_Nspm, window);
         above = g;
         if (!(rho >= 0 && rho < 1)) { break; }
         below = g;
@@ -129,7 +129,8 @@ static void work(const void *ctx, int i, void *result)
 static void print(const struct sweep_opt *o, const struct limit *x, int points)
 {
     printf("\nThe border along the ray through the paper's point, in its gains, against friction\n"
-           "(%d falls a cell; -: at rest at no gain from %.1f up; >=: at rest at the last gain tried)\n",
+           "(%d falls a cell; -: at rest at no gain from %.1f up; >=: at rest at the last gain "
+           "tried)\n",
            o->base.board.falls, GAIN_FIRST);
     for (int kind = 0; kind < KINDS; kind++) {
         printf("\n%-38s", kind_text[kind]);

@@ -89,7 +89,8 @@ static int refuse(struct asked *a)
         return 2;
     }
     for (int i = 0; i < a->rates; i++) {
-        /* What is on its way to the drive has to fit the model, as it has to fit the simulated box. */
+        /* What is on its way to the drive has to fit the model, as it has to fit the simulated box.
+         */
         if ((d->delay_tick / a->rate_Hz[i] + d->delay_s) * a->rate_Hz[i] > 200) {
             cli_complain("%.6g Hz: outputs are more than 200 ticks late: a lower --rate or delay",
                          a->rate_Hz[i]);
@@ -162,7 +163,8 @@ static double together(struct region *r, double k, double b)
     return g;
 }
 
-/* The lowest piece of a row or column that is allowed, and the end of what hangs together with it. */
+/* The lowest piece of a row or column that is allowed, and the end of what hangs together with it.
+ */
 static double first_run(struct region *r, int i, int j, int of_k)
 {
     const int n = of_k ? r->o.columns : r->o.rows;

@@ -24,21 +24,22 @@ void gains_rule_print(FILE *f, const struct exh_gains_par *rule);
 
 struct gains_share {
     double rate_Hz;
-    int cells, stable, at_rest; /* of the map's grid; nine of ten falls, all falls   */
-    int allowed_stable, allowed_at_rest; /* of those, inside                                */
-    int linear_stable, linear_unstable; /* rho < 1, of the grid                            */
-    int energy_stable, energy_unstable; /* the closed form with friction, of the grid       */
+    int cells, stable, at_rest;          /* of the map's grid; nine of ten falls, all falls */
+    int allowed_stable, allowed_at_rest; /* of those, inside */
+    int linear_stable, linear_unstable;  /* rho < 1, of the grid */
+    int energy_stable, energy_unstable;  /* the closed form with friction, of the grid */
     int rule_stable;
     int inside, unstable; /* of all cells inside: how many, how many unstable */
-    long falls, restless; /* in these                                        */
+    long falls, restless; /* in these */
 };
 
 struct gains_map {
-    struct cell *at; /* the caller's to free                                    */
+    struct cell *at; /* the caller's to free */
     int n, columns, rows;
 };
 
-/* All cells of a file that `exhand drop --sweep` wrote. 0, or a status after a line on stderr: 3 without the file. */
+/* All cells of a file that `exhand drop --sweep` wrote. 0, or a status after a line on stderr: 3
+ * without the file. */
 int gains_map(struct gains_map *m, const char *path);
 
 /* The cells of the region's rate. */

@@ -68,7 +68,8 @@ int gains_map(struct gains_map *m, const char *path)
     int err;
     memset(m, 0, sizeof *m);
     if (f == NULL) {
-        cli_complain("--judge: %s: %s: give the stability.csv of exhand drop --sweep", path, strerror(errno));
+        cli_complain("--judge: %s: %s: give the stability.csv of exhand drop --sweep", path,
+                     strerror(errno));
         return 3;
     }
     err = read_all(f, m);
@@ -86,7 +87,8 @@ static int same(double a, double b)
 }
 
 /* 1 for each cell of the grid of a rate, what counts as area: a sweep also has octaves and what
- * bisection asked for. A row of the grid has a cell in each column, a column one in each such row. */
+ * bisection asked for. A row of the grid has a cell in each column, a column one in each such row.
+ */
 static void mark_grid(const struct gains_map *m, double rate_Hz, char *grid)
 {
     const struct cell *c = m->at;

@@ -5,9 +5,9 @@
 
 #include <string.h>
 
-#define LEVELS 12 /* heights of a knot that are tried: down to 1 - LEVEL * LEVELS  */
-#define LEVEL  0.04 /* of what is allowed there                                   */
-#define MARGIN 1.0 /* N/m, more than any rounding of a knot moves the line         */
+#define LEVELS 12   /* heights of a knot that are tried: down to 1 - LEVEL * LEVELS */
+#define LEVEL  0.04 /* of what is allowed there */
+#define MARGIN 1.0  /* N/m, more than any rounding of a knot moves the line */
 
 /* Nodes 0..last of the rows: the largest k allowed on both sides of each. */
 struct profile {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand glove: the glove's Table I, recordings as stable angles, the scan's skew, logs, a stock glove. */
+/* exhand glove: the glove's Table I, recordings as stable angles, the scan's skew, logs, a stock
+ * glove. */
 #include "glove.h"
 
 #include "assign.h"
@@ -35,8 +36,8 @@ static int take_setting(void *ctx, const char *text)
         cli_complain("--set: at most %d", GLOVE_SETTINGS);
         return 2;
     }
-    o->setting[o->settings++] =
-        (struct run_setting){cli_signal_find(exh_scene_glove.params->table, name, NULL)->name, value};
+    o->setting[o->settings++] = (struct run_setting){
+        cli_signal_find(exh_scene_glove.params->table, name, NULL)->name, value};
     return 0;
 }
 
@@ -59,14 +60,16 @@ static void print_params(void)
 {
     const struct exh_signal_table *all = exh_scene_glove.params->table;
     const struct exh_signal_table t = {all->group, (uint16_t)(all->groups - 1)};
-    printf("Parameters of the scene (--set NAME=VALUE; those of the calibration come from a file)\n");
+    printf(
+        "Parameters of the scene (--set NAME=VALUE; those of the calibration come from a file)\n");
     cli_signal_print(stdout, &t);
-    printf("\nThe simulated glove and its card (--device NAME=VALUE; `exhand drop --params` lists the "
-           "motor's)\n");
+    printf(
+        "\nThe simulated glove and its card (--device NAME=VALUE; `exhand drop --params` lists the "
+        "motor's)\n");
     for (int i = 0; i < sim_glove_rows; i++) {
         const struct sim_device_row *r = &sim_glove_row[i];
-        printf("  %-13s %-8s %14.12g  %14.12g .. %-14.12g %-8s %s\n", r->name, r->unit, r->value, r->min,
-               r->max, r->sure, r->help);
+        printf("  %-13s %-8s %14.12g  %14.12g .. %-14.12g %-8s %s\n", r->name, r->unit, r->value,
+               r->min, r->max, r->sure, r->help);
     }
 }
 
@@ -111,11 +114,15 @@ static int check_rest(const struct glove_options *o)
         {o->serial && (o->play || o->does || o->cards),
          "--serial: a hand is in that glove: leave --play, --does and --cards out"},
         {o->serial && o->pose && (o->record || o->tips || o->deg || o->calibration || o->settings),
-         "--pose: with --serial its rows are codes as they come: leave --record, --tips, --deg, --calibration and --set out"},
+         "--pose: with --serial its rows are codes as they come: leave --record, --tips, --deg, "
+         "--calibration and --set out"},
         {o->glove_Hz > 0 && !o->serial, "--glove-rate: goes with --serial"},
-        {(o->does && !o->record) || (o->pose && !o->record && !o->serial), "--does and --pose: go with --record, --pose with --serial, too"},
-        {(o->does || o->pose) && o->play, "--play: says what the hand does: leave --does and --pose out"},
-        {(o->from_s > 0 || o->to_s > 0) && !recorded, "--from and --to: go with --selftest of a recording"},
+        {(o->does && !o->record) || (o->pose && !o->record && !o->serial),
+         "--does and --pose: go with --record, --pose with --serial, too"},
+        {(o->does || o->pose) && o->play,
+         "--play: says what the hand does: leave --does and --pose out"},
+        {(o->from_s > 0 || o->to_s > 0) && !recorded,
+         "--from and --to: go with --selftest of a recording"},
         {o->seconds > 0 && (o->csv || o->log), "--seconds: a recording is as long as it is"},
         {o->skew && (o->rate_Hz > 0 || o->seconds > 0 || o->calibration),
          "--skew: does not depend on --rate, --seconds or --calibration"},
@@ -129,20 +136,25 @@ static int check_rest(const struct glove_options *o)
 static int check(const struct glove_options *o)
 {
     if (!o->selftest && !o->csv && !o->skew && !o->record && !o->serial) {
-        return bad_combination("what to do is missing: --selftest, --csv, --skew, --record or --serial");
+        return bad_combination(
+            "what to do is missing: --selftest, --csv, --skew, --record or --serial");
     }
     if ((o->skew != 0) + (o->record || o->serial) + (o->selftest || o->csv) > 1) {
-        return bad_combination("--skew, --record or --serial, and --selftest or --csv: one at a time");
+        return bad_combination(
+            "--skew, --record or --serial, and --selftest or --csv: one at a time");
     }
     if (o->log && !o->selftest) { return bad_combination("--log: goes with --selftest"); }
     if (o->csv && o->log) { return bad_combination("--csv and --log: one of them"); }
-    if (o->csv && o->rate_Hz <= 0) { return bad_combination("--csv: --rate HZ says how fast its rows came"); }
+    if (o->csv && o->rate_Hz <= 0) {
+        return bad_combination("--csv: --rate HZ says how fast its rows came");
+    }
     if (o->log && o->rate_Hz > 0) { return bad_combination("--rate: a log knows its own"); }
     if (o->unit && recording_unit_of(o->unit) == RECORDING_GUESS) {
         return bad_combination("--unit: codes, rad, deg or turn");
     }
     if ((o->tips || o->deg) && (!(o->csv || (o->serial && !o->record)) || o->selftest)) {
-        return bad_combination("--tips and --deg: go with --csv, or with --serial without --record");
+        return bad_combination(
+            "--tips and --deg: go with --csv, or with --serial without --record");
     }
     return check_rest(o);
 }
@@ -171,36 +183,52 @@ int cli_glove(int argc, char **argv)
         void *to;
     } u[2] = {{&set}, {&device}};
     const struct cli_option option[] = {
-        {"selftest", CLI_FLAG, &o.selftest, 0, 0, NULL, "the paper's Table I, on the board or a recording"},
-        {"csv", CLI_TEXT, &o.csv, 0, 0, "FILE", "a recording: 22 codes or angles a line; - is standard input"},
+        {"selftest", CLI_FLAG, &o.selftest, 0, 0, NULL,
+         "the paper's Table I, on the board or a recording"},
+        {"csv", CLI_TEXT, &o.csv, 0, 0, "FILE",
+         "a recording: 22 codes or angles a line; - is standard input"},
         {"log", CLI_TEXT, &o.log, 0, 0, "FILE", "a log made by --record"},
         {"rate", CLI_REAL, &o.rate_Hz, 1, RATE_TOP, "HZ", "of the rows, or of the loop (2000)"},
         {"tips", CLI_FLAG, &o.tips, 0, 0, NULL, "joints and fingertips of the robot hand too"},
         {"deg", CLI_FLAG, &o.deg, 0, 0, NULL, "angles in degrees, not radians"},
-        {"unit", CLI_TEXT, &o.unit, 0, 0, "UNIT", "of the rows: codes, rad, deg, turn; else guessed"},
+        {"unit", CLI_TEXT, &o.unit, 0, 0, "UNIT",
+         "of the rows: codes, rad, deg, turn; else guessed"},
         {"calibration", CLI_TEXT, &o.calibration, 0, 0, "FILE", "instead of nobody's"},
         {"skew", CLI_FLAG, &o.skew, 0, 0, NULL, "what the scan's skew does to the fingertips"},
-        {"record", CLI_TEXT, &o.record, 0, 0, "FILE", "run the scene on the simulated glove, or --serial, log it there"},
-        {"serial", CLI_TEXT, &o.serial, 0, 0, "DEVICE", "a stock glove of 22 sensors on this line; rows like --csv's, or --record"},
-        {"glove-rate", CLI_REAL, &o.glove_Hz, GLOVE_TTY_RATE_MIN_HZ, GLOVE_TTY_RATE_MAX_HZ, "HZ", "with --serial: its frames (90)"},
-        {"play", CLI_TEXT, &o.play, 0, 0, "FILE", "with --record: the hand does what this recording says"},
+        {"record", CLI_TEXT, &o.record, 0, 0, "FILE",
+         "run the scene on the simulated glove, or --serial, log it there"},
+        {"serial", CLI_TEXT, &o.serial, 0, 0, "DEVICE",
+         "a stock glove of 22 sensors on this line; rows like --csv's, or --record"},
+        {"glove-rate", CLI_REAL, &o.glove_Hz, GLOVE_TTY_RATE_MIN_HZ, GLOVE_TTY_RATE_MAX_HZ, "HZ",
+         "with --serial: its frames (90)"},
+        {"play", CLI_TEXT, &o.play, 0, 0, "FILE",
+         "with --record: the hand does what this recording says"},
         {"does", CLI_TEXT, &o.does, 0, 0, "WHAT", "with --record: rest, poses, grasp or wave"},
-        {"pose", CLI_TEXT, &o.pose, 0, 0, "NAME", "with --record: begin in this pose; with --serial: rows of codes for `exhand calibrate --glove`, named so"},
-        {"seconds", CLI_REAL, &o.seconds, 0.001, 100000, "S", "how long the board is asked (10, or all of --play; --serial: until Ctrl-C)"},
+        {"pose", CLI_TEXT, &o.pose, 0, 0, "NAME",
+         "with --record: begin in this pose; with --serial: rows of codes for `exhand calibrate "
+         "--glove`, named so"},
+        {"seconds", CLI_REAL, &o.seconds, 0.001, 100000, "S",
+         "how long the board is asked (10, or all of --play; --serial: until Ctrl-C)"},
         {"from", CLI_REAL, &o.from_s, 0, 1e6, "S", "selftest: a recording is at rest from here"},
         {"to", CLI_REAL, &o.to_s, 0, 1e6, "S", "to here"},
         {"span", CLI_REAL, &o.span_V, 0.001, 20, "V", "all that a joint's signal can be (20)"},
         {"travel", CLI_REAL, &o.travel_m, 1e-6, 2, "M", "a finger's string (0.034)"},
-        {"span-current", CLI_REAL, &o.span_A, 0.001, 100, "A", "all that a motor's current can be (6.6)"},
-        {"cards", CLI_FLAG, &o.cards, 0, 0, NULL, "the board's codes through the drivers and emulated cards: the same bits"},
+        {"span-current", CLI_REAL, &o.span_A, 0.001, 100, "A",
+         "all that a motor's current can be (6.6)"},
+        {"cards", CLI_FLAG, &o.cards, 0, 0, NULL,
+         "the board's codes through the drivers and emulated cards: the same bits"},
         {"seed", CLI_INT, &o.seed, 0, 9e15, "N", "of the simulation"},
         {"set", CLI_CALL, u[0].to, 0, 0, "NAME=VALUE", "a parameter of the scene"},
         {"device", CLI_CALL, u[1].to, 0, 0, "NAME=VALUE", "one of the simulation"},
         {"params", CLI_FLAG, &params, 0, 0, NULL, "list both"},
     };
-    const struct cli_command c = {"glove", "--selftest | --csv FILE --rate HZ | --skew | --record FILE | --serial DEVICE",
-                                  "Glove codes to stable angles and fingertips.", option,
-                                  (int)(sizeof option / sizeof option[0]), 0};
+    const struct cli_command c = {
+        "glove",
+        "--selftest | --csv FILE --rate HZ | --skew | --record FILE | --serial DEVICE",
+        "Glove codes to stable angles and fingertips.",
+        option,
+        (int)(sizeof option / sizeof option[0]),
+        0};
     int err;
     memset(&o, 0, sizeof o);
     o.span_V = 20;

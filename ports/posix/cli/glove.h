@@ -18,16 +18,16 @@
 struct glove_options {
     int selftest, skew, tips, deg, cards;
     const char *serial, *csv, *log, *record, *play, *calibration, *unit, *does, *pose;
-    double rate_Hz;             /* 0: not said                                  */
-    double glove_Hz;            /* of --serial                                  */
-    double seconds;             /* 0: not said                                  */
+    double rate_Hz;  /* 0: not said */
+    double glove_Hz; /* of --serial */
+    double seconds;  /* 0: not said */
     double from_s, to_s;
     double travel_m, span_A, span_V;
     int64_t seed;
     struct sim_device device;
     struct sim_glove_par chain;
     int fc_given;
-    struct run_setting setting[GLOVE_SETTINGS]; /* as they were given              */
+    struct run_setting setting[GLOVE_SETTINGS]; /* as they were given */
     int settings;
 };
 
@@ -41,7 +41,7 @@ struct glove_frames {
 /* What was taken at rest. */
 struct glove_rest {
     struct glove_frames frames;
-    uint32_t *enc; /* and mon: ticks of them; NULL: no motor in the recording     */
+    uint32_t *enc; /* and mon: ticks of them; NULL: no motor in the recording */
     int16_t *mon;
     long ticks, cap;
 };

@@ -31,7 +31,7 @@ struct glove_options {
 struct glove_result {
     struct exh_glove_cal cal;
     struct exh_glove_fit fit[EXH_GLOVE_SENSORS];
-    uint8_t which[GLOVE_POSES]; /* of the poses that were fitted                  */
+    uint8_t which[GLOVE_POSES]; /* of the poses that were fitted */
     struct exh_glove_pose pose[GLOVE_POSES];
     unsigned poses;
     struct glove_taken taken;

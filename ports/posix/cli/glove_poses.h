@@ -26,10 +26,10 @@ struct glove_taken {
 /* A live glove on a live hand, both simulated. */
 struct glove_bench {
     struct sim_glove_par par;
-    unsigned char fault[EXH_GLOVE_SENSORS]; /* enum sim_glove_fault                */
-    double miss_deg; /* by how much the person misses each angle, at most       */
+    unsigned char fault[EXH_GLOVE_SENSORS]; /* enum sim_glove_fault */
+    double miss_deg;                        /* by how much the person misses each angle, at most */
     double rate_Hz;
-    int64_t frames;  /* of each pose                                           */
+    int64_t frames; /* of each pose */
     int64_t seed;
 };
 

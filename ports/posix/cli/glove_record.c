@@ -71,8 +71,9 @@ static int run_logged(const struct glove_options *o, const struct posix_config *
     if (err < 0) { return complain_loop(o, err); }
     /* As set up, the filter has another cut-off. */
     if (frames * (int64_t)every <= (int64_t)last_tick - last_tick / 4) {
-        cli_complain("%ld frames in %lu ticks: a scan takes longer than %ld: --set every=... says more",
-                     frames, last_tick + 1ul, every);
+        cli_complain(
+            "%ld frames in %lu ticks: a scan takes longer than %ld: --set every=... says more",
+            frames, last_tick + 1ul, every);
     }
     return exh_log_end(last_tick + 1) == 0 ? 0 : 1;
 }
@@ -120,7 +121,8 @@ int glove_record(const struct glove_options *o)
     if (err == 0) { err = try_once(o, c); }
     c.max_ticks = ticks_of(o, r.codes ? r.rows * *exh_scene_glove.glove_every : r.rows);
     if (err == 0 && (c.log = fopen(o->record, "wb")) == NULL) {
-        cli_complain("--record: %s: %s: give a file that can be written", o->record, strerror(errno));
+        cli_complain("--record: %s: %s: give a file that can be written", o->record,
+                     strerror(errno));
         err = 2;
     }
     if (err == 0) {

@@ -32,7 +32,8 @@ static int settle_rate(struct glove_rest *r)
 {
     const long n = r->frames.n;
     if (n < FRAMES_MIN) {
-        cli_complain("%ld frames: too few to measure noise by (%d): give more --seconds", n, FRAMES_MIN);
+        cli_complain("%ld frames: too few to measure noise by (%d): give more --seconds", n,
+                     FRAMES_MIN);
         return 2;
     }
     r->frames.T.num *= (uint32_t)((r->ticks + n / 2) / n);
@@ -140,8 +141,8 @@ int glove_rest_cut(struct glove_frames *f, const struct glove_options *o)
     long to = o->to_s > 0 ? (long)(o->to_s / T_s + 0.5) : f->n;
     if (to > f->n) { to = f->n; }
     if (from >= to) {
-        cli_complain("--from, --to: %.6g..%.6g s: nothing is recorded there: it ends at %.6g s", o->from_s,
-                     o->to_s, (double)f->n * T_s);
+        cli_complain("--from, --to: %.6g..%.6g s: nothing is recorded there: it ends at %.6g s",
+                     o->from_s, o->to_s, (double)f->n * T_s);
         return 2;
     }
     f->n = to - from;

@@ -18,9 +18,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#define SENSORS   EXH_GLOVE_SENSORS
-#define SILENT_S  1.0
-#define NEVER_S   3.0 /* without a frame since the start: something is wrong      */
+#define SENSORS  EXH_GLOVE_SENSORS
+#define SILENT_S 1.0
+#define NEVER_S  3.0 /* without a frame since the start: something is wrong */
 
 static struct {
     const struct glove_options *o;
@@ -43,11 +43,14 @@ static void nobody(struct exh_glove_cal *cal)
     }
 }
 
-int glove_serial_stage(const struct exh_scene *sc, const struct exh_glove_cal *cal, double rate_Hz, double glove_Hz)
+int glove_serial_stage(const struct exh_scene *sc, const struct exh_glove_cal *cal, double rate_Hz,
+                       double glove_Hz)
 {
     const double every = (double)(long)(rate_Hz / glove_Hz);
     const struct run_setting own[] = {
-        {"every", every < 1 ? 1 : every > 1000 ? 1000 : every},
+        {"every", every < 1      ? 1
+                  : every > 1000 ? 1000
+                                 : every},
         {"glove_fc", glove_Hz > 66 ? 30 : glove_Hz / 4},
     };
     static struct exh_glove_cal none;
@@ -67,7 +70,8 @@ static int stage(const struct glove_options *o)
     static struct exh_glove_cal cal;
     int err = o->calibration ? glove_image_read(&cal, "calibration", o->calibration) : 0;
     if (err) { return err; }
-    err = glove_serial_stage(&exh_scene_glove, o->calibration ? &cal : NULL, run.rate_Hz, run.tty.rate_Hz);
+    err = glove_serial_stage(&exh_scene_glove, o->calibration ? &cal : NULL, run.rate_Hz,
+                             run.tty.rate_Hz);
     for (int i = 0; err == 0 && i < o->settings; i++) {
         err = cli_param_set(exh_scene_glove.params, o->setting[i].name, o->setting[i].value);
     }
@@ -77,13 +81,15 @@ static int stage(const struct glove_options *o)
 int glove_serial_open(struct glove_tty *t, const char *option, const char *path, double glove_Hz)
 {
     const int err = glove_tty_open(t, path, glove_Hz) < 0 ? errno : 0;
-    const char *what = err == ENOENT || err == ENXIO || err == ENODEV ? "is it plugged in? `ls /dev/tty*` lists what there is"
+    const char *what = err == ENOENT || err == ENXIO || err == ENODEV
+                           ? "is it plugged in? `ls /dev/tty*` lists what there is"
                        : err == EACCES ? "join the group that owns it (`ls -l` says which)"
                        : err == ENOTTY ? "give a serial line, e.g. /dev/ttyUSB0"
                        : err == EBUSY  ? "another program has it"
                                        : "give a serial line that can be opened";
     if (err == 0) { return 0; }
-    cli_complain("--%s: %s: %s: %s", option, path, err == ENOTTY ? "is no serial line" : strerror(err), what);
+    cli_complain("--%s: %s: %s: %s", option, path,
+                 err == ENOTTY ? "is no serial line" : strerror(err), what);
     return 3;
 }
 
@@ -99,14 +105,21 @@ static void complain_never(void)
 {
     const struct cyberglove *g = &run.tty.in;
     if (run.tty.bytes == 0) {
-        cli_complain("--serial: %s: silent for %g s: is the glove's unit on, and is this its line (115200 baud)?", path(), NEVER_S);
-    } else if (g->lost[CYBERGLOVE_EIGHTEEN] > g->lost[CYBERGLOVE_ZERO] + g->lost[CYBERGLOVE_LENGTH]) {
-        cli_complain("--serial: %s: frames of 18 samples: this is the glove of 18 sensors (22 wanted)", path());
+        cli_complain("--serial: %s: silent for %g s: is the glove's unit on, and is this its line "
+                     "(115200 baud)?",
+                     path(), NEVER_S);
+    } else if (g->lost[CYBERGLOVE_EIGHTEEN] >
+               g->lost[CYBERGLOVE_ZERO] + g->lost[CYBERGLOVE_LENGTH]) {
+        cli_complain(
+            "--serial: %s: frames of 18 samples: this is the glove of 18 sensors (22 wanted)",
+            path());
     } else if (g->lost[CYBERGLOVE_UNPLUGGED] > 0) {
         cli_complain("--serial: %s: its unit says that no glove is plugged into it", path());
     } else {
-        cli_complain("--serial: %s: %lu bytes and no whole frame: is it a glove of 22 sensors with 8-bit samples, without time stamp, at "
-                     "115200 baud?", path(), (unsigned long)run.tty.bytes);
+        cli_complain("--serial: %s: %lu bytes and no whole frame: is it a glove of 22 sensors with "
+                     "8-bit samples, without time stamp, at "
+                     "115200 baud?",
+                     path(), (unsigned long)run.tty.bytes);
     }
 }
 
@@ -117,7 +130,9 @@ static void watch_silence(double age_s)
     if (silent == run.silent || !run.heard) { return; }
     run.silent = silent;
     cli_complain("--serial: %s: %s", path(),
-                 !silent ? "frames again" : run.tty.fd < 0 ? "was unplugged: waits for it" : "silent: asks again");
+                 !silent          ? "frames again"
+                 : run.tty.fd < 0 ? "was unplugged: waits for it"
+                                  : "silent: asks again");
 }
 
 static void before(uint32_t tick, struct exh_scene_in *in)
@@ -155,13 +170,16 @@ static void started(const struct exh_scene *sc, struct exh_scene_board board)
 static void summary(FILE *to)
 {
     const struct cyberglove *g = &run.tty.in;
-    fprintf(to, "%s: %lu frames at %.6g Hz, discarded:", path(), (unsigned long)g->frames, run.tty.rate_Hz);
+    fprintf(to, "%s: %lu frames at %.6g Hz, discarded:", path(), (unsigned long)g->frames,
+            run.tty.rate_Hz);
     for (unsigned i = 0; i < CYBERGLOVE_CAUSES; i++) {
         fprintf(to, " %s %lu,", cyberglove_cause_text(i), (unsigned long)g->lost[i]);
     }
-    fprintf(to, " stray bytes %lu, refused commands %lu, told to stream %lu times, gone %lu times; missed ticks %llu\n",
-            (unsigned long)g->strays, (unsigned long)g->errors, (unsigned long)run.tty.told, (unsigned long)run.tty.gone,
-            (unsigned long long)run.missed);
+    fprintf(to,
+            " stray bytes %lu, refused commands %lu, told to stream %lu times, gone %lu times; "
+            "missed ticks %llu\n",
+            (unsigned long)g->strays, (unsigned long)g->errors, (unsigned long)run.tty.told,
+            (unsigned long)run.tty.gone, (unsigned long long)run.missed);
 }
 
 /* --- the whole --- */
@@ -181,7 +199,8 @@ static int go(const struct glove_options *o, FILE *log)
     glove_catch();
     err = exh_loop(&exh_scene_glove, 0, &hooks);
     if (err < 0) {
-        cli_complain("%.6g Hz, the glove at %.6g Hz: %s: see --rate, --glove-rate and --set", run.rate_Hz, run.tty.rate_Hz, exh_error_text(err));
+        cli_complain("%.6g Hz, the glove at %.6g Hz: %s: see --rate, --glove-rate and --set",
+                     run.rate_Hz, run.tty.rate_Hz, exh_error_text(err));
         return 2;
     }
     if (log && exh_log_end(run.last_tick + 1) != 0) { err = 1; }
@@ -196,14 +215,16 @@ int glove_serial(const struct glove_options *o)
     run.o = o;
     run.rate_Hz = o->rate_Hz;
     if (o->pose && glove_pose_find(o->pose) < 0) {
-        cli_complain("--pose: %s: no such pose: `exhand calibrate --glove --list` lists them", o->pose);
+        cli_complain("--pose: %s: no such pose: `exhand calibrate --glove --list` lists them",
+                     o->pose);
         return 2;
     }
     err = glove_serial_open(&run.tty, "serial", o->serial, o->glove_Hz);
     if (err) { return err; }
     err = stage(o);
     if (err == 0 && o->record && (log = fopen(o->record, "wb")) == NULL) {
-        cli_complain("--record: %s: %s: give a file that can be written", o->record, strerror(errno));
+        cli_complain("--record: %s: %s: give a file that can be written", o->record,
+                     strerror(errno));
         err = 2;
     }
     if (err == 0) { err = go(o, log); }

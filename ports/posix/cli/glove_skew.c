@@ -117,15 +117,15 @@ int glove_skew(const struct glove_options *o)
     }
     printf("Fingertips from 22 channels converted one after the other, against all 22 at once:\n"
            "at the tick the scan ends at, and in the middle of the scan (skew without delay).\n"
-           "Hand from flat to fist and back, minimum jerk; A/D and noise left out; %d Hz.\n\n", RATE_HZ);
+           "Hand from flat to fist and back, minimum jerk; A/D and noise left out; %d Hz.\n\n",
+           RATE_HZ);
     printf("  one way  fastest  interval   scan   against the tick     against the middle\n"
            "                                       largest     rms      largest     rms\n"
            "        s    deg/s        us     us         um      um           um      um\n");
     for (unsigned m = 0; m < sizeof move_s / sizeof move_s[0]; m++) {
         for (unsigned k = 0; k < sizeof interval_us / sizeof interval_us[0]; k++) {
             struct errors tick = {0, 0, 0}, mid = {0, 0, 0};
-            const double fastest =
-                grasp(o, finger, move_s[m], interval_us[k] * 1e-6, &tick, &mid);
+            const double fastest = grasp(o, finger, move_s[m], interval_us[k] * 1e-6, &tick, &mid);
             printf("%9.1f %8.0f %9.0f %6.0f %10.1f %7.1f %12.2f %7.2f\n", move_s[m], fastest,
                    interval_us[k], SENSORS * interval_us[k], tick.most_m * 1e6,
                    root(tick.squares_m2 / (double)tick.n) * 1e6, mid.most_m * 1e6,

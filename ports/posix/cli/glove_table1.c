@@ -61,7 +61,8 @@ static double joint_pp(const struct glove_frames *f, int *worst)
 }
 
 /* By the library, from counter values, m. */
-static int position_pp(const struct glove_rest *r, const struct sim_device *d, double *pp_m, double *step_m)
+static int position_pp(const struct glove_rest *r, const struct sim_device *d, double *pp_m,
+                       double *step_m)
 {
     const struct exh_quad_par par = {
         (int32_t)(d->step_m / d->decode * (double)(INT64_C(1) << EXH_Q_STEP) + 0.5),
@@ -85,8 +86,8 @@ static int position_pp(const struct glove_rest *r, const struct sim_device *d, d
 
 static double current_pp(const struct glove_rest *r, const struct sim_device *d)
 {
-    const struct exh_drive_par par = {.mon_A_q40 =
-                                          (int32_t)(d->mon_apc * (double)(INT64_C(1) << EXH_Q_MON) + 0.5)};
+    const struct exh_drive_par par = {
+        .mon_A_q40 = (int32_t)(d->mon_apc * (double)(INT64_C(1) << EXH_Q_MON) + 0.5)};
     const struct exh_drive_cfg cfg = {.par = &par};
     struct range seen = none;
     for (long n = 0; n < r->ticks; n++) { see(&seen, exh_drive_monitor_A_q26(&cfg, r->mon[n])); }
@@ -119,7 +120,8 @@ static int motor_rows(const struct glove_options *o, const struct glove_rest *r)
     int err = position_pp(r, &o->device, &pp_m, &step_m), fails;
     if (err) { return err; }
     snprintf(noise, sizeof noise, "%.2f um (steps: %.3g)", pp_m * 1e6, pp_m / step_m);
-    snprintf(span, sizeof span, "%.4g mm (steps: %ld)", o->travel_m * 1e3, (long)(o->travel_m / step_m));
+    snprintf(span, sizeof span, "%.4g mm (steps: %ld)", o->travel_m * 1e3,
+             (long)(o->travel_m / step_m));
     fails = row("motor position", noise, span, stable_bits(o->travel_m, pp_m), "1 encoder step", 9);
     pp_A = current_pp(r, &o->device);
     snprintf(noise, sizeof noise, "%.1f mA", pp_A * 1e3);
@@ -143,8 +145,9 @@ static double delay_ticks(const struct exh_filter_cfg *cfg, long settle)
     return (double)(x - y) / slope;
 }
 
-struct behind { /* a filter */
-    double pp_raw; /* of the worst channel, codes                                */
+/* a filter */
+struct behind {
+    double pp_raw; /* of the worst channel, codes */
     long flips[2]; /* behind a quantizer of so many bits, with and without hysteresis */
     int bits;
 };
@@ -191,7 +194,8 @@ static int behind_filter(const struct glove_options *o, const struct glove_frame
     struct exh_quantizer_par qp[2];
     struct behind b = {0, {0, 0}, 0};
     double delay_s = 0;
-    if (fc_Hz > 0 && (4 * fc_Hz > rate_Hz || f->n < 2 * settle || exh_filter_setup(&cfg, &par, f->T) < 0)) {
+    if (fc_Hz > 0 &&
+        (4 * fc_Hz > rate_Hz || f->n < 2 * settle || exh_filter_setup(&cfg, &par, f->T) < 0)) {
         return 0;
     }
     widths(f, fc_Hz > 0 ? &cfg : NULL, settle, &b, NULL);
@@ -200,7 +204,9 @@ static int behind_filter(const struct glove_options *o, const struct glove_frame
     if (fc_Hz > 0) { delay_s = delay_ticks(&cfg, settle) / rate_Hz; }
     qp[0] = (struct exh_quantizer_par){b.bits, (int32_t)(b.pp_raw * 65536 + 0.5)};
     qp[1] = (struct exh_quantizer_par){b.bits, 0};
-    if (exh_quantizer_setup(&q[0], &qp[0]) < 0 || exh_quantizer_setup(&q[1], &qp[1]) < 0) { return 1; }
+    if (exh_quantizer_setup(&q[0], &qp[0]) < 0 || exh_quantizer_setup(&q[1], &qp[1]) < 0) {
+        return 1;
+    }
     widths(f, fc_Hz > 0 ? &cfg : NULL, settle, &b, q);
     if (fc_Hz > 0) {
         printf("  %8.6g", fc_Hz);
@@ -216,11 +222,14 @@ static int behind_table(const struct glove_options *o, const struct glove_frames
 {
     static const double fc_Hz[] = {0, 300, 100, 30, 10, 3};
     int err = 0;
-    printf("\nJoint angle behind a second-order low-pass, and how often the codes of a quantizer of so\n"
+    printf("\nJoint angle behind a second-order low-pass, and how often the codes of a quantizer "
+           "of so\n"
            "many bits changed, all 22, without and with a hysteresis of as much as the noise\n"
            "  low-pass     peak to peak   bits       delay     changes      changes\n"
            "        Hz                                         without         with\n");
-    for (size_t i = 0; i < sizeof fc_Hz / sizeof fc_Hz[0]; i++) { err |= behind_filter(o, f, fc_Hz[i]); }
+    for (size_t i = 0; i < sizeof fc_Hz / sizeof fc_Hz[0]; i++) {
+        err |= behind_filter(o, f, fc_Hz[i]);
+    }
     if (err) { cli_complain("a code changed within its hysteresis"); }
     return err;
 }
@@ -261,9 +270,11 @@ static int module_line(const struct glove_options *o, const struct glove_frames 
         }
     }
     for (int i = 0; i < SENSORS; i++) { beyond += flips[i] > 1 ? flips[i] - 1 : 0; }
-    printf("\nThe glove as set (order %d, %.6g Hz, %d bits, hysteresis %.4g codes): changes of its 22 "
-           "angles %ld\n", (int)par.glove.order, par.glove.fc_Hz_q16 / 65536.0, (int)par.glove.bits,
-           par.glove.hyst_raw_q16 / 65536.0, beyond);
+    printf(
+        "\nThe glove as set (order %d, %.6g Hz, %d bits, hysteresis %.4g codes): changes of its 22 "
+        "angles %ld\n",
+        (int)par.glove.order, par.glove.fc_Hz_q16 / 65536.0, (int)par.glove.bits,
+        par.glove.hyst_raw_q16 / 65536.0, beyond);
     return (faults_line(faults) || beyond > 0) && at_rest;
 }
 
@@ -280,8 +291,9 @@ static int report(const struct glove_options *o, const struct glove_rest *r, con
     const double pp = joint_pp(f, &worst);
     printf("Stable bits = floor(log2(span / peak-to-peak noise)), %s\n"
            "%ld frames of 22 channels at %.6g Hz, %.4g s; joint angle: the worst channel, %s\n\n"
-           "  %-15s %-28s %-26s %4s   %-15s %4s\n", source, f->n, rate_Hz, (double)f->n / rate_Hz,
-           exh_glove_sensor_text((unsigned)worst), "signal", "peak to peak", "span", "bits", "paper", "bits");
+           "  %-15s %-28s %-26s %4s   %-15s %4s\n",
+           source, f->n, rate_Hz, (double)f->n / rate_Hz, exh_glove_sensor_text((unsigned)worst),
+           "signal", "peak to peak", "span", "bits", "paper", "bits");
     fails = joint_row(o, pp);
     if (r->enc != NULL) { fails = worse(fails, motor_rows(o, r)); }
     fails = worse(fails, behind_table(o, f));

@@ -14,17 +14,17 @@
 #define FIRST   7 /* angle */
 #define DAY_S   86400.0
 #define GRID_HZ 60.0
-#define STEP_S  10.0 /* no two rows are farther apart                               */
+#define STEP_S  10.0 /* no two rows are farther apart */
 #define LINE_B  1024
 
-/* The order of 23 angles (four of each finger, then palm and wrist; -1: the index's abduction, which
- * this glove does not have) in that of 22. */
+/* The order of 23 angles (four of each finger, then palm and wrist; -1: the index's abduction,
+ * which this glove does not have) in that of 22. */
 static const signed char place[23] = {0,  1,  2,  3,  4,  5,  6,  -1, 7,  8,  9, 10,
                                       11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21};
 
 struct timed {
     double (*row)[SENSORS];
-    double *t_s; /* from the first                                            */
+    double *t_s; /* from the first */
     long rows, cap;
 };
 

@@ -13,13 +13,13 @@
 #include "sim/exo.h"
 
 struct hand_record {
-    double *string_m[SIM_FINGERS]; /* rows each                                  */
+    double *string_m[SIM_FINGERS]; /* rows each */
     long rows;
     double row_hz;
 };
 
-/* row_hz: of rows without a clock. Arms: of the fingers of exo. 0, or after a line on stderr 2, 3 if it
- * is not there. */
+/* row_hz: of rows without a clock. Arms: of the fingers of exo. 0, or after a line on stderr 2, 3
+ * if it is not there. */
 int hand_record_read(struct hand_record *h, const char *path, double row_hz,
                      const struct sim_exo_par *exo);
 void hand_record_free(struct hand_record *h);

@@ -15,7 +15,7 @@
 #include <sys/stat.h>
 #include <time.h>
 
-#define DAY_S 86400
+#define DAY_S    86400
 #define EXPECTED "calibration.bin that `exhand calibrate --out` wrote"
 
 static int add(struct images *im, const char *path)
@@ -23,7 +23,8 @@ static int add(struct images *im, const char *path)
     long len;
     if (im->n == EXH_FINGERS || strlen(path) >= sizeof im->at[0].path) {
         cli_complain("--calibration: %s: %s", path,
-                     im->n == EXH_FINGERS ? "more than one a finger (5): leave some out" : "too long a name");
+                     im->n == EXH_FINGERS ? "more than one a finger (5): leave some out"
+                                          : "too long a name");
         return 2;
     }
     len = outfile_read("calibration", path, EXPECTED, im->at[im->n].byte, sizeof im->at[0].byte);
@@ -47,7 +48,8 @@ static int add_all(struct images *im, const char *dir)
     int err = 0;
     for (int i = 0; i < n; i++) {
         char path[sizeof im->at[0].path];
-        if (err == 0 && snprintf(path, sizeof path, "%s/%s", dir, name[i]->d_name) < (int)sizeof path) {
+        if (err == 0 &&
+            snprintf(path, sizeof path, "%s/%s", dir, name[i]->d_name) < (int)sizeof path) {
             err = add(im, path);
         }
         free(name[i]);
@@ -102,9 +104,11 @@ static void say_whose(const struct images *im, const struct exh_scene *sc, int i
     (void)cli_signal_find(sc->params->table, "device_id", &id);
     (void)cli_signal_find(sc->params->table, "day", &day);
     if (exh_calib_load(&c, im->at[i].byte, im->at[i].len_B, NULL) < 0) { return; }
-    cli_complain("%s: made for device %lu, finger %lu, on day %lu, good for %lu days; here is device_id %ld, day %ld",
-                 im->at[i].path, (unsigned long)c.device_id, (unsigned long)c.finger, (unsigned long)c.day,
-                 (unsigned long)c.valid_days, (long)sc->params->active[id], (long)sc->params->active[day]);
+    cli_complain("%s: made for device %lu, finger %lu, on day %lu, good for %lu days; here is "
+                 "device_id %ld, day %ld",
+                 im->at[i].path, (unsigned long)c.device_id, (unsigned long)c.finger,
+                 (unsigned long)c.day, (unsigned long)c.valid_days, (long)sc->params->active[id],
+                 (long)sc->params->active[day]);
 }
 
 int images_complain(const struct images *im, const struct exh_scene *sc)
@@ -113,8 +117,8 @@ int images_complain(const struct images *im, const struct exh_scene *sc)
     char point[24] = "";
     if (im == NULL || k == NULL || k->refused == 0 || k->image_at >= im->n) { return 0; }
     if (k->point_at) { snprintf(point, sizeof point, ", point %d", k->point_at + 1); }
-    cli_complain("--calibration: %s: %s%s: %s: nothing was started", im->at[k->image_at].path, k->what, point,
-                 exh_error_text(k->refused));
+    cli_complain("--calibration: %s: %s%s: %s: nothing was started", im->at[k->image_at].path,
+                 k->what, point, exh_error_text(k->refused));
     say_whose(im, sc, k->image_at);
     return 1;
 }

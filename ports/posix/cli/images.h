@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* --calibration: images of fingers, as `exhand calibrate --out` writes them, for a scene's set-up. */
+/* --calibration: images of fingers, as `exhand calibrate --out` writes them, for a scene's set-up.
+ */
 #ifndef CLI_IMAGES_H
 #define CLI_IMAGES_H
 
@@ -16,12 +17,13 @@ struct images {
     int n;
 };
 
-/* FILE[,FILE...], or a directory: all of its *.bin, by name. An option's call, ctx a struct images. 0, or
- * the status to end with, after a line on stderr. */
+/* FILE[,FILE...], or a directory: all of its *.bin, by name. An option's call, ctx a struct images.
+ * 0, or the status to end with, after a line on stderr. */
 int images_take(void *ctx, const char *text);
 
-/* Into the scene, behind its defaults: with images, those, device_id 1 and today as `exhand calibrate`
- * does; without, `uncalibrated`. Settings that come later may still say otherwise. NULL: without. 0 or -EXH_E_…. */
+/* Into the scene, behind its defaults: with images, those, device_id 1 and today as `exhand
+ * calibrate` does; without, `uncalibrated`. Settings that come later may still say otherwise. NULL:
+ * without. 0 or -EXH_E_…. */
 int images_give(const struct images *im, const struct exh_scene *sc);
 
 /* A line on stderr, of which image set-up refused and why. 1 if it was one. */

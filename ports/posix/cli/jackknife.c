@@ -78,7 +78,8 @@ static void intervals(const struct fall_fit *fit, const struct spread *of_a,
 {
     const double slope = slope_mpN(fit), by = reach(of_slope), by_a = reach(of_a);
     *a = (struct fall_interval){FALL_OK, fit->a_Npm - by_a, fit->a_Npm + by_a, of_a->n};
-    *b = (struct fall_interval){FALL_OK, inverse_or_0(slope + by), inverse_or_0(slope - by), of_a->n};
+    *b = (struct fall_interval){FALL_OK, inverse_or_0(slope + by), inverse_or_0(slope - by),
+                                of_a->n};
     if (!(b->hi_Npm > 0.0)) { b->status = FALL_UNBOUNDED; }
 }
 

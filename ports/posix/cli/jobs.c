@@ -75,8 +75,7 @@ static void restore(const struct handlers *h)
 static void progress(const struct jobs *j, int done)
 {
     if (j->label == NULL || !isatty(2)) { return; }
-    fprintf(stderr, "\r%s: %d/%d%s", j->label, done, j->n,
-            done == j->n || interrupted ? "\n" : "");
+    fprintf(stderr, "\r%s: %d/%d%s", j->label, done, j->n, done == j->n || interrupted ? "\n" : "");
     fflush(stderr);
 }
 
@@ -178,6 +177,8 @@ int jobs_run(const struct jobs *j)
     }
     restore(&h);
     if (interrupted) { return JOBS_INTERRUPTED; }
-    if (done < j->n) { cli_complain("%d of %d %s died", j->n - done, j->n, j->label ? j->label : "jobs"); }
+    if (done < j->n) {
+        cli_complain("%d of %d %s died", j->n - done, j->n, j->label ? j->label : "jobs");
+    }
     return done < j->n;
 }

@@ -53,12 +53,13 @@ static int count(struct listen *l, uint32_t number)
     return 1;
 }
 
-/* Its place says where it belongs; what never comes stays zeros, which no reader takes for a record. */
+/* Its place says where it belongs; what never comes stays zeros, which no reader takes for a
+ * record. */
 static int put(struct listen *l, const struct stream_piece *p)
 {
     const uint32_t ahead = p->place - (uint32_t)l->end;
-    const uint64_t at = ahead < UINT32_C(0x80000000) ? l->end + ahead
-                                                     : l->end - (UINT64_C(0x100000000) - ahead);
+    const uint64_t at =
+        ahead < UINT32_C(0x80000000) ? l->end + ahead : l->end - (UINT64_C(0x100000000) - ahead);
     if (p->n == 0) { return 0; }
     if (fseek(l->file, (long)at, SEEK_SET) != 0 || fwrite(p->byte, 1, p->n, l->file) != p->n) {
         return complain(l);
@@ -86,8 +87,8 @@ static int take(struct listen *l, const uint8_t *datagram, size_t n)
     return put(l, &p);
 }
 
-/* What is heard and not the log's is no reason to wait for longer. Never long: a signal may come just
- * before poll(). 0: it is over. */
+/* What is heard and not the log's is no reason to wait for longer. Never long: a signal may come
+ * just before poll(). 0: it is over. */
 static int wait_ms(const struct listen *l)
 {
     const double most_s = l->ended ? 0.2 : l->begun ? l->silence_s : l->wait_s;
@@ -116,13 +117,15 @@ static int go(struct listen *l, struct udp *u)
 static int report(const struct listen *l)
 {
     if (!l->begun) {
-        cli_complain("--at: %s: nothing of a log came%s: is it the box's log_port=, and this machine its peer=?", l->at,
-                     until_stopped() ? "" : " in time");
+        cli_complain("--at: %s: nothing of a log came%s: is it the box's log_port=, and this "
+                     "machine its peer=?",
+                     l->at, until_stopped() ? "" : " in time");
         return 1;
     }
-    printf("%s: %" PRIu64 " bytes in %" PRIu64 " pieces; missing %" PRIu64 ", late %" PRIu64 ", twice %" PRIu64
-           ", not the log's %" PRIu64 "; %s\n", l->out, l->bytes, l->pieces, l->missing, l->late, l->twice,
-           l->other, l->ended ? "its end came" : "its end did not come");
+    printf("%s: %" PRIu64 " bytes in %" PRIu64 " pieces; missing %" PRIu64 ", late %" PRIu64
+           ", twice %" PRIu64 ", not the log's %" PRIu64 "; %s\n",
+           l->out, l->bytes, l->pieces, l->missing, l->late, l->twice, l->other,
+           l->ended ? "its end came" : "its end did not come");
     return l->ended && l->missing == 0 ? 0 : 1;
 }
 
@@ -132,13 +135,19 @@ int cli_listen(int argc, char **argv)
     const struct cli_option option[] = {
         {"at", CLI_TEXT, &l.at, 0, 0, "ADDRESS:PORT", "where the box sends its log (0.0.0.0:4748)"},
         {"out", CLI_TEXT, &l.out, 0, 0, "FILE", "the log, for `exhand replay` and `exhand csv`"},
-        {"silence", CLI_REAL, &l.silence_s, 0.1, 1e6, "S", "once it began, so much of it is its end (5)"},
-        {"wait", CLI_REAL, &l.wait_s, 0, 1e6, "S", "nothing for so long before it begins ends it, status 1 (0: waits for ever)"},
+        {"silence", CLI_REAL, &l.silence_s, 0.1, 1e6, "S",
+         "once it began, so much of it is its end (5)"},
+        {"wait", CLI_REAL, &l.wait_s, 0, 1e6, "S",
+         "nothing for so long before it begins ends it, status 1 (0: waits for ever)"},
     };
-    const struct cli_command c = {"listen", "--out FILE [options]",
-                                  "The log of a box that sends it over UDP (pc104: log=udp), until its end or Ctrl-C.\n"
-                                  "What is lost on the way is lost: it is told, and the readers skip it.",
-                                  option, (int)(sizeof option / sizeof option[0]), 0};
+    const struct cli_command c = {
+        "listen",
+        "--out FILE [options]",
+        "The log of a box that sends it over UDP (pc104: log=udp), until its end or Ctrl-C.\n"
+        "What is lost on the way is lost: it is told, and the readers skip it.",
+        option,
+        (int)(sizeof option / sizeof option[0]),
+        0};
     struct udp u;
     int err = cli_parse(&c, argc, argv, NULL);
     if (err) { return err == 1 ? 0 : err; }

@@ -48,7 +48,8 @@ static const struct exh_scene *scene_of(const struct live_options *o)
         if (strcmp(o->scene, all[i]->name) == 0) { return all[i]; }
     }
     if (cli_scene_more && strcmp(o->scene, cli_scene_more->name) == 0) { return cli_scene_more; }
-    cli_complain("--scene: %s: give drop, guarded or bilateral%s", o->scene, cli_scene_more ? ", or custom" : "");
+    cli_complain("--scene: %s: give drop, guarded or bilateral%s", o->scene,
+                 cli_scene_more ? ", or custom" : "");
     return NULL;
 }
 
@@ -143,20 +144,26 @@ static int prepare(struct live_options *o, const struct exh_scene *sc)
         err = 2;
     }
     if (err == 0 && o->glove && (sc != &exh_scene_bilateral || !o->pace || o->params)) {
-        cli_complain("--glove-serial: goes with --scene bilateral and --pace, without --load-params");
+        cli_complain(
+            "--glove-serial: goes with --scene bilateral and --pace, without --load-params");
         err = 2;
     }
     if (err == 0 && o->glove_image && !o->glove) {
-        cli_complain("--glove-calibration: the simulated glove is calibrated: goes with --glove-serial");
+        cli_complain(
+            "--glove-calibration: the simulated glove is calibrated: goes with --glove-serial");
         err = 2;
     }
-    if (err == 0 && o->glove_image) { err = glove_image_read(&o->glove_cal, "glove-calibration", o->glove_image); }
+    if (err == 0 && o->glove_image) {
+        err = glove_image_read(&o->glove_cal, "glove-calibration", o->glove_image);
+    }
     if (err == 0) { err = contacts_check(&o->gpio, o->pace); }
     if (err == 0) { err = read_params(o); }
     if (err == 0) { err = live_log_open(o->log, o->pace, o->seconds > 0); }
     if (err == 0) { err = contacts_begin(&o->gpio); }
     if (err == 0) { err = open_modbus(o); }
-    if (err == 0 && o->glove) { err = glove_serial_open(&o->tty, "glove-serial", o->glove, GLOVE_SERIAL_HZ); }
+    if (err == 0 && o->glove) {
+        err = glove_serial_open(&o->tty, "glove-serial", o->glove, GLOVE_SERIAL_HZ);
+    }
     return err;
 }
 
@@ -190,7 +197,8 @@ int cli_run(int argc, char **argv)
         void *to;
     } u[4] = {{&set}, {&fingers}, {&speed}, {&gpio}};
     const struct cli_option option[] = {
-        {"scene", CLI_TEXT, &o.scene, 0, 0, "NAME", "drop, guarded or bilateral (drop); custom where the program has one"},
+        {"scene", CLI_TEXT, &o.scene, 0, 0, "NAME",
+         "drop, guarded or bilateral (drop); custom where the program has one"},
         {"rate", CLI_REAL, &o.rate_Hz, 1, 20000, "HZ", "of the loop (2000)"},
         {"pace", CLI_FLAG, &o.pace, 0, 0, NULL,
          "follow the wall clock, by which ticks may be missed; else as fast as it goes"},
@@ -216,7 +224,8 @@ int cli_run(int argc, char **argv)
          "clients may command RUN and CLEAR; the dead-man holds all the same"},
         {"glove-serial", CLI_TEXT, &o.glove, 0, 0, "DEVICE",
          "of bilateral: a stock glove there instead of the simulated one; fingers stay simulated"},
-        {"glove-calibration", CLI_TEXT, &o.glove_image, 0, 0, "FILE", "its user's, of `exhand calibrate --glove` (nobody's)"},
+        {"glove-calibration", CLI_TEXT, &o.glove_image, 0, 0, "FILE",
+         "its user's, of `exhand calibrate --glove` (nobody's)"},
         {"gpio", CLI_CALL, u[3].to, 0, 0, CONTACTS_ARG, CONTACTS_HELP},
         {"log", CLI_TEXT, &o.log, 0, 0, "FILE", "for `exhand replay` and `exhand csv`"},
         {"blackbox", CLI_TEXT, &o.blackbox, 0, 0, "FILE", "the last seconds before a fault, a log"},

@@ -26,7 +26,7 @@ struct live_options {
     struct run_setting setting[LIVE_SETTINGS_MAX];
     struct bilateral_options hand;
     struct run_live live;
-    struct glove_tty tty; /* of --glove-serial, while it runs                     */
+    struct glove_tty tty; /* of --glove-serial, while it runs */
     struct exh_glove_cal glove_cal;
 };
 
@@ -38,11 +38,11 @@ int live_box_clients(void);
 /* live_person.c. Who holds the dead-man switch of the simulated box: takes hold of it a tenth of a
  * second after the start, and lets go when asked; nobody, where --gpio has a real one. */
 struct live_person {
-    int again; /* lets go and takes hold anew while the box is in OFF or FAULT; else once */
-    double let_go_s; /* 0: never                                                */
+    int again;       /* lets go and takes hold anew while the box is in OFF or FAULT; else once */
+    double let_go_s; /* 0: never */
 };
 void live_person(const struct live_person *is);
-void live_wires(struct exh_drive_in *in); /* posix_config.wires_in                */
+void live_wires(struct exh_drive_in *in); /* posix_config.wires_in */
 /* Hooks: the grip's command. */
 void live_person_start(const struct exh_scene *sc, struct exh_scene_board board);
 void live_person_before(uint32_t tick, struct exh_scene_in *in);
@@ -54,12 +54,13 @@ void live_status_start(const struct exh_scene *sc, struct exh_scene_board board)
 void live_status_after(uint32_t tick, const struct exh_scene_in *in);
 void live_status_end(void);
 
-/* live_log.c. --log: paced, no tick waits for it either: what finds no room is lost and counted. ends:
- * the run has an end. An exit status, after a line on stderr; 0: fine, also without a path. */
+/* live_log.c. --log: paced, no tick waits for it either: what finds no room is lost and counted.
+ * ends: the run has an end. An exit status, after a line on stderr; 0: fine, also without a path.
+ */
 int live_log_open(const char *path, int paced, int ends);
-FILE *live_log_file(void); /* NULL: none */
+FILE *live_log_file(void);                       /* NULL: none */
 int live_log_put(const void *rec, size_t len_B); /* posix_config.log_put */
-uint64_t live_log_lost(void); /* records */
+uint64_t live_log_lost(void);                    /* records */
 int live_log_close(void);
 
 #endif

@@ -12,8 +12,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#define RING_B  (4u << 20) /* some seconds of five fingers at 2 kHz                */
-#define WAITS_S 2.0 /* at the end, for a file that takes nothing                   */
+#define RING_B  (4u << 20) /* some seconds of five fingers at 2 kHz */
+#define WAITS_S 2.0        /* at the end, for a file that takes nothing */
 
 static struct {
     const char *path;

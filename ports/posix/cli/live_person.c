@@ -9,9 +9,9 @@
 
 #include "exhand/safety.h"
 
-#define FIRST_S  0.1 /* a switch that is closed from the start may be stuck     */
+#define FIRST_S  0.1 /* a switch that is closed from the start may be stuck */
 #define OPEN_S   0.2
-#define THINKS_S 1.0 /* before a grip is given up                                */
+#define THINKS_S 1.0 /* before a grip is given up */
 
 static struct {
     struct live_person is;

@@ -18,8 +18,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const struct exh_scene *const scenes[] = {&exh_scene_drop, &exh_scene_guarded, &exh_scene_glove,
-                                                &exh_scene_bilateral};
+static const struct exh_scene *const scenes[] = {&exh_scene_drop, &exh_scene_guarded,
+                                                 &exh_scene_glove, &exh_scene_bilateral};
 
 static const struct exh_scene *scene_by_name(const char *name)
 {
@@ -56,7 +56,8 @@ static int read_header(struct logfile *l)
     struct exh_record r;
     struct exh_bytes c;
     if (exh_record_read(l->bytes, l->len, &r) == -EXH_E_VERSION) {
-        cli_complain("%s: a log of record version %u, this program's is %d: read it with the program that made it",
+        cli_complain("%s: a log of record version %u, this program's is %d: read it with the "
+                     "program that made it",
                      l->path, r.version, EXH_RECORD_VERSION);
         return 2;
     }

@@ -13,16 +13,16 @@ struct logfile {
     const char *path;
     uint8_t *bytes;
     uint32_t len, at;
-    uint32_t damaged; /* bytes skipped because no record could be read there    */
-    uint32_t gaps;    /* records missing by their sequence numbers              */
-    uint32_t lost;    /* records the writer said it lost                        */
-    int ended;        /* the end record was seen                               */
+    uint32_t damaged; /* bytes skipped because no record could be read there */
+    uint32_t gaps;    /* records missing by their sequence numbers */
+    uint32_t lost;    /* records the writer said it lost */
+    int ended;        /* the end record was seen */
     uint32_t next_seq;
     uint64_t tick; /* of the last record: unlike a record's own it does not wrap */
-    int started;   /* `tick` is known                                          */
+    int started;   /* `tick` is known */
     struct exh_record_header header;
     const struct exh_scene *scene;
-    const uint8_t *params; /* the parameter image of the header                 */
+    const uint8_t *params; /* the parameter image of the header */
     uint32_t params_len;
 };
 
@@ -32,8 +32,8 @@ struct logfile {
 int logfile_open(struct logfile *l, const char *path);
 void logfile_close(struct logfile *l);
 
-/* Its calibrations of fingers, behind the parameters, into the scene; they stay the log's bytes. 0, or 2 after a line on
- * stderr: what is there is none. */
+/* Its calibrations of fingers, behind the parameters, into the scene; they stay the log's bytes. 0,
+ * or 2 after a line on stderr: what is there is none. */
 int logfile_calibrations(const struct logfile *l);
 
 /* Back to just behind the header, where `at` was after opening. */

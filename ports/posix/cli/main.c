@@ -14,12 +14,15 @@ static const struct {
     int (*run)(int argc, char **argv);
 } command[] = {
     {"advise", "freeze: where q_lim stands still, how far to look; gains: stable k, b", cli_advise},
-    {"bilateral", "hand, glove, link and world: contacts as in the paper's second experiment", cli_bilateral},
+    {"bilateral", "hand, glove, link and world: contacts as in the paper's second experiment",
+     cli_bilateral},
     {"bringup", "first power-up, step by step, rehearsed on the simulated device", cli_bringup},
     {"budget", "the highest rate of the loop that the box can hold, bound by bound", cli_budget},
-    {"calibrate", "known masses, F0 and home: tables of force and current; or --glove, poses", cli_calibrate},
+    {"calibrate", "known masses, F0 and home: tables of force and current; or --glove, poses",
+     cli_calibrate},
     {"faults", "every fault in every state of the box, and any fault at any time", cli_faults},
-    {"cards", "every misbehaviour of a card in every phase of its driver, and how it ends", cli_cards},
+    {"cards", "every misbehaviour of a card in every phase of its driver, and how it ends",
+     cli_cards},
     {"drop", "the paper's falling-mass experiment on the simulated device", cli_drop},
     {"fit", "a plant that does what the paper's device did, by every reading", cli_fit},
     {"glove", "glove codes to stable angles and fingertips; the paper's Table I", cli_glove},
@@ -55,9 +58,11 @@ int main(int argc, char **argv)
         }
     }
     if (strcmp(name, "--version") == 0) {
-        printf("exhand %d.%d.%d, record %d, board %d, parameters %d, calibration %d, of the glove %d, wire %d\n", EXH_VERSION_MAJOR,
-               EXH_VERSION_MINOR, EXH_VERSION_PATCH, EXH_RECORD_VERSION, EXH_BOARD_VERSION,
-               EXH_PARAMS_VERSION, EXH_CALIB_VERSION, EXH_GLOVE_CAL_VERSION, EXH_WIRE_VERSION);
+        printf("exhand %d.%d.%d, record %d, board %d, parameters %d, calibration %d, of the glove "
+               "%d, wire %d\n",
+               EXH_VERSION_MAJOR, EXH_VERSION_MINOR, EXH_VERSION_PATCH, EXH_RECORD_VERSION,
+               EXH_BOARD_VERSION, EXH_PARAMS_VERSION, EXH_CALIB_VERSION, EXH_GLOVE_CAL_VERSION,
+               EXH_WIRE_VERSION);
         return cli_finish(0);
     }
     if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand run --modbus: the registers of the running box (exhand/modbus.h) for clients, over TCP or a
- * serial line. A thread of its own answers them; between it and the loop is a mailbox:
+/* exhand run --modbus: the registers of the running box (exhand/modbus.h) for clients, over TCP or
+ * a serial line. A thread of its own answers them; between it and the loop is a mailbox:
  *
  *   loop, behind a tick:  what the registers show is copied, all of it of this tick
  *   clients:              read the copy, stage and command in it
@@ -17,8 +17,8 @@
 #include "exhand/modbus.h"
 
 struct mail_cfg {
-    const char *save; /* SAVE writes the parameters there; NULL: refused        */
-    int remote; /* RUN and CLEAR may be commanded                         */
+    const char *save; /* SAVE writes the parameters there; NULL: refused */
+    int remote;       /* RUN and CLEAR may be commanded */
 };
 
 /* modbus_mail.c. start, before and after: as hooks of the loop, before those that log. */
@@ -34,8 +34,8 @@ void mail_give(void);
 /* Between requests: writes what SAVE asked for. */
 void mail_save(void);
 
-/* Behind the last tick, when nobody answers any more: what clients were told would be done, and found no tick
- * that did it, is. */
+/* Behind the last tick, when nobody answers any more: what clients were told would be done, and
+ * found no tick that did it, is. */
 void mail_end(void);
 
 /* modbus_libmodbus.c, or modbus_none.c without that package. where: "tcp:HOST:PORT",

@@ -29,7 +29,7 @@
 #include <unistd.h>
 
 #define CLIENTS   16
-#define ADDRESS   1 /* on a serial line                                        */
+#define ADDRESS   1 /* on a serial line */
 #define WAIT_MS   20
 #define PATIENCE  2000 /* rounds, of a millisecond at least: for the rest of a request */
 #define CRC_B     2
@@ -40,14 +40,14 @@
 
 struct client {
     int fd;
-    int waits; /* rounds for the rest of a request                              */
-    unsigned long heard; /* the round of its last request, or of its coming      */
+    int waits;           /* rounds for the rest of a request */
+    unsigned long heard; /* the round of its last request, or of its coming */
 };
 
 static struct {
     modbus_t *ctx;
     int rtu, listener;
-    int stop[2]; /* a pipe: closed, it ends the thread                           */
+    int stop[2]; /* a pipe: closed, it ends the thread */
     struct client client[CLIENTS];
     int clients;
     unsigned long round;
@@ -100,13 +100,15 @@ static void drop_longest_silent(void)
     drop(which);
 }
 
-/* Never blocking: an answer that a client does not fetch would hold up all others, and the end of the program. */
+/* Never blocking: an answer that a client does not fetch would hold up all others, and the end of
+ * the program. */
 static void accept_one(void)
 {
     const int on = 1;
     int fd = accept(server.listener, NULL, NULL);
     if (fd < 0) { return; }
-    if (fd >= FD_SETSIZE || fcntl(fd, F_SETFL, O_NONBLOCK) < 0) { /* libmodbus would write beyond its set */
+    if (fd >= FD_SETSIZE ||
+        fcntl(fd, F_SETFL, O_NONBLOCK) < 0) { /* libmodbus would write beyond its set */
         close(fd);
         return;
     }

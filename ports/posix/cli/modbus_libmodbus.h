@@ -7,23 +7,24 @@
 
 #include <stdint.h>
 
-/* Of "tcp:ADDRESS:PORT" and the like: the number behind the last colon, 0..most; -1: none. The text is cut
- * off at that colon. */
+/* Of "tcp:ADDRESS:PORT" and the like: the number behind the last colon, 0..most; -1: none. The text
+ * is cut off at that colon. */
 long modbus_cut_number(char *text, long most);
 
 struct request {
     modbus_t *ctx;
-    uint8_t *adu; /* MODBUS_MAX_ADU_LENGTH bytes                                */
-    int head_B; /* in front of its PDU                                        */
-    int len_B; /* of both, */
-    int tail_B; /* and behind them                                            */
-    int silent; /* to all: carried out, not answered                          */
+    uint8_t *adu; /* MODBUS_MAX_ADU_LENGTH bytes */
+    int head_B;   /* in front of its PDU */
+    int len_B;    /* of both, */
+    int tail_B;   /* and behind them */
+    int silent;   /* to all: carried out, not answered */
 };
 
-int request_open(void); /* 0, or -1: no memory                                  */
+int request_open(void); /* 0, or -1: no memory */
 void request_close(void);
 
-/* Function, length, counts of len bytes: 0 or an exception. What passes, libmodbus measures right. */
+/* Function, length, counts of len bytes: 0 or an exception. What passes, libmodbus measures right.
+ */
 int request_shape(const uint8_t *pdu, unsigned len);
 
 /* Carries it out and answers. 0, or -1: the answer could not be sent. */

@@ -11,17 +11,17 @@
 #include <string.h>
 
 #define WHERE_B  256
-#define ADDRESS  1 /* on a serial line                                          */
-#define AT_ONCE  (MODBUS_MAX_READ_REGISTERS / 2u) /* values a request            */
-#define AGAIN_S  1.0 /* between attempts at a link that is gone                  */
+#define ADDRESS  1                                /* on a serial line */
+#define AT_ONCE  (MODBUS_MAX_READ_REGISTERS / 2u) /* values a request */
+#define AGAIN_S  1.0                              /* between attempts at a link that is gone */
 #define REPLY_US 500000
 
 static struct {
     modbus_t *ctx;
-    int connected, known; /* known: it was the right box once                   */
+    int connected, known; /* known: it was the right box once */
     double tried_s;
-    int traces; /* the trace is ours */
-    uint32_t run, next; /* ours, and its frame that is to be read next          */
+    int traces;         /* the trace is ours */
+    uint32_t run, next; /* ours, and its frame that is to be read next */
 } client;
 
 static uint32_t value_of(const uint16_t *word, unsigned i)
@@ -119,7 +119,7 @@ static int know(struct watch_box *b, const uint16_t *word)
                        value_of(word, EXH_HEAD_SIGNALS));
 }
 
-#define TRIES 4 /* to read all of one tick                                   */
+#define TRIES 4 /* to read all of one tick */
 
 /* Values from..to; more than a request holds may be of more than one tick. */
 static int read_values(struct watch_box *b)

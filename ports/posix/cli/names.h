@@ -1,28 +1,28 @@
 /* SPDX-License-Identifier: MIT */
-/* States, faults, limits, arming steps, commands, inputs, fingers: words for people. The short words are
- * the library's where it has them (safety.h); sentences, and the rest, stand here alone, for every
- * command of the host program. */
+/* States, faults, limits, arming steps, commands, inputs, fingers: words for people. The short
+ * words are the library's where it has them (safety.h); sentences, and the rest, stand here alone,
+ * for every command of the host program. */
 #ifndef CLI_NAMES_H
 #define CLI_NAMES_H
 
 #include <stddef.h>
 #include <stdint.h>
 
-#define NAMES_B 512 /* room for every bit of any of them                        */
+#define NAMES_B 512 /* room for every bit of any of them */
 
 /* By number, or by the number of a bit. */
 struct names {
-    const char *what; /* "fault"                               */
-    const char *(*word)(unsigned i); /* "deadman"; "" for none                */
-    const char *const *says; /* "the dead-man switch was let go"       */
+    const char *what;                /* "fault" */
+    const char *(*word)(unsigned i); /* "deadman"; "" for none */
+    const char *const *says;         /* "the dead-man switch was let go" */
     unsigned n;
 };
 extern const struct names names_state, names_command, names_fault, names_limit, names_arm,
     names_din, names_finger;
 
-const char *names_word(const struct names *t, unsigned i); /* "?" for none      */
+const char *names_word(const struct names *t, unsigned i); /* "?" for none */
 const char *names_says(const struct names *t, unsigned i);
-int names_find(const struct names *t, const char *word); /* its number, or -1    */
+int names_find(const struct names *t, const char *word); /* its number, or -1 */
 
 /* The words of all bits set, with + between; "none" for 0; a bit without a name as bit17. Always
  * ended; cut where it does not fit. */

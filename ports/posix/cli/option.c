@@ -68,8 +68,8 @@ static int take_number(const struct cli_option *o, const char *text)
     char *end;
     const double v = whole ? (double)strtoll(text, &end, 10) : strtod(text, &end);
     if (end == text || *end != '\0' || !(v >= o->min && v <= o->max)) {
-        cli_complain("--%s: %s (allowed %.15g..%.15g): give a %snumber in that range", o->name, text,
-                     o->min, o->max, whole ? "whole " : "");
+        cli_complain("--%s: %s (allowed %.15g..%.15g): give a %snumber in that range", o->name,
+                     text, o->min, o->max, whole ? "whole " : "");
         return 2;
     }
     if (whole) {

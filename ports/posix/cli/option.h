@@ -6,11 +6,11 @@
 enum cli_kind { CLI_FLAG, CLI_INT, CLI_REAL, CLI_TEXT, CLI_CALL };
 
 struct cli_option {
-    const char *name; /* without the dashes                                    */
+    const char *name; /* without the dashes */
     enum cli_kind kind;
-    void *to;         /* int, int64_t, double, const char *; CALL: a cli_call   */
-    double min, max;  /* INT and REAL                                          */
-    const char *arg;  /* "HZ", shown in --help; NULL for a flag                 */
+    void *to;        /* int, int64_t, double, const char *; CALL: a cli_call */
+    double min, max; /* INT and REAL */
+    const char *arg; /* "HZ", shown in --help; NULL for a flag */
     const char *help;
 };
 
@@ -22,17 +22,18 @@ struct cli_call {
 };
 
 struct cli_command {
-    const char *name, *args, *what; /* "drop", "[options]", one line            */
+    const char *name, *args, *what; /* "drop", "[options]", one line */
     const struct cli_option *option;
     int options;
-    int operands; /* how many operands it takes                                */
+    int operands; /* how many operands it takes */
 };
 
 /* Parses; operands go to operand[]. 0 go on, 1 help was asked for and printed,
  * 2 bad usage, said on stderr. */
 int cli_parse(const struct cli_command *c, int argc, char **argv, const char **operand);
 
-/* What stands before a command's name in messages: "exhand"; "" for a program that is one command. */
+/* What stands before a command's name in messages: "exhand"; "" for a program that is one command.
+ */
 extern const char *cli_program;
 
 /* A whole line on stderr, after that and the command that is parsed or runs. */

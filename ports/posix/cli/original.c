@@ -14,7 +14,9 @@
 int original_take(const char *text)
 {
     if (strcmp(text, ORIGINAL_NAME) == 0) { return 0; }
-    cli_complain("--preset: %s: no such preset (" ORIGINAL_NAME "): the commercial system beside this box", text);
+    cli_complain("--preset: %s: no such preset (" ORIGINAL_NAME
+                 "): the commercial system beside this box",
+                 text);
     return 2;
 }
 
@@ -58,7 +60,9 @@ void original_print(const struct original_table *t)
     printf("\n");
     for (int i = 0; i < t->rows; i++) {
         printf("| %-40s | %-4s |", t->row[i].what, t->row[i].unit);
-        for (int k = 0; k < t->columns; k++) { cell(t->value[i * t->columns + k], t->row[i].digits); }
+        for (int k = 0; k < t->columns; k++) {
+            cell(t->value[i * t->columns + k], t->row[i].digits);
+        }
         printf("\n");
     }
 }
@@ -100,7 +104,8 @@ static void write_gp(FILE *f, const void *ctx)
 int original_out(const char *dir, const struct original_table *t, const char *const *trace, int n)
 {
     const struct picture p = {trace, n};
-    return outfile_write(dir, "original.csv", write_csv, t) | outfile_write(dir, "original.gp", write_gp, &p);
+    return outfile_write(dir, "original.csv", write_csv, t) |
+           outfile_write(dir, "original.gp", write_gp, &p);
 }
 
 struct trace {
@@ -117,11 +122,13 @@ static void write_trace(FILE *f, const void *ctx)
     for (size_t i = 0; i < t->n; i++) {
         const double t_s = t->s[i].t_s - from_s;
         if (t_s < -BEFORE_S || t_s > SHOWN_S) { continue; }
-        fprintf(f, "%.9g,%.9g,%.9g,%.9g\n", t_s, t->s[i].q_m - t->wall_m, t->s[i].f_des_N, t->s[i].f_mon_N);
+        fprintf(f, "%.9g,%.9g,%.9g,%.9g\n", t_s, t->s[i].q_m - t->wall_m, t->s[i].f_des_N,
+                t->s[i].f_mon_N);
     }
 }
 
-int original_trace(const char *dir, int n_th, const struct fall_sample *s, size_t n, size_t contact, double wall_m)
+int original_trace(const char *dir, int n_th, const struct fall_sample *s, size_t n, size_t contact,
+                   double wall_m)
 {
     const struct trace t = {s, n, contact, wall_m};
     char name[32];

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* Original: the system that the paper started from, beside this box: tables of a column each, and their
- * picture.
+/* Original: the system that the paper started from, beside this box: tables of a column each, and
+ * their picture.
  *
- * The original, as far as anything is known of it: a loop at 90 Hz, the paper's gains for it, and a glove
- * of 8 bits whose frame is one late.
+ * The original, as far as anything is known of it: a loop at 90 Hz, the paper's gains for it, and a
+ * glove of 8 bits whose frame is one late.
  */
 #ifndef CLI_ORIGINAL_H
 #define CLI_ORIGINAL_H
@@ -35,18 +35,19 @@ struct original_table {
 };
 void original_print(const struct original_table *t);
 
-/* DIR/original.csv, and original.gp, which draws the n traces 0 .. that original_trace() has written. 0, or
- * 1 after a line on stderr. */
+/* DIR/original.csv, and original.gp, which draws the n traces 0 .. that original_trace() has
+ * written. 0, or 1 after a line on stderr. */
 int original_out(const char *dir, const struct original_table *t, const char *const *trace, int n);
 
 /* DIR/original_N.csv: a contact from 10 ms before its first sample on: seconds since, metres past
  * wall_m, newtons. */
-int original_trace(const char *dir, int n_th, const struct fall_sample *s, size_t n, size_t contact, double wall_m);
+int original_trace(const char *dir, int n_th, const struct fall_sample *s, size_t n, size_t contact,
+                   double wall_m);
 
 /* What samples in contact say together. */
 struct original_contact {
     double peak_N, deepest_m, err_N; /* F_mon; past the wall; rms of F_mon less F_des */
-    double rms_N;                    /* of F_des                                */
+    double rms_N;                    /* of F_des */
     size_t ticks;
 };
 void original_add(struct original_contact *c, const struct fall_sample *s, double wall_m);

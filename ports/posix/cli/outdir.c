@@ -95,10 +95,12 @@ int outdir_tables(const char *dir, const struct table2_result *r, const struct t
 /* Panel variables of plot/force_position.gp for one run. */
 static void panel(FILE *f, const char *name, const struct table2_result *r, double q0_m)
 {
-    fprintf(f, "%s_raw='drop_%gHz_raw.csv'; %s_avg='drop_%gHz_averaged.csv'; "
-               "%s_line='drop_%gHz_line.csv'\n", name, r->rate_Hz, name, r->rate_Hz, name, r->rate_Hz);
-    fprintf(f, "%s_rate=%.6g; %s_k=%.6g; %s_b=%.6g; %s_stiffness='", name, r->rate_Hz, name, r->k_Npm,
-            name, r->b_Nspm, name);
+    fprintf(f,
+            "%s_raw='drop_%gHz_raw.csv'; %s_avg='drop_%gHz_averaged.csv'; "
+            "%s_line='drop_%gHz_line.csv'\n",
+            name, r->rate_Hz, name, r->rate_Hz, name, r->rate_Hz);
+    fprintf(f, "%s_rate=%.6g; %s_k=%.6g; %s_b=%.6g; %s_stiffness='", name, r->rate_Hz, name,
+            r->k_Npm, name, r->b_Nspm, name);
     if (r->b_Npm > 0) { fprintf(f, "%.0f", r->b_Npm); }
     fprintf(f, "'; %s_q0=%.9g\n", name, q0_m);
 }
@@ -144,14 +146,17 @@ int outdir_pictures(const char *dir, const struct sim_device *d, const struct ta
 {
     FILE *f = create(dir, "pictures.gp");
     if (f == NULL) { return 1; }
-    fprintf(f, "# Made by exhand drop. Inside this directory, PLOTS the way to ports/posix/cli/plot:\n"
-               "#   gnuplot -c pictures.gp PLOTS\n"
-               "plots=ARG1\n"
-               "out='force_position.png'; fit='linear fit, position over force'\n");
+    fprintf(f,
+            "# Made by exhand drop. Inside this directory, PLOTS the way to ports/posix/cli/plot:\n"
+            "#   gnuplot -c pictures.gp PLOTS\n"
+            "plots=ARG1\n"
+            "out='force_position.png'; fit='linear fit, position over force'\n");
     panel(f, "a", &r[0], d->height_m);
     panel(f, "b", &r[rows - 1], d->height_m);
-    fprintf(f, "load plots.'/force_position.gp'\nreset\n"
-               "out='fall.png'; q_lim_m=%.9g; observe_s=%.9g\n", d->height_m, d->observe_s);
+    fprintf(f,
+            "load plots.'/force_position.gp'\nreset\n"
+            "out='fall.png'; q_lim_m=%.9g; observe_s=%.9g\n",
+            d->height_m, d->observe_s);
     list(f, "files", r, rows, item_file);
     list(f, "rates", r, rows, item_rate);
     list(f, "ks", r, rows, item_k);

@@ -57,7 +57,8 @@ int outfile_write(const char *dir, const char *name, void (*write)(FILE *f, cons
     return failed;
 }
 
-long outfile_read(const char *option, const char *path, const char *expected, void *to, size_t cap_B)
+long outfile_read(const char *option, const char *path, const char *expected, void *to,
+                  size_t cap_B)
 {
     FILE *f = fopen(path, "rb");
     long len;

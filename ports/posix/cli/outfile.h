@@ -16,6 +16,7 @@ int outfile_write(const char *dir, const char *name, void (*write)(FILE *f, cons
 
 /* An image of at most cap bytes that an option names: its length, or -status after a line on
  * stderr that says what file was expected. */
-long outfile_read(const char *option, const char *path, const char *expected, void *to, size_t cap_B);
+long outfile_read(const char *option, const char *path, const char *expected, void *to,
+                  size_t cap_B);
 
 #endif

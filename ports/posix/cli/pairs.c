@@ -104,12 +104,10 @@ static struct fall_pair window(const struct fall_pair *first, enum fall_force fo
 
 /* `out` has room for as many pairs as `sorted` holds. */
 void part_average_into(const struct fall_pairs *sorted, enum fall_force force,
-                         struct fall_pairs *out)
+                       struct fall_pairs *out)
 {
     out->n = sorted->n < FALL_WINDOW ? 0 : sorted->n - (FALL_WINDOW - 1);
-    for (size_t i = 0; i < out->n; i++) {
-        out->at[i] = window(&sorted->at[i], force);
-    }
+    for (size_t i = 0; i < out->n; i++) { out->at[i] = window(&sorted->at[i], force); }
 }
 
 enum fall_status fall_average(const struct fall_pairs *sorted, enum fall_force force,

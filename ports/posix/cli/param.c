@@ -35,7 +35,8 @@ void cli_setup_complain(const struct exh_params *p, double rate_Hz, int err)
         const double fc_Hz = cli_signal_value(row, p->staged[i]);
         const char *end = strstr(row->name, "fc");
         if (end == NULL || end[2] != '\0' || fc_Hz < rate_Hz / 2) { continue; }
-        cli_complain("%s: %.6g Hz (below half the rate of %.6g Hz): --set %s=%.4g would do", row->name, fc_Hz, rate_Hz, row->name, rate_Hz / 4);
+        cli_complain("%s: %.6g Hz (below half the rate of %.6g Hz): --set %s=%.4g would do",
+                     row->name, fc_Hz, rate_Hz, row->name, rate_Hz / 4);
         named = 1;
     }
     if (!named) { cli_complain("%.6g Hz: %s: see --rate and --set", rate_Hz, exh_error_text(err)); }
@@ -67,8 +68,8 @@ int cli_param_set(struct exh_params *p, const char *name, double value)
         err = stage_all(p, row->id, (int32_t)scaled);
     }
     if (err == -EXH_E_RANGE) { /* 12 digits: the ends as they are printed are allowed */
-        cli_complain("%s: %.12g (allowed %.12g..%.12g%s%s): choose a value in that range", name, value,
-                     cli_signal_value(row, row->min), cli_signal_value(row, row->max),
+        cli_complain("%s: %.12g (allowed %.12g..%.12g%s%s): choose a value in that range", name,
+                     value, cli_signal_value(row, row->min), cli_signal_value(row, row->max),
                      row->unit[0] ? " " : "", row->unit);
     } else if (err < 0) {
         cli_complain("%s: %.12g: %s", name, value, exh_error_text(err));

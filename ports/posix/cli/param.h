@@ -18,7 +18,8 @@ const struct exh_signal *cli_signal_find(const struct exh_signal_table *t, const
  * stderr that names the parameter, its range and what to do. */
 int cli_param_set(struct exh_params *p, const char *name, double value);
 
-/* Why set-up refused these parameters at this rate, on stderr: of a cut-off, which one, and one that would do. */
+/* Why set-up refused these parameters at this rate, on stderr: of a cut-off, which one, and one
+ * that would do. */
 void cli_setup_complain(const struct exh_params *p, double rate_Hz, int err);
 
 /* Name, unit, range, default, help: one row a line, whatever its instances. */

@@ -141,7 +141,8 @@ static struct line row_of(const struct sweep_opt *o, double rate_Hz, struct reac
 
 static struct line column_of(const struct sweep_opt *o, double rate_Hz, struct reach r, int i)
 {
-    return (struct line){rate_Hz, r.k_Npm * (i + 1) / o->columns, r.b_Nspm / (o->rows - 1), 0, o->rows, 0};
+    return (struct line){
+        rate_Hz, r.k_Npm * (i + 1) / o->columns, r.b_Nspm / (o->rows - 1), 0, o->rows, 0};
 }
 
 static const struct cell *at(struct wants *w, const struct line *l, double v)
@@ -196,8 +197,8 @@ static void want_line(struct wants *w, const struct line *l)
     border(w, l, &below, &above);
 }
 
-/* From 0: rows in their order make blocks that take about as long, so that few rates have their octaves
- * found by more than one. */
+/* From 0: rows in their order make blocks that take about as long, so that few rates have their
+ * octaves found by more than one. */
 static int shard_of(const struct sweep_opt *o, int rate, int row)
 {
     double all_Hz = 0, before_Hz = 0;
@@ -205,10 +206,12 @@ static int shard_of(const struct sweep_opt *o, int rate, int row)
         before_Hz += r < rate ? o->rate_Hz[r] + FALL_HZ : 0;
         all_Hz += o->rate_Hz[r] + FALL_HZ;
     }
-    return (int)(o->shards * (before_Hz + (o->rate_Hz[rate] + FALL_HZ) * (row + 0.5) / o->rows) / all_Hz);
+    return (int)(o->shards * (before_Hz + (o->rate_Hz[rate] + FALL_HZ) * (row + 0.5) / o->rows) /
+                 all_Hz);
 }
 
-/* Columns ask for cells of all rows: who has these, at the end, runs what halving a column's border takes. */
+/* Columns ask for cells of all rows: who has these, at the end, runs what halving a column's border
+ * takes. */
 static int ours(const struct sweep_opt *o, int rate, int line)
 {
     return o->shards == 1 || (line < o->rows && shard_of(o, rate, line) == o->shard - 1);
@@ -244,9 +247,9 @@ int plane_wants(const struct cells *cells, const struct sweep_opt *o, struct pla
 /* --- what was found --- */
 
 struct peak {
-    double k_Npm, k_at_b; /* the largest stable k, and where                    */
+    double k_Npm, k_at_b; /* the largest stable k, and where */
     double b_Nspm, b_at_k;
-    int k_open, b_open; /* stable up to where the grid ends: so much or more    */
+    int k_open, b_open; /* stable up to where the grid ends: so much or more */
 };
 
 struct found {
@@ -307,7 +310,8 @@ static int any_b(struct linear *x, double k)
 static int any_k(struct linear *x, double b)
 {
     double ratio = 2, k = 1;
-    for (double low = 1, high = 2; high - low > 1e-9;) { /* ratio^ACROSS = across, without a library */
+    for (double low = 1, high = 2;
+         high - low > 1e-9;) { /* ratio^ACROSS = across, without a library */
         double v = 1;
         ratio = (low + high) / 2;
         for (int i = 0; i < ACROSS; i++) { v *= ratio; }
@@ -323,8 +327,8 @@ static int any_k(struct linear *x, double b)
     return 0;
 }
 
-static double halve(struct linear *x, int (*any)(struct linear *x, double v), double v, double above,
-                    double most)
+static double halve(struct linear *x, int (*any)(struct linear *x, double v), double v,
+                    double above, double most)
 {
     for (int n = 0; n < 7 && above <= most; n++) {
         const double mid = (v + above) / 2;
@@ -380,7 +384,8 @@ static struct peak linear_peak(const struct sweep_opt *o, double rate_Hz)
 
 /* --- what a rate has --- */
 
-static struct found find(const struct cells *cells, const struct sweep_opt *o, double rate_Hz, FILE *f)
+static struct found find(const struct cells *cells, const struct sweep_opt *o, double rate_Hz,
+                         FILE *f)
 {
     struct wants w = {cells, NULL, 0, 0, 0};
     struct found x;
@@ -430,9 +435,11 @@ static void write_rho(FILE *f, const struct sweep_opt *o, const struct found *x)
 
 static void write_picture(FILE *f, const struct found *x, int n)
 {
-    fprintf(f, "# Made by exhand drop --sweep. Inside this directory, PLOTS the way to "
-               "ports/posix/cli/plot:\n#   gnuplot -c sweep.gp PLOTS\nplots=ARG1\n"
-               "out='stability.png'; cells='stability.csv'; border='border.csv'; rho='rho.csv'\nrates='");
+    fprintf(
+        f,
+        "# Made by exhand drop --sweep. Inside this directory, PLOTS the way to "
+        "ports/posix/cli/plot:\n#   gnuplot -c sweep.gp PLOTS\nplots=ARG1\n"
+        "out='stability.png'; cells='stability.csv'; border='border.csv'; rho='rho.csv'\nrates='");
     for (int i = 0; i < n; i++) { fprintf(f, "%s%.6g", i ? " " : "", x[i].rate_Hz); }
     fprintf(f, "'; k_tops='");
     for (int i = 0; i < n; i++) { fprintf(f, "%s%.6g", i ? " " : "", x[i].reach.k_Npm); }
@@ -476,20 +483,26 @@ static void print(const struct found *x, int n, int falls)
 {
     const struct found *slow = NULL, *fast = NULL;
     int any_open = 0;
-    printf("\nThe border at each rate: stable where nine of ten falls come to rest, %d falls a cell\n\n"
-           "  rate |largest stable k   at b |largest stable b   at k | rho < 1:  k       b | stiffest stable "
+    printf("\nThe border at each rate: stable where nine of ten falls come to rest, %d falls a "
+           "cell\n\n"
+           "  rate |largest stable k   at b |largest stable b   at k | rho < 1:  k       b | "
+           "stiffest stable "
            "| paper's row\n"
-           "    Hz |             N/m   Ns/m |            Ns/m    N/m |       N/m    Ns/m |             N/m "
-           "|     k    b\n", falls);
+           "    Hz |             N/m   Ns/m |            Ns/m    N/m |       N/m    Ns/m |         "
+           "    N/m "
+           "|     k    b\n",
+           falls);
     for (int i = 0; i < n; i++) {
         const struct table2_row *row = table2_at(x[i].rate_Hz);
         char paper[40] = "-", stiffest[24] = "-", k[40], b[40];
         if (row) { snprintf(paper, sizeof paper, "%5.0f %4.0f", row->k_Npm, row->b_Nspm); }
-        if (x[i].stiffness_Npm > 0) { snprintf(stiffest, sizeof stiffest, "%.0f", x[i].stiffness_Npm); }
+        if (x[i].stiffness_Npm > 0) {
+            snprintf(stiffest, sizeof stiffest, "%.0f", x[i].stiffness_Npm);
+        }
         printf("%6.6g |%s |%s | %9.5g %7.4g | %15s | %s\n", x[i].rate_Hz,
                peak_text(k, x[i].sim.k_Npm, x[i].sim.k_at_b, x[i].sim.k_open),
-               peak_text(b, x[i].sim.b_Nspm, x[i].sim.b_at_k, x[i].sim.b_open), x[i].linear.k_Npm, x[i].linear.b_Nspm,
-               stiffest, paper);
+               peak_text(b, x[i].sim.b_Nspm, x[i].sim.b_at_k, x[i].sim.b_open), x[i].linear.k_Npm,
+               x[i].linear.b_Nspm, stiffest, paper);
         any_open |= x[i].sim.k_open | x[i].sim.b_open;
         if (x[i].rate_Hz == 90) { slow = &x[i]; }
         if (x[i].rate_Hz == 2000) { fast = &x[i]; }
@@ -497,9 +510,11 @@ static void print(const struct found *x, int n, int falls)
     if (any_open) { printf("\n>=: stable up to where the grid ends, no border found\n"); }
     if (!slow || !fast) { return; }
     printf("\nFrom 90 to 2000 Hz                              times\n");
-    ratio("largest stable k", slow->sim.k_open ? 0 : slow->sim.k_Npm, fast->sim.k_open ? 0 : fast->sim.k_Npm,
+    ratio("largest stable k", slow->sim.k_open ? 0 : slow->sim.k_Npm,
+          fast->sim.k_open ? 0 : fast->sim.k_Npm,
           "paper: nearly 20 in its text, 13.3 in its table");
-    ratio("largest stable b", slow->sim.b_open ? 0 : slow->sim.b_Nspm, fast->sim.b_open ? 0 : fast->sim.b_Nspm,
+    ratio("largest stable b", slow->sim.b_open ? 0 : slow->sim.b_Nspm,
+          fast->sim.b_open ? 0 : fast->sim.b_Nspm,
           "paper: nearly 20 in its text; its table starts at 0");
     ratio("stiffest stable cell", slow->stiffness_Npm, fast->stiffness_Npm, "paper: 36");
     ratio("largest k with rho < 1", slow->linear.k_Npm, fast->linear.k_Npm, "");
@@ -529,11 +544,13 @@ static int write_stiffness(const struct sweep_opt *o, const struct found *x)
 {
     FILE *f = create(o, "stiffness.csv");
     if (f == NULL) { return 1; }
-    fprintf(f, "rate_hz,k_n_per_m,at_b_ns_per_m,open,linear_k_n_per_m,stiffest_n_per_m,paper_k_n_per_m\n");
+    fprintf(
+        f,
+        "rate_hz,k_n_per_m,at_b_ns_per_m,open,linear_k_n_per_m,stiffest_n_per_m,paper_k_n_per_m\n");
     for (int i = 0; i < o->rates; i++) {
         const struct table2_row *row = table2_at(x[i].rate_Hz);
-        fprintf(f, "%.9g,%.9g,%.9g,%d,%.9g,%.9g,", x[i].rate_Hz, x[i].sim.k_Npm, x[i].sim.k_at_b, x[i].sim.k_open,
-                x[i].linear.k_Npm, x[i].stiffness_Npm);
+        fprintf(f, "%.9g,%.9g,%.9g,%d,%.9g,%.9g,", x[i].rate_Hz, x[i].sim.k_Npm, x[i].sim.k_at_b,
+                x[i].sim.k_open, x[i].linear.k_Npm, x[i].stiffness_Npm);
         if (row) { fprintf(f, "%.9g", row->k_Npm); }
         fputc('\n', f);
     }

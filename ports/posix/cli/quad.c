@@ -14,10 +14,10 @@
 struct sums {
     int64_t net, index_cnt;
     uint64_t edges, illegal, indices;
-    int64_t changed_at;    /* the last change of the lines                    */
-    int64_t min_gap;       /* between two changes; 0: there were no two       */
+    int64_t changed_at; /* the last change of the lines */
+    int64_t min_gap;    /* between two changes; 0: there were no two */
     uint64_t changes;
-    uint8_t ab;            /* the last sample, for changed_at                 */
+    uint8_t ab; /* the last sample, for changed_at */
     uint64_t samples;
 };
 

@@ -6,9 +6,12 @@
 #define LAGS 2
 
 #define SCOPES(name, direction, lag) \
-    {name "-all", direction, lag, FALL_SCOPE_ALL}, {name "-first", direction, lag, FALL_SCOPE_FIRST}, \
-    {name "-moves", direction, lag, FALL_SCOPE_MOVES}, \
-    {name "-whole", direction, lag, FALL_SCOPE_WHOLE}
+    {name "-all", direction, lag, FALL_SCOPE_ALL}, \
+        {name "-first", direction, lag, FALL_SCOPE_FIRST}, \
+        {name "-moves", direction, lag, FALL_SCOPE_MOVES}, \
+    { \
+        name "-whole", direction, lag, FALL_SCOPE_WHOLE \
+    }
 
 const struct reading reading_table[READINGS] = {
     SCOPES("a-same", FALL_A, 0),

@@ -12,9 +12,9 @@
 #include "analysis.h"
 
 struct reading {
-    const char *name; /* direction-pairs-scope                                  */
+    const char *name; /* direction-pairs-scope */
     enum fall_direction direction;
-    size_t lag;       /* 0 same tick, 1 the position the monitor answers         */
+    size_t lag; /* 0 same tick, 1 the position the monitor answers */
     enum fall_scope scope;
 };
 

@@ -16,12 +16,12 @@
 struct reader {
     const char *path;
     FILE *f;
-    long line;   /* of the field that was read last, from 1                      */
-    int ended;   /* that field was the last of its line                          */
-    int timed;   /* the first column is time                                    */
+    long line; /* of the field that was read last, from 1 */
+    int ended; /* that field was the last of its line */
+    int timed; /* the first column is time */
     enum recording_unit unit;
-    double lo, hi; /* of all values                                              */
-    int whole;     /* all are whole numbers                                      */
+    double lo, hi; /* of all values */
+    int whole;     /* all are whole numbers */
     long cap;
 };
 
@@ -85,7 +85,8 @@ static int is_number(const char *text, double *v)
 {
     char *end;
     *v = strtod(text, &end);
-    return end != text && *end == '\0' && strlen(text) < FIELD_B - 1 && *v >= -DBL_MAX && *v <= DBL_MAX;
+    return end != text && *end == '\0' && strlen(text) < FIELD_B - 1 && *v >= -DBL_MAX &&
+           *v <= DBL_MAX;
 }
 
 /* What a name of the header says of the unit. */
@@ -129,7 +130,9 @@ static int store(struct reader *in, struct recording *r, const double value[SENS
     for (int i = 0; i < SENSORS; i++) {
         if (value[i] < in->lo) { in->lo = value[i]; }
         if (value[i] > in->hi) { in->hi = value[i]; }
-        if (value[i] > 1e9 || value[i] < -1e9 || value[i] != (double)(long)value[i]) { in->whole = 0; }
+        if (value[i] > 1e9 || value[i] < -1e9 || value[i] != (double)(long)value[i]) {
+            in->whole = 0;
+        }
     }
     return 0;
 }
@@ -143,9 +146,7 @@ static int take_row(struct reader *in, struct recording *r, char field[FIELD_B])
     int column;
     for (column = 1;; column++) {
         double *to = column >= first ? &value[column - first] : &ignored;
-        if (!is_number(field, to)) {
-            return no_number(in, column, field);
-        }
+        if (!is_number(field, to)) { return no_number(in, column, field); }
         if (column - first == SENSORS - 1) { break; }
         if (in->ended || !next_field(in, field)) {
             snprintf(text, sizeof text, "%d columns (%d wanted)", column, SENSORS + first - 1);
@@ -171,7 +172,8 @@ static int settle_unit(struct reader *in, struct recording *r)
     r->codes = codes;
     if (codes && (in->lo < -32768 || in->hi > 32767 || !in->whole)) {
         cli_complain("%s: %.9g..%.9g: codes are whole numbers -32768..32767: --unit says what else "
-                     "they are", in->path, in->lo, in->hi);
+                     "they are",
+                     in->path, in->lo, in->hi);
         return 2;
     }
     if (!codes && (in->lo * unit < -PI || in->hi * unit > PI)) {

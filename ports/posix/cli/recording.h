@@ -25,9 +25,9 @@ enum recording_unit {
 enum recording_unit recording_unit_of(const char *name);
 
 struct recording {
-    double (*row)[EXH_GLOVE_SENSORS]; /* codes, or rad                          */
+    double (*row)[EXH_GLOVE_SENSORS]; /* codes, or rad */
     long rows;
-    int codes; /* 1: codes                                                      */
+    int codes; /* 1: codes */
 };
 
 /* "-" is standard input. 0, or 2 or 3 after a line on stderr that names file, line and column. */

@@ -24,8 +24,9 @@ static void scale_friction(struct sim_device *d, double by)
     d->coulomb_n *= by;
 }
 
-/* Kinds of device that a case is run on in turn: as told, heavier and lighter with less friction; every
- * second time with a margin of friction less. Not always with it: what sticks later chatters less. */
+/* Kinds of device that a case is run on in turn: as told, heavier and lighter with less friction;
+ * every second time with a margin of friction less. Not always with it: what sticks later chatters
+ * less. */
 static int kinds(const struct region_opt *o)
 {
     return o->off > 0 ? 2 * VARIANTS : 2;

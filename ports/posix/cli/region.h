@@ -1,22 +1,22 @@
 /* SPDX-License-Identifier: MIT */
 /* Region: the gains that the stability advisor allows at one rate on one device.
  *
- * A lattice of nodes over k and b. A node holds if in each of so many cases (sim/settle.h) the mass comes
- * to rest; what lies between four nodes that hold is allowed. So nothing is allowed that was not
- * looked at from all sides, and no border is drawn between nodes. */
+ * A lattice of nodes over k and b. A node holds if in each of so many cases (sim/settle.h) the mass
+ * comes to rest; what lies between four nodes that hold is allowed. So nothing is allowed that was
+ * not looked at from all sides, and no border is drawn between nodes. */
 #ifndef CLI_REGION_H
 #define CLI_REGION_H
 
 #include "sim/settle.h"
 
-#define REGION_MAX 200 /* pieces along k, along b                                 */
+#define REGION_MAX 200 /* pieces along k, along b */
 
 struct region_opt {
     struct sim_device device;
-    struct settle_wall wall; /* k and b are not looked at                       */
-    int columns, rows; /* pieces along k and b                            */
-    int cases; /* a node, and of each variant of the device                  */
-    double margin; /* every second case with so much (a share) less friction    */
+    struct settle_wall wall; /* k and b are not looked at */
+    int columns, rows;       /* pieces along k and b */
+    int cases;               /* a node, and of each variant of the device */
+    double margin;           /* every second case with so much (a share) less friction */
     double off; /* 0: the device as told; else also with masses so much more and less and with so
                       much less friction */
     int jobs;
@@ -25,12 +25,12 @@ struct region_opt {
 struct region {
     struct region_opt o;
     double k_top_Npm, b_top_Nspm; /* whole columns and rows from here on hold nowhere */
-    int hint; /* the case that failed last                       */
-    signed char *node; /* 1 holds, 0 does not, -1 not looked at           */
+    int hint;                     /* the case that failed last */
+    signed char *node;            /* 1 holds, 0 does not, -1 not looked at */
 };
 
-/* Finds how far it reaches. 0; 1 after a line on stderr: nothing holds, out of memory, or interrupted
- * (130). Free it in any case. */
+/* Finds how far it reaches. 0; 1 after a line on stderr: nothing holds, out of memory, or
+ * interrupted (130). Free it in any case. */
 int region_open(struct region *r, const struct region_opt *o);
 void region_free(struct region *r);
 

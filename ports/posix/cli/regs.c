@@ -32,7 +32,7 @@ enum style { TEXT, MARKDOWN, CSV };
 /* In the order of the columns; a line leaves out what it has not. */
 struct line {
     char cell[COLUMNS][CELL_B];
-    const char *help; /* the last column, as long as it is                     */
+    const char *help; /* the last column, as long as it is */
 };
 enum column {
     KIND,
@@ -169,7 +169,8 @@ static void put_fixed(enum style style, unsigned columns)
         fixed_row(style, columns, EXH_REGS_INPUT, EXH_REGS_HEAD_AT + 2 * i, &exh_regs_head_row[i]);
     }
     for (unsigned i = 0; i < EXH_TRACE_HEADS; i++) {
-        fixed_row(style, columns, EXH_REGS_INPUT, EXH_REGS_TRACE_AT + 2 * i, &exh_regs_trace_row[i]);
+        fixed_row(style, columns, EXH_REGS_INPUT, EXH_REGS_TRACE_AT + 2 * i,
+                  &exh_regs_trace_row[i]);
     }
     for (unsigned i = 0; i < EXH_REGS_TRACE_SET; i++) {
         fixed_row(style, columns, EXH_REGS_HOLDING, EXH_REGS_TRACE_AT + 2 * i,
@@ -221,7 +222,7 @@ static void range_cells(struct line *l, const struct exh_signal *row, int32_t df
 struct values {
     unsigned kind;
     const struct exh_signal_table *table;
-    const int32_t *dflt; /* the scene's own; NULL: outputs                     */
+    const int32_t *dflt; /* the scene's own; NULL: outputs */
     uint32_t raw_at, float_at;
 };
 

@@ -20,23 +20,23 @@
 
 struct replay {
     struct logfile log;
-    struct exh_scene_in in;    /* what crosses inward at the coming tick        */
+    struct exh_scene_in in; /* what crosses inward at the coming tick */
     struct exh_drive_out out;
-    int running;               /* a start (tick 0 or a keyframe) was reached    */
-    uint64_t from;             /* asked for; 0: from the beginning               */
-    int32_t faults_at;         /* index of the signal; < 0: the scene has none    */
-    uint32_t faults;           /* of the last frame                             */
-    uint32_t fault;            /* the first to come, */
-    uint64_t fault_tick;       /* and when                                      */
-    int foretold;              /* by the black box: this much before its end      */
+    int running;         /* a start (tick 0 or a keyframe) was reached */
+    uint64_t from;       /* asked for; 0: from the beginning */
+    int32_t faults_at;   /* index of the signal; < 0: the scene has none */
+    uint32_t faults;     /* of the last frame */
+    uint32_t fault;      /* the first to come, */
+    uint64_t fault_tick; /* and when */
+    int foretold;        /* by the black box: this much before its end */
     uint32_t foretold_cause;
     uint64_t foretold_tick;
-    uint64_t start;            /* the last keyframe not after it                */
+    uint64_t start; /* the last keyframe not after it */
     uint64_t first_tick, expect_tick;
     uint32_t ticks, keyframes;
-    uint32_t digest;           /* CRC of all outputs                           */
-    int32_t *recorded, *ours;  /* signals of one frame                         */
-    uint8_t *bytes;            /* a keyframe of ours                           */
+    uint32_t digest;          /* CRC of all outputs */
+    int32_t *recorded, *ours; /* signals of one frame */
+    uint8_t *bytes;           /* a keyframe of ours */
 };
 
 static int start_scene(struct replay *p)
@@ -68,7 +68,8 @@ static int start_scene(struct replay *p)
 
 static int differs(const struct replay *p, const char *what, double recorded, double ours)
 {
-    printf("tick %" PRIu64 ": %s: recorded %.9g, replayed %.9g\n", p->log.tick, what, recorded, ours);
+    printf("tick %" PRIu64 ": %s: recorded %.9g, replayed %.9g\n", p->log.tick, what, recorded,
+           ours);
     return 1;
 }
 
@@ -82,9 +83,7 @@ static int compare(const struct replay *p, const struct exh_drive_out *rec)
             return differs(p, "dac_raw", rec->dac_raw[i], p->out.dac_raw[i]);
         }
     }
-    if (rec->enable != p->out.enable) {
-        return differs(p, "enable", rec->enable, p->out.enable);
-    }
+    if (rec->enable != p->out.enable) { return differs(p, "enable", rec->enable, p->out.enable); }
     if (rec->alive != p->out.alive) { return differs(p, "alive", rec->alive, p->out.alive); }
     for (uint32_t i = 0; i < n; i++) {
         if (p->recorded[i] != p->ours[i]) {
@@ -100,7 +99,9 @@ static void note_fault(struct replay *p)
 {
     const uint32_t now = p->faults_at < 0 ? 0 : (uint32_t)p->ours[p->faults_at];
     const uint32_t fresh = now & ~p->faults;
-    if (p->foretold && p->log.tick == p->foretold_tick && fresh == p->foretold_cause) { p->foretold = 0; }
+    if (p->foretold && p->log.tick == p->foretold_tick && fresh == p->foretold_cause) {
+        p->foretold = 0;
+    }
     if (p->ticks > 0 && fresh && !p->fault) {
         p->fault = fresh;
         p->fault_tick = p->log.tick;
@@ -115,13 +116,15 @@ static int on_frame(struct replay *p, const struct exh_record *r)
     struct exh_drive_out rec;
     if (!p->running) { return 0; }
     if (p->ticks > 0 && p->log.tick < p->expect_tick) {
-        printf("tick %" PRIu64 ": a frame of it or of a later tick came before: the log is damaged\n",
+        printf("tick %" PRIu64
+               ": a frame of it or of a later tick came before: the log is damaged\n",
                p->log.tick);
         return 1;
     }
     if (p->ticks > 0 && p->log.tick > p->expect_tick) {
         printf("tick %" PRIu64 ": %" PRIu64 " frames are missing before it: start behind them with "
-               "--from\n", p->log.tick, p->log.tick - p->expect_tick);
+               "--from\n",
+               p->log.tick, p->log.tick - p->expect_tick);
         return 1;
     }
     exh_log_frame_bytes(&c, sc, &p->in, &rec, p->recorded);
@@ -216,8 +219,8 @@ static int foretell(struct replay *p, const struct exh_record *r)
     return 1;
 }
 
-/* Where to start: the last keyframe at or before the tick asked for. Asked for none: the beginning; of a
- * dump, and of a log that begins with a later one, the first keyframe: a dump's header has the
+/* Where to start: the last keyframe at or before the tick asked for. Asked for none: the beginning;
+ * of a dump, and of a log that begins with a later one, the first keyframe: a dump's header has the
  * parameters of its end. 0 when there is none. */
 static int find_start(struct replay *p)
 {
@@ -278,8 +281,8 @@ static int judge_fault(const struct replay *p)
     char what[NAMES_B];
     if (p->foretold && p->from == 0) {
         names_faults(what, sizeof what, p->foretold_cause);
-        printf("tick %" PRIu64 ": the fault that the black box froze for, %s, did not come\n", p->foretold_tick,
-               what);
+        printf("tick %" PRIu64 ": the fault that the black box froze for, %s, did not come\n",
+               p->foretold_tick, what);
         return 1;
     }
     if (p->fault) {
@@ -300,13 +303,18 @@ int cli_replay(int argc, char **argv)
     int64_t from = 0;
     int timeline = 0;
     const struct cli_option option[] = {
-        {"from", CLI_INT, &from, 0, 1e15, "TICK", "start at the last keyframe not after it (0: the beginning)"},
+        {"from", CLI_INT, &from, 0, 1e15, "TICK",
+         "start at the last keyframe not after it (0: the beginning)"},
         {"timeline", CLI_FLAG, &timeline, 0, 0, NULL, "first tell what happened in it, in words"},
     };
-    const struct cli_command c = {"replay", "LOG [--from TICK] [--timeline]",
-                                  "Runs the recorded inputs again and compares every output bit. A dump of a black box\n"
-                                  "starts at its first keyframe, and must give its fault again in the same tick.",
-                                  option, (int)(sizeof option / sizeof option[0]), 1};
+    const struct cli_command c = {
+        "replay",
+        "LOG [--from TICK] [--timeline]",
+        "Runs the recorded inputs again and compares every output bit. A dump of a black box\n"
+        "starts at its first keyframe, and must give its fault again in the same tick.",
+        option,
+        (int)(sizeof option / sizeof option[0]),
+        1};
     struct replay p;
     const char *path = NULL;
     int err = cli_parse(&c, argc, argv, &path);
@@ -330,7 +338,8 @@ int cli_replay(int argc, char **argv)
         if (err == 0) { err = judge_fault(&p); }
         if (err == 0) { err = logfile_complain(&p.log); }
         if (err == 0) {
-            printf("%s: %lu ticks from tick %" PRIu64 " and %lu keyframes identical, digest %08lx\n",
+            printf("%s: %lu ticks from tick %" PRIu64
+                   " and %lu keyframes identical, digest %08lx\n",
                    path, (unsigned long)p.ticks, p.first_tick, (unsigned long)p.keyframes,
                    (unsigned long)p.digest);
         }

@@ -13,16 +13,11 @@ const struct fall_rest_opt fall_rest_opt_default = {
 const char *fall_rest_text(enum fall_rest_class rest)
 {
     switch (rest) {
-    case FALL_AT_REST:
-        return "rest";
-    case FALL_BUZZ:
-        return "buzz";
-    case FALL_OSCILLATES:
-        return "oscillates";
-    case FALL_INCOMPLETE:
-        return "incomplete";
-    case FALL_REST_CLASSES:
-        break;
+    case FALL_AT_REST: return "rest";
+    case FALL_BUZZ: return "buzz";
+    case FALL_OSCILLATES: return "oscillates";
+    case FALL_INCOMPLETE: return "incomplete";
+    case FALL_REST_CLASSES: break;
     }
     return "unknown";
 }

@@ -31,10 +31,10 @@ static struct {
     int live;
     int no_memory;
     double mon_gain;
-    int logged; /* records cost a third of a run that nobody keeps */
+    int logged;                 /* records cost a third of a run that nobody keeps */
     uint32_t last_tick, passed; /* the latter of ticks that the loop had no part in */
-    int ran; /* the box came to run */
-    int all; /* every tick is run   */
+    int ran;                    /* the box came to run */
+    int all;                    /* every tick is run */
     struct idle idle;
 } run;
 
@@ -160,7 +160,8 @@ static int other_rate(const struct run_cfg *c, const struct exh_scene *sc)
 {
     const uint32_t only_Hz = sc == cli_scene_more ? cli_scene_more_rate_Hz() : 0;
     if (only_Hz && c->rate_Hz != only_Hz) {
-        cli_complain("rate: %lu Hz: this controller was made for %lu Hz (MODEL_RATE): give --rate %lu, or one made for another",
+        cli_complain("rate: %lu Hz: this controller was made for %lu Hz (MODEL_RATE): give --rate "
+                     "%lu, or one made for another",
                      (unsigned long)c->rate_Hz, (unsigned long)only_Hz, (unsigned long)only_Hz);
         return 1;
     }
@@ -171,8 +172,10 @@ static int other_rate(const struct run_cfg *c, const struct exh_scene *sc)
 static int complain(const struct run_cfg *c, const struct exh_scene *sc)
 {
     if (sc == cli_scene_more && cli_scene_more_unknown()) {
-        cli_complain("%s: no input of the slot or parameter is named so (--custom --params lists them): name the "
-                     "model's port otherwise, or MODEL_MAP=%s=NAME", cli_scene_more_unknown(), cli_scene_more_unknown());
+        cli_complain("%s: no input of the slot or parameter is named so (--custom --params lists "
+                     "them): name the "
+                     "model's port otherwise, or MODEL_MAP=%s=NAME",
+                     cli_scene_more_unknown(), cli_scene_more_unknown());
         return 1;
     }
     return images_complain(c->images, sc);
@@ -182,10 +185,14 @@ static int set_parameters(const struct run_cfg *c)
 {
     const struct sim_device *d = &c->board.device;
     const struct run_setting calibrated[] = {
-        {"step", d->step_m / d->decode}, {"kf", d->kf_npa},
-        {"dac_scale", d->dac_perA},      {"dac_zero", d->dac_zero},
-        {"mon_scale", d->mon_apc},       {"q_lim", d->height_m},
-        {"k", c->k_Npm},                 {"b", c->b_Nspm},
+        {"step", d->step_m / d->decode},
+        {"kf", d->kf_npa},
+        {"dac_scale", d->dac_perA},
+        {"dac_zero", d->dac_zero},
+        {"mon_scale", d->mon_apc},
+        {"q_lim", d->height_m},
+        {"k", c->k_Npm},
+        {"b", c->b_Nspm},
     };
     struct exh_params *p = scene_of(c)->params;
     int err = 0;
@@ -215,7 +222,9 @@ int run_check(const struct run_cfg *c)
     exh_params_apply(scene_of(c)->params);
     err = scene_of(c)->setup((struct exh_scene_board){T, exh_board_info.enc_bits});
     if (err == -EXH_E_RATE && other_rate(c, scene_of(c))) { return err; }
-    if (err < 0 && !complain(c, scene_of(c))) { cli_complain("these parameters together: %s", exh_error_text(err)); }
+    if (err < 0 && !complain(c, scene_of(c))) {
+        cli_complain("these parameters together: %s", exh_error_text(err));
+    }
     return err;
 }
 
@@ -232,7 +241,8 @@ int run_drop(const struct run_cfg *c, struct run *r)
     run.more = c->more;
     run.live = c->live.on;
     run.logged = c->board.log != NULL;
-    run.all = c->all || run.scene != &exh_scene_drop || run.more || run.logged || c->board.log_put || c->blackbox;
+    run.all = c->all || run.scene != &exh_scene_drop || run.more || run.logged ||
+              c->board.log_put || c->blackbox;
     run.mon_gain = c->mon_gain != 0 ? c->mon_gain : 1;
     err = set_parameters(c);
     if (err == 0) {
@@ -252,7 +262,9 @@ int run_drop(const struct run_cfg *c, struct run *r)
         } else if (err < 0 && !complain(c, run.scene)) {
             cli_setup_complain(run.scene->params, (double)c->rate_Hz, err);
         }
-        if (run.logged && r->T.num != 0) { r->lost = exh_log_end(run.last_tick + 1); } /* it was started */
+        if (run.logged && r->T.num != 0) {
+            r->lost = exh_log_end(run.last_tick + 1);
+        } /* it was started */
     }
     r->log.sample = run.sample;
     r->log.start = run.start;

@@ -21,7 +21,7 @@
 #include <unistd.h>
 
 #define SETTINGS_B 3072
-#define R2_MIN 0.3 /* a fit below |r| = 0.55 has no slope worth the name */
+#define R2_MIN     0.3 /* a fit below |r| = 0.55 has no slope worth the name */
 
 /* --- options --- */
 
@@ -137,7 +137,9 @@ static int run_batch(const struct batch *b, int n, struct cells *cells)
     struct ran *ran = calloc((size_t)n, sizeof *ran);
     const struct jobs jobs = {n, b->o->jobs, sizeof *ran, ran, work, b, "cells", posix_interrupt};
     int no_memory = 0, status = ran == NULL ? 1 : jobs_run(&jobs);
-    if (status == 0 && posix_interrupted()) { status = JOBS_INTERRUPTED; } /* before jobs listened */
+    if (status == 0 && posix_interrupted()) {
+        status = JOBS_INTERRUPTED;
+    } /* before jobs listened */
     for (int i = 0; ran != NULL && i < n; i++) {
         if (ran[i].done) { no_memory |= cells_add(cells, &ran[i].cell); }
         if (!ran[i].done && status == 0) { status = 1; }
@@ -225,7 +227,8 @@ static int sweep(const struct sweep_opt *o, struct cells *cells, const char *pat
     give_signals_back(was);
     close(b.fd);
     if (err == JOBS_INTERRUPTED) {
-        cli_complain("interrupted: %d cells are kept in %s: the same command goes on", cells->n, path);
+        cli_complain("interrupted: %d cells are kept in %s: the same command goes on", cells->n,
+                     path);
         return err;
     }
     return err ? err : cells_save(cells, path);

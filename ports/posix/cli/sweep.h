@@ -15,10 +15,10 @@
 struct sweep_opt {
     const double *rate_Hz;
     int rates;
-    int columns, rows; /* of the grid: k and b                                  */
-    int shard, shards; /* 1/1: all of it                                        */
+    int columns, rows; /* of the grid: k and b */
+    int shard, shards; /* 1/1: all of it */
     int jobs;
-    struct run_cfg base; /* device, settings of the scene, seed, falls           */
+    struct run_cfg base; /* device, settings of the scene, seed, falls */
     const char *dir;
 };
 

@@ -87,8 +87,8 @@ static void write_fall(const struct fall_log *log, const char *prefix, struct ta
     bad = f == NULL || fprintf(f, "t_s,q_m,qd_m_per_s,f_des_n,i_des_a,c,f_mon_n\n") < 0;
     for (size_t i = log->start[0]; !bad && i < end; i++) {
         const struct fall_sample *s = &log->sample[i];
-        bad = fprintf(f, "%.9f,%.9g,%.9g,%.9g,%.9g,%d,%.9g\n", s->t_s, s->q_m, s->qd_mps, s->f_des_N,
-                      s->i_des_A, s->c, s->f_mon_N) < 0;
+        bad = fprintf(f, "%.9f,%.9g,%.9g,%.9g,%.9g,%d,%.9g\n", s->t_s, s->q_m, s->qd_mps,
+                      s->f_des_N, s->i_des_A, s->c, s->f_mon_N) < 0;
     }
     if (f != NULL && fclose(f) != 0) { bad = 1; }
     if (bad) {
@@ -132,7 +132,8 @@ static void judge_stiffness(const struct run *run, const char *plot_prefix, enum
     fall_stiffness_free(&s);
 }
 
-static void judge_readings(const struct run *run, const struct sim_device *d, struct table2_result *r)
+static void judge_readings(const struct run *run, const struct sim_device *d,
+                           struct table2_result *r)
 {
     const enum fall_status status = reading_all(&run->log, d->step_m / d->decode, r->reading_Npm);
     if (status != FALL_OK) { failed(r, "readings", fall_status_text(status)); }
@@ -190,8 +191,8 @@ static double share(const struct table2_result *r, int runs, int with_incomplete
     return falls ? (double)oscillating / falls : -1;
 }
 
-struct table2_spread table2_spread(const struct table2_result *at_1, const struct table2_result *at_15,
-                                   int runs)
+struct table2_spread table2_spread(const struct table2_result *at_1,
+                                   const struct table2_result *at_15, int runs)
 {
     static struct values b, a, b_same, a_same;
     const int n = runs < RUNS_MAX ? runs : RUNS_MAX;

@@ -22,28 +22,29 @@ const struct table2_row *table2_gains(double rate_Hz);
 /* One run judged. B fits position over force and inverts, A fits force over
  * position; aligned pairs F_mon(n) with q(n-1), same with q(n). */
 struct table2_result {
-    int done;  /* run to its end and judged: else the values below are void     */
-    int error; /* it or a file of it failed, said on stderr                     */
+    int done;  /* run to its end and judged: else the values below are void */
+    int error; /* it or a file of it failed, said on stderr */
     double rate_Hz, k_Npm, b_Nspm;
-    enum fall_status line; /* aligned: OK, or why there is no stiffness         */
-    double b_Npm, a_Npm, r2, ci_low_Npm, ci_high_Npm; /* aligned; 0: none       */
-    double b_same_Npm, a_same_Npm;                    /* 0: none                */
+    enum fall_status line; /* aligned: OK, or why there is no stiffness */
+    double b_Npm, a_Npm, r2, ci_low_Npm, ci_high_Npm; /* aligned; 0: none */
+    double b_same_Npm, a_same_Npm;                    /* 0: none */
     int ci_bounded;
-    double reading_Npm[READINGS]; /* if asked for; 0: none                       */
+    double reading_Npm[READINGS]; /* if asked for; 0: none */
     int falls, oscillating, buzzing, incomplete;
     unsigned faults;
     unsigned long lost;
-    struct guard guard; /* of scene guarded                                     */
+    struct guard guard; /* of scene guarded */
 };
 
-#define TABLE2_PATH_B 1024 /* a path with its zero                              */
+#define TABLE2_PATH_B 1024 /* a path with its zero */
 
-/* What of a run is asked for, each with all before it: the longer the log, the more of the time is judging. */
+/* What of a run is asked for, each with all before it: the longer the log, the more of the time is
+ * judging. */
 enum table2_ask {
-    TABLE2_REST,    /* falls, and which came to rest                            */
-    TABLE2_LINE,    /* the stiffness, aligned                                   */
-    TABLE2_SAME,    /* and at the same tick                                     */
-    TABLE2_READINGS /* and in every way of reading.h                            */
+    TABLE2_REST,    /* falls, and which came to rest */
+    TABLE2_LINE,    /* the stiffness, aligned */
+    TABLE2_SAME,    /* and at the same tick */
+    TABLE2_READINGS /* and in every way of reading.h */
 };
 
 /* Runs and judges; with a plot prefix also writes what the force-over-position picture needs. */
@@ -54,13 +55,13 @@ struct table2_result table2_measure(const struct run_cfg *c, const char *plot_pr
  * that gave a line; 0 unless more than half did. */
 struct table2_spread {
     int runs, lines, lines_same;         /* done at the gains; of these, with a line */
-    double b_Npm, b_low_Npm, b_high_Npm; /* median, 5 % and 95 %                   */
+    double b_Npm, b_low_Npm, b_high_Npm; /* median, 5 % and 95 % */
     double a_Npm, b_same_Npm, a_same_Npm;
-    double rest;       /* share of falls that come to rest; < 0: no fall         */
-    double oscillates; /* share of falls that do not, at 1.5 times both gains    */
+    double rest;       /* share of falls that come to rest; < 0: no fall */
+    double oscillates; /* share of falls that do not, at 1.5 times both gains */
 };
-struct table2_spread table2_spread(const struct table2_result *at_1, const struct table2_result *at_15,
-                                   int runs);
+struct table2_spread table2_spread(const struct table2_result *at_1,
+                                   const struct table2_result *at_15, int runs);
 
 /* table2.csv and spread.csv: header and a line; empty fields where there is none. */
 void table2_csv_header(FILE *f);

@@ -117,12 +117,14 @@ static void print_run(FILE *f, const struct table2_result *r)
 
 static void print_runs(FILE *f, const struct table2_result *r, int rows)
 {
-    fprintf(f, "\nOne run of %d falls a rate, beside the paper's Table II "
-               "(B: position over force, monitor paired to the tick it answers)\n\n"
-               "  rate      k      b   stiffness     95 %% interval      r2   oscillating  buzz   paper   "
-               "ours/paper\n"
-               "    Hz    N/m   Ns/m         N/m               N/m                  falls           N/m\n",
-            r->falls);
+    fprintf(
+        f,
+        "\nOne run of %d falls a rate, beside the paper's Table II "
+        "(B: position over force, monitor paired to the tick it answers)\n\n"
+        "  rate      k      b   stiffness     95 %% interval      r2   oscillating  buzz   paper   "
+        "ours/paper\n"
+        "    Hz    N/m   Ns/m         N/m               N/m                  falls           N/m\n",
+        r->falls);
     for (int i = 0; i < rows; i++) { print_run(f, &r[i]); }
     for (int i = 0; i < rows; i++) {
         if (r[i].line != FALL_OK) {
@@ -137,10 +139,9 @@ static void print_spread_row(FILE *f, const struct table2_result *r, const struc
     struct text b, interval, per_k, a, b_same, a_same, rest, oscillates;
     fprintf(f, "%6.6g %10s %18s %5s |%9s %13s %13s |%8s %19s\n", r->rate_Hz,
             text(&b, line, 0, s->b_Npm), range(&interval, s->b_low_Npm, s->b_high_Npm),
-            text(&per_k, line && r->k_Npm > 0, 2, s->b_Npm / r->k_Npm),
-            text(&a, line, 0, s->a_Npm), text(&b_same, s->b_same_Npm > 0, 0, s->b_same_Npm),
-            text(&a_same, s->a_same_Npm > 0, 0, s->a_same_Npm),
-            percent(&rest, s->rest),
+            text(&per_k, line && r->k_Npm > 0, 2, s->b_Npm / r->k_Npm), text(&a, line, 0, s->a_Npm),
+            text(&b_same, s->b_same_Npm > 0, 0, s->b_same_Npm),
+            text(&a_same, s->a_same_Npm > 0, 0, s->a_same_Npm), percent(&rest, s->rest),
             percent(&oscillates, s->oscillates));
 }
 
@@ -150,17 +151,21 @@ static void print_spread(FILE *f, const struct table2_result *r, const struct ta
     int runs = 0;
     for (int i = 0; i < rows; i++) { runs = s[i].runs > runs ? s[i].runs : runs; }
     if (runs == 0) { return; }
-    fprintf(f, "\n%d further runs a rate: one run is one draw of this\n\n"
-               "  rate   median B  5 %%..95 %% of runs  B/k | median A   B same tick   A same tick |"
-               " at rest   1.5x gains oscillate\n",
+    fprintf(f,
+            "\n%d further runs a rate: one run is one draw of this\n\n"
+            "  rate   median B  5 %%..95 %% of runs  B/k | median A   B same tick   A same tick |"
+            " at rest   1.5x gains oscillate\n",
             runs);
     for (int i = 0; i < rows; i++) {
         if (s[i].runs > 0) { print_spread_row(f, &r[i], &s[i]); }
     }
     for (int i = 0; i < rows; i++) {
         if (s[i].runs > 0 && (s[i].lines < runs || s[i].lines_same < runs)) {
-            fprintf(f, "%6.6g Hz: of %d runs %d gave a line, %d at the same tick: medians are of these, "
-                       "if they are most.\n", r[i].rate_Hz, s[i].runs, s[i].lines, s[i].lines_same);
+            fprintf(
+                f,
+                "%6.6g Hz: of %d runs %d gave a line, %d at the same tick: medians are of these, "
+                "if they are most.\n",
+                r[i].rate_Hz, s[i].runs, s[i].lines, s[i].lines_same);
         }
     }
 }
@@ -194,12 +199,14 @@ static void print_deviations(FILE *f, const struct table2_result *r, int rows)
         if (n++ == 0) {
             fprintf(f, "\nWhere ours differs from the paper by more than a tenth, and why:\n");
         }
-        fprintf(f, "  %.6g Hz: ours %.2f k, the paper's %.2f k: %s.\n", r->rate_Hz, r->b_Npm / r->k_Npm,
-                paper->stiffness_Npm / paper->k_Npm, why);
+        fprintf(f, "  %.6g Hz: ours %.2f k, the paper's %.2f k: %s.\n", r->rate_Hz,
+                r->b_Npm / r->k_Npm, paper->stiffness_Npm / paper->k_Npm, why);
     }
     if (n > 0) {
-        fprintf(f, "  All: the device is simulated; its friction, inertia and delay were fitted so that "
-                   "the paper's points rest and 1.5x does not.\n");
+        fprintf(
+            f,
+            "  All: the device is simulated; its friction, inertia and delay were fitted so that "
+            "the paper's points rest and 1.5x does not.\n");
     }
 }
 

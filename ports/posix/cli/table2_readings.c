@@ -24,11 +24,13 @@ static const struct table2_row *compared(const struct table2_result *r)
 
 void table2_readings_print(FILE *f, const struct table2_readings *t)
 {
-    fprintf(f, "\nStiffness by every reading of the analysis, N/m (%s%d run%s a rate)\n"
-               "  a, b: force over position; position over force, inverted. same, aligned: F_mon(n) with\n"
-               "  q(n); with q(n-1), which it answers. all contacts; the first of each fall; while the\n"
-               "  motor moves; the whole fall, in contact or not.\n\n  %-17s",
-            t->runs > 1 ? "median of " : "", t->runs, t->runs > 1 ? "s" : "", "Hz");
+    fprintf(
+        f,
+        "\nStiffness by every reading of the analysis, N/m (%s%d run%s a rate)\n"
+        "  a, b: force over position; position over force, inverted. same, aligned: F_mon(n) with\n"
+        "  q(n); with q(n-1), which it answers. all contacts; the first of each fall; while the\n"
+        "  motor moves; the whole fall, in contact or not.\n\n  %-17s",
+        t->runs > 1 ? "median of " : "", t->runs, t->runs > 1 ? "s" : "", "Hz");
     for (int row = 0; row < t->rows; row++) {
         fprintf(f, " %8.6g", t->r[t->first + row * t->stride].rate_Hz);
     }

@@ -5,8 +5,8 @@
 
 #include <pthread.h>
 
-/* Signals are the loop's: this thread gets none but those of its own crash. Blocked, they would end the
- * program without their handlers, and so without its outputs low (gpio.h). 0 or an errno. */
+/* Signals are the loop's: this thread gets none but those of its own crash. Blocked, they would end
+ * the program without their handlers, and so without its outputs low (gpio.h). 0 or an errno. */
 int thread_start(pthread_t *thread, void *(*run)(void *), void *ctx);
 
 #endif

@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define GAP_MS      20 /* what is on again so soon was never off for a person   */
+#define GAP_MS      20 /* what is on again so soon was never off for a person */
 #define LIMITS      32
 #define FINGERS_MAX EXH_FINGERS
 
@@ -22,12 +22,12 @@ struct walk {
     struct timeline_notes notes;
     struct exh_scene_in in;
     struct exh_drive_out out;
-    int32_t *now, *before; /* signals of this frame and the last                */
-    int frames; /* 1: there was one,                                         */
-    uint64_t first; /* at this tick                                           */
+    int32_t *now, *before; /* signals of this frame and the last */
+    int frames;            /* 1: there was one, */
+    uint64_t first;        /* at this tick */
     uint32_t din;
     uint64_t gap;
-    uint32_t command; /* at this tick, enum exh_command + 1                     */
+    uint32_t command; /* at this tick, enum exh_command + 1 */
     struct timeline_span contact[FINGERS_MAX], limit[FINGERS_MAX][LIMITS], missed, lost;
     int32_t state, faults, present, arm, lost_at, glove; /* signals by index; < 0: none */
     int32_t c[FINGERS_MAX], limits[FINGERS_MAX], force[FINGERS_MAX];

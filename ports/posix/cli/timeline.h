@@ -32,7 +32,7 @@ void timeline_out(struct timeline_notes *n, const struct logfile *l, FILE *to);
 
 /* Something that is on or off in a tick; on again within `gap` ticks is the same. */
 struct timeline_span {
-    uint64_t begin, last; /* ticks in which it was on                           */
+    uint64_t begin, last; /* ticks in which it was on */
     uint32_t times, ticks;
     double peak;
     int open;

@@ -22,8 +22,8 @@
 #include <time.h>
 #include <unistd.h>
 
-#define DRAWN_HZ 10.0 /* a terminal is not drawn more often                     */
-#define LATE_S   0.05 /* Ctrl-C and --seconds wait no longer                    */
+#define DRAWN_HZ 10.0 /* a terminal is not drawn more often */
+#define LATE_S   0.05 /* Ctrl-C and --seconds wait no longer */
 
 static const struct exh_scene *const scenes[] = {&exh_scene_drop,      &exh_scene_guarded,
                                                  &exh_scene_bilateral, &exh_scene_glove,
@@ -32,7 +32,7 @@ static const struct exh_scene *const scenes[] = {&exh_scene_drop,      &exh_scen
 static struct {
     const char *modbus, *listen, *names, *finger, *csv, *plot;
     double hz, seconds, last_s;
-    int64_t trace; /* ticks from frame to frame; 0: none                        */
+    int64_t trace; /* ticks from frame to frame; 0: none */
     struct watch_box box;
     struct watch_pick pick;
     const struct exh_scene *picked; /* of this scene */
@@ -60,10 +60,12 @@ int watch_scene(struct watch_box *b, const char *name, uint32_t crc, uint32_t co
         return 1;
     }
     if (exh_signal_crc(sc->signals) != crc || exh_signal_count(sc->signals) != count) {
-        cli_complain("scene %s: the box's table of signals (%lu, CRC %08lx) is another than this program's "
-                     "(%lu, CRC %08lx): watch it with the program of its version",
-                     name, (unsigned long)count, (unsigned long)crc,
-                     (unsigned long)exh_signal_count(sc->signals), (unsigned long)exh_signal_crc(sc->signals));
+        cli_complain(
+            "scene %s: the box's table of signals (%lu, CRC %08lx) is another than this program's "
+            "(%lu, CRC %08lx): watch it with the program of its version",
+            name, (unsigned long)count, (unsigned long)crc,
+            (unsigned long)exh_signal_count(sc->signals),
+            (unsigned long)exh_signal_crc(sc->signals));
         return 1;
     }
     b->scene = sc;
@@ -106,7 +108,9 @@ static int add_named(struct watch_pick *p, const struct exh_signal_table *t, cha
     if (bracket) {
         *bracket = '\0';
         k = strtoul(bracket + 1, &end, 10);
-        if (end == bracket + 1 || strcmp(end, "]") != 0 || k > UINT16_MAX) { return unknown(t, name); }
+        if (end == bracket + 1 || strcmp(end, "]") != 0 || k > UINT16_MAX) {
+            return unknown(t, name);
+        }
     }
     row = cli_signal_find(t, name, NULL);
     if (row == NULL) { return unknown(t, name); }
@@ -127,7 +131,8 @@ int watch_pick(struct watch_pick *p, const struct exh_signal_table *t, const cha
     while (names && *names && err == 0) {
         const size_t len = strcspn(names, ",");
         char name[WATCH_NAME_B];
-        snprintf(name, sizeof name, "%.*s", (int)(len < sizeof name ? len : sizeof name - 1), names);
+        snprintf(name, sizeof name, "%.*s", (int)(len < sizeof name ? len : sizeof name - 1),
+                 names);
         err = add_named(p, t, name, finger);
         names += len + (names[len] == ',');
     }
@@ -294,8 +299,9 @@ static int finish(int err)
                      (unsigned long)w.box.breaks);
     }
     if (w.box.mixed) {
-        cli_complain("%llu of %llu readings are of more than one tick: --trace has four signals of one",
-                     (unsigned long long)w.box.mixed, (unsigned long long)w.box.heard);
+        cli_complain(
+            "%llu of %llu readings are of more than one tick: --trace has four signals of one",
+            (unsigned long long)w.box.mixed, (unsigned long long)w.box.heard);
     }
     if (w.box.lost) {
         cli_complain("%llu %s were lost on the way", (unsigned long long)w.box.lost,
@@ -352,17 +358,18 @@ int cli_watch(int argc, char **argv)
         {"hz", CLI_REAL, &w.hz, 0.1, 1000, "HZ", "samples a second, of a trace looks (10, 50)"},
         {"seconds", CLI_REAL, &w.seconds, 0, 1e9, "S", "then it ends (never)"},
         {"csv", CLI_TEXT, &w.csv, 0, 0, "FILE", "every sample"},
-        {"plot", CLI_TEXT, &w.plot, 0, 0, "FILE.png", "the last seconds, drawn at the end by gnuplot"},
+        {"plot", CLI_TEXT, &w.plot, 0, 0, "FILE.png",
+         "the last seconds, drawn at the end by gnuplot"},
         {"last", CLI_REAL, &w.last_s, 0.1, 3600, "S", "of --plot (10)"},
     };
-    const struct cli_command c = {
-        "watch",
-        "--modbus WHERE | --listen ADDRESS:PORT [options]",
-        "Live values, state, faults and limits of a running box, until Ctrl-C: in place on a terminal,\n"
-        "else a line a sample. It only reads.",
-        option,
-        (int)(sizeof option / sizeof option[0]),
-        0};
+    const struct cli_command c = {"watch",
+                                  "--modbus WHERE | --listen ADDRESS:PORT [options]",
+                                  "Live values, state, faults and limits of a running box, until "
+                                  "Ctrl-C: in place on a terminal,\n"
+                                  "else a line a sample. It only reads.",
+                                  option,
+                                  (int)(sizeof option / sizeof option[0]),
+                                  0};
     int err;
     memset(&w, 0, sizeof w);
     w.finger = "index";

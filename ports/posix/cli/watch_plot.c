@@ -14,7 +14,7 @@
 static struct {
     const char *png;
     double last_s;
-    double *row; /* time, state, values: a ring of them                         */
+    double *row; /* time, state, values: a ring of them */
     size_t cap, n, width;
 } plot;
 
@@ -44,7 +44,9 @@ static int make_room(double now_s)
     if (plot.n < plot.cap) { return 1; }
     while (from < plot.n && plot.row[from * plot.width] < now_s - plot.last_s) { from++; }
     plot.n -= from;
-    if (from) { memmove(plot.row, plot.row + from * plot.width, plot.n * plot.width * sizeof *plot.row); }
+    if (from) {
+        memmove(plot.row, plot.row + from * plot.width, plot.n * plot.width * sizeof *plot.row);
+    }
     if (plot.n < plot.cap / 2) { return 1; }
     bigger = realloc(plot.row, (plot.cap ? 2 * plot.cap : 1024) * plot.width * sizeof *plot.row);
     if (bigger == NULL) { return plot.n < plot.cap; }
@@ -95,7 +97,8 @@ static void put_name(FILE *g)
     fputs("'\n", g);
 }
 
-/* Of the picture, from the top: title, n panels, the state's strip, the axis' numbers and name. In pixels. */
+/* Of the picture, from the top: title, n panels, the state's strip, the axis' numbers and name. In
+ * pixels. */
 enum { TITLE_PX = 50, PANEL_PX = 170, GAP_PX = 20, STRIP_PX = 75, AXIS_PX = 75 };
 
 static unsigned height_px(unsigned n)
@@ -119,7 +122,9 @@ static void put_panels(FILE *g, const struct watch_box *b, const struct watch_pi
         char name[WATCH_NAME_B];
         const struct exh_signal *row = watch_name(name, b->scene->signals, p->index[i]);
         put_place(g, i, n);
-        fprintf(g, "set ylabel \"%s%s%s\" noenhanced\nplot $d using 1:%u with steps lc rgb '%s' lw 1.4 notitle\n",
+        fprintf(g,
+                "set ylabel \"%s%s%s\" noenhanced\nplot $d using 1:%u with steps lc rgb '%s' lw "
+                "1.4 notitle\n",
                 name, row->unit[0] ? "\\n" : "", row->unit, i + 3, color[i % PANELS]);
         if (i == 0) { fprintf(g, "unset label 1\n"); }
     }
@@ -135,14 +140,20 @@ static int put_script(FILE *g, const struct watch_box *b, const struct watch_pic
     const double end_s = plot.row[(plot.n - 1) * plot.width];
     const double first_s = plot.row[0] > end_s - plot.last_s ? plot.row[0] : end_s - plot.last_s;
     put_data(g);
-    fprintf(g, "set terminal pngcairo size 1400,%u font 'DejaVu Sans,15' linewidth 1.4 background '#ffffff'\n",
+    fprintf(g,
+            "set terminal pngcairo size 1400,%u font 'DejaVu Sans,15' linewidth 1.4 background "
+            "'#ffffff'\n",
             height_px(n));
     put_name(g);
-    fprintf(g, "set border 3 lc rgb '#333333' lw 0.8\nset tics nomirror out scale 0.5 font ',12' textcolor rgb '#333333'\n"
-               "set grid lc rgb '#dddddd' lw 0.6 lt 1\nset lmargin at screen 0.1; set rmargin at screen 0.985\n"
-               "set xrange [%.9g:%.9g]\nset format x ''\nset ytics autofreq\nset multiplot\n"
-               "set label 1 '%s, %.6g Hz' at screen 0.5, 0.965 center noenhanced\n",
-            first_s, end_s > first_s ? end_s : first_s + 1, b->scene->name, (double)b->T.den / b->T.num);
+    fprintf(g,
+            "set border 3 lc rgb '#333333' lw 0.8\nset tics nomirror out scale 0.5 font ',12' "
+            "textcolor rgb '#333333'\n"
+            "set grid lc rgb '#dddddd' lw 0.6 lt 1\nset lmargin at screen 0.1; set rmargin at "
+            "screen 0.985\n"
+            "set xrange [%.9g:%.9g]\nset format x ''\nset ytics autofreq\nset multiplot\n"
+            "set label 1 '%s, %.6g Hz' at screen 0.5, 0.965 center noenhanced\n",
+            first_s, end_s > first_s ? end_s : first_s + 1, b->scene->name,
+            (double)b->T.den / b->T.num);
     put_panels(g, b, p, n);
     fprintf(g, "unset multiplot\nunset output\n");
     return ferror(g);

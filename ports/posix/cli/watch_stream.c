@@ -21,10 +21,10 @@
 
 static struct {
     struct udp udp;
-    uint32_t session, place; /* of the byte behind the last                     */
+    uint32_t session, place; /* of the byte behind the last */
     double heard_s;
     int begun;
-    uint8_t byte[BUFFER_B]; /* not yet records                                  */
+    uint8_t byte[BUFFER_B]; /* not yet records */
     uint32_t n;
 } in;
 
@@ -128,7 +128,9 @@ static int piece(struct watch_box *b, const struct stream_piece *p, watch_fresh 
     in.place = p->place + (uint32_t)p->n;
     memcpy(in.byte + in.n, p->byte, p->n);
     in.n += (uint32_t)p->n;
-    b->trouble = b->scene ? NULL : "the log's beginning, which names the scene, is not heard: start the box anew";
+    b->trouble =
+        b->scene ? NULL
+                 : "the log's beginning, which names the scene, is not heard: start the box anew";
     return records(b, fresh);
 }
 

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define PAST 32 /* samples of a sparkline                                       */
+#define PAST   32 /* samples of a sparkline */
 #define RATE_S 1.0
 
 static struct {
@@ -115,7 +115,8 @@ void watch_view_draw(const struct watch_box *b, const struct watch_pick *p, cons
     for (uint32_t i = 0; b->scene && view.n && i < p->n; i++) {
         char name[WATCH_NAME_B];
         const struct exh_signal *row = watch_name(name, b->scene->signals, p->index[i]);
-        printf("  %-14s %14.6g %-10s ", name, cli_signal_value(row, b->value[p->index[i]]), row->unit);
+        printf("  %-14s %14.6g %-10s ", name, cli_signal_value(row, b->value[p->index[i]]),
+               row->unit);
         if (sparks) { spark(i); }
         printf(LINE_END);
     }
@@ -134,8 +135,8 @@ void watch_view_line(const struct watch_box *b, const struct watch_pick *p)
     for (uint32_t i = 0; i < p->n; i++) {
         char name[WATCH_NAME_B];
         const struct exh_signal *row = watch_name(name, b->scene->signals, p->index[i]);
-        printf("  %s %.6g%s%s", name, cli_signal_value(row, b->value[p->index[i]]), row->unit[0] ? " " : "",
-               row->unit);
+        printf("  %s %.6g%s%s", name, cli_signal_value(row, b->value[p->index[i]]),
+               row->unit[0] ? " " : "", row->unit);
     }
     printf("\n");
     fflush(stdout);

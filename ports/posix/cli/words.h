@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Lines on stderr while a box goes on: written by a thread of their own, so that no tick waits for a
- * terminal that was halted, or a pipe that is full. Before words_begin() and behind words_end() they
- * are written at once. */
+/* Lines on stderr while a box goes on: written by a thread of their own, so that no tick waits for
+ * a terminal that was halted, or a pipe that is full. Before words_begin() and behind words_end()
+ * they are written at once. */
 #ifndef CLI_WORDS_H
 #define CLI_WORDS_H
 
@@ -17,8 +17,8 @@ void words_end(void); /* waits 1 s at most for what was said before; repeatable 
 /* A whole line, its end not with it. Any thread's. */
 void words_say(const char *line);
 
-/* The line of status, over the one before; one that is shorter than WORDS_LINE_B - 8. Lost without a
- * word where half the room is taken: lines that were said have the other half. */
+/* The line of status, over the one before; one that is shorter than WORDS_LINE_B - 8. Lost without
+ * a word where half the room is taken: lines that were said have the other half. */
 void words_show(const char *line);
 
 /* Lines said and lost since words_begin(). */

@@ -10,24 +10,24 @@
 
 struct writer {
     int fd;
-    const char *path; /* the thread opens and closes it; NULL: fd is the caller's       */
-    uint8_t *ring; /* cap_B of it, the caller's, as is the writer: for ever      */
+    const char *path; /* the thread opens and closes it; NULL: fd is the caller's */
+    uint8_t *ring;    /* cap_B of it, the caller's, as is the writer: for ever */
     size_t cap_B;
-    size_t head, held; /* where the thread reads, and how much of it is its       */
-    int error; /* errno of what ended it: nothing is taken any more               */
-    int ends, over; /* asked to, has                                               */
+    size_t head, held; /* where the thread reads, and how much of it is its */
+    int error;         /* errno of what ended it: nothing is taken any more */
+    int ends, over;    /* asked to, has */
     pthread_mutex_t lock;
     pthread_cond_t moved;
 };
 
 /* 0, or the errno of a thread that could not be made. */
 int writer_start(struct writer *w, int fd, void *ring, size_t cap_B);
-/* The same, to a file of this name, new or emptied. The thread opens it, too, since that may take long:
- * what comes of it is known by the end. */
+/* The same, to a file of this name, new or emptied. The thread opens it, too, since that may take
+ * long: what comes of it is known by the end. */
 int writer_start_file(struct writer *w, const char *path, void *ring, size_t cap_B);
 
-/* One caller, in its order: 1: all of it will be written, unless the file fails; 0: none, there was no
- * room, and nothing moved for so long; -1: the file failed. */
+/* One caller, in its order: 1: all of it will be written, unless the file fails; 0: none, there was
+ * no room, and nothing moved for so long; -1: the file failed. */
 int writer_put(struct writer *w, const void *bytes, size_t n, double patience_s);
 
 /* Bytes that were put and are not written yet. */

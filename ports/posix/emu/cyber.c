@@ -3,7 +3,7 @@
 
 #define BAUD        115200u
 #define OUT         ((unsigned)sizeof((struct emu_cyber *)0)->out)
-#define SWITCH_BITS 2u /* of the status: nobody presses it now and then             */
+#define SWITCH_BITS 2u /* of the status: nobody presses it now and then */
 
 /* --- the line to the host --- */
 
@@ -37,12 +37,16 @@ static int has_status(const struct emu_cyber *g)
 
 static void say_garbage(struct emu_cyber *g)
 {
-    for (unsigned i = 0; i < EMU_CYBER_NOISE_B; i++) { say(g, i % 4 == 3 ? 'S' : (unsigned)noise(g) | 0x80u); }
+    for (unsigned i = 0; i < EMU_CYBER_NOISE_B; i++) {
+        say(g, i % 4 == 3 ? 'S' : (unsigned)noise(g) | 0x80u);
+    }
 }
 
 static void say_samples(struct emu_cyber *g, unsigned kind)
 {
-    const unsigned n = kind == EMU_CYBER_CUT ? 10 : kind == EMU_CYBER_EIGHTEEN ? 18 : EMU_CYBER_SENSORS;
+    const unsigned n = kind == EMU_CYBER_CUT        ? 10
+                       : kind == EMU_CYBER_EIGHTEEN ? 18
+                                                    : EMU_CYBER_SENSORS;
     const unsigned at = noise(g) % EMU_CYBER_SENSORS;
     for (unsigned i = 0; i < n; i++) {
         if (kind == EMU_CYBER_DROPPED && i == at) { continue; }

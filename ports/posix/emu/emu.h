@@ -21,44 +21,45 @@
 
 enum emu_card { EMU_S526_A, EMU_S526_B, EMU_MM32XAT, EMU_CARDS };
 
-enum emu_phase { /* of a driver: who runs it says which */
-                 EMU_PHASE_DETECT,
-                 EMU_PHASE_SELF_TEST,
-                 EMU_PHASE_CALIBRATE,
-                 EMU_PHASE_READ, /* of a tick */
-                 EMU_PHASE_WRITE, /* of a tick */
-                 EMU_PHASE_SAFE,
-                 EMU_PHASES
+/* of a driver: who runs it says which */
+enum emu_phase {
+    EMU_PHASE_DETECT,
+    EMU_PHASE_SELF_TEST,
+    EMU_PHASE_CALIBRATE,
+    EMU_PHASE_READ,  /* of a tick */
+    EMU_PHASE_WRITE, /* of a tick */
+    EMU_PHASE_SAFE,
+    EMU_PHASES
 };
 
 enum emu_kind {
     EMU_WELL,
-    EMU_ABSENT, /* reads all ones, takes nothing, drives nothing             */
-    EMU_BUSY, /* whatever is started never ends                            */
-    EMU_LOST, /* a conversion is lost                                      */
-    EMU_OVERFLOW, /* the FIFO runs over                                        */
+    EMU_ABSENT,     /* reads all ones, takes nothing, drives nothing */
+    EMU_BUSY,       /* whatever is started never ends */
+    EMU_LOST,       /* a conversion is lost */
+    EMU_OVERFLOW,   /* the FIFO runs over */
     EMU_READ_ORDER, /* somebody else reads between the reads of one value: wrong data */
-    EMU_LINE_STUCK, /* encoder line A                                            */
-    EMU_LINE_NOISY, /* encoder line A                                            */
-    EMU_DA_DEAD, /* D/A never updates, and never says that it has             */
-    EMU_DA_MUTE, /* D/A never updates, but says that it has                   */
-    EMU_EEPROM, /* noise instead of words                                    */
+    EMU_LINE_STUCK, /* encoder line A */
+    EMU_LINE_NOISY, /* encoder line A */
+    EMU_DA_DEAD,    /* D/A never updates, and never says that it has */
+    EMU_DA_MUTE,    /* D/A never updates, but says that it has */
+    EMU_EEPROM,     /* noise instead of words */
     EMU_KINDS
 };
 
 struct emu_fault {
-    uint8_t kind; /* enum emu_kind                                             */
-    uint8_t card; /* enum emu_card                                             */
-    uint8_t axis; /* encoder                                                   */
-    uint8_t phase; /* enum emu_phase: it begins with an access of this card in such a phase, */
-    uint32_t after; /* after so many of them; it then stays                       */
-    uint32_t times; /* EMU_LOST of an S526: so many conversions; 0: all           */
+    uint8_t kind;   /* enum emu_kind */
+    uint8_t card;   /* enum emu_card */
+    uint8_t axis;   /* encoder */
+    uint8_t phase;  /* enum emu_phase: it begins with an access of this card in such a phase, */
+    uint32_t after; /* after so many of them; it then stays */
+    uint32_t times; /* EMU_LOST of an S526: so many conversions; 0: all */
 };
 
 struct emu_config {
     struct emu_s526_config s526[EMU_S526S];
     struct emu_mm32xat_config mm;
-    uint32_t access8_ns, access16_ns; /* on the bus                                */
+    uint32_t access8_ns, access16_ns; /* on the bus */
     struct emu_fault fault;
 };
 
@@ -72,11 +73,11 @@ struct emu_box {
     struct emu_pins pins;
     uint64_t time_ns;
     uint32_t accesses;
-    uint32_t in_phase[EMU_PHASES]; /* of these, of the card with the fault        */
+    uint32_t in_phase[EMU_PHASES]; /* of these, of the card with the fault */
     uint32_t access8_ns, access16_ns;
     struct emu_fault fault;
-    uint8_t phase, wrong; /* wrong: the fault has begun                            */
-    uint32_t lost; /* conversions                                          */
+    uint8_t phase, wrong; /* wrong: the fault has begun */
+    uint32_t lost;        /* conversions */
 };
 
 /* Power on at 1 ms, all pins at 0. */

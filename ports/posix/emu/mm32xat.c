@@ -5,22 +5,23 @@
 
 void *memset(void *dst, int value, size_t len_B);
 
-enum { /* offsets, and indices of what was last written there */
-       START = 0,
-       DATA_LOW = 0,
-       DATA_HIGH = 1,
-       DOUT = 1,
-       LOW = 2,
-       HIGH = 3,
-       DA_LOW = 4,
-       DA_HIGH = 5,
-       THRESHOLD = 6,
-       FIFO = 7,
-       RESET = 8,
-       INTERRUPT = 9,
-       COUNTERS = 10,
-       RANGE = 11,
-       PAGED = 12
+/* offsets, and indices of what was last written there */
+enum {
+    START = 0,
+    DATA_LOW = 0,
+    DATA_HIGH = 1,
+    DOUT = 1,
+    LOW = 2,
+    HIGH = 3,
+    DA_LOW = 4,
+    DA_HIGH = 5,
+    THRESHOLD = 6,
+    FIFO = 7,
+    RESET = 8,
+    INTERRUPT = 9,
+    COUNTERS = 10,
+    RANGE = 11,
+    PAGED = 12
 };
 
 #define ALL_ONES 0xFFu

@@ -17,23 +17,23 @@
 #define EMU_MM_FIFO  1024
 
 enum emu_latch {
-    EMU_LATCH_READ, /* a sample is what stands on the pin when it is read, whenever converted */
-    EMU_LATCH_CONVERT /* a sample is what stood on the pin when it was converted  */
+    EMU_LATCH_READ,   /* a sample is what stands on the pin when it is read, whenever converted */
+    EMU_LATCH_CONVERT /* a sample is what stood on the pin when it was converted */
 };
 
 struct emu_mm32xat_config {
     uint16_t base;
     uint8_t present;
-    uint8_t latch; /* enum emu_latch                                  */
+    uint8_t latch;        /* enum emu_latch */
     uint8_t intrst_page0; /* 1: a write of INTRST selects page 0; 0: leaves the page */
-    uint8_t empty_last; /* 1: an empty FIFO reads as its last sample; 0: as 0xFF */
-    uint8_t din; /* DIN3..0 and the user jumper                     */
-    uint8_t revision; /* of the FPGA                                     */
-    uint32_t scan_ns[4]; /* SCINT 0..3: from channel to channel             */
-    uint32_t convert_ns; /* a single conversion                             */
-    uint32_t wait_ns; /* WAIT, after a change of channel or range        */
-    uint32_t dac_ns; /* DACBUSY                                         */
-    uint32_t reset_ns; /* after RESETA or RESETD nothing is taken         */
+    uint8_t empty_last;   /* 1: an empty FIFO reads as its last sample; 0: as 0xFF */
+    uint8_t din;          /* DIN3..0 and the user jumper */
+    uint8_t revision;     /* of the FPGA */
+    uint32_t scan_ns[4];  /* SCINT 0..3: from channel to channel */
+    uint32_t convert_ns;  /* a single conversion */
+    uint32_t wait_ns;     /* WAIT, after a change of channel or range */
+    uint32_t dac_ns;      /* DACBUSY */
+    uint32_t reset_ns;    /* after RESETA or RESETD nothing is taken */
     uint8_t eeprom[128];
 };
 
@@ -41,30 +41,30 @@ struct emu_mm32xat_config {
 struct emu_mm32xat_config emu_mm32xat_nominal(void);
 
 struct emu_mm32xat_wrong {
-    uint8_t busy; /* STS, WAIT and DACBUSY stay 1, no scan ends               */
-    uint8_t lost; /* of every scan one conversion is lost                    */
+    uint8_t busy;     /* STS, WAIT and DACBUSY stay 1, no scan ends */
+    uint8_t lost;     /* of every scan one conversion is lost */
     uint8_t overflow; /* somebody else's conversions fill the FIFO at every scan */
-    uint8_t read; /* somebody else reads between the reads of one value       */
-    uint8_t da_dead; /* transfers never end up in an output                      */
-    uint8_t eeprom; /* bytes are noise                                         */
+    uint8_t read;     /* somebody else reads between the reads of one value */
+    uint8_t da_dead;  /* transfers never end up in an output */
+    uint8_t eeprom;   /* bytes are noise */
 };
 
 struct emu_mm32xat {
     struct emu_mm32xat_config cfg;
-    uint8_t reg[12]; /* as last written: low, high, D/A low byte, threshold, ...  */
+    uint8_t reg[12]; /* as last written: low, high, D/A low byte, threshold, ... */
     uint8_t page, enhanced, channel, port[4], counter_low[3], counter_half, flags;
     uint8_t ee_address, ee_data;
     uint16_t counter[3];
     uint8_t counter_rw[3];
     int16_t code[EMU_MM_FIFO];
-    uint8_t from[EMU_MM_FIFO]; /* channel                                         */
+    uint8_t from[EMU_MM_FIFO]; /* channel */
     uint16_t head, depth;
     uint8_t overflow;
-    int16_t popped; /* the sample whose high byte is at base + 1       */
-    uint8_t settled_channel; /* what the input shows while it has not settled    */
-    uint16_t scan_left; /* conversions of the scan in progress             */
+    int16_t popped;          /* the sample whose high byte is at base + 1 */
+    uint8_t settled_channel; /* what the input shows while it has not settled */
+    uint16_t scan_left;      /* conversions of the scan in progress */
     uint8_t lost_of_scan;
-    uint64_t next_ns; /* its next conversion                             */
+    uint64_t next_ns;                            /* its next conversion */
     uint64_t wait_ns, dac_ns, reset_ns, pace_ns; /* until; pace: next trigger, 0: none */
     uint16_t da_moved[4], da_out[4];
     uint32_t noise;

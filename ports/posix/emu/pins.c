@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "pins.h"
 
-#define AD_MAX_UV  10500000 /* beyond it a converter of 10 V sees a rail anyway      */
-#define AD_UV      78125u /* 10 V / 32768 is 78125 / 256 uV                       */
-#define DA_UV      307 /* 1 V / 3249 is 307 + 2557 / 3249 uV                    */
+#define AD_MAX_UV  10500000 /* beyond it a converter of 10 V sees a rail anyway */
+#define AD_UV      78125u   /* 10 V / 32768 is 78125 / 256 uV */
+#define DA_UV      307      /* 1 V / 3249 is 307 + 2557 / 3249 uV */
 #define DA_UV_REST 2557
 #define DA_CODES   3249
 

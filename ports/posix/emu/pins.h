@@ -11,17 +11,17 @@
 #include <stdint.h>
 
 #define EMU_S526S    2
-#define EMU_AXES     4 /* counters, and D/A channels, of one S526                 */
+#define EMU_AXES     4 /* counters, and D/A channels, of one S526 */
 #define EMU_S526_AD  8
 #define EMU_GLOVE_AD 32
 
 struct emu_pins {
-    int32_t enc_cnt[EMU_S526S][EMU_AXES]; /* encoder, counts x4                  */
-    int32_t ad_uV[EMU_S526S][EMU_S526_AD]; /* A/D inputs of the S526              */
-    int32_t glove_uV[EMU_GLOVE_AD]; /* A/D inputs of the DMM-32X-AT        */
-    uint8_t din[EMU_S526S]; /* DIO pins, as others drive them      */
-    int32_t da_uV[EMU_S526S][EMU_AXES]; /* out: D/A outputs                    */
-    uint8_t dout[EMU_S526S]; /* out: DIO pins the card drives; others 0 */
+    int32_t enc_cnt[EMU_S526S][EMU_AXES];  /* encoder, counts x4 */
+    int32_t ad_uV[EMU_S526S][EMU_S526_AD]; /* A/D inputs of the S526 */
+    int32_t glove_uV[EMU_GLOVE_AD];        /* A/D inputs of the DMM-32X-AT */
+    uint8_t din[EMU_S526S];                /* DIO pins, as others drive them */
+    int32_t da_uV[EMU_S526S][EMU_AXES];    /* out: D/A outputs */
+    uint8_t dout[EMU_S526S];               /* out: DIO pins the card drives; others 0 */
 };
 
 /* A/D: nearest code (there are no ties), limited to -32768 .. 32767. */

@@ -5,21 +5,22 @@
 
 void *memset(void *dst, int value, size_t len_B);
 
-enum { /* offsets */
-       TCR = 0x00,
-       WDC = 0x02,
-       DAC = 0x04,
-       ADC = 0x06,
-       ADD = 0x08,
-       DIO = 0x0A,
-       IER = 0x0C,
-       ISR = 0x0E,
-       MSC = 0x10,
-       COUNTERS = 0x12,
-       COUNTERS_END = 0x32,
-       EED = 0x32,
-       EEC = 0x34,
-       END = 0x36
+/* offsets */
+enum {
+    TCR = 0x00,
+    WDC = 0x02,
+    DAC = 0x04,
+    ADC = 0x06,
+    ADD = 0x08,
+    DIO = 0x0A,
+    IER = 0x0C,
+    ISR = 0x0E,
+    MSC = 0x10,
+    COUNTERS = 0x12,
+    COUNTERS_END = 0x32,
+    EED = 0x32,
+    EEC = 0x34,
+    END = 0x36
 };
 enum { LOW, HIGH, MODE, CONTROL }; /* words of a counter */
 
@@ -34,8 +35,8 @@ enum { LOW, HIGH, MODE, CONTROL }; /* words of a counter */
 #define DA_RESET    0x0008u
 #define EE_START    0x0001u
 #define EE_READ     2u
-#define DIO_LOW     0x0400u /* DIO0..3 are outputs                               */
-#define DIO_HIGH    0x0800u /* DIO4..7 are outputs                               */
+#define DIO_LOW     0x0400u /* DIO0..3 are outputs */
+#define DIO_HIGH    0x0800u /* DIO4..7 are outputs */
 
 #define MODE_SOFTWARE 0x1000u
 #define MODE_ON_EVENT 0x2000u

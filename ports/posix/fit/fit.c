@@ -17,7 +17,7 @@
 
 /* Seeds: the search's two plans, then those the winners are judged by. The tests use
  * 101 .. 120, the demo 1 .. 21. */
-#define SEED_FIRST 10001
+#define SEED_FIRST  10001
 #define SEED_SECOND 20001
 
 struct fit_options {
@@ -30,7 +30,7 @@ struct fit_options {
  * and goes on: the file is the state. */
 struct journal {
     FILE *f;
-    int64_t at, held; /* the next to come; how many the file held                */
+    int64_t at, held; /* the next to come; how many the file held */
 };
 
 struct entry {
@@ -62,7 +62,8 @@ static int evaluate(const struct fit_options *o, struct journal *j, const struct
     if (j->at + n <= j->held) {
         for (int i = 0; i < n; i++) {
             if (fread(&e, sizeof e, 1, j->f) != 1 || memcmp(&e.p, &p[i], sizeof e.p) != 0) {
-                cli_complain("the journal is of another program's search: remove it, or give another --out");
+                cli_complain(
+                    "the journal is of another program's search: remove it, or give another --out");
                 return 1;
             }
             s[i] = e.s;
@@ -100,8 +101,9 @@ static FILE *open_out(const struct fit_options *o, const char *name, const char 
 /* What the search depends on, in words: DIR/settings says of which one the state is. */
 static void settings_text(const struct fit_options *o, char *to, size_t size)
 {
-    int n = snprintf(to, size, "budget %ld, seed %ld, wall %s, by %s", (long)o->budget, (long)o->seed,
-                     o->search.fixed_wall ? "fixed" : "anywhere", o->only ? o->only : "all readings");
+    int n =
+        snprintf(to, size, "budget %ld, seed %ld, wall %s, by %s", (long)o->budget, (long)o->seed,
+                 o->search.fixed_wall ? "fixed" : "anywhere", o->only ? o->only : "all readings");
     for (int i = 0; i < SPACE_ROWS && n > 0 && (size_t)n < size; i++) {
         if (!o->search.pinned[i]) { continue; }
         n += snprintf(to + n, size - (size_t)n, ", %s %.9g", space_row[i].name,
@@ -238,7 +240,10 @@ static void print_space(void)
         const struct space_row *r = &space_row[i];
         printf("  %-11s %10.4g  %8.4g .. %-8.4g %-4s %s\n", r->name, r->start, r->lo,
                r->scale == SPACE_WHOLE ? r->hi - 1 : r->hi,
-               r->scale == SPACE_LOG ? "log" : r->scale == SPACE_WHOLE ? "int" : "lin", r->why);
+               r->scale == SPACE_LOG     ? "log"
+               : r->scale == SPACE_WHOLE ? "int"
+                                         : "lin",
+               r->why);
     }
     printf("\nReadings: DIRECTION-PAIRS-PART\n"
            "  a, b                     fits force over position; position over force, inverted\n"
@@ -291,10 +296,13 @@ int cli_fit(int argc, char **argv)
         {"space", CLI_FLAG, &list, 0, 0, NULL, "list what is searched, and the readings"},
     };
     const struct cli_command c = {
-        "fit", "[options]",
+        "fit",
+        "[options]",
         "Searches for a plant that rests at the paper's six points, not at 1.5 times both gains,\n"
         "and gives its Table II; once for each reading of its analysis, all with equal effort.",
-        option, (int)(sizeof option / sizeof option[0]), 0};
+        option,
+        (int)(sizeof option / sizeof option[0]),
+        0};
 
     search_init(&o.search, 0);
     o.budget = 6000;

@@ -6,12 +6,12 @@
 
 #include <string.h>
 
-#define FALLS 10
-#define REST_WEIGHT 20
+#define FALLS        10
+#define REST_WEIGHT  20
 #define SWING_WEIGHT 6
-#define REST_WANTED 0.98
+#define REST_WANTED  0.98
 #define SWING_WANTED 0.95
-#define WORST_LN 2 /* of one row: e^2 times too much, or no line at all */
+#define WORST_LN     2 /* of one row: e^2 times too much, or no line at all */
 
 /* The dear rows that most plants fail come first. */
 static const int order[TABLE2_ROWS] = {5, 0, 4, 2, 1, 3};
@@ -123,14 +123,14 @@ static int at_the_gains(const struct plant_point *p, const struct score_plan *pl
     return 0;
 }
 
-static int at_15(const struct plant_point *p, const struct score_plan *plan, int row, struct score *s)
+static int at_15(const struct plant_point *p, const struct score_plan *plan, int row,
+                 struct score *s)
 {
     double soft = 0;
     struct run r;
     const uint64_t seed = plan->seed + 500 + (uint64_t)row;
     const int err = score_run(p, plan, gains(row, 1.5, plan->falls_at_15, seed), &r);
-    const int n =
-        err ? -1 : score_oscillating(&r, score_step_m(p), observe_s(plan, row), 1, &soft);
+    const int n = err ? -1 : score_oscillating(&r, score_step_m(p), observe_s(plan, row), 1, &soft);
     run_free(&r);
     if (n < 0) { return -1; }
     soft /= plan->falls_at_15;

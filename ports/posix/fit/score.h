@@ -10,20 +10,20 @@
 #include "cli/table2.h"
 
 struct score_plan {
-    int runs;          /* of ten falls a row, at the gains                      */
-    int falls_at_15;   /* one run of so many at 1.5 times both                  */
-    double observe_s, observe_slow_s; /* the latter at 100 Hz and below         */
+    int runs;                         /* of ten falls a row, at the gains */
+    int falls_at_15;                  /* one run of so many at 1.5 times both */
+    double observe_s, observe_slow_s; /* the latter at 100 Hz and below */
     uint64_t seed;
-    int fixed_wall;    /* 0: the wall lies anywhere between two encoder counts,
-                          elsewhere in each run; 1: where q_lim and step put it */
+    int fixed_wall; /* 0: the wall lies anywhere between two encoder counts,
+                       elsewhere in each run; 1: where q_lim and step put it */
 };
 
 struct score {
-    int done;                /* 0: given up, its unrest alone was above the bound */
-    float unrest;            /* 0 if all six rest and all six at 1.5x oscillate   */
-    float rest[TABLE2_ROWS]; /* share of falls that come to rest                  */
-    float swing[TABLE2_ROWS]; /* share that oscillates at 1.5x                    */
-    /* mean of ln(stiffness / k) over the runs; SCORE_NONE: no line in some run   */
+    int done;                 /* 0: given up, its unrest alone was above the bound */
+    float unrest;             /* 0 if all six rest and all six at 1.5x oscillate */
+    float rest[TABLE2_ROWS];  /* share of falls that come to rest */
+    float swing[TABLE2_ROWS]; /* share that oscillates at 1.5x */
+    /* mean of ln(stiffness / k) over the runs; SCORE_NONE: no line in some run */
     float ln_k[TABLE2_ROWS][READINGS];
 };
 #define SCORE_NONE 99.0f
@@ -36,7 +36,7 @@ double score_cost(const struct score *s, int reading);
 
 /* One run. 0, or -1: it failed. r is freed by run_free(). */
 struct score_gains {
-    int row; /* whose rate                                                     */
+    int row; /* whose rate */
     double k_Npm, b_Nspm;
     int falls;
     uint64_t seed;

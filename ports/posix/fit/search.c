@@ -3,8 +3,8 @@
 
 #include <string.h>
 
-#define BEST 5      /* children go towards one of these                         */
-#define TOO_NEAR 0.01 /* in every row: the better of the two stays               */
+#define BEST     5    /* children go towards one of these */
+#define TOO_NEAR 0.01 /* in every row: the better of the two stays */
 
 void search_init(struct search *s, uint64_t seed)
 {

@@ -15,10 +15,10 @@
 
 #include "sim/random.h"
 
-#define SEARCH_MEMBERS 24 /* of a population                                    */
-#define SEARCH_KEPT 8     /* of these, when the plan gets dearer                 */
-#define SEARCH_STARTS 192 /* plants before the first round                      */
-#define SEARCH_BATCH (READINGS * SEARCH_KEPT)
+#define SEARCH_MEMBERS 24  /* of a population */
+#define SEARCH_KEPT    8   /* of these, when the plan gets dearer */
+#define SEARCH_STARTS  192 /* plants before the first round */
+#define SEARCH_BATCH   (READINGS * SEARCH_KEPT)
 
 struct search_member {
     struct plant_point p;
@@ -33,12 +33,12 @@ struct search_population {
 
 struct search {
     struct search_population of[READINGS];
-    int used[READINGS];            /* populations that make children            */
-    int pinned[SPACE_ROWS];        /* rows that keep the start's value           */
+    int used[READINGS];     /* populations that make children */
+    int pinned[SPACE_ROWS]; /* rows that keep the start's value */
     struct plant_point start;
     struct sim_random rng;
     int fixed_wall;
-    int kept;                      /* members a population may have              */
+    int kept; /* members a population may have */
 };
 
 void search_init(struct search *s, uint64_t seed);

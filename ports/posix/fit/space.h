@@ -6,9 +6,9 @@
 #include "cli/run.h"
 
 enum space_kind {
-    SPACE_DEVICE,  /* a value of the device, by its name                        */
-    SPACE_SCENE,   /* a parameter of the scene, by its name                     */
-    SPACE_KF,      /* times the device's: what the box believes of it           */
+    SPACE_DEVICE, /* a value of the device, by its name */
+    SPACE_SCENE,  /* a parameter of the scene, by its name */
+    SPACE_KF,     /* times the device's: what the box believes of it */
     SPACE_MONITOR
 };
 

@@ -10,21 +10,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SEED 30001 /* of no search, test or demo                                 */
+#define SEED     30001 /* of no search, test or demo */
 #define RUNS_MAX 200
-#define FALLS 10
-#define FURTHER 3
+#define FALLS    10
+#define FURTHER  3
 
 static const double further_scale[FURTHER] = {0.7, 0.9, 1.1};
 
 /* One row of one winner. */
 struct verdict {
-    int failed, lines;                 /* runs that failed; that gave a line    */
-    double rest, swing;                /* shares of falls, at 1 and 1.5x        */
-    double median[READINGS];           /* N/m, by every reading; 0: none        */
-    double low, high;                  /* 5 % and 95 % of the runs, own reading */
-    double over_k[FURTHER], rest_at[FURTHER]; /* own reading, at other gains    */
-    double b_max;                      /* largest stable b at half the row's k  */
+    int failed, lines;                        /* runs that failed; that gave a line */
+    double rest, swing;                       /* shares of falls, at 1 and 1.5x */
+    double median[READINGS];                  /* N/m, by every reading; 0: none */
+    double low, high;                         /* 5 % and 95 % of the runs, own reading */
+    double over_k[FURTHER], rest_at[FURTHER]; /* own reading, at other gains */
+    double b_max;                             /* largest stable b at half the row's k */
 };
 
 struct trial {
@@ -49,9 +49,10 @@ static double of_lines(const double *v, int n, double share)
     return quantile(kept, lines, n, share);
 }
 
-/* Share of falls that oscillate in `runs` runs, -1 if none ran; stiffness by all readings if S is there. */
-static double oscillating(const struct score_plan *plan, const struct plant_point *p, int row, double scale, int runs,
-                          double S[READINGS][RUNS_MAX], int *failed)
+/* Share of falls that oscillate in `runs` runs, -1 if none ran; stiffness by all readings if S is
+ * there. */
+static double oscillating(const struct score_plan *plan, const struct plant_point *p, int row,
+                          double scale, int runs, double S[READINGS][RUNS_MAX], int *failed)
 {
     const struct table2_row *t = &table2_paper[row];
     int n = 0, seen = 0;
@@ -86,7 +87,7 @@ static double at_rest(double oscillate)
 /* Largest b of the ladder up to which all rest (at least 9 of 10 falls). */
 static double largest_b(const struct score_plan *plan, const struct plant_point *p, int row)
 {
-    static const double b[] = {1,  2,  3,  4,  5,  6,  8,  10, 12,  15,  20,
+    static const double b[] = {1,  2,  3,  4,  5,  6,  8,   10,  12,  15, 20,
                                25, 30, 40, 50, 60, 80, 100, 120, 150, 200};
     double best = 0;
     for (size_t i = 0; i < sizeof b / sizeof b[0]; i++) {
@@ -149,14 +150,17 @@ static void print_bounds(FILE *f, const struct search *s, const struct plant_poi
 /* Table and both files in one go over the readings. */
 static void print(const struct trial *t, const struct verdict *v, FILE *csv, FILE *plants)
 {
-    printf("The best plant of each reading, by the whole experiment and %d seeds it was not fitted to\n"
-           "(median of %d runs; off the paper's stiffness in %%; shares of falls in %%; b: the largest\n"
-           "that rests at half the row's k, 90 and 2000 Hz, the paper's \"nearly 20 times\"; the wall lies\n"
+    printf("The best plant of each reading, by the whole experiment and %d seeds it was not fitted "
+           "to\n"
+           "(median of %d runs; off the paper's stiffness in %%; shares of falls in %%; b: the "
+           "largest\n"
+           "that rests at half the row's k, 90 and 2000 Hz, the paper's \"nearly 20 times\"; the "
+           "wall lies\n"
            "%s between two encoder counts)\n\n"
            "                     off the paper, 90 .. 2000 Hz    within    at rest               "
            " oscillates at 1.5x      largest b\n"
-           "  reading                                             25 10\n", t->runs, t->runs,
-           t->s->fixed_wall ? "at one place" : "anywhere");
+           "  reading                                             25 10\n",
+           t->runs, t->runs, t->s->fixed_wall ? "at one place" : "anywhere");
     for (int i = 0; i < t->readings; i++, v += TABLE2_ROWS) {
         const int x = t->reading[i];
         const struct plant_point *p = &search_best(t->s, x)->p;
@@ -175,8 +179,8 @@ static void print(const struct trial *t, const struct verdict *v, FILE *csv, FIL
         printf("  %3.0f %3.0f\n", v[0].b_max, v[TABLE2_ROWS - 1].b_max);
         for (int row = 0; row < TABLE2_ROWS; row++) {
             const struct table2_row *paper = &table2_paper[row];
-            fprintf(csv, "%s,%.9g,%.9g,%.9g,%.9g", reading_table[x].name, paper->rate_Hz, paper->k_Npm,
-                    paper->b_Nspm, paper->stiffness_Npm);
+            fprintf(csv, "%s,%.9g,%.9g,%.9g,%.9g", reading_table[x].name, paper->rate_Hz,
+                    paper->k_Npm, paper->b_Nspm, paper->stiffness_Npm);
             fprintf(csv, ",%.9g,%.9g,%.9g,%.4f,%.4f", v[row].median[x], v[row].low, v[row].high,
                     v[row].rest, v[row].swing);
             for (int k = 0; k < FURTHER; k++) {
@@ -198,8 +202,9 @@ static void print(const struct trial *t, const struct verdict *v, FILE *csv, FIL
  * the bounces to the six points. */
 static void print_further(const struct trial *t, const struct verdict *v)
 {
-    printf("\nStiffness over k at 0.7, 0.9, 1 and 1.1 times both gains (%d runs), 200 .. 2000 Hz\n\n",
-           t->further);
+    printf(
+        "\nStiffness over k at 0.7, 0.9, 1 and 1.1 times both gains (%d runs), 200 .. 2000 Hz\n\n",
+        t->further);
     for (int i = 0; i < t->readings; i++, v += TABLE2_ROWS) {
         const int x = t->reading[i];
         printf("  %-16s", reading_table[x].name);
@@ -232,8 +237,9 @@ static int write_all(const struct trial *t, const struct verdict *v, const char 
     FILE *csv = create(out, "fit.csv"), *plants = create(out, "plants.csv");
     int err = csv == NULL || plants == NULL;
     if (err == 0) {
-        fprintf(csv, "reading,rate_hz,k_n_per_m,b_ns_per_m,paper_n_per_m,median_n_per_m,low_n_per_m,"
-                     "high_n_per_m,rest_share,oscillating_share_at_1_5x");
+        fprintf(csv,
+                "reading,rate_hz,k_n_per_m,b_ns_per_m,paper_n_per_m,median_n_per_m,low_n_per_m,"
+                "high_n_per_m,rest_share,oscillating_share_at_1_5x");
         for (int k = 0; k < FURTHER; k++) {
             fprintf(csv, ",over_k_at_%g,rest_share_at_%g", further_scale[k], further_scale[k]);
         }
@@ -264,8 +270,8 @@ int winners_judge(const struct search *s, int runs, int further, int jobs, const
         free(v);
         return 1;
     }
-    const struct jobs all = {t.readings * TABLE2_ROWS, jobs, sizeof *v, v, judge, &t,
-                             "rows", posix_interrupt};
+    const struct jobs all = {t.readings * TABLE2_ROWS, jobs, sizeof *v, v, judge, &t, "rows",
+                             posix_interrupt};
     err = jobs_run(&all);
     for (int i = 0; i < all.n; i++) { failed += v[i].failed; }
     if (err == 0) { err = write_all(&t, v, out); }

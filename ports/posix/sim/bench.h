@@ -12,26 +12,27 @@
 #include "random.h"
 
 enum bench_place {
-    BENCH_SLACK, /* the string drawn out, nothing on it                        */
-    BENCH_MASS   /* a mass that stands on something, the string just taut       */
+    BENCH_SLACK, /* the string drawn out, nothing on it */
+    BENCH_MASS   /* a mass that stands on something, the string just taut */
 };
 
-enum bench_wrong { /* bits */
+/* bits */
+enum bench_wrong {
     BENCH_MOTOR_REVERSED = 1 << 0,
     BENCH_ENCODER_REVERSED = 1 << 1,
-    BENCH_STUCK = 1 << 2,    /* the rotor does not turn                        */
-    BENCH_CAUGHT = 1 << 3,   /* the string is caught 70 mm from its end          */
-    BENCH_ENDLESS = 1 << 4,  /* nothing stops it at its end                     */
-    BENCH_NO_MASS = 1 << 5,  /* the mass was not hung on                       */
-    BENCH_FIXED_MASS = 1 << 6, /* what hangs on it cannot be lifted             */
-    BENCH_PULLED = 1 << 7    /* somebody pulls the string out                   */
+    BENCH_STUCK = 1 << 2,      /* the rotor does not turn */
+    BENCH_CAUGHT = 1 << 3,     /* the string is caught 70 mm from its end */
+    BENCH_ENDLESS = 1 << 4,    /* nothing stops it at its end */
+    BENCH_NO_MASS = 1 << 5,    /* the mass was not hung on */
+    BENCH_FIXED_MASS = 1 << 6, /* what hangs on it cannot be lifted */
+    BENCH_PULLED = 1 << 7      /* somebody pulls the string out */
 };
 
 struct bench {
     enum bench_place place;
-    unsigned wrong;     /* enum bench_wrong                                    */
-    int moving;         /* the hand is at it                                   */
-    struct sim_device device; /* with the mass that hangs on it                */
+    unsigned wrong;           /* enum bench_wrong */
+    int moving;               /* the hand is at it */
+    struct sim_device device; /* with the mass that hangs on it */
     double now_s, from_s, until_s, from_m, to_m;
 };
 

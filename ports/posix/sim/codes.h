@@ -30,7 +30,8 @@ static inline int16_t sim_monitor_code(const struct sim_device *d, double mon_A)
 }
 
 /* and with its noise. */
-static inline int16_t sim_monitor_raw(const struct sim_device *d, double mon_A, struct sim_random *r)
+static inline int16_t sim_monitor_raw(const struct sim_device *d, double mon_A,
+                                      struct sim_random *r)
 {
     return sim_monitor_code(d, mon_A + d->mon_noise_a * sim_random_bell(r));
 }
@@ -47,7 +48,9 @@ static inline int16_t sim_supply_raw(const struct sim_device *d, double sum_A)
 static inline double sim_drive_A(const struct sim_device *d, uint16_t dac_raw, int enabled)
 {
     const double asked_A = ((double)dac_raw - d->dac_zero) / d->dac_perA;
-    const double ref_A = asked_A > d->peak_a ? d->peak_a : asked_A < -d->peak_a ? -d->peak_a : asked_A;
+    const double ref_A = asked_A > d->peak_a    ? d->peak_a
+                         : asked_A < -d->peak_a ? -d->peak_a
+                                                : asked_A;
     return enabled ? ref_A : 0;
 }
 

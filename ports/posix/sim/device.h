@@ -24,7 +24,7 @@ struct sim_device {
 struct sim_device_row {
     const char *name, *unit;
     double value, min, max;
-    const char *sure; /* how sure we are, and the source                       */
+    const char *sure; /* how sure we are, and the source */
     const char *help;
 };
 

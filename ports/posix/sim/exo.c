@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#define POINT_S 250e-6 /* between two points the fingers move on straight lines         */
+#define POINT_S 250e-6 /* between two points the fingers move on straight lines */
 
 /* Sensors that bend: the knuckle's, and those of the joints beyond it; -1: none. */
 static const signed char bends[SIM_FINGERS][3] = {

@@ -7,15 +7,15 @@
 #include "finger.h"
 #include "glove.h"
 
-#define SIM_FINGERS 5
-#define SIM_EXO_POINTS 2048 /* 22 channels 1 ms apart, at two points a tick of 20 kHz     */
+#define SIM_FINGERS    5
+#define SIM_EXO_POINTS 2048 /* 22 channels 1 ms apart, at two points a tick of 20 kHz */
 
 struct sim_exo_par {
-    unsigned fingers; /* bit i: finger i (thumb, index, middle, ring, little)   */
+    unsigned fingers; /* bit i: finger i (thumb, index, middle, ring, little) */
     double apart_s;   /* each finger in use begins so much later than the one before */
     struct sim_finger_par finger[SIM_FINGERS];
     struct sim_path_par path[SIM_FINGERS];
-    struct sim_path_record record[SIM_FINGERS]; /* rows 0: approaches            */
+    struct sim_path_record record[SIM_FINGERS]; /* rows 0: approaches */
 };
 
 /* No finger; all of them alike when asked for. */
@@ -29,7 +29,7 @@ struct sim_exo {
         double t_s, x_m[SIM_FINGERS];
     } point[SIM_EXO_POINTS]; /* where the fingers were, oldest first in the ring */
     unsigned first, points;
-    int torn; /* points were overwritten before a glove had asked for them      */
+    int torn; /* points were overwritten before a glove had asked for them */
 };
 
 /* 0, or -1: more fingers than there are. gloved: the way is kept for a glove. */

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 #include "fall.h"
 
-#define FAR_S 1e30
-#define LIFT_S 0.5
-#define HOLD_S 0.1
-#define GIVE_UP_S 3.0  /* a mass that has not reached the contact by then        */
-#define CATCH_S   0.2  /* until somebody who sees a light go out has the mass   */
-#define MARGIN_S 0.15  /* or two ticks: by so much may the log's contact be later */
+#define FAR_S     1e30
+#define LIFT_S    0.5
+#define HOLD_S    0.1
+#define GIVE_UP_S 3.0  /* a mass that has not reached the contact by then */
+#define CATCH_S   0.2  /* until somebody who sees a light go out has the mass */
+#define MARGIN_S  0.15 /* or two ticks: by so much may the log's contact be later */
 
 static double start_height(const struct sim_device *d, struct sim_random *r)
 {
@@ -26,8 +26,8 @@ static void hold(struct fall *f, struct sim_random *r, double t_s)
     f->until_s = t_s + longer(HOLD_S, f->T_s) * (1 + 0.5 * sim_random_unit(r));
 }
 
-void fall_start(struct fall *f, struct plant *p, const struct sim_device *d,
-                struct sim_random *r, int falls, double T_s)
+void fall_start(struct fall *f, struct plant *p, const struct sim_device *d, struct sim_random *r,
+                int falls, double T_s)
 {
     const struct plant rest = {0};
     *p = rest;

@@ -12,23 +12,24 @@ enum fall_phase { FALL_HOLD, FALL_FREE, FALL_LIFT, FALL_DONE };
 
 struct fall {
     enum fall_phase phase;
-    int number;        /* the fall being prepared or watched, from 1           */
-    int falls;         /* how many are asked for                               */
-    double until_s;    /* end of the phase; FREE: known once contact is made   */
-    int waits;         /* 1: a hold goes on until fall_ready(); may be set at any time */
-    double held_s;     /* start of the hold                                    */
-    double contact_s;  /* first time past the virtual contact, < 0: not yet    */
-    double T_s;        /* the controller's period                              */
-    double lift_s;     /* start of the lift                                    */
+    int number;       /* the fall being prepared or watched, from 1 */
+    int falls;        /* how many are asked for */
+    double until_s;   /* end of the phase; FREE: known once contact is made */
+    int waits;        /* 1: a hold goes on until fall_ready(); may be set at any time */
+    double held_s;    /* start of the hold */
+    double contact_s; /* first time past the virtual contact, < 0: not yet */
+    double T_s;       /* the controller's period */
+    double lift_s;    /* start of the lift */
     double from_x_m, from_q_m, to_m;
 };
 
 /* T_s: it holds for a tick and watches for two more than it must, whatever the rate,
  * so that the controller sees every fall whole and a tick between any two. */
-void fall_start(struct fall *f, struct plant *p, const struct sim_device *d,
-                struct sim_random *r, int falls, double T_s);
+void fall_start(struct fall *f, struct plant *p, const struct sim_device *d, struct sim_random *r,
+                int falls, double T_s);
 
-/* The box does not run any more: a hand catches the mass soon, lifts it, and holds it until fall_ready(). */
+/* The box does not run any more: a hand catches the mass soon, lifts it, and holds it until
+ * fall_ready(). */
 void fall_catch(struct fall *f, double t_s);
 
 /* The box runs: what is held longer for its sake is let go as if it had begun now. */

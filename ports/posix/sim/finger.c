@@ -13,7 +13,7 @@
 
 #include "codes.h"
 
-#define PIECE_S 250e-6 /* the target moves on a straight line for no longer            */
+#define PIECE_S 250e-6 /* the target moves on a straight line for no longer */
 
 const struct sim_device_row sim_finger_row[] = {
     {"mass", "kg", 0.1, 0.005, 1, "unsure", "finger and exoskeleton, reflected to the string"},

@@ -36,17 +36,17 @@ int sim_finger_set(struct sim_finger_par *p, const char *name, double value,
                    const struct sim_device_row **row);
 
 struct sim_finger {
-    struct sim_device device; /* with the finger as its mass                     */
+    struct sim_device device; /* with the finger as its mass */
     struct sim_finger_par par;
     struct sim_path path;
     struct plant plant;
     struct sim_random rng;
     double now_s;
-    double latched_A; /* D/A output                                             */
-    double ref_A;     /* what the servo last sampled                            */
-    double servo_s;   /* its next sample                                        */
-    double grid;      /* encoder phase, counts                                   */
-    double bend_radpm[2]; /* knuckle, joints beyond                              */
+    double latched_A;     /* D/A output */
+    double ref_A;         /* what the servo last sampled */
+    double servo_s;       /* its next sample */
+    double grid;          /* encoder phase, counts */
+    double bend_radpm[2]; /* knuckle, joints beyond */
 };
 
 /* At rest where its path begins, the string just taut, at 0 s. */

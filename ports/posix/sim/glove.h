@@ -43,16 +43,16 @@ int sim_glove_set(struct sim_glove_par *p, const char *name, double value,
 struct sim_glove_sensor {
     const char *name;
     double lo_deg, lo, hi_deg, hi;
-    int bend[2]; /* sensors whose mean this one sees `couple` of, -1: none      */
+    int bend[2]; /* sensors whose mean this one sees `couple` of, -1: none */
 };
 extern const struct sim_glove_sensor sim_glove_sensor[SIM_GLOVE_SENSORS];
 
 enum sim_glove_fault {
     SIM_GLOVE_WELL,
     SIM_GLOVE_OPEN,      /* a broken wire: all of the excitation at the amplifier */
-    SIM_GLOVE_SHORT,     /* none of it                                          */
-    SIM_GLOVE_STUCK,     /* the code stays what it last was                      */
-    SIM_GLOVE_RAIL_HIGH, /* the amplifier at a rail                             */
+    SIM_GLOVE_SHORT,     /* none of it */
+    SIM_GLOVE_STUCK,     /* the code stays what it last was */
+    SIM_GLOVE_RAIL_HIGH, /* the amplifier at a rail */
     SIM_GLOVE_RAIL_LOW
 };
 
@@ -60,8 +60,8 @@ struct sim_glove {
     struct sim_glove_par par;
     struct sim_random rng;
     struct sim_lag angle_rad[SIM_GLOVE_SENSORS];
-    unsigned char fault[SIM_GLOVE_SENSORS]; /* enum sim_glove_fault              */
-    int16_t code[SIM_GLOVE_SENSORS];        /* the last                         */
+    unsigned char fault[SIM_GLOVE_SENSORS]; /* enum sim_glove_fault */
+    int16_t code[SIM_GLOVE_SENSORS];        /* the last */
     double held_V, held_s;                  /* on the multiplexer, and since when */
 };
 

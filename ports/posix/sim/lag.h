@@ -20,10 +20,10 @@ struct sim_curve {
 };
 
 struct sim_lag {
-    double tau_s;              /* 0: none                                        */
-    struct sim_curve x;        /* the input                                     */
-    double p[SIM_CURVE_TERMS]; /* what y runs after, of the polynomial            */
-    double off;                /* y less that, at the start                      */
+    double tau_s;              /* 0: none */
+    struct sim_curve x;        /* the input */
+    double p[SIM_CURVE_TERMS]; /* what y runs after, of the polynomial */
+    double off;                /* y less that, at the start */
 };
 
 /* The input at t_s. */

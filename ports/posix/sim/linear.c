@@ -135,22 +135,25 @@ static const struct tick *tick_of(const struct linear_plant *p, double T_s, doub
 {
     static struct tick last;
     if (memcmp(&last.p, p, sizeof *p) != 0 || last.T_s != T_s || last.part_s != part_s) {
-        last = (struct tick){*p, T_s, part_s, linear_flow(p, T_s), linear_flow(p, part_s),
+        last = (struct tick){*p,
+                             T_s,
+                             part_s,
+                             linear_flow(p, T_s),
+                             linear_flow(p, part_s),
                              linear_flow(p, T_s - part_s)};
     }
     return &last;
 }
 
-int linear_monodromy(struct matrix *M, const struct linear_plant *p,
-                     const struct linear_wall *w)
+int linear_monodromy(struct matrix *M, const struct linear_plant *p, const struct linear_wall *w)
 {
     const double ticks = w->delay_s / w->T_s;
     const int whole = ticks < EIGEN_MAX ? (int)ticks : EIGEN_MAX;
     const double part_s = (ticks - whole) * w->T_s;
     const struct tick *const t = tick_of(p, w->T_s, part_s);
-    const int u1 = p->n;             /* u[k-1]; u[k-d-1] is the last of them */
-    const int q1 = u1 + whole + 1;   /* q[k-1] */
-    double law[EIGEN_MAX] = {0};    /* u[k] from z */
+    const int u1 = p->n;           /* u[k-1]; u[k-d-1] is the last of them */
+    const int q1 = u1 + whole + 1; /* q[k-1] */
+    double law[EIGEN_MAX] = {0};   /* u[k] from z */
 
     M->n = q1 + w->window;
     if (M->n > EIGEN_MAX || w->window < 1) { return -1; }
@@ -179,7 +182,7 @@ double linear_rho(const struct sim_device *d, double T_s, double k_Npm, double b
 {
     static struct matrix M;
     const struct linear_plant p = linear_two_mass(d);
-    const struct linear_wall w = {
-        T_s, k_Npm, b_Nspm, d->delay_tick * T_s + d->delay_s + 0.5 / d->servo_hz, window};
+    const struct linear_wall w = {T_s, k_Npm, b_Nspm,
+                                  d->delay_tick * T_s + d->delay_s + 0.5 / d->servo_hz, window};
     return linear_monodromy(&M, &p, &w) == 0 ? eigen_radius(&M) : -1;
 }

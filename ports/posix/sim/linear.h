@@ -32,8 +32,8 @@ struct linear_plant linear_two_mass(const struct sim_device *d);
 
 struct linear_wall {
     double T_s, k_Npm, b_Nspm;
-    double delay_s; /* from the tick to the force's request at the current loop    */
-    int window;     /* n of the velocity, ticks                                  */
+    double delay_s; /* from the tick to the force's request at the current loop */
+    int window;     /* n of the velocity, ticks */
 };
 
 /* e^(a t) and the integral of e^(a s) b over 0..t, from one exponential. */
@@ -43,8 +43,7 @@ struct linear_flow {
 struct linear_flow linear_flow(const struct linear_plant *p, double t_s);
 
 /* 0, or -1: the delay and the window need more than EIGEN_MAX states. */
-int linear_monodromy(struct matrix *M, const struct linear_plant *p,
-                     const struct linear_wall *w);
+int linear_monodromy(struct matrix *M, const struct linear_plant *p, const struct linear_wall *w);
 
 /* rho of the simulated device. The servo samples the output at its own rate and at a
  * phase of chance: its mean, half a sample, counts as delay. < 0: too long a delay. */

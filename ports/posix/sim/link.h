@@ -19,19 +19,19 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define SIM_LINK_PACKET_B 1472 /* what an Ethernet frame carries over UDP           */
+#define SIM_LINK_PACKET_B 1472 /* what an Ethernet frame carries over UDP */
 #define SIM_LINK_QUEUE    1024
 
 enum sim_link_jitter {
     SIM_LINK_CONSTANT,
-    SIM_LINK_UNIFORM,   /* +- jitter                                             */
-    SIM_LINK_NORMAL,    /* deviation jitter / 3, clipped at +- jitter            */
-    SIM_LINK_CORRELATED /* the same, each with `memory` of the one before         */
+    SIM_LINK_UNIFORM,   /* +- jitter */
+    SIM_LINK_NORMAL,    /* deviation jitter / 3, clipped at +- jitter */
+    SIM_LINK_CORRELATED /* the same, each with `memory` of the one before */
 };
 
 /* Doubles only, in the order of the table in link.c; of one way. */
 struct sim_link_par {
-    double delay_s, jitter, jitter_s, memory; /* jitter: enum sim_link_jitter     */
+    double delay_s, jitter, jitter_s, memory; /* jitter: enum sim_link_jitter */
     double loss, duplicate, duplicate_s, reorder, reorder_s;
     double hole_at_s, hole_s, hole_every_s;
     double in_order, queue, trace_scale;
@@ -48,18 +48,18 @@ int sim_link_set(struct sim_link_par *p, const char *name, double value,
 
 /* sent + doubled = arrived + lost + in_hole + overflow + on their way. */
 struct sim_link_counts {
-    uint64_t sent;     /* handed in                                             */
+    uint64_t sent; /* handed in */
     uint64_t doubled;
-    uint64_t arrived;  /* handed out                                            */
+    uint64_t arrived; /* handed out */
     uint64_t lost, in_hole, overflow;
-    uint64_t overtaken; /* of those that arrived: after one that was sent later   */
-    uint64_t too_long; /* not taken, or longer than the receiver's buffer        */
+    uint64_t overtaken; /* of those that arrived: after one that was sent later */
+    uint64_t too_long;  /* not taken, or longer than the receiver's buffer */
 };
 
 struct sim_link_packet {
     double due_s, sent_s;
-    uint64_t number; /* of the packet, from 0; a double has its original's      */
-    uint64_t serial; /* of the copy: who came first among equals                */
+    uint64_t number; /* of the packet, from 0; a double has its original's */
+    uint64_t serial; /* of the copy: who came first among equals */
     uint16_t len_B;
     uint8_t byte[SIM_LINK_PACKET_B];
 };
@@ -68,17 +68,17 @@ struct sim_link_way {
     struct sim_link_par par;
     const struct sim_trace *trace; /* instead of delay's model, added to `delay`; NULL: none */
     struct sim_random delay_rng, loss_rng, duplicate_rng, reorder_rng;
-    double wander;       /* correlated jitter's state, -1 .. 1 or a little more   */
-    double fresh;        /* what memory leaves for chance: sqrt(1 - memory^2)     */
-    double last_due_s;   /* of the latest so far                                 */
+    double wander;     /* correlated jitter's state, -1 .. 1 or a little more */
+    double fresh;      /* what memory leaves for chance: sqrt(1 - memory^2) */
+    double last_due_s; /* of the latest so far */
     uint64_t next_number, next_serial, newest; /* newest: number + 1 that arrived */
-    uint16_t order[SIM_LINK_QUEUE]; /* slots by due time; then the free ones      */
+    uint16_t order[SIM_LINK_QUEUE];            /* slots by due time; then the free ones */
     unsigned queued;
     struct sim_link_counts counts;
     struct sim_link_packet slot[SIM_LINK_QUEUE];
 };
 
-enum { SIM_LINK_OUT, SIM_LINK_IN, SIM_LINK_WAYS }; /* from and to the controller   */
+enum { SIM_LINK_OUT, SIM_LINK_IN, SIM_LINK_WAYS }; /* from and to the controller */
 
 struct sim_link {
     struct sim_link_way way[SIM_LINK_WAYS];

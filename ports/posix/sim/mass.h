@@ -14,13 +14,13 @@ struct sim_mass {
     struct sim_random rng;
     struct plant plant;
     struct fall fall;
-    struct bench bench; /* instead of the fall, if benched                      */
+    struct bench bench; /* instead of the fall, if benched */
     int benched;
     double now_s;
-    double latched_A;   /* D/A output                                           */
-    double ref_A;       /* what the servo last sampled                          */
-    double servo_s;     /* its next sample                                      */
-    double grid;        /* encoder phase, counts                                 */
+    double latched_A; /* D/A output */
+    double ref_A;     /* what the servo last sampled */
+    double servo_s;   /* its next sample */
+    double grid;      /* encoder phase, counts */
 };
 
 /* So many falls, watched by a controller of period T_s; at 0 s. */

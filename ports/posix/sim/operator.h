@@ -9,7 +9,7 @@
 /* Poses a person can take when told, angles in degrees in the glove's order, each within
  * its sensor's nominal range. Together they show every sensor both of its ends. */
 struct sim_pose {
-    const char *name, *say; /* "fist", "make a fist, thumb beside it"            */
+    const char *name, *say; /* "fist", "make a fist, thumb beside it" */
     double deg[SIM_GLOVE_SENSORS];
 };
 extern const struct sim_pose sim_pose[];
@@ -19,23 +19,23 @@ extern const int sim_poses;
 int sim_pose_find(const char *name);
 
 enum sim_operator_does {
-    SIM_REST,   /* in a pose; goes to another by sim_operator_go()              */
-    SIM_POSES,  /* from pose to pose, a rest in each, for ever                  */
-    SIM_GRASP,  /* from flat to fist and back without a rest                    */
-    SIM_WAVE,   /* every joint a sine between flat and fist, a finger later than
-                   the one before it                                            */
-    SIM_RECORD  /* what was recorded, a straight line from row to row; it rests
-                   in the last                                                  */
+    SIM_REST,  /* in a pose; goes to another by sim_operator_go() */
+    SIM_POSES, /* from pose to pose, a rest in each, for ever */
+    SIM_GRASP, /* from flat to fist and back without a rest */
+    SIM_WAVE,  /* every joint a sine between flat and fist, a finger later than
+                  the one before it */
+    SIM_RECORD /* what was recorded, a straight line from row to row; it rests
+                  in the last */
 };
 
 struct sim_operator_par {
     enum sim_operator_does does;
-    int pose;      /* it begins in this one                                     */
-    double move_s; /* a movement, minimum jerk                                  */
-    double rest_s; /* a rest                                                    */
+    int pose;      /* it begins in this one */
+    double move_s; /* a movement, minimum jerk */
+    double rest_s; /* a rest */
     double wave_hz;
-    double off_rad; /* each joint stops short of its pose, or beyond, by up to this  */
-    const double (*row_rad)[SIM_GLOVE_SENSORS]; /* SIM_RECORD: the caller's      */
+    double off_rad; /* each joint stops short of its pose, or beyond, by up to this */
+    const double (*row_rad)[SIM_GLOVE_SENSORS]; /* SIM_RECORD: the caller's */
     long rows;
     double row_hz;
 };
@@ -46,11 +46,11 @@ struct sim_operator_par sim_operator_default(void);
 struct sim_operator {
     struct sim_operator_par par;
     struct sim_random rng;
-    double at_rad[SIM_GLOVE_SENSORS]; /* where the last movement ends            */
-    int to;          /* the pose it goes to or rests in                         */
-    double begin_s, end_s; /* of the last movement or row                       */
-    long step;       /* movements or rows so far                                */
-    int asked;       /* a pose sim_operator_go() asked for, -1: none            */
+    double at_rad[SIM_GLOVE_SENSORS]; /* where the last movement ends */
+    int to;                           /* the pose it goes to or rests in */
+    double begin_s, end_s;            /* of the last movement or row */
+    long step;                        /* movements or rows so far */
+    int asked;                        /* a pose sim_operator_go() asked for, -1: none */
 };
 
 /* Puts the hand into the glove and starts both, at 0 s. */

@@ -24,7 +24,7 @@
 #include "lag.h"
 #include "random.h"
 
-#define SIM_SENSORS 22 /* of a glove's row                                        */
+#define SIM_SENSORS 22 /* of a glove's row */
 
 /* Doubles only, in the order of the table in path.c. */
 struct sim_path_par {
@@ -46,9 +46,9 @@ double sim_path_speed(const char *name);
 
 /* What is carried along: the load of free movement, and the spring it is carried by. */
 struct sim_path_load {
-    double out_kg, out_Nspm, out_N; /* times learned: string drawn out          */
-    double in_kg;                   /* let in                                   */
-    double k_Npm, b_Nspm;           /* of the hand                              */
+    double out_kg, out_Nspm, out_N; /* times learned: string drawn out */
+    double in_kg;                   /* let in */
+    double k_Npm, b_Nspm;           /* of the hand */
 };
 
 /* A recording: string per row, the caller's. */
@@ -59,11 +59,11 @@ struct sim_path_record {
 };
 
 enum sim_path_phase {
-    SIM_PATH_REST, /* at the start, before an approach                         */
+    SIM_PATH_REST, /* at the start, before an approach */
     SIM_PATH_APPROACH,
     SIM_PATH_HOLD,
     SIM_PATH_WITHDRAW,
-    SIM_PATH_PLAY, /* a recording                                               */
+    SIM_PATH_PLAY, /* a recording */
     SIM_PATH_DONE
 };
 
@@ -73,9 +73,9 @@ struct sim_path {
     struct sim_path_record record;
     struct sim_random rng;
     enum sim_path_phase phase;
-    long number;       /* of the approach, from 1; or of the recording's row       */
-    double end_s;      /* of the phase or row                                   */
-    double at_m;       /* where it ends                                         */
+    long number;  /* of the approach, from 1; or of the recording's row */
+    double end_s; /* of the phase or row */
+    double at_m;  /* where it ends */
     struct sim_curve x;
     struct sim_lag e;
 };

@@ -34,7 +34,7 @@ static double shrink(double v, double most)
 struct step {
     double h_s, half_s, ref_A;
     double keep_cur, keep_mon, cur_to_mon, mean_cur; /* shares of what was off the reference */
-    double h_mass, h_rotor; /* of a force, the change of speed                     */
+    double h_mass, h_rotor;                          /* of a force, the change of speed */
     double damp_mass, damp_rotor; /* what linear friction leaves in half a step, implicit */
 };
 
@@ -119,10 +119,11 @@ void plant_advance(struct plant *p, const struct sim_device *d, double dt_s, dou
     }
 }
 
-/* Of the stretch s of a taut string, friction with its motion: s'' = -w2 s - c s'. With g = 1 - h c / 2
- * a step has determinant 1 - g h c and trace 2 - g h c - g h^2 w2: stable where h c < 2 and
- * g (h^2 w2 + 2 h c) < 4, so wherever h^2 w2 < 4 and h c < 2. Viscous friction and the hand's damping are implicit,
- * stable at any step; yet where one would stop what it acts on within a step, dry friction beside it is taken for less. */
+/* Of the stretch s of a taut string, friction with its motion: s'' = -w2 s - c s'. With g = 1 - h c
+ * / 2 a step has determinant 1 - g h c and trace 2 - g h c - g h^2 w2: stable where h c < 2 and g
+ * (h^2 w2 + 2 h c) < 4, so wherever h^2 w2 < 4 and h c < 2. Viscous friction and the hand's damping
+ * are implicit, stable at any step; yet where one would stop what it acts on within a step, dry
+ * friction beside it is taken for less. */
 static int step_ok(const struct sim_device *d, double hand_npm, double hand_nspm, double h_s)
 {
     const double per_kg = (1 + d->mu_mass) / d->mass_kg + (1 + d->mu_motor) / d->rotor_kg;
@@ -139,7 +140,8 @@ int plant_step_will_do(const struct sim_device *d, double hand_npm, double hand_
 
 double plant_step_that_will_do(const struct sim_device *d, double hand_npm, double hand_nspm)
 {
-    static const double step_s[] = {1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5, 1e-5, 5e-6, 2e-6, 1e-6, 5e-7, 2e-7, 1e-7};
+    static const double step_s[] = {1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5, 1e-5,
+                                    5e-6, 2e-6, 1e-6, 5e-7, 2e-7, 1e-7};
     for (unsigned i = 0; i < sizeof step_s / sizeof step_s[0]; i++) {
         if (step_ok(d, hand_npm, hand_nspm, step_s[i])) { return step_s[i]; }
     }

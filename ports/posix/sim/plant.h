@@ -6,10 +6,11 @@
  *   mr q'' = T - kf i - bv q' - dry(fc + mu_motor T)
  *   i'   = 2 pi fbw (iref - i)            monitor' = (i - monitor) / lag
  *
- * dry() is Coulomb friction with stiction. Leapfrog: half a step by the old speeds, the forces there,
- * half a step by the new speeds; friction is an impulse that can only shrink a velocity towards zero
- * (it cannot chatter), the damped forces are taken at the mean speed, the two first-order lags exactly.
- * Second order where nothing begins or ends. + - x / only: the same digits on every machine.
+ * dry() is Coulomb friction with stiction. Leapfrog: half a step by the old speeds, the forces
+ * there, half a step by the new speeds; friction is an impulse that can only shrink a velocity
+ * towards zero (it cannot chatter), the damped forces are taken at the mean speed, the two
+ * first-order lags exactly. Second order where nothing begins or ends. + - x / only: the same
+ * digits on every machine.
  */
 #ifndef SIM_PLANT_H
 #define SIM_PLANT_H
@@ -19,10 +20,10 @@
 #define SIM_GRAVITY 9.81
 
 struct plant {
-    double x_m, v_mps; /* mass, down positive, 0 = virtual contact             */
-    double q_m, w_mps; /* string at the motor                                  */
-    double cur_A;      /* motor current                                        */
-    double mon_A;      /* behind the monitor's lag                             */
+    double x_m, v_mps; /* mass, down positive, 0 = virtual contact */
+    double q_m, w_mps; /* string at the motor */
+    double cur_A;      /* motor current */
+    double mon_A;      /* behind the monitor's lag */
 };
 
 /* Advances by dt_s >= 0 with the current loop's reference held. held: the mass and
@@ -42,10 +43,10 @@ struct plant_hand {
 void plant_advance_hand(struct plant *p, const struct sim_device *d, double dt_s, double ref_A,
                         const struct plant_hand *hand);
 
-/* Whether sub-steps of substep_s are short enough: half of what keeps them stable, that is, at least
- * six of them a period of string and rotor, which then come 5 % too soon, and at least one in
- * the time in which the string's damping, the motor's or the hand's takes 1/e off a speed. hand_npm, hand_nspm:
- * stiffness and damping of a hand at the mass, 0 without. */
+/* Whether sub-steps of substep_s are short enough: half of what keeps them stable, that is, at
+ * least six of them a period of string and rotor, which then come 5 % too soon, and at least one in
+ * the time in which the string's damping, the motor's or the hand's takes 1/e off a speed.
+ * hand_npm, hand_nspm: stiffness and damping of a hand at the mass, 0 without. */
 int plant_step_will_do(const struct sim_device *d, double hand_npm, double hand_nspm);
 
 /* A round number that will, at most the device's longest; 0: none that it may have. */

@@ -29,8 +29,8 @@ static inline double sim_random_unit(struct sim_random *r)
 static inline double sim_random_bell(struct sim_random *r)
 {
     const uint64_t u = sim_random_u64(r);
-    const int32_t sum = (int32_t)((u & 0xFFFF) + (u >> 16 & 0xFFFF) + (u >> 32 & 0xFFFF) +
-                                  (u >> 48));
+    const int32_t sum =
+        (int32_t)((u & 0xFFFF) + (u >> 16 & 0xFFFF) + (u >> 32 & 0xFFFF) + (u >> 48));
     return (double)(sum - 2 * 65535) * (1.0 / (4 * 65535.0));
 }
 

@@ -6,13 +6,13 @@
 
 #include <string.h>
 
-#define TRAVEL_M  0.25e-3 /* more than this in the window is no rest             */
+#define TRAVEL_M  0.25e-3 /* more than this in the window is no rest */
 #define FORCE_N   4.0
 #define WINDOW_S  0.5
-#define STUCK_S   0.01 /* standing so long, and the force too: it is over     */
+#define STUCK_S   0.01 /* standing so long, and the force too: it is over */
 #define GIVE_UP_S 3.0
 #define RANGE_M   1.99
-#define OUTPUTS   256 /* on their way to the drive                           */
+#define OUTPUTS   256 /* on their way to the drive */
 #define TICKS_MAX 16
 
 struct span {
@@ -24,7 +24,7 @@ struct run {
     const struct sim_device *d;
     const struct settle_wall *w;
     struct plant plant;
-    double now_s, tick_s, servo_s, contact_s; /* < 0: no contact yet            */
+    double now_s, tick_s, servo_s, contact_s; /* < 0: no contact yet */
     double grid, ref_A, latched_A, force_N, start_cnt;
     /* the controller */
     double cnt[TICKS_MAX], turn_m;

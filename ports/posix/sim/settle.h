@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Settle: does a mass that falls onto the wall come to rest? One fall, without chance.
  *
- * The model of the stability advisor: rotor, string, mass and their friction as plant.h has them, the
- * wall in doubles (no codes, no noise, no I2t), and what is chance in the box handed in as a case:
- * where the encoder's count changes, when the tick and the drive's own clock come, from how high the
- * mass falls. + - x / only: the same answer on every machine. */
+ * The model of the stability advisor: rotor, string, mass and their friction as plant.h has them,
+ * the wall in doubles (no codes, no noise, no I2t), and what is chance in the box handed in as a
+ * case: where the encoder's count changes, when the tick and the drive's own clock come, from how
+ * high the mass falls. + - x / only: the same answer on every machine. */
 #ifndef SIM_SETTLE_H
 #define SIM_SETTLE_H
 
@@ -12,9 +12,9 @@
 
 struct settle_wall {
     double T_s, k_Npm, b_Nspm;
-    double f0_N, f0_band_m; /* pull-back force and what reverses it             */
+    double f0_N, f0_band_m; /* pull-back force and what reverses it */
     double f_max_N, slew_Nps;
-    int window; /* ticks of the velocity, 1..16                     */
+    int window; /* ticks of the velocity, 1..16 */
 };
 
 /* All in 0..1: the encoder's phase in counts, the first tick in ticks, the drive's first sample in
@@ -25,8 +25,8 @@ struct settle_case {
 
 enum settle_end {
     SETTLE_REST,
-    SETTLE_MOVES, /* or the force does, by what is no rest                     */
-    SETTLE_ASTRAY /* no contact, or gone where nobody measures                 */
+    SETTLE_MOVES, /* or the force does, by what is no rest */
+    SETTLE_ASTRAY /* no contact, or gone where nobody measures */
 };
 
 /* The i-th case of a sequence that fills all four evenly, however many are taken (the fractions of

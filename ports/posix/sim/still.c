@@ -19,21 +19,24 @@ static int friction_holds(const struct plant *p, const struct sim_device *d, dou
            size_of(T - d->kf_npa * ref_A) < d->coulomb_n + d->mu_motor * T - SPARE_N;
 }
 
-/* As plant.c has it, a share of each is left behind a step; what the current adds to the monitor is the rest at most. */
-static int currents_settled(const struct plant *p, const struct sim_device *d, double ref_A, double longest_s)
+/* As plant.c has it, a share of each is left behind a step; what the current adds to the monitor is
+ * the rest at most. */
+static int currents_settled(const struct plant *p, const struct sim_device *d, double ref_A,
+                            double longest_s)
 {
     const double keep_cur = sim_exp_neg(TWO_PI * d->current_hz * longest_s);
     const double keep_mon = d->mon_lag_s > 0 ? sim_exp_neg(longest_s / d->mon_lag_s) : 0;
     const double off_A = p->cur_A - ref_A;
     return size_of(off_A) < 1e-12 && ref_A + off_A * keep_cur == p->cur_A &&
-           ref_A + (p->mon_A - ref_A) * keep_mon == p->mon_A && p->mon_A + off_A * (1 - keep_mon) == p->mon_A;
+           ref_A + (p->mon_A - ref_A) * keep_mon == p->mon_A &&
+           p->mon_A + off_A * (1 - keep_mon) == p->mon_A;
 }
 
 int sim_mass_still(const struct sim_mass *m, double longest_s)
 {
     const struct plant *p = &m->plant;
-    return !m->benched && m->fall.phase == FALL_FREE && m->fall.contact_s >= 0 && p->v_mps == 0 && p->w_mps == 0 &&
-           m->latched_A == m->ref_A && friction_holds(p, &m->device, m->ref_A) &&
+    return !m->benched && m->fall.phase == FALL_FREE && m->fall.contact_s >= 0 && p->v_mps == 0 &&
+           p->w_mps == 0 && m->latched_A == m->ref_A && friction_holds(p, &m->device, m->ref_A) &&
            currents_settled(p, &m->device, m->ref_A, SPARE * longest_s);
 }
 

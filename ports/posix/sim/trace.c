@@ -45,7 +45,7 @@ static FILE *unpacked(const char *path)
 struct reader {
     enum sim_trace_kind kind;
     long cap;
-    double first_ns, first_stamp; /* of the first arrival                       */
+    double first_ns, first_stamp; /* of the first arrival */
 };
 
 static int is_blank(const char *text)

@@ -18,13 +18,13 @@
 #define SIM_TRACE_LOST (-1.0)
 
 enum sim_trace_kind {
-    SIM_TRACE_MS,      /* a line a packet                                        */
-    SIM_TRACE_ARRIVAL, /* 'm' lines                                              */
-    SIM_TRACE_ROUND    /* 'r' lines                                              */
+    SIM_TRACE_MS,      /* a line a packet */
+    SIM_TRACE_ARRIVAL, /* 'm' lines */
+    SIM_TRACE_ROUND    /* 'r' lines */
 };
 
 struct sim_trace {
-    double *delay_s; /* >= 0, or SIM_TRACE_LOST                                 */
+    double *delay_s; /* >= 0, or SIM_TRACE_LOST */
     long n;
 };
 

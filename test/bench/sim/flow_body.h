@@ -2,9 +2,9 @@
 /* The exact flow, in whatever REAL is; included by flow.c and wide.c.
  *
  * In each mode (string taut or slack, each body sliding one way or the other or stuck) the plant is
- * linear. e^(A t) is kept for t = 2^-10, 2^-11 .. 2^-50 s; any time is a sum of these. A piece within
- * which the mode would change is halved until it is the shortest: the change is then known to 1e-15 s.
- * What changes twice within a piece of the longest step is not seen. */
+ * linear. e^(A t) is kept for t = 2^-10, 2^-11 .. 2^-50 s; any time is a sum of these. A piece
+ * within which the mode would change is halved until it is the shortest: the change is then known
+ * to 1e-15 s. What changes twice within a piece of the longest step is not seen. */
 #include "method.h"
 
 #include <stdint.h>
@@ -19,13 +19,13 @@ typedef long double real_wide;
 /* S: the stretch, small where it matters, as x - q of two doubles is not. */
 enum { S, V, Q, W, I, MON, REF, ONE, STATES };
 
-#define FIRST_BIT 10 /* the longest piece is 2^-10 s                                */
+#define FIRST_BIT 10 /* the longest piece is 2^-10 s */
 #define LEVELS    41
 #define MODES     18
-#define EVENTS    1000 /* in one call: more are a mode that hunts                      */
+#define EVENTS    1000 /* in one call: more are a mode that hunts */
 
 struct mode {
-    int taut, mass, rotor; /* which way they slide; 0: stuck                     */
+    int taut, mass, rotor; /* which way they slide; 0: stuck */
 };
 
 static struct {
@@ -233,7 +233,7 @@ static void flow(REAL to[], const REAL z[], struct mode m, int level)
 static void prepare(const struct sim_device *d, const struct plant_hand *hand)
 {
     struct sim_device same = *d;
-    same.substep_s = 0; /* pieces are kept for all steps                        */
+    same.substep_s = 0; /* pieces are kept for all steps */
     if (f.valid && f.by_hand == (hand != NULL) && memcmp(&f.d, &same, sizeof same) == 0 &&
         (hand == NULL || memcmp(&f.hand, hand, sizeof *hand) == 0)) {
         return;
@@ -268,8 +268,9 @@ static void advance(REAL z[], uint64_t n, int longest)
             n--;
         } else {
             n -= UINT64_C(1) << (LEVELS - 1 - level);
-            /* Within the piece twice as long the mode ends: in its second half, then. If it has not by the
-             * last of these, that is below a position's last bit, and it is looked for in longer pieces. */
+            /* Within the piece twice as long the mode ends: in its second half, then. If it has not
+             * by the last of these, that is below a position's last bit, and it is looked for in
+             * longer pieces. */
             if (level == LEVELS - 1) { closer = 0; }
             if (level > longest) { level += closer ? 1 : -1; }
         }

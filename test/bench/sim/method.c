@@ -3,7 +3,8 @@
 
 #include <string.h>
 
-const char *const method_name[METHODS] = {"explicit", "semi-implicit", "leapfrog", "midpoint", "rk4", "flow"};
+const char *const method_name[METHODS] = {"explicit", "semi-implicit", "leapfrog",
+                                          "midpoint", "rk4",           "flow"};
 
 #define TWO_PI 6.283185307179586
 

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* Method: ways to integrate the simulator's plant (sim/plant.h), to be compared with the one it has.
+/* Method: ways to integrate the simulator's plant (sim/plant.h), to be compared with the one it
+ * has.
  *
  * The same equations for all, and the lags of current and monitor exact in all. Euler's two treat
  * friction as the simulator does, as an impulse that only shrinks a velocity. Midpoint and RK4 hold
  * its direction, and whether a body is stuck, for a step; a velocity that has turned within it and
- * would stick is zero then. Slackness is looked at in every stage, and located by the exact flow alone.
+ * would stick is zero then. Slackness is looked at in every stage, and located by the exact flow
+ * alone.
  */
 #ifndef BENCH_METHOD_H
 #define BENCH_METHOD_H
@@ -12,14 +14,14 @@
 #include "sim/plant.h"
 
 enum method {
-    METHOD_EXPLICIT, /* Euler: positions by the old speeds                     */
-    METHOD_SEMI, /* Euler: positions by the new speeds                     */
-    METHOD_LEAPFROG, /* half a step, forces, half a step; sim/plant.c itself   */
-    METHOD_MIDPOINT, /* implicit, its two velocities solved for               */
-    METHOD_RK4, /* the classical one                                     */
-    METHOD_FLOW, /* e^(At) of each mode, changes of mode located           */
+    METHOD_EXPLICIT, /* Euler: positions by the old speeds */
+    METHOD_SEMI,     /* Euler: positions by the new speeds */
+    METHOD_LEAPFROG, /* half a step, forces, half a step; sim/plant.c itself */
+    METHOD_MIDPOINT, /* implicit, its two velocities solved for */
+    METHOD_RK4,      /* the classical one */
+    METHOD_FLOW,     /* e^(At) of each mode, changes of mode located */
     METHODS,
-    METHOD_REFERENCE = METHODS /* the flow in 113 bits                           */
+    METHOD_REFERENCE = METHODS /* the flow in 113 bits */
 };
 extern const char *const method_name[METHODS];
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Semi-implicit Euler, friction as an impulse, current at the end of a step: what the simulator had before. */
+/* Semi-implicit Euler, friction as an impulse, current at the end of a step: what the simulator had
+ * before. */
 #include "method.h"
 
 #include <stddef.h>
@@ -16,8 +17,8 @@ static double shrink(double v, double most)
 struct step {
     double h_s, ref_A, kf_npa;
     double keep_cur, keep_mon;
-    double h_mass, h_rotor; /* of a force, the change of speed                     */
-    double viscous; /* implicit                                            */
+    double h_mass, h_rotor; /* of a force, the change of speed */
+    double viscous;         /* implicit */
 };
 
 static struct step step_of(const struct sim_device *d, double h_s, double ref_A)

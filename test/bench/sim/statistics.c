@@ -1,17 +1,19 @@
 /* SPDX-License-Identifier: MIT */
-/* What Table II and the time until rest become when the simulator's plant is integrated in another way.
+/* What Table II and the time until rest become when the simulator's plant is integrated in another
+ * way.
  *
  *   statistics [--short] [RUNS]
- *   statistics [--short] count: a fall at 500 Hz by each method and step, twice, for callgrind (the first has
- *   what is worked out once); prints method,step_s,seconds. The plant's own share is that of plant_advance()
+ *   statistics [--short] count: a fall at 500 Hz by each method and step, twice, for callgrind (the
+ * first has what is worked out once); prints method,step_s,seconds. The plant's own share is that
+ * of plant_advance()
  *
- * The whole simulator and the real scene, the paper's rows, ten falls a run, with plant_advance() taken
- * from here. Prints for every method, step and row
+ * The whole simulator and the real scene, the paper's rows, ten falls a run, with plant_advance()
+ * taken from here. Prints for every method, step and row
  *   method,step_s,rate_Hz,runs,b_Npm,b_se,rest_s,rest_se,rest,oscillates
- * b_Npm: mean stiffness of the runs (as `exhand drop` reads it), se its standard error; rest_s: from the
- * first contact of a fall until motor and force keep within the bounds of "at rest", of the falls that
- * do; rest: share of them; oscillates: share at 1.5 times both gains. RUNS at the gains, half as many
- * at 1.5 times; the same seeds for all methods. */
+ * b_Npm: mean stiffness of the runs (as `exhand drop` reads it), se its standard error; rest_s:
+ * from the first contact of a fall until motor and force keep within the bounds of "at rest", of
+ * the falls that do; rest: share of them; oscillates: share at 1.5 times both gains. RUNS at the
+ * gains, half as many at 1.5 times; the same seeds for all methods. */
 #include "method.h"
 
 #include "cli/jobs.h"
@@ -56,10 +58,11 @@ void plant_advance_hand(struct plant *p, const struct sim_device *d, double dt_s
 
 struct result {
     int bad, falls, resting, oscillating;
-    double b_Npm, rest_s; /* the latter the mean of those that rest              */
+    double b_Npm, rest_s; /* the latter the mean of those that rest */
 };
 
-/* From the contact to the first sample from which on both keep within the bounds; < 0: they never do. */
+/* From the contact to the first sample from which on both keep within the bounds; < 0: they never
+ * do. */
 static double rest_time(const struct fall_log *log, size_t first, size_t end, double until_s)
 {
     const struct fall_rest_opt *const o = &fall_rest_opt_default;
@@ -111,7 +114,7 @@ static void judge(const struct run *run, const struct sim_device *d, struct resu
 }
 
 struct plan {
-    int runs, half; /* at the gains, at 1.5 times both                         */
+    int runs, half; /* at the gains, at 1.5 times both */
 };
 
 static int per_row(const struct plan *p)
@@ -202,9 +205,10 @@ static int line(const struct plan *p, const struct cell *at, int row, const stru
 static void cells_of(int brief)
 {
     static const struct cell all[] = {
-        {METHOD_EXPLICIT, 125e-6}, {METHOD_EXPLICIT, 62.5e-6}, {METHOD_SEMI, 250e-6},     {METHOD_SEMI, 62.5e-6},
-        {METHOD_SEMI, 25e-6},      {METHOD_SEMI, 12.5e-6},     {METHOD_SEMI, 5e-6},       {METHOD_LEAPFROG, 250e-6},
-        {METHOD_LEAPFROG, 125e-6}, {METHOD_MIDPOINT, 250e-6},  {METHOD_MIDPOINT, 125e-6}, {METHOD_RK4, 250e-6},
+        {METHOD_EXPLICIT, 125e-6}, {METHOD_EXPLICIT, 62.5e-6}, {METHOD_SEMI, 250e-6},
+        {METHOD_SEMI, 62.5e-6},    {METHOD_SEMI, 25e-6},       {METHOD_SEMI, 12.5e-6},
+        {METHOD_SEMI, 5e-6},       {METHOD_LEAPFROG, 250e-6},  {METHOD_LEAPFROG, 125e-6},
+        {METHOD_MIDPOINT, 250e-6}, {METHOD_MIDPOINT, 125e-6},  {METHOD_RK4, 250e-6},
         {METHOD_RK4, 125e-6},      {METHOD_FLOW, 250e-6},
     };
     for (int i = 0; i < (int)(sizeof all / sizeof all[0]); i++) {

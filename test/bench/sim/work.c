@@ -3,13 +3,14 @@
  *
  *   work errors       problem,method,step_s,error_m,reference_m of every method and step
  *   work ns           problem,method,step_s,ns of CPU for a second of the problem
- *   work count        runs each once in work_run(), for callgrind; prints problem,method,step_s,seconds;
- *                     steps down to 2^-16 s: below, a step costs what it costs there
+ *   work count        runs each once in work_run(), for callgrind; prints
+ * problem,method,step_s,seconds; steps down to 2^-16 s: below, a step costs what it costs there
  *   work check        the reference against closed form and against what is known of a bounce
  *   --short behind it: every third step
  *
- * Steps are 2^-10 .. 2^-20 s, and the simulator's own. error_m: the most that mass or string are off at any multiple of 2^-10 s;
- * reference_m: by how much the reference differs from itself with steps four times as long. */
+ * Steps are 2^-10 .. 2^-20 s, and the simulator's own. error_m: the most that mass or string are
+ * off at any multiple of 2^-10 s; reference_m: by how much the reference differs from itself with
+ * steps four times as long. */
 #include "method.h"
 
 #include <stdio.h>
@@ -24,7 +25,7 @@
 #define OWN        (SHORTEST + 1) /* what the device's table says, of the simulator's method alone */
 #define POINTS_MAX 1024
 #define REFERENCE  16
-#define LOST_M     1e3 /* worse than this is no solution                             */
+#define LOST_M     1e3 /* worse than this is no solution */
 
 struct problem {
     const char *name;
@@ -34,7 +35,7 @@ struct problem {
     struct plant_hand hand;
     struct plant start;
     double ref_A;
-    double k_Npm, b_Nspm; /* a wall, sampled at every point; 0: the motor is held   */
+    double k_Npm, b_Nspm; /* a wall, sampled at every point; 0: the motor is held */
 };
 
 #define PROBLEMS 3
@@ -70,7 +71,8 @@ static struct problem stiff(void)
     return p;
 }
 
-/* The paper's mass falls 7 cm onto its wall of the row of 1 kHz: slack string, bounces, stick and slip. */
+/* The paper's mass falls 7 cm onto its wall of the row of 1 kHz: slack string, bounces, stick and
+ * slip. */
 static struct problem ringing(void)
 {
     struct problem p = {.name = "ringing", .points = 717, .d = sim_device_default()};

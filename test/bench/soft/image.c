@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* main() of an image that counts kernels: one line each, kernel,name,cycles of 1024 ops, an empty op subtracted. Where
- * virtual time is instructions, so are these. No sines: they would need a C library. */
+/* main() of an image that counts kernels: one line each, kernel,name,cycles of 1024 ops, an empty
+ * op subtracted. Where virtual time is instructions, so are these. No sines: they would need a C
+ * library. */
 #include "law.h"
 #include "plain.h"
 #include "tick.h"
@@ -181,7 +182,8 @@ static void plane_float_op(uint32_t i)
     }
 }
 
-/* --- the integer kernels of the paper's controller in one, as kernel integer_tick_x5 of the bench --- */
+/* --- the integer kernels of the paper's controller in one, as kernel integer_tick_x5 of the bench
+ * --- */
 
 static struct tick_box box;
 static struct tick_in box_in[OPS];

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* First process of an emulated Linux: `exhand drop --pace --gpio` on lines of the kernel's simulated
- * chip, of which this program is the contacts, the drive and the other programs. Prints `ok` and
- * `not ok` lines; logs leave through the second serial line. Arguments: versions of libgpiod, as
- * /exhand-v1. */
+/* First process of an emulated Linux: `exhand drop --pace --gpio` on lines of the kernel's
+ * simulated chip, of which this program is the contacts, the drive and the other programs. Prints
+ * `ok` and `not ok` lines; logs leave through the second serial line. Arguments: versions of
+ * libgpiod, as /exhand-v1. */
 #define _GNU_SOURCE
 #include "sim.h"
 
@@ -30,7 +30,7 @@
 #define PAIR    "estop=4+8,deadman=5,enable=6,alive=7"
 
 static const char *version; /* "v1" */
-static char words[4096]; /* what exhand said on stderr */
+static char words[4096];    /* what exhand said on stderr */
 
 __attribute__((format(printf, 2, 3))) static void tell(int ok, const char *format, ...)
 {
@@ -105,8 +105,8 @@ static void contacts(int up)
     sim_pull(DEADMAN, up);
 }
 
-/* Starts it with all contacts closed. The simulated chip has one pull for bias and for what hangs on
- * the line, so they are closed once the lines were requested: it waits for its pull-downs. */
+/* Starts it with all contacts closed. The simulated chip has one pull for bias and for what hangs
+ * on the line, so they are closed once the lines were requested: it waits for its pull-downs. */
 static pid_t armed(const char *out)
 {
     const double until = now_s() + 20;
@@ -179,9 +179,11 @@ static void opens(const char *what, int line, int beats_max)
                            "line 8 open)") != NULL,
              "%s: the disagreement is named", what);
     } else {
-        /* One contact of two opened: told at the end, since the run ended before the pair was at fault. */
+        /* One contact of two opened: told at the end, since the run ended before the pair was at
+         * fault. */
         tell(strstr(words, "disagree for") == NULL, "%s: no disagreement at fault", what);
-        tell((strstr(words, "estop: its two contacts disagreed 1 times") != NULL) == (line == ESTOP),
+        tell((strstr(words, "estop: its two contacts disagreed 1 times") != NULL) ==
+                 (line == ESTOP),
              "%s: the short disagreement is told", what);
     }
 }

@@ -19,7 +19,7 @@
 #define CONFIG "/sys/kernel/config/gpio-sim/box"
 
 static char lines_at[300]; /* the folder of its lines in /sys */
-static char chip[64]; /* gpiochip0, and another number after each removal */
+static char chip[64];      /* gpiochip0, and another number after each removal */
 
 double now_s(void)
 {

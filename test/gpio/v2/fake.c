@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* libgpiod 2 over the chip of the tests. Objects are counted: those not freed are in fake_objects. */
+/* libgpiod 2 over the chip of the tests. Objects are counted: those not freed are in fake_objects.
+ */
 #include "chip.h"
 #include "gpiod.h"
 

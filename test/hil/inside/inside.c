@@ -10,9 +10,9 @@
 #include "scene.h"
 
 #define HOLD_TICKS 4096u /* so often the dead-man switch is let go, */
-#define OPEN_TICKS 300u /* for so long                             */
-#define TURN_TICKS 2048u /* drawn out so long, then let in           */
-#define PULL_Q16   200 /* counts per tick and tick                 */
+#define OPEN_TICKS 300u  /* for so long */
+#define TURN_TICKS 2048u /* drawn out so long, then let in */
+#define PULL_Q16   200   /* counts per tick and tick */
 #define DA_CONTROL 0x04u /* of an S526; its bit 0 updates the outputs: a tick's last word */
 
 extern const struct exh_scene EXH_SCENE;

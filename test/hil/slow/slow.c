@@ -5,7 +5,7 @@
 #include "scene.h"
 
 #define SLOW_EVERY 100u
-#define SLOW_US    1250u /* of 1.25 ns an instruction */
+#define SLOW_US    1250u                 /* of 1.25 ns an instruction */
 #define SLOW_TURNS (SLOW_US * 800u / 6u) /* six instructions each */
 
 static uint32_t ticks, sum;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: bytes
- * Every kind of field through a cursor of any mode (none of the three, too), place and size of buffer: nothing is
- * touched beyond the buffer, and no value is lost on the way. Cursors of a buffer of any size; CRC of any bytes.
+ * Every kind of field through a cursor of any mode (none of the three, too), place and size of
+ * buffer: nothing is touched beyond the buffer, and no value is lost on the way. Cursors of a
+ * buffer of any size; CRC of any bytes.
  *
  * EVA: -eva-slevel 200
  * PLANT: lib/src/bytes.c: at <= c->cap && n <= c->cap - at -> n <= c->cap - at
@@ -65,7 +66,9 @@ int main(void)
         for (uint32_t B = 0; B <= MOST_B; B++) { cursor(kind, B); }
     }
     ANY(buf);
-    for (uint32_t B = 0; B <= sizeof buf; B++) { (void)exh_crc32(any_u32(), buf + sizeof buf - B, B); }
+    for (uint32_t B = 0; B <= sizeof buf; B++) {
+        (void)exh_crc32(any_u32(), buf + sizeof buf - B, B);
+    }
     END();
     return 0;
 }

@@ -4,8 +4,9 @@
  *
  * WP: contracts of exh_sat32(), exh_clamp() and exh_clamp32().
  *
- * PLANT: lib/include/exhand/fix.h: ((int64_t)a * b + (INT64_C(1) << (n - 1))) >> n -> ((int64_t)a * b + (INT64_C(1) << n)) >> n
- * PLANT: lib/include/exhand/fix.h: const int64_t hi = (a >> 32) * b; -> const int64_t hi = a * b;
+ * PLANT: lib/include/exhand/fix.h: ((int64_t)a * b + (INT64_C(1) << (n - 1))) >> n -> ((int64_t)a *
+ * b + (INT64_C(1) << n)) >> n PLANT: lib/include/exhand/fix.h: const int64_t hi = (a >> 32) * b; ->
+ * const int64_t hi = a * b;
  */
 #include "exhand/fix.h"
 
@@ -16,7 +17,8 @@ static void products(void)
     for (unsigned n = 1; n <= 62; n++) {
         int64_t r = exh_mul_shr(any32(), any32(), n);
         /*@ assert mul_shr_bound: -4611686018427387904 <= r <= 4611686018427387904; */
-        if (n == 42) { /*@ assert mul_shr_42: -1048576 <= r <= 1048576; */ }
+        if (n == 42) { /*@ assert mul_shr_42: -1048576 <= r <= 1048576; */
+        }
         r = exh_mul_shr(0, any32(), n);
         /*@ assert mul_shr_zero: r == 0; */
         r = exh_shr_round(any64(), n);

@@ -3,9 +3,9 @@
  * The gate: any state of the box, any ledger, any output frame, every number of fingers; of the
  * parameters and constants those that exh_drive_setup() lets pass.
  *
- * WP: every code within `dac_zero` +- `dac_span` and within 16 bits; in RELEASE none further from `dac_zero` than in the tick
- * before; a gate that is shut codes `dac_zero` for each finger and enables none; codes of fingers not in use are `dac_zero`;
- * nothing else is written.
+ * WP: every code within `dac_zero` +- `dac_span` and within 16 bits; in RELEASE none further from
+ * `dac_zero` than in the tick before; a gate that is shut codes `dac_zero` for each finger and
+ * enables none; codes of fingers not in use are `dac_zero`; nothing else is written.
  *
  * PLANT: lib/src/gate.c: (1u << n) - 1u : 0u -> (1u << n) : 0u
  * PLANT: lib/src/gate.c: exh_wrap_diff64(passed, asked) -> passed - asked
@@ -41,7 +41,9 @@ int main(void)
     }
     exh_gate(&s, cfg, n, i, limits, &out);
     /*@ assert no_other_drive: out.enable == 0 || out.enable == (1 << n) - 1; */
-    for (unsigned k = 0; k < EXH_FINGERS; k++) { limits[k] = Frama_C_unsigned_int_interval(0, (1u << EXH_LIMITS) - 1); }
+    for (unsigned k = 0; k < EXH_FINGERS; k++) {
+        limits[k] = Frama_C_unsigned_int_interval(0, (1u << EXH_LIMITS) - 1);
+    }
     exh_gate(&s, cfg, 1, i, limits, &out);
     /*@ assert bits_of_limits: limits[0] < 1 << 11; */
     END();

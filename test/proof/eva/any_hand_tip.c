@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: hand: fingertip and slope
- * Set-up of any bones and parameters; of what it takes, tip and slope at any angles. Here int_fast32_t has 64 bits: that 32 are
- * enough for every value is z3's (smt_hand.py), and that bound is what eva/hand_tip.acsl admits.
+ * Set-up of any bones and parameters; of what it takes, tip and slope at any angles. Here
+ * int_fast32_t has 64 bits: that 32 are enough for every value is z3's (smt_hand.py), and that
+ * bound is what eva/hand_tip.acsl admits.
  *
  * EVA: -eva-slevel 60
  * PLANT: lib/src/hand.c: b->base_m_q32[i] > BASE_MAX_M_Q32 -> b->base_m_q32[i] > 2 * BASE_MAX_M_Q32
- * PLANT: lib/src/hand.c: const int64_t along_q54 = 2 * w2_radpm_q20 -> const int64_t along_q54 = 16 * w2_radpm_q20
- * PLANT: lib/src/hand.c: const int64_t sum_q54 = (int64_t)row_q30[0] -> const int64_t sum_q54 = 4 * (int64_t)row_q30[0]
- * PLANT: lib/src/hand.c: if (square_q60 < (uint64_t)ARM_MIN_M_Q30 * ARM_MIN_M_Q30) { return -EXH_E_RANGE; } -> (void)0;
+ * PLANT: lib/src/hand.c: const int64_t along_q54 = 2 * w2_radpm_q20 -> const int64_t along_q54 = 16
+ * * w2_radpm_q20 PLANT: lib/src/hand.c: const int64_t sum_q54 = (int64_t)row_q30[0] -> const
+ * int64_t sum_q54 = 4 * (int64_t)row_q30[0] PLANT: lib/src/hand.c: if (square_q60 <
+ * (uint64_t)ARM_MIN_M_Q30 * ARM_MIN_M_Q30) { return -EXH_E_RANGE; } -> (void)0;
  */
 #include <stdint.h>
 #define int_fast32_t int64_t
@@ -30,7 +32,8 @@ static uint64_t udiv64(uint64_t num, uint64_t den, uint64_t *rem)
 #include "sincos.h" /* its proof is any_angle.c */
 static struct exh_sincos any_sincos(int32_t x_turn_q32)
 {
-    const struct exh_sincos y = {Frama_C_interval(-(1 << 30), 1 << 30), Frama_C_interval(-(1 << 30), 1 << 30)};
+    const struct exh_sincos y = {Frama_C_interval(-(1 << 30), 1 << 30),
+                                 Frama_C_interval(-(1 << 30), 1 << 30)};
     (void)x_turn_q32;
     return y;
 }
@@ -48,10 +51,13 @@ static void set_up(void)
     ANY(bones);
     ANY(par);
     if (exh_hand_setup(&f, &bones, &par) == 0) {
-        /*@ assert pulls: 0 <= f.pull_radpm_q20[0] <= 262144032 && 0 <= f.pull_radpm_q20[1] <= 262144032; */
-        /*@ assert base: -(1 << 29) <= bones.base_m_q32[0] <= 1 << 29 && -(1 << 29) <= bones.base_m_q32[2] <= 1 << 29; */
+        /*@ assert pulls: 0 <= f.pull_radpm_q20[0] <= 262144032 && 0 <= f.pull_radpm_q20[1] <=
+         * 262144032; */
+        /*@ assert base: -(1 << 29) <= bones.base_m_q32[0] <= 1 << 29 && -(1 << 29) <=
+         * bones.base_m_q32[2] <= 1 << 29; */
         /*@ assert bone: 0 < bones.len_m_q34[0] && 0 < bones.len_m_q34[2]; */
-        /*@ assert row: -(1 << 30) <= bones.rot_q30[0][0] <= 1 << 30 && -(1 << 30) <= bones.rot_q30[2][2] <= 1 << 30; */
+        /*@ assert row: -(1 << 30) <= bones.rot_q30[0][0] <= 1 << 30 && -(1 << 30) <=
+         * bones.rot_q30[2][2] <= 1 << 30; */
     }
 }
 
@@ -61,7 +67,9 @@ static void any_finger(void)
     for (unsigned i = 0; i < 3; i++) {
         bones.len_m_q34[i] = Frama_C_interval(1, LEN_MAX_M_Q34);
         bones.base_m_q32[i] = Frama_C_interval(-BASE_MAX_M_Q32, BASE_MAX_M_Q32);
-        for (unsigned k = 0; k < 3; k++) { bones.rot_q30[i][k] = Frama_C_interval(-(1 << 30), 1 << 30); }
+        for (unsigned k = 0; k < 3; k++) {
+            bones.rot_q30[i][k] = Frama_C_interval(-(1 << 30), 1 << 30);
+        }
     }
     f.bones = &bones;
     f.pull_radpm_q20[0] = Frama_C_interval(-PULL_MOST_RADPM_Q20, PULL_MOST_RADPM_Q20);

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: texts
- * Names and texts of any number: of states, triggers, faults, limits, steps of arming, errors, what is wrong with a sensor or with a
- * calibration.
+ * Names and texts of any number: of states, triggers, faults, limits, steps of arming, errors, what
+ * is wrong with a sensor or with a calibration.
  *
  * PLANT: lib/src/safety_names.c: k < EXH_LIMITS ? -> k <= EXH_LIMITS ?
  * PLANT: lib/src/error.c: code <= -EXH_E_COUNT || -> code < -EXH_E_COUNT ||
- * PLANT: lib/src/glove_cal.c: sensor < EXH_GLOVE_SENSORS ? text[sensor] -> sensor <= EXH_GLOVE_SENSORS ? text[sensor]
+ * PLANT: lib/src/glove_cal.c: sensor < EXH_GLOVE_SENSORS ? text[sensor] -> sensor <=
+ * EXH_GLOVE_SENSORS ? text[sensor]
  */
 #include "calibrate.c"
 #include "error.c"
@@ -14,10 +15,10 @@
 #undef limits
 #undef IMAGE_MAGIC
 #define body_bytes cal_body_bytes /* calibrate.c has its own of these */
-#define head cal_head
+#define head       cal_head
 #define head_bytes cal_head_bytes
-#define load cal_load
-#define refuse cal_refuse
+#define load       cal_load
+#define refuse     cal_refuse
 #include "glove_cal.c"
 #include "safety_names.c"
 

@@ -1,23 +1,26 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: register map, read
- * Set-up of tables with anything in their rows. A request of any address and number, of tables of any size: what is found of
- * it lies within its block. Each address of each block, and behind its end, of a map of two tables of eight values and a trace of
- * two frames with anything in them: one register, two, all, and one more. Any bits; binary32 of any value.
+ * Set-up of tables with anything in their rows. A request of any address and number, of tables of
+ * any size: what is found of it lies within its block. Each address of each block, and behind its
+ * end, of a map of two tables of eight values and a trace of two frames with anything in them: one
+ * register, two, all, and one more. Any bits; binary32 of any value.
  *
- * EVA: -eva-slevel 100 -eva-slevel-function block:1000,staged_count:600 -eva-slevel-merge-after-loop staged_count -eva-split-return-function exh_regs_trace_locate:0
- * PLANT: lib/src/regs.c: return s->end <= 2 * values ? 0 : EXH_MODBUS_ADDRESS; -> return s->end <= 2 * values + 1 ? 0 : EXH_MODBUS_ADDRESS;
- * PLANT: lib/src/regs_trace.c: return s->end <= 2 * values ? 0 : EXH_MODBUS_ADDRESS; -> return s->end <= 3 * values ? 0 : EXH_MODBUS_ADDRESS;
- * PLANT: lib/src/regs.c: while (r->name != NULL && i < 4 * part && r->name[i] != '\0') { i++; } -> while (r->name != NULL && i < 4 * part) { i++; }
- * PLANT: lib/src/regs.c: if (2 * i + 1 < s->end) { -> {
+ * EVA: -eva-slevel 100 -eva-slevel-function block:1000,staged_count:600
+ * -eva-slevel-merge-after-loop staged_count -eva-split-return-function exh_regs_trace_locate:0
+ * PLANT: lib/src/regs.c: return s->end <= 2 * values ? 0 : EXH_MODBUS_ADDRESS; -> return s->end <=
+ * 2 * values + 1 ? 0 : EXH_MODBUS_ADDRESS; PLANT: lib/src/regs_trace.c: return s->end <= 2 * values
+ * ? 0 : EXH_MODBUS_ADDRESS; -> return s->end <= 3 * values ? 0 : EXH_MODBUS_ADDRESS; PLANT:
+ * lib/src/regs.c: while (r->name != NULL && i < 4 * part && r->name[i] != '\0') { i++; } -> while
+ * (r->name != NULL && i < 4 * part) { i++; } PLANT: lib/src/regs.c: if (2 * i + 1 < s->end) { -> {
  * PLANT: lib/src/regs.c: if ((k & 7u) == 0) { to[k >> 3] = 0; } -> to[(k + 7u) >> 3] = 0;
- * PLANT: lib/src/regs.c: r->box.state < 32 ? UINT32_C(1) << r->box.state : 0 -> UINT32_C(1) << r->box.state
- * PLANT: lib/src/regs.h: if (++w.instance == w.group->instances) { -> {
- * PLANT: lib/src/regs_trace.c: if (r->trace == NULL) { return EXH_MODBUS_ADDRESS; } -> (void)0;
+ * PLANT: lib/src/regs.c: r->box.state < 32 ? UINT32_C(1) << r->box.state : 0 -> UINT32_C(1) <<
+ * r->box.state PLANT: lib/src/regs.h: if (++w.instance == w.group->instances) { -> { PLANT:
+ * lib/src/regs_trace.c: if (r->trace == NULL) { return EXH_MODBUS_ADDRESS; } -> (void)0;
  */
 #include "bytes.c"
 #include "fix.c"
 #define exh_signal_crc table_crc /* its proof is any_signal.c */
-#define exh_float_of any_float /* below */
+#define exh_float_of   any_float /* below */
 #include "regs.c"
 #undef exh_signal_crc
 #undef exh_float_of
@@ -58,9 +61,11 @@ static void set_up(void)
     any_regs();
     any_rows();
     r.signals = &table;
-    if (exh_regs_setup(&r) == 0) { /*@ assert no_empty_group: \false; */ }
+    if (exh_regs_setup(&r) == 0) { /*@ assert no_empty_group: \false; */
+    }
     r.signals = &full_table;
-    if (exh_regs_setup(&r) == 0) { /*@ assert counted: r.signals_n == 8 && r.params_n == 8; */ }
+    if (exh_regs_setup(&r) == 0) { /*@ assert counted: r.signals_n == 8 && r.params_n == 8; */
+    }
 }
 
 /* Addresses from..end-1 of any number, where a block has so many registers at most. */
@@ -72,7 +77,8 @@ static void located(enum exh_regs_kind kind, uint32_t from, uint32_t end, uint32
     r.params_n = Frama_C_unsigned_int_interval(0, EXH_REGS_VALUES);
     trace.mask = EXH_TRACE_FRAMES - 1;
     r.trace = Frama_C_interval(0, 1) ? &trace : NULL;
-    if (exh_regs_locate(&r, kind, (uint16_t)Frama_C_unsigned_int_interval(from, end - 1), (uint16_t)any_u32(), &s) == 0) {
+    if (exh_regs_locate(&r, kind, (uint16_t)Frama_C_unsigned_int_interval(from, end - 1),
+                        (uint16_t)any_u32(), &s) == 0) {
         /*@ assert within: s.end <= registers; */
     }
 }
@@ -81,7 +87,8 @@ static void any_address(void)
 {
     located(EXH_REGS_INPUT, 0, EXH_REGS_TRACE_AT, 2 * EXH_HEADS);
     located(EXH_REGS_INPUT, EXH_REGS_TRACE_AT, EXH_REGS_FRAMES_AT, 2 * EXH_TRACE_HEADS);
-    located(EXH_REGS_INPUT, EXH_REGS_FRAMES_AT, EXH_REGS_SIGNAL_AT, 2 * EXH_REGS_FRAME_VALUES * EXH_TRACE_FRAMES);
+    located(EXH_REGS_INPUT, EXH_REGS_FRAMES_AT, EXH_REGS_SIGNAL_AT,
+            2 * EXH_REGS_FRAME_VALUES * EXH_TRACE_FRAMES);
     located(EXH_REGS_INPUT, EXH_REGS_SIGNAL_AT, 0x10000, 2 * EXH_REGS_VALUES);
     located(EXH_REGS_HOLDING, 0, EXH_REGS_TRACE_AT, 0);
     located(EXH_REGS_HOLDING, EXH_REGS_TRACE_AT, EXH_REGS_SIGNAL_AT, 2 * EXH_REGS_TRACE_SET);

@@ -1,24 +1,25 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: ring of records
- * Set-up of any size. Memory of the least size and of one that is no power of two, in any state that a put leaves (parts within
- * it, the head within it): a record of any type and of some lengths, the longest that fits and one more among them; two
- * after one another. Read from the oldest, or from any place, with anything in the memory; the record found goes out in
- * pieces of any size.
+ * Set-up of any size. Memory of the least size and of one that is no power of two, in any state
+ * that a put leaves (parts within it, the head within it): a record of any type and of some
+ * lengths, the longest that fits and one more among them; two after one another. Read from the
+ * oldest, or from any place, with anything in the memory; the record found goes out in pieces of
+ * any size.
  *
  * EVA: -eva-slevel 100 -eva-slevel-function main:3000
  * PLANT: lib/src/ring.c: return at < SLOTS ? at : at - SLOTS; -> return at;
- * PLANT: lib/src/ring.c: const uint32_t first = least(n, r->cap_B - at); -> const uint32_t first = n;
- * PLANT: lib/src/ring.c: r->head = copy_in(r, at, payload, len_B); -> r->head = at + len_B;
+ * PLANT: lib/src/ring.c: const uint32_t first = least(n, r->cap_B - at); -> const uint32_t first =
+ * n; PLANT: lib/src/ring.c: r->head = copy_in(r, at, payload, len_B); -> r->head = at + len_B;
  * PLANT: lib/src/ring.c: if (begins && parts(r) == SLOTS) { drop_oldest(r); } -> (void)0;
- * PLANT: lib/src/ring.c: payload.at = payload.at + 1 < r->cap_B ? payload.at + 1 : 0; -> payload.at = payload.at + 1;
- * PLANT: lib/src/ring.c: if (payload.len_B > p->left_B - EXH_RING_HEAD_B) { return 0; } -> (void)0;
- * PLANT: lib/src/ring.c: n = least(n, o->cap_B - o->at); -> (void)o;
+ * PLANT: lib/src/ring.c: payload.at = payload.at + 1 < r->cap_B ? payload.at + 1 : 0; -> payload.at
+ * = payload.at + 1; PLANT: lib/src/ring.c: if (payload.len_B > p->left_B - EXH_RING_HEAD_B) {
+ * return 0; } -> (void)0; PLANT: lib/src/ring.c: n = least(n, o->cap_B - o->at); -> (void)o;
  */
 #include <stddef.h>
 #include <stdint.h>
 #include "__fc_builtin.h"
-#include <string.h> /* the contract of memcpy */
-#define volatile /* for who reads it interrupted; nobody else writes */
+#include <string.h>             /* the contract of memcpy */
+#define volatile                /* for who reads it interrupted; nobody else writes */
 #define exh_crc32 crc32_of_each /* its proof is any_bytes.c */
 #include "bytes.c"
 #undef exh_crc32
@@ -34,7 +35,7 @@ static uint32_t crc32(uint32_t crc, const void *buf, size_t len_B)
 
 #include "any.h"
 
-#define MAX_B 90
+#define MAX_B      90
 #define ROOM_MAX_B 30
 
 static uint8_t mem[MAX_B], payload[MAX_B];
@@ -45,7 +46,9 @@ static void any_ring(uint32_t cap_B, uint32_t head, uint32_t oldest_n, uint32_t 
 {
     (void)exh_ring_setup(&r, mem + (MAX_B - cap_B), cap_B);
     ANY(mem);
-    for (unsigned i = 0; i < SLOTS; i++) { r.start[i] = Frama_C_unsigned_int_interval(0, cap_B - 1); }
+    for (unsigned i = 0; i < SLOTS; i++) {
+        r.start[i] = Frama_C_unsigned_int_interval(0, cap_B - 1);
+    }
     r.live = oldest_n << 8 | parts_n;
     r.head = head;
     r.lost = any_u32();
@@ -64,12 +67,14 @@ static void put(uint32_t cap_B, uint32_t head, uint32_t oldest_n, uint32_t parts
     any_ring(cap_B, head, oldest_n, parts_n);
     (void)exh_ring_due(&r);
     ANY(payload);
-    done = exh_ring_put(&r, any8(), any_u32(), len_B > 0 ? payload + (MAX_B - len_B) : payload, len_B);
+    done =
+        exh_ring_put(&r, any8(), any_u32(), len_B > 0 ? payload + (MAX_B - len_B) : payload, len_B);
     /*@ assert told: done == 0 || done == 1; */
     left();
 }
 
-/* What is left to read is one number: that a record of it leaves no less than nothing is its difference. */
+/* What is left to read is one number: that a record of it leaves no less than nothing is its
+ * difference. */
 static void reads(uint32_t left_B)
 {
     struct exh_ring_place p;
@@ -102,8 +107,11 @@ static void pieces(uint16_t len_B, uint32_t room_B)
     static const uint32_t at[] = {0, 50, 63};
     const uint32_t done_B[] = {0, 13, 14, 13u + len_B, 17u + len_B, 18u + len_B};
     for (unsigned i = 0; i < sizeof at / sizeof at[0]; i++) {
-        const struct exh_record_place from = {mem + (MAX_B - EXH_RING_MIN_B), EXH_RING_MIN_B, at[i], len_B};
-        for (unsigned k = 0; k < sizeof done_B / sizeof done_B[0]; k++) { goes_out(from, done_B[k], room_B); }
+        const struct exh_record_place from = {mem + (MAX_B - EXH_RING_MIN_B), EXH_RING_MIN_B, at[i],
+                                              len_B};
+        for (unsigned k = 0; k < sizeof done_B / sizeof done_B[0]; k++) {
+            goes_out(from, done_B[k], room_B);
+        }
     }
 }
 
@@ -113,7 +121,9 @@ int main(void)
     (void)exh_ring_setup(&r, mem, any_u32());
     for (unsigned h = 0; h < sizeof head / sizeof head[0]; h++) {
         for (uint32_t n = 0; n <= SLOTS; n += n == 1 ? 8 : 1) {
-            for (unsigned k = 0; k < sizeof len_B / sizeof len_B[0]; k++) { put(EXH_RING_MIN_B, head[h], n == 9 ? 9 : 4, n, len_B[k]); }
+            for (unsigned k = 0; k < sizeof len_B / sizeof len_B[0]; k++) {
+                put(EXH_RING_MIN_B, head[h], n == 9 ? 9 : 4, n, len_B[k]);
+            }
         }
     }
     put(MAX_B, 89, 3, 9, 57);

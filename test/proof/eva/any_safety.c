@@ -25,8 +25,7 @@ static void step(uint8_t from, uint8_t to)
     /*@ assert a_state: s.state < 6; */
     /*@ assert a_mode: p.mode <= 2; */
     /*@ assert ticks: p.ticks >= 1; */
-    if (from > 5) {
-        /*@ assert shut: p.mode == 0; */
+    if (from > 5) { /*@ assert shut: p.mode == 0; */
     }
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: slots
- * Anything in both slots, of sizes around the least and one of 40 bytes, whatever they say of their length; what is to be
- * saved next, of images of some lengths and of any, in buffers of some sizes.
+ * Anything in both slots, of sizes around the least and one of 40 bytes, whatever they say of their
+ * length; what is to be saved next, of images of some lengths and of any, in buffers of some sizes.
  *
  * EVA: -eva-slevel 300
  * PLANT: lib/src/slots.c: if (len_B > slot_B - EXH_SLOT_B(0)) { return -EXH_E_SHORT; } -> (void)0;
@@ -9,7 +9,8 @@
  * PLANT: lib/src/slots.c: if (!has_a && !has_b) { return -EXH_E_ABSENT; } -> (void)0;
  * PLANT: lib/src/slots.c: if (has_a && has_b) { -> {
  * PLANT: lib/src/slots.c: || image_B > room_B - EXH_SLOT_B(0) -> || 0
- * PLANT: lib/src/slots.c: uint32_t magic = MAGIC, len_B = (uint32_t)image_B, sequence, crc; -> uint32_t magic = MAGIC, len_B = (uint32_t)image_B + 1, sequence, crc;
+ * PLANT: lib/src/slots.c: uint32_t magic = MAGIC, len_B = (uint32_t)image_B, sequence, crc; ->
+ * uint32_t magic = MAGIC, len_B = (uint32_t)image_B + 1, sequence, crc;
  */
 #include "bytes.c"
 #include "slots.c"
@@ -29,7 +30,8 @@ static void read(size_t slot_B)
         const uint8_t last = is.image[is.len_B - 1];
         (void)last;
     }
-    if (exh_slots_pick(&is, first + (SLOT_MAX_B - slot_B), second + (SLOT_MAX_B - slot_B), slot_B) >= 0) {
+    if (exh_slots_pick(&is, first + (SLOT_MAX_B - slot_B), second + (SLOT_MAX_B - slot_B),
+                       slot_B) >= 0) {
         /*@ assert sequence: 1 <= is.sequence <= 0xFFFFFFFE; */
     }
 }
@@ -41,8 +43,8 @@ static void image_next(size_t slot_B, size_t cap_B, size_t image_B)
     ANY(first);
     ANY(second);
     ANY(buf);
-    n = exh_slots_next(&to, first + (SLOT_MAX_B - slot_B), second + (SLOT_MAX_B - slot_B), slot_B, buf + (SLOT_MAX_B - cap_B),
-                       cap_B, image_B);
+    n = exh_slots_next(&to, first + (SLOT_MAX_B - slot_B), second + (SLOT_MAX_B - slot_B), slot_B,
+                       buf + (SLOT_MAX_B - cap_B), cap_B, image_B);
     /*@ assert what_fits: n <= 40; */
     /*@ assert a_slot: to <= 1; */
 }

@@ -1,20 +1,21 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: wire
- * Any bytes of any length as a datagram, into a receiver in any state that its bytes leave; time that passes. Any packet into
- * buffers of any size; what came as a plane, and as a parameter of any table of ten values.
+ * Any bytes of any length as a datagram, into a receiver in any state that its bytes leave; time
+ * that passes. Any packet into buffers of any size; what came as a plane, and as a parameter of any
+ * table of ten values.
  *
  * EVA: -eva-slevel 20
- * PLANT: lib/src/wire.c: !exh_bytes_ok(&c) || len_B != HEAD_B + h->len_B + CRC_B -> !exh_bytes_ok(&c)
- * PLANT: lib/src/wire.c: if (late >= WINDOW) { -> if (late > WINDOW) {
- * PLANT: lib/src/wire.c: ahead < WINDOW ? rx->seen -> ahead <= WINDOW ? rx->seen
- * PLANT: lib/src/wire.c: i < t->frames && i < EXH_WIRE_FRAMES -> i < t->frames
- * PLANT: lib/src/wire.c: if (cap_B < end + CRC_B) { return -EXH_E_SHORT; } -> (void)0;
+ * PLANT: lib/src/wire.c: !exh_bytes_ok(&c) || len_B != HEAD_B + h->len_B + CRC_B ->
+ * !exh_bytes_ok(&c) PLANT: lib/src/wire.c: if (late >= WINDOW) { -> if (late > WINDOW) { PLANT:
+ * lib/src/wire.c: ahead < WINDOW ? rx->seen -> ahead <= WINDOW ? rx->seen PLANT: lib/src/wire.c: i
+ * < t->frames && i < EXH_WIRE_FRAMES -> i < t->frames PLANT: lib/src/wire.c: if (cap_B < end +
+ * CRC_B) { return -EXH_E_SHORT; } -> (void)0;
  */
 #include "bytes.c"
 #include "fix.c"
 #include "params.c"
-#include "../src/signal.c" /* not that of Frama-C */
-#define head wire_head /* params.c has its own */
+#include "../src/signal.c"   /* not that of Frama-C */
+#define head       wire_head /* params.c has its own */
 #define head_bytes wire_head_bytes
 #include "wire.c"
 
@@ -69,9 +70,7 @@ int main(void)
     receive(0, EXH_WIRE_MAX_B);
     receive(22, 22);
     receive(35, 35);
-    for (unsigned type = 0; type <= 8; type++) {
-        send((uint8_t)type, 0, EXH_WIRE_MAX_B);
-    }
+    for (unsigned type = 0; type <= 8; type++) { send((uint8_t)type, 0, EXH_WIRE_MAX_B); }
     send(EXH_WIRE_PLANES, 0, 40);
     use();
     END();

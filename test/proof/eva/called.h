@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The library's functions as a scene calls them: each asks for what its own proof takes for granted, and leaves anything within what
- * that proof shows (contract.h). What a function only reads stays a pointer that must be one. */
+/* The library's functions as a scene calls them: each asks for what its own proof takes for
+ * granted, and leaves anything within what that proof shows (contract.h). What a function only
+ * reads stays a pointer that must be one. */
 #ifndef PROOF_CALLED_H
 #define PROOF_CALLED_H
 
@@ -8,8 +9,8 @@
 
 #include "exhand/error.h"
 
-/*@ predicate gate_cfg(struct exh_drive_cfg *c) = \valid_read(c->par) && 0 <= c->par->dac_zero_raw <= 65535 &&
-      0 <= c->par->dac_span_raw <= 32767 && gain(&c->dac_A_q26); */
+/*@ predicate gate_cfg(struct exh_drive_cfg *c) = \valid_read(c->par) && 0 <= c->par->dac_zero_raw
+   <= 65535 && 0 <= c->par->dac_span_raw <= 32767 && gain(&c->dac_A_q26); */
 
 #define REFUSED() (any8() & 1)
 
@@ -25,7 +26,8 @@ static uint32_t any_causes(void)
 
 /* --- position and velocity --- */
 
-int exh_quad_setup(struct exh_quad_cfg *cfg, const struct exh_quad_par *par, struct exh_period T, unsigned bits)
+int exh_quad_setup(struct exh_quad_cfg *cfg, const struct exh_quad_par *par, struct exh_period T,
+                   unsigned bits)
 {
     struct exh_quad_cfg made;
     (void)T;
@@ -73,7 +75,8 @@ int exh_velocity_window_setup(struct exh_velocity_window_cfg *cfg, struct exh_ve
     return 0;
 }
 
-int32_t exh_velocity_window_mps_q27(struct exh_velocity_window *s, const struct exh_velocity_window_cfg *cfg, int32_t cnt)
+int32_t exh_velocity_window_mps_q27(struct exh_velocity_window *s,
+                                    const struct exh_velocity_window_cfg *cfg, int32_t cnt)
 {
     (void)cnt;
     /*@ assert velocity_tick: velocity(s) && velocity_cfg(cfg); */
@@ -89,7 +92,8 @@ void exh_velocity_window_bytes(struct exh_bytes *c, struct exh_velocity_window *
 
 /* --- law and force --- */
 
-int exh_contact_law(struct exh_contact *s, const struct exh_contact_par *par, struct exh_contact_in in, struct exh_force_ledger *f)
+int exh_contact_law(struct exh_contact *s, const struct exh_contact_par *par,
+                    struct exh_contact_in in, struct exh_force_ledger *f)
 {
     (void)in;
     /*@ assert law: contact(s) && contact_par(par); */
@@ -111,12 +115,13 @@ int exh_table_set(struct exh_knot *knot, unsigned n)
     return REFUSED() ? -EXH_E_MONOTONE : 0;
 }
 
-int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par, struct exh_period T, struct exh_table force_to_cur,
-                    struct exh_table cur_to_force)
+int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par, struct exh_period T,
+                    struct exh_table force_to_cur, struct exh_table cur_to_force)
 {
     struct exh_drive_cfg made;
     (void)T;
-    /*@ assert drive_setup: \valid_read(par) && table(&force_to_cur) && table_or_none(&cur_to_force); */
+    /*@ assert drive_setup: \valid_read(par) && table(&force_to_cur) &&
+     * table_or_none(&cur_to_force); */
     if (REFUSED()) { return -EXH_E_RANGE; }
     /*@ admit drive_par(par); */
     ANY(made);
@@ -128,7 +133,8 @@ int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par, 
     return 0;
 }
 
-uint32_t exh_drive_force(struct exh_drive *s, const struct exh_drive_cfg *cfg, const struct exh_permit *p, struct exh_force_ledger *f)
+uint32_t exh_drive_force(struct exh_drive *s, const struct exh_drive_cfg *cfg,
+                         const struct exh_permit *p, struct exh_force_ledger *f)
 {
     struct exh_force_ledger out = *f;
     /*@ assert drive_force: drive(s) && drive_cfg(cfg) && permit(p) && asked(f); */
@@ -141,8 +147,8 @@ uint32_t exh_drive_force(struct exh_drive *s, const struct exh_drive_cfg *cfg, c
     return any_limits();
 }
 
-uint32_t exh_drive_current(struct exh_drive *s, const struct exh_drive_cfg *cfg, const struct exh_force_ledger *f,
-                           struct exh_current_ledger *i)
+uint32_t exh_drive_current(struct exh_drive *s, const struct exh_drive_cfg *cfg,
+                           const struct exh_force_ledger *f, struct exh_current_ledger *i)
 {
     /*@ assert drive_current: drive(s) && drive_cfg(cfg) && force(f); */
     *s = any_drive();
@@ -179,8 +185,9 @@ int exh_table_invert(struct exh_knot *dst, const struct exh_knot *src, unsigned 
     return REFUSED() ? -EXH_E_RANGE : 0;
 }
 
-int exh_passivity_setup(struct exh_passivity_cfg *cfg, const struct exh_passivity_par *par, const struct exh_drive_cfg *drive,
-                        struct exh_table held, struct exh_velocity_scale scale, int32_t speed_mps_q27)
+int exh_passivity_setup(struct exh_passivity_cfg *cfg, const struct exh_passivity_par *par,
+                        const struct exh_drive_cfg *drive, struct exh_table held,
+                        struct exh_velocity_scale scale, int32_t speed_mps_q27)
 {
     struct exh_passivity_cfg made;
     (void)scale;
@@ -196,8 +203,8 @@ int exh_passivity_setup(struct exh_passivity_cfg *cfg, const struct exh_passivit
     return 0;
 }
 
-uint32_t exh_passivity_step(struct exh_passivity *s, const struct exh_passivity_cfg *cfg, int32_t cnt, int touching,
-                            struct exh_force_ledger *f)
+uint32_t exh_passivity_step(struct exh_passivity *s, const struct exh_passivity_cfg *cfg,
+                            int32_t cnt, int touching, struct exh_force_ledger *f)
 {
     (void)cnt;
     (void)touching;
@@ -207,11 +214,12 @@ uint32_t exh_passivity_step(struct exh_passivity *s, const struct exh_passivity_
     return any_limits();
 }
 
-void exh_passivity_held(struct exh_passivity *s, const struct exh_passivity_cfg *cfg, const struct exh_force_ledger *f,
-                        int32_t coded_A_q26)
+void exh_passivity_held(struct exh_passivity *s, const struct exh_passivity_cfg *cfg,
+                        const struct exh_force_ledger *f, int32_t coded_A_q26)
 {
     (void)coded_A_q26;
-    /*@ assert passivity_held: passivity(s) && passivity_cfg(cfg) && pullback(f) && \initialized(&f->force_N_q20); */
+    /*@ assert passivity_held: passivity(s) && passivity_cfg(cfg) && pullback(f) &&
+     * \initialized(&f->force_N_q20); */
     *s = any_passivity();
 }
 
@@ -242,7 +250,8 @@ int exh_watch_setup(struct exh_watch_cfg *cfg, const struct exh_watch_par *par, 
     return 0;
 }
 
-uint32_t exh_watch_step(struct exh_watch *s, const struct exh_watch_cfg *cfg, int32_t *vel_mps_q27, uint32_t *limits)
+uint32_t exh_watch_step(struct exh_watch *s, const struct exh_watch_cfg *cfg, int32_t *vel_mps_q27,
+                        uint32_t *limits)
 {
     /*@ assert watch_step: watch_cfg(cfg) && limits(*limits) && \initialized(vel_mps_q27); */
     ANY(*s);
@@ -251,7 +260,8 @@ uint32_t exh_watch_step(struct exh_watch *s, const struct exh_watch_cfg *cfg, in
     return Frama_C_unsigned_int_interval(0, EXH_FAULT_SPEED | EXH_FAULT_STUCK);
 }
 
-void exh_watch_coded(struct exh_watch *s, const struct exh_watch_cfg *cfg, int32_t cnt, int32_t coded_A_q26)
+void exh_watch_coded(struct exh_watch *s, const struct exh_watch_cfg *cfg, int32_t cnt,
+                     int32_t coded_A_q26)
 {
     (void)cnt;
     (void)coded_A_q26;
@@ -265,7 +275,8 @@ void exh_watch_bytes(struct exh_bytes *c, struct exh_watch *s)
     ANY(*s);
 }
 
-int exh_supply_setup(struct exh_supply_cfg *cfg, const struct exh_supply_par *par, struct exh_period T)
+int exh_supply_setup(struct exh_supply_cfg *cfg, const struct exh_supply_par *par,
+                     struct exh_period T)
 {
     (void)T;
     /*@ assert supply_setup: \valid_read(par); */
@@ -273,7 +284,8 @@ int exh_supply_setup(struct exh_supply_cfg *cfg, const struct exh_supply_par *pa
     return REFUSED() ? -EXH_E_RANGE : 0;
 }
 
-int exh_supply_step(struct exh_supply *s, const struct exh_supply_cfg *cfg, int16_t raw, uint32_t missed)
+int exh_supply_step(struct exh_supply *s, const struct exh_supply_cfg *cfg, int16_t raw,
+                    uint32_t missed)
 {
     (void)raw;
     (void)missed;
@@ -320,7 +332,8 @@ void exh_track_bytes(struct exh_bytes *c, struct exh_track *s)
     ANY(*s);
 }
 
-int exh_safety_setup(struct exh_safety_cfg *cfg, const struct exh_safety_par *par, struct exh_period T)
+int exh_safety_setup(struct exh_safety_cfg *cfg, const struct exh_safety_par *par,
+                     struct exh_period T)
 {
     struct exh_safety_cfg made;
     (void)T;
@@ -332,9 +345,11 @@ int exh_safety_setup(struct exh_safety_cfg *cfg, const struct exh_safety_par *pa
     return 0;
 }
 
-struct exh_permit exh_safety_step(struct exh_safety *s, const struct exh_safety_cfg *cfg, struct exh_safety_in in)
+struct exh_permit exh_safety_step(struct exh_safety *s, const struct exh_safety_cfg *cfg,
+                                  struct exh_safety_in in)
 {
-    /*@ assert safety_step: safety(s) && safety_cfg(cfg) && 1 <= in.fingers <= 5 && causes(in.raised); */
+    /*@ assert safety_step: safety(s) && safety_cfg(cfg) && 1 <= in.fingers <= 5 &&
+     * causes(in.raised); */
     *s = any_safety();
     s->state = (uint8_t)Frama_C_unsigned_int_interval(0, 5);
     s->fingers = in.fingers;
@@ -348,8 +363,8 @@ uint8_t exh_safety_arm(const struct exh_safety *s)
     return any8();
 }
 
-void exh_gate(struct exh_safety *s, const struct exh_drive_cfg *cfg, unsigned n, struct exh_current_ledger *i, uint32_t *limits,
-              struct exh_drive_out *out)
+void exh_gate(struct exh_safety *s, const struct exh_drive_cfg *cfg, unsigned n,
+              struct exh_current_ledger *i, uint32_t *limits, struct exh_drive_out *out)
 {
     /*@ assert gate_fingers: 1 <= n <= 5 && n <= s->fingers; */
     for (unsigned k = 0; k < n; k++) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Parameters, guard, self-test and calibrations, as called.h. The table's rows are the library's; how many there are is counted. */
+/* Parameters, guard, self-test and calibrations, as called.h. The table's rows are the library's;
+ * how many there are is counted. */
 #ifndef PROOF_CALLED_PARAMS_H
 #define PROOF_CALLED_PARAMS_H
 
@@ -9,7 +10,8 @@
 
 #include "calib.h"
 
-void exh_params_init(struct exh_params *p, const struct exh_signal_table *t, int32_t *active, int32_t *staged)
+void exh_params_init(struct exh_params *p, const struct exh_signal_table *t, int32_t *active,
+                     int32_t *staged)
 {
     static const struct exh_params none;
     *p = none;
@@ -59,7 +61,8 @@ int exh_gains_ok(const struct exh_gains_par *r, int32_t k_Npm_q10, int32_t b_Nsp
     return any8() & 1;
 }
 
-int exh_gains_stage(struct exh_params *p, const struct exh_gains_par *r, uint16_t id, uint16_t instance, int32_t raw)
+int exh_gains_stage(struct exh_params *p, const struct exh_gains_par *r, uint16_t id,
+                    uint16_t instance, int32_t raw)
 {
     /*@ assert gains_stage: params(p) && rule(r); */
     return exh_params_stage(p, id, instance, raw);
@@ -107,14 +110,16 @@ int exh_selftest(void)
     return any8();
 }
 
-int calib_take(struct exh_scene_calib *k, struct exh_params *p, const struct calib_par *par, uint32_t fingers)
+int calib_take(struct exh_scene_calib *k, struct exh_params *p, const struct calib_par *par,
+               uint32_t fingers)
 {
     (void)fingers;
     /*@ assert calib_take: \valid(k) && params(p) && \valid_read(par); */
     return REFUSED() ? -EXH_E_VERSION : 0;
 }
 
-int calib_setup(struct calib_tables *t, struct exh_scene_calib *k, const struct calib_par *par, const struct calib_finger *of)
+int calib_setup(struct calib_tables *t, struct exh_scene_calib *k, const struct calib_par *par,
+                const struct calib_finger *of)
 {
     (void)k;
     /*@ assert calib_setup: \valid(t) && \valid_read(par) && of->f < 5 && \valid_read(of->drive); */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The register map over the tables of table.h: anything in the box, in all values, in what is staged and traced. */
+/* The register map over the tables of table.h: anything in the box, in all values, in what is
+ * staged and traced. */
 #ifndef PROOF_REGISTERS_H
 #define PROOF_REGISTERS_H
 
@@ -13,7 +14,8 @@
 static struct exh_regs r;
 static struct exh_trace trace;
 static struct exh_trace_frame frame[FRAMES];
-static int32_t signal[TABLE_VALUES], active[TABLE_VALUES], wanted[TABLE_VALUES], staged[TABLE_VALUES];
+static int32_t signal[TABLE_VALUES], active[TABLE_VALUES], wanted[TABLE_VALUES],
+    staged[TABLE_VALUES];
 static uint32_t touched[EXH_REGS_WORDS(TABLE_VALUES)];
 static char name[6];
 
@@ -28,13 +30,17 @@ static void any_regs(void)
     ANY(frame);
     ANY(trace);
     any_rows();
-    for (unsigned i = 0; i < TABLE_ROWS; i++) { table_row[i].frac = (uint8_t)Frama_C_unsigned_int_interval(0, 126); }
+    for (unsigned i = 0; i < TABLE_ROWS; i++) {
+        table_row[i].frac = (uint8_t)Frama_C_unsigned_int_interval(0, 126);
+    }
     for (unsigned i = 0; i + 1 < sizeof name; i++) { name[i] = (char)Frama_C_interval(-128, 127); }
     name[sizeof name - 1] = '\0';
     trace.frame = frame;
     trace.mask = FRAMES - 1;
     trace.signals = TABLE_VALUES;
-    for (unsigned i = 0; i < EXH_TRACE_SIGNALS; i++) { trace.what.index[i] = Frama_C_unsigned_int_interval(0, TABLE_VALUES - 1); }
+    for (unsigned i = 0; i < EXH_TRACE_SIGNALS; i++) {
+        trace.what.index[i] = Frama_C_unsigned_int_interval(0, TABLE_VALUES - 1);
+    }
     r.name = Frama_C_interval(0, 1) ? name : NULL;
     r.signals = r.params = &full_table;
     r.signals_n = r.params_n = TABLE_VALUES;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* A table of four groups, one of no rows and one of no instances among them, with anything in its rows; what it holds. */
+/* A table of four groups, one of no rows and one of no instances among them, with anything in its
+ * rows; what it holds. */
 #ifndef PROOF_TABLE_H
 #define PROOF_TABLE_H
 
@@ -22,7 +23,9 @@ static const struct exh_signal_table full_table = {full_group, 2};
 static void any_rows(void)
 {
     ANY(table_row);
-    for (unsigned i = 0; i < TABLE_ROWS; i++) { table_row[i].name = table_row[i].unit = table_row[i].help = "x"; }
+    for (unsigned i = 0; i < TABLE_ROWS; i++) {
+        table_row[i].name = table_row[i].unit = table_row[i].help = "x";
+    }
 }
 
 #endif

@@ -3,13 +3,14 @@
 #ifndef GUEST_CHECK_H
 #define GUEST_CHECK_H
 
-enum { A, B, MM, SPARE }; /* minors of comedi, which are also the cards' numbers             */
+enum { A, B, MM, SPARE }; /* minors of comedi, which are also the cards' numbers */
 enum {
     BASE_A = 0x2C0,
     BASE_B = 0x280,
     BASE_MM = 0x300,
     BASE_EMPTY = 0x340,
-    BASE_EMPTY_526 = 0x240 };
+    BASE_EMPTY_526 = 0x240
+};
 enum { IRQ_MM = 5 };
 
 void check_counters(void);

@@ -7,7 +7,7 @@
 #include <stdint.h>
 
 enum { GPCT, S526_AI, S526_AO, S526_DIO }; /* subdevices of s526, as its driver orders them */
-enum { MM_AI, MM_AO, MM_DIO }; /* of dmm32at                                             */
+enum { MM_AI, MM_AO, MM_DIO };             /* of dmm32at */
 
 /* All return 0 or more, or -errno. */
 int load(const char *path, const char *options);

@@ -7,7 +7,8 @@
 
 #include <stdio.h>
 
-/* Ranges in the driver's order, found by asking it: width in uV of 65536 codes, and where code 0 is. */
+/* Ranges in the driver's order, found by asking it: width in uV of 65536 codes, and where code 0
+ * is. */
 struct range {
     int32_t lo_uV, span_uV;
 };

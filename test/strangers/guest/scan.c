@@ -10,7 +10,7 @@
 #include <string.h>
 
 #define SCANS_MAX 50u
-#define TEN_V     2u /* range of +-10 V, in the driver's order                           */
+#define TEN_V     2u /* range of +-10 V, in the driver's order */
 
 static uint16_t sample[SCANS_MAX * 32];
 
