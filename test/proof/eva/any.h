@@ -53,8 +53,8 @@ static uint64_t any_u64(void)
         f(&c, &(state)); \
     } while (0)
 
-/* As the library's: it does not return, and is not called; but where the harness gives what breaks
- * a contract (MAY_STOP), since to stop is the answer to that. */
+/* As the library's: it does not return, and is not called; but where the harness gives what breaks a
+ * contract (MAY_STOP), since to stop is the answer to that. */
 void exh_assert_failed(const char *file, int line)
 {
     (void)file;

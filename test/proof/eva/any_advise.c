@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: set-up of pre-contact by figures
- * Any figures, loop rates of a whole number of Hz and of thousandths of it, any threshold: what is
- * advised is within what is refused beyond.
+ * Any figures, loop rates of a whole number of Hz and of thousandths of it, any threshold: what is advised is within what is refused beyond.
  *
  * EVA: -eva-slevel 20
  * PLANT: lib/src/advise.c: d > INT32_MAX || ray > INT32_MAX || -> d > INT32_MAX ||

@@ -1,24 +1,20 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: scene bilateral
- * Scene bilateral: a tick and what goes out behind it, for every number of fingers in use (damaged
- * ones too), anything as their places, in any state that its bytes leave, with any frame, glove and
- * command, any packets (none, one, as many as there is room for), any traces (exh_trace_tick()'s
- * own text), all other functions of the library keeping to contract.h and contract_box.h; what a
- * tick leaves is a state that a tick takes. Any parameters in their rows.
+ * Scene bilateral: a tick and what goes out behind it, for every number of fingers in use (damaged ones too), anything as their
+ * places, in any state that its bytes leave, with any frame, glove and command, any packets (none, one, as many as there is room
+ * for), any traces (exh_trace_tick()'s own text), all other functions of the library keeping to contract.h and contract_box.h; what
+ * a tick leaves is a state that a tick takes. Any parameters in their rows.
  *
  * EVA: -eva-slevel 5 -kernel-warn-key annot:missing-spec=abort
- * WITH: examples/glove/cal.c lib/src/glove_cal.c examples/bilateral/finger.c
- * examples/bilateral/cause.c examples/bilateral/wire.c examples/bilateral/trace.c
- * examples/bilateral/tables.c lib/src/trace.c PLANT: examples/bilateral/bilateral.h: return
- * cfg->at[k] < BILATERAL_FINGERS ? cfg->at[k] : 0; -> return cfg->at[k]; PLANT:
- * examples/bilateral/bilateral.h: return n > 0 ? n : 1; -> return n; PLANT:
- * examples/bilateral/trace.c: if (t->result > 0) { t->result = 0; } -> (void)0; PLANT:
- * examples/bilateral/trace.c: n < EXH_WIRE_FRAMES ? n : EXH_WIRE_FRAMES); -> n); PLANT:
- * examples/bilateral/wire.c: if (out->packets == EXH_SCENE_PACKETS) { return; } -> (void)0; PLANT:
- * examples/bilateral/wire.c: s->differs &= EXH_WIRE_ROLE | EXH_WIRE_LIB | EXH_WIRE_TABLE; ->
- * (void)0; PLANT: examples/bilateral/bilateral.c: limits[k] = 0; -> (void)0; PLANT:
- * examples/bilateral/finger.c: if (s->clamped & 1u << 1) { hand.pull_radpm_q20[0] = 0; } ->
- * hand.pull_radpm_q20[0] *= 2;
+ * WITH: examples/glove/cal.c lib/src/glove_cal.c examples/bilateral/finger.c examples/bilateral/cause.c examples/bilateral/wire.c examples/bilateral/trace.c examples/bilateral/tables.c lib/src/trace.c
+ * PLANT: examples/bilateral/bilateral.h: return cfg->at[k] < BILATERAL_FINGERS ? cfg->at[k] : 0; -> return cfg->at[k];
+ * PLANT: examples/bilateral/bilateral.h: return n > 0 ? n : 1; -> return n;
+ * PLANT: examples/bilateral/trace.c: if (t->result > 0) { t->result = 0; } -> (void)0;
+ * PLANT: examples/bilateral/trace.c: n < EXH_WIRE_FRAMES ? n : EXH_WIRE_FRAMES); -> n);
+ * PLANT: examples/bilateral/wire.c: if (out->packets == EXH_SCENE_PACKETS) { return; } -> (void)0;
+ * PLANT: examples/bilateral/wire.c: s->differs &= EXH_WIRE_ROLE | EXH_WIRE_LIB | EXH_WIRE_TABLE; -> (void)0;
+ * PLANT: examples/bilateral/bilateral.c: limits[k] = 0; -> (void)0;
+ * PLANT: examples/bilateral/finger.c: if (s->clamped & 1u << 1) { hand.pull_radpm_q20[0] = 0; } -> hand.pull_radpm_q20[0] *= 2;
  */
 #include "bilateral/bilateral.c"
 
@@ -45,8 +41,7 @@ void exh_precontact_skip(struct exh_precontact *of, uint32_t missed)
 uint32_t exh_precontact_step(struct exh_precontact *of, const struct exh_precontact_cfg *c,
                              const struct exh_precontact_in *in)
 {
-    /*@ assert precontact_step: precontact(of) && precontact_cfg(c) && \initialized(&in->tip_m_q30)
-     * && \initialized(&in->slope_q24); */
+    /*@ assert precontact_step: precontact(of) && precontact_cfg(c) && \initialized(&in->tip_m_q30) && \initialized(&in->slope_q24); */
     *of = any_precontact();
     return Frama_C_unsigned_int_interval(0, (1u << 10) - 1);
 }
@@ -105,8 +100,7 @@ int32_t exh_wire_write(struct exh_wire_tx *tx, struct exh_wire_packet *p, uint32
                        void *buf, size_t cap_B)
 {
     (void)stamp_us;
-    /*@ assert wire_write: \valid((char *)buf + (0 .. cap_B - 1)) && cap_B <= 256 &&
-     * \initialized(p); */
+    /*@ assert wire_write: \valid((char *)buf + (0 .. cap_B - 1)) && cap_B <= 256 && \initialized(p); */
     tx->seq = any_u32();
     Frama_C_make_unknown((char *)buf, cap_B);
     return Frama_C_interval(-64, 256);
@@ -135,8 +129,7 @@ static void any_finger_cfg(struct bilateral_finger_cfg *c, unsigned f)
     ANY(c->track);
     ANY(c->watch);
     ANY(c->precontact);
-    /*@ admit quad_cfg(&c->quad) && velocity_cfg(&c->velocity) && track_cfg(&c->track) &&
-     * precontact_made(&c->precontact); */
+    /*@ admit quad_cfg(&c->quad) && velocity_cfg(&c->velocity) && track_cfg(&c->track) && precontact_made(&c->precontact); */
     c->watch.par = &active.watch[f];
     c->hand = any_hand();
     c->precontact.par = &active.precontact[f];
@@ -178,8 +171,7 @@ static void any_cfg(void)
         struct exh_watch_par *const watch = &active.watch[f];
         struct exh_contact_par *const contact = &active.contact[f];
         struct exh_precontact_par *const precontact = &active.precontact[f];
-        /*@ admit taken: drive_par(drive) && watch_par(watch) && contact_par(contact) &&
-         * precontact_par(precontact); */
+        /*@ admit taken: drive_par(drive) && watch_par(watch) && contact_par(contact) && precontact_par(precontact); */
         state.drive_now[f] = *drive;
         any_finger_cfg(&cfg.finger[f], f);
         any_drive_cfg(&cfg.drive[f], f);
@@ -195,12 +187,11 @@ static void kept(void)
     for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
         const struct bilateral_finger *const now = &state.finger[f];
         const struct exh_drive_par *const drive = &state.drive_now[f];
-        /*@ assert next_finger: velocity(&now->velocity) && contact(&now->contact) &&
-           drive(&now->drive) && precontact(&now->precontact); */
+        /*@ assert next_finger: velocity(&now->velocity) && contact(&now->contact) && drive(&now->drive) &&
+              precontact(&now->precontact); */
         /*@ assert next_drive: drive_par(drive); */
     }
-    /*@ assert next: safety(&state.safety) && state.wire.trace.result <= 0 &&
-     * state.wire.trace.answer <= 1; */
+    /*@ assert next: safety(&state.safety) && state.wire.trace.result <= 0 && state.wire.trace.answer <= 1; */
 }
 
 static void one_tick(uint8_t least, uint8_t most, uint8_t packets)

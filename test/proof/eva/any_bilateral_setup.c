@@ -1,21 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: set-up of scene bilateral
- * Set-up of scene bilateral: each choice of fingers, any parameters, calibrations, any timer that
- * the loop takes: what it makes is what the tick is proved with, every place is a finger, and the
- * first are those in use.
+ * Set-up of scene bilateral: each choice of fingers, any parameters, calibrations, any timer that the loop takes: what it makes is what
+ * the tick is proved with, every place is a finger, and the first are those in use.
  *
- * EVA: -eva-slevel 20 -eva-split-return-function setup:0,bilateral_setup:0,bilateral_finger_setup:0
- * -kernel-warn-key annot:missing-spec=abort WITH: examples/glove/cal.c lib/src/glove_cal.c
- * examples/bilateral/finger.c examples/bilateral/cause.c examples/bilateral/wire.c
- * examples/bilateral/tables.c PLANT: examples/bilateral/bilateral.c: if (!(mask >> f & 1u)) {
- * cfg->at[at++] = (uint8_t)f; } -> cfg->at[at++] = (uint8_t)f; PLANT:
- * examples/bilateral/bilateral.c: cfg->drive[k] = cfg->drive[0]; -> (void)0; PLANT:
- * examples/bilateral/bilateral.c: if (cfg->n == 0) { return -EXH_E_RANGE; } -> (void)0; PLANT:
- * examples/bilateral/finger.c: exh_drive_setup(&cfg->drive[place], &s->drive_now[f] ->
- * exh_drive_setup(&cfg->drive[place], &s->drive_now[f + 1] PLANT: examples/bilateral/finger.c: err
- * = exh_hand_follow(&c->hand, &exh_hit2_map, f); -> err = exh_hand_follow(&c->hand, &exh_hit2_map,
- * f + 1); PLANT: examples/bilateral/finger.c: UINT32_C(1) << joint->sensor[t]; -> UINT32_C(1) <<
- * (joint->sensor[t] + 64);
+ * EVA: -eva-slevel 20 -eva-split-return-function setup:0,bilateral_setup:0,bilateral_finger_setup:0 -kernel-warn-key annot:missing-spec=abort
+ * WITH: examples/glove/cal.c lib/src/glove_cal.c examples/bilateral/finger.c examples/bilateral/cause.c examples/bilateral/wire.c examples/bilateral/tables.c
+ * PLANT: examples/bilateral/bilateral.c: if (!(mask >> f & 1u)) { cfg->at[at++] = (uint8_t)f; } -> cfg->at[at++] = (uint8_t)f;
+ * PLANT: examples/bilateral/bilateral.c: cfg->drive[k] = cfg->drive[0]; -> (void)0;
+ * PLANT: examples/bilateral/bilateral.c: if (cfg->n == 0) { return -EXH_E_RANGE; } -> (void)0;
+ * PLANT: examples/bilateral/finger.c: exh_drive_setup(&cfg->drive[place], &s->drive_now[f] -> exh_drive_setup(&cfg->drive[place], &s->drive_now[f + 1]
+ * PLANT: examples/bilateral/finger.c: err = exh_hand_follow(&c->hand, &exh_hit2_map, f); -> err = exh_hand_follow(&c->hand, &exh_hit2_map, f + 1);
+ * PLANT: examples/bilateral/finger.c: UINT32_C(1) << joint->sensor[t]; -> UINT32_C(1) << (joint->sensor[t] + 64);
  */
 #include "bilateral/bilateral.c"
 
@@ -31,8 +26,7 @@ int exh_precontact_setup(struct exh_precontact_cfg *to, const struct exh_precont
     struct exh_precontact_cfg made;
     (void)pad_m_q30;
     (void)T;
-    /*@ assert precontact_setup: \valid_read(par) && 1 <= materials <= 255 && \valid_read(material +
-     * (0 .. materials - 1)); */
+    /*@ assert precontact_setup: \valid_read(par) && 1 <= materials <= 255 && \valid_read(material + (0 .. materials - 1)); */
     if (REFUSED()) { return -EXH_E_RANGE; }
     /*@ admit precontact_par(par); */
     ANY(made);
@@ -94,9 +88,8 @@ static void chosen(int32_t fingers)
         /*@ assert finger: f < 5; */
         /*@ assert first_those_in_use: k < cfg.n ? used == 1 : used == 0; */
         /*@ assert made_drive: drive_cfg(drive); */
-        /*@ assert made_finger: quad_cfg(&c->quad) && velocity_cfg(&c->velocity) &&
-           track_cfg(&c->track) && watch_cfg(&c->watch) && hand(&c->hand) &&
-           precontact_cfg(&c->precontact); */
+        /*@ assert made_finger: quad_cfg(&c->quad) && velocity_cfg(&c->velocity) && track_cfg(&c->track) && watch_cfg(&c->watch) &&
+              hand(&c->hand) && precontact_cfg(&c->precontact); */
     }
     /*@ assert made: safety_cfg(&cfg.safety) && glove_cfg(&cfg.glove) && guard(&guard); */
     END();

@@ -1,17 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: calibration of a finger
- * Any bytes of some lengths as an image, with room for none to two points; any calibration of up to
- * two points judged and compared with anything; those whose points are in range (as it judges:
- * test/unit) made into tables of any room and written into buffers of some sizes; lines through any
- * points.
+ * Any bytes of some lengths as an image, with room for none to two points; any calibration of up to two points judged and compared with
+ * anything; those whose points are in range (as it judges: test/unit) made into tables of any room and written into buffers of
+ * some sizes; lines through any points.
  *
  * EVA: -eva-slevel 60
  * PLANT: lib/src/calibrate.c: if (h.points > c->cap) { return -EXH_E_SHORT; } -> (void)0;
- * PLANT: lib/src/calibrate.c: if (cap < last + 2u) { return refuse(bad, EXH_CALIB_FORCE_TABLE,
- * last, -EXH_E_SHORT); } -> (void)0; PLANT: lib/src/calibrate.c: if (cap < 2u * last + 3u) { return
- * refuse(bad, EXH_CALIB_MONITOR_TABLE, last, -EXH_E_SHORT); } -> (void)0; PLANT:
- * lib/src/calibrate.c: what < EXH_CALIB_WHATS -> what <= EXH_CALIB_WHATS PLANT:
- * lib/src/calibrate.c: if (n < 1 || n > EXH_CALIB_POINTS_MAX) { return -EXH_E_RANGE; } -> (void)0;
+ * PLANT: lib/src/calibrate.c: if (cap < last + 2u) { return refuse(bad, EXH_CALIB_FORCE_TABLE, last, -EXH_E_SHORT); } -> (void)0;
+ * PLANT: lib/src/calibrate.c: if (cap < 2u * last + 3u) { return refuse(bad, EXH_CALIB_MONITOR_TABLE, last, -EXH_E_SHORT); } -> (void)0;
+ * PLANT: lib/src/calibrate.c: what < EXH_CALIB_WHATS -> what <= EXH_CALIB_WHATS
+ * PLANT: lib/src/calibrate.c: if (n < 1 || n > EXH_CALIB_POINTS_MAX) { return -EXH_E_RANGE; } -> (void)0;
  */
 #include "bytes.c"
 #include "fix.c"

@@ -3,12 +3,10 @@
  * Force and current of a finger: any ledger, any permit of exh_safety_step(), any state that
  * exh_drive_bytes() lets pass; a table of three knots with any values that exh_table_set() lets.
  *
- * WP: closed: force 0. Open: no force rises above `f_max` or the end of the table. Release: falls
- * in every tick until 0, by no more than `fall` a tick. |current asked| <= `i_peak` for every state
- * and force.
+ * WP: closed: force 0. Open: no force rises above `f_max` or the end of the table. Release: falls in every tick until 0, by no
+ * more than `fall` a tick. |current asked| <= `i_peak` for every state and force.
  *
- * PLANT: lib/src/drive.c: exh_wrap_add64(f->spring_N_q20, f->damper_N_q20) -> f->spring_N_q20 +
- * f->damper_N_q20
+ * PLANT: lib/src/drive.c: exh_wrap_add64(f->spring_N_q20, f->damper_N_q20) -> f->spring_N_q20 + f->damper_N_q20
  */
 #include "drive.c"
 

@@ -1,20 +1,18 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: scene drop
- * Scene drop: any parameters, set-up for any board and calibrations, and of what it makes a tick in
- * any state that its bytes leave, with any frame, any command, any ticks missed, all functions of
- * the library keeping to contract.h; what a tick leaves is a state that a tick takes.
+ * Scene drop: any parameters, set-up for any board and calibrations, and of what it makes a tick in any state that its bytes
+ * leave, with any frame, any command, any ticks missed, all functions of the library keeping to contract.h; what a tick leaves is a
+ * state that a tick takes.
  *
- * EVA: -eva-slevel 40 -eva-split-return-function setup:0,drop_setup:0 -kernel-warn-key
- * annot:missing-spec=abort PLANT: examples/drop/drop.c: in->missed, in->command, 1, -> in->missed,
- * in->command, 6, PLANT: examples/drop/drop.c: exh_gate(&s->safety, &cfg->drive, 1, ->
- * exh_gate(&s->safety, &cfg->drive, 2, PLANT: examples/drop/drop.c: uint32_t limits = 0; ->
- * uint32_t limits; PLANT: examples/drop/drop.c: (starved ? EXH_FAULT_SUPPLY : 0u) -> (starved ?
- * EXH_FAULT_SUPPLY << 4 : 0u) PLANT: examples/drop/drop.c: sig->faults =
- * exh_from_u32(s->safety.faults); -> sig->faults = (int32_t)s->safety.faults; PLANT:
- * examples/drop/drop.c: exh_guard_seal(&guard, &cfg, sizeof cfg, -> exh_guard_seal(&guard, &cfg,
- * sizeof cfg + 1, PLANT: examples/drop/drop.c: const struct calib_finger finger = {0, &par->drive
- * -> const struct calib_finger finger = {0, NULL PLANT: examples/drop/drop.c: now->limits |=
- * exh_drive_current(&s->drive, &cfg->drive, &now->f, &now->i); -> (void)0;
+ * EVA: -eva-slevel 40 -eva-split-return-function setup:0,drop_setup:0 -kernel-warn-key annot:missing-spec=abort
+ * PLANT: examples/drop/drop.c: in->missed, in->command, 1, -> in->missed, in->command, 6,
+ * PLANT: examples/drop/drop.c: exh_gate(&s->safety, &cfg->drive, 1, -> exh_gate(&s->safety, &cfg->drive, 2,
+ * PLANT: examples/drop/drop.c: uint32_t limits = 0; -> uint32_t limits;
+ * PLANT: examples/drop/drop.c: (starved ? EXH_FAULT_SUPPLY : 0u) -> (starved ? EXH_FAULT_SUPPLY << 4 : 0u)
+ * PLANT: examples/drop/drop.c: sig->faults = exh_from_u32(s->safety.faults); -> sig->faults = (int32_t)s->safety.faults;
+ * PLANT: examples/drop/drop.c: exh_guard_seal(&guard, &cfg, sizeof cfg, -> exh_guard_seal(&guard, &cfg, sizeof cfg + 1,
+ * PLANT: examples/drop/drop.c: const struct calib_finger finger = {0, &par->drive -> const struct calib_finger finger = {0, NULL
+ * PLANT: examples/drop/drop.c: now->limits |= exh_drive_current(&s->drive, &cfg->drive, &now->f, &now->i); -> (void)0;
  */
 #include "drop/drop.c"
 
@@ -33,8 +31,7 @@ int main(void)
     state.more = any_causes(); /* as a scene around it raises them */
     ANY(in);
     exh_scene_drop.tick(&in, &out);
-    /*@ assert next: velocity(&state.velocity) && contact(&state.contact) && drive(&state.drive) &&
-     * safety(&state.safety); */
+    /*@ assert next: velocity(&state.velocity) && contact(&state.contact) && drive(&state.drive) && safety(&state.safety); */
     /*@ assert guarded: guard(&guard) && state.broken <= 1; */
     /*@ assert no_other_drive: out.enable <= 1; */
     END();

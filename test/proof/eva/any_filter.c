@@ -1,15 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: low-pass
- * Each kind, with any coefficients and shift (those of damaged memory too), any bits in the states,
- * any input, up to three channels, which know nothing of each other; reset; from any coefficients
- * to any others.
+ * Each kind, with any coefficients and shift (those of damaged memory too), any bits in the states, any input,
+ * up to three channels, which know nothing of each other; reset; from any coefficients to any others.
  *
- * PLANT: lib/src/filter_low.c: const int64_t p = exh_wrap_add64(s->vel, v); -> const int64_t p =
- * s->vel + v; PLANT: lib/src/filter_low.c: (int64_t)high_word(p) * c -> p * c PLANT:
- * lib/src/filter_high.c: exh_wrap_diff64(exh_wrap_add64(mid, mid), vel) -> exh_wrap_add64(mid, mid)
- * - vel PLANT: lib/src/filter_high.c: vel = bounded(s->vel); -> vel = 2 * s->vel; PLANT:
- * lib/src/filter.c: (v > most ? most : v < -most ? -most : v) * (INT64_C(1) << n) -> v *
- * (INT64_C(1) << n)
+ * PLANT: lib/src/filter_low.c: const int64_t p = exh_wrap_add64(s->vel, v); -> const int64_t p = s->vel + v;
+ * PLANT: lib/src/filter_low.c: (int64_t)high_word(p) * c -> p * c
+ * PLANT: lib/src/filter_high.c: exh_wrap_diff64(exh_wrap_add64(mid, mid), vel) -> exh_wrap_add64(mid, mid) - vel
+ * PLANT: lib/src/filter_high.c: vel = bounded(s->vel); -> vel = 2 * s->vel;
+ * PLANT: lib/src/filter.c: (v > most ? most : v < -most ? -most : v) * (INT64_C(1) << n) -> v * (INT64_C(1) << n)
  */
 #include "bytes.c"
 #include "filter.c"
@@ -29,8 +27,7 @@ static void any_input(void)
     for (unsigned i = 0; i < CHANNELS; i++) { x[i] = any32(); }
 }
 
-/* n channels; cfg.a in the k-th eighth of all values, so that it is seen that 2a has the sign that
- * it has. */
+/* n channels; cfg.a in the k-th eighth of all values, so that it is seen that 2a has the sign that it has. */
 static void each(enum exh_filter_kind kind, unsigned n, int32_t k)
 {
     const int32_t eighth = INT32_C(1) << 29;

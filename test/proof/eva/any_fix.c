@@ -4,9 +4,8 @@
  *
  * WP: contracts of exh_sat32(), exh_clamp() and exh_clamp32().
  *
- * PLANT: lib/include/exhand/fix.h: ((int64_t)a * b + (INT64_C(1) << (n - 1))) >> n -> ((int64_t)a *
- * b + (INT64_C(1) << n)) >> n PLANT: lib/include/exhand/fix.h: const int64_t hi = (a >> 32) * b; ->
- * const int64_t hi = a * b;
+ * PLANT: lib/include/exhand/fix.h: ((int64_t)a * b + (INT64_C(1) << (n - 1))) >> n -> ((int64_t)a * b + (INT64_C(1) << n)) >> n
+ * PLANT: lib/include/exhand/fix.h: const int64_t hi = (a >> 32) * b; -> const int64_t hi = a * b;
  */
 #include "exhand/fix.h"
 

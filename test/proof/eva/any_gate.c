@@ -3,9 +3,9 @@
  * The gate: any state of the box, any ledger, any output frame, every number of fingers; of the
  * parameters and constants those that exh_drive_setup() lets pass.
  *
- * WP: every code within `dac_zero` +- `dac_span` and within 16 bits; in RELEASE none further from
- * `dac_zero` than in the tick before; a gate that is shut codes `dac_zero` for each finger and
- * enables none; codes of fingers not in use are `dac_zero`; nothing else is written.
+ * WP: every code within `dac_zero` +- `dac_span` and within 16 bits; in RELEASE none further from `dac_zero` than in the tick
+ * before; a gate that is shut codes `dac_zero` for each finger and enables none; codes of fingers not in use are `dac_zero`;
+ * nothing else is written.
  *
  * PLANT: lib/src/gate.c: (1u << n) - 1u : 0u -> (1u << n) : 0u
  * PLANT: lib/src/gate.c: exh_wrap_diff64(passed, asked) -> passed - asked

@@ -1,19 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: glove
- * Any codes, in any state that the bytes leave, with a calibration of which only what the tick
- * reads counts: any gain, cross term, end and sensor, a zero within the card; any coefficients,
- * limits and lists (those of damaged memory too). Set-up of any parameters, and of any calibration
- * that is valid. Believed codes, angles and faults afterwards have no range but that of their
- * types; a cause is one of the four.
+ * Any codes, in any state that the bytes leave, with a calibration of which only what the tick reads counts: any
+ * gain, cross term, end and sensor, a zero within the card; any coefficients, limits and lists (those of damaged memory too).
+ * Set-up of any parameters, and of any calibration that is valid. Believed codes, angles and faults afterwards
+ * have no range but that of their types; a cause is one of the four.
  *
  * EVA: -eva-slevel 30
- * PLANT: lib/src/glove.c: cfg->crossed[n] < EXH_GLOVE_SENSORS ? cfg->crossed[n] : 0 ->
- * cfg->crossed[n] PLANT: lib/src/glove.c: if (cal->of[k] >= EXH_GLOVE_SENSORS) { continue; } -> if
- * (cal->of[k] == EXH_GLOVE_NONE) { continue; } PLANT: lib/src/glove.c: n < cfg->crosses && n <
- * EXH_GLOVE_SENSORS -> n < cfg->crosses PLANT: lib/src/glove.c: angle_turn_q32[i] = exh_sat32(sum);
- * -> angle_turn_q32[i] = (int32_t)sum; PLANT: lib/src/glove.c: if (s->cause[i] >= EXH_GLOVE_CAUSES)
- * { s->cause[i] = EXH_GLOVE_OUTSIDE; } -> (void)0; PLANT: lib/src/glove.c:
- * exh_clamp((int64_t)s->high_raw + margin, INT16_MIN, par->high_raw - 1) -> (s->high_raw + margin)
+ * PLANT: lib/src/glove.c: cfg->crossed[n] < EXH_GLOVE_SENSORS ? cfg->crossed[n] : 0 -> cfg->crossed[n]
+ * PLANT: lib/src/glove.c: if (cal->of[k] >= EXH_GLOVE_SENSORS) { continue; } -> if (cal->of[k] == EXH_GLOVE_NONE) { continue; }
+ * PLANT: lib/src/glove.c: n < cfg->crosses && n < EXH_GLOVE_SENSORS -> n < cfg->crosses
+ * PLANT: lib/src/glove.c: angle_turn_q32[i] = exh_sat32(sum); -> angle_turn_q32[i] = (int32_t)sum;
+ * PLANT: lib/src/glove.c: if (s->cause[i] >= EXH_GLOVE_CAUSES) { s->cause[i] = EXH_GLOVE_OUTSIDE; } -> (void)0;
+ * PLANT: lib/src/glove.c: exh_clamp((int64_t)s->high_raw + margin, INT16_MIN, par->high_raw - 1) -> (s->high_raw + margin)
  */
 #include "bytes.c"
 #include "fix.c"
@@ -27,8 +25,7 @@ static int filter_set_up(struct exh_filter_cfg *cfg);
 
 #include "any.h"
 
-/* Both prove elsewhere: eva/any_glove_cal.c and, for the coefficients that a set-up can make,
- * test/prop. */
+/* Both prove elsewhere: eva/any_glove_cal.c and, for the coefficients that a set-up can make, test/prop. */
 int exh_glove_cal_valid(const struct exh_glove_cal *cal, struct exh_glove_bad *bad)
 {
     (void)cal;

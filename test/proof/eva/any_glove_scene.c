@@ -1,17 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: scene glove
- * Scene glove: any parameters and calibration, set-up for any board, a frame or none in any state
- * that its bytes leave, all functions of the library keeping to contract_box.h; the gate with
- * nothing to drive.
+ * Scene glove: any parameters and calibration, set-up for any board, a frame or none in any state that its bytes leave, all
+ * functions of the library keeping to contract_box.h; the gate with nothing to drive.
  *
- * EVA: -eva-slevel 40 -eva-split-return-function setup:0,glove_setup:0 -kernel-warn-key
- * annot:missing-spec=abort WITH: examples/glove/cal.c lib/src/glove_cal.c PLANT:
- * examples/glove/glove.c: exh_hand_tip(&cfg->finger[f], joint, -> exh_hand_tip(&cfg->finger[f + 1],
- * joint, PLANT: examples/glove/glove.c: << (EXH_HAND_JOINTS * f); -> << (7 * EXH_HAND_JOINTS * f);
+ * EVA: -eva-slevel 40 -eva-split-return-function setup:0,glove_setup:0 -kernel-warn-key annot:missing-spec=abort
+ * WITH: examples/glove/cal.c lib/src/glove_cal.c
+ * PLANT: examples/glove/glove.c: exh_hand_tip(&cfg->finger[f], joint, -> exh_hand_tip(&cfg->finger[f + 1], joint,
+ * PLANT: examples/glove/glove.c: << (EXH_HAND_JOINTS * f); -> << (7 * EXH_HAND_JOINTS * f);
  * PLANT: examples/glove/glove.c: uint32_t limits = 0; -> uint32_t limits;
  * PLANT: examples/glove/glove.c: {.par = &idle_par}; -> {.par = NULL};
- * PLANT: examples/glove/glove.c: const uint64_t num = (uint64_t)board.T.num *
- * (uint32_t)active.own.every; -> const int32_t num = (int32_t)board.T.num * active.own.every;
+ * PLANT: examples/glove/glove.c: const uint64_t num = (uint64_t)board.T.num * (uint32_t)active.own.every; -> const int32_t num = (int32_t)board.T.num * active.own.every;
  */
 #include "glove/glove.c"
 

@@ -1,18 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: scene guarded
- * Scene guarded, with drop's functions, as scene drop; with a rule of gains and without, values
- * staged by it, and what may be applied.
+ * Scene guarded, with drop's functions, as scene drop; with a rule of gains and without, values staged by it, and what may be
+ * applied.
  *
- * EVA: -eva-slevel 40 -eva-split-return-function setup:0,drop_setup:0,guarded_setup:0,ask_rule:0
- * -kernel-warn-key annot:missing-spec=abort WITH: examples/drop/drop.c PLANT:
- * examples/guarded/guarded.c: cfg->held, t->force_to_cur, t->to_cur_n) -> cfg->held,
- * t->cur_to_force, t->to_force_n) PLANT: examples/guarded/guarded.c: return err == 0 ?
- * ask_rule(par, board.T) : err; -> return err; PLANT: examples/guarded/guarded.c: return
- * active.own.rule_on ? exh_gains_stage( -> return !active.own.rule_on ? exh_gains_stage( PLANT:
- * examples/guarded/guarded.c: if (active.own.rule_on) { exh_gains_step -> if (1) { exh_gains_step
- * PLANT: examples/guarded/guarded.c: sig->passivity_N_q20 = exh_sat32(now.f.passivity_N_q20); ->
- * sig->passivity_N_q20 = (int32_t)now.f.passivity_N_q20; PLANT: examples/guarded/guarded.c: held.n
- * = t->to_cur_n; -> (void)0;
+ * EVA: -eva-slevel 40 -eva-split-return-function setup:0,drop_setup:0,guarded_setup:0,ask_rule:0 -kernel-warn-key annot:missing-spec=abort
+ * WITH: examples/drop/drop.c
+ * PLANT: examples/guarded/guarded.c: cfg->held, t->force_to_cur, t->to_cur_n) -> cfg->held, t->cur_to_force, t->to_force_n)
+ * PLANT: examples/guarded/guarded.c: return err == 0 ? ask_rule(par, board.T) : err; -> return err;
+ * PLANT: examples/guarded/guarded.c: return active.own.rule_on ? exh_gains_stage( -> return !active.own.rule_on ? exh_gains_stage(
+ * PLANT: examples/guarded/guarded.c: if (active.own.rule_on) { exh_gains_step -> if (1) { exh_gains_step
+ * PLANT: examples/guarded/guarded.c: sig->passivity_N_q20 = exh_sat32(now.f.passivity_N_q20); -> sig->passivity_N_q20 = (int32_t)now.f.passivity_N_q20;
+ * PLANT: examples/guarded/guarded.c: held.n = t->to_cur_n; -> (void)0;
  */
 #include "guarded/guarded.c"
 
@@ -33,8 +31,8 @@ static void scene(int32_t rule_on)
     exh_scene_guarded.state(&c);
     ANY(in);
     exh_scene_guarded.tick(&in, &out);
-    /*@ assert next: velocity(&state.drop.velocity) && contact(&state.drop.contact) &&
-       drive(&state.drop.drive) && safety(&state.drop.safety) && passivity(&state.passivity); */
+    /*@ assert next: velocity(&state.drop.velocity) && contact(&state.drop.contact) && drive(&state.drop.drive) &&
+          safety(&state.drop.safety) && passivity(&state.passivity); */
     /*@ assert guarded: guard(&guard); */
     END();
 }

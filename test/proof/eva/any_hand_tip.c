@@ -1,15 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: hand: fingertip and slope
- * Set-up of any bones and parameters; of what it takes, tip and slope at any angles. Here
- * int_fast32_t has 64 bits: that 32 are enough for every value is z3's (smt_hand.py), and that
- * bound is what eva/hand_tip.acsl admits.
+ * Set-up of any bones and parameters; of what it takes, tip and slope at any angles. Here int_fast32_t has 64 bits: that 32 are
+ * enough for every value is z3's (smt_hand.py), and that bound is what eva/hand_tip.acsl admits.
  *
  * EVA: -eva-slevel 60
  * PLANT: lib/src/hand.c: b->base_m_q32[i] > BASE_MAX_M_Q32 -> b->base_m_q32[i] > 2 * BASE_MAX_M_Q32
- * PLANT: lib/src/hand.c: const int64_t along_q54 = 2 * w2_radpm_q20 -> const int64_t along_q54 = 16
- * * w2_radpm_q20 PLANT: lib/src/hand.c: const int64_t sum_q54 = (int64_t)row_q30[0] -> const
- * int64_t sum_q54 = 4 * (int64_t)row_q30[0] PLANT: lib/src/hand.c: if (square_q60 <
- * (uint64_t)ARM_MIN_M_Q30 * ARM_MIN_M_Q30) { return -EXH_E_RANGE; } -> (void)0;
+ * PLANT: lib/src/hand.c: const int64_t along_q54 = 2 * w2_radpm_q20 -> const int64_t along_q54 = 16 * w2_radpm_q20
+ * PLANT: lib/src/hand.c: const int64_t sum_q54 = (int64_t)row_q30[0] -> const int64_t sum_q54 = 4 * (int64_t)row_q30[0]
+ * PLANT: lib/src/hand.c: if (square_q60 < (uint64_t)ARM_MIN_M_Q30 * ARM_MIN_M_Q30) { return -EXH_E_RANGE; } -> (void)0;
  */
 #include <stdint.h>
 #define int_fast32_t int64_t
@@ -51,13 +49,10 @@ static void set_up(void)
     ANY(bones);
     ANY(par);
     if (exh_hand_setup(&f, &bones, &par) == 0) {
-        /*@ assert pulls: 0 <= f.pull_radpm_q20[0] <= 262144032 && 0 <= f.pull_radpm_q20[1] <=
-         * 262144032; */
-        /*@ assert base: -(1 << 29) <= bones.base_m_q32[0] <= 1 << 29 && -(1 << 29) <=
-         * bones.base_m_q32[2] <= 1 << 29; */
+        /*@ assert pulls: 0 <= f.pull_radpm_q20[0] <= 262144032 && 0 <= f.pull_radpm_q20[1] <= 262144032; */
+        /*@ assert base: -(1 << 29) <= bones.base_m_q32[0] <= 1 << 29 && -(1 << 29) <= bones.base_m_q32[2] <= 1 << 29; */
         /*@ assert bone: 0 < bones.len_m_q34[0] && 0 < bones.len_m_q34[2]; */
-        /*@ assert row: -(1 << 30) <= bones.rot_q30[0][0] <= 1 << 30 && -(1 << 30) <=
-         * bones.rot_q30[2][2] <= 1 << 30; */
+        /*@ assert row: -(1 << 30) <= bones.rot_q30[0][0] <= 1 << 30 && -(1 << 30) <= bones.rot_q30[2][2] <= 1 << 30; */
     }
 }
 

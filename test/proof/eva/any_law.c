@@ -3,8 +3,7 @@
  * The contact law: any state, position and velocity, parameters in their ranges.
  *
  * PLANT: lib/src/contact.c: (uint32_t)pos - (uint32_t)turn -> (uint32_t)(pos - turn)
- * PLANT: lib/src/contact.c: exh_diff_sat32(in.pos_m_q30, in.lim_m_q30) -> in.pos_m_q30 -
- * in.lim_m_q30
+ * PLANT: lib/src/contact.c: exh_diff_sat32(in.pos_m_q30, in.lim_m_q30) -> in.pos_m_q30 - in.lim_m_q30
  */
 #include "contact.c"
 

@@ -1,20 +1,19 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: loop and switch
- * The loop and the dead-man switch: a board that answers anything, of any timer and any ticks
- * missed, whose calls fail at any time and leave then what they were to fill; a scene with glove,
- * link, parameters and words and one without any, which asserts what it is given; the place of an
- * assertion, of a name of any length.
+ * The loop and the dead-man switch: a board that answers anything, of any timer and any ticks missed, whose calls fail at any time and
+ * leave then what they were to fill; a scene with glove, link, parameters and words and one without any, which asserts what it is
+ * given; the place of an assertion, of a name of any length.
  *
  * EVA: -kernel-warn-key annot:missing-spec=abort
- * PLANT: examples/loop.c: while (in->packets < EXH_SCENE_PACKETS) { -> while (in->packets <=
- * EXH_SCENE_PACKETS) { PLANT: examples/loop.c: if (n <= 0 || n > EXH_SCENE_PACKET_B) { return; } ->
- * if (n <= 0) { return; } PLANT: examples/loop.c: if (err == 0) { err = sc->setup(*board); } -> err
- * = sc->setup(*board); PLANT: examples/loop.c: if (err < 0) { return err; } -> (void)0; PLANT:
- * examples/loop.c: if (sc->end) { sc->end(); } -> sc->end(); PLANT: examples/loop.c: if (sc->tell)
- * { sc->tell(); } -> sc->tell(); PLANT: examples/loop.c: file[n] != '\0' && n < 48 -> file[n] !=
- * '\0' PLANT: examples/deadman.c: safety ? safety->state : (uint8_t)EXH_STATE_OFF; ->
- * safety->state; PLANT: examples/loop.c: if (err == 0 && !exh_period_ok(board->T)) { err =
- * -EXH_E_RATE; } -> (void)0;
+ * PLANT: examples/loop.c: while (in->packets < EXH_SCENE_PACKETS) { -> while (in->packets <= EXH_SCENE_PACKETS) {
+ * PLANT: examples/loop.c: if (n <= 0 || n > EXH_SCENE_PACKET_B) { return; } -> if (n <= 0) { return; }
+ * PLANT: examples/loop.c: if (err == 0) { err = sc->setup(*board); } -> err = sc->setup(*board);
+ * PLANT: examples/loop.c: if (err < 0) { return err; } -> (void)0;
+ * PLANT: examples/loop.c: if (sc->end) { sc->end(); } -> sc->end();
+ * PLANT: examples/loop.c: if (sc->tell) { sc->tell(); } -> sc->tell();
+ * PLANT: examples/loop.c: file[n] != '\0' && n < 48 -> file[n] != '\0'
+ * PLANT: examples/deadman.c: safety ? safety->state : (uint8_t)EXH_STATE_OFF; -> safety->state;
+ * PLANT: examples/loop.c: if (err == 0 && !exh_period_ok(board->T)) { err = -EXH_E_RATE; } -> (void)0;
  */
 #define exh_assert_failed loop_assert_failed
 #include "loop.c"
@@ -110,8 +109,7 @@ static int setup_any(struct exh_scene_board board)
 
 static void tick_any(const struct exh_scene_in *in, struct exh_drive_out *out)
 {
-    /*@ assert given: \initialized(&in->drive) && \initialized(&in->missed) &&
-     * \initialized(&in->command) && \initialized(&in->glove); */
+    /*@ assert given: \initialized(&in->drive) && \initialized(&in->missed) && \initialized(&in->command) && \initialized(&in->glove); */
     for (unsigned i = 0; i < mail_in.packets; i++) {
         const uint16_t len_B = mail_in.len_B[i];
         /*@ assert mail: 1 <= len_B <= 256; */

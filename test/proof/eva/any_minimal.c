@@ -1,16 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: scene minimal
- * Scene minimal: set-up for any board, and of what it makes a tick in any state, with any frame,
- * any command, any ticks missed, all functions of the library keeping to contract.h; what a tick
- * leaves is a state that a tick takes.
+ * Scene minimal: set-up for any board, and of what it makes a tick in any state, with any frame, any command, any ticks missed, all
+ * functions of the library keeping to contract.h; what a tick leaves is a state that a tick takes.
  *
  * EVA: -eva-slevel 40 -eva-split-return-function setup:0 -kernel-warn-key annot:missing-spec=abort
- * PLANT: examples/minimal/minimal.c: in->missed, in->command, 1, vouched} -> in->missed,
- * in->command, 0, vouched} PLANT: examples/minimal/minimal.c: exh_gate(&s.safety, &drive_cfg, 1,
- * &i, -> exh_gate(&s.safety, &drive_cfg, 2, &i, PLANT: examples/minimal/minimal.c:
- * in->drive.enc_raw[0]) -> in->drive.enc_raw[5]) PLANT: examples/minimal/minimal.c:
- * exh_contact_law(&s.contact, &contact_par, q, &f); -> (void)q; PLANT: examples/minimal/minimal.c:
- * = {knot, 2}, no_table -> = {knot, 3}, no_table
+ * PLANT: examples/minimal/minimal.c: in->missed, in->command, 1, vouched} -> in->missed, in->command, 0, vouched}
+ * PLANT: examples/minimal/minimal.c: exh_gate(&s.safety, &drive_cfg, 1, &i, -> exh_gate(&s.safety, &drive_cfg, 2, &i,
+ * PLANT: examples/minimal/minimal.c: in->drive.enc_raw[0]) -> in->drive.enc_raw[5])
+ * PLANT: examples/minimal/minimal.c: exh_contact_law(&s.contact, &contact_par, q, &f); -> (void)q;
+ * PLANT: examples/minimal/minimal.c: = {knot, 2}, no_table -> = {knot, 3}, no_table
  */
 #include "minimal/minimal.c"
 
@@ -30,8 +28,7 @@ int main(void)
     s.safety = any_safety();
     ANY(in);
     exh_scene_minimal.tick(&in, &out);
-    /*@ assert next: velocity(&s.vel) && contact(&s.contact) && drive(&s.drive) &&
-     * safety(&s.safety); */
+    /*@ assert next: velocity(&s.vel) && contact(&s.contact) && drive(&s.drive) && safety(&s.safety); */
     /*@ assert no_other_drive: out.enable <= 1; */
     END();
     return 0;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: serial line of Modbus
- * Any byte, any silence, in any state of a line whose frame is at most as long as what stops it;
- * set-up of any address and rate; an answer to any request that is ready, whatever the map says.
+ * Any byte, any silence, in any state of a line whose frame is at most as long as what stops it; set-up of any address and
+ * rate; an answer to any request that is ready, whatever the map says.
  *
  * EVA: -eva-slevel 40
  * PLANT: lib/src/modbus_rtu.c: if (u->len_B < EXH_MODBUS_ADU_B) { -> {

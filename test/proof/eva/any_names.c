@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: texts
- * Names and texts of any number: of states, triggers, faults, limits, steps of arming, errors, what
- * is wrong with a sensor or with a calibration.
+ * Names and texts of any number: of states, triggers, faults, limits, steps of arming, errors, what is wrong with a sensor or with a
+ * calibration.
  *
  * PLANT: lib/src/safety_names.c: k < EXH_LIMITS ? -> k <= EXH_LIMITS ?
  * PLANT: lib/src/error.c: code <= -EXH_E_COUNT || -> code < -EXH_E_COUNT ||
- * PLANT: lib/src/glove_cal.c: sensor < EXH_GLOVE_SENSORS ? text[sensor] -> sensor <=
- * EXH_GLOVE_SENSORS ? text[sensor]
+ * PLANT: lib/src/glove_cal.c: sensor < EXH_GLOVE_SENSORS ? text[sensor] -> sensor <= EXH_GLOVE_SENSORS ? text[sensor]
  */
 #include "calibrate.c"
 #include "error.c"

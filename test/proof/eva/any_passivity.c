@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: energy
- * Passivity of a finger: any state that exh_passivity_bytes() lets pass, any count, any ledger of a
- * law, any current; a table of three knots with any values that exh_table_set() lets.
+ * Passivity of a finger: any state that exh_passivity_bytes() lets pass, any count, any ledger of a law, any
+ * current; a table of three knots with any values that exh_table_set() lets.
  *
  * PLANT: lib/src/passivity.c: = limited(e); -> = e;
  */

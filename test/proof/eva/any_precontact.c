@@ -1,19 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: pre-contact
- * Told any plane of any age, in any state that the bytes leave, any fingertip, slope, string and
- * age; ticks missed. Parameters in their rows, read at every tick; set-up of any. What is left is
- * again such a state: the phase one of the four, the planes none or with a unit normal (by
- * eva/precontact.acsl).
+ * Told any plane of any age, in any state that the bytes leave, any fingertip, slope, string and age; ticks missed.
+ * Parameters in their rows, read at every tick; set-up of any. What is left is again such a state: the phase one of the
+ * four, the planes none or with a unit normal (by eva/precontact.acsl).
  *
  * EVA: -eva-slevel 300
  * PLANT: lib/src/precontact.c: s->phase > EXH_PRECONTACT_FROZEN || -> 0 ||
  * PLANT: lib/src/precontact.c: cfg->material[m < cfg->materials ? m : 0] -> cfg->material[m]
  * PLANT: lib/src/precontact.c: is_unit(&p->normal_q30) && p->offset -> p->offset
- * PLANT: lib/src/precontact.c: exh_wrap_diff64(p->offset_m_q60, dot(&p->normal_q30, tip)) ->
- * (p->offset_m_q60 - dot(&p->normal_q30, tip)) PLANT: lib/src/precontact.c: const int64_t
- * free_m_q30 = (int64_t)cfg->par->d_lim_m_q30 - -> const int64_t free_m_q30 = 16 *
- * cfg->par->d_lim_m_q30 - PLANT: lib/src/precontact.c: exh_sat32(exh_wrap_diff64( ->
- * (int32_t)(exh_wrap_diff64(
+ * PLANT: lib/src/precontact.c: exh_wrap_diff64(p->offset_m_q60, dot(&p->normal_q30, tip)) -> (p->offset_m_q60 - dot(&p->normal_q30, tip))
+ * PLANT: lib/src/precontact.c: const int64_t free_m_q30 = (int64_t)cfg->par->d_lim_m_q30 - -> const int64_t free_m_q30 = 16 * cfg->par->d_lim_m_q30 -
+ * PLANT: lib/src/precontact.c: exh_sat32(exh_wrap_diff64( -> (int32_t)(exh_wrap_diff64(
  */
 #include "bytes.c"
 #include "fix.c"

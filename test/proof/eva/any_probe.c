@@ -1,18 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: probe, home, weigh
- * Set-up of any parameters and any scale; what a configuration that it takes is, is stated, and
- * every such one is ticked: in any state, at any count, with any currents. What is asked is within
- * the current it is bounded by, a result one of the seven.
+ * Set-up of any parameters and any scale; what a configuration that it takes is, is stated, and every such one is ticked: in any
+ * state, at any count, with any currents. What is asked is within the current it is bounded by, a result one of the seven.
  *
  * EVA: -eva-slevel 60
- * PLANT: lib/src/probe.c: s->cur_A_q26 = exh_clamp(next, 0, EXH_PROBE_CUR_MAX_A_Q26); ->
- * s->cur_A_q26 = (int32_t)next + cfg->end_A_q26; PLANT: lib/src/probe.c: const int64_t size = step
- * < 0 ? -step : step; -> const int64_t size = step < 0 ? -par->step_A_q26 : step; PLANT:
- * lib/src/probe.c: return scale.step_m_q42 > 0 && -> return PLANT: lib/src/probe.c: const int64_t
- * in = -(int64_t)exh_wrap_diff -> const int64_t in = -exh_wrap_diff PLANT: lib/src/weigh.c: -moved
- * >= cfg->up.move_cnt; -> -(int32_t)moved >= cfg->up.move_cnt; PLANT: lib/src/weigh.c: s->cur_A_q26
- * = (s->lift_A_q26 + at_A_q26) >> 1; -> s->cur_A_q26 = 100 * s->lift_A_q26 + at_A_q26; PLANT:
- * lib/src/calibrate.c: if (m->n == 0) { return 0; } -> (void)0;
+ * PLANT: lib/src/probe.c: s->cur_A_q26 = exh_clamp(next, 0, EXH_PROBE_CUR_MAX_A_Q26); -> s->cur_A_q26 = (int32_t)next + cfg->end_A_q26;
+ * PLANT: lib/src/probe.c: const int64_t size = step < 0 ? -step : step; -> const int64_t size = step < 0 ? -par->step_A_q26 : step;
+ * PLANT: lib/src/probe.c: return scale.step_m_q42 > 0 && -> return
+ * PLANT: lib/src/probe.c: const int64_t in = -(int64_t)exh_wrap_diff -> const int64_t in = -exh_wrap_diff
+ * PLANT: lib/src/weigh.c: -moved >= cfg->up.move_cnt; -> -(int32_t)moved >= cfg->up.move_cnt;
+ * PLANT: lib/src/weigh.c: s->cur_A_q26 = (s->lift_A_q26 + at_A_q26) >> 1; -> s->cur_A_q26 = 100 * s->lift_A_q26 + at_A_q26;
+ * PLANT: lib/src/calibrate.c: if (m->n == 0) { return 0; } -> (void)0;
  */
 #include "bytes.c"
 #define exh_udiv64 udiv64_by_steps
@@ -48,13 +46,11 @@ static void set_up(int32_t step_m_q42, uint32_t least, uint32_t most)
     ANY(home_par);
     ANY(weigh_par);
     if (exh_probe_setup(&cfg, &par, scale) == 0) {
-        /*@ assert currents: -33554432 <= cfg.step_A_q26 <= 33554432 && 0 <= cfg.end_A_q26 <=
-         * 221459251; */
+        /*@ assert currents: -33554432 <= cfg.step_A_q26 <= 33554432 && 0 <= cfg.end_A_q26 <= 221459251; */
         /*@ assert counts: 1 <= cfg.move_cnt && 1 <= cfg.travel_cnt <= 1 << 30; */
     }
     if (exh_home_setup(&home_cfg, &home_par, scale) == 0) {
-        /*@ assert home: 1 <= home_cfg.move_cnt && 1 <= home_cfg.most_cnt <= 1 << 30 &&
-         * home_cfg.least_cnt >= 0; */
+        /*@ assert home: 1 <= home_cfg.move_cnt && 1 <= home_cfg.most_cnt <= 1 << 30 && home_cfg.least_cnt >= 0; */
         /*@ assert low: 1 <= home_cfg.cur_A_q26 <= 33554432; */
     }
     (void)exh_weigh_setup(&weigh_cfg, &weigh_par, scale);

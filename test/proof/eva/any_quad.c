@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: quadrature
- * Lines, index and counter in any state that their bytes leave, of any sample; any count to metres;
- * set-up of any parameters, any period and any width: what it takes is a jump of a quarter of the
- * counter at most.
+ * Lines, index and counter in any state that their bytes leave, of any sample; any count to metres; set-up
+ * of any parameters, any period and any width: what it takes is a jump of a quarter of the counter at most.
  *
  * EVA: -eva-auto-loop-unroll 300 -eva-slevel 800
  * PLANT: lib/src/quad.c: s->ab &= 3; -> (void)0;
@@ -17,8 +16,7 @@
 
 #include "any.h"
 
-/* Each block of a run ends where its own n says: a block and a short one show all there is. What a
- * mode adds: anything. */
+/* Each block of a run ends where its own n says: a block and a short one show all there is. What a mode adds: anything. */
 #define SAMPLES (RUN_MAX + 2)
 
 static struct exh_quad_mode mode;

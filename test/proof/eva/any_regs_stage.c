@@ -1,20 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: register map, written
- * Each address of the blocks that can be written, and behind their ends, of a map of two tables of
- * eight values and a trace of two frames with anything in them, staged or commanded: one register,
- * two, all, and one more, of any bytes. Any coils; what is staged handed on, forgotten, taken;
- * commands of anything. A value never leaves the table's own range.
+ * Each address of the blocks that can be written, and behind their ends, of a map of two tables of eight values and a trace of
+ * two frames with anything in them, staged or commanded: one register, two, all, and one more, of any bytes. Any coils; what
+ * is staged handed on, forgotten, taken; commands of anything. A value never leaves the table's own range.
  *
- * EVA: -eva-slevel 100 -eva-slevel-function block:1000 -eva-slevel-merge-after-loop
- * exh_regs_judge,exh_regs_write -eva-split-return-function judge:0,written:0,from_float:0 PLANT:
- * lib/src/regs_stage.c: if ((uint32_t)at + n > EXH_COILS) { return EXH_MODBUS_ADDRESS; } ->
- * (void)0; PLANT: lib/src/regs_stage.c: r->touched[i >> 5] &= ~bit; -> r->touched[i >> 2] &= ~bit;
- * PLANT: lib/src/regs_stage.c: const int high = 2 * i >= s->from, low = 2 * i + 1 < s->end; ->
- * const int high = 2 * i >= s->from, low = 1; PLANT: lib/src/regs_stage.c: if (raw < row->min ||
- * raw > row->max) { return EXH_MODBUS_VALUE; } -> (void)0; PLANT: lib/src/regs_stage.c: const
- * uint32_t apply = 1u << EXH_COIL_APPLY, discard = 1u << EXH_COIL_DISCARD; -> const uint32_t apply
- * = 1u << EXH_COILS * at, discard = 1u << EXH_COIL_DISCARD; PLANT: lib/src/regs_trace.c:
- * &what.index[(at >> 1) - 1u] -> &what.index[at >> 1]
+ * EVA: -eva-slevel 100 -eva-slevel-function block:1000 -eva-slevel-merge-after-loop exh_regs_judge,exh_regs_write -eva-split-return-function judge:0,written:0,from_float:0
+ * PLANT: lib/src/regs_stage.c: if ((uint32_t)at + n > EXH_COILS) { return EXH_MODBUS_ADDRESS; } -> (void)0;
+ * PLANT: lib/src/regs_stage.c: r->touched[i >> 5] &= ~bit; -> r->touched[i >> 2] &= ~bit;
+ * PLANT: lib/src/regs_stage.c: const int high = 2 * i >= s->from, low = 2 * i + 1 < s->end; -> const int high = 2 * i >= s->from, low = 1;
+ * PLANT: lib/src/regs_stage.c: if (raw < row->min || raw > row->max) { return EXH_MODBUS_VALUE; } -> (void)0;
+ * PLANT: lib/src/regs_stage.c: const uint32_t apply = 1u << EXH_COIL_APPLY, discard = 1u << EXH_COIL_DISCARD; -> const uint32_t apply = 1u << EXH_COILS * at, discard = 1u << EXH_COIL_DISCARD;
+ * PLANT: lib/src/regs_trace.c: &what.index[(at >> 1) - 1u] -> &what.index[at >> 1]
  */
 #include "bytes.c"
 #include "fix.c"

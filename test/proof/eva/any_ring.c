@@ -1,19 +1,18 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: ring of records
- * Set-up of any size. Memory of the least size and of one that is no power of two, in any state
- * that a put leaves (parts within it, the head within it): a record of any type and of some
- * lengths, the longest that fits and one more among them; two after one another. Read from the
- * oldest, or from any place, with anything in the memory; the record found goes out in pieces of
- * any size.
+ * Set-up of any size. Memory of the least size and of one that is no power of two, in any state that a put leaves (parts within
+ * it, the head within it): a record of any type and of some lengths, the longest that fits and one more among them; two
+ * after one another. Read from the oldest, or from any place, with anything in the memory; the record found goes out in
+ * pieces of any size.
  *
  * EVA: -eva-slevel 100 -eva-slevel-function main:3000
  * PLANT: lib/src/ring.c: return at < SLOTS ? at : at - SLOTS; -> return at;
- * PLANT: lib/src/ring.c: const uint32_t first = least(n, r->cap_B - at); -> const uint32_t first =
- * n; PLANT: lib/src/ring.c: r->head = copy_in(r, at, payload, len_B); -> r->head = at + len_B;
+ * PLANT: lib/src/ring.c: const uint32_t first = least(n, r->cap_B - at); -> const uint32_t first = n;
+ * PLANT: lib/src/ring.c: r->head = copy_in(r, at, payload, len_B); -> r->head = at + len_B;
  * PLANT: lib/src/ring.c: if (begins && parts(r) == SLOTS) { drop_oldest(r); } -> (void)0;
- * PLANT: lib/src/ring.c: payload.at = payload.at + 1 < r->cap_B ? payload.at + 1 : 0; -> payload.at
- * = payload.at + 1; PLANT: lib/src/ring.c: if (payload.len_B > p->left_B - EXH_RING_HEAD_B) {
- * return 0; } -> (void)0; PLANT: lib/src/ring.c: n = least(n, o->cap_B - o->at); -> (void)o;
+ * PLANT: lib/src/ring.c: payload.at = payload.at + 1 < r->cap_B ? payload.at + 1 : 0; -> payload.at = payload.at + 1;
+ * PLANT: lib/src/ring.c: if (payload.len_B > p->left_B - EXH_RING_HEAD_B) { return 0; } -> (void)0;
+ * PLANT: lib/src/ring.c: n = least(n, o->cap_B - o->at); -> (void)o;
  */
 #include <stddef.h>
 #include <stdint.h>
@@ -73,8 +72,7 @@ static void put(uint32_t cap_B, uint32_t head, uint32_t oldest_n, uint32_t parts
     left();
 }
 
-/* What is left to read is one number: that a record of it leaves no less than nothing is its
- * difference. */
+/* What is left to read is one number: that a record of it leaves no less than nothing is its difference. */
 static void reads(uint32_t left_B)
 {
     struct exh_ring_place p;

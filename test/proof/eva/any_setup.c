@@ -1,19 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: set-up and bytes of the output path
- * Set-up of force and current, passivity, state of the box, tracking, speed: any parameters, loop
- * rates in thousandths of Hz; tables of up to three knots with anything in them, judged and
- * inverted. States of any bytes, and what they become is within what the ticks are proved for.
- * Frames of any bytes; the monitor by any table that is taken.
+ * Set-up of force and current, passivity, state of the box, tracking, speed: any parameters, loop rates in
+ * thousandths of Hz; tables of up to three knots with anything in them, judged and inverted. States of any bytes, and what
+ * they become is within what the ticks are proved for. Frames of any bytes; the monitor by any table that is taken.
  *
  * EVA: -eva-slevel 12 -eva-slevel-function setup_i2t:60,exh_passivity_setup:60
- * PLANT: lib/src/drive.c: s->i2t_q32 > INT64_MAX / 2) { s->i2t_q32 = INT64_MAX / 2; } -> 0) {
- * s->i2t_q32 = 0; } PLANT: lib/src/drive.c: if (n < 2 || n > 255) { return -EXH_E_RANGE; } ->
- * (void)0; PLANT: lib/src/drive.c: const int64_t dy = (int64_t)knot[i + 1].y - knot[i].y; -> const
- * int64_t dy = knot[i + 1].y - knot[i].y; PLANT: lib/src/passivity.c: if (way > WAY_MAX_CNT) {
- * return -EXH_E_RANGE; } -> (void)0; PLANT: lib/src/passivity.c: s->energy_Ncnt_q20 =
- * limited(s->energy_Ncnt_q20); -> (void)0; PLANT: lib/src/safety.c: cfg->arm_ticks =
- * exh_ticks_in(par->arm_ms, T) + 1; -> cfg->arm_ticks = exh_ticks_in(par->arm_ms, T) - 1; PLANT:
- * lib/src/contact.c: s->inward = s->inward != 0; -> (void)0;
+ * PLANT: lib/src/drive.c: s->i2t_q32 > INT64_MAX / 2) { s->i2t_q32 = INT64_MAX / 2; } -> 0) { s->i2t_q32 = 0; }
+ * PLANT: lib/src/drive.c: if (n < 2 || n > 255) { return -EXH_E_RANGE; } -> (void)0;
+ * PLANT: lib/src/drive.c: const int64_t dy = (int64_t)knot[i + 1].y - knot[i].y; -> const int64_t dy = knot[i + 1].y - knot[i].y;
+ * PLANT: lib/src/passivity.c: if (way > WAY_MAX_CNT) { return -EXH_E_RANGE; } -> (void)0;
+ * PLANT: lib/src/passivity.c: s->energy_Ncnt_q20 = limited(s->energy_Ncnt_q20); -> (void)0;
+ * PLANT: lib/src/safety.c: cfg->arm_ticks = exh_ticks_in(par->arm_ms, T) + 1; -> cfg->arm_ticks = exh_ticks_in(par->arm_ms, T) - 1;
+ * PLANT: lib/src/contact.c: s->inward = s->inward != 0; -> (void)0;
  */
 #include "bytes.c"
 #define exh_udiv64 udiv64_by_steps

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: trace
- * Memory of 2, 8 and 128 frames with anything in it, five signals, any state as the bytes leave it,
- * any trace asked for, any values; passed on between any two states. Set-up of any number of frames
- * and signals.
+ * Memory of 2, 8 and 128 frames with anything in it, five signals, any state as the bytes leave it, any trace asked for, any
+ * values; passed on between any two states. Set-up of any number of frames and signals.
  *
  * EVA: -eva-slevel 200
  * PLANT: lib/src/trace.c: t->what.index[i] >= t->signals -> t->what.index[i] > t->signals
@@ -31,8 +30,7 @@ static void any_trace(struct exh_trace *t, struct exh_trace_frame *frame, uint32
 {
     (void)exh_trace_setup(t, of(frame, frames), frames, SIGNALS);
     FROM_BYTES(*t, exh_trace_bytes);
-    /*@ assert signals: t->what.index[0] < 5 && t->what.index[1] < 5 && t->what.index[2] < 5 &&
-     * t->what.index[3] < 5; */
+    /*@ assert signals: t->what.index[0] < 5 && t->what.index[1] < 5 && t->what.index[2] < 5 && t->what.index[3] < 5; */
 }
 
 static void traced(uint32_t frames)

@@ -2,8 +2,7 @@
 /* PROVES: current tracking
  * Current tracking: any state, any tolerance in range, any monitor, any code.
  *
- * WP: met: the count starts anew; else it rises; told when it is reached; the band holds what was
- * coded.
+ * WP: met: the count starts anew; else it rises; told when it is reached; the band holds what was coded.
  *
  * PLANT: lib/src/track.c: (int64_t)s->hi_A_q26 + cfg->tol_A_q26 -> s->hi_A_q26 + cfg->tol_A_q26
  */

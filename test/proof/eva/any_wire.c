@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: wire
- * Any bytes of any length as a datagram, into a receiver in any state that its bytes leave; time
- * that passes. Any packet into buffers of any size; what came as a plane, and as a parameter of any
- * table of ten values.
+ * Any bytes of any length as a datagram, into a receiver in any state that its bytes leave; time that passes. Any packet into
+ * buffers of any size; what came as a plane, and as a parameter of any table of ten values.
  *
  * EVA: -eva-slevel 20
- * PLANT: lib/src/wire.c: !exh_bytes_ok(&c) || len_B != HEAD_B + h->len_B + CRC_B ->
- * !exh_bytes_ok(&c) PLANT: lib/src/wire.c: if (late >= WINDOW) { -> if (late > WINDOW) { PLANT:
- * lib/src/wire.c: ahead < WINDOW ? rx->seen -> ahead <= WINDOW ? rx->seen PLANT: lib/src/wire.c: i
- * < t->frames && i < EXH_WIRE_FRAMES -> i < t->frames PLANT: lib/src/wire.c: if (cap_B < end +
- * CRC_B) { return -EXH_E_SHORT; } -> (void)0;
+ * PLANT: lib/src/wire.c: !exh_bytes_ok(&c) || len_B != HEAD_B + h->len_B + CRC_B -> !exh_bytes_ok(&c)
+ * PLANT: lib/src/wire.c: if (late >= WINDOW) { -> if (late > WINDOW) {
+ * PLANT: lib/src/wire.c: ahead < WINDOW ? rx->seen -> ahead <= WINDOW ? rx->seen
+ * PLANT: lib/src/wire.c: i < t->frames && i < EXH_WIRE_FRAMES -> i < t->frames
+ * PLANT: lib/src/wire.c: if (cap_B < end + CRC_B) { return -EXH_E_SHORT; } -> (void)0;
  */
 #include "bytes.c"
 #include "fix.c"

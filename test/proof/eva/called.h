@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The library's functions as a scene calls them: each asks for what its own proof takes for
- * granted, and leaves anything within what that proof shows (contract.h). What a function only
- * reads stays a pointer that must be one. */
+/* The library's functions as a scene calls them: each asks for what its own proof takes for granted, and leaves anything within what
+ * that proof shows (contract.h). What a function only reads stays a pointer that must be one. */
 #ifndef PROOF_CALLED_H
 #define PROOF_CALLED_H
 
@@ -9,8 +8,8 @@
 
 #include "exhand/error.h"
 
-/*@ predicate gate_cfg(struct exh_drive_cfg *c) = \valid_read(c->par) && 0 <= c->par->dac_zero_raw
-   <= 65535 && 0 <= c->par->dac_span_raw <= 32767 && gain(&c->dac_A_q26); */
+/*@ predicate gate_cfg(struct exh_drive_cfg *c) = \valid_read(c->par) && 0 <= c->par->dac_zero_raw <= 65535 &&
+      0 <= c->par->dac_span_raw <= 32767 && gain(&c->dac_A_q26); */
 
 #define REFUSED() (any8() & 1)
 
@@ -120,8 +119,7 @@ int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par, 
 {
     struct exh_drive_cfg made;
     (void)T;
-    /*@ assert drive_setup: \valid_read(par) && table(&force_to_cur) &&
-     * table_or_none(&cur_to_force); */
+    /*@ assert drive_setup: \valid_read(par) && table(&force_to_cur) && table_or_none(&cur_to_force); */
     if (REFUSED()) { return -EXH_E_RANGE; }
     /*@ admit drive_par(par); */
     ANY(made);
@@ -218,8 +216,7 @@ void exh_passivity_held(struct exh_passivity *s, const struct exh_passivity_cfg 
                         const struct exh_force_ledger *f, int32_t coded_A_q26)
 {
     (void)coded_A_q26;
-    /*@ assert passivity_held: passivity(s) && passivity_cfg(cfg) && pullback(f) &&
-     * \initialized(&f->force_N_q20); */
+    /*@ assert passivity_held: passivity(s) && passivity_cfg(cfg) && pullback(f) && \initialized(&f->force_N_q20); */
     *s = any_passivity();
 }
 
@@ -348,8 +345,7 @@ int exh_safety_setup(struct exh_safety_cfg *cfg, const struct exh_safety_par *pa
 struct exh_permit exh_safety_step(struct exh_safety *s, const struct exh_safety_cfg *cfg,
                                   struct exh_safety_in in)
 {
-    /*@ assert safety_step: safety(s) && safety_cfg(cfg) && 1 <= in.fingers <= 5 &&
-     * causes(in.raised); */
+    /*@ assert safety_step: safety(s) && safety_cfg(cfg) && 1 <= in.fingers <= 5 && causes(in.raised); */
     *s = any_safety();
     s->state = (uint8_t)Frama_C_unsigned_int_interval(0, 5);
     s->fingers = in.fingers;

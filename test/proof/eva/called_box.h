@@ -36,8 +36,7 @@ int exh_glove_setup(struct exh_glove_cfg *cfg, const struct exh_glove_par *par,
 uint32_t exh_glove_step(struct exh_glove *s, const struct exh_glove_cfg *cfg,
                         const struct exh_glove_in *in, int32_t *angle_turn_q32)
 {
-    /*@ assert glove_step: glove_cfg(cfg) && \valid_read(in) && \valid(angle_turn_q32 + (0 .. 21));
-     */
+    /*@ assert glove_step: glove_cfg(cfg) && \valid_read(in) && \valid(angle_turn_q32 + (0 .. 21)); */
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
         const uint8_t cause = s->cause[i];
         /*@ assert glove_cause: cause < 4; */
@@ -76,8 +75,7 @@ int exh_hand_follow(struct exh_hand_finger *f, const struct exh_hand_map *map, u
 uint32_t exh_hand_joints(const struct exh_hand_map *map, unsigned finger,
                          const int32_t *sensor_turn_q32, int32_t *joint_turn_q32)
 {
-    /*@ assert hand_joints: \valid_read(map) && finger < 5 && \initialized(sensor_turn_q32 + (0 ..
-     * 21)); */
+    /*@ assert hand_joints: \valid_read(map) && finger < 5 && \initialized(sensor_turn_q32 + (0 .. 21)); */
     for (unsigned j = 0; j < EXH_HAND_JOINTS; j++) { joint_turn_q32[j] = any32(); }
     return any8() & 7u;
 }

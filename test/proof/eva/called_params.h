@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Parameters, guard, self-test and calibrations, as called.h. The table's rows are the library's;
- * how many there are is counted. */
+/* Parameters, guard, self-test and calibrations, as called.h. The table's rows are the library's; how many there are is counted. */
 #ifndef PROOF_CALLED_PARAMS_H
 #define PROOF_CALLED_PARAMS_H
 

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The register map over the tables of table.h: anything in the box, in all values, in what is
- * staged and traced. */
+/* The register map over the tables of table.h: anything in the box, in all values, in what is staged and traced. */
 #ifndef PROOF_REGISTERS_H
 #define PROOF_REGISTERS_H
 

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A table of four groups, one of no rows and one of no instances among them, with anything in its
- * rows; what it holds. */
+/* A table of four groups, one of no rows and one of no instances among them, with anything in its rows; what it holds. */
 #ifndef PROOF_TABLE_H
 #define PROOF_TABLE_H
 

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: length of (sin, cos)
- * Of each distance from a whole quarter, an eighth of a turn at most, on either side: the square of
- * the length is 1 within 2^-27; and -x has -sin and cos, but at the eighth itself, where the two
- * have changed places. All other angles have these two, swapped or negated
- * (test/prop/angle_test.c).
+ * Of each distance from a whole quarter, an eighth of a turn at most, on either side: the square of the length
+ * is 1 within 2^-27; and -x has -sin and cos, but at the eighth itself, where the two have changed places. All
+ * other angles have these two, swapped or negated (test/prop/angle_test.c).
  *
  * PLANT: lib/src/sincos.h: #define S3_Q37  (-4930933) -> #define S3_Q37  (-4930033)
  * PLANT: lib/src/sincos.h: #define C1_Q32  1324675872 -> #define C1_Q32  1324675972
