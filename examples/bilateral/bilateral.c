@@ -79,32 +79,21 @@ static void see(struct bilateral *s, const struct bilateral_cfg *cfg, const stru
     }
 }
 
-/* Position and velocity of all fingers in use, force by the monitor; the causes of faults they are.
- * cnt, limits: by place. */
-static uint32_t sense(struct bilateral *s, const struct bilateral_cfg *cfg,
-                      const struct exh_drive_in *in, struct bilateral_paper *p, int32_t *cnt,
-                      uint32_t *limits)
+/* Position and velocity of all fingers in use, by place; force by the monitor. */
+static void sense(struct bilateral *s, const struct bilateral_cfg *cfg,
+                  const struct exh_drive_in *in, struct bilateral_paper *p,
+                  struct exh_axis_now *now)
 {
     const unsigned n = bilateral_n(cfg);
-    uint32_t raised = 0;
     for (unsigned k = 0; k < n; k++) {
         const unsigned f = bilateral_at(cfg, k);
-        struct bilateral_finger *now = &s->finger[f];
-        const struct bilateral_finger_cfg *c = &cfg->finger[f];
-        cnt[k] = exh_quad_extend(&now->quad, &c->quad, in->enc_raw[f]);
-        limits[k] = 0;
-        p[f].q_m_q30 = exh_quad_pos_m_q30(&cfg->par->quad[f], cnt[k]);
-        p[f].qd_mps_q27 = exh_velocity_window_mps_q27(&now->velocity, &c->velocity, cnt[k]);
-        raised |= exh_watch_step(&now->watch, &c->watch, &p[f].qd_mps_q27, &limits[k]);
+        const struct exh_axis axis = bilateral_axis(s, cfg, k);
         s->drive_now[f] = cfg->par->drive[f]; /* it is no state: a tick from bytes has it, too */
-        p[f].f_mon_N_q20 = exh_drive_monitor_N_q20(&cfg->drive[k], in->mon_raw[f]);
-        if (now->quad.lost) { raised |= EXH_FAULT_ENCODER; }
-        if (exh_track_step(&now->track, &c->track,
-                           exh_drive_monitor_A_q26(&cfg->drive[k], in->mon_raw[f]))) {
-            raised |= EXH_FAULT_TRACKING;
-        }
+        now[k] = exh_axis_sense(&axis, in, f);
+        p[f].q_m_q30 = now[k].pos_m_q30;
+        p[f].qd_mps_q27 = now[k].vel_mps_q27;
+        p[f].f_mon_N_q20 = exh_drive_monitor_N_q20(&cfg->drive[k], now[k].mon_A_q26);
     }
-    return raised;
 }
 
 /* The drives' inputs by place. */
@@ -180,12 +169,11 @@ static void tell_box(struct bilateral_box *b, const struct bilateral *s,
     b->arm_step = exh_safety_arm(&s->safety);
 }
 
-/* Steps of arming that hold, of those a scene vouches for. A calibration that is none, a glove's or
- * a finger's, was refused at set-up. */
-static uint8_t steps_held(const struct bilateral_cfg *cfg, uint32_t raised)
+/* Steps of arming that hold. A calibration that is none, a glove's or a finger's, was refused at
+ * set-up. */
+static uint8_t steps_held(const struct bilateral_cfg *cfg)
 {
-    return (uint8_t)((cfg->tested ? EXH_ARM_SELFTEST : 0u) | cfg->vouches |
-                     (raised & EXH_FAULT_ENCODER ? 0u : EXH_ARM_ENCODER));
+    return (uint8_t)((cfg->tested ? EXH_ARM_SELFTEST : 0u) | cfg->vouches);
 }
 
 void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,
@@ -194,36 +182,35 @@ void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,
                     struct bilateral_signals *sig)
 {
     const unsigned n = bilateral_n(cfg);
-    int32_t cnt[BILATERAL_FINGERS];
-    uint32_t limits[BILATERAL_FINGERS];
-    const uint32_t fingers = sense(s, cfg, &in->drive, sig->paper, cnt, limits);
+    struct exh_axis_now now[BILATERAL_FINGERS];
     struct exh_safety_in box = {
-        din_by_place(cfg, in->drive.din), fingers, in->missed, in->command, (uint8_t)n,
-        steps_held(cfg, fingers)};
+        din_by_place(cfg, in->drive.din), 0, in->missed, in->command, (uint8_t)n, steps_held(cfg)};
     struct exh_permit permit;
     struct exh_current_ledger i[BILATERAL_FINGERS];
+    uint32_t limits[BILATERAL_FINGERS];
     struct exh_drive_out placed;
 
+    sense(s, cfg, &in->drive, sig->paper, now);
     age_glove(s, in);
     for (unsigned k = 0; k < n; k++) {
         exh_precontact_skip(&s->finger[bilateral_at(cfg, k)].precontact, in->missed);
     }
     bilateral_wire_take(s, cfg, mail, in->missed, params);
     see(s, cfg, in);
-    box.raised |= bilateral_causes(s, cfg, in);
-    permit = exh_safety_step(&s->safety, &cfg->safety, box);
+    box.raised = bilateral_causes(s, cfg, in);
+    permit = exh_axis_permit(&s->safety, &cfg->safety, now, n, box);
     for (unsigned k = 0; k < n; k++) {
         const unsigned f = bilateral_at(cfg, k);
-        limits[k] |=
-            bilateral_finger_feel(s, cfg, k, &permit, &i[k], &sig->paper[f], &sig->more[f].bits);
+        limits[k] = now[k].limits | bilateral_finger_feel(s, cfg, k, &permit, &i[k], &sig->paper[f],
+                                                          &sig->more[f].bits);
     }
     exh_gate(&s->safety, cfg->drive, n, i, limits, &placed);
     out_by_finger(cfg, &placed, out);
     for (unsigned k = 0; k < n; k++) {
         const unsigned f = bilateral_at(cfg, k);
+        const struct exh_axis axis = bilateral_axis(s, cfg, k);
         sig->paper[f].i_des_A_q26 = i[k].coded_A_q26;
-        exh_track_coded(&s->finger[f].track, i[k].coded_A_q26);
-        exh_watch_coded(&s->finger[f].watch, &cfg->finger[f].watch, cnt[k], i[k].coded_A_q26);
+        exh_axis_coded(&axis, now[k].cnt, i[k].coded_A_q26);
         sig->more[f].limits = (int32_t)limits[k];
         tell_finger(&sig->more[f], &s->finger[f]);
     }

@@ -223,6 +223,17 @@ static inline unsigned bilateral_at(const struct bilateral_cfg *cfg, unsigned k)
     return cfg->at[k] < BILATERAL_FINGERS ? cfg->at[k] : 0;
 }
 
+/* The parts of the finger at a place. */
+static inline struct exh_axis bilateral_axis(struct bilateral *s, const struct bilateral_cfg *cfg,
+                                             unsigned k)
+{
+    const unsigned f = bilateral_at(cfg, k);
+    struct bilateral_finger *now = &s->finger[f];
+    const struct bilateral_finger_cfg *c = &cfg->finger[f];
+    return (struct exh_axis){&now->quad, &c->quad,    &now->velocity, &c->velocity, &now->watch,
+                             &c->watch,  &now->track, &c->track,      &now->drive,  &cfg->drive[k]};
+}
+
 /* --- parts (finger.c, wire.c, trace.c) --- */
 
 int bilateral_finger_setup(struct bilateral_cfg *cfg, struct bilateral *s, unsigned place,

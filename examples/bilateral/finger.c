@@ -26,21 +26,19 @@ int bilateral_finger_setup(struct bilateral_cfg *cfg, struct bilateral *s, unsig
     const struct bilateral_par *par = cfg->par;
     const struct exh_drive_par *drive = &par->drive[f];
     struct bilateral_finger_cfg *c = &cfg->finger[f];
-    const struct exh_velocity_scale scale = {par->quad[f].step_m_q42, board.T};
     const struct calib_finger finger = {f, drive, par->kf_NpA_q20[f]};
+    const struct exh_axis_setup parts = {
+        &c->quad,       &par->quad[f], &c->velocity,   &par->velocity[f],  &c->watch,
+        &par->watch[f], &c->track,     &par->track[f], &cfg->drive[place], &s->drive_now[f]};
     int err;
 
     s->drive_now[f] = *drive;
     c->sensors = sensors_of(&exh_hit2_map, f);
     err = calib_setup(&c->calib, calib, &par->calib, &finger);
-    if (err == 0) { err = exh_quad_setup(&c->quad, &par->quad[f], board.T, board.enc_bits); }
-    if (err == 0) { err = exh_velocity_window_setup(&c->velocity, scale, &par->velocity[f]); }
     if (err == 0) {
-        err = exh_drive_setup(&cfg->drive[place], &s->drive_now[f], board.T,
-                              calib_to_cur(&c->calib), calib_to_force(&c->calib));
+        err = exh_axis_setup(&parts, board.T, board.enc_bits, calib_to_cur(&c->calib),
+                             calib_to_force(&c->calib));
     }
-    if (err == 0) { err = exh_track_setup(&c->track, &par->track[f], board.T); }
-    if (err == 0) { err = exh_watch_setup(&c->watch, &par->watch[f], board.T); }
     if (err == 0) { err = exh_hand_setup(&c->hand, &exh_hit2_bones[f], &par->hand[f]); }
     if (err == 0) { err = exh_hand_follow(&c->hand, &exh_hit2_map, f); }
     if (err == 0) {
@@ -107,6 +105,7 @@ uint32_t bilateral_finger_feel(struct bilateral *s, const struct bilateral_cfg *
     struct exh_contact_in q = {p->q_m_q30, p->qd_mps_q27, EXH_PRECONTACT_NEVER};
     struct exh_contact_par law;
     struct exh_force_ledger force;
+    const struct exh_axis axis = bilateral_axis(s, cfg, place);
     uint32_t limits;
 
     *bits = (int32_t)exh_precontact_step(&now->precontact, &cfg->finger[f].precontact, &where);
@@ -115,8 +114,7 @@ uint32_t bilateral_finger_feel(struct bilateral *s, const struct bilateral_cfg *
     law = touch(s, cfg, f);
     p->c = exh_contact_law(&now->contact, &law, q, &force);
     wind_in(now, cfg->rest_ticks);
-    limits = exh_drive_force(&now->drive, &cfg->drive[place], permit, &force);
-    limits |= exh_drive_current(&now->drive, &cfg->drive[place], &force, i);
+    limits = exh_axis_force(&axis, permit, &force, i);
     p->f_des_N_q20 = force.force_N_q20;
     p->q_lim_m_q30 = q.lim_m_q30;
     return limits;

@@ -172,10 +172,10 @@ static int32_t monitor_A_q26(const struct bringup_cfg *cfg, int16_t mon_raw)
     return exh_sat32(exh_gain_mul(cfg->looped_A_q26, mon_raw));
 }
 
-static void signals(const struct bringup *s, const struct bringup_par *par, struct bringup_view v,
+static void signals(const struct bringup *s, const struct exh_axis_now *now, struct bringup_view v,
                     uint32_t limits, struct bringup_signals *sig)
 {
-    sig->q_m_q30 = exh_quad_pos_m_q30(&par->quad, v.cnt);
+    sig->q_m_q30 = now->pos_m_q30;
     sig->v_mps_q27 = v.v_mps_q27;
     sig->i_des_A_q26 = s->coded_A_q26;
     sig->i_mon_A_q26 = v.mon_A_q26;
@@ -188,23 +188,28 @@ static void signals(const struct bringup *s, const struct bringup_par *par, stru
 }
 
 /* It is what makes polarity known. */
-#define VOUCHED (EXH_UNTESTED | EXH_UNCALIBRATED | EXH_UNPOLARISED | EXH_ARM_ENCODER)
+#define VOUCHED (EXH_UNTESTED | EXH_UNCALIBRATED | EXH_UNPOLARISED)
 
 void bringup_tick(struct bringup *s, const struct bringup_cfg *cfg, const struct exh_scene_in *in,
                   struct exh_drive_out *out, struct bringup_signals *sig)
 {
     const struct bringup_par *par = cfg->par;
     const int32_t finger = par->own.finger;
-    const int32_t cnt = exh_quad_extend(&s->quad, &cfg->quad, in->drive.enc_raw[finger]);
+    /* Without track: its phases compare monitor and code themselves, and more closely. */
+    const struct exh_axis axis = {.quad = &s->quad,
+                                  .quad_cfg = &cfg->quad,
+                                  .velocity = &s->vel,
+                                  .velocity_cfg = &cfg->vel,
+                                  .drive = &s->drive,
+                                  .drive_cfg = &cfg->drive};
+    const struct exh_axis_now now = exh_axis_sense(&axis, &in->drive, (unsigned)finger);
     const uint32_t ready = in->drive.din >> finger & EXH_DIN_DRIVE0;
-    const struct bringup_view v = {cnt, exh_velocity_window_mps_q27(&s->vel, &cfg->vel, cnt),
+    const struct bringup_view v = {now.cnt, now.vel_mps_q27,
                                    monitor_A_q26(cfg, in->drive.mon_raw[finger]),
                                    (in->drive.din & 3u) | (ready ? 4u : 0u)};
-    /* Its phases compare monitor and code themselves, and more closely: doubt, mon_tol. */
-    const uint32_t raised = (s->quad.lost ? EXH_FAULT_ENCODER : 0u) | EXH_UNTRACKED;
     const uint8_t command = command_of(s, cfg, in->command);
     const struct exh_safety_in box = {
-        inputs_of(&par->own, in->drive.din), raised, in->missed, command, 1, VOUCHED};
+        inputs_of(&par->own, in->drive.din), EXH_UNTRACKED, in->missed, command, 1, VOUCHED};
     struct exh_force_ledger f = {0};
     struct exh_permit permit;
     struct exh_current_ledger i;
@@ -213,13 +218,12 @@ void bringup_tick(struct bringup *s, const struct bringup_cfg *cfg, const struct
 
     s->tell = s->safety.tick == 0 ? BRINGUP_TELL_START : 0;
     s->tell_raw = s->code_raw;
-    permit = exh_safety_step(&s->safety, &cfg->safety, box);
+    permit = exh_axis_permit(&s->safety, &cfg->safety, &now, 1, box);
     f.pullback_N_q20 = go_on(s, cfg, command, v);
     live = s->result == EXH_PROBE_BUSY && exh_safety_runs(&s->safety) && needs_run(s, cfg);
     if (!live) { permit.mode = EXH_PERMIT_CLOSED; } /* at once, whatever was held */
-    limits = exh_drive_force(&s->drive, &cfg->drive, &permit, &f);
-    limits |= exh_drive_current(&s->drive, &cfg->drive, &f, &i);
-    exh_gate(&s->safety, &cfg->drive, 1, &i, &limits, out);
+    limits = now.limits | exh_axis_force(&axis, &permit, &f, &i);
+    exh_axis_out(&axis, &s->safety, now.cnt, &i, &limits, out);
     s->coded_A_q26 = i.coded_A_q26;
     if (live && (limits & ~(uint32_t)EXH_LIMIT_SLEW)) {
         s->result = BRINGUP_LIMITED; /* known behind the gate only: its code goes no further */
@@ -230,5 +234,5 @@ void bringup_tick(struct bringup *s, const struct bringup_cfg *cfg, const struct
     place(out, finger, live && par->own.stage > 1 && s->result == EXH_PROBE_BUSY);
     if (s->result > EXH_PROBE_DONE && !s->said) { s->tell |= BRINGUP_TELL_PHASE; }
     s->said = s->result != EXH_PROBE_BUSY;
-    signals(s, par, v, limits, sig);
+    signals(s, &now, v, limits, sig);
 }

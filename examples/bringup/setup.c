@@ -231,7 +231,12 @@ int bringup_setup(struct bringup_cfg *cfg, const struct bringup_par *par,
                   struct exh_scene_board board)
 {
     static const struct exh_velocity_par window = {3}; /* 8 ticks */
-    const struct exh_velocity_scale scale = {par->quad.step_m_q42, board.T};
+    const struct exh_axis_setup parts = {.quad = &cfg->quad,
+                                         .quad_par = &par->quad,
+                                         .velocity = &cfg->vel,
+                                         .velocity_par = &window,
+                                         .drive = &cfg->drive,
+                                         .drive_par = &cfg->drive_par};
     const struct exh_table to_cur = {cfg->to_cur, 2}, none = {NULL, 0};
     int err = own_ok(&par->own) ? 0 : -EXH_E_RANGE;
     if (err < 0) { return err; }
@@ -249,9 +254,7 @@ int bringup_setup(struct bringup_cfg *cfg, const struct bringup_par *par,
         err = exh_gain_set(&cfg->looped_A_q26, UINT64_C(32490) << (EXH_Q_CUR + EXH_Q_DAC),
                            UINT64_C(32768) * (uint32_t)par->drive.dac_rawpA_q16);
     }
-    if (err == 0) { err = exh_quad_setup(&cfg->quad, &par->quad, board.T, board.enc_bits); }
-    if (err == 0) { err = exh_velocity_window_setup(&cfg->vel, scale, &window); }
-    if (err == 0) { err = exh_drive_setup(&cfg->drive, &cfg->drive_par, board.T, to_cur, none); }
+    if (err == 0) { err = exh_axis_setup(&parts, board.T, board.enc_bits, to_cur, none); }
     if (err == 0) { err = exh_safety_setup(&cfg->safety, &par->safety, board.T); }
     if (err == 0) { err = setup_motions(cfg, board.T); }
     return err == 0 ? setup_weigh(cfg, board.T) : err;

@@ -161,6 +161,12 @@ int calibrate_setup(struct calibrate_cfg *cfg, const struct calibrate_par *par,
     const struct exh_probe_scale scale = {par->quad.step_m_q42, board.T};
     const struct exh_table to_cur = {cfg->one_to_one, 2}, none = {NULL, 0};
     const int32_t end_A_q26 = par->own.i_max_A_q26;
+    const struct exh_axis_setup parts = {.quad = &cfg->quad,
+                                         .quad_par = &par->quad,
+                                         .track = &cfg->track,
+                                         .track_par = &par->track,
+                                         .drive = &cfg->drive,
+                                         .drive_par = &par->drive};
     int err;
     if (!own_ok(&par->own)) { return -EXH_E_RANGE; }
     cfg->par = par;
@@ -168,9 +174,7 @@ int calibrate_setup(struct calibrate_cfg *cfg, const struct calibrate_par *par,
     cfg->one_to_one[1] =
         (struct exh_knot){end_A_q26 >> (EXH_Q_CUR - EXH_Q_FORCE), end_A_q26, {0, 0}};
     err = exh_table_set(cfg->one_to_one, 2);
-    if (err == 0) { err = exh_quad_setup(&cfg->quad, &par->quad, board.T, board.enc_bits); }
-    if (err == 0) { err = exh_drive_setup(&cfg->drive, &par->drive, board.T, to_cur, none); }
-    if (err == 0) { err = exh_track_setup(&cfg->track, &par->track, board.T); }
+    if (err == 0) { err = exh_axis_setup(&parts, board.T, board.enc_bits, to_cur, none); }
     if (err == 0) { err = exh_safety_setup(&cfg->safety, &par->safety, board.T); }
     if (err == 0) { err = setup_motions(cfg, &par->own, scale); }
     return err == 0 ? setup_masses(cfg, par, scale) : err;
@@ -330,38 +334,37 @@ void calibrate_start(struct calibrate *s, const struct calibrate_cfg *cfg)
 }
 
 /* It is what makes calibration and polarity known. */
-#define VOUCHED (EXH_UNTESTED | EXH_UNCALIBRATED | EXH_UNPOLARISED | EXH_ARM_ENCODER)
+#define VOUCHED (EXH_UNTESTED | EXH_UNCALIBRATED | EXH_UNPOLARISED)
 
 void calibrate_tick(struct calibrate *s, const struct calibrate_cfg *cfg,
                     const struct exh_scene_in *in, struct exh_drive_out *out,
                     struct calibrate_signals *sig)
 {
-    const struct calibrate_par *par = cfg->par;
-    const int16_t mon_raw = in->drive.mon_raw[0];
-    const struct view v = {exh_quad_extend(&s->quad, &cfg->quad, in->drive.enc_raw[0]),
-                           exh_drive_monitor_A_q26(&cfg->drive, mon_raw), mon_raw};
-    const int astray = exh_track_step(&s->track, &cfg->track, v.mon_A_q26);
-    const uint32_t raised =
-        (s->quad.lost ? EXH_FAULT_ENCODER : 0u) | (astray ? EXH_FAULT_TRACKING : 0u);
-    const struct exh_safety_in box = {in->drive.din, raised, in->missed, in->command, 1, VOUCHED};
-    const struct exh_permit permit = exh_safety_step(&s->safety, &cfg->safety, box);
+    const struct exh_axis axis = {.quad = &s->quad,
+                                  .quad_cfg = &cfg->quad,
+                                  .track = &s->track,
+                                  .track_cfg = &cfg->track,
+                                  .drive = &s->drive,
+                                  .drive_cfg = &cfg->drive};
+    const struct exh_axis_now now = exh_axis_sense(&axis, &in->drive, 0);
+    const struct view v = {now.cnt, now.mon_A_q26, in->drive.mon_raw[0]};
+    const struct exh_safety_in box = {in->drive.din, 0, in->missed, in->command, 1, VOUCHED};
+    const struct exh_permit permit = exh_axis_permit(&s->safety, &cfg->safety, &now, 1, box);
     const int32_t cur_A_q26 = go_on(s, cfg, v, exh_safety_runs(&s->safety));
     struct exh_force_ledger f = {0};
     struct exh_current_ledger i;
     uint32_t limits;
 
     f.pullback_N_q20 = cur_A_q26 >> (EXH_Q_CUR - EXH_Q_FORCE); /* 1 N for 1 A */
-    limits = exh_drive_force(&s->drive, &cfg->drive, &permit, &f);
-    limits |= exh_drive_current(&s->drive, &cfg->drive, &f, &i);
-    exh_gate(&s->safety, &cfg->drive, 1, &i, &limits, out);
-    exh_track_coded(&s->track, i.coded_A_q26);
+    limits = now.limits | exh_axis_force(&axis, &permit, &f, &i);
+    exh_axis_out(&axis, &s->safety, now.cnt, &i, &limits, out);
     s->coded_A_q26 = i.coded_A_q26;
     if (s->busy && (limits & ~(uint32_t)EXH_LIMIT_SLEW)) { /* from the next tick: no current */
         s->result = CALIBRATE_LIMITED;
         s->busy = 0;
     }
 
-    sig->q_m_q30 = exh_quad_pos_m_q30(&par->quad, v.cnt);
+    sig->q_m_q30 = now.pos_m_q30;
     sig->i_des_A_q26 = i.coded_A_q26;
     sig->i_mon_A_q26 = v.mon_A_q26;
     sig->step = s->step;

@@ -44,69 +44,62 @@ EXH_STATIC_ASSERT(drop_par_matches_rows,
 int drop_setup(struct drop_cfg *cfg, const struct drop_par *par, struct exh_scene_board board,
                struct exh_scene_calib *calib)
 {
-    const struct exh_velocity_scale scale = {par->quad.step_m_q42, board.T};
     const struct calib_finger finger = {0, &par->drive, par->own.kf_NpA_q20};
+    const struct exh_axis_setup parts = {&cfg->quad,  &par->quad,  &cfg->velocity, &par->velocity,
+                                         &cfg->watch, &par->watch, &cfg->track,    &par->track,
+                                         &cfg->drive, &par->drive};
     int err;
 
     cfg->par = par;
     cfg->tested = exh_selftest() == EXH_SELFTEST_OK;
     err = calib_setup(&cfg->calib, calib, &par->calib, &finger);
-    if (err == 0) { err = exh_quad_setup(&cfg->quad, &par->quad, board.T, board.enc_bits); }
-    if (err == 0) { err = exh_velocity_window_setup(&cfg->velocity, scale, &par->velocity); }
     if (err == 0) {
-        err = exh_drive_setup(&cfg->drive, &par->drive, board.T, calib_to_cur(&cfg->calib),
-                              calib_to_force(&cfg->calib));
+        err = exh_axis_setup(&parts, board.T, board.enc_bits, calib_to_cur(&cfg->calib),
+                             calib_to_force(&cfg->calib));
     }
-    if (err == 0) { err = exh_track_setup(&cfg->track, &par->track, board.T); }
-    if (err == 0) { err = exh_watch_setup(&cfg->watch, &par->watch, board.T); }
     if (err == 0) { err = exh_safety_setup(&cfg->safety, &par->safety, board.T); }
     if (err == 0) { err = exh_supply_setup(&cfg->supply, &par->supply, board.T); }
     return err;
 }
 
-/* Steps of arming that hold. */
-static uint8_t steps_held(const struct drop *s, const struct drop_cfg *cfg)
+static struct exh_axis axis_of(struct drop *s, const struct drop_cfg *cfg)
 {
-    return (uint8_t)((cfg->tested ? EXH_ARM_SELFTEST : 0u) | cfg->calib.vouches |
-                     (s->quad.lost ? 0u : EXH_ARM_ENCODER));
+    return (struct exh_axis){&s->quad,    &cfg->quad, &s->velocity, &cfg->velocity, &s->watch,
+                             &cfg->watch, &s->track,  &cfg->track,  &s->drive,      &cfg->drive};
+}
+
+/* Causes that are not the finger's. */
+static uint32_t causes(struct drop *s, const struct drop_cfg *cfg, const struct exh_scene_in *in)
+{
+    const int starved = exh_supply_step(&s->supply, &cfg->supply, in->drive.supply_raw, in->missed);
+    return (starved ? EXH_FAULT_SUPPLY : 0u) | (s->broken ? EXH_FAULT_CONFIG : 0u) | s->more;
 }
 
 void drop_law(struct drop *s, const struct drop_cfg *cfg, const struct exh_scene_in *in,
               struct drop_now *now, struct drop_signals *sig)
 {
-    const struct drop_par *par = cfg->par;
-    const int32_t cnt = exh_quad_extend(&s->quad, &cfg->quad, in->drive.enc_raw[0]);
-    struct exh_contact_in q = {exh_quad_pos_m_q30(&par->quad, cnt),
-                               exh_velocity_window_mps_q27(&s->velocity, &cfg->velocity, cnt),
-                               par->own.q_lim_m_q30};
-    const int32_t mon_A_q26 = exh_drive_monitor_A_q26(&cfg->drive, in->drive.mon_raw[0]);
-    const int astray = exh_track_step(&s->track, &cfg->track, mon_A_q26);
-    const int starved = exh_supply_step(&s->supply, &cfg->supply, in->drive.supply_raw, in->missed);
-    uint32_t limits = 0;
-    const uint32_t raised = (s->quad.lost ? EXH_FAULT_ENCODER : 0u) |
-                            (astray ? EXH_FAULT_TRACKING : 0u) | (starved ? EXH_FAULT_SUPPLY : 0u) |
-                            (s->broken ? EXH_FAULT_CONFIG : 0u) | s->more |
-                            exh_watch_step(&s->watch, &cfg->watch, &q.vel_mps_q27, &limits);
-    const struct exh_safety_in box = {in->drive.din, raised, in->missed,
-                                      in->command,   1,      steps_held(s, cfg)};
+    const struct exh_axis axis = axis_of(s, cfg);
+    const struct exh_axis_now of = exh_axis_sense(&axis, &in->drive, 0);
+    const uint8_t ready = (uint8_t)((cfg->tested ? EXH_ARM_SELFTEST : 0u) | cfg->calib.vouches);
+    const struct exh_safety_in box = {in->drive.din, causes(s, cfg, in), in->missed, in->command, 1,
+                                      ready};
+    const struct exh_contact_in q = {of.pos_m_q30, of.vel_mps_q27, cfg->par->own.q_lim_m_q30};
 
-    now->permit = exh_safety_step(&s->safety, &cfg->safety, box);
-    now->cnt = cnt;
-    now->limits = limits;
-    sig->c = exh_contact_law(&s->contact, &par->contact, q, &now->f);
-    sig->q_m_q30 = q.pos_m_q30;
-    sig->qd_mps_q27 = q.vel_mps_q27;
-    sig->f_mon_N_q20 = exh_drive_monitor_N_q20(&cfg->drive, in->drive.mon_raw[0]);
+    now->permit = exh_axis_permit(&s->safety, &cfg->safety, &of, 1, box);
+    now->cnt = of.cnt;
+    now->limits = of.limits;
+    sig->c = exh_contact_law(&s->contact, &cfg->par->contact, q, &now->f);
+    sig->q_m_q30 = of.pos_m_q30;
+    sig->qd_mps_q27 = of.vel_mps_q27;
+    sig->f_mon_N_q20 = exh_drive_monitor_N_q20(&cfg->drive, of.mon_A_q26);
 }
 
 void drop_out(struct drop *s, const struct drop_cfg *cfg, struct drop_now *now,
               struct exh_drive_out *out, struct drop_signals *sig)
 {
-    now->limits |= exh_drive_force(&s->drive, &cfg->drive, &now->permit, &now->f);
-    now->limits |= exh_drive_current(&s->drive, &cfg->drive, &now->f, &now->i);
-    exh_gate(&s->safety, &cfg->drive, 1, &now->i, &now->limits, out);
-    exh_track_coded(&s->track, now->i.coded_A_q26);
-    exh_watch_coded(&s->watch, &cfg->watch, now->cnt, now->i.coded_A_q26);
+    const struct exh_axis axis = axis_of(s, cfg);
+    now->limits |= exh_axis_force(&axis, &now->permit, &now->f, &now->i);
+    exh_axis_out(&axis, &s->safety, now->cnt, &now->i, &now->limits, out);
 
     sig->f_des_N_q20 = now->f.force_N_q20;
     sig->i_des_A_q26 = now->i.coded_A_q26;

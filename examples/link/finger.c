@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* A firmware-style program over the library alone: its own loop, its own board, one finger and one
- * wall. Nothing of exhand but lib/ is needed. The board here is played: a finger that goes 25 mm
- * out and back in a second, and a motor that follows its code at once. On a real one the three
- * functions of "board" touch registers.
+/* A firmware-style program over the library alone: one finger, one wall, its own loop and board.
+ *
+ * The board is played: a finger goes 25 mm out and back in a second, a motor follows its code at
+ * once, and a hand holds the dead-man switch. On a real board the functions of "board" touch
+ * registers and pins. The program vouches for what it has tried: the library's self-test. It names
+ * what it has not: calibration and polarity.
  *
  * Prints the force at the deepest point and a CRC-32 over all codes that went to the D/A: the same
  * on every CPU, by every compiler and however the library was linked (test/link checks all of them
@@ -26,6 +28,23 @@ static uint32_t board_count(int tick) /* rests for 1.2 s, then 5000 counts out a
 static int16_t board_monitor(void) /* 1.76 A/V at 3249 codes/V; 1936.5 codes/A */
 {
     return (int16_t)(((int32_t)dac_raw - 32768) * 1049 / 1000);
+}
+
+/* Every contact is normally closed: 1 is healthy. A real board reads five pins here; a line that it
+ * does not have must be wired closed, so that the box's builder decides it, not the program. */
+static uint32_t board_inputs(void)
+{
+    const int estop_closed = 1, deadman_held = 1, watchdog_quiet = 1, cards_answer = 1, ready = 1;
+    return (estop_closed ? EXH_DIN_ESTOP : 0u) | (deadman_held ? EXH_DIN_DEADMAN : 0u) |
+           (watchdog_quiet ? EXH_DIN_WATCHDOG : 0u) | (cards_answer ? EXH_DIN_CARDS : 0u) |
+           (ready ? EXH_DIN_DRIVE0 : 0u);
+}
+
+static void board_read(int tick, struct exh_drive_in *in)
+{
+    in->enc_raw[0] = board_count(tick);
+    in->mon_raw[0] = board_monitor();
+    in->din = board_inputs();
 }
 
 static void board_write(const struct exh_drive_out *out)
@@ -77,51 +96,49 @@ static struct exh_contact contact;
 static struct exh_drive drive;
 static struct exh_track track;
 static struct exh_safety safety;
+static uint8_t vouched = EXH_UNCALIBRATED | EXH_UNPOLARISED;
+
+static const struct exh_axis axis = {.quad = &quad,
+                                     .quad_cfg = &quad_cfg,
+                                     .velocity = &vel,
+                                     .velocity_cfg = &vel_cfg,
+                                     .track = &track,
+                                     .track_cfg = &track_cfg,
+                                     .drive = &drive,
+                                     .drive_cfg = &drive_cfg};
 
 static int setup(void)
 {
+    static const struct exh_axis_setup parts = {.quad = &quad_cfg,
+                                                .quad_par = &quad_par,
+                                                .velocity = &vel_cfg,
+                                                .velocity_par = &vel_par,
+                                                .track = &track_cfg,
+                                                .track_par = &track_par,
+                                                .drive = &drive_cfg,
+                                                .drive_par = &drive_par};
     const struct exh_period T = {1, RATE_Hz};
-    const struct exh_velocity_scale scale = {quad_par.step_m_q42, T};
     const struct exh_table force_to_cur = {knot, 2}, no_table = {0, 0};
     int err = exh_table_set(knot, 2);
-    if (err == 0) { err = exh_quad_setup(&quad_cfg, &quad_par, T, 24); }
-    if (err == 0) { err = exh_velocity_window_setup(&vel_cfg, scale, &vel_par); }
-    if (err == 0) { err = exh_drive_setup(&drive_cfg, &drive_par, T, force_to_cur, no_table); }
-    if (err == 0) { err = exh_track_setup(&track_cfg, &track_par, T); }
+    if (err == 0) { err = exh_axis_setup(&parts, T, 24, force_to_cur, no_table); }
     if (err == 0) { err = exh_safety_setup(&safety_cfg, &safety_par, T); }
+    if (exh_selftest() == EXH_SELFTEST_OK) { vouched |= EXH_ARM_SELFTEST; }
     return err;
 }
 
-static int32_t tick(uint32_t enc_raw, int16_t mon_raw, uint8_t command, struct exh_drive_out *out)
+static void tick(const struct exh_drive_in *in, uint8_t command, struct exh_drive_out *out)
 {
+    const struct exh_axis_now now = exh_axis_sense(&axis, in, 0);
+    const struct exh_safety_in box = {in->din, 0, 0, command, 1, vouched};
+    const struct exh_permit permit = exh_axis_permit(&safety, &safety_cfg, &now, 1, box);
+    const struct exh_contact_in q = {now.pos_m_q30, now.vel_mps_q27, wall_m_q30};
     struct exh_force_ledger force;
     struct exh_current_ledger current;
     uint32_t limits;
-    const int32_t cnt = exh_quad_extend(&quad, &quad_cfg, enc_raw);
-    const struct exh_contact_in q = {exh_quad_pos_m_q30(&quad_par, cnt),
-                                     exh_velocity_window_mps_q27(&vel, &vel_cfg, cnt), wall_m_q30};
-    const int astray =
-        exh_track_step(&track, &track_cfg, exh_drive_monitor_A_q26(&drive_cfg, mon_raw));
-    /* A real box has its switches here, and vouches only for what it has tried: exhand/safety.h. */
-    struct exh_safety_in box = {EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG | EXH_DIN_CARDS |
-                                    EXH_DIN_DRIVE0,
-                                0,
-                                0,
-                                0,
-                                1,
-                                EXH_ARM_ALL};
-    struct exh_permit permit;
 
-    if (quad.lost) { box.raised |= EXH_FAULT_ENCODER; }
-    if (astray) { box.raised |= EXH_FAULT_TRACKING; }
-    box.command = command;
-    permit = exh_safety_step(&safety, &safety_cfg, box);
     exh_contact_law(&contact, &wall, q, &force);
-    limits = exh_drive_force(&drive, &drive_cfg, &permit, &force);
-    limits |= exh_drive_current(&drive, &drive_cfg, &force, &current);
-    exh_gate(&safety, &drive_cfg, 1, &current, &limits, out);
-    exh_track_coded(&track, current.coded_A_q26);
-    return drive.force_N_q20;
+    limits = now.limits | exh_axis_force(&axis, &permit, &force, &current);
+    exh_axis_out(&axis, &safety, now.cnt, &current, &limits, out);
 }
 
 int main(void)
@@ -134,12 +151,15 @@ int main(void)
         return 1;
     }
     for (int t = 0; t < TICKS; t++) {
+        struct exh_drive_in in = {0};
         struct exh_drive_out out;
-        const int32_t force_N_q20 =
-            tick(board_count(t), board_monitor(), t == 0 ? EXH_CMD_RUN : EXH_CMD_NONE, &out);
-        const uint8_t code[2] = {(uint8_t)(out.dac_raw[0] & 0xFFu), (uint8_t)(out.dac_raw[0] >> 8)};
+        uint8_t code[2];
+        board_read(t, &in);
+        tick(&in, t == 0 ? EXH_CMD_RUN : EXH_CMD_NONE, &out);
         board_write(&out);
-        most_N_q20 = force_N_q20 > most_N_q20 ? force_N_q20 : most_N_q20;
+        code[0] = (uint8_t)(out.dac_raw[0] & 0xFFu);
+        code[1] = (uint8_t)(out.dac_raw[0] >> 8);
+        most_N_q20 = drive.force_N_q20 > most_N_q20 ? drive.force_N_q20 : most_N_q20;
         crc = exh_crc32(crc, code, sizeof code);
     }
     printf("exhand %d.%d.%d: state %d, %ld mN at most, codes %08lx\n", EXH_VERSION_MAJOR,

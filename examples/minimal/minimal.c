@@ -21,8 +21,8 @@ static const struct exh_drive_par drive_par = {.f_max_N_q20 = EXH_Q(5, 1, EXH_Q_
                                                .mon_A_q40 = EXH_Q(5164, 10000000, EXH_Q_MON)};
 static const struct exh_track_par track_par = {EXH_Q(1, 4, EXH_Q_CUR), 20};
 static const struct exh_safety_par safety_par = {1, EXH_Q(1, 1, EXH_Q_FORCE), 50, 500, 15};
-/* Its parameters are constants; an encoder that is lost is a cause by itself. */
-#define vouched (EXH_UNTESTED | EXH_UNCALIBRATED | EXH_UNPOLARISED | EXH_ARM_ENCODER)
+/* Its parameters are constants. */
+#define vouched (EXH_UNTESTED | EXH_UNCALIBRATED | EXH_UNPOLARISED)
 static const int32_t wall_m_q30 = EXH_Q(2, 100, EXH_Q_POS);
 
 #ifdef EXH_FROZEN /* what set-up makes of one period and counter, as constants: ../frozen.h */
@@ -54,42 +54,45 @@ static int setup(struct exh_scene_board board)
 #else
 static int setup(struct exh_scene_board board)
 {
-    const struct exh_velocity_scale scale = {quad_par.step_m_q42, board.T};
-    const struct exh_table force_to_cur = {knot, 2}, no_table = {0, 0};
+    static const struct exh_axis_setup parts = {.quad = &quad_cfg,
+                                                .quad_par = &quad_par,
+                                                .velocity = &vel_cfg,
+                                                .velocity_par = &vel_par,
+                                                .track = &track_cfg,
+                                                .track_par = &track_par,
+                                                .drive = &drive_cfg,
+                                                .drive_par = &drive_par};
+    const struct exh_table to_cur = {knot, 2}, no_table = {0, 0};
     int err = exh_table_set(knot, 2);
     s = (struct state){0};
-    if (err == 0) { err = exh_quad_setup(&quad_cfg, &quad_par, board.T, board.enc_bits); }
-    if (err == 0) { err = exh_velocity_window_setup(&vel_cfg, scale, &vel_par); }
-    if (err == 0) {
-        err = exh_drive_setup(&drive_cfg, &drive_par, board.T, force_to_cur, no_table);
-    }
-    if (err == 0) { err = exh_track_setup(&track_cfg, &track_par, board.T); }
+    if (err == 0) { err = exh_axis_setup(&parts, board.T, board.enc_bits, to_cur, no_table); }
     if (err == 0) { err = exh_safety_setup(&safety_cfg, &safety_par, board.T); }
     return err;
 }
 #endif
 
+static const struct exh_axis axis = {.quad = &s.quad,
+                                     .quad_cfg = &quad_cfg,
+                                     .velocity = &s.vel,
+                                     .velocity_cfg = &vel_cfg,
+                                     .track = &s.track,
+                                     .track_cfg = &track_cfg,
+                                     .drive = &s.drive,
+                                     .drive_cfg = &drive_cfg};
+
 static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
 {
+    const struct exh_axis_now now = exh_axis_sense(&axis, &in->drive, 0);
+    const struct exh_safety_in box = {in->drive.din, 0, in->missed, in->command, 1, vouched};
+    const struct exh_permit permit = exh_axis_permit(&s.safety, &safety_cfg, &now, 1, box);
+    const struct exh_contact_in q = {now.pos_m_q30, now.vel_mps_q27, wall_m_q30};
     struct exh_force_ledger f;
     struct exh_current_ledger i;
-    const int32_t cnt = exh_quad_extend(&s.quad, &quad_cfg, in->drive.enc_raw[0]);
-    const struct exh_contact_in q = {exh_quad_pos_m_q30(&quad_par, cnt),
-                                     exh_velocity_window_mps_q27(&s.vel, &vel_cfg, cnt),
-                                     wall_m_q30};
-    const int32_t mon_A_q26 = exh_drive_monitor_A_q26(&drive_cfg, in->drive.mon_raw[0]);
-    const int astray = exh_track_step(&s.track, &track_cfg, mon_A_q26);
-    const uint32_t raised =
-        (s.quad.lost ? EXH_FAULT_ENCODER : 0u) | (astray ? EXH_FAULT_TRACKING : 0u);
-    const struct exh_safety_in box = {in->drive.din, raised, in->missed, in->command, 1, vouched};
-    const struct exh_permit permit = exh_safety_step(&s.safety, &safety_cfg, box);
     uint32_t limits;
 
     exh_contact_law(&s.contact, &contact_par, q, &f);
-    limits = exh_drive_force(&s.drive, &drive_cfg, &permit, &f);
-    limits |= exh_drive_current(&s.drive, &drive_cfg, &f, &i);
-    exh_gate(&s.safety, &drive_cfg, 1, &i, &limits, out);
-    exh_track_coded(&s.track, i.coded_A_q26);
+    limits = now.limits | exh_axis_force(&axis, &permit, &f, &i);
+    exh_axis_out(&axis, &s.safety, now.cnt, &i, &limits, out);
 }
 
 const struct exh_scene exh_scene_minimal = {.name = "minimal",

@@ -275,11 +275,9 @@ int32_t exh_drive_monitor_A_q26(const struct exh_drive_cfg *cfg, int16_t mon_raw
                                  EXH_Q_MON - EXH_Q_CUR));
 }
 
-int32_t exh_drive_monitor_N_q20(const struct exh_drive_cfg *cfg, int16_t mon_raw)
+int32_t exh_drive_monitor_N_q20(const struct exh_drive_cfg *cfg, int32_t mon_A_q26)
 {
-    return cfg->cur_to_force.n > 0
-               ? exh_table_at(cfg->cur_to_force, exh_drive_monitor_A_q26(cfg, mon_raw))
-               : 0;
+    return cfg->cur_to_force.n > 0 ? exh_table_at(cfg->cur_to_force, mon_A_q26) : 0;
 }
 
 void exh_drive_bytes(struct exh_bytes *c, struct exh_drive *s)

@@ -278,7 +278,8 @@ static void current_error(struct error *e)
 
 static void monitor_op(uint32_t i)
 {
-    bench_sink = exh_drive_monitor_N_q20(&path_cfg.drive, mon[i]);
+    bench_sink =
+        exh_drive_monitor_N_q20(&path_cfg.drive, exh_drive_monitor_A_q26(&path_cfg.drive, mon[i]));
 }
 
 static void monitor_error(struct error *e)
@@ -289,7 +290,9 @@ static void monitor_error(struct error *e)
         const long double cur_A_q26 =
             bench_q((long double)((int64_t)raw * p->mon_A_q40), EXH_Q_MON - EXH_Q_CUR);
         const long double want = peak_N_q20() * bench_clamp(cur_A_q26 / p->i_peak_A_q26, -1, 1);
-        error_add(e, exh_drive_monitor_N_q20(&path_cfg.drive, (int16_t)raw) - want);
+        error_add(e, exh_drive_monitor_N_q20(
+                         &path_cfg.drive, exh_drive_monitor_A_q26(&path_cfg.drive, (int16_t)raw)) -
+                         want);
     }
 }
 

@@ -206,7 +206,7 @@ void golden_drive(struct golden *g, uint32_t rate_Hz)
         golden_put(g, i.i2t_A_q26);
         golden_put(g, limits);
         golden_put(g, exh_drive_monitor_A_q26(&a.cfg, raw));
-        golden_put(g, exh_drive_monitor_N_q20(&a.cfg, raw));
+        golden_put(g, exh_drive_monitor_N_q20(&a.cfg, exh_drive_monitor_A_q26(&a.cfg, raw)));
         GOLDEN_STATE(g, exh_drive_bytes, &a.s);
         golden_tick(g);
     }

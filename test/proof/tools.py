@@ -148,9 +148,11 @@ def put(path, f):
 
 
 def once(where, text, part):
-    if text.count(part) != 1:
-        raise SystemExit("%s: %d times, once is wanted: %s" % (where, text.count(part), part))
-    return text
+    """The part as it stands in the text, once; how the formatter broke it into lines does not matter."""
+    found = re.findall(r"\s+".join(re.escape(word) for word in part.split()), text)
+    if len(found) != 1:
+        raise SystemExit("%s: %d times, once is wanted: %s" % (where, len(found), part))
+    return found[0]
 
 
 def annotate(spec, tree):
@@ -166,7 +168,7 @@ def annotate(spec, tree):
             put(path, lambda s: s + text)
         else:
             def insert(s):
-                line = s.rfind("\n", 0, once(path, s, anchor).index(anchor)) + 1
+                line = s.rfind("\n", 0, s.index(once(path, s, anchor))) + 1
                 return s[:line] + text + s[line:]
             put(path, insert)
 
@@ -239,7 +241,7 @@ class Proof:
             shutil.copyfile(f, to)
         if change:
             path, old, new = change
-            put(os.path.join(at, path), lambda s: once(path, s, old).replace(old, new))
+            put(os.path.join(at, path), lambda s: s.replace(once(path, s, old), new))
         return at
 
     def key(self, source, tree, more):

@@ -302,8 +302,9 @@ static void monitor_case(const struct axis *a, int16_t raw)
           "code %d zero %" PRId32 " scale %" PRId32 ": %" PRId32, raw, a->par.mon_zero_raw,
           a->par.mon_A_q40, got);
     if (a->cfg.cur_to_force.n != 0) {
-        CHECK(on_table(a->knot, 4, got, exh_drive_monitor_N_q20(&a->cfg, raw)), "force of code %d",
-              raw);
+        CHECK(on_table(a->knot, 4, got,
+                       exh_drive_monitor_N_q20(&a->cfg, exh_drive_monitor_A_q26(&a->cfg, raw))),
+              "force of code %d", raw);
     }
 }
 

@@ -179,7 +179,8 @@ TEST(no_force_beyond_the_table)
     CHECK_EQ_I64(exh_drive_force(&a.s, &a.cfg, &open_permit, &f), EXH_LIMIT_FORCE);
     CHECK_EQ_I64(f.force_N_q20, 22 * NEWTON);
     CHECK_EQ_I64(f.clamp_N_q20, -8 * NEWTON);
-    CHECK_EQ_I64(exh_drive_monitor_N_q20(&a.cfg, 1000), 0); /* no monitor, no force of it */
+    CHECK_EQ_I64(exh_drive_monitor_N_q20(&a.cfg, exh_drive_monitor_A_q26(&a.cfg, 1000)),
+                 0); /* no monitor, no force of it */
 }
 
 /* Slopes not filled in, as in a table of one's own in ROM: 0 A up to its very end. */
@@ -466,9 +467,10 @@ TEST(monitor_by_hand)
     CHECK_EQ_I64(exh_drive_monitor_A_q26(&a.cfg, 12780), 442891122);
     a.par.mon_zero_raw = 100;
     CHECK_EQ_I64(exh_drive_monitor_A_q26(&a.cfg, 100), 0);
-    CHECK_EQ_I64(exh_drive_monitor_N_q20(&a.cfg, 100), 0);
-    CHECK_EQ_I64(exh_drive_monitor_N_q20(&a.cfg, INT16_MIN), 0); /* the string only pulls */
-    CHECK_EQ_I64(exh_drive_monitor_N_q20(&a.cfg, 1100), 5414846);
+    CHECK_EQ_I64(exh_drive_monitor_N_q20(&a.cfg, exh_drive_monitor_A_q26(&a.cfg, 100)), 0);
+    CHECK_EQ_I64(exh_drive_monitor_N_q20(&a.cfg, exh_drive_monitor_A_q26(&a.cfg, INT16_MIN)),
+                 0); /* the string only pulls */
+    CHECK_EQ_I64(exh_drive_monitor_N_q20(&a.cfg, exh_drive_monitor_A_q26(&a.cfg, 1100)), 5414846);
 }
 
 /* --- frames and state --- */

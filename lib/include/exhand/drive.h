@@ -189,10 +189,10 @@ uint32_t exh_drive_force(struct exh_drive *s, const struct exh_drive_cfg *cfg,
 uint32_t exh_drive_current(struct exh_drive *s, const struct exh_drive_cfg *cfg,
                            const struct exh_force_ledger *f, struct exh_current_ledger *i);
 
-/* Monitored current of a code, A q26 (saturating, error <= 1/2 LSB = 7.5 nA), and
- * the string force that the monitor table gives for it, N q20 (0 without a table). */
+/* Monitored current of a code, A q26 (saturating, error <= 1/2 LSB = 7.5 nA). */
 int32_t exh_drive_monitor_A_q26(const struct exh_drive_cfg *cfg, int16_t mon_raw);
-int32_t exh_drive_monitor_N_q20(const struct exh_drive_cfg *cfg, int16_t mon_raw);
+/* The string force that the monitor's table gives for that current, N q20; 0 without a table. */
+int32_t exh_drive_monitor_N_q20(const struct exh_drive_cfg *cfg, int32_t mon_A_q26);
 
 /* State through a cursor. A state of zeros is an axis at rest and cold. */
 void exh_drive_bytes(struct exh_bytes *c, struct exh_drive *s);

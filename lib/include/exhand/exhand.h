@@ -8,6 +8,7 @@
  *   glove                        its codes to 22 joint angles; a user's calibration from poses
  *   hand                         the glove's angles to the robot hand's joints and fingertips
  *   quad -> velocity -> contact -> drive -> safety (the gate)      one tick
+ *   axis                         that tick of one finger, in its order, for scenes and firmware
  *   passivity                    no contact gives back more energy than it was given
  *   guard                        configuration that must stand still; self-test
  *   watch                        speed limit of a finger, and an encoder that stands
@@ -38,6 +39,7 @@
     ((uint32_t)EXH_VERSION_MAJOR << 16 | (uint32_t)EXH_VERSION_MINOR << 8 | EXH_VERSION_PATCH)
 
 #include "exhand/angle.h"
+#include "exhand/axis.h"
 #include "exhand/bytes.h"
 #include "exhand/calibrate.h"
 #include "exhand/contact.h"

@@ -70,5 +70,5 @@ int32_t idle_monitor_N_q20(int16_t mon_raw)
 {
     struct drop_cfg *cfg;
     drop_memory(&cfg);
-    return exh_drive_monitor_N_q20(&cfg->drive, mon_raw);
+    return exh_drive_monitor_N_q20(&cfg->drive, exh_drive_monitor_A_q26(&cfg->drive, mon_raw));
 }

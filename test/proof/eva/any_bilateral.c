@@ -13,7 +13,7 @@
  * PLANT: examples/bilateral/trace.c: n < EXH_WIRE_FRAMES ? n : EXH_WIRE_FRAMES); -> n);
  * PLANT: examples/bilateral/wire.c: if (out->packets == EXH_SCENE_PACKETS) { return; } -> (void)0;
  * PLANT: examples/bilateral/wire.c: s->differs &= EXH_WIRE_ROLE | EXH_WIRE_LIB | EXH_WIRE_TABLE; -> (void)0;
- * PLANT: examples/bilateral/bilateral.c: limits[k] = 0; -> (void)0;
+ * PLANT: examples/bilateral/bilateral.c: limits[k] = now[k].limits | -> limits[k] |= now[k].limits |
  * PLANT: examples/bilateral/finger.c: if (s->clamped & 1u << 1) { hand.pull_radpm_q20[0] = 0; } -> hand.pull_radpm_q20[0] *= 2;
  */
 #include "bilateral/bilateral.c"

@@ -130,7 +130,7 @@ static void drives(void)
     bits = exh_drive_current(&s, &drive_cfg, &f, &i);
     /*@ assert drive_current: drive(&s) && limits(bits) && asked_current(&i); */
     (void)exh_drive_monitor_A_q26(&drive_cfg, mon_raw);
-    (void)exh_drive_monitor_N_q20(&drive_cfg, mon_raw);
+    (void)exh_drive_monitor_N_q20(&drive_cfg, any32());
 }
 
 static void passive(void)

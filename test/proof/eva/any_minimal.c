@@ -4,9 +4,9 @@
  * functions of the library keeping to contract.h; what a tick leaves is a state that a tick takes.
  *
  * EVA: -eva-slevel 40 -eva-split-return-function setup:0 -kernel-warn-key annot:missing-spec=abort
- * PLANT: examples/minimal/minimal.c: in->missed, in->command, 1, vouched} -> in->missed, in->command, 0, vouched}
- * PLANT: examples/minimal/minimal.c: exh_gate(&s.safety, &drive_cfg, 1, &i, -> exh_gate(&s.safety, &drive_cfg, 2, &i,
- * PLANT: examples/minimal/minimal.c: in->drive.enc_raw[0]) -> in->drive.enc_raw[5])
+ * PLANT: examples/minimal/minimal.c: &now, 1, box); -> &now, 0, box);
+ * PLANT: lib/include/exhand/axis.h: exh_gate(s, a->drive_cfg, 1, -> exh_gate(s, a->drive_cfg, 2,
+ * PLANT: examples/minimal/minimal.c: exh_axis_sense(&axis, &in->drive, 0); -> exh_axis_sense(&axis, &in->drive, 5);
  * PLANT: examples/minimal/minimal.c: exh_contact_law(&s.contact, &contact_par, q, &f); -> (void)q;
  * PLANT: examples/minimal/minimal.c: = {knot, 2}, no_table -> = {knot, 3}, no_table
  */

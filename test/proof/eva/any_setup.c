@@ -61,7 +61,7 @@ static void drive(struct exh_period T, uint8_t forces, uint8_t currents)
     any_table(KNOTS);
     if (exh_drive_setup(&cfg, &par, T, force_to_cur, cur_to_force) == 0) {
         /*@ assert drive_taken: drive_cfg(&cfg); */
-        (void)exh_drive_monitor_N_q20(&cfg, (int16_t)Frama_C_interval(INT16_MIN, INT16_MAX));
+        (void)exh_drive_monitor_N_q20(&cfg, any32());
     }
     /* Set, or as they were. */
     /*@ assert budget: 0 <= cfg.i2t_budget_q32 <= 1 << 60; */

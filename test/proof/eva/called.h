@@ -161,9 +161,9 @@ int32_t exh_drive_monitor_A_q26(const struct exh_drive_cfg *cfg, int16_t mon_raw
     return any32();
 }
 
-int32_t exh_drive_monitor_N_q20(const struct exh_drive_cfg *cfg, int16_t mon_raw)
+int32_t exh_drive_monitor_N_q20(const struct exh_drive_cfg *cfg, int32_t mon_A_q26)
 {
-    (void)mon_raw;
+    (void)mon_A_q26;
     /*@ assert drive_monitor_N: drive_cfg(cfg); */
     return any32();
 }

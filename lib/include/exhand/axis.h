@@ -1,0 +1,168 @@
+/* SPDX-License-Identifier: MIT */
+/* Axis: one finger's tick, from the counter to the D/A code, in its one right order.
+ *
+ *   exh_axis_sense()   counter -> count -> position -> velocity -> speed limit;
+ *                      monitor -> current -> does it follow?
+ *   exh_axis_permit()  what the fingers found -> safety -> what the force may do
+ *   (the scene's law)  position and velocity -> force ledger
+ *   exh_axis_force()   force ledger -> force limits -> current limits
+ *   exh_axis_out()     gate -> code; what was coded -> the next tick's checks
+ *
+ * Each function needs what the one before it made, so a scene cannot leave a step out. A part that
+ * a scene does not have is a NULL pointer in its struct exh_axis. The functions are inline: where
+ * the pointer is a constant, the compiler drops the call and the linker drops the module.
+ *
+ * With n fingers the scene calls sense for each, permit once, law and force for each, exh_gate()
+ * once and exh_axis_coded() for each: exh_axis_out() is these two for one finger.
+ */
+#ifndef EXHAND_AXIS_H
+#define EXHAND_AXIS_H
+
+#include "exhand/drive.h"
+#include "exhand/error.h"
+#include "exhand/quad.h"
+#include "exhand/safety.h"
+#include "exhand/velocity.h"
+#include "exhand/watch.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The parts of one finger, with their set-ups. All pointers are the caller's. */
+struct exh_axis {
+    struct exh_quad *quad;                              /* encoder */
+    const struct exh_quad_cfg *quad_cfg;                /* its set-up */
+    struct exh_velocity_window *velocity;               /* NULL: no velocity, 0 m/s */
+    const struct exh_velocity_window_cfg *velocity_cfg; /* its set-up */
+    struct exh_watch *watch;               /* NULL: no speed limit, no stuck detector */
+    const struct exh_watch_cfg *watch_cfg; /* its set-up */
+    struct exh_track *track; /* NULL: nothing compares monitor and code (EXH_UNTRACKED) */
+    const struct exh_track_cfg *track_cfg; /* its set-up */
+    struct exh_drive *drive;               /* force and current limits */
+    const struct exh_drive_cfg
+        *drive_cfg; /* its set-up; for exh_gate() one of an array by finger */
+};
+
+/* What one finger measured in this tick. */
+struct exh_axis_now {
+    int32_t cnt;         /* extended count */
+    int32_t pos_m_q30;   /* string position, m, +-2 */
+    int32_t vel_mps_q27; /* its velocity within the speed limit, m/s, +-16; 0 without velocity */
+    int32_t mon_A_q26;   /* current monitored, A, +-32; 0 without track */
+    uint32_t raised;     /* enum exh_fault: causes this finger shows now */
+    uint32_t limits;     /* enum exh_limit: limits that acted on the velocity */
+};
+
+/* --- set-up --- */
+
+/* What set-up fills and reads. A NULL set-up is a part that the scene leaves out. */
+struct exh_axis_setup {
+    struct exh_quad_cfg *quad;
+    const struct exh_quad_par *quad_par; /* kept */
+    struct exh_velocity_window_cfg *velocity;
+    const struct exh_velocity_par *velocity_par;
+    struct exh_watch_cfg *watch;
+    const struct exh_watch_par *watch_par; /* kept */
+    struct exh_track_cfg *track;
+    const struct exh_track_par *track_par;
+    struct exh_drive_cfg *drive;
+    const struct exh_drive_par *drive_par; /* kept */
+};
+
+/* Sets up all parts, in the tick's order; divides. T: the board's period; enc_bits: the width of
+ * its counters; tables as exh_drive_setup() wants them. 0, or the -EXH_E_... of the first part that
+ * refuses. */
+static inline int exh_axis_setup(const struct exh_axis_setup *of, struct exh_period T,
+                                 unsigned enc_bits, struct exh_table force_to_cur,
+                                 struct exh_table cur_to_force)
+{
+    const struct exh_velocity_scale scale = {of->quad_par->step_m_q42, T};
+    int err = exh_quad_setup(of->quad, of->quad_par, T, enc_bits);
+    if (err == 0 && of->velocity) {
+        err = exh_velocity_window_setup(of->velocity, scale, of->velocity_par);
+    }
+    if (err == 0) {
+        err = exh_drive_setup(of->drive, of->drive_par, T, force_to_cur, cur_to_force);
+    }
+    if (err == 0 && of->track) { err = exh_track_setup(of->track, of->track_par, T); }
+    if (err == 0 && of->watch) { err = exh_watch_setup(of->watch, of->watch_par, T); }
+    return err;
+}
+
+/* --- the tick --- */
+
+/* First: what the board read of finger f, 0 .. EXH_FINGERS-1. */
+static inline struct exh_axis_now exh_axis_sense(const struct exh_axis *a,
+                                                 const struct exh_drive_in *in, unsigned f)
+{
+    const int32_t cnt = exh_quad_extend(a->quad, a->quad_cfg, in->enc_raw[f]);
+    const int32_t pos_m_q30 = exh_quad_pos_m_q30(a->quad_cfg->par, cnt);
+    int32_t vel_mps_q27 = 0, mon_A_q26 = 0;
+    uint32_t raised = 0, limits = 0;
+
+    if (a->velocity) {
+        vel_mps_q27 = exh_velocity_window_mps_q27(a->velocity, a->velocity_cfg, cnt);
+    }
+    if (a->watch) { raised = exh_watch_step(a->watch, a->watch_cfg, &vel_mps_q27, &limits); }
+    if (a->quad->lost) { raised |= EXH_FAULT_ENCODER; }
+    if (a->track) {
+        mon_A_q26 = exh_drive_monitor_A_q26(a->drive_cfg, in->mon_raw[f]);
+        if (exh_track_step(a->track, a->track_cfg, mon_A_q26)) { raised |= EXH_FAULT_TRACKING; }
+    }
+    return (struct exh_axis_now){cnt, pos_m_q30, vel_mps_q27, mon_A_q26, raised, limits};
+}
+
+/* Arming's step ENCODER and the cause ENCODER are one bit, so that the tick needs no branch. */
+EXH_STATIC_ASSERT(axis_encoder_is_one_bit,
+                  (unsigned)EXH_ARM_ENCODER == (unsigned)EXH_FAULT_ENCODER);
+
+/* Then, once: safety. `box` has what the fingers cannot know; to its `raised` come the causes of
+ * fingers 0..n-1, and its `fingers` becomes n. Where no encoder is lost, arming's step ENCODER
+ * comes to its `ready`. */
+static inline struct exh_permit exh_axis_permit(struct exh_safety *s,
+                                                const struct exh_safety_cfg *cfg,
+                                                const struct exh_axis_now *now, unsigned n,
+                                                struct exh_safety_in box)
+{
+    uint32_t raised = 0;
+    for (unsigned k = 0; k < n; k++) { raised |= now[k].raised; }
+    box.raised |= raised;
+    box.fingers = (uint8_t)n;
+    box.ready = (uint8_t)(box.ready | (~raised & EXH_FAULT_ENCODER));
+    return exh_safety_step(s, cfg, box);
+}
+
+/* After the law has filled the force ledger: limits of force, then of current. Returns limit bits,
+ * which go on to the gate with those of sense. */
+static inline uint32_t exh_axis_force(const struct exh_axis *a, const struct exh_permit *permit,
+                                      struct exh_force_ledger *f, struct exh_current_ledger *i)
+{
+    const uint32_t limits = exh_drive_force(a->drive, a->drive_cfg, permit, f);
+    return limits | exh_drive_current(a->drive, a->drive_cfg, f, i);
+}
+
+/* After exh_gate(): what was coded, for the checks of the next tick. */
+static inline void exh_axis_coded(const struct exh_axis *a, int32_t cnt, int32_t coded_A_q26)
+{
+    if (a->track) { exh_track_coded(a->track, coded_A_q26); }
+    if (a->watch) { exh_watch_coded(a->watch, a->watch_cfg, cnt, coded_A_q26); }
+}
+
+/* Last, of a scene with one finger: the gate, and what was coded. cnt and *limits: of sense, the
+ * limits with those of force; the gate adds its own. */
+static inline void exh_axis_out(const struct exh_axis *a, struct exh_safety *s, int32_t cnt,
+                                struct exh_current_ledger *i, uint32_t *limits,
+                                struct exh_drive_out *out)
+{
+    exh_gate(s, a->drive_cfg, 1, i, limits, out);
+    exh_axis_coded(a, cnt, i->coded_A_q26);
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif
