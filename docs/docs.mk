@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: MIT
+# The documents: pages of the headers, tables and diagrams; and the format of sources.
+
+##@ Documents and format
+## Make pages of the public headers, build/doc/html; each symbol must be documented.
+.PHONY: doc
+doc:
+	@.ci/deps "$@" doxygen doxygen || exit 3
+	@rm -rf $(B)/doc && mkdir -p $(B)/doc
+	@{ cat docs/Doxyfile; echo 'OUTPUT_DIRECTORY = $(B)/doc'; echo 'PROJECT_NUMBER = $(version)'; } | doxygen - 2> $(B)/doc/warnings || true
+	@if [ -s $(B)/doc/warnings ] || ! [ -s $(B)/doc/html/index.html ]; then \
+	    cat $(B)/doc/warnings; echo "doc: not documented, or no pages" >&2; exit 1; fi
+	@echo "$(B)/doc/html/index.html"
+
+fmt_src = $(shell git ls-files '*.c' '*.h' | grep -v _ert_rtw/)
+.PHONY: fmt fmt-check
+## Format every C source by .clang-format (clang-format 14).
+fmt:
+	$(Q)clang-format -i $(fmt_src)
+# Another version of clang-format would differ in some lines.
+fmt-check:
+	@.ci/deps "$@" clang-format clang-format || exit 3
+	@clang-format --version | grep -q 'version 14' || { echo "$@: left out: this clang-format is not 14"; exit 0; }; \
+	    clang-format --dry-run -Werror $(fmt_src)
+
+## Draw the block diagrams in docs/ from the signal and device tables.
+.PHONY: diagrams
+diagrams: all
+	$(Q)for d in overview setup identification principle geometry bilateral; do $(exhand) diagram $$d > docs/$$d.svg || exit 1; done
+
+## Write the table of docs/CARDS.md: every misbehaviour of a card in every phase of its driver.
+.PHONY: cards
+cards: all
+	@$(exhand) cards > $(B)/cards.md
+	@awk '/^<!-- end -->/ { skip = 0 } !skip { print } \
+	    /^<!-- exhand cards -->/ { skip = 1; while ((getline line < "$(B)/cards.md") > 0) print line }' \
+	    docs/CARDS.md > $(B)/CARDS.md.new && cp $(B)/CARDS.md.new docs/CARDS.md && tail -n 1 $(B)/cards.md
+
+FAULTS_TIMES ?= 100000
+
+## Write docs/FAULTS.md: every fault in every state, any fault at any tick (FAULTS_TIMES=100000, ten minutes).
+.PHONY: faults
+faults: all
+	@$(exhand) faults > $(B)/faults.md || { tail -n 3 $(B)/faults.md; exit 1; }
+	@$(exhand) faults --rate 20000 > $(B)/faults_20kHz.md || { tail -n 3 $(B)/faults_20kHz.md; exit 1; }
+	@$(exhand) faults --times $(FAULTS_TIMES) > $(B)/faults_times.md || { cat $(B)/faults_times.md; exit 1; }
+	@awk -v a="$(B)/faults.md" -v b="$(B)/faults_times.md" 'function put(f, l) { skip = 1; while ((getline l < f) > 0) print l } \
+	    /^<!-- end -->/ { skip = 0 } !skip { print } /^<!-- exhand faults -->/ { put(a) } /^<!-- exhand faults --times -->/ { put(b) }' \
+	    docs/FAULTS.md > $(B)/FAULTS.md.new && cp $(B)/FAULTS.md.new docs/FAULTS.md
+	@mkdir -p $(B)/faults && $(exhand) faults --out $(B)/faults && if command -v gnuplot >/dev/null; then \
+	    (cd $(B)/faults && gnuplot -c faults.gp "$(CURDIR)/ports/posix/cli/plot") && cp $(B)/faults/faults.png docs/faults.png; fi
+	@tail -n 1 $(B)/faults.md; tail -n 1 $(B)/faults_20kHz.md; grep 'times:' $(B)/faults_times.md

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: MIT
+# The world simulator build/posix/world.
+
+# The core needs a C compiler alone. Pictures and rays into meshes are in where their packages are.
+world_more := main live alone bench solo link link_param link_trace view gl gl_form gl_batch gl_solid gl_layer gl_text \
+              picture_none mesh_embree mesh_none
+world_core := $(filter-out $(world_more:%=examples/world/%.c),$(wildcard examples/world/*.c))
+# Rays need the package, a compiler that sees it, and a program that can load it when it runs.
+world_rays := $(if $(filter -static,$(LDFLAGS)),,$(if $(call sees,embree3/rtcore.h),3,$(if $(call sees,embree4/rtcore.h),4)))
+world_mesh := $(B)/posix/examples/world/$(if $(world_rays),mesh_embree,mesh_none).o
+world_gl   := $(and $(call have,SDL2/SDL_ttf.h),$(call have,GL/gl.h),$(call have,png.h))
+world_pkgs := libsdl2-dev libsdl2-ttf-dev libgl-dev libegl-dev libgl1-mesa-dri libpng-dev fonts-dejavu-core
+world      := $(B)/posix/world
+
+world_part := main live alone bench solo link link_param link_trace view \
+              $(if $(world_gl),gl gl_form gl_batch gl_solid gl_layer gl_text,picture_none)
+world_core_obj := $(patsubst %.c,$(B)/posix/%.o,$(world_core) $(patsubst %,ports/posix/sim/%.c,lag plant device))
+world_obj  := $(world_core_obj) $(world_mesh) $(world_part:%=$(B)/posix/examples/world/%.o) \
+              $(B)/posix/ports/posix/cli/option.o $(B)/posix/examples/bilateral/tables.o $(B)/posix/examples/glove/cal.o \
+              $(B)/posix/examples/calib.o
+world_libs := $(if $(world_gl),-lSDL2 -lSDL2_ttf -lGL -lpng) $(if $(world_rays),-ldl) -lpthread -lm
+
+$(filter $(B)/posix/examples/world/%,$(world_obj)): PORT_HOSTFLAGS += -fno-math-errno \
+    $(if $(world_gl),-I$(dir $(call have,SDL2/SDL_ttf.h)) -D_REENTRANT) $(if $(world_rays),-DWORLD_EMBREE=$(world_rays))
+
+$(world): $(world_obj) $(B)/posix/libexhand.a
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(world_libs)
+
+##@ The world simulator
+## Build the world simulator build/posix/world; it has pictures and meshes if their packages are there.
+.PHONY: world
+world:
+	@.ci/deps "the world's pictures" "cd /usr/include && ls SDL2/SDL_ttf.h GL/gl.h png.h" $(world_pkgs) || true
+	@.ci/deps "the world's meshes" "ls /usr/include/embree*/rtcore.h" libembree-dev || true
+	@$(MAKE) --no-print-directory $(if $(V),,-s) $(world)
+
+## Run exhand and world over UDP as two processes, and in two network namespaces if it may.
+.PHONY: two-computers
+two-computers:
+	@$(MAKE) --no-print-directory $(if $(V),,-s) $(exhand) $(world)
+	@$(two_run)
+two_run = test/world/two_computers.sh $(exhand) $(world)
+.PHONY: two-run
+two-run:
+	@$(two_run)
+
+$(B)/bench/rays: $(B)/posix/test/world/rays.o $(world_core_obj) $(world_mesh)
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(if $(world_rays),-ldl) -lm
+
+## Measure frames and rays per second, with and without culling, and instructions per ray.
+.PHONY: bench-world
+bench-world: world $(B)/bench/rays
+	@command -v valgrind >/dev/null && test/world/rays.sh $(B)/bench/rays || echo "instructions: not counted: install valgrind"
+	@$(world) --bench --scene examples/world/scenes/collision.world $(ARGS)

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: MIT
+# The host program build/posix/exhand, and what it prints for the documents.
+
+# Every scene that has a subcommand, over the simulated device.
+cli_src := $(wildcard ports/posix/cli/*.c ports/posix/fit/*.c) \
+           $(addprefix examples/,log.c blackbox.c deadman.c calib.c drop/drop.c guarded/guarded.c calibrate/calibrate.c glove/glove.c \
+             glove/cal.c) \
+           $(wildcard examples/bilateral/*.c examples/bringup/*.c) ports/pc104/stream.c
+modbus   := $(if $(call gives,modbus/modbus.h,modbus,modbus_reply),libmodbus,none)
+cli_src  := $(filter-out ports/posix/cli/modbus_%.c ports/posix/cli/scene_custom.c,$(cli_src)) ports/posix/cli/modbus_mail.c \
+            $(wildcard ports/posix/cli/modbus_$(modbus)*.c)
+# The world's core answers in the same process, without pictures.
+cli_obj  := $(cli_src:%.c=$(B)/posix/%.o) $(world_core:%.c=$(B)/posix/%.o) $(world_mesh)
+cli_libs := $(if $(world_rays),-ldl) $(if $(filter libmodbus,$(modbus)),-lmodbus) -pthread -lm
+# Lines of a GPIO chip, by the version of libgpiod. Tests and benches link none, so that they are the same on every machine.
+gives_gpio = $(call gives,gpiod.h,gpiod,$(1))
+gpio     := $(if $(call gives_gpio,gpiod_line_request_bulk),v1,$(if $(call gives_gpio,gpiod_chip_request_lines),v2,none))
+gpio_none := $(B)/posix/ports/posix/gpio_none.o
+gpio_obj := $(B)/posix/ports/posix/gpio_$(gpio).o
+gpio_libs := $(if $(filter none,$(gpio)),,-lgpiod)
+
+# The board and the device, without lines.
+dev_src := $(filter-out ports/posix/gpio_v%.c ports/posix/gpio_none.c,$(wildcard ports/posix/*.c)) \
+           $(wildcard ports/posix/sim/*.c ports/posix/emu/*.c ports/cards/*.c)
+dev_obj := $(dev_src:%.c=$(B)/posix/%.o) $(B)/posix/examples/loop.o
+sim_obj := $(dev_obj) $(gpio_none)
+exhand  := $(B)/posix/exhand
+
+$(exhand): $(cli_obj) $(dev_obj) $(gpio_obj) $(B)/posix/libexhand.a
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(cli_libs) $(gpio_libs)
+
+# The host program with a model in it.
+exhand_custom := $(B)/posix/exhand-$(MODEL_NAME)
+custom_obj    := $(patsubst %.c,$(B)/posix/%.o,ports/posix/cli/scene_custom.c examples/custom/custom.c examples/custom/slot_real.c)
+$(exhand_custom): $(filter-out %/scene_none.o,$(cli_obj)) $(custom_obj) $(model_obj) $(dev_obj) $(gpio_obj) $(B)/posix/libexhand.a
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(cli_libs) $(gpio_libs)
+
+# Coarse where finer steps do not change the answer; `exhand drop --sweep` and --friction have finer ones.
+demo_runs := calibration:"calibrate --out $(B)/demo/calibration" table2:"drop --out $(B)/demo --spread 20" \
+             stability:"drop --out $(B)/demo --sweep --grid 12x10 --falls 3" \
+             friction:"drop --out $(B)/demo --friction 5 --falls 3" table1:"glove --selftest" \
+             glove:"glove --record $(B)/demo/glove.exh --does poses --seconds 5" \
+             bilateral:"bilateral --out $(B)/demo/bilateral"
+demo_pictures := force_position fall stability friction calibration/calibration bilateral/contact bilateral/force
+demo_says     := bilateral calibration table1 stability friction table2
+
+##@ The host program
+##2 Run the paper's experiments on the simulated device; results go to build/demo.
+.PHONY: demo
+demo: all
+	@.ci/deps "the pictures" gnuplot gnuplot-nox fonts-dejavu-core || true
+	@mkdir -p $(B)/demo && rm -f $(B)/demo/stability*.csv
+	@for r in $(demo_runs); do \
+	    $(if $(V),echo "$(exhand) $${r#*:}";) \
+	    $(exhand) $${r#*:} > $(B)/demo/$${r%%:*}.txt || { s=$$?; cat $(B)/demo/$${r%%:*}.txt; exit $$s; }; \
+	done
+	@s=0; if command -v gnuplot >/dev/null; then \
+	    for g in pictures sweep friction calibration/pictures bilateral/bilateral; do (cd $(B)/demo/$$(dirname $$g) && \
+	        gnuplot -c $$(basename $$g).gp "$(CURDIR)/ports/posix/cli/plot") || s=1; done; fi; \
+	for p in $(demo_pictures:%=$(B)/demo/%.png); do \
+	    if [ -s $$p ]; then echo "picture: $$p"; else echo "picture missing: $$p" >&2; fi; done; \
+	cat $(demo_says:%=$(B)/demo/%.txt); exit $$s
+
+FIT_BUDGET ?= 6000
+
+## Search for the plant by every reading of the analysis, for hours (FIT_BUDGET=N plants); state is in build/fit.
+.PHONY: fit
+fit: all
+	$(Q)$(exhand) fit --budget $(FIT_BUDGET) --out $(B)/fit $(ARGS) > $(B)/fit.txt.new
+	@mv $(B)/fit.txt.new $(B)/fit.txt && cat $(B)/fit.txt

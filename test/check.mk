@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: MIT
+# What CI runs after `make test`.
+
+# A sub-make, and the time that it took.
+timed = +bash -c 'TIMEFORMAT="took: %0R s, %0U + %0S s of a core: $$*"; time "$$@"' make $(MAKE) --no-print-directory -s
+
+check_tools := clang i686-linux-gnu-gcc arm-none-eabi-gcc qemu-system-i386 qemu-system-arm valgrind python3
+check_pkgs  := clang $(pc104_pkgs) gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm valgrind python3
+
+##@ CI
+## Run what CI runs after `make test`: other compilers and CPUs, mutants, images, sizes, benches, documents.
+.PHONY: check
+check: export WERROR = 1
+check:
+	@for t in $(check_tools); do .ci/deps "the checks" $$t $(check_pkgs) || exit 3; done
+	@$(timed) all
+	@$(timed) matrix ARGS=--ci
+	@$(timed) golden ARGS="--check --every 40"
+	@$(timed) mutants ARGS="--some 4"
+	@$(timed) mcdc
+	@$(timed) proof-ci
+	@$(timed) fuzz
+	@$(timed) demo > $(B)/demo.txt && tail -n 40 $(B)/demo.txt
+	@$(timed) $(variants:%=variant-%)
+	@$(timed) linux-program
+	@$(timed) link porting
+	@$(timed) $(patsubst %,golden-%,$(filter-out i686%,$(variants)))
+	@$(timed) bits
+	@$(timed) undef undef-cortex-m3 undef-cortex-m0
+	@$(timed) PORT=pc104 SCENE=minimal undef undef-emu
+	@$(timed) PORT=template SCENE=minimal all
+	@$(timed) fmu $(B)/fmi/native
+	@$(timed) world boot-built contract-built nic-built hil-built
+	@$(timed) $(check_runs)
+	@$(timed) stress-short
+	@$(timed) size
+	@$(timed) fmt-check
+	@$(timed) doc doc-names
+	@$(timed) bench
+	@$(timed) report-test
+	@$(timed) report ARGS=--short
+
+# These run built images and programs, one core each, as many at a time as there are cores.
+check_runs := boot-run hil-short nic-run contract-run two-run fmi-run picture
+.PHONY: hil-short picture bits
+hil-short:
+	@$(MAKE) --no-print-directory hil-run HIL_TICKS=2000 HIL_FEW=500 HIL_QEMU=2000 > $(B)/hil.txt || { cat $(B)/hil.txt; exit 1; }
+	@grep -cE '^  ok' $(B)/hil.txt | sed 's/^/hil, short: ok: /'
+picture:
+	@$(world) --headless --script --seconds 1 --scene examples/world/scenes/collision.world --png $(B)/world.png || [ $$? = 3 ]
+bits:
+	@$(exhand) faults --rate 100 > $(B)/faults_100Hz.txt
+	@JOBS=$(jobs) FAULTS=$(B)/faults_100Hz.txt test/sim/bits.sh $(B)/bits $(B)/demo $(variants:%=$(B)/variant/%/posix/exhand)
