@@ -60,7 +60,7 @@ def sources():
     """What the sources name: options that something takes, and words, names of files among them."""
     found = ["Makefile"] + [p for t in TOP for p in glob.glob(t + "/**/*", recursive=True)]
     text = "".join(read(p) for p in found if re.search(r"\.(py|sh|[chS]|awk|mk|tsv|gp|plt)$|^Makefile$", p) and not p.startswith("test/docs/"))
-    options = set(re.findall(r"--\w[\w-]*", text)) | {"--" + o for o in re.findall(r'\{"([a-z][\w-]*)", CLI_', text)}
+    options = set(re.findall(r"--\w[\w-]*", text)) | {"--" + o for o in re.findall(r'\{"([a-z][\w-]*)",[\s\\]*CLI_', text)}
     return options, set(re.findall(r"\w+", text)) | {os.path.basename(p).split(".")[0] for p in found}
 
 
