@@ -15,7 +15,7 @@ $(error B="$(B)": the build folder must have a name without blanks)
 endif
 
 include ports/$(PORT)/port.mk
-scene_dirs := examples test/hil test/board test/bench
+scene_dirs := examples test/image/hil test/port test/figures/bench
 scene_mk   := $(or $(wildcard $(scene_dirs:%=%/$(SCENE)/scene.mk)),examples/$(SCENE)/scene.mk)
 include $(scene_mk)
 
@@ -130,8 +130,8 @@ $(boot): $(image) $(PORT_ISO) FORCE
 # --- the folders' own parts; a later one may use what an earlier one defines -----------------
 
 include examples/world/world.mk ports/posix/posix.mk ports/fmi/fmi.mk
-include test/test.mk test/closed.mk test/golden/golden.mk test/matrix/matrix.mk test/fuzz/fuzz.mk test/strength.mk
-include test/device.mk test/image.mk test/figures.mk test/bench/bench.mk test/check.mk test/walk.mk
+include test/test.mk $(foreach d,closed golden matrix fuzz strength device image figures,test/$d/$d.mk)
+include test/figures/bench/bench.mk test/check.mk test/walk/walk.mk
 include lib/lib.mk docs/docs.mk
 
 program := $(if $(filter custom,$(SCENE)),$(exhand_custom),$(exhand))

@@ -50,4 +50,4 @@ picture:
 	@$(world) --headless --script --seconds 1 --scene examples/world/scenes/collision.world --png $(B)/world.png || [ $$? = 3 ]
 bits:
 	@$(exhand) faults --rate 100 > $(B)/faults_100Hz.txt
-	@JOBS=$(jobs) FAULTS=$(B)/faults_100Hz.txt test/sim/bits.sh $(B)/bits $(B)/demo $(variants:%=$(B)/variant/%/posix/exhand)
+	@JOBS=$(jobs) FAULTS=$(B)/faults_100Hz.txt test/closed/sim/bits.sh $(B)/bits $(B)/demo $(variants:%=$(B)/variant/%/posix/exhand)

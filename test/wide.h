@@ -3,7 +3,7 @@
  *
  * 32-bit compilers have no __int128, and an oracle must be wider than the code
  * it judges. Two's complement; sums and products wrap only beyond 2^127, which
- * no oracle comes near. test/unit/wide_test.c checks it against the compiler's.
+ * no oracle comes near. test/module/unit/wide_test.c checks it against the compiler's.
  */
 #ifndef TEST_WIDE_H
 #define TEST_WIDE_H

@@ -39,17 +39,17 @@ world:
 two-computers:
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(exhand) $(world)
 	@$(two_run)
-two_run = test/world/two_computers.sh $(exhand) $(world)
+two_run = test/closed/world/two_computers.sh $(exhand) $(world)
 .PHONY: two-run
 two-run:
 	@$(two_run)
 
-$(B)/bench/rays: $(B)/posix/test/world/rays.o $(world_core_obj) $(world_mesh)
+$(B)/bench/rays: $(B)/posix/test/closed/world/rays.o $(world_core_obj) $(world_mesh)
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(if $(world_rays),-ldl) -lm
 
 ## Measure frames and rays per second, with and without culling, and instructions per ray.
 .PHONY: bench-world
 bench-world: world $(B)/bench/rays
-	@command -v valgrind >/dev/null && test/world/rays.sh $(B)/bench/rays || echo "instructions: not counted: install valgrind"
+	@command -v valgrind >/dev/null && test/closed/world/rays.sh $(B)/bench/rays || echo "instructions: not counted: install valgrind"
 	@$(world) --bench --scene examples/world/scenes/collision.world $(ARGS)

@@ -19,7 +19,7 @@ $(B)/fmu/ExhandDevice.fmu: $(B)/fmi/describe-device $(fmi_device) $(fmi_src) por
 	@mkdir -p $(@D)
 	$(fmi_pack) $(fmi_device) lib/src/bytes.c
 
-$(B)/fmi/native: $(B)/posix/test/fmi/native.o $(filter-out %/main.o,$(cli_obj)) $(sim_obj) $(B)/posix/libexhand.a
+$(B)/fmi/native: $(B)/posix/test/walk/fmi/native.o $(filter-out %/main.o,$(cli_obj)) $(sim_obj) $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(cli_libs)
 
@@ -37,8 +37,8 @@ fmi:
 	@.ci/deps "the FMUs" "command -v cmake && command -v python3 && python3 -c 'import ensurepip'" cmake make python3 python3-venv || exit 3
 	@$(MAKE) --no-print-directory $(if $(V),,-s) fmu $(B)/fmi/native
 	@$(fmi_run)
-fmi_run = B=$(B) test/fmi/fmi.sh $(FMI_RATES)
+fmi_run = B=$(B) test/walk/fmi/fmi.sh $(FMI_RATES)
 # The part for CI. Exit status 3 means that the packages cannot be had.
 fmi-run:
-	@B=$(B) test/fmi/fmi.sh 500 > $(B)/fmi/said 2>&1; s=$$?; tail -n 1 $(B)/fmi/said; \
+	@B=$(B) test/walk/fmi/fmi.sh 500 > $(B)/fmi/said 2>&1; s=$$?; tail -n 1 $(B)/fmi/said; \
 	    [ $$s = 0 ] || [ $$s = 3 ] || { cat $(B)/fmi/said; exit 1; }

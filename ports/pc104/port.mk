@@ -17,7 +17,8 @@ pc104_link    := link.c net.c nic.c pci.c stream.c
 PORT_SRC       = $(pc104_parts:%=ports/pc104/%) $(cards_$(CARDS)) ports/pc104/$(if $(SCENE_FLOAT),fpu.c,fpu_none.c) \
                  $(if $(SCENE_ROM),ports/pc104/scene_rom.c ports/pc104/link_none.c, \
                    ports/pc104/scene_full.c ports/pc104/module.c ports/pc104/$(if $(filter no,$(MODBUS)),modbus_none.c,modbus.c) \
-                   examples/log.c $(pc104_link:%=ports/pc104/%) $(if $(SCENE_BOX_B),ports/pc104/dump.c examples/blackbox.c,ports/pc104/dump_none.c))
+                   examples/log.c $(pc104_link:%=ports/pc104/%) \
+                   $(if $(SCENE_BOX_B),ports/pc104/dump.c examples/blackbox.c,ports/pc104/dump_none.c))
 PORT_HOSTFLAGS := -Iports
 # No FPU, MMX or SSE register is ever touched, so none has to be set up or saved; PORT_FLOAT is for a controller in floats alone.
 PORT_CFLAGS   := -m32 -march=i686 -ffreestanding -fno-pic -fno-pie -fno-stack-protector \

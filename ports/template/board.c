@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Template board: compiles, does nothing, refuses to run. Copy the folder, then
- * fill one function after the other; the test in test/board says when it is done.
+ * fill one function after the other; the test in test/port says when it is done.
  *
  * A new port edits nothing outside its own folder and ldscripts/.
  */

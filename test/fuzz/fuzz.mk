@@ -17,10 +17,10 @@ $(B)/fuzz/libfuzzer: test/fuzz/wire_fuzz.c $(lib_src) $(wildcard lib/include/exh
 $(B)/fuzz/net: $(B)/test/san/test/fuzz/net_fuzz.o $(pc104_net)
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(san) -o $@ $^
-fuzz_net := test/fuzz/net_fuzz.c test/pc104/frames.c ports/pc104/net.c
-$(B)/fuzz/net-libfuzzer: $(fuzz_net) $(wildcard test/pc104/*.h ports/pc104/net.h) $(stamp)
+fuzz_net := test/fuzz/net_fuzz.c test/image/pc104/frames.c ports/pc104/net.c
+$(B)/fuzz/net-libfuzzer: $(fuzz_net) $(wildcard test/image/pc104/*.h ports/pc104/net.h) $(stamp)
 	@mkdir -p $(@D)
-	$(Q)clang $(filter-out -MMD -MP,$(base)) -Iports -Itest/pc104 -DFUZZ_NO_MAIN $(san) -fsanitize=fuzzer -o $@ $(filter %.c,$^)
+	$(Q)clang $(filter-out -MMD -MP,$(base)) -Iports -Itest/image/pc104 -DFUZZ_NO_MAIN $(san) -fsanitize=fuzzer -o $@ $(filter %.c,$^)
 
 # Requests for the Modbus slave.
 $(B)/fuzz/modbus: $(B)/test/san/test/fuzz/modbus_fuzz.o $(lib_src:%.c=$(B)/test/san/%.o)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""box.py DIR [--only T,T]: the host program for every target of targets.tsv, by its gcc; test/sim/bits.sh compares what each makes
+"""box.py DIR [--only T,T]: the host program for every target of targets.tsv, by its gcc; test/closed/sim/bits.sh compares what each makes
 with the host's in DIR/host: Table II, logs of it and of the full box, a calibration, replays, faults. `make matrix-box`.
 Writes DIR/box.tsv, keeps the rows of targets that are not asked for, and writes docs/MATRIX.md's table anew. Standard library only.
 """
@@ -63,7 +63,7 @@ def main():
         return 3
     script = {t["name"]: built(t, os.path.join(a.dir, t["name"])) for t in some}
     start = time.time()
-    run = subprocess.run(["test/sim/bits.sh", a.dir + "/bits", a.dir + "/host"] + [s for s in script.values() if s], cwd=ROOT,
+    run = subprocess.run(["test/closed/sim/bits.sh", a.dir + "/bits", a.dir + "/host"] + [s for s in script.values() if s], cwd=ROOT,
                          stdout=subprocess.PIPE, text=True)
     print(run.stdout, end="")
     table = kept(os.path.join(a.dir, "box.tsv"))

@@ -6,13 +6,13 @@
 # none, gcc or clang, SUITE_CFLAGS is for all but the golden vectors.
 suite_def   := -D_POSIX_C_SOURCE=200809L -DEXH_CHECK_PLAIN
 comma       := ,
-suite_dirs  := unit prop cards emu $(if $(SUITE_METAL),,pc104)
+suite_dirs  := module/unit module/prop device/cards device/emu $(if $(SUITE_METAL),,image/pc104)
 # One of them looks at a box that was never opened: before all others of this program.
-suite_first := test/cards/box_test.c
+suite_first := test/device/cards/box_test.c
 suite_test  := $(suite_first) $(filter-out $(suite_first),$(filter $(suite_dirs:%=test/%/%),$(test_src)))
-suite_net   := $(if $(SUITE_METAL),,test/pc104/frames.c ports/pc104/net.c)
-suite_src   := $(sort $(lib_src) test/support.c $(cards_src) $(emu_src) test/cards/bus.c test/cards/rig.c $(suite_net))
-suite_group  = $(subst /,_,$(1:test/%_test.c=%))
+suite_net   := $(if $(SUITE_METAL),,test/image/pc104/frames.c ports/pc104/net.c)
+suite_src   := $(sort $(lib_src) test/support.c $(cards_src) $(emu_src) test/device/cards/bus.c test/device/cards/rig.c $(suite_net))
+suite_group  = $(subst /,_,$(call test_name,$(1)))
 suite_lto   := $(if $(filter gcc clang,$(SUITE_LTO)),-flto)
 suite_link  := $(or $(SUITE_LINK),$(CC))
 # Without a C library: start, memory's functions and the compiler's helpers (SUITE_METAL: test/matrix/NAME.c).
@@ -28,8 +28,8 @@ $(B)/suite/plain/%.o: %.c $(stamp)
 $(B)/suite/audit/%.o: %.c $(stamp)
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(tflags) $(suite_lto) $(SUITE_CFLAGS) $(suite_def) -c $< -o $@
-$(B)/suite/audit/test/cards/%.o $(B)/suite/audit/ports/cards/%.o: tflags += -Iports
-$(B)/suite/audit/test/pc104/%.o $(B)/suite/audit/ports/pc104/%.o: tflags += -Iports -Itest/pc104
+$(B)/suite/audit/test/device/cards/%.o $(B)/suite/audit/ports/cards/%.o: tflags += -Iports
+$(B)/suite/audit/test/image/pc104/%.o $(B)/suite/audit/ports/pc104/%.o: tflags += -Iports -Itest/image/pc104
 $(B)/suite/metal/%.o: %.c $(stamp)
 	@mkdir -p $(@D)
 	$(Q)$(suite_link) $(base) $(CFLAGS) -ffreestanding -c $< -o $@

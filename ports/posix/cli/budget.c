@@ -10,7 +10,7 @@ struct times {
     double access_us, byte_us, timer_us, cpi, settle_us, convert_us, update_us, sample_us, every;
 };
 
-/* Dearest ticks, as `make hil` counts them; accesses to cards as test/cards demands them too. */
+/* Dearest ticks, as `make hil` counts them; accesses to cards as test/device/cards demands them too. */
 static const struct load {
     const char *name;
     double goal_Hz;
@@ -22,7 +22,7 @@ static const struct load {
     {"drop", 20000, 14, 0, 8051, 2, 0, "make hil ARGS=rates, all in every tick"},
     {"drop, in turn", 20000, 11, 0, 7952, 1, 0, "make hil ARGS=rates, turns=1"},
     {"bilateral, a frame at once", 10000, 44, 49, 36887, 4, 1,
-     "accesses: test/cards; instructions as below"},
+     "accesses: test/device/cards; instructions as below"},
     {"bilateral, in turn, frame", 10000, 30, 1, 36887, 1, 6,
      "make hil ARGS=box, turns=1 scan_slice=4: frame and packet"},
     {"bilateral, in turn, part", 10000, 30, 10, 26375, 1, 6,

@@ -1,4 +1,0 @@
-# SPDX-License-Identifier: MIT
-# The same at another rate.
-CONTRACT_RATE_HZ := 90
-include test/board/contract/scene.mk

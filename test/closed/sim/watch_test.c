@@ -1,0 +1,301 @@
+/* SPDX-License-Identifier: MIT */
+/* exhand watch --listen: a log that comes over the network, sampled. Over Modbus:
+ * modbus_watch_test.c. */
+#define _XOPEN_SOURCE 700 /* pseudo-terminals */
+
+#include "said.h"
+#include "terminal.h"
+
+#include "udp.h"
+
+#include "../../../ports/pc104/stream.h"
+
+#include "exhand/record.h"
+
+#include <time.h>
+
+static struct said s;
+static char at[32];
+static struct udp from;
+static char *dir;
+static pid_t watcher;
+static uint32_t number;
+
+static void pause_ms(long ms)
+{
+    const struct timespec t = {ms / 1000, ms % 1000 * 1000000};
+    (void)nanosleep(&t, NULL);
+}
+
+static int (*watch)(int, char **) = cli_watch;
+
+/* At a port that was free just now. */
+static void start(const char *option, const char *value)
+{
+    struct udp probe;
+    number = 0;
+    stream_open(77);
+    CHECK_EQ_I64(udp_open(&probe, "127.0.0.1:0", NULL), 0);
+    (void)snprintf(at, sizeof at, "127.0.0.1:%u", udp_port(&probe));
+    udp_close(&probe);
+    CHECK_EQ_I64(udp_open(&from, "127.0.0.1:0", at), 0);
+    watcher = said_start(dir, watch,
+                         WORDS("watch", "--listen", at, "--seconds", "8", "--csv",
+                               said_path(dir, "w.csv"), option, value));
+    for (int i = 0; i < 400 && said_size(said_path(dir, "w.csv")) < 0; i++) { pause_ms(10); }
+    pause_ms(50);
+}
+
+/* --NAME=DIR/FILE */
+static const char *said_path_as_option(const char *name, const char *file)
+{
+    static char option[600];
+    snprintf(option, sizeof option, "--%s=%s", name, said_path(dir, file));
+    return option;
+}
+
+static void piece(const uint8_t *byte, unsigned n, int last, int lose)
+{
+    uint8_t datagram[STREAM_PIECE_B];
+    const size_t len = stream_piece(datagram, byte, n, last);
+    if (!lose) { CHECK(udp_send(&from, datagram, len) > 0, "piece %lu", (unsigned long)number); }
+    stream_sent(n);
+    if (++number % 8 == 0) { pause_ms(2); } /* the socket's room is not endless */
+}
+
+/* A file's bytes; lost: each so many pieces one is. */
+static void send_file(const char *path, unsigned lost)
+{
+    FILE *f = fopen(path, "rb");
+    uint8_t byte[STREAM_DATA_B];
+    size_t n;
+    CHECK(f != NULL, "no log");
+    while ((n = fread(byte, 1, sizeof byte, f)) > 0) {
+        piece(byte, (unsigned)n, 0, lost && number % lost == lost - 1);
+    }
+    fclose(f);
+}
+
+static void end(void)
+{
+    said_end(&s, dir, watcher);
+    udp_close(&from);
+}
+
+static const char *a_log(const char *seconds)
+{
+    static char log[64]; /* said_path() forgets */
+    snprintf(log, sizeof log, "%s/a.exh", dir);
+    said(&s, dir, cli_run, WORDS("run", "--seconds", seconds, "--log", log));
+    CHECK(s.status == 0, "%s", s.err);
+    return log;
+}
+
+/* Lines of the first that are the second's, in its order; -1: one is not. Both have q at first
+ * behind `skip` columns. */
+static int found_in(const char *path, const char *in, int *lines)
+{
+    FILE *f = fopen(path, "r"), *g = fopen(in, "r");
+    char a[512], b[512];
+    int same = 0;
+    CHECK(f && g && fgets(a, sizeof a, f) && fgets(b, sizeof b, g), "no table");
+    *lines = 0;
+    while (fgets(a, sizeof a, f)) {
+        const char *values = a;
+        double t = strtod(a, NULL), u = -1;
+        for (int i = 0; i < 6; i++) { values = strchr(values, ',') + 1; }
+        while (u < t - 1e-9 && fgets(b, sizeof b, g)) { u = strtod(b, NULL); }
+        same += u < t + 1e-9 && strcmp(values, strchr(b, ',') + 1) == 0;
+        ++*lines;
+    }
+    fclose(f);
+    fclose(g);
+    return same;
+}
+
+TEST(samples_are_the_logs_values)
+{
+    const char *log;
+    int lines, same;
+    dir = said_dir();
+    log = a_log("4");
+    said(&s, dir, cli_csv, WORDS("csv", log, "--out", said_path(dir, "c.csv")));
+    CHECK_EQ_I64(s.status, 0);
+    start("--hz", "20");
+    send_file(log, 0);
+    end();
+    CHECK(s.status == 0, "%d %s", s.status, s.err);
+    same = found_in(said_path(dir, "w.csv"), said_path(dir, "c.csv"), &lines);
+    CHECK(same == lines && lines == 80, "%d of %d", same, lines);
+    CHECK(strstr(s.out, "  run  faults none"), "%s", s.out);
+    said_clean(dir);
+}
+
+/* What is lost is counted and the rest is watched on. */
+TEST(lost_pieces_are_told)
+{
+    const char *log;
+    dir = said_dir();
+    log = a_log("4");
+    start("--signals", "f_des,state");
+    send_file(log, 20);
+    end();
+    CHECK(s.status == 0 && strstr(s.err, "ticks were lost on the way"), "%d %s", s.status, s.err);
+    CHECK(strstr(s.out, "  f_des ") && strstr(s.out, "  state ") && !strstr(s.out, "  q "), "%s",
+          s.out);
+    said_clean(dir);
+}
+
+/* Width and height of a PNG; 0: it is none. */
+static unsigned png_size(const char *path, unsigned *height)
+{
+    static const uint8_t begins[16] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n',
+                                       0,    0,   0,   13,  'I',  'H',  'D',  'R'};
+    uint8_t byte[24] = {0};
+    FILE *f = fopen(path, "rb");
+    size_t n = 0;
+    if (f) {
+        n = fread(byte, 1, sizeof byte, f);
+        fclose(f);
+    }
+    if (n < sizeof byte || memcmp(byte, begins, sizeof begins) != 0) { return 0; }
+    *height = (unsigned)byte[22] << 8 | byte[23];
+    return (unsigned)byte[18] << 8 | byte[19];
+}
+
+/* A panel for each signal, so a picture of two is higher than one of one. */
+TEST(a_picture_is_drawn)
+{
+    const char *const signals[] = {"q", "q,f_des"};
+    unsigned height[2] = {0, 0};
+    if (system("command -v gnuplot >/dev/null 2>&1") != 0) {
+        check_note("no gnuplot here: no picture of a running box");
+        return;
+    }
+    for (size_t i = 0; i < 2; i++) {
+        char option[32];
+        dir = said_dir();
+        snprintf(option, sizeof option, "--signals=%s", signals[i]);
+        start(option, said_path_as_option("plot", "it's.png"));
+        send_file(a_log("4"), 0);
+        end();
+        CHECK(s.status == 0 && strstr(s.err, "picture: ") && strstr(s.err, "it's.png"), "%d %s",
+              s.status, s.err);
+        CHECK_EQ_I64(png_size(said_path(dir, "it's.png"), &height[i]), 1400);
+        said_clean(dir);
+    }
+    CHECK(height[1] > height[0], "%u and %u px", height[0], height[1]);
+}
+
+static struct terminal tty;
+
+static int watch_on_terminal(int argc, char **argv)
+{
+    return dup2(tty.slave, STDOUT_FILENO) < 0 ? 99 : cli_watch(argc, argv);
+}
+
+static int count(const char *text, const char *part)
+{
+    int n = 0;
+    for (const char *p = strstr(text, part); p; p = strstr(p + 1, part)) { n++; }
+    return n;
+}
+
+/* Cleared once, then drawn over from its corner; the cursor is hidden and comes back. */
+TEST(a_terminal_is_drawn_over)
+{
+    static char text[262144];
+    FILE *f;
+    uint8_t byte[STREAM_DATA_B];
+    size_t n;
+    if (terminal_open(&tty) < 0) { return; }
+    dir = said_dir();
+    watch = watch_on_terminal;
+    start("--signals", "q,state");
+    watch = cli_watch;
+    text[0] = '\0';
+    f = fopen(a_log("4"), "rb");
+    CHECK(f != NULL, "no log");
+    while ((n = fread(byte, 1, sizeof byte, f)) ==
+           sizeof byte) { /* but its last bytes: it falls silent */
+        piece(byte, (unsigned)n, 0, 0);
+        pause_ms(1); /* some seconds: pictures are four a second */
+        terminal_read(&tty, text, sizeof text);
+    }
+    fclose(f);
+    for (int i = 0; i < 3000 && strstr(text, "SILENT") == NULL; i++) {
+        pause_ms(10);
+        terminal_read(&tty, text, sizeof text);
+    }
+    kill(watcher, SIGINT);
+    pause_ms(200);
+    terminal_read(&tty, text, sizeof text);
+    end();
+    terminal_read(&tty, text, sizeof text);
+    CHECK(s.status == 130, "%d %s", s.status, s.err);
+    CHECK(count(text, "\033[2J") == 1 && count(text, "\033[H") >= 4,
+          "cleared %d times, drawn %d times", count(text, "\033[2J"), count(text, "\033[H"));
+    CHECK(count(text, "\033[?25l") == 1 && count(text, "\033[?25h") == 1, "the cursor");
+    CHECK(strstr(text, "drop, 2000 Hz   ") && strstr(text, "state   run: ") &&
+              strstr(text, "faults  none"),
+          "%s", text);
+    CHECK(strstr(text, "SILENT for "), "it does not tell of silence");
+    CHECK(strstr(text, "Ctrl-C ends it\033[J"), "what stood below stays");
+    terminal_close(&tty);
+    said_clean(dir);
+}
+
+TEST(silence_is_told_with_its_age)
+{
+    dir = said_dir();
+    start("--seconds", "3");
+    end();
+    CHECK(s.status == 1 && strstr(s.err, "nothing was heard"), "%d %s", s.status, s.err);
+    CHECK(strstr(s.out, "silent for 2.") || strstr(s.out, "silent for 3."), "%s",
+          s.out); /* a busy machine draws late */
+    said_clean(dir);
+}
+
+TEST(another_table_is_refused_by_name)
+{
+    uint8_t byte[512];
+    struct exh_bytes c = exh_bytes_writer(byte, sizeof byte);
+    struct exh_record_header h = {.scene = "drop", .signal_crc = 1, .T = {1, 2000}, .signals = 11};
+    dir = said_dir();
+    start("--hz", "10");
+    exh_record_begin(&c, EXH_RECORD_HEADER, 0, 0);
+    exh_record_header_bytes(&c, &h);
+    piece(byte, exh_record_end(&c), 0, 0);
+    end();
+    CHECK(s.status == 1 &&
+              strstr(s.err, "scene drop: the box's table of signals (11, CRC 00000001)"),
+          "%d %s", s.status, s.err);
+    said_clean(dir);
+}
+
+TEST(bad_usage)
+{
+    static const struct {
+        const char *word[5], *said;
+    } row[] = {
+        {{"watch", NULL}, "--modbus or --listen"},
+        {{"watch", "--listen", "here", NULL}, "give ADDRESS:PORT"},
+        {{"watch", "--listen", "127.0.0.1:0", "--finger=nose", NULL}, "--finger: nose"},
+        {{"watch", "--listen", "127.0.0.1:0", "--csv=/nowhere/x", NULL}, "--csv: /nowhere/x"}};
+    dir = said_dir();
+    for (size_t i = 0; i < sizeof row / sizeof row[0]; i++) {
+        said(&s, dir, cli_watch, row[i].word);
+        CHECK(s.status == 2 && strstr(s.err, row[i].said), "%s: %d %s", row[i].said, s.status,
+              s.err);
+    }
+    start("--signals", "q,nose");
+    send_file(a_log("0.5"), 0);
+    end();
+    CHECK(s.status == 2 && strstr(s.err, "nose: no such signal: one of q qd f_des"), "%d %s",
+          s.status, s.err);
+    said_clean(dir);
+}
+
+TEST_MAIN("watch", samples_are_the_logs_values, lost_pieces_are_told, a_picture_is_drawn,
+          a_terminal_is_drawn_over, silence_is_told_with_its_age, another_table_is_refused_by_name,
+          bad_usage);

@@ -1,4 +1,0 @@
-# SPDX-License-Identifier: MIT
-SCENE_DESC := test: every hundredth tick takes two and a half periods
-SCENE_SRC  := test/hil/slow/slow.c
-SCENE_ROM  := yes

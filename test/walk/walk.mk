@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: MIT
+# Walks: a script does what the documents tell a reader to type.
+
+##@ Walks through the documents
+## Run the sweeps of examples/sweep by GNU parallel, ssh and Slurm on this machine, and compare with one process.
+.PHONY: scale
+scale: all
+	@.ci/deps "GNU parallel" "command -v parallel && command -v rsync" parallel rsync || :
+	@.ci/deps "ssh to this machine" "ls /usr/sbin/sshd" openssh-server openssh-client || :
+	@.ci/deps "Slurm" "command -v sbatch && command -v slurmctld && command -v slurmd && command -v munged" \
+	    slurm-client slurmctld slurmd munge || :
+	@test/walk/sweep/scale.sh $(B)/sweep
+
+## Type docs/PORTING.md anew: from the template to a port that passes the contract test.
+.PHONY: porting
+porting:
+	@.ci/deps "a walk of docs/PORTING.md" "command -v arm-none-eabi-gcc && command -v qemu-system-arm" \
+	    gcc-arm-none-eabi qemu-system-arm || exit 3
+	@test/walk/porting/walk.py $(B)/porting
+
+## Link the library to a program in each way of examples/link/README.md, and check its ABI.
+.PHONY: link
+link: $(lib)
+	@.ci/deps "the ways to link" \
+	    "for t in cmake pkg-config clang tcc g++; do command -v $$t || exit; done; python3 -c 'import ensurepip'" \
+	    cmake pkg-config clang tcc g++ python3-venv || :
+	@test/walk/link/abi.py $(lib) gcc $(notdir $(shell command -v i686-linux-gnu-gcc))
+	@test/walk/link/package.sh $(B)/link/package
+	@test/walk/link/link.py $(B)/link $(ARGS)
+
+## Run both README commands in a fresh Debian with only git, make and a C compiler (root; RELEASE=bookworm).
+.PHONY: fresh
+fresh:
+	test/walk/fresh/fresh.sh $(RELEASE)
+
+## Measure each way of examples/link/README.md on a bare Debian 12 (root; ARGS=--update writes its table).
+.PHONY: fresh-ways
+fresh-ways:
+	test/walk/fresh/ways.py $(B)/fresh/ways $(ARGS)
+
+## Check that all names in the documents exist, and that the documents list every page, port, scene and test folder.
+.PHONY: doc-names
+doc-names: $(exhand)
+	@PYTHONDONTWRITEBYTECODE=1 test/walk/docs/docs.py $(exhand) $(world)
