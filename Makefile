@@ -102,9 +102,9 @@ include examples/custom/model.mk examples/frozen.mk
 image_of  := $(SCENE)$(if $(FROZEN),-frozen-$(subst /,_,$(FROZEN)))$(if $(filter custom,$(SCENE)),$(filter-out -wall,-$(MODEL_NAME)))
 image     := $(out)/$(image_of)$(PORT_SUFFIX).elf
 # The frozen scene and library come first, so that the other library gives them nothing.
-main_src  := $(or $(SCENE_MAIN),$(PORT_MAIN),examples/image.c examples/deadman.c)
+main_src  := $(or $(SCENE_MAIN),$(PORT_MAIN),lib/src/run/image.c lib/src/run/deadman.c)
 image_obj := $(if $(FROZEN),$(frozen_obj) $(frozen_lib)) $(patsubst %,$(out)/$(SCENE)/%.o,$(basename $(main_src) $(PORT_SRC))) \
-             $(if $(SCENE_MAIN),,$(out)/examples/loop.o) $(if $(FROZEN),,$(SCENE_SRC:%.c=$(out)/%.o)) \
+             $(if $(SCENE_MAIN),,$(out)/lib/src/run/loop.o) $(if $(FROZEN),,$(SCENE_SRC:%.c=$(out)/%.o)) \
              $(if $(filter custom,$(SCENE)),$(model_obj))
 
 # These are compiled for one scene: a set of objects per scene.

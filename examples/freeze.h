@@ -11,7 +11,7 @@
 #ifndef EXAMPLES_FREEZE_H
 #define EXAMPLES_FREEZE_H
 
-#include "scene.h"
+#include "exhand/run/scene.h"
 
 struct freeze_type;
 extern const struct freeze_type freeze_knot, freeze_quad, freeze_velocity_window, freeze_drive,

@@ -10,7 +10,7 @@
 #ifndef EXAMPLES_FROZEN_H
 #define EXAMPLES_FROZEN_H
 
-#include "scene.h"
+#include "exhand/run/scene.h"
 
 #include "exhand/error.h"
 

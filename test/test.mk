@@ -39,7 +39,7 @@ $(eval $(call tests,module/unit,$(in_san),$(san_lib)))
 $(eval $(call tests,module/prop,$(in_san),$(san_lib)))
 
 # Golden vectors over the library and the scenes, at every rate.
-golden_src := $(wildcard test/golden/*.c) examples/drop/drop.c examples/guarded/guarded.c examples/calib.c examples/glove/cal.c \
+golden_src := $(wildcard test/golden/*.c) examples/drop/drop.c examples/guarded/guarded.c lib/src/run/calib_set.c examples/glove/cal.c \
               $(wildcard examples/bilateral/*.c)
 $(eval $(call tests,golden,$(B)/posix,$(golden_src:%.c=$(B)/posix/%.o) $(posix_lib)))
 
@@ -77,7 +77,7 @@ $(eval $(call tests,module/frozen,$(in_san),$(frozen_sides:%=$(B)/test/frozen/si
 $(filter $(B)/test/frozen/%,$(test_bin)): | $(B)/freeze-minimal $(B)/test/frozen/planted
 
 # Closed loops: the port, the simulator and the subcommands as they are shipped. Tests define the loop's assertion hook themselves.
-$(B)/test/loop.o: examples/loop.c $(stamp)
+$(B)/test/loop.o: lib/src/run/loop.c $(stamp)
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(base) $(CFLAGS) -Dexh_assert_failed=exh_loop_assert_failed -Wno-missing-prototypes -c $< -o $@
 closed_obj := $(filter-out %/main.o %/loop.o,$(cli_obj) $(dev_obj)) $(B)/test/loop.o

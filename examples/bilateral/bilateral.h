@@ -5,9 +5,9 @@
 #ifndef EXAMPLES_BILATERAL_H
 #define EXAMPLES_BILATERAL_H
 
-#include "../calib.h"
+#include "exhand/run/calib_set.h"
 #include "../glove/cal.h"
-#include "../scene.h"
+#include "exhand/run/scene.h"
 
 #include "exhand/exhand.h"
 

@@ -24,7 +24,7 @@
 #ifndef EXAMPLES_BRINGUP_H
 #define EXAMPLES_BRINGUP_H
 
-#include "../scene.h"
+#include "exhand/run/scene.h"
 
 #include "exhand/exhand.h"
 

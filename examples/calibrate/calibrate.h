@@ -18,7 +18,7 @@
 #ifndef EXAMPLES_CALIBRATE_H
 #define EXAMPLES_CALIBRATE_H
 
-#include "../scene.h"
+#include "exhand/run/scene.h"
 
 #include "exhand/exhand.h"
 

@@ -4,7 +4,7 @@
 #ifndef EXAMPLES_DROP_H
 #define EXAMPLES_DROP_H
 
-#include "../calib.h"
+#include "exhand/run/calib_set.h"
 
 #include "exhand/exhand.h"
 

@@ -4,7 +4,7 @@
 #ifndef EXAMPLES_GLOVE_H
 #define EXAMPLES_GLOVE_H
 
-#include "../scene.h"
+#include "exhand/run/scene.h"
 #include "cal.h"
 
 #include "exhand/exhand.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The shortest complete scene: one finger against one virtual wall. */
-#include "../scene.h"
+#include "exhand/run/scene.h"
 
 #include "exhand/exhand.h"
 

@@ -17,7 +17,7 @@ world_part := main live alone bench solo link link_param link_trace view \
 world_core_obj := $(patsubst %.c,$(B)/posix/%.o,$(world_core) $(patsubst %,ports/posix/sim/%.c,lag plant device))
 world_obj  := $(world_core_obj) $(world_mesh) $(world_part:%=$(B)/posix/examples/world/%.o) \
               $(B)/posix/ports/posix/cli/option.o $(B)/posix/examples/bilateral/tables.o $(B)/posix/examples/glove/cal.o \
-              $(B)/posix/examples/calib.o
+              $(B)/posix/lib/src/run/calib_set.o
 world_libs := $(if $(world_gl),-lSDL2 -lSDL2_ttf -lGL -lpng) $(if $(world_rays),-ldl) -lpthread -lm
 
 $(filter $(B)/posix/examples/world/%,$(world_obj)): PORT_HOSTFLAGS += -fno-math-errno \

@@ -3,7 +3,7 @@
 
 # The FMUs hold the sources that are built here. A program per FMU prints its description from its own tables.
 fmi_src        := ports/fmi/fmi3.c ports/fmi/absent.c
-fmi_controller := ports/fmi/controller.c examples/drop/drop.c examples/calib.c $(lib_src)
+fmi_controller := ports/fmi/controller.c examples/drop/drop.c lib/src/run/calib_set.c $(lib_src)
 fmi_device     := ports/fmi/device.c $(patsubst %,ports/posix/sim/%.c,mass plant device fall bench lag)
 fmi_folders    := lib/include/exhand=exhand lib/src=lib examples= examples/drop=drop ports/posix/sim=sim ports/fmi=fmi
 $(B)/fmi/describe-controller: $(patsubst %.c,$(B)/posix/%.o,ports/fmi/describe.c $(fmi_controller))

@@ -4,7 +4,7 @@
  * the line takes them while the processor waits for the next tick. */
 #include "pc104.h"
 
-#include "blackbox.h"
+#include "exhand/run/blackbox.h"
 #include "io.h"
 
 #include "cards/wait.h"

@@ -2,8 +2,8 @@
 /* main() of an image: banner, options, dry ticks, the loop with its hooks. */
 #include "pc104.h"
 
-#include "deadman.h"
-#include "loop.h"
+#include "exhand/run/deadman.h"
+#include "exhand/run/loop.h"
 
 #include "exhand/error.h"
 #include "exhand/exhand.h"

@@ -10,7 +10,7 @@
 
 #define MB_LOADED       0x2BADB002u
 #define HAS_MODULES     (1u << 3)
-#define UNCALIBRATED_ID 0x8903 /* examples/calib */
+#define UNCALIBRATED_ID 0x8903 /* lib/src/run/calib_set */
 
 /* Head of the structure that the loader left. */
 struct boot_info {

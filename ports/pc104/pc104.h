@@ -3,7 +3,7 @@
 #ifndef PC104_H
 #define PC104_H
 
-#include "scene.h"
+#include "exhand/run/scene.h"
 
 #include "exhand/board.h"
 #include "exhand/units.h"

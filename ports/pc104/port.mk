@@ -7,7 +7,7 @@ cards_real    := $(wildcard ports/cards/*.c) ports/pc104/port_io.c
 cards_none    := ports/pc104/cards_none.c
 $(if $(cards_$(CARDS)),,$(error CARDS=$(CARDS): one of real, none))
 PORT_SUFFIX   := $(if $(filter-out real,$(CARDS)),-$(CARDS))
-PORT_MAIN     := ports/pc104/main.c examples/deadman.c
+PORT_MAIN     := ports/pc104/main.c lib/src/run/deadman.c
 pc104_parts   := crt0.S vectors.S board.c box.c timer.c hpet.c pit.c second.c load.c guard.c trap.c uart.c say.c \
                  number.c cmdline.c option.c provoke.c restart.c mem.c
 pc104_link    := link.c net.c nic.c pci.c stream.c
@@ -17,8 +17,8 @@ pc104_link    := link.c net.c nic.c pci.c stream.c
 PORT_SRC       = $(pc104_parts:%=ports/pc104/%) $(cards_$(CARDS)) ports/pc104/$(if $(SCENE_FLOAT),fpu.c,fpu_none.c) \
                  $(if $(SCENE_ROM),ports/pc104/scene_rom.c ports/pc104/link_none.c, \
                    ports/pc104/scene_full.c ports/pc104/module.c ports/pc104/$(if $(filter no,$(MODBUS)),modbus_none.c,modbus.c) \
-                   examples/log.c $(pc104_link:%=ports/pc104/%) \
-                   $(if $(SCENE_BOX_B),ports/pc104/dump.c examples/blackbox.c,ports/pc104/dump_none.c))
+                   lib/src/run/log.c $(pc104_link:%=ports/pc104/%) \
+                   $(if $(SCENE_BOX_B),ports/pc104/dump.c lib/src/run/blackbox.c,ports/pc104/dump_none.c))
 PORT_HOSTFLAGS := -Iports
 # No FPU, MMX or SSE register is ever touched, so none has to be set up or saved; PORT_FLOAT is for a controller in floats alone.
 PORT_CFLAGS   := -m32 -march=i686 -ffreestanding -fno-pic -fno-pie -fno-stack-protector \

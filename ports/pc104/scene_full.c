@@ -4,7 +4,7 @@
 #include "pc104.h"
 
 #include "io.h"
-#include "log.h"
+#include "exhand/run/log.h"
 
 #include "exhand/error.h"
 #include "exhand/exhand.h"

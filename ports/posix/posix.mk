@@ -3,7 +3,8 @@
 
 # Every scene that has a subcommand, over the simulated device.
 cli_src := $(wildcard ports/posix/cli/*.c ports/posix/fit/*.c) \
-           $(addprefix examples/,log.c blackbox.c deadman.c calib.c drop/drop.c guarded/guarded.c calibrate/calibrate.c glove/glove.c \
+           $(addprefix lib/src/run/,log.c blackbox.c deadman.c calib_set.c) \
+           $(addprefix examples/,drop/drop.c guarded/guarded.c calibrate/calibrate.c glove/glove.c \
              glove/cal.c) \
            $(wildcard examples/bilateral/*.c examples/bringup/*.c) ports/pc104/stream.c
 modbus   := $(if $(call gives,modbus/modbus.h,modbus,modbus_reply),libmodbus,none)
@@ -22,7 +23,7 @@ gpio_libs := $(if $(filter none,$(gpio)),,-lgpiod)
 # The board and the device, without lines.
 dev_src := $(filter-out ports/posix/gpio_v%.c ports/posix/gpio_none.c,$(wildcard ports/posix/*.c)) \
            $(wildcard ports/posix/sim/*.c ports/posix/emu/*.c ports/cards/*.c)
-dev_obj := $(dev_src:%.c=$(B)/posix/%.o) $(B)/posix/examples/loop.o
+dev_obj := $(dev_src:%.c=$(B)/posix/%.o) $(B)/posix/lib/src/run/loop.o
 sim_obj := $(dev_obj) $(gpio_none)
 exhand  := $(B)/posix/exhand
 

@@ -7,7 +7,7 @@ PORT_SRC  := ports/template/board.c
 # PORT_LDFLAGS  e.g. -nostdlib -static
 # PORT_LDSCRIPT one per memory map, in ldscripts/
 # PORT_RUN      program that runs an image: exit status 0 when it said "done"
-# PORT_MAIN     its main(), instead of examples/image.c examples/deadman.c
+# PORT_MAIN     its main(), instead of lib/src/run/image.c lib/src/run/deadman.c
 # PORT_SAY      says a text, void f(const char *): what the contract test prints by
 # PORT_CYCLES_HZ frequency of exh_board_cycles(), where it is always the same: for the contract test
 # PORT_FLOAT    flags for a controller in floats (scene custom), where PORT_CFLAGS without -mgeneral-regs-only are not enough

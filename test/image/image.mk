@@ -8,7 +8,7 @@ HIL_FEW   ?= 10000
 HIL_QEMU  ?= 100000
 
 unicorn := $(abspath $(B))/unicorn
-hil_obj := $(patsubst %.c,$(B)/posix/%.o,$(wildcard test/image/hil/*.c) examples/deadman.c)
+hil_obj := $(patsubst %.c,$(B)/posix/%.o,$(wildcard test/image/hil/*.c) lib/src/run/deadman.c)
 $(filter $(B)/posix/test/image/hil/%,$(hil_obj)): PORT_HOSTFLAGS += -isystem $(unicorn)/include
 $(B)/test/hil: $(hil_obj) $(filter-out %/main.o,$(cli_obj)) $(sim_obj) $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
@@ -54,7 +54,7 @@ contract_images := mps2/minimal mps2/contract mps2/contract_slow mps2/contract_f
 # Scene minimal frozen, and frozen for another rate than it runs at; and a digest of what it codes, frozen and not.
 # TICKS is the same for all, so that none is compiled anew for another.
 contract_frozen := FROZEN=1000 FROZEN=2000
-frozen_digest   := TICKS=2000 PORT_SUFFIX=-digest SCENE_MAIN="test/module/frozen/digest.c examples/loop.c" SCENE_CFLAGS=-DSAY=mps2_say
+frozen_digest   := TICKS=2000 PORT_SUFFIX=-digest SCENE_MAIN="test/module/frozen/digest.c lib/src/run/loop.c" SCENE_CFLAGS=-DSAY=mps2_say
 
 ## Run the port contract (test/port) and fault handlers on images under QEMU.
 .PHONY: contract contract-built contract-run

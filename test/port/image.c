@@ -4,7 +4,7 @@
 #include "contract.h"
 #include "say.h"
 
-#include "scene.h"
+#include "exhand/run/scene.h"
 
 #include "exhand/board.h"
 

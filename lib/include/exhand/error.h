@@ -35,7 +35,7 @@ enum exh_error {
 const char *exh_error_text(int code);
 
 /* The library's one hook besides mem*: makes the outputs safe, then stops.
- * The program defines it (examples/loop.c does); it must not return. */
+ * The program defines it (lib/src/run/loop.c does); it must not return. */
 void exh_assert_failed(const char *file, int line);
 
 /* On in release: a violated contract near a human finger is a reason to stop. */

@@ -24,7 +24,7 @@
  *   board                        what a port provides; only the loop calls it
  *
  * A scene is a pure function over these modules (examples/minimal is the
- * shortest); examples/loop.c is the one loop around it. docs/DESIGN.md says why.
+ * shortest); lib/src/run/loop.c is the one loop around it. docs/DESIGN.md says why.
  */
 #ifndef EXHAND_EXHAND_H
 #define EXHAND_EXHAND_H

@@ -5,8 +5,8 @@
 #include "option.h"
 #include "param.h"
 
-#include "deadman.h"
-#include "loop.h"
+#include "exhand/run/deadman.h"
+#include "exhand/run/loop.h"
 
 #include "exhand/error.h"
 

@@ -5,7 +5,7 @@
 #include "param.h"
 
 #include "calibrate/calibrate.h"
-#include "loop.h"
+#include "exhand/run/loop.h"
 
 #include "exhand/board.h"
 #include "exhand/error.h"

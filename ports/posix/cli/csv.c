@@ -6,7 +6,7 @@
 #include "option.h"
 #include "param.h"
 
-#include "log.h"
+#include "exhand/run/log.h"
 
 #include <errno.h>
 #include <stdio.h>

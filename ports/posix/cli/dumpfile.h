@@ -3,7 +3,7 @@
 #ifndef CLI_DUMPFILE_H
 #define CLI_DUMPFILE_H
 
-#include "blackbox.h"
+#include "exhand/run/blackbox.h"
 
 #include <stddef.h>
 

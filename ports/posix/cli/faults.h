@@ -8,7 +8,7 @@
 #ifndef CLI_FAULTS_H
 #define CLI_FAULTS_H
 
-#include "scene.h"
+#include "exhand/run/scene.h"
 
 #include "exhand/drive.h"
 #include "exhand/guard.h"

@@ -5,8 +5,8 @@
 #include "option.h"
 #include "param.h"
 
-#include "log.h"
-#include "loop.h"
+#include "exhand/run/log.h"
+#include "exhand/run/loop.h"
 
 #include <errno.h>
 #include <stdio.h>

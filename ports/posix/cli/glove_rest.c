@@ -6,8 +6,8 @@
 #include "option.h"
 #include "param.h"
 
-#include "log.h"
-#include "loop.h"
+#include "exhand/run/log.h"
+#include "exhand/run/loop.h"
 
 #include "exhand/board.h"
 #include "exhand/error.h"

@@ -9,8 +9,8 @@
 #include "param.h"
 
 #include "bilateral/bilateral.h"
-#include "log.h"
-#include "loop.h"
+#include "exhand/run/log.h"
+#include "exhand/run/loop.h"
 
 #include "exhand/error.h"
 

@@ -3,7 +3,7 @@
 #ifndef CLI_GLOVE_SERIAL_H
 #define CLI_GLOVE_SERIAL_H
 
-#include "scene.h"
+#include "exhand/run/scene.h"
 
 #include "exhand/glove.h"
 

@@ -4,7 +4,7 @@
 #ifndef CLI_IMAGES_H
 #define CLI_IMAGES_H
 
-#include "scene.h"
+#include "exhand/run/scene.h"
 
 #include "exhand/calibrate.h"
 

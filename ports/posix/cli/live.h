@@ -5,7 +5,7 @@
 
 #include "bilateral.h"
 #include "contacts.h"
-#include "loop.h"
+#include "exhand/run/loop.h"
 #include "run.h"
 
 #include "exhand/drive.h"

@@ -5,7 +5,7 @@
 #include "gpio.h"
 #include "posix.h"
 
-#include "deadman.h"
+#include "exhand/run/deadman.h"
 
 #include "exhand/safety.h"
 

@@ -3,7 +3,7 @@
 #ifndef CLI_LOGFILE_H
 #define CLI_LOGFILE_H
 
-#include "scene.h"
+#include "exhand/run/scene.h"
 
 #include "exhand/record.h"
 

@@ -12,7 +12,7 @@
 #ifndef CLI_MODBUS_H
 #define CLI_MODBUS_H
 
-#include "scene.h"
+#include "exhand/run/scene.h"
 
 #include "exhand/modbus.h"
 

@@ -9,7 +9,7 @@
 #include "param.h"
 #include "timeline.h"
 
-#include "log.h"
+#include "exhand/run/log.h"
 
 #include "exhand/error.h"
 

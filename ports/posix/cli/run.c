@@ -10,8 +10,8 @@
 #include "scene_more.h"
 
 #include "drop/drop.h"
-#include "log.h"
-#include "loop.h"
+#include "exhand/run/log.h"
+#include "exhand/run/loop.h"
 
 #include "exhand/board.h"
 #include "exhand/error.h"

@@ -8,7 +8,7 @@
 #include "images.h"
 #include "posix.h"
 
-#include "loop.h"
+#include "exhand/run/loop.h"
 
 #include "exhand/signal.h"
 

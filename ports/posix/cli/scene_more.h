@@ -3,7 +3,7 @@
 #ifndef CLI_SCENE_MORE_H
 #define CLI_SCENE_MORE_H
 
-#include "scene.h"
+#include "exhand/run/scene.h"
 
 #include <stdint.h>
 

@@ -5,7 +5,7 @@
 #include "option.h"
 #include "param.h"
 
-#include "log.h"
+#include "exhand/run/log.h"
 
 #include "exhand/safety.h"
 

@@ -3,7 +3,7 @@
 #ifndef CLI_WATCH_H
 #define CLI_WATCH_H
 
-#include "scene.h"
+#include "exhand/run/scene.h"
 
 #include "exhand/modbus.h"
 

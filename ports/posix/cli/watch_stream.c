@@ -6,7 +6,7 @@
 #include "udp.h"
 #include "until.h"
 
-#include "log.h"
+#include "exhand/run/log.h"
 
 #include "../../pc104/stream.h"
 

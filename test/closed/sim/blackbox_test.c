@@ -8,7 +8,7 @@
 #include "cli/run.h"
 #include "posix.h"
 
-#include "blackbox.h"
+#include "exhand/run/blackbox.h"
 #include "drop/drop.h"
 
 #include "exhand/record.h"

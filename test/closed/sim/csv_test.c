@@ -7,7 +7,7 @@
 #include "cli/logfile.h"
 #include "cli/table2.h"
 
-#include "log.h"
+#include "exhand/run/log.h"
 
 #include "exhand/error.h"
 

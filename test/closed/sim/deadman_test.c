@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* examples/deadman.c: which grip gives which command, and what is none. */
+/* lib/src/run/deadman.c: which grip gives which command, and what is none. */
 #include "check.h"
 
-#include "deadman.h"
+#include "exhand/run/deadman.h"
 
 #define LEN(a) (sizeof(a) / sizeof((a)[0]))
 #define HELD   EXH_DIN_DEADMAN

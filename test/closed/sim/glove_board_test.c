@@ -5,8 +5,8 @@
 
 #include "posix.h"
 
-#include "log.h"
-#include "loop.h"
+#include "exhand/run/log.h"
+#include "exhand/run/loop.h"
 
 #include "exhand/board.h"
 #include "exhand/error.h"

@@ -5,7 +5,7 @@
 #include "cli/logfile.h"
 
 #include "glove/glove.h"
-#include "log.h"
+#include "exhand/run/log.h"
 #include "sim/operator.h"
 
 #include "exhand/record.h"

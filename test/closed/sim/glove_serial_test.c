@@ -13,7 +13,7 @@
 #include "posix.h"
 
 #include "bilateral/bilateral.h"
-#include "loop.h"
+#include "exhand/run/loop.h"
 
 #include "exhand/board.h"
 

@@ -7,7 +7,7 @@
 #include "posix.h"
 
 #include "drop/drop.h"
-#include "log.h"
+#include "exhand/run/log.h"
 
 #include "exhand/bytes.h"
 #include "exhand/record.h"

@@ -8,8 +8,8 @@
 #include "posix.h"
 
 #include "drop/drop.h"
-#include "log.h"
-#include "scene.h"
+#include "exhand/run/log.h"
+#include "exhand/run/scene.h"
 
 #include "exhand/board.h"
 #include "exhand/exhand.h"
@@ -29,7 +29,7 @@ void late_assert_failed(const char *file, int line);
 #define exh_board_write_drive odd_write
 #define exh_board_safe        odd_safe
 #define exh_assert_failed     late_assert_failed
-#include "loop.c"
+#include "../../lib/src/run/loop.c"
 #undef exh_loop
 #undef exh_board_wait
 #undef exh_board_info

@@ -5,7 +5,7 @@
 
 #include "posix.h"
 
-#include "loop.h"
+#include "exhand/run/loop.h"
 
 #include "exhand/board.h"
 

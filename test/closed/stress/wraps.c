@@ -2,7 +2,7 @@
 /* Counters that wrap: ticks, records, encoder counts. */
 #include "stress.h"
 
-#include "log.h"
+#include "exhand/run/log.h"
 #include "posix.h"
 
 #include <stdlib.h>

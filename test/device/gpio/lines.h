@@ -17,7 +17,7 @@
 #include "cli/live.h"
 #include "cli/words.h"
 #include "drop/drop.h"
-#include "loop.h"
+#include "exhand/run/loop.h"
 
 #include "exhand/error.h"
 

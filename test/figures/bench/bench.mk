@@ -6,12 +6,12 @@
 bench_parts := kernels measure number estimate force path law filter glove hand precontact passivity scene minimal modbus \
                params tick box
 bench_obj := $(bench_parts:%=$(B)/posix/test/figures/bench/%.o)
-bench_scenes := examples/drop/drop.c examples/calib.c examples/glove/cal.c $(wildcard examples/bilateral/*.c)
+bench_scenes := examples/drop/drop.c lib/src/run/calib_set.c examples/glove/cal.c $(wildcard examples/bilateral/*.c)
 bench_bin := $(B)/bench/kernels $(B)/bench/velocity $(B)/bench/speed
 $(B)/posix/test/figures/bench/kernels.o: PORT_HOSTFLAGS += -DBENCH_FLAGS='"-std=c99 -O$(O)$(if $(CFLAGS), $(CFLAGS))"'
 $(B)/bench/kernels: $(bench_obj) $(B)/posix/test/no_board.o $(bench_scenes:%.c=$(B)/posix/%.o)
 $(B)/bench/velocity: $(B)/posix/test/figures/bench/velocity.o $(B)/posix/test/figures/bench/measure.o $(B)/posix/test/figures/bench/plain.o
-$(B)/bench/speed: $(B)/posix/test/figures/bench/speed.o $(B)/posix/examples/drop/drop.o $(B)/posix/examples/calib.o $(sim_obj)
+$(B)/bench/speed: $(B)/posix/test/figures/bench/speed.o $(B)/posix/examples/drop/drop.o $(B)/posix/lib/src/run/calib_set.o $(sim_obj)
 $(bench_bin): $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $(filter %.o,$^) $(filter %.a,$^) -Wl,--strip-debug -lm
@@ -70,7 +70,7 @@ $(peers) $(peers)-i686: $(peers_src) $(peers_deps)
 # Kernels of ours, of others and in plain floating point, built alike, for the report.
 work     := $(B)/bench/work
 work_src := $(filter-out %/work_cmsis.c %/work_fixmath.c,$(wildcard test/figures/bench/work*.c)) \
-            $(addprefix test/figures/bench/,plain.c law.c path.c measure.c) examples/drop/drop.c examples/calib.c
+            $(addprefix test/figures/bench/,plain.c law.c path.c measure.c) examples/drop/drop.c lib/src/run/calib_set.c
 ifneq ($(wildcard $(cmsis)/.complete),)
 work_src += test/figures/bench/work_cmsis.c $(wildcard $(cmsis)/Source/ControllerFunctions/arm_pid_*_q31.c \
             $(cmsis)/Source/ControllerFunctions/arm_pid_*_q15.c $(cmsis)/Source/ControllerFunctions/arm_pid_*_f32.c) \
@@ -92,7 +92,7 @@ $(work) $(work)-i686: $(work_src) $(peers_deps)
 # Whole ticks of the scenes, beside the same ticks in double and float.
 scenes     := $(B)/bench/scenes
 scenes_src := $(wildcard test/figures/bench/scenes*.c) test/no_board.c $(addprefix test/figures/bench/,pipe.c measure.c) \
-              examples/drop/drop.c examples/guarded/guarded.c $(wildcard examples/glove/*.c examples/bilateral/*.c) examples/calib.c
+              examples/drop/drop.c examples/guarded/guarded.c $(wildcard examples/glove/*.c examples/bilateral/*.c) lib/src/run/calib_set.c
 $(scenes): scenes_cc := $(CC)
 $(scenes)-i686: scenes_cc := i686-linux-gnu-gcc -static
 $(scenes): $(B)/posix/libexhand.a

@@ -43,7 +43,7 @@ static void kernel_op(uint32_t i)
 #define CODE_ZERO  32768
 #define FINGERS_ID 0x8610
 #define SESSION_ID 0x8613
-#define WITHOUT_ID 0x8903 /* examples/calib: no calibration, and it arms */
+#define WITHOUT_ID 0x8903 /* lib/src/run/calib_set: no calibration, and it arms */
 
 static const struct exh_scene *const box = &exh_scene_bilateral;
 static struct exh_scene_in in;

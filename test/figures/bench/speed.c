@@ -4,7 +4,7 @@
 #include "posix.h"
 
 #include "drop/drop.h"
-#include "loop.h"
+#include "exhand/run/loop.h"
 
 #include "exhand/exhand.h"
 

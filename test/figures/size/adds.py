@@ -30,9 +30,9 @@ def i686_tool(scene):
     """ticks.c around the pc104 image's own objects, for this machine's kernel."""
     at, tool = AT + "/pc104", "%s/ticks-%s-i686" % (AT, scene)
     own = [os.path.join(d, f) for d, _, files in os.walk("%s/examples/%s" % (at, scene)) for f in files if f.endswith(".o")]
-    own += [at + "/examples/calib.o"] + ([at + "/examples/glove/cal.o"] if scene == "bilateral" else [])
+    own += [at + "/lib/src/run/calib_set.o"] + ([at + "/examples/glove/cal.o"] if scene == "bilateral" else [])
     run(["i686-linux-gnu-gcc", "-std=c99", "-O2", "-g", "-static", "-no-pie", "-Ilib/include", "-Iexamples", "-DEXH_SCENE=exh_scene_" + scene,
-         "test/figures/size/ticks.c", "test/figures/size/world.c", "test/no_board.c", "examples/log.c", *own, at + "/libexhand.a", "-o", tool])
+         "test/figures/size/ticks.c", "test/figures/size/world.c", "test/no_board.c", "lib/src/run/log.c", *own, at + "/libexhand.a", "-o", tool])
     return tool
 
 
@@ -109,7 +109,7 @@ class Adds:
     def fingers_on(self, port):
         """(Instructions of one more, how they were seen)."""
         if port == "mps2":
-            main = "SCENE_MAIN=test/figures/size/variant.c examples/deadman.c examples/loop.c"
+            main = "SCENE_MAIN=test/figures/size/variant.c lib/src/run/deadman.c lib/src/run/loop.c"
             n = [on_mps2(image("bilateral", port, "-f%d" % m, main, "TICKS=500", "SCENE_CFLAGS=-DVARIANT_FINGERS=%d" % m)[0], 4) for m in (1, 31)]
             how = "dearest tick with 1 and 5 fingers"
         else:
@@ -120,7 +120,7 @@ class Adds:
         return (n[-1] - n[0]) / 4, "%s: %s; memory for five is always there" % (how, ", ".join("%.0f" % v for v in n))
 
     def log(self, has):
-        main = "SCENE_MAIN=test/figures/size/variant.c examples/deadman.c examples/log.c examples/loop.c"
+        main = "SCENE_MAIN=test/figures/size/variant.c lib/src/run/deadman.c lib/src/run/log.c lib/src/run/loop.c"
         for scene, words in (("drop", ("link=0",)), ("bilateral", ("link=2",))):
             for port in has:
                 bytes_ = None
@@ -131,7 +131,7 @@ class Adds:
                 else:
                     bytes_ = less(*(image(scene, port, suffix, main, "TICKS=500", "SCENE_CFLAGS=" + flag)[1]
                                     for suffix, flag in (("-log", "-DVARIANT_LOG"), ("-plain", ""))))
-                    how = "image with and without examples/log.c"
+                    how = "image with and without lib/src/run/log.c"
                 insn = ticks(port, scene, *words, "log=1"), ticks(port, scene, *words)
                 self.add("log of every tick (%s)" % scene, port, bytes_, None, insn[0] and insn[0] - insn[1],
                          how + ("; run with and without it" if insn[0] else ""))
@@ -168,7 +168,7 @@ GOAL_WAYS = [("there", "-O2", ()), ("there", "-Os", ("O=s",)),
 
 def worst_stack(at, name):
     """Bytes of the image's deepest path; the objects that the scene is in come last, since names of theirs are in the library's, too."""
-    found = ["%s/mps2/examples/loop.o" % at]
+    found = ["%s/mps2/lib/src/run/loop.o" % at]
     found += [os.path.join(d, f)[:-3] + ".o" for top in ("lib", "examples/minimal", "minimal") for d, _, files in os.walk("%s/mps2/%s" % (at, top)) for f in files if f.endswith(".ci")]
     mine = ["%s/mps2/%s.elf.ltrans0.ltrans.o" % (at, name)]
     if not os.path.exists(mine[0]):
@@ -196,7 +196,7 @@ def goal_of(at, name):
     costs = Costs("minimal", "mps2", at, name)
     helpers = costs.image.bytes_of(costs.helpers())
     ours = [a + b + c for a, b, c in zip(costs.library_and_scene(False), costs.image.bytes_of(costs.kept.get("compiler", [])),
-                                         costs.image.bytes_of(n for m in ("examples/loop", "examples/deadman", "examples/image") for n in costs.kept[m]))]
+                                         costs.image.bytes_of(n for m in ("lib/src/run/loop", "lib/src/run/deadman", "lib/src/run/image") for n in costs.kept[m]))]
     alone = [a + b for a, b in zip(costs.library_and_scene(True), helpers)]
     insn = on_mps2("%s/mps2/%s.elf" % (at, name))
     return [*alone, alone[1] + alone[2], ours[0], ours[1] + ours[2], worst_stack(at, name), "-" if insn is None else round(insn),

@@ -21,9 +21,9 @@ FEATURES = (("glove: 22 angles", ("lib/glove", "lib/glove_cal", "lib/glove_fit",
             ("contacts before they are touched", ("lib/precontact",)),
             ("link to a world", ("lib/wire", "bilateral/wire", "bilateral/trace")),
             ("passivity and rule of gains", ("lib/passivity", "lib/gains")),
-            ("log", ("examples/log", "lib/record")),
+            ("log", ("lib/src/run/log", "lib/record")),
             ("registers (Modbus)", ("lib/modbus", "lib/modbus_rtu", "pc104/modbus")),
-            ("calibration of fingers", ("lib/calibrate", "examples/calib")),
+            ("calibration of fingers", ("lib/calibrate", "lib/src/run/calib_set")),
             ("parameters at run time", ("lib/params", "lib/signal")),
             ("self-test", ("lib/selftest",)), ("guard of memory", ("lib/guard",)), ("watch of speed and encoder", ("lib/watch",)),
             ("supply", ("lib/supply",)), ("state machine and gate", ("lib/safety", "lib/gate")),
@@ -112,7 +112,7 @@ class Costs:
 
     def own(self):
         """Sections of the scene itself, without library, loop or port."""
-        ours = re.compile(r"^(%s|drop|glove)/|^examples/calib$" % self.scene)
+        ours = re.compile(r"^(%s|drop|glove)/|^lib/src/run/calib_set$" % self.scene)
         return [n for n in self.image.sizes if ours.match(module_of(n[0]))]
 
     def library_and_scene(self, of_scene_alone):

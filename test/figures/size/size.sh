@@ -47,16 +47,16 @@ build()
     case $scene in *-frozen-*) set -- "$@" "FROZEN=${scene##*-}" SCENE_LIBS=-save-temps ;; esac
     # shellcheck disable=SC2046 # none or one word
     $make -s "PORT=$port" "SCENE=${scene%-frozen-*}" "B=$b" CFLAGS=-fcallgraph-info=su "$@" \
-        "$b/$port/$scene.elf" $([ "$port" = template ] && echo "$b/template/examples/log.o")
+        "$b/$port/$scene.elf" $([ "$port" = template ] && echo "$b/template/lib/src/run/log.o")
 }
 
 # shared PORT SCENE ENDING: what it has with another scene
 shared()
 {
     case $2 in
-    bilateral) echo "$b/$1/examples/glove/cal.$3 $b/$1/examples/calib.$3" ;;
-    drop) echo "$b/$1/examples/calib.$3" ;;
-    guarded | custom) echo "$b/$1/examples/drop/drop.$3 $b/$1/examples/calib.$3" ;;
+    bilateral) echo "$b/$1/examples/glove/cal.$3 $b/$1/lib/src/run/calib_set.$3" ;;
+    drop) echo "$b/$1/lib/src/run/calib_set.$3" ;;
+    guarded | custom) echo "$b/$1/examples/drop/drop.$3 $b/$1/lib/src/run/calib_set.$3" ;;
     esac
 }
 
@@ -72,7 +72,7 @@ objects()
     own=$b/$1/examples/$2
     case $2 in *-frozen-*) own= ;; esac
     # shellcheck disable=SC2046,SC2086 # the names of our objects have no blanks
-    find "$b/$1/lib" "$b/$1/examples/loop.ci" $own "$b/$1/${2%-frozen-*}" $(shared "$1" "$2" ci) $(model "$1" "$2") -name '*.ci' |
+    find "$b/$1/lib" "$b/$1/lib/src/run/loop.ci" $own "$b/$1/${2%-frozen-*}" $(shared "$1" "$2" ci) $(model "$1" "$2") -name '*.ci' |
         sed 's/\.ci$/.o/' | sort
     [ -n "$own" ] || echo "$b/$1/$2.elf.ltrans0.ltrans.o"
 }
@@ -126,7 +126,7 @@ stack_fits()
 # of the linker's map. Long section names stand on a line of their own.
 linked_bytes()
 {
-    awk -v ours="libexhand[.]a[(]|/examples/$1/|/examples/glove/cal[.]o|/examples/drop/drop[.]o|/examples/calib[.]o" '
+    awk -v ours="libexhand[.]a[(]|/examples/$1/|/examples/glove/cal[.]o|/examples/drop/drop[.]o|/lib/src/run/calib_set[.]o" '
         function number(hex,  i, v) {
             for (i = 3; i <= length(hex); i++) {
                 v = v * 16 + index("0123456789abcdef", substr(hex, i, 1)) - 1
@@ -153,7 +153,7 @@ callgrind()
     tool=$b/ticks-$1
     # shellcheck disable=SC2046 # the names of our objects have no blanks
     "$cc" -std=c99 -O2 -g -Ilib/include -Iexamples "-DEXH_SCENE=exh_scene_$1" "$here/ticks.c" "$here/world.c" test/no_board.c \
-        $(find "$b/template/examples/$1" $(model template "$1") -name '*.o') $(shared template "$1" o) "$b/template/examples/log.o" \
+        $(find "$b/template/examples/$1" $(model template "$1") -name '*.o') $(shared template "$1" o) "$b/template/lib/src/run/log.o" \
         "$b/template/libexhand.a" -o "$tool"
     needs=
     [ "$1" = calibrate ] && needs=0x8220.0=524288 # one mass, 0.5 kg

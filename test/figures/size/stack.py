@@ -6,7 +6,7 @@ Each OBJECT was compiled by gcc with -fcallgraph-info=su: its call graph lies be
 ending .ci. The deepest path from the root is printed, the bytes first. Indirect calls: the few
 function pointers of this project stand in constant tables (struct exh_scene, struct
 exh_loop_hooks), so an indirect call is taken to reach any function whose address is in the data
-of any object; but one in the log (exh_log_*, examples/log.c) only what a scene's own table or a tap's
+of any object; but one in the log (exh_log_*, lib/src/run/log.c) only what a scene's own table or a tap's
 (struct exh_log_tap tap) points to: it calls the scene's state() and the tap, while the loop's hooks
 call the log; one in scene custom only what its slot points to; and likewise one in pc104's modbus, which asks the scene what is allowed; and one in
 calibrate_tick() only what its own table of steps points to. A function whose address is taken only by code is not seen: give it a table.

@@ -10,11 +10,11 @@
  *     0xID=RAW    a parameter, of every finger or whatever there are several of; 0xID.N=RAW: of one
  * With any other word a tick is what the loop makes of it, parameters applied, and with
  *     link=0|1|2  the link not called, its packets written and nobody there, or a world (world.h)
- * that answers with planes log=1       examples/log.c, to a board that takes every record glove=0
+ * that answers with planes log=1       lib/src/run/log.c, to a board that takes every record glove=0
  * no glove frame ever came */
 #include "world.h"
 
-#include "log.h"
+#include "exhand/run/log.h"
 
 #include "exhand/board.h"
 #include "exhand/error.h"
@@ -28,7 +28,7 @@
 #define PLANES_CNT      900u   /* of a world: where the fingertips are then */
 #define ARM_TICKS       20000u /* by then a box that can be armed runs */
 #define CODE_ZERO       32768
-#define UNCALIBRATED_ID 0x8903 /* examples/calib: it has none, and arms */
+#define UNCALIBRATED_ID 0x8903 /* lib/src/run/calib_set: it has none, and arms */
 
 enum which { ALL, RUN, CONTACT, NONE };
 

@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: MIT */
 /* main() of an image that costs.py compares with itself: with or without a log, and with the
- * fingers of a mask. Beside what examples/image.c does: a scene that wants a calibration is told
- * that there is none. -DVARIANT_LOG         examples/log.c, to the board's log -DVARIANT_FINGERS=n
+ * fingers of a mask. Beside what lib/src/run/image.c does: a scene that wants a calibration is told
+ * that there is none. -DVARIANT_LOG         lib/src/run/log.c, to the board's log -DVARIANT_FINGERS=n
  * mask: fingers in use, of a scene that asks */
-#include "deadman.h"
-#include "log.h"
-#include "loop.h"
+#include "exhand/run/deadman.h"
+#include "exhand/run/log.h"
+#include "exhand/run/loop.h"
 
 #include "exhand/board.h"
 #include "exhand/error.h"
 #include "exhand/exhand.h"
 
 #define FINGERS_ID      0x8610 /* examples/bilateral */
-#define UNCALIBRATED_ID 0x8903 /* examples/calib */
+#define UNCALIBRATED_ID 0x8903 /* lib/src/run/calib_set */
 
 extern const struct exh_scene EXH_SCENE;
 

@@ -4,7 +4,7 @@
 #ifndef SIZE_WORLD_H
 #define SIZE_WORLD_H
 
-#include "scene.h"
+#include "exhand/run/scene.h"
 
 /* Before a tick: the packets that the one before has written are read, and the answers put where
  * the loop puts what came. */

@@ -5,7 +5,7 @@
 
 #include "hil.h"
 
-#include "scene.h"
+#include "exhand/run/scene.h"
 
 #define COUNT_CLASSES 96
 

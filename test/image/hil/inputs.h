@@ -3,7 +3,7 @@
 #ifndef HIL_INPUTS_H
 #define HIL_INPUTS_H
 
-#include "scene.h"
+#include "exhand/run/scene.h"
 
 struct inputs {
     uint64_t state;             /* of the generator */

@@ -2,8 +2,8 @@
 #include "ref.h"
 
 #include "cli/param.h"
-#include "deadman.h"
-#include "loop.h"
+#include "exhand/run/deadman.h"
+#include "exhand/run/loop.h"
 
 #include "exhand/board.h"
 

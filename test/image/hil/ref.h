@@ -4,7 +4,7 @@
 #define HIL_REF_H
 
 #include "posix.h"
-#include "scene.h"
+#include "exhand/run/scene.h"
 
 #define REF_SETTINGS 32
 #define REF_SIGNALS  256

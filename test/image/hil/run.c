@@ -7,7 +7,7 @@
 #include <inttypes.h>
 #include <string.h>
 
-/* Offsets in struct exh_scene (examples/scene.h) of a 32-bit image. */
+/* Offsets in struct exh_scene (lib/include/exhand/run/scene.h) of a 32-bit image. */
 enum { SCENE_FINGERS = 8, SCENE_TICK = 44 };
 
 struct run run;

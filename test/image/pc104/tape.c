@@ -9,7 +9,7 @@
 
 #include "posix/emu/emu.h"
 
-#include "log.h"
+#include "exhand/run/log.h"
 
 #include "exhand/error.h"
 #include "exhand/record.h"

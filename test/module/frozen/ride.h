@@ -5,7 +5,7 @@
 #ifndef TEST_FROZEN_RIDE_H
 #define TEST_FROZEN_RIDE_H
 
-#include "scene.h"
+#include "exhand/run/scene.h"
 
 #include "exhand/safety.h"
 

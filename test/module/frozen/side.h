@@ -4,7 +4,7 @@
 #ifndef TEST_FROZEN_SIDE_H
 #define TEST_FROZEN_SIDE_H
 
-#include "scene.h"
+#include "exhand/run/scene.h"
 
 #include "exhand/exhand.h"
 

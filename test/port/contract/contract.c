@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What the ports know of a scene by name: nothing runs by itself. */
-#include "scene.h"
+#include "exhand/run/scene.h"
 
 static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
 {

@@ -59,8 +59,8 @@ def write_counts(rows):
 
 # What runs in a tick: the library, and of the examples the scenes that run fingers and gloves, and the loop.
 SOURCES = ("lib/src/*.[ch]", "lib/include/exhand/*.h", "examples/minimal/*.[ch]", "examples/drop/*.[ch]",
-           "examples/guarded/*.[ch]", "examples/glove/*.[ch]", "examples/bilateral/*.[ch]", "examples/deadman.c",
-           "examples/loop.c")
+           "examples/guarded/*.[ch]", "examples/glove/*.[ch]", "examples/bilateral/*.[ch]", "lib/src/run/deadman.c",
+           "lib/src/run/loop.c")
 
 
 def sources(root=ROOT):

@@ -7,7 +7,7 @@
 
 #include "posix/emu/emu.h"
 
-#include "scene.h"
+#include "exhand/run/scene.h"
 
 #define HOLD_TICKS 4096u /* so often the dead-man switch is let go, */
 #define OPEN_TICKS 300u  /* for so long */

@@ -2,7 +2,7 @@
 /* A scene that is too slow on purpose: every SLOW_EVERY-th tick computes for so long that two
  * instants of the timer find it at work: at the first of these a tick is missed, at the second one
  * begins late. Whoever counts them must find exactly these. */
-#include "scene.h"
+#include "exhand/run/scene.h"
 
 #define SLOW_EVERY 100u
 #define SLOW_US    1250u                 /* of 1.25 ns an instruction */

@@ -5,21 +5,21 @@
  * given; the place of an assertion, of a name of any length.
  *
  * EVA: -kernel-warn-key annot:missing-spec=abort
- * PLANT: examples/loop.c: while (in->packets < EXH_SCENE_PACKETS) { -> while (in->packets <= EXH_SCENE_PACKETS) {
- * PLANT: examples/loop.c: if (n <= 0 || n > EXH_SCENE_PACKET_B) { return; } -> if (n <= 0) { return; }
- * PLANT: examples/loop.c: if (err == 0) { err = sc->setup(*board); } -> err = sc->setup(*board);
- * PLANT: examples/loop.c: if (err < 0) { return err; } -> (void)0;
- * PLANT: examples/loop.c: if (sc->end) { sc->end(); } -> sc->end();
- * PLANT: examples/loop.c: if (sc->tell) { sc->tell(); } -> sc->tell();
- * PLANT: examples/loop.c: file[n] != '\0' && n < 48 -> file[n] != '\0'
- * PLANT: examples/deadman.c: safety ? safety->state : (uint8_t)EXH_STATE_OFF; -> safety->state;
- * PLANT: examples/loop.c: if (err == 0 && !exh_period_ok(board->T)) { err = -EXH_E_RATE; } -> (void)0;
+ * PLANT: lib/src/run/loop.c: while (in->packets < EXH_SCENE_PACKETS) { -> while (in->packets <= EXH_SCENE_PACKETS) {
+ * PLANT: lib/src/run/loop.c: if (n <= 0 || n > EXH_SCENE_PACKET_B) { return; } -> if (n <= 0) { return; }
+ * PLANT: lib/src/run/loop.c: if (err == 0) { err = sc->setup(*board); } -> err = sc->setup(*board);
+ * PLANT: lib/src/run/loop.c: if (err < 0) { return err; } -> (void)0;
+ * PLANT: lib/src/run/loop.c: if (sc->end) { sc->end(); } -> sc->end();
+ * PLANT: lib/src/run/loop.c: if (sc->tell) { sc->tell(); } -> sc->tell();
+ * PLANT: lib/src/run/loop.c: file[n] != '\0' && n < 48 -> file[n] != '\0'
+ * PLANT: lib/src/run/deadman.c: safety ? safety->state : (uint8_t)EXH_STATE_OFF; -> safety->state;
+ * PLANT: lib/src/run/loop.c: if (err == 0 && !exh_period_ok(board->T)) { err = -EXH_E_RATE; } -> (void)0;
  */
 #define exh_assert_failed loop_assert_failed
-#include "loop.c"
+#include "run/loop.c"
 #undef exh_assert_failed
 #include "quotient.h"
-#include "deadman.c"
+#include "run/deadman.c"
 
 #include "any.h"
 

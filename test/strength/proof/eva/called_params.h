@@ -7,7 +7,7 @@
 
 #include "../src/signal.c" /* not that of Frama-C */
 
-#include "calib.h"
+#include "exhand/run/calib_set.h"
 
 void exh_params_init(struct exh_params *p, const struct exh_signal_table *t, int32_t *active,
                      int32_t *staged)

@@ -3,7 +3,7 @@
 #ifndef EXAMPLES_LOOP_H
 #define EXAMPLES_LOOP_H
 
-#include "scene.h"
+#include "exhand/run/scene.h"
 
 /* What may hang on to the loop; each may be NULL. `before` may set in->command (the
  * loop itself commands nothing) and stage parameters, which are applied right after

@@ -6,7 +6,7 @@
 #ifndef EXAMPLES_CALIB_H
 #define EXAMPLES_CALIB_H
 
-#include "scene.h"
+#include "exhand/run/scene.h"
 
 #include "exhand/calibrate.h"
 #include "exhand/signal.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "deadman.h"
+#include "exhand/run/deadman.h"
 
 #include "exhand/fix.h"
 #include "exhand/safety.h"

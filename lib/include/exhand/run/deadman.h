@@ -6,7 +6,7 @@
 #ifndef EXAMPLES_DEADMAN_H
 #define EXAMPLES_DEADMAN_H
 
-#include "scene.h"
+#include "exhand/run/scene.h"
 
 void exh_deadman_start(const struct exh_scene *sc, struct exh_scene_board board);
 /* Sets in->command. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "log.h"
+#include "exhand/run/log.h"
 
 #include "exhand/board.h"
 #include "exhand/error.h"

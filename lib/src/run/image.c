@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* main() of a firmware image: one scene, named by the build, run by the dead-man switch. A port
  * that has more to offer (options, a log) brings its own, PORT_MAIN in its port.mk. */
-#include "deadman.h"
-#include "loop.h"
+#include "exhand/run/deadman.h"
+#include "exhand/run/loop.h"
 
 #include "exhand/board.h"
 #include "exhand/error.h"

@@ -4,7 +4,7 @@
 #ifndef EXAMPLES_LOG_H
 #define EXAMPLES_LOG_H
 
-#include "scene.h"
+#include "exhand/run/scene.h"
 
 #include "exhand/record.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "blackbox.h"
+#include "exhand/run/blackbox.h"
 
 #include "exhand/error.h"
 #include "exhand/fix.h"

@@ -9,7 +9,7 @@
 #ifndef EXAMPLES_BLACKBOX_H
 #define EXAMPLES_BLACKBOX_H
 
-#include "log.h"
+#include "exhand/run/log.h"
 
 #define EXH_BLACKBOX_AFTER_MS    50 /* and 8 ticks at least */
 #define EXH_BLACKBOX_AFTER_TICKS 8

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "calib.h"
+#include "exhand/run/calib_set.h"
 
 #include "exhand/error.h"
 #include "exhand/exhand.h"
