@@ -275,7 +275,7 @@ static int setup(struct exh_scene_board board)
     if (active.own.session == 0) {
         active.own.session = staged.own.session = (int32_t)(exh_board_cycles() >> 1 | 1u);
     }
-    err = calib_take(&calib, &params, &active.calib, (1u << BILATERAL_FINGERS) - 1u);
+    err = exh_calib_set_load(&calib, &params, &active.calib, (1u << BILATERAL_FINGERS) - 1u);
     if (err == 0) { err = bilateral_setup(&cfg, &state, &active, board, &calib); }
     exh_params_slew(&params, &active.tune, board.T);
     exh_guard_seal(&guard, &cfg, sizeof cfg, &params);

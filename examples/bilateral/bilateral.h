@@ -41,7 +41,7 @@ struct bilateral_par {
     struct exh_supply_par supply;
     struct exh_glove_par glove;
     struct bilateral_own_par own;
-    struct calib_par calib;
+    struct exh_calib_set_par calib;
     struct glove_own_par glove_own;
     struct glove_sensor_par sensor[EXH_GLOVE_SENSORS];
     struct exh_tune_par tune;
@@ -101,7 +101,7 @@ struct bilateral_finger_cfg {
     struct exh_precontact_cfg precontact;
     struct exh_track_cfg track;
     struct exh_watch_cfg watch;
-    struct calib_tables calib;
+    struct exh_calib_tables calib;
     uint32_t sensors; /* bit i: sensor i moves it */
 };
 

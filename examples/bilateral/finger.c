@@ -26,7 +26,7 @@ int bilateral_finger_setup(struct bilateral_cfg *cfg, struct bilateral *s, unsig
     const struct bilateral_par *par = cfg->par;
     const struct exh_drive_par *drive = &par->drive[f];
     struct bilateral_finger_cfg *c = &cfg->finger[f];
-    const struct calib_finger finger = {f, drive, par->kf_NpA_q20[f]};
+    const struct exh_calib_finger finger = {f, drive, par->kf_NpA_q20[f]};
     const struct exh_axis_setup parts = {
         &c->quad,       &par->quad[f], &c->velocity,   &par->velocity[f],  &c->watch,
         &par->watch[f], &c->track,     &par->track[f], &cfg->drive[place], &s->drive_now[f]};
@@ -34,10 +34,10 @@ int bilateral_finger_setup(struct bilateral_cfg *cfg, struct bilateral *s, unsig
 
     s->drive_now[f] = *drive;
     c->sensors = sensors_of(&exh_hit2_map, f);
-    err = calib_setup(&c->calib, calib, &par->calib, &finger);
+    err = exh_calib_set_tables(&c->calib, calib, &par->calib, &finger);
     if (err == 0) {
-        err = exh_axis_setup(&parts, board.T, board.enc_bits, calib_to_cur(&c->calib),
-                             calib_to_force(&c->calib));
+        err = exh_axis_setup(&parts, board.T, board.enc_bits, exh_calib_to_cur(&c->calib),
+                             exh_calib_to_force(&c->calib));
     }
     if (err == 0) { err = exh_hand_setup(&c->hand, &exh_hit2_bones[f], &par->hand[f]); }
     if (err == 0) { err = exh_hand_follow(&c->hand, &exh_hit2_map, f); }

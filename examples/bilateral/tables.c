@@ -111,7 +111,7 @@ static const struct exh_signal_group param_groups[] = {
     {exh_supply_rows, EXH_SUPPLY_ROWS, 1},
     {exh_glove_rows, EXH_GLOVE_ROWS, 1},
     {own_rows, LEN(own_rows), 1},
-    {calib_rows, CALIB_ROWS, 1},
+    {exh_calib_set_rows, EXH_CALIB_SET_ROWS, 1},
     {glove_own_rows, GLOVE_OWN_ROWS, 1},
     {glove_cal_rows, GLOVE_CAL_ROWS, EXH_GLOVE_SENSORS},
     {exh_tune_rows, EXH_TUNE_ROWS, 1},
@@ -134,7 +134,7 @@ EXH_STATIC_ASSERT(bilateral_par_matches_rows,
                                 EXH_DRIVE_ROWS + EXH_TRACK_ROWS + EXH_WATCH_ROWS + LEN(kf_rows) +
                                 EXH_HAND_ROWS + EXH_PRECONTACT_ROWS) +
                            BILATERAL_MATERIALS * EXH_MATERIAL_ROWS + EXH_SAFETY_ROWS +
-                           EXH_SUPPLY_ROWS + EXH_GLOVE_ROWS + LEN(own_rows) + CALIB_ROWS +
+                           EXH_SUPPLY_ROWS + EXH_GLOVE_ROWS + LEN(own_rows) + EXH_CALIB_SET_ROWS +
                            GLOVE_OWN_ROWS + GLOVE_CAL_ROWS * EXH_GLOVE_SENSORS + EXH_TUNE_ROWS));
 EXH_STATIC_ASSERT(bilateral_signals_match_rows,
                   sizeof(struct bilateral_signals) ==

@@ -109,7 +109,7 @@ static int setup(struct exh_scene_board board)
     state = power_on;
     inputs = no_inputs;
     answered = 0;
-    err = calib_take(&calib, &params, &active.calib, 1u);
+    err = exh_calib_set_load(&calib, &params, &active.calib, 1u);
     if (err == 0) { err = drop_setup(&cfg, &active, board, &calib); }
     if (err == 0) { err = plug_in(board.T); }
     exh_params_slew(&params, &active.tune, board.T);

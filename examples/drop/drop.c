@@ -39,12 +39,13 @@ static const struct exh_signal_table signal_table = {signal_groups, DROP_SIGNAL_
 EXH_STATIC_ASSERT(drop_par_matches_rows,
                   PARAMS == EXH_QUAD_ROWS + EXH_VELOCITY_ROWS + EXH_CONTACT_ROWS + EXH_DRIVE_ROWS +
                                 EXH_TRACK_ROWS + EXH_WATCH_ROWS + EXH_SAFETY_ROWS +
-                                EXH_SUPPLY_ROWS + DROP_OWN_ROWS + CALIB_ROWS + EXH_TUNE_ROWS);
+                                EXH_SUPPLY_ROWS + DROP_OWN_ROWS + EXH_CALIB_SET_ROWS +
+                                EXH_TUNE_ROWS);
 
 int drop_setup(struct drop_cfg *cfg, const struct drop_par *par, struct exh_scene_board board,
                struct exh_scene_calib *calib)
 {
-    const struct calib_finger finger = {0, &par->drive, par->own.kf_NpA_q20};
+    const struct exh_calib_finger finger = {0, &par->drive, par->own.kf_NpA_q20};
     const struct exh_axis_setup parts = {&cfg->quad,  &par->quad,  &cfg->velocity, &par->velocity,
                                          &cfg->watch, &par->watch, &cfg->track,    &par->track,
                                          &cfg->drive, &par->drive};
@@ -52,10 +53,10 @@ int drop_setup(struct drop_cfg *cfg, const struct drop_par *par, struct exh_scen
 
     cfg->par = par;
     cfg->tested = exh_selftest() == EXH_SELFTEST_OK;
-    err = calib_setup(&cfg->calib, calib, &par->calib, &finger);
+    err = exh_calib_set_tables(&cfg->calib, calib, &par->calib, &finger);
     if (err == 0) {
-        err = exh_axis_setup(&parts, board.T, board.enc_bits, calib_to_cur(&cfg->calib),
-                             calib_to_force(&cfg->calib));
+        err = exh_axis_setup(&parts, board.T, board.enc_bits, exh_calib_to_cur(&cfg->calib),
+                             exh_calib_to_force(&cfg->calib));
     }
     if (err == 0) { err = exh_safety_setup(&cfg->safety, &par->safety, board.T); }
     if (err == 0) { err = exh_supply_setup(&cfg->supply, &par->supply, board.T); }
@@ -150,7 +151,7 @@ static int setup(struct exh_scene_board board)
     static const struct drop power_on;
     int err;
     state = power_on;
-    err = calib_take(&calib, &params, &active.calib, 1u);
+    err = exh_calib_set_load(&calib, &params, &active.calib, 1u);
     if (err == 0) { err = drop_setup(&cfg, &active, board, &calib); }
     exh_params_slew(&params, &active.tune, board.T);
     exh_guard_seal(&guard, &cfg, sizeof cfg, &params);

@@ -28,7 +28,7 @@ extern const struct exh_signal drop_more_rows[DROP_MORE_ROWS];
         {exh_contact_rows, EXH_CONTACT_ROWS, 1}, {exh_drive_rows, EXH_DRIVE_ROWS, 1}, \
         {exh_track_rows, EXH_TRACK_ROWS, 1}, {exh_watch_rows, EXH_WATCH_ROWS, 1}, \
         {exh_safety_rows, EXH_SAFETY_ROWS, 1}, {exh_supply_rows, EXH_SUPPLY_ROWS, 1}, \
-        {drop_own_rows, DROP_OWN_ROWS, 1}, {calib_rows, CALIB_ROWS, 1}, \
+        {drop_own_rows, DROP_OWN_ROWS, 1}, {exh_calib_set_rows, EXH_CALIB_SET_ROWS, 1}, \
     { \
         exh_tune_rows, EXH_TUNE_ROWS, 1 \
     }
@@ -51,7 +51,7 @@ struct drop_par {
     struct exh_safety_par safety;
     struct exh_supply_par supply;
     struct drop_own_par own;
-    struct calib_par calib;
+    struct exh_calib_set_par calib;
     struct exh_tune_par tune;
 };
 
@@ -80,7 +80,7 @@ struct drop_cfg {
     struct exh_safety_cfg safety;
     struct exh_supply_cfg supply;
     uint8_t tested; /* 1: the self-test passed */
-    struct calib_tables calib;
+    struct exh_calib_tables calib;
 };
 
 struct drop {

@@ -40,7 +40,7 @@ int guarded_setup(struct guarded_cfg *cfg, const struct guarded_par *par,
                   struct exh_scene_board board, struct exh_scene_calib *calib)
 {
     const struct exh_velocity_scale scale = {par->drop.quad.step_m_q42, board.T};
-    const struct calib_tables *t = &cfg->drop.calib;
+    const struct exh_calib_tables *t = &cfg->drop.calib;
     struct exh_table held = {cfg->held, 0};
     int err = drop_setup(&cfg->drop, &par->drop, board, calib);
     held.n = t->to_cur_n;
@@ -92,7 +92,7 @@ static int setup(struct exh_scene_board board)
     state = power_on;
     exh_params_slew(&params, &active.drop.tune, board.T);
     exh_gains_lead(&params, active.own.rule_on);
-    err = calib_take(&calib, &params, &active.drop.calib, 1u);
+    err = exh_calib_set_load(&calib, &params, &active.drop.calib, 1u);
     if (err == 0) { err = guarded_setup(&cfg, &active, board, &calib); }
     exh_guard_seal(&guard, &cfg, sizeof cfg, &params);
     return err;

@@ -6,7 +6,7 @@
 
 #define MON_ZERO_ID 0x050A
 
-const struct exh_signal calib_rows[CALIB_ROWS] = {
+const struct exh_signal exh_calib_set_rows[EXH_CALIB_SET_ROWS] = {
     {0x8901, 0, EXH_WHEN_SETUP, 0, INT32_MAX, 0, "device_id", "",
      "of this box: calibrations are made for one"},
     {0x8902, 0, EXH_WHEN_SETUP, 0, INT32_MAX, 0, "day", "",
@@ -46,7 +46,7 @@ static int load(struct loaded *to, struct exh_scene_calib *k, unsigned i)
 }
 
 /* With the image's own scales where `drive` is NULL. */
-static struct exh_calib_here here(const struct exh_calib *c, const struct calib_par *par,
+static struct exh_calib_here here(const struct exh_calib *c, const struct exh_calib_set_par *par,
                                   const struct exh_drive_par *drive)
 {
     struct exh_calib_here h = {(uint32_t)par->device_id, c->finger,       (uint32_t)par->day,
@@ -62,7 +62,7 @@ static struct exh_calib_here here(const struct exh_calib *c, const struct calib_
 }
 
 /* All images; *fingers: those that have none yet. */
-static int check(struct exh_scene_calib *k, const struct calib_par *par, uint32_t fingers)
+static int check(struct exh_scene_calib *k, const struct exh_calib_set_par *par, uint32_t fingers)
 {
     static const struct exh_calib_bad wrong_finger = {EXH_CALIB_FINGER, 0};
     struct loaded now;
@@ -80,8 +80,8 @@ static int check(struct exh_scene_calib *k, const struct calib_par *par, uint32_
     return 0;
 }
 
-int calib_take(struct exh_scene_calib *k, struct exh_params *params, const struct calib_par *par,
-               uint32_t fingers)
+int exh_calib_set_load(struct exh_scene_calib *k, struct exh_params *params,
+                       const struct exh_calib_set_par *par, uint32_t fingers)
 {
     static const struct exh_calib_bad scale = {EXH_CALIB_SCALE, 0};
     struct loaded now;
@@ -101,7 +101,7 @@ int calib_take(struct exh_scene_calib *k, struct exh_params *params, const struc
 /* --- tables --- */
 
 /* Straight lines; the monitor's also below zero. */
-static int lines(struct calib_tables *t, const struct calib_finger *of)
+static int lines(struct exh_calib_tables *t, const struct exh_calib_finger *of)
 {
     const int32_t peak_A_q26 = of->drive->i_peak_A_q26;
     const int32_t peak_N_q20 = exh_sat32(exh_mul_shr(of->kf_NpA_q20, peak_A_q26, EXH_Q_CUR));
@@ -115,7 +115,7 @@ static int lines(struct calib_tables *t, const struct calib_finger *of)
     return err == 0 ? exh_table_set(t->cur_to_force, 2) : err;
 }
 
-static int measured(struct calib_tables *t, struct exh_scene_calib *k, unsigned i,
+static int measured(struct exh_calib_tables *t, struct exh_scene_calib *k, unsigned i,
                     const struct loaded *now)
 {
     struct exh_calib_bad bad = {0, 0};
@@ -129,8 +129,8 @@ static int measured(struct calib_tables *t, struct exh_scene_calib *k, unsigned 
     return 0;
 }
 
-int calib_setup(struct calib_tables *t, struct exh_scene_calib *k, const struct calib_par *par,
-                const struct calib_finger *of)
+int exh_calib_set_tables(struct exh_calib_tables *t, struct exh_scene_calib *k,
+                         const struct exh_calib_set_par *par, const struct exh_calib_finger *of)
 {
     struct loaded now;
     t->vouches = par->uncalibrated ? EXH_UNCALIBRATED | EXH_UNPOLARISED : 0;

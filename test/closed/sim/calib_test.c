@@ -147,14 +147,14 @@ TEST(a_good_one_arms_and_forces_go_by_its_points)
     CHECK_EQ_I64(set_up(&exh_scene_drop), 0);
     (void)drop_memory(&cfg);
     for (size_t k = 0; k < LEN(point); k++) {
-        CHECK_EQ_I64(exh_table_at(calib_to_cur(&cfg->calib), point[k].force_N_q20),
+        CHECK_EQ_I64(exh_table_at(exh_calib_to_cur(&cfg->calib), point[k].force_N_q20),
                      point[k].cur_A_q26);
-        CHECK_EQ_I64(exh_table_at(calib_to_force(&cfg->calib), point[k].mon_A_q26),
+        CHECK_EQ_I64(exh_table_at(exh_calib_to_force(&cfg->calib), point[k].mon_A_q26),
                      point[k].force_N_q20);
-        CHECK_EQ_I64(exh_table_at(calib_to_force(&cfg->calib), -point[k].mon_A_q26),
+        CHECK_EQ_I64(exh_table_at(exh_calib_to_force(&cfg->calib), -point[k].mon_A_q26),
                      -point[k].force_N_q20);
     }
-    CHECK(exh_table_at(calib_to_cur(&cfg->calib), INT32_MAX) == EXH_Q(66, 10, EXH_Q_CUR),
+    CHECK(exh_table_at(exh_calib_to_cur(&cfg->calib), INT32_MAX) == EXH_Q(66, 10, EXH_Q_CUR),
           "the table's end");
 }
 
@@ -262,9 +262,9 @@ TEST(the_full_box_needs_one_for_every_finger_in_use)
         }
     }
     for (unsigned f = 0; f < EXH_FINGERS; f++) {
-        const struct calib_tables *t = &cfg->finger[f].calib;
+        const struct exh_calib_tables *t = &cfg->finger[f].calib;
         const int32_t zero = exh_signal_find(sc->params->table, 0x050A, (uint16_t)f);
-        CHECK_EQ_I64(exh_table_at(calib_to_cur(t), point[2].force_N_q20),
+        CHECK_EQ_I64(exh_table_at(exh_calib_to_cur(t), point[2].force_N_q20),
                      EXH_Q(2, 1, EXH_Q_CUR) + (int32_t)f);
         CHECK_EQ_I64(sc->params->active[zero], MON_ZERO + (int32_t)f);
     }

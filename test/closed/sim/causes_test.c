@@ -167,7 +167,8 @@ static void power_on(const struct exh_scene *sc, int32_t least_V_q20)
     const struct exh_scene_board board = {{1, 1000}, 24};
     sc->defaults();
     CHECK_EQ_I64(exh_params_stage(sc->params, exh_supply_rows[0].id, 0, least_V_q20), 0);
-    CHECK_EQ_I64(exh_params_stage(sc->params, calib_rows[2].id, 0, 1), 0); /* uncalibrated */
+    CHECK_EQ_I64(exh_params_stage(sc->params, exh_calib_set_rows[2].id, 0, 1),
+                 0); /* uncalibrated */
     CHECK_EQ_I64(exh_params_apply(sc->params), 1);
     CHECK_EQ_I64(sc->setup(board), 0);
 }

@@ -6,8 +6,8 @@
  * It records until a bit of the scene's signal `faults` sets, runs on for EXH_BLACKBOX_AFTER_MS so
  * that the release is in it, and freezes. Faults that come after the first are counted; nothing is
  * recorded over what led to the first. When it was read, or cleared, it begins anew. */
-#ifndef EXAMPLES_BLACKBOX_H
-#define EXAMPLES_BLACKBOX_H
+#ifndef EXHAND_RUN_BLACKBOX_H
+#define EXHAND_RUN_BLACKBOX_H
 
 #include "exhand/run/log.h"
 

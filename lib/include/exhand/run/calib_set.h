@@ -3,24 +3,24 @@
  * set-up against device, day and scales, into the tables that forces go by. A good one vouches for
  * two steps of arming: CALIBRATION, and POLARITY, since no image comes to be before a small pull
  * was seen to move the slack string in. */
-#ifndef EXAMPLES_CALIB_H
-#define EXAMPLES_CALIB_H
+#ifndef EXHAND_RUN_CALIB_SET_H
+#define EXHAND_RUN_CALIB_SET_H
 
 #include "exhand/run/scene.h"
 
 #include "exhand/calibrate.h"
 #include "exhand/signal.h"
 
-struct calib_par {
+struct exh_calib_set_par {
     int32_t device_id;    /* of this box: images are made for one */
     int32_t day;          /* today, days since 1970-01-01; 0, not known: no image of a day holds */
     int32_t uncalibrated; /* 1: fingers without an image arm without */
 };
-#define CALIB_ROWS 3
-extern const struct exh_signal calib_rows[CALIB_ROWS];
+#define EXH_CALIB_SET_ROWS 3
+extern const struct exh_signal exh_calib_set_rows[EXH_CALIB_SET_ROWS];
 
 /* Of one finger. */
-struct calib_tables {
+struct exh_calib_tables {
     struct exh_knot force_to_cur[EXH_CALIB_POINTS_MAX + 2];
     struct exh_knot cur_to_force[2 * EXH_CALIB_POINTS_MAX + 3];
     uint8_t to_cur_n, to_force_n;
@@ -31,27 +31,27 @@ struct calib_tables {
  * one's finger, of this device and good today. Then the zero of each finger's monitor becomes the
  * parameter, which a log's header has, as DRIVE parameters of instance `finger`. 0, or -EXH_E_…
  * with *k saying of which image and what, and nothing taken. */
-int calib_take(struct exh_scene_calib *k, struct exh_params *params, const struct calib_par *par,
-               uint32_t fingers);
+int exh_calib_set_load(struct exh_scene_calib *k, struct exh_params *params,
+                       const struct exh_calib_set_par *par, uint32_t fingers);
 
 /* Then tables of a finger: those of its image, made with the scales in use (else -EXH_E_STALE, and
  * *k says so); or, of a finger without one, straight lines by kf, N/A, to the peak current, vouched
  * for only where `uncalibrated` waives it. k may be NULL: there are no images. 0 or -EXH_E_….
  * Divides. */
-struct calib_finger {
+struct exh_calib_finger {
     unsigned f;
     const struct exh_drive_par *drive;
     int32_t kf_NpA_q20;
 };
-int calib_setup(struct calib_tables *t, struct exh_scene_calib *k, const struct calib_par *par,
-                const struct calib_finger *of);
+int exh_calib_set_tables(struct exh_calib_tables *t, struct exh_scene_calib *k,
+                         const struct exh_calib_set_par *par, const struct exh_calib_finger *of);
 
-static inline struct exh_table calib_to_cur(const struct calib_tables *t)
+static inline struct exh_table exh_calib_to_cur(const struct exh_calib_tables *t)
 {
     return (struct exh_table){t->force_to_cur, t->to_cur_n};
 }
 
-static inline struct exh_table calib_to_force(const struct calib_tables *t)
+static inline struct exh_table exh_calib_to_force(const struct exh_calib_tables *t)
 {
     return (struct exh_table){t->cur_to_force, t->to_force_n};
 }

@@ -3,8 +3,8 @@
  * clears, in OFF it runs; so after a fault it is let go and taken a second time. Letting go stops.
  * A switch that is closed at power-on, and so may be stuck, has to be let go first. Hooks for the
  * loop. */
-#ifndef EXAMPLES_DEADMAN_H
-#define EXAMPLES_DEADMAN_H
+#ifndef EXHAND_RUN_DEADMAN_H
+#define EXHAND_RUN_DEADMAN_H
 
 #include "exhand/run/scene.h"
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Log: everything that crosses inward, as records (exhand/record.h) to the board's
  * log, so that a run can be replayed bit for bit. Hooks for the loop. */
-#ifndef EXAMPLES_LOG_H
-#define EXAMPLES_LOG_H
+#ifndef EXHAND_RUN_LOG_H
+#define EXHAND_RUN_LOG_H
 
 #include "exhand/run/scene.h"
 

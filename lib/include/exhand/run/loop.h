@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The loop: waits, reads, ticks, writes, logs. It exists once. */
-#ifndef EXAMPLES_LOOP_H
-#define EXAMPLES_LOOP_H
+#ifndef EXHAND_RUN_LOOP_H
+#define EXHAND_RUN_LOOP_H
 
 #include "exhand/run/scene.h"
 

@@ -5,8 +5,8 @@
  * its one static instance, so that an image needs no allocation. Optional parts
  * are NULL: a scene without parameters links no parameter code.
  */
-#ifndef EXAMPLES_SCENE_H
-#define EXAMPLES_SCENE_H
+#ifndef EXHAND_RUN_SCENE_H
+#define EXHAND_RUN_SCENE_H
 
 #include "exhand/bytes.h"
 #include "exhand/drive.h"

@@ -11,7 +11,7 @@
  * PLANT: examples/drop/drop.c: (starved ? EXH_FAULT_SUPPLY : 0u) -> (starved ? EXH_FAULT_SUPPLY << 4 : 0u)
  * PLANT: examples/drop/drop.c: sig->faults = exh_from_u32(s->safety.faults); -> sig->faults = (int32_t)s->safety.faults;
  * PLANT: examples/drop/drop.c: exh_guard_seal(&guard, &cfg, sizeof cfg, -> exh_guard_seal(&guard, &cfg, sizeof cfg + 1,
- * PLANT: examples/drop/drop.c: const struct calib_finger finger = {0, &par->drive -> const struct calib_finger finger = {0, NULL
+ * PLANT: examples/drop/drop.c: const struct exh_calib_finger finger = {0, &par->drive -> const struct exh_calib_finger finger = {0, NULL
  * PLANT: lib/include/exhand/axis.h: return limits | exh_drive_current(a->drive, a->drive_cfg, f, i); -> return limits;
  */
 #include "drop/drop.c"

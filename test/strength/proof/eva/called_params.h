@@ -109,19 +109,19 @@ int exh_selftest(void)
     return any8();
 }
 
-int calib_take(struct exh_scene_calib *k, struct exh_params *p, const struct calib_par *par,
-               uint32_t fingers)
+int exh_calib_set_load(struct exh_scene_calib *k, struct exh_params *p,
+                       const struct exh_calib_set_par *par, uint32_t fingers)
 {
     (void)fingers;
-    /*@ assert calib_take: \valid(k) && params(p) && \valid_read(par); */
+    /*@ assert exh_calib_set_load: \valid(k) && params(p) && \valid_read(par); */
     return REFUSED() ? -EXH_E_VERSION : 0;
 }
 
-int calib_setup(struct calib_tables *t, struct exh_scene_calib *k, const struct calib_par *par,
-                const struct calib_finger *of)
+int exh_calib_set_tables(struct exh_calib_tables *t, struct exh_scene_calib *k,
+                         const struct exh_calib_set_par *par, const struct exh_calib_finger *of)
 {
     (void)k;
-    /*@ assert calib_setup: \valid(t) && \valid_read(par) && of->f < 5 && \valid_read(of->drive); */
+    /*@ assert exh_calib_set_tables: \valid(t) && \valid_read(par) && of->f < 5 && \valid_read(of->drive); */
     if (REFUSED()) { return -EXH_E_STALE; }
     ANY(*t);
     t->to_cur_n = (uint8_t)Frama_C_unsigned_int_interval(2, EXH_CALIB_POINTS_MAX + 2);
