@@ -129,7 +129,7 @@ $(boot): $(image) $(PORT_ISO) FORCE
 
 # --- the folders' own parts; a later one may use what an earlier one defines -----------------
 
-include examples/world/world.mk ports/posix/posix.mk ports/fmi/fmi.mk
+include ports/posix/world/world.mk ports/posix/posix.mk ports/fmi/fmi.mk
 include test/test.mk $(foreach d,closed golden matrix fuzz strength device image figures,test/$d/$d.mk)
 include test/figures/bench/bench.mk test/check.mk test/walk/walk.mk
 include lib/lib.mk docs/docs.mk

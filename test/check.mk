@@ -47,7 +47,7 @@ hil-short:
 	@$(MAKE) --no-print-directory hil-run HIL_TICKS=2000 HIL_FEW=500 HIL_QEMU=2000 > $(B)/hil.txt || { cat $(B)/hil.txt; exit 1; }
 	@grep -cE '^  ok' $(B)/hil.txt | sed 's/^/hil, short: ok: /'
 picture:
-	@$(world) --headless --script --seconds 1 --scene examples/world/scenes/collision.world --png $(B)/world.png || [ $$? = 3 ]
+	@$(world) --headless --script --seconds 1 --scene ports/posix/world/scenes/collision.world --png $(B)/world.png || [ $$? = 3 ]
 bits:
 	@$(exhand) faults --rate 100 > $(B)/faults_100Hz.txt
 	@JOBS=$(jobs) FAULTS=$(B)/faults_100Hz.txt test/closed/sim/bits.sh $(B)/bits $(B)/demo $(variants:%=$(B)/variant/%/posix/exhand)

@@ -46,7 +46,7 @@ TEST(a_log_replays_bit_for_bit_without_a_world)
     snprintf(log, sizeof log, "%s/bilateral_natural.exh", dir);
     said(&s, dir, cli_bilateral,
          WORDS("bilateral", "--speed", "natural", "--approaches", "2", "--fingers", "index,ring",
-               "--scene", "examples/world/scenes/collision.world", "--link",
+               "--scene", "ports/posix/world/scenes/collision.world", "--link",
                "delay=0.02,jitter=0.02,loss=0.2,duplicate=0.1", "--out", dir));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     said(&s, dir, cli_replay, WORDS("replay", log));
@@ -248,7 +248,7 @@ TEST(a_rehabilitation_session_keeps_each_fingers_force_cap)
     const char *dir = said_dir();
     static struct said s;
     said(&s, dir, cli_bilateral,
-         WORDS("bilateral", "--scene", "examples/world/scenes/rehabilitation.world", "--fingers",
+         WORDS("bilateral", "--scene", "ports/posix/world/scenes/rehabilitation.world", "--fingers",
                "all", "--speed", "natural", "--approaches", "2"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     for (size_t i = 0; i < LEN(row); i++) {
@@ -268,7 +268,7 @@ TEST(every_scene_of_simple_bodies_runs)
     static struct said s;
     for (size_t i = 0; i < LEN(scene); i++) {
         char path[128];
-        snprintf(path, sizeof path, "examples/world/scenes/%s.world", scene[i]);
+        snprintf(path, sizeof path, "ports/posix/world/scenes/%s.world", scene[i]);
         said(&s, dir, cli_bilateral,
              WORDS("bilateral", "--scene", path, "--fingers", "all", "--speed", "0.3",
                    "--approaches", "1", "--link", "delay=0.01,jitter=0.005"));
@@ -285,7 +285,7 @@ TEST(a_shape_is_felt_by_the_fingers_that_glide_over_it)
     const char *dir = said_dir();
     static struct said s;
     said(&s, dir, cli_bilateral,
-         WORDS("bilateral", "--scene", "examples/world/scenes/explore.world", "--fingers", "all",
+         WORDS("bilateral", "--scene", "ports/posix/world/scenes/explore.world", "--fingers", "all",
                "--speed", "0.3", "--approaches", "1"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     for (size_t i = 0; i < LEN(finger); i++) {

@@ -46,7 +46,8 @@ TEST(five_fingers_hold_one_ball_at_once)
     static const double mps[] = {0.1, 0.3, 0.87};
     char why[700];
     for (int k = 0; k < 3; k++) {
-        struct bilateral_run_cfg c = hand_in("examples/world/scenes/grasp.world", why, sizeof why);
+        struct bilateral_run_cfg c =
+            hand_in("ports/posix/world/scenes/grasp.world", why, sizeof why);
         struct bilateral_run r;
         CHECK(c.scene != NULL, "%s", why);
         for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
@@ -70,7 +71,7 @@ TEST(a_mesh_is_felt_where_there_are_rays_into_it_and_else_it_is_said_what_is_mis
 {
     char why[700] = "";
     int felt = 0;
-    struct bilateral_run_cfg c = hand_in("examples/world/scenes/gem.world", why, sizeof why);
+    struct bilateral_run_cfg c = hand_in("ports/posix/world/scenes/gem.world", why, sizeof why);
     struct bilateral_run r;
     if (c.scene == NULL) {
         CHECK(strstr(why, "mesh") && strstr(why, "libembree-dev"), "%s", why);

@@ -264,7 +264,7 @@ static int brute(const struct mesh *m, const struct ray *r, double *t)
 TEST(a_mesh_is_hit_where_its_triangles_are)
 {
     char why[400];
-    struct mesh *m = mesh_read("examples/world/scenes/gem.obj", 0.05, why, sizeof why);
+    struct mesh *m = mesh_read("ports/posix/world/scenes/gem.obj", 0.05, why, sizeof why);
     int hits = 0;
     CHECK(m != NULL, "%s", why);
     if (m == NULL) { return; }

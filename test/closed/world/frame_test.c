@@ -333,8 +333,8 @@ TEST(a_hand_that_only_turns_finds_what_it_turns_to)
 TEST(the_same_inputs_give_the_same_bits)
 {
     char why[700];
-    struct world *a = world_load_file("examples/world/scenes/explore.world", why, sizeof why);
-    struct world *b = world_load_file("examples/world/scenes/explore.world", why, sizeof why);
+    struct world *a = world_load_file("ports/posix/world/scenes/explore.world", why, sizeof why);
+    struct world *b = world_load_file("ports/posix/world/scenes/explore.world", why, sizeof why);
     struct exh_wire_state in[300];
     struct exh_wire_planes first[300], again;
     CHECK(a && b, "%s", why);
@@ -358,7 +358,7 @@ TEST(the_same_inputs_give_the_same_bits)
 TEST(five_fingers_hold_the_ball)
 {
     char why[700];
-    struct world *w = world_load_file("examples/world/scenes/grasp.world", why, sizeof why);
+    struct world *w = world_load_file("ports/posix/world/scenes/grasp.world", why, sizeof why);
     struct exh_wire_planes out;
     struct exh_wire_state in;
     struct solo s;

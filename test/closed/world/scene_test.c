@@ -175,7 +175,7 @@ TEST(the_scenes_that_come_along_load)
     for (size_t i = 0; i < sizeof name / sizeof name[0]; i++) {
         char path[100], why[700];
         struct world *w;
-        snprintf(path, sizeof path, "examples/world/scenes/%s.world", name[i]);
+        snprintf(path, sizeof path, "ports/posix/world/scenes/%s.world", name[i]);
         w = world_load_file(path, why, sizeof why);
         if (w == NULL && strstr(why, "libembree-dev")) {
             check_note("%s: not tested: needs libembree-dev", name[i]);

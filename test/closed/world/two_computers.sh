@@ -46,7 +46,7 @@ check() # WHAT COMMAND...
 scene()
 {
     sed -e "s/^material wood .*/material wood k $1 b 60 fmax 40/" \
-        "$(dirname "$0")/../../../examples/world/scenes/collision.world" >"$dir/scene.world"
+        "$(dirname "$0")/../../../ports/posix/world/scenes/collision.world" >"$dir/scene.world"
 }
 
 # Force over depth, held at rest, N/m.

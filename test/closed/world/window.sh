@@ -13,7 +13,7 @@ for _ in $(seq 100); do [ -s "$dir/display" ] && break; sleep 0.1; done
 [ -s "$dir/display" ] || exit 77
 DISPLAY=:$(cat "$dir/display")
 export DISPLAY
-SDL_VIDEODRIVER=x11 "$world" --scene examples/world/scenes/collision.world --seconds 60 --list "$dir/list" >"$dir/out" 2>&1 &
+SDL_VIDEODRIVER=x11 "$world" --scene ports/posix/world/scenes/collision.world --seconds 60 --list "$dir/list" >"$dir/out" 2>&1 &
 program=$!
 for _ in $(seq 100); do
     window=$(xdotool search --name '^Collision with simple bodies$' 2>/dev/null | head -n 1)

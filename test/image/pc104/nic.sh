@@ -115,7 +115,7 @@ start_world()
 {
     # A quarter of the frames that the host has, as the image runs at about a quarter of real time.
     "$world" --headless --listen "127.0.0.1:$port" --fps 100 --seconds 900 \
-        --scene examples/world/scenes/collision.world >"$dir/world" 2>&1 &
+        --scene ports/posix/world/scenes/collision.world >"$dir/world" 2>&1 &
     other=$!
     pids="$pids $other"
 }
@@ -155,7 +155,7 @@ one_speed() # SPEED
 
 bilateral()
 {
-    check "the host's experiment" "$exhand" bilateral --scene examples/world/scenes/collision.world --speed "$speeds" \
+    check "the host's experiment" "$exhand" bilateral --scene ports/posix/world/scenes/collision.world --speed "$speeds" \
         --approaches "${APPROACHES:-1}" --out "$dir/host" >"$dir/said" 2>"$dir/err"
     for speed in ${speeds//,/ }; do one_speed "$speed"; done
 }

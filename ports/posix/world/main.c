@@ -10,7 +10,14 @@
 #include <stdlib.h>
 
 #define OPTIONS(r) \
-    {"scene", CLI_TEXT, &(r).scene, 0, 0, "FILE", "the world (examples/world/scenes/README.md)"}, \
+    { \
+        "scene", \
+        CLI_TEXT, \
+        &(r).scene, \
+        0, \
+        0, \
+        "FILE", \
+        "the world (ports/posix/world/scenes/README.md)"}, \
         {"listen", \
          CLI_TEXT, \
          &(r).listen, \
@@ -88,7 +95,7 @@ static int load(struct run *r)
 {
     char why[700];
     if (r->scene == NULL) {
-        cli_complain("--scene: is missing: give a file of examples/world/scenes");
+        cli_complain("--scene: is missing: give a file of ports/posix/world/scenes");
         return 2;
     }
     r->world = world_load_file(r->scene, why, sizeof why);

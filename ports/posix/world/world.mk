@@ -4,10 +4,10 @@
 # The core needs a C compiler alone. Pictures and rays into meshes are in where their packages are.
 world_more := main live alone bench solo link link_param link_trace view gl gl_form gl_batch gl_solid gl_layer gl_text \
               picture_none mesh_embree mesh_none
-world_core := $(filter-out $(world_more:%=examples/world/%.c),$(wildcard examples/world/*.c))
+world_core := $(filter-out $(world_more:%=ports/posix/world/%.c),$(wildcard ports/posix/world/*.c))
 # Rays need the package, a compiler that sees it, and a program that can load it when it runs.
 world_rays := $(if $(filter -static,$(LDFLAGS)),,$(if $(call sees,embree3/rtcore.h),3,$(if $(call sees,embree4/rtcore.h),4)))
-world_mesh := $(B)/posix/examples/world/$(if $(world_rays),mesh_embree,mesh_none).o
+world_mesh := $(B)/posix/ports/posix/world/$(if $(world_rays),mesh_embree,mesh_none).o
 world_gl   := $(and $(call have,SDL2/SDL_ttf.h),$(call have,GL/gl.h),$(call have,png.h))
 world_pkgs := libsdl2-dev libsdl2-ttf-dev libgl-dev libegl-dev libgl1-mesa-dri libpng-dev fonts-dejavu-core
 world      := $(B)/posix/world
@@ -15,12 +15,12 @@ world      := $(B)/posix/world
 world_part := main live alone bench solo link link_param link_trace view \
               $(if $(world_gl),gl gl_form gl_batch gl_solid gl_layer gl_text,picture_none)
 world_core_obj := $(patsubst %.c,$(B)/posix/%.o,$(world_core) $(patsubst %,ports/posix/sim/%.c,lag plant device))
-world_obj  := $(world_core_obj) $(world_mesh) $(world_part:%=$(B)/posix/examples/world/%.o) \
+world_obj  := $(world_core_obj) $(world_mesh) $(world_part:%=$(B)/posix/ports/posix/world/%.o) \
               $(B)/posix/ports/posix/cli/option.o $(B)/posix/examples/bilateral/tables.o $(B)/posix/examples/glove/cal.o \
               $(B)/posix/lib/src/run/calib_set.o
 world_libs := $(if $(world_gl),-lSDL2 -lSDL2_ttf -lGL -lpng) $(if $(world_rays),-ldl) -lpthread -lm
 
-$(filter $(B)/posix/examples/world/%,$(world_obj)): PORT_HOSTFLAGS += -fno-math-errno \
+$(filter $(B)/posix/ports/posix/world/%,$(world_obj)): PORT_HOSTFLAGS += -fno-math-errno \
     $(if $(world_gl),-I$(dir $(call have,SDL2/SDL_ttf.h)) -D_REENTRANT) $(if $(world_rays),-DWORLD_EMBREE=$(world_rays))
 
 $(world): $(world_obj) $(B)/posix/libexhand.a
@@ -52,4 +52,4 @@ $(B)/bench/rays: $(B)/posix/test/closed/world/rays.o $(world_core_obj) $(world_m
 .PHONY: bench-world
 bench-world: world $(B)/bench/rays
 	@command -v valgrind >/dev/null && test/closed/world/rays.sh $(B)/bench/rays || echo "instructions: not counted: install valgrind"
-	@$(world) --bench --scene examples/world/scenes/collision.world $(ARGS)
+	@$(world) --bench --scene ports/posix/world/scenes/collision.world $(ARGS)
