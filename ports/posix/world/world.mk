@@ -44,7 +44,7 @@ two_run = test/closed/world/two_computers.sh $(exhand) $(world)
 two-run:
 	@$(two_run)
 
-$(B)/bench/rays: $(B)/posix/test/closed/world/rays.o $(world_core_obj) $(world_mesh)
+$(B)/bench/rays: $(B)/posix/test/closed/world/rays.o $(world_core_obj) $(world_mesh) $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(if $(world_rays),-ldl) -lm
 

@@ -7,12 +7,20 @@
 #include "world/shape.h"
 #include "world/finger.h"
 
+#include "exhand/error.h"
+
 #include "sim/random.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 
 #define OPS 10000
+
+void exh_assert_failed(const char *file, int line)
+{
+    fprintf(stderr, "rays: %s:%d: the library's assertion\n", file, line);
+    abort();
+}
 
 static double in(struct sim_random *r, double lo, double hi)
 {
