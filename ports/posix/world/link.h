@@ -4,7 +4,7 @@
 #ifndef WORLD_LINK_H
 #define WORLD_LINK_H
 
-#include "scene.h"
+#include "scene_text.h"
 
 #include "exhand/signal.h"
 #include "exhand/wire.h"

@@ -5,7 +5,7 @@
 #ifndef WORLD_REACH_H
 #define WORLD_REACH_H
 
-#include "scene.h"
+#include "scene_text.h"
 
 #include "exhand/wire.h"
 

@@ -12,21 +12,21 @@ static int add_object(struct reading *r, struct scene_object *o, const char *mat
     struct scene *s = r->s;
     o->material = scene_material_of(s, material);
     if (o->material < 0) {
-        return words_complain(&r->w,
-                              "%s %s: material %.30s: not defined so far: add `material %.30s` "
-                              "above",
-                              r->w.word[0], o->name, material, material);
+        return tokens_complain(&r->w,
+                               "%s %s: material %.30s: not defined so far: add `material %.30s` "
+                               "above",
+                               r->w.word[0], o->name, material, material);
     }
     if (strcmp(o->name, "hand") == 0 || scene_object_of(s, o->name)) {
-        return words_complain(&r->w, "%s %s: the name is taken: use another one", r->w.word[0],
-                              o->name);
+        return tokens_complain(&r->w, "%s %s: the name is taken: use another one", r->w.word[0],
+                               o->name);
     }
     if (s->objects == SCENE_OBJECTS_MAX) {
-        return words_complain(&r->w, "%s %s: more than %d objects: leave some out", r->w.word[0],
-                              o->name, SCENE_OBJECTS_MAX);
+        return tokens_complain(&r->w, "%s %s: more than %d objects: leave some out", r->w.word[0],
+                               o->name, SCENE_OBJECTS_MAX);
     }
     s->object = scene_room(s->object, s->objects, sizeof *o);
-    if (s->object == NULL) { return words_complain(&r->w, "no memory"); }
+    if (s->object == NULL) { return tokens_complain(&r->w, "no memory"); }
     s->object[s->objects++] = *o;
     return 0;
 }
@@ -41,11 +41,11 @@ int scene_take_plane(struct reading *r)
                        {"normal", 3, normal, -1e3, 1e3, 0, 0},
                        {"draw", 1, &o.draw_m, 0.001, SCENE_FAR_M, 0, 0}};
     struct v3 n;
-    if (scene_named(r, o.name) || words_pairs(&r->w, 2, p, 4)) { return 1; }
+    if (scene_named(r, o.name) || tokens_pairs(&r->w, 2, p, 4)) { return 1; }
     to_v3(&o.stand.at, at);
     to_v3(&n, normal);
     if (frame_from_z(&o.stand.turn, n, fabs(n.x) < 0.9 * v3_len(n) ? v3(1, 0, 0) : v3(0, 1, 0))) {
-        return words_complain(
+        return tokens_complain(
             &r->w, "plane %s: normal has no length: let it point out of the solid", o.name);
     }
     o.shape.bound_m = ENDLESS;
@@ -62,7 +62,7 @@ static int take_body(struct reading *r, struct scene_object *o, const struct pai
                         {"material", 0, material, 0, 0, 1, 0},
                         {"rpy", 3, rpy, -360, 360, 0, 0}};
     memcpy(p + 3, own, (size_t)n * sizeof *own);
-    if (scene_named(r, o->name) || words_pairs(&r->w, 2, p, 3 + n)) { return 1; }
+    if (scene_named(r, o->name) || tokens_pairs(&r->w, 2, p, 3 + n)) { return 1; }
     to_v3(&o->stand.at, at);
     to_v3(&turn, rpy);
     o->stand.turn = rpy_turn(v3_times(turn, RAD_PER_DEG));
@@ -123,12 +123,12 @@ int scene_take_mesh(struct reading *r)
     if (take_body(r, &o, p, 2, &material)) { return 1; }
     beside(path, sizeof path, r->w.file, file);
     m = mesh_read(path, scale, why, sizeof why);
-    if (m == NULL) { return words_complain(&r->w, "mesh %s: %s", o.name, why); }
+    if (m == NULL) { return tokens_complain(&r->w, "mesh %s: %s", o.name, why); }
     s->mesh = scene_room(s->mesh, s->meshes, sizeof *s->mesh);
-    if (s->mesh == NULL) { return words_complain(&r->w, "no memory"); }
+    if (s->mesh == NULL) { return tokens_complain(&r->w, "no memory"); }
     s->mesh[s->meshes++] = m;
     if (mesh_ready(m, why, sizeof why)) {
-        return words_complain(&r->w, "mesh %s: %s", o.name, why);
+        return tokens_complain(&r->w, "mesh %s: %s", o.name, why);
     }
     o.shape.mesh = m;
     o.shape.bound_m = m->bound_m * (1 + 1e-6); /* Embree's corners are floats */

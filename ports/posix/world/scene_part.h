@@ -3,14 +3,14 @@
 #ifndef WORLD_SCENE_PART_H
 #define WORLD_SCENE_PART_H
 
-#include "scene.h"
-#include "words.h"
+#include "scene_text.h"
+#include "tokens.h"
 
 #define SCENE_FAR_M 100.0
 
 struct reading {
     struct scene *s;
-    struct words w;
+    struct tokens w;
 };
 
 /* Makes room for one more of size_B in an array of n; doubles at powers of two. NULL: no memory. */

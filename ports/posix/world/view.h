@@ -3,7 +3,7 @@
 #ifndef WORLD_VIEW_H
 #define WORLD_VIEW_H
 
-#include "scene.h"
+#include "scene_text.h"
 
 struct view {
     struct v3 look;

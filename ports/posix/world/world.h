@@ -8,7 +8,7 @@
 #ifndef WORLD_WORLD_H
 #define WORLD_WORLD_H
 
-#include "scene.h"
+#include "scene_text.h"
 
 #include "exhand/wire.h"
 

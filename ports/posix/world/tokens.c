@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-#include "words.h"
+#include "tokens.h"
 
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-int words_complain(struct words *w, const char *format, ...)
+int tokens_complain(struct tokens *w, const char *format, ...)
 {
     va_list args;
     int at;
@@ -19,13 +19,13 @@ int words_complain(struct words *w, const char *format, ...)
     return 1;
 }
 
-int words_part(struct words *w, char *text)
+int tokens_part(struct tokens *w, char *text)
 {
     w->n = 0;
     text[strcspn(text, "#\r\n")] = '\0';
     for (char *s = strtok(text, " \t"); s; s = strtok(NULL, " \t")) {
-        if (w->n == WORDS_MAX) {
-            return words_complain(w, "more than %d words: put less on one line", WORDS_MAX);
+        if (w->n == TOKENS_MAX) {
+            return tokens_complain(w, "more than %d words: put less on one line", TOKENS_MAX);
         }
         w->word[w->n++] = s;
     }
@@ -33,13 +33,13 @@ int words_part(struct words *w, char *text)
 }
 
 /* What the line is about: its first word, and the second where there is one. */
-static int complain(struct words *w, int from, const char *what)
+static int complain(struct tokens *w, int from, const char *what)
 {
-    return words_complain(w, "%s%s%s: %s", w->word[0], from > 1 ? " " : "",
-                          from > 1 ? w->word[1] : "", what);
+    return tokens_complain(w, "%s%s%s: %s", w->word[0], from > 1 ? " " : "",
+                           from > 1 ? w->word[1] : "", what);
 }
 
-static int number(struct words *w, int from, int at, const struct pair *p, int i)
+static int number(struct tokens *w, int from, int at, const struct pair *p, int i)
 {
     char text[160], *end;
     const char *s = at < w->n ? w->word[at] : "";
@@ -59,7 +59,7 @@ static int number(struct words *w, int from, int at, const struct pair *p, int i
     return 0;
 }
 
-static struct pair *find(struct words *w, int from, const char *key, struct pair *p, int n)
+static struct pair *find(struct tokens *w, int from, const char *key, struct pair *p, int n)
 {
     char text[320];
     size_t at;
@@ -74,7 +74,7 @@ static struct pair *find(struct words *w, int from, const char *key, struct pair
     return NULL;
 }
 
-static int one_pair(struct words *w, int from, int *at, struct pair *p, int n)
+static int one_pair(struct tokens *w, int from, int *at, struct pair *p, int n)
 {
     char text[100];
     struct pair *a = find(w, from, w->word[*at], p, n);
@@ -99,7 +99,7 @@ static int one_pair(struct words *w, int from, int *at, struct pair *p, int n)
     return 0;
 }
 
-int words_pairs(struct words *w, int from, struct pair *p, int n)
+int tokens_pairs(struct tokens *w, int from, struct pair *p, int n)
 {
     for (int at = from; at < w->n;) {
         if (one_pair(w, from, &at, p, n)) { return 1; }

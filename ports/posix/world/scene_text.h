@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* A scene: what a world is made of, read from a text (scenes/README.md tells the format). */
-#ifndef WORLD_SCENE_H
-#define WORLD_SCENE_H
+#ifndef WORLD_SCENE_TEXT_H
+#define WORLD_SCENE_TEXT_H
 
 #include "finger.h"
 #include "motion.h"

@@ -21,11 +21,13 @@ void *scene_room(void *array, int n, size_t size_B)
 
 int scene_named(struct reading *r, char to[SCENE_NAME_B])
 {
-    struct words *w = &r->w;
-    if (w->n < 2) { return words_complain(w, "%s: its name is missing: add one word", w->word[0]); }
+    struct tokens *w = &r->w;
+    if (w->n < 2) {
+        return tokens_complain(w, "%s: its name is missing: add one word", w->word[0]);
+    }
     if (strlen(w->word[1]) >= SCENE_NAME_B) {
-        return words_complain(w, "%s %.40s: a name has at most %d characters: shorten it",
-                              w->word[0], w->word[1], SCENE_NAME_B - 1);
+        return tokens_complain(w, "%s %.40s: a name has at most %d characters: shorten it",
+                               w->word[0], w->word[1], SCENE_NAME_B - 1);
     }
     strcpy(to, w->word[1]);
     return 0;
@@ -55,8 +57,9 @@ static int take_world(struct reading *r)
     for (int i = 1; i < r->w.n; i++) {
         const size_t len = strlen(r->w.word[i]);
         if (at + len + 2 > sizeof r->s->title) {
-            return words_complain(&r->w, "world: the title has more than %d characters: shorten it",
-                                  (int)sizeof r->s->title - 1);
+            return tokens_complain(&r->w,
+                                   "world: the title has more than %d characters: shorten it",
+                                   (int)sizeof r->s->title - 1);
         }
         if (i > 1) { r->s->title[at++] = ' '; }
         memcpy(r->s->title + at, r->w.word[i], len + 1);
@@ -67,20 +70,20 @@ static int take_world(struct reading *r)
 
 static int take_fingers(struct reading *r)
 {
-    struct words *w = &r->w;
+    struct tokens *w = &r->w;
     r->s->fingers = 0;
     for (int i = 1; i < w->n; i++) {
         unsigned f = 0;
         while (f < FINGERS && strcmp(w->word[i], finger_name[f]) != 0) { f++; }
         if (f == FINGERS && strcmp(w->word[i], "all") != 0) {
-            return words_complain(w,
-                                  "fingers: %.30s: no such finger: use thumb index middle ring "
-                                  "little, or all",
-                                  w->word[i]);
+            return tokens_complain(w,
+                                   "fingers: %.30s: no such finger: use thumb index middle ring "
+                                   "little, or all",
+                                   w->word[i]);
         }
         r->s->fingers |= f == FINGERS ? (1u << FINGERS) - 1 : 1u << f;
     }
-    return r->s->fingers ? 0 : words_complain(w, "fingers: none: name those in use, or all");
+    return r->s->fingers ? 0 : tokens_complain(w, "fingers: none: name those in use, or all");
 }
 
 static int take_ray(struct reading *r)
@@ -89,7 +92,7 @@ static int take_ray(struct reading *r)
     struct pair p[] = {{"length", 1, &r->s->ray_m, 0.001, 1, 0, 0},
                        {"back", 1, &r->s->back_m, 0, 0.2, 0, 0},
                        {"graze", 1, &graze, 0, 89, 0, 0}};
-    if (words_pairs(&r->w, 1, p, 3)) { return 1; }
+    if (tokens_pairs(&r->w, 1, p, 3)) { return 1; }
     r->s->graze = sim_sin(graze * RAD_PER_DEG);
     return 0;
 }
@@ -101,15 +104,15 @@ static int take_hand(struct reading *r)
                        {"palm", 3, palm, -1e3, 1e3, 0, 0},
                        {"point", 3, point, -1e3, 1e3, 0, 0}};
     struct v3 x, z;
-    if (words_pairs(&r->w, 1, p, 3)) { return 1; }
+    if (tokens_pairs(&r->w, 1, p, 3)) { return 1; }
     to_v3(&r->s->hand.at, at);
     to_v3(&x, palm);
     to_v3(&z, point);
     return frame_from_z(&r->s->hand.turn, z, x) == 0
                ? 0
-               : words_complain(&r->w,
-                                "hand: palm and point are parallel or zero: the palm looks to "
-                                "the side of where the fingers point");
+               : tokens_complain(&r->w,
+                                 "hand: palm and point are parallel or zero: the palm looks to "
+                                 "the side of where the fingers point");
 }
 
 static int take_camera(struct reading *r)
@@ -117,13 +120,13 @@ static int take_camera(struct reading *r)
     double eye[3], look[3];
     struct pair p[] = {{"eye", 3, eye, -SCENE_FAR_M, SCENE_FAR_M, 1, 0},
                        {"look", 3, look, -SCENE_FAR_M, SCENE_FAR_M, 1, 0}};
-    if (words_pairs(&r->w, 1, p, 2)) { return 1; }
+    if (tokens_pairs(&r->w, 1, p, 2)) { return 1; }
     to_v3(&r->s->eye, eye);
     to_v3(&r->s->look, look);
     r->s->eye_set = 1;
     return v3_len(v3_sub(r->s->eye, r->s->look)) > 1e-3
                ? 0
-               : words_complain(&r->w, "camera: eye and look are the same point: part them");
+               : tokens_complain(&r->w, "camera: eye and look are the same point: part them");
 }
 
 /* The most that a controller takes. */
@@ -140,16 +143,16 @@ static int take_material(struct reading *r)
                        {"b", 1, &m.b, 0, row_max(1), 0, 0},
                        {"fmax", 1, &m.f_max, 0, row_max(2), 0, 0},
                        {"colour", 3, m.colour, 0, 1, 0, 0}};
-    if (scene_named(r, m.name) || words_pairs(&r->w, 2, p, 4)) { return 1; }
+    if (scene_named(r, m.name) || tokens_pairs(&r->w, 2, p, 4)) { return 1; }
     if (scene_material_of(s, m.name) >= 0) {
-        return words_complain(&r->w, "material %s: defined twice: use another name", m.name);
+        return tokens_complain(&r->w, "material %s: defined twice: use another name", m.name);
     }
     if (s->materials == SCENE_MATERIALS_MAX) {
-        return words_complain(&r->w, "material %s: more than %d: share some", m.name,
-                              SCENE_MATERIALS_MAX);
+        return tokens_complain(&r->w, "material %s: more than %d: share some", m.name,
+                               SCENE_MATERIALS_MAX);
     }
     s->material = scene_room(s->material, s->materials, sizeof m);
-    if (s->material == NULL) { return words_complain(&r->w, "no memory"); }
+    if (s->material == NULL) { return tokens_complain(&r->w, "no memory"); }
     s->material[s->materials++] = m;
     return 0;
 }
@@ -169,13 +172,13 @@ static const struct {
 
 static int take_line(struct reading *r, char *text)
 {
-    struct words *w = &r->w;
-    if (words_part(w, text)) { return 1; }
+    struct tokens *w = &r->w;
+    if (tokens_part(w, text)) { return 1; }
     if (w->n == 0) { return 0; }
     for (size_t i = 0; i < sizeof statement / sizeof statement[0]; i++) {
         if (strcmp(statement[i].name, w->word[0]) == 0) { return statement[i].take(r); }
     }
-    return words_complain(
+    return tokens_complain(
         w,
         "%.30s: no such statement: use world, fingers, ray, hand, camera, material, "
         "plane, sphere, box, capsule, mesh, motion or key",
@@ -189,9 +192,9 @@ static int take_text(struct reading *r, const char *text)
         char line[1024];
         r->w.line++;
         if (len >= sizeof line) {
-            return words_complain(&r->w,
-                                  "more than %d characters: is this a scene? Shorten the line",
-                                  (int)sizeof line - 1);
+            return tokens_complain(&r->w,
+                                   "more than %d characters: is this a scene? Shorten the line",
+                                   (int)sizeof line - 1);
         }
         memcpy(line, text, len);
         line[len] = '\0';
@@ -211,7 +214,7 @@ struct scene *scene_read(const char *name, const char *text, char *error, size_t
                         .w = {.file = name, .error = error, .error_B = error_B}};
     error[0] = '\0';
     if (r.s == NULL) {
-        words_complain(&r.w, "no memory");
+        tokens_complain(&r.w, "no memory");
         return NULL;
     }
     r.s->fingers = (1u << FINGERS) - 1;

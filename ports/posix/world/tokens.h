@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: MIT */
-/* A line of a scene as words, and its "key value" pairs by a table, with errors that say where,
- * what, and what to do. */
-#ifndef WORLD_WORDS_H
-#define WORLD_WORDS_H
+/* The tokeniser of scenes: a line as words, its "key value" pairs by a table, errors that say
+ * where, what, and what to do. */
+#ifndef WORLD_TOKENS_H
+#define WORLD_TOKENS_H
 
 #include <stddef.h>
 
-#define WORDS_MAX 64
+#define TOKENS_MAX 64
 
-struct words {
+struct tokens {
     const char *file;
     int line, n;
-    char *word[WORDS_MAX];
+    char *word[TOKENS_MAX];
     char *error; /* "" until something is wrong; the first fault stays */
     size_t error_B;
 };
@@ -25,15 +25,15 @@ struct pair {
 };
 
 /* Parts text, up to a # if there is one. 0, or 1: too many words. */
-int words_part(struct words *w, char *text);
+int tokens_part(struct tokens *w, char *text);
 
 /* Says file:line: and this; always 1. */
 #ifdef __GNUC__
 __attribute__((format(printf, 2, 3)))
 #endif
-int words_complain(struct words *w, const char *format, ...);
+int tokens_complain(struct tokens *w, const char *format, ...);
 
 /* Reads the pairs from word[from] on into the table; 0 or 1. */
-int words_pairs(struct words *w, int from, struct pair *p, int n);
+int tokens_pairs(struct tokens *w, int from, struct pair *p, int n);
 
 #endif
