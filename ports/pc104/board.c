@@ -30,7 +30,6 @@ static struct {
 } run = {.tick_min = UINT32_MAX};
 
 static struct exh_drive_out last; /* the last frame of the loop */
-static uint8_t exit_code;
 
 void pc104_board_for(const struct exh_scene *sc)
 {
@@ -46,7 +45,7 @@ int pc104_board_clock(void)
 {
     const int err = run.ready ? 0 : pc104_timer_choose(pc104_par.timer);
     run.ready = err == 0;
-    if (err < 0) { exit_code = PC104_EXIT_TIMER; }
+    if (err < 0) { pc104_exit_code = PC104_EXIT_TIMER; }
     return err;
 }
 
@@ -70,19 +69,19 @@ int exh_board_init(uint32_t rate_Hz, struct exh_period *achieved)
     pc104_restart_look();
     err = pc104_board_clock();
     if (err < 0) { return err; }
-    exit_code = PC104_EXIT_RATE;
+    pc104_exit_code = PC104_EXIT_RATE;
     err = pc104_timer_set(rate_Hz, achieved);
     if (err < 0) { return err; }
     pc104_box_config(run.scene, &config);
     err = exh_box_open(&config, &report);
     pc104_box_say(&report);
-    exit_code = err == -EXH_E_RANGE ? PC104_EXIT_OPTION : PC104_EXIT_ABSENT;
+    pc104_exit_code = err == -EXH_E_RANGE ? PC104_EXIT_OPTION : PC104_EXIT_ABSENT;
     if (err < 0) { return err; }
     run.opened = 1;
-    exit_code = PC104_EXIT_RATE;
+    pc104_exit_code = PC104_EXIT_RATE;
     err = pc104_load_fits(rate_Hz);
     if (err < 0) { return err; }
-    exit_code = 0;
+    pc104_exit_code = 0;
     if (exh_box_error()->code != 0) { return -EXH_E_IO; } /* a card that passed and then failed */
     return exh_box_open(&config, NULL); /* as new: what was read in vain is forgotten */
 }
@@ -105,13 +104,13 @@ int exh_board_wait(void)
         pc104_timer_start();
         run.started = 1;
     }
-    dead = pc104_timer_wait(&missed, &late);
+    dead = pc104_timer_wait(pc104_idle, &missed, &late);
     if (dead) {
         pc104_halt(PC104_EXIT_TIMER, dead == -1
                                          ? "timer: no tick for four periods, by the second clock"
                                          : "timer: it counts, but its interrupts do not come");
     }
-    pc104_load_missed(missed, late);
+    pc104_load_missed(run.run, missed, late);
     run.run++;
     run.missed = missed > UINT32_MAX - run.missed ? UINT32_MAX : run.missed + missed;
     pc104_load_begin();
@@ -181,12 +180,6 @@ static void report(void)
     pc104_say("\n");
 }
 
-void pc104_halt(uint8_t code, const char *why)
-{
-    exit_code = code;
-    exh_board_halt(why);
-}
-
 void exh_board_halt(const char *why)
 {
     const int done = pc104_same_text(why, "done");
@@ -199,7 +192,9 @@ void exh_board_halt(const char *why)
     pc104_say("\n");
     exh_board_safe(); /* once more, long after any update that was under way */
     pc104_dump_flush(!done);
-    pc104_out8(EXIT_PORT, done ? PC104_EXIT_DONE : exit_code ? exit_code : PC104_EXIT_FAILED);
+    pc104_out8(EXIT_PORT, done              ? PC104_EXIT_DONE
+                          : pc104_exit_code ? pc104_exit_code
+                                            : PC104_EXIT_FAILED);
     for (;;) { /* only a reset helps */
         __asm__ volatile("cli; hlt");
     }

@@ -1,5 +1,9 @@
 /* SPDX-License-Identifier: MIT */
+/* The boot command line: name=value, by the rows of option.c, the box's (box.c) and the scene's. A
+ * word that is none of them stops the image before anything moves. */
 #include "pc104.h"
+
+#include "exhand/exhand.h"
 
 #include <stddef.h>
 
@@ -38,7 +42,9 @@ static int is_path(const char *word)
     return 0;
 }
 
-int pc104_cmdline_next(unsigned *at, const char **name, const char **value)
+/* The next "name=value"; 0 at the end. Both point into the copy. A word without '=' comes with
+ * value NULL. *at starts as 0. */
+static int next(unsigned *at, const char **name, const char **value)
 {
     char *word;
     for (;;) {
@@ -63,4 +69,46 @@ int pc104_cmdline_next(unsigned *at, const char **name, const char **value)
         }
     }
     return 1;
+}
+
+static int table_option(const struct exh_signal_table *t, int32_t *to, const char *name,
+                        const char *value)
+{
+    for (uint32_t i = 0; i < exh_signal_count(t); i++) {
+        const struct exh_signal *row = exh_signal_at(t, i, NULL);
+        if (pc104_same_text(row->name, name)) {
+            to[i] = pc104_value_of(row, value);
+            return 1;
+        }
+    }
+    return 0;
+}
+
+static void defaults(const struct exh_signal_table *t, int32_t *to)
+{
+    for (uint32_t i = 0; i < exh_signal_count(t); i++) { to[i] = exh_signal_at(t, i, NULL)->dflt; }
+}
+
+void pc104_options(const struct exh_scene *sc)
+{
+    const char *name, *value;
+    unsigned at = 0;
+
+    defaults(&pc104_option_table, (int32_t *)&pc104_par);
+    defaults(&pc104_box_table, (int32_t *)&pc104_box_par);
+    while (next(&at, &name, &value)) {
+        if (value && (table_option(&pc104_option_table, (int32_t *)&pc104_par, name, value) ||
+                      table_option(&pc104_box_table, (int32_t *)&pc104_box_par, name, value) ||
+                      pc104_link_option(name, value) || pc104_scene_option(sc, name, value))) {
+            pc104_say("set ");
+            pc104_say(name);
+            pc104_say(" ");
+            pc104_say(value);
+            pc104_say("\n");
+            continue;
+        }
+        pc104_refuse(name, value);
+        pc104_say(value ? "no such parameter of image, box or scene\n" : "not name=value\n");
+        pc104_halt(PC104_EXIT_OPTION, "option refused: nothing was started");
+    }
 }

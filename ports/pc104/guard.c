@@ -27,7 +27,8 @@ struct tss {
     uint32_t es, cs, ss, ds, fs, gs, ldt, trap_iomap;
 };
 
-extern uint64_t pc104_gdt[5]; /* crt0.S */
+extern uint64_t pc104_gdt[5];                /* crt0.S */
+extern const char pc104_double_fault_task[]; /* vectors.S */
 extern char __text_start[], __data_start[], __stack_guard[];
 
 static uint32_t directory[1024] __attribute__((aligned(4096)));
@@ -71,7 +72,7 @@ static uint64_t descriptor(const struct tss *t)
 static void open_tasks(void)
 {
     fault_task.cr3 = (uint32_t)directory;
-    fault_task.eip = (uint32_t)pc104_double_fault;
+    fault_task.eip = (uint32_t)pc104_double_fault_task;
     fault_task.eflags = 2;
     fault_task.esp = (uint32_t)(fault_stack + STACK_B - 16);
     fault_task.cs = SEGMENT_CODE;

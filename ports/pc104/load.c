@@ -131,12 +131,12 @@ static uint32_t add_sat(uint32_t a, uint32_t b)
     return b > UINT32_MAX - a ? UINT32_MAX : a + b;
 }
 
-void pc104_load_missed(uint32_t missed, uint32_t late)
+void pc104_load_missed(uint32_t tick, uint32_t missed, uint32_t late)
 {
     static uint32_t overloads; /* after the grace */
     missed_in_all = add_sat(missed_in_all, missed);
     late_in_all = add_sat(late_in_all, late);
-    if (pc104_tick() < (uint32_t)pc104_par.grace_ticks) { return; }
+    if (tick < (uint32_t)pc104_par.grace_ticks) { return; }
     overloads = add_sat(overloads, late);
     if (overloads > (uint32_t)pc104_par.overload_max) {
         pc104_halt(PC104_EXIT_OVERLOAD, "overload: more ticks late than overload_max allows");

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The boot command line: name=value, by the rows below, the box's (box.c) and the scene's. A
- * word that is none of them, or a value outside its range, stops the image before anything moves.
- */
+/* Options of every image: their rows, and the value that a text is of any row. A value outside its
+ * range stops the image before anything moves. */
 #include "pc104.h"
 
 #include "exhand/error.h"
@@ -50,7 +49,7 @@ static const struct {
 /* Of a program that takes no options: nothing is too much. */
 struct pc104_par pc104_par = {.overload_max = INT32_MAX};
 
-static void refuse(const char *name, const char *value)
+void pc104_refuse(const char *name, const char *value)
 {
     pc104_say("option ");
     pc104_say(name);
@@ -63,7 +62,7 @@ static void refuse(const char *name, const char *value)
 
 void pc104_refuse_range(const struct exh_signal *row, const char *value)
 {
-    refuse(row->name, value);
+    pc104_refuse(row->name, value);
     pc104_say("allowed ");
     pc104_say_fixed(row->min, row->frac);
     pc104_say("..");
@@ -82,7 +81,7 @@ static int32_t word_of(const char *name, const char *value)
         for (int32_t k = 0; k < WORDS_MAX && words[i].word[k]; k++) {
             if (pc104_same_text(words[i].word[k], value)) { return k; }
         }
-        refuse(name, value);
+        pc104_refuse(name, value);
         pc104_say("one of");
         for (unsigned k = 0; k < WORDS_MAX && words[i].word[k]; k++) {
             pc104_say(" ");
@@ -101,46 +100,4 @@ int32_t pc104_value_of(const struct exh_signal *row, const char *value)
         pc104_refuse_range(row, value);
     }
     return raw;
-}
-
-static int table_option(const struct exh_signal_table *t, int32_t *to, const char *name,
-                        const char *value)
-{
-    for (uint32_t i = 0; i < exh_signal_count(t); i++) {
-        const struct exh_signal *row = exh_signal_at(t, i, NULL);
-        if (pc104_same_text(row->name, name)) {
-            to[i] = pc104_value_of(row, value);
-            return 1;
-        }
-    }
-    return 0;
-}
-
-static void defaults(const struct exh_signal_table *t, int32_t *to)
-{
-    for (uint32_t i = 0; i < exh_signal_count(t); i++) { to[i] = exh_signal_at(t, i, NULL)->dflt; }
-}
-
-void pc104_options(const struct exh_scene *sc)
-{
-    const char *name, *value;
-    unsigned at = 0;
-
-    defaults(&pc104_option_table, (int32_t *)&pc104_par);
-    defaults(&pc104_box_table, (int32_t *)&pc104_box_par);
-    while (pc104_cmdline_next(&at, &name, &value)) {
-        if (value && (table_option(&pc104_option_table, (int32_t *)&pc104_par, name, value) ||
-                      table_option(&pc104_box_table, (int32_t *)&pc104_box_par, name, value) ||
-                      pc104_link_option(name, value) || pc104_scene_option(sc, name, value))) {
-            pc104_say("set ");
-            pc104_say(name);
-            pc104_say(" ");
-            pc104_say(value);
-            pc104_say("\n");
-            continue;
-        }
-        refuse(name, value);
-        pc104_say(value ? "no such parameter of image, box or scene\n" : "not name=value\n");
-        pc104_halt(PC104_EXIT_OPTION, "option refused: nothing was started");
-    }
 }

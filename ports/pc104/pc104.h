@@ -26,9 +26,8 @@ int pc104_same_text(const char *a, const char *b);
 /* --- cmdline.c: the words the loader was given, copied before paging hides nothing of
  * them by accident --- */
 void pc104_cmdline_open(void);
-/* The next "name=value"; 0 at the end. Both point into the copy. A word without '=' comes with
- * value NULL. *at starts as 0. */
-int pc104_cmdline_next(unsigned *at, const char **name, const char **value);
+/* Sets options, the box's and the scene's parameters by them; halts on what is none. */
+void pc104_options(const struct exh_scene *sc);
 
 /* --- number.c: decimal text to raw values and back, without rounding twice --- */
 /* "-12.5e-3" times 2^frac, rounded half away from zero. 0, or -EXH_E_UNKNOWN (not a number of
@@ -90,8 +89,8 @@ struct pc104_box_par {
 };
 extern struct pc104_box_par pc104_box_par;
 extern const struct exh_signal_table pc104_box_table;
-void pc104_options(const struct exh_scene *sc);
-int32_t pc104_value_of(const struct exh_signal *row, const char *value);  /* halts if it is none */
+int32_t pc104_value_of(const struct exh_signal *row, const char *value); /* halts if it is none */
+void pc104_refuse(const char *name, const char *value); /* begins the line that says why */
 void pc104_refuse_range(const struct exh_signal *row, const char *value); /* halts */
 
 /* --- restart.c: did the run before this boot end? --- */
@@ -102,7 +101,15 @@ int pc104_restart_fired(void);  /* 1: the run before did not */
 
 /* --- provoke.c --- */
 void pc104_provoke(int32_t what);
-void pc104_provoke_idle(void); /* what is done between ticks hangs, if asked for */
+
+/* --- fifo.c: bytes that wait for a line, of log or dump; size_B is a power of two --- */
+struct pc104_fifo {
+    uint8_t *byte;
+    uint32_t size_B, put, got; /* bytes in all, modulo 2^32 */
+};
+int pc104_fifo_put(struct pc104_fifo *f, const uint8_t *byte, uint32_t len_B); /* all or 0 */
+int pc104_fifo_out(struct pc104_fifo *f, int32_t where, int now); /* 1: more to do at once */
+int pc104_fifo_wait(struct pc104_fifo *f, int32_t where);         /* 1: all is out; 0: stuck */
 
 /* --- scene_full.c, or scene_rom.c for a scene of constants without log --- */
 int pc104_scene_option(const struct exh_scene *sc, const char *name,
@@ -118,14 +125,6 @@ void pc104_scene_end(void);
 int pc104_idle(void);       /* something to do while waiting: 0 if nothing is left */
 void pc104_log_flush(void); /* what waits goes out, or is given up */
 int pc104_log_take(const void *rec, size_t len_B); /* as exh_board_log() */
-/* Bytes that wait for a line, of log or dump; size_B is a power of two. */
-struct pc104_fifo {
-    uint8_t *byte;
-    uint32_t size_B, put, got; /* bytes in all, modulo 2^32 */
-};
-int pc104_fifo_put(struct pc104_fifo *f, const uint8_t *byte, uint32_t len_B); /* all or 0 */
-int pc104_fifo_out(struct pc104_fifo *f, int32_t where, int now); /* 1: more to do at once */
-int pc104_fifo_wait(struct pc104_fifo *f, int32_t where);         /* 1: all is out; 0: stuck */
 
 /* --- dump.c: the black box and its way out; dump_none.c: the scene has none --- */
 int pc104_dump_open(void); /* 1: it was asked for; halts where it cannot be */
@@ -155,7 +154,8 @@ uint32_t pc104_pit_count(void);        /* as it stands, divisor .. 1 */
 #define PC104_PIT_HZ 1193182u
 
 /* --- second.c: the local APIC's timer, which only watches the first --- */
-int pc104_second_open(void); /* 1 if there is one; after pc104_timer_set() */
+/* 1 if there is one. now: counts of the clock that it watches; Hz of it, and counts of a period. */
+int pc104_second_open(uint32_t (*now)(void), uint32_t Hz, uint32_t period);
 void pc104_second_arm(void);
 void pc104_second_disarm(void);
 extern volatile uint32_t pc104_second_fired;
@@ -166,24 +166,27 @@ int pc104_timer_choose(int32_t wanted); /* enum pc104_source; 0 or -EXH_E_ABSENT
 int pc104_timer_set(uint32_t rate_Hz, struct exh_period *achieved);
 uint32_t pc104_timer_highest_Hz(uint32_t cost_counts); /* whose period is no shorter */
 void pc104_timer_start(void);
-/* Sleeps until a tick is due: ticks that were skipped, and those that were due already when it was
- * called. < 0: the timer is dead, by the second clock (-1) or the want of its interrupts (-2). */
-int pc104_timer_wait(uint32_t *missed, uint32_t *late);
+/* Calls idle() until it returns 0, then sleeps until a tick is due: ticks that were skipped, and
+ * those that were due already when it was called. < 0: the timer is dead, by the second clock (-1)
+ * or the want of its interrupts (-2). */
+int pc104_timer_wait(int (*idle)(void), uint32_t *missed, uint32_t *late);
 uint32_t pc104_timer_now(void);    /* counts, modulo 2^32 */
 uint32_t pc104_timer_counts(void); /* in a period */
 uint32_t pc104_timer_Hz(void);
 void pc104_timer_kill(void); /* stops it behind everybody's back: a test */
+void pc104_timer_hang(void); /* what is done between ticks never ends: a test */
 
 /* --- module.c: calibrations of fingers that the loader brought, into the scene --- */
 void pc104_modules(const struct exh_scene *sc);
 
 /* --- load.c: what a tick costs, and too much of it --- */
-void pc104_load_stop(void);                             /* no tick runs any more */
-void pc104_load_scene(const struct exh_scene *sc);      /* times dry ticks of it */
-int pc104_load_fits(uint32_t rate_Hz);                  /* 0 or -EXH_E_RATE, said */
-void pc104_load_begin(void);                            /* a tick has begun, */
-void pc104_load_end(void);                              /* and ended */
-void pc104_load_missed(uint32_t missed, uint32_t late); /* halts when there were too many */
+void pc104_load_stop(void);                        /* no tick runs any more */
+void pc104_load_scene(const struct exh_scene *sc); /* times dry ticks of it */
+int pc104_load_fits(uint32_t rate_Hz);             /* 0 or -EXH_E_RATE, said */
+void pc104_load_begin(void);                       /* a tick has begun, */
+void pc104_load_end(void);                         /* and ended */
+/* In this tick; halts when there were too many. */
+void pc104_load_missed(uint32_t tick, uint32_t missed, uint32_t late);
 void pc104_load_report(void);
 extern const struct exh_signal_table pc104_load_table;
 const int32_t *pc104_load_signals(void); /* values of that table, as they are now */
@@ -235,7 +238,7 @@ void pc104_hung(uint32_t eip);
 #define PC104_VECTOR_SECOND   48u
 #define PC104_VECTOR_SPURIOUS 63u
 
-/* --- board.c --- */
+/* --- halt.c --- */
 /* what emulators are told at the end: status 2 * value + 1 */
 enum pc104_exit {
     PC104_EXIT_DONE = 0x10,
@@ -247,7 +250,10 @@ enum pc104_exit {
     PC104_EXIT_OVERLOAD = 0x16,
     PC104_EXIT_TIMER = 0x17
 };
+extern uint8_t pc104_exit_code; /* told at the end of a run that did not end in order; 0: FAILED */
 void pc104_halt(uint8_t code, const char *why);
+
+/* --- board.c --- */
 uint32_t pc104_tick(void);                        /* run so far */
 void pc104_board_for(const struct exh_scene *sc); /* before exh_loop() */
 void pc104_board_still(void); /* outputs to zero before exh_board_init(); says nothing */

@@ -6,13 +6,6 @@
 #include "exhand/error.h"
 #include "io.h"
 
-static volatile uint8_t hang_idle;
-
-void pc104_provoke_idle(void)
-{
-    while (hang_idle) {}
-}
-
 static void spend(uint32_t periods_q1)
 {
     const uint32_t began = pc104_timer_now();
@@ -54,7 +47,7 @@ void pc104_provoke(int32_t what)
         spend(3);
     }
     while (what == PC104_PROVOKE_HANG) {}
-    if (what == PC104_PROVOKE_IDLE) { hang_idle = 1; }
+    if (what == PC104_PROVOKE_IDLE) { pc104_timer_hang(); }
     if (what == PC104_PROVOKE_RESET && !pc104_restart_fired()) {
         pc104_out8(0x64, 0xFE); /* the keyboard controller's line to the processor's reset */
         for (;;) {}

@@ -51,10 +51,10 @@ static int is_there(void)
     return (get(VERSION) & 0xF0u) == 0x10u; /* built in, as all of them are */
 }
 
-int pc104_second_open(void)
+int pc104_second_open(uint32_t (*now)(void), uint32_t Hz, uint32_t period)
 {
-    const uint32_t window = pc104_timer_Hz() / 500; /* 2 ms */
-    const uint64_t wait = (uint64_t)PATIENCE * pc104_timer_counts() + pc104_timer_Hz() / 1000;
+    const uint32_t window = Hz / 500; /* 2 ms */
+    const uint64_t wait = (uint64_t)PATIENCE * period + Hz / 1000;
     uint32_t began, used;
     uint64_t counts;
 
@@ -66,8 +66,8 @@ int pc104_second_open(void)
     put(LVT_TIMER, LVT_MASKED | PC104_VECTOR_SECOND);
     put(DIVIDE, DIVIDE_BY_16);
     put(INITIAL, UINT32_MAX);
-    began = pc104_timer_now();
-    while (pc104_timer_now() - began < window) {} /* the clock was seen to count */
+    began = now();
+    while (now() - began < window) {} /* the clock was seen to count */
     used = UINT32_MAX - get(CURRENT);
     put(INITIAL, 0);
     if (used < 1000) { return 0; } /* 2 ms of nothing: less than 8 MHz before division */

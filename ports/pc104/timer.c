@@ -18,9 +18,10 @@
 
 static struct pc104_timer timer;
 static uint8_t is_hpet, running;
-static uint32_t counts; /* of a period */
-static uint32_t next;   /* HPET: instant of the next tick */
-static uint32_t seen;   /* 8254: its ticks so far */
+static volatile uint8_t hangs; /* a test: what is done between ticks never ends */
+static uint32_t counts;        /* of a period */
+static uint32_t next;          /* HPET: instant of the next tick */
+static uint32_t seen;          /* 8254: its ticks so far */
 static uint32_t us_per_count_q32, us_last;
 static uint64_t us_q32;
 
@@ -160,8 +161,9 @@ int pc104_timer_set(uint32_t rate_Hz, struct exh_period *achieved)
     if (!is_hpet) { pc104_pit_load(counts); }
     us_last = pc104_timer_now();
     say_period(rate_Hz);
-    pc104_say(pc104_second_open() ? "second clock local APIC\n"
-                                  : "second clock none: a timer that dies is not noticed\n");
+    pc104_say(pc104_second_open(pc104_timer_now, timer.Hz, counts)
+                  ? "second clock local APIC\n"
+                  : "second clock none: a timer that dies is not noticed\n");
     return 0;
 }
 
@@ -208,7 +210,7 @@ static int silent(void)
     return in_a_row > SILENT_MAX;
 }
 
-int pc104_timer_wait(uint32_t *missed, uint32_t *late)
+int pc104_timer_wait(int (*idle)(void), uint32_t *missed, uint32_t *late)
 {
     const uint32_t interrupts = pc104_ticks;
     uint32_t n = due();
@@ -216,9 +218,9 @@ int pc104_timer_wait(uint32_t *missed, uint32_t *late)
 
     *late = n;
     pc104_second_arm();
-    pc104_provoke_idle();
+    while (hangs) {}
     for (;;) {
-        const int more = n == 0 && (pc104_idle() || pc104_par.spin);
+        const int more = n == 0 && (idle() || pc104_par.spin);
         __asm__ volatile("cli" : : : "memory");
         n += due();
         if (n > 0 || dead) { break; }
@@ -286,4 +288,9 @@ void pc104_timer_kill(void)
     } else {
         pc104_pit_load(65536); /* as slow as it goes: mode 2 cannot be stopped */
     }
+}
+
+void pc104_timer_hang(void)
+{
+    hangs = 1;
 }

@@ -35,6 +35,12 @@ to_fault:
     hlt
     jmp 1b
 
+/* Where the task of a double fault begins (guard.c). */
+    .section .text.pc104_double_fault_task, "ax"
+    .globl pc104_double_fault_task
+pc104_double_fault_task:
+    jmp pc104_double_fault
+
 /* Timer: counts. The count goes on while a tick overruns, so none is lost. A tick that does not
  * end within pc104_hang_ticks of them (0: none is running) is given up. */
     .section .text.pc104_irq0, "ax"
