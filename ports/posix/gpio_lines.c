@@ -3,7 +3,6 @@
 #include "gpio_lines.h"
 
 #include <errno.h>
-#include <stdio.h>
 #include <string.h>
 
 int gpio_lines_open(const char *path, const unsigned *in, unsigned ins, const unsigned *out,
@@ -25,11 +24,4 @@ int gpio_lines_open(const char *path, const unsigned *in, unsigned ins, const un
     }
     p->why = GPIO_FINE;
     return 0;
-}
-
-void gpio_lines_busy(struct gpio_problem *p, unsigned line, const char *who)
-{
-    p->why = GPIO_BUSY;
-    p->line = line;
-    snprintf(p->who, sizeof p->who, "%s", who ? who : "");
 }

@@ -5,6 +5,8 @@
 #ifndef GPIO_LINES_H
 #define GPIO_LINES_H
 
+#include <stdio.h>
+
 #define GPIO_LINES_MAX 4 /* of either direction */
 #define GPIO_CONSUMER  "exhand"
 
@@ -38,7 +40,12 @@ int gpio_chip_open(const char *path);
 int gpio_chip_request(const unsigned *in, unsigned ins, const unsigned *out, unsigned outs,
                       struct gpio_problem *p);
 /* This line is somebody's; who: NULL, or a name. */
-void gpio_lines_busy(struct gpio_problem *p, unsigned line, const char *who);
+static inline void gpio_lines_busy(struct gpio_problem *p, unsigned line, const char *who)
+{
+    p->why = GPIO_BUSY;
+    p->line = line;
+    snprintf(p->who, sizeof p->who, "%s", who ? who : "");
+}
 
 /* All inputs at once: level[i] 0 or 1. 0, or -1 with errno. */
 int gpio_lines_get(int *level);

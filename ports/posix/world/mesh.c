@@ -141,11 +141,3 @@ void mesh_free(struct mesh *m)
     free(m->triangle);
     free(m);
 }
-
-struct v3 mesh_normal(const struct mesh *m, int triangle, struct v3 *on)
-{
-    const int *c = m->triangle[triangle].corner;
-    const struct v3 a = m->point[c[0]];
-    *on = a;
-    return v3_unit(v3_cross(v3_sub(m->point[c[1]], a), v3_sub(m->point[c[2]], a)));
-}

@@ -36,6 +36,12 @@ void mesh_unready(struct mesh *m);
 int mesh_cast(const struct mesh *m, const struct ray *r, double *t, int *triangle);
 
 /* Of one triangle: its outward normal, and a point on it. */
-struct v3 mesh_normal(const struct mesh *m, int triangle, struct v3 *on);
+static inline struct v3 mesh_normal(const struct mesh *m, int triangle, struct v3 *on)
+{
+    const int *c = m->triangle[triangle].corner;
+    const struct v3 a = m->point[c[0]];
+    *on = a;
+    return v3_unit(v3_cross(v3_sub(m->point[c[1]], a), v3_sub(m->point[c[2]], a)));
+}
 
 #endif

@@ -2,9 +2,9 @@
 # The world simulator build/posix/world.
 
 # The core needs a C compiler alone. Pictures and rays into meshes are in where their packages are.
-world_more := main live alone bench solo link link_param link_trace view gl gl_form gl_batch gl_solid gl_layer gl_text \
-              picture_none mesh_embree mesh_none
-world_core := $(filter-out $(world_more:%=ports/posix/world/%.c),$(wildcard ports/posix/world/*.c))
+# World and host program share the core; it has no clock, socket or picture.
+world_core := $(patsubst %,ports/posix/world/%.c,world scene_text scene_find scene_object scene_motion tokens motion rpy \
+              shape reach finger mesh draw draw_list draw_hand draw_numbers)
 # Rays need the package, a compiler that sees it, and a program that can load it when it runs.
 world_rays := $(if $(filter -static,$(LDFLAGS)),,$(if $(call sees,embree3/rtcore.h),3,$(if $(call sees,embree4/rtcore.h),4)))
 world_mesh := $(B)/posix/ports/posix/world/$(if $(world_rays),mesh_embree,mesh_none).o
@@ -12,8 +12,8 @@ world_gl   := $(and $(call have,SDL2/SDL_ttf.h),$(call have,GL/gl.h),$(call have
 world_pkgs := libsdl2-dev libsdl2-ttf-dev libgl-dev libegl-dev libgl1-mesa-dri libpng-dev fonts-dejavu-core
 world      := $(B)/posix/world
 
-world_part := main live alone bench solo link link_param link_trace view \
-              $(if $(world_gl),gl gl_form gl_batch gl_solid gl_layer gl_text,picture_none)
+world_part := main live alone bench solo link link_put link_param link_trace view \
+              $(if $(world_gl),gl gl_program gl_form gl_batch gl_solid gl_layer gl_text,picture_none)
 world_core_obj := $(patsubst %.c,$(B)/posix/%.o,$(world_core) $(patsubst %,ports/posix/sim/%.c,lag plant device))
 world_obj  := $(world_core_obj) $(world_mesh) $(world_part:%=$(B)/posix/ports/posix/world/%.o) \
               $(B)/posix/ports/posix/cli/option.o $(B)/posix/examples/bilateral/tables.o $(B)/posix/examples/glove/cal.o \
