@@ -6,7 +6,7 @@
 
 #include "net.h"
 #include "nic.h"
-#include "stream.h"
+#include "exhand/run/stream.h"
 
 #include "cards/io.h"
 #include "cards/wait.h"

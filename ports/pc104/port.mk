@@ -10,7 +10,7 @@ PORT_SUFFIX   := $(if $(filter-out real,$(CARDS)),-$(CARDS))
 PORT_MAIN     := ports/pc104/main.c lib/src/run/deadman.c
 pc104_parts   := crt0.S vectors.S board.c box.c timer.c hpet.c pit.c second.c load.c guard.c trap.c uart.c say.c \
                  number.c cmdline.c option.c provoke.c restart.c halt.c mem.c
-pc104_link    := link.c net.c nic.c pci.c stream.c
+pc104_link    := link.c net.c nic.c pci.c
 # MODBUS=no: an image without registers on a second serial line.
 # A scene with a black box says how much memory that has: SCENE_BOX_B in its scene.mk.
 # A scene of constants without log (SCENE_ROM in its scene.mk) links neither parameters, records nor a network card.
@@ -18,7 +18,7 @@ PORT_SRC       = $(pc104_parts:%=ports/pc104/%) $(cards_$(CARDS)) ports/pc104/$(
                  $(if $(SCENE_ROM),ports/pc104/scene_rom.c ports/pc104/link_none.c, \
                    ports/pc104/scene_full.c ports/pc104/fifo.c ports/pc104/module.c \
                    ports/pc104/$(if $(filter no,$(MODBUS)),modbus_none.c,modbus.c) \
-                   lib/src/run/log.c $(pc104_link:%=ports/pc104/%) \
+                   $(addprefix lib/src/run/,log.c stream.c) $(pc104_link:%=ports/pc104/%) \
                    $(if $(SCENE_BOX_B),ports/pc104/dump.c lib/src/run/blackbox.c,ports/pc104/dump_none.c))
 PORT_HOSTFLAGS := -Iports
 # No FPU, MMX or SSE register is ever touched, so none has to be set up or saved; PORT_FLOAT is for a controller in floats alone.

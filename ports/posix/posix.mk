@@ -6,7 +6,7 @@ cli_src := $(wildcard ports/posix/cli/*.c ports/posix/fit/*.c) \
            $(addprefix lib/src/run/,log.c blackbox.c deadman.c calib_set.c) \
            $(addprefix examples/,drop/drop.c guarded/guarded.c calibrate/calibrate.c glove/glove.c \
              glove/cal.c) \
-           $(wildcard examples/bilateral/*.c examples/bringup/*.c) ports/pc104/stream.c
+           $(wildcard examples/bilateral/*.c examples/bringup/*.c) lib/src/run/stream.c
 modbus   := $(if $(call gives,modbus/modbus.h,modbus,modbus_reply),libmodbus,none)
 cli_src  := $(filter-out ports/posix/cli/modbus_%.c ports/posix/cli/scene_custom.c,$(cli_src)) ports/posix/cli/modbus_mail.c \
             $(wildcard ports/posix/cli/modbus_$(modbus)*.c)

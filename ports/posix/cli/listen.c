@@ -6,7 +6,7 @@
 #include "udp.h"
 #include "until.h"
 
-#include "../../pc104/stream.h"
+#include "exhand/run/stream.h"
 
 #include <errno.h>
 #include <inttypes.h>

@@ -8,7 +8,7 @@
 
 #include "exhand/run/log.h"
 
-#include "../../pc104/stream.h"
+#include "exhand/run/stream.h"
 
 #include "exhand/error.h"
 

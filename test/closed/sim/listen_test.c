@@ -5,7 +5,7 @@
 #include "cli/cli.h"
 #include "udp.h"
 
-#include "../../../ports/pc104/stream.h"
+#include "exhand/run/stream.h"
 
 #include <signal.h>
 #include <stdio.h>

@@ -8,7 +8,7 @@
 
 #include "udp.h"
 
-#include "../../../ports/pc104/stream.h"
+#include "exhand/run/stream.h"
 
 #include "exhand/record.h"
 

@@ -7,8 +7,8 @@
  *  16  u32 1: the last one            20  bytes
  *
  * Little-endian. Portable: the host's `exhand listen` reads them by the same file. */
-#ifndef PC104_STREAM_H
-#define PC104_STREAM_H
+#ifndef EXHAND_RUN_STREAM_H
+#define EXHAND_RUN_STREAM_H
 
 #include <stddef.h>
 #include <stdint.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "stream.h"
+#include "exhand/run/stream.h"
 
 #include <string.h>
 
