@@ -36,6 +36,7 @@ check:
 	@$(timed) size
 	@$(timed) fmt-check
 	@$(timed) doc doc-names
+	@$(timed) structure
 	@$(timed) bench
 	@$(timed) report-test
 	@$(timed) report ARGS=--short

@@ -42,3 +42,11 @@ fresh-ways:
 .PHONY: doc-names
 doc-names: $(exhand)
 	@PYTHONDONTWRITEBYTECODE=1 test/walk/docs/docs.py $(exhand) $(world)
+
+## Check that no two sources need each other, no room includes what it may not, none is above its budget.
+.PHONY: structure
+structure: $(exhand) $(world)
+	@if .ci/deps "the symbols of the PC/104" i686-linux-gnu-gcc gcc-i686-linux-gnu; then for s in minimal bilateral; do \
+	    $(MAKE) --no-print-directory $(if $(V),,-s) PORT=pc104 SCENE=$$s all || exit; done; fi
+	@PYTHONDONTWRITEBYTECODE=1 test/walk/docs/structure_test.py 2> $(B)/structure.txt || { cat $(B)/structure.txt; exit 1; }
+	@PYTHONDONTWRITEBYTECODE=1 test/walk/docs/structure.py $(B)
