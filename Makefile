@@ -49,7 +49,8 @@ base := -std=c99 -O$(O) -g $(warn) -ffunction-sections -fdata-sections -Ilib/inc
 stamp      := $(out)/flags
 flags_text := $(CC) | $(base) | $(PORT_CFLAGS) | $(PORT_FLOAT) | $(PORT_HOSTFLAGS) | $(CFLAGS) | $(LDFLAGS)
 
-lib_src := $(sort $(wildcard lib/src/*.c))
+# lib/src/run needs a board and a scene: it is of images, not of the library.
+lib_src := $(sort $(filter-out lib/src/run/%,$(wildcard lib/src/*/*.c)))
 lib_obj := $(lib_src:%.c=$(out)/%.o)
 lib     := $(out)/libexhand.a
 

@@ -19,7 +19,7 @@ $(call frozen_h,$(1)): $(B)/freeze-$(firstword $(subst :, ,$(1)))
 	$$(Q)$$< $(wordlist 2,3,$(subst :, ,$(1))) > $$@.new && mv $$@.new $$@
 endef
 $(foreach f,$(frozen_all),$(eval $(call freeze,$f)))
-freeze_deps := $(lib_src) $(wildcard lib/include/exhand/*.h lib/src/*.h examples/*.h examples/*/*.[ch])
+freeze_deps := $(lib_src) $(wildcard lib/include/exhand/*.h lib/src/*/*.h examples/*.h examples/*/*.[ch])
 $(B)/freeze-%: examples/freeze.c examples/%/freeze.c $(freeze_deps)
 	@mkdir -p $(@D)
 	$(Q)$(HOSTCC) -std=c99 $(warn) -Ilib/include -Iexamples -o $@ examples/freeze.c examples/$*/freeze.c $(lib_src)

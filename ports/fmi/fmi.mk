@@ -5,7 +5,7 @@
 fmi_src        := ports/fmi/fmi3.c ports/fmi/absent.c
 fmi_controller := ports/fmi/controller.c examples/drop/drop.c lib/src/run/calib_set.c $(lib_src)
 fmi_device     := ports/fmi/device.c $(patsubst %,ports/posix/sim/%.c,mass plant device fall bench lag)
-fmi_folders    := lib/include/exhand=exhand lib/src=lib examples= examples/drop=drop ports/posix/sim=sim ports/fmi=fmi
+fmi_folders    := lib/include/exhand=exhand $(foreach d,num sense law act safe bench talk,lib/src/$d=lib/$d) examples= examples/drop=drop ports/posix/sim=sim ports/fmi=fmi
 $(B)/fmi/describe-controller: $(patsubst %.c,$(B)/posix/%.o,ports/fmi/describe.c $(fmi_controller))
 $(B)/fmi/describe-device: $(patsubst %.c,$(B)/posix/%.o,ports/fmi/describe.c $(fmi_device)) $(B)/posix/libexhand.a
 $(B)/fmi/describe-%:
@@ -17,7 +17,7 @@ $(B)/fmu/ExhandController.fmu: $(B)/fmi/describe-controller $(fmi_controller) $(
 	$(fmi_pack) $(fmi_controller)
 $(B)/fmu/ExhandDevice.fmu: $(B)/fmi/describe-device $(fmi_device) $(fmi_src) ports/fmi/pack.py
 	@mkdir -p $(@D)
-	$(fmi_pack) $(fmi_device) lib/src/bytes.c
+	$(fmi_pack) $(fmi_device) lib/src/num/bytes.c
 
 $(B)/fmi/native: $(B)/posix/test/walk/fmi/native.o $(filter-out %/main.o,$(cli_obj)) $(sim_obj) $(B)/posix/libexhand.a
 	@mkdir -p $(@D)

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* What clang before 15 makes wrong for 32-bit MIPS: of a product less something it
  * makes `msub`, which takes the product from that something, so that the sign is wrong
- * (LLVM issue 50458, mended in 15). In the library: peak^2 - cont^2 of the heat in lib/src/drive.c
- * and its like.
+ * (LLVM issue 50458, mended in 15). In the library: peak^2 - cont^2 of the heat in
+ * lib/src/act/drive.c and its like.
  *
  *     for cc in "clang-14 --target=mips-linux-gnu -isystem /usr/mips-linux-gnu/include" \
  *               "clang-19 --target=mips-linux-gnu -isystem /usr/mips-linux-gnu/include"

@@ -12,6 +12,7 @@ Exit status: 0 all told, 1 not, or one that cannot be planted; 2 bad usage.
 """
 
 import argparse
+import glob
 import os
 import random
 import subprocess
@@ -21,7 +22,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", ".."))
 CC = os.environ.get("CC", "cc").split()
-FLAGS = "-std=c99 -O1 -w -Ilib/include -Ilib/src".split()
+FLAGS = "-std=c99 -O1 -w -Ilib/include".split()
 TABLE = ["--rate", "1000"]
 TIMES = ["--times", "1200"]
 
@@ -63,7 +64,7 @@ MUTANTS = (
 
 
 def plant(where, source, old, new):
-    path = os.path.join(ROOT, "lib/src", source + ".c")
+    path = next(glob.iglob(os.path.join(ROOT, "lib/src/*", source + ".c")))
     with open(path) as f:
         text = f.read()
     if old not in text:

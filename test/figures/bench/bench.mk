@@ -30,7 +30,7 @@ sim-built: $(B)/bench/sim_work $(B)/bench/sim_statistics
 # The kernels for a 32-bit CPU, with the same flags and static. Only instructions are counted there.
 bench_i686 := $(B)/bench/kernels-i686
 i686_src   := $(patsubst $(B)/posix/%.o,%.c,$(filter-out %/velocity.o,$(bench_obj))) test/no_board.c $(bench_scenes) $(lib_src)
-$(bench_i686): $(i686_src) $(wildcard test/figures/bench/*.h lib/src/*.h lib/include/exhand/*.h test/wide.h) $(stamp)
+$(bench_i686): $(i686_src) $(wildcard test/figures/bench/*.h lib/src/*/*.h lib/include/exhand/*.h test/wide.h) $(stamp)
 	@mkdir -p $(@D)
 	$(Q)i686-linux-gnu-gcc -static $(filter-out -MMD -MP -g,$(base)) $(PORT_HOSTFLAGS) $(CFLAGS) -Itest \
 	    -o $@ $(filter %.c,$^) -lm
@@ -61,7 +61,7 @@ $(peers): peers_rust := $(if $(rust),-DPEERS_RUST test/figures/bench/peers_rust.
 $(peers): $(rust)
 $(peers): peers_cc := $(CC)
 $(peers)-i686: peers_cc := i686-linux-gnu-gcc -static
-peers_deps := $(wildcard $(cmsis)/.complete $(fixmath)/.complete test/figures/bench/*.h lib/src/*.h lib/include/exhand/*.h) $(stamp)
+peers_deps := $(wildcard $(cmsis)/.complete $(fixmath)/.complete test/figures/bench/*.h lib/src/*/*.h lib/include/exhand/*.h) $(stamp)
 $(peers) $(peers)-i686: $(peers_src) $(peers_deps)
 	@mkdir -p $(@D)
 	$(Q)$(peers_cc) $(filter-out $(warn) -MMD -MP -g,$(base)) -w $(PORT_HOSTFLAGS) $(CFLAGS) $(peers_def) -Itest \
@@ -97,7 +97,7 @@ $(scenes): scenes_cc := $(CC)
 $(scenes)-i686: scenes_cc := i686-linux-gnu-gcc -static
 $(scenes): $(B)/posix/libexhand.a
 $(scenes)-i686: $(lib_src)
-scenes_hs := $(wildcard test/figures/bench/*.h examples/*/*.h examples/*.h lib/src/*.h lib/include/exhand/*.h)
+scenes_hs := $(wildcard test/figures/bench/*.h examples/*/*.h examples/*.h lib/src/*/*.h lib/include/exhand/*.h)
 $(scenes) $(scenes)-i686: $(scenes_src) $(scenes_hs) $(stamp)
 	@mkdir -p $(@D)
 	$(Q)$(scenes_cc) $(filter-out -MMD -MP -g -Wdouble-promotion,$(base)) $(PORT_HOSTFLAGS) $(CFLAGS) -Itest \

@@ -68,7 +68,7 @@ def scenes():
 def module_of(place):
     """'lib/filter', 'drop/drop', 'pc104/modbus', 'compiler', of an object's path."""
     words = place[:-2].split("/")
-    if words[-3:-1] == ["lib", "src"]:
+    if words[-4:-2] == ["lib", "src"]:
         return "lib/" + words[-1]
     return "/".join(words[-2:]) if place.startswith(AT) else "compiler"
 
@@ -148,7 +148,7 @@ def instructions(scene):
                 if m[3]:
                     names[m[2]] = m[3].rstrip()
                 if m[1] == "fl":
-                    here = re.sub(r"\.c$", "", "/".join(names[m[2]].replace("lib/src/", "src/lib/").split("/")[-2:]))
+                    here = re.sub(r"\.c$", "", "/".join(re.sub(r"lib/src/\w+/", "lib/", names[m[2]]).split("/")[-2:]))
             elif line.startswith("calls="):
                 called = True  # the next line is the callee's
             elif re.match(r"[+\-*\d]", line):

@@ -19,6 +19,7 @@ Exit status: 0 ok, 1 the walk over the relocations does not find what the linker
 """
 import argparse
 import csv
+import glob
 import math
 import os
 import re
@@ -93,7 +94,7 @@ def zip_rows(tables):
 def write_modules(out, rows, costs):
     head = ["scene", "port", "module", "text_B", "data_B", "bss_B", "of_text_B", "insn_per_tick", "why"]
     save(out, "modules", head, rows)
-    everything = sorted(f[:-2] for f in os.listdir("lib/src") if f.endswith(".c"))
+    everything = sorted(os.path.basename(f)[:-2] for f in glob.glob("lib/src/*/*.c"))
     port = "mps2" if any(r[1] == "mps2" for r in rows) else "posix"
     bytes_, insn = matrix(rows, port, 3, everything), matrix(rows, "posix", 7, everything)
     bytes_.append([OWN] + [costs[s, port].image.bytes_of(costs[s, port].own())[0] for s in SCENES])

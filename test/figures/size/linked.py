@@ -5,6 +5,7 @@ Every function and table of ours has a section of its own (-ffunction-sections),
 keeps. The same walk is made here over the objects' relocations, so that the way to a module can be told, and what would go if some
 functions were never called.
 """
+import glob
 import re
 import subprocess
 
@@ -30,7 +31,12 @@ def kind_of(section):
 def object_of(place):
     """The object file that a map names, our archive's members beside their sources in the build directory."""
     member = MEMBER.match(place)
-    return "%s/lib/src/%s" % member.groups() if member else place
+    if not member:
+        return place
+    found = glob.glob("%s/lib/src/*/%s" % member.groups())
+    if len(found) != 1:
+        raise SystemExit("%s: %d objects of this name under lib/src" % (place, len(found)))
+    return found[0]
 
 
 def kept(path):

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The positive reals of set-ups (lib/src/real.h): where they end. What they come to is in
+/* The positive reals of set-ups (lib/src/num/real.h): where they end. What they come to is in
  * unit/filter and golden. */
-#include "../../../lib/src/real.h"
+#include "../../../lib/src/num/real.h"
 
 #include "check.h"
 #include "wide.h"

@@ -35,7 +35,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.normpath(os.path.join(HERE, "..", "..", ".."))
 LEAST = 0.95
 CC = os.environ.get("CC", "cc").split()
-FLAGS = "-std=c99 -w -fPIC -DEXH_FIX_AUDIT -Ilib/include -Ilib/src".split()
+FLAGS = "-std=c99 -w -fPIC -DEXH_FIX_AUDIT -Ilib/include".split()
 TRAP = "-fsanitize=undefined,bounds-strict -fsanitize-undefined-trap-on-error".split()
 RATES = {"EXH_RATES": "91..1900:603", "EXH_EXPLAIN": "0"}
 CASES = "1000"
@@ -109,7 +109,7 @@ class Tests:
         """A test that has the source in itself: made of it anew."""
         own, exe = "test/module/unit/%s_test.c" % name, os.path.join(where, "own")
         with open(os.path.join(ROOT, own), encoding="utf-8") as f, open(exe + ".c", "w", encoding="utf-8") as to:
-            to.write(re.sub(r'"[./]*lib/src/(\w+\.c)"', r'"\1"', f.read()))
+            to.write(re.sub(r'"[./]*lib/src/\w+/(\w+\.c)"', r'"\1"', f.read()))
         p = subprocess.run(CC + FLAGS + ["-Itest", "-I" + where, exe + ".c", self.build + "/obj/test/support.o", "-L" + self.build, "-lexhand",
                                          "-lcmocka", "-Wl,-rpath," + self.build, "-o", exe],
                            cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -154,6 +154,7 @@ class Planted:
         with open(c, "w", encoding="utf-8") as f:
             f.write(text)
         flags = [f if not f.startswith("-I") else "-I" + os.path.join(ROOT, f[2:]) for f in FLAGS]
+        flags.append("-I" + os.path.join(ROOT, os.path.dirname(self.source)))
         p = subprocess.run(CC + flags + list(more or ("-O2",)) + ["-c", os.path.basename(c), "-o", "m.o"], cwd=where,
                            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         return o if p.returncode == 0 else None
@@ -275,7 +276,7 @@ def main():
     p.add_argument("source", nargs="*")
     a = p.parse_args()
     tests, reasons, until = Tests(a.build), read_survivors(), time.time() + a.limit
-    sources = [os.path.relpath(s, ROOT) for s in sorted(glob.glob(ROOT + "/lib/src/*.c"))]
+    sources = [os.path.relpath(s, ROOT) for s in sorted(glob.glob(ROOT + "/lib/src/*/*.c"))]
     wanted = [s for s in sources if not a.source or os.path.basename(s)[:-2] in a.source]
     missing = [s for s in sources if os.path.basename(s)[:-2] not in tests.of]
     if missing or not wanted:

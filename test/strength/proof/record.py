@@ -57,10 +57,9 @@ def write_counts(rows):
         f.writelines("%s %d %d %.1f %s %s\n" % (k, r.proved, r.of, r.s, r.key, r.seal) for k, r in sorted(rows.items()))
 
 
-# What runs in a tick: the library, and of the examples the scenes that run fingers and gloves, and the loop.
-SOURCES = ("lib/src/*.[ch]", "lib/include/exhand/*.h", "examples/minimal/*.[ch]", "examples/drop/*.[ch]",
-           "examples/guarded/*.[ch]", "examples/glove/*.[ch]", "examples/bilateral/*.[ch]", "lib/src/run/deadman.c",
-           "lib/src/run/loop.c")
+# What runs in a tick: the library, the loop, and of the examples the scenes that run fingers and gloves.
+SOURCES = ("lib/src/*/*.[ch]", "lib/include/exhand/*.h", "examples/minimal/*.[ch]", "examples/drop/*.[ch]",
+           "examples/guarded/*.[ch]", "examples/glove/*.[ch]", "examples/bilateral/*.[ch]")
 
 
 def sources(root=ROOT):
@@ -92,7 +91,7 @@ def renamed(unit, texts):
         else:
             f = "examples/" + m.group(2)
             if f not in texts:
-                f = "lib/src/" + os.path.basename(m.group(2))
+                f = "lib/src/" + m.group(2)
             found.update({other.get(n, n): (f, n) for n in functions(texts.get(f, ""))})
     return found
 

@@ -26,29 +26,29 @@ GONE_THROUGH = ["-std=c99", "-O2", "-fsanitize=undefined", "-fno-sanitize-recove
 
 # Units with functions that WP judges: the source, and which.
 WP = {
-    "fix": ("lib/src/fix.c", ["exh_sat32", "exh_clamp"]),
-    "gate": ("lib/src/gate.c", ["any_gate", "code_of", "exh_safety_open"]),
-    "drive": ("lib/src/drive.c",
+    "fix": ("lib/src/num/fix.c", ["exh_sat32", "exh_clamp"]),
+    "gate": ("lib/src/act/gate.c", ["any_gate", "code_of", "exh_safety_open"]),
+    "drive": ("lib/src/act/drive.c",
               ["no_force", "release", "exh_drive_force", "i2t_limit", "exh_drive_current"]),
-    "track": ("lib/src/track.c", ["exh_track_step", "exh_track_coded"]),
+    "track": ("lib/src/act/track.c", ["exh_track_step", "exh_track_coded"]),
 }
 
 # Planted errors that WP must tell: unit, in which function and by which of its properties, file, text, what it becomes.
 WP_PLANTS = [
-    ("gate", "code_of", "lib/src/gate.c", "exh_clamp32(asked, -span, span)",
+    ("gate", "code_of", "lib/src/act/gate.c", "exh_clamp32(asked, -span, span)",
      "exh_clamp(asked, INT32_MIN, INT32_MAX)"),
-    ("gate", "code_of", "lib/src/gate.c", "exh_clamp32(asked, -span, span)",
+    ("gate", "code_of", "lib/src/act/gate.c", "exh_clamp32(asked, -span, span)",
      "exh_clamp(asked, -span - 1, span)"),
-    ("gate", "code_of", "lib/src/gate.c", "dac_zero_raw + spanned, 0, UINT16_MAX)",
+    ("gate", "code_of", "lib/src/act/gate.c", "dac_zero_raw + spanned, 0, UINT16_MAX)",
      "dac_zero_raw + spanned, 0, 2 * UINT16_MAX)"),
-    ("gate", "any_gate@falls", "lib/src/gate.c", "falls ? s->off_raw[k] : UINT16_MAX", "UINT16_MAX"),
-    ("gate", "any_gate@shut", "lib/src/gate.c", "= open ? exh_sat32(asked) : 0;", "= exh_sat32(asked);"),
-    ("gate", "any_gate@@invariant", "lib/src/gate.c", "cfg[k < n ? k : 0].par->dac_zero_raw", "out->dac_raw[k]"),
-    ("drive", "exh_drive_force", "lib/src/drive.c", "exh_clamp(asked, 0, most)", "exh_clamp(asked, -most, most)"),
-    ("drive", "exh_drive_force", "lib/src/drive.c", "exh_clamp(asked, 0, most)", "exh_clamp(asked, 0, INT32_MAX)"),
-    ("drive", "release", "lib/src/drive.c", "rest > 0 ? (int32_t)rest : 0", "(int32_t)rest"),
-    ("drive", "exh_drive_current", "lib/src/drive.c", "exh_clamp32(peak, -hot, hot)", "exh_clamp(2 * (int64_t)peak, -2 * hot, 2 * hot)"),
-    ("track", "exh_track_step", "lib/src/track.c", "s->off_ticks >= cfg->ticks", "s->off_ticks > cfg->ticks"),
+    ("gate", "any_gate@falls", "lib/src/act/gate.c", "falls ? s->off_raw[k] : UINT16_MAX", "UINT16_MAX"),
+    ("gate", "any_gate@shut", "lib/src/act/gate.c", "= open ? exh_sat32(asked) : 0;", "= exh_sat32(asked);"),
+    ("gate", "any_gate@@invariant", "lib/src/act/gate.c", "cfg[k < n ? k : 0].par->dac_zero_raw", "out->dac_raw[k]"),
+    ("drive", "exh_drive_force", "lib/src/act/drive.c", "exh_clamp(asked, 0, most)", "exh_clamp(asked, -most, most)"),
+    ("drive", "exh_drive_force", "lib/src/act/drive.c", "exh_clamp(asked, 0, most)", "exh_clamp(asked, 0, INT32_MAX)"),
+    ("drive", "release", "lib/src/act/drive.c", "rest > 0 ? (int32_t)rest : 0", "(int32_t)rest"),
+    ("drive", "exh_drive_current", "lib/src/act/drive.c", "exh_clamp32(peak, -hot, hot)", "exh_clamp(2 * (int64_t)peak, -2 * hot, 2 * hot)"),
+    ("track", "exh_track_step", "lib/src/act/track.c", "s->off_ticks >= cfg->ticks", "s->off_ticks > cfg->ticks"),
 ]
 
 

@@ -144,7 +144,7 @@ class Page:
             self.want(re.match(r"[\w-]+", name).group() in sources()[0], "nothing has " + name)
 
     def is_there(self, place):
-        bases = ("", os.path.dirname(self.path), "test", "test/*", "docs", "ports", "ports/posix", "examples", "lib/src", "lib/include/exhand")
+        bases = ("", os.path.dirname(self.path), "test", "test/*", "docs", "ports", "ports/posix", "examples", "lib/src", "lib/src/*", "lib/include/exhand")
         return any(glob.glob(os.path.join(b, place) + end) for b in bases for end in ("", "_test.c", ".c", ".h", ".py", ".sh"))
 
     def places(self):

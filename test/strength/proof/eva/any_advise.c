@@ -3,14 +3,14 @@
  * Any figures, loop rates of a whole number of Hz and of thousandths of it, any threshold: what is advised is within what is refused beyond.
  *
  * EVA: -eva-slevel 20
- * PLANT: lib/src/advise.c: d > INT32_MAX || ray > INT32_MAX || -> d > INT32_MAX ||
- * PLANT: lib/src/advise.c: if (need->radius_m_q30 > 0) { -> {
+ * PLANT: lib/src/law/advise.c: d > INT32_MAX || ray > INT32_MAX || -> d > INT32_MAX ||
+ * PLANT: lib/src/law/advise.c: if (need->radius_m_q30 > 0) { -> {
  */
 #define exh_udiv64 udiv64_by_steps
-#include "fix.c"
+#include "num/fix.c"
 #undef exh_udiv64
 #include "quotient.h"
-#include "advise.c"
+#include "law/advise.c"
 
 #include "any.h"
 

@@ -2,11 +2,11 @@
 /* PROVES: sine and cosine
  * Of every angle: eighth by eighth, the whole eighths by themselves.
  *
- * PLANT: lib/src/sincos.h: exh_from_u32(x << 2) -> x_turn_q32 << 2
- * PLANT: lib/src/sincos.h: #define C1_Q32  1324675872 -> #define C1_Q32  (-1324675872)
- * PLANT: lib/src/sincos.h: high(z_q30, c1_q32) - ONE_Q30 -> high(z_q30, c1_q32) + ONE_Q30
+ * PLANT: lib/src/num/sincos.h: exh_from_u32(x << 2) -> x_turn_q32 << 2
+ * PLANT: lib/src/num/sincos.h: #define C1_Q32  1324675872 -> #define C1_Q32  (-1324675872)
+ * PLANT: lib/src/num/sincos.h: high(z_q30, c1_q32) - ONE_Q30 -> high(z_q30, c1_q32) + ONE_Q30
  */
-#include "angle.c"
+#include "num/angle.c"
 
 #include "any.h"
 

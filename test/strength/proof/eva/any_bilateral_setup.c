@@ -4,7 +4,7 @@
  * the tick is proved with, every place is a finger, and the first are those in use.
  *
  * EVA: -eva-slevel 20 -eva-split-return-function setup:0,bilateral_setup:0,bilateral_finger_setup:0 -kernel-warn-key annot:missing-spec=abort
- * WITH: examples/glove/cal.c lib/src/glove_cal.c examples/bilateral/finger.c examples/bilateral/cause.c examples/bilateral/wire.c examples/bilateral/tables.c
+ * WITH: examples/glove/cal.c lib/src/sense/glove_cal.c examples/bilateral/finger.c examples/bilateral/cause.c examples/bilateral/wire.c examples/bilateral/tables.c
  * PLANT: examples/bilateral/bilateral.c: if (!(mask >> f & 1u)) { cfg->at[at++] = (uint8_t)f; } -> cfg->at[at++] = (uint8_t)f;
  * PLANT: examples/bilateral/bilateral.c: cfg->drive[k] = cfg->drive[0]; -> (void)0;
  * PLANT: examples/bilateral/bilateral.c: if (cfg->n == 0) { return -EXH_E_RANGE; } -> (void)0;
@@ -17,7 +17,7 @@
 #define exh_signal_crc crc_by_bytes /* its proof is any_signal.c */
 #include "called_box.h"
 #undef exh_signal_crc
-#include "hand_hit2.c"
+#include "sense/hand_hit2.c"
 
 int exh_precontact_setup(struct exh_precontact_cfg *to, const struct exh_precontact_par *par,
                          const struct exh_material_par *material, unsigned materials,

@@ -4,14 +4,14 @@
  * touched beyond the buffer, and no value is lost on the way. Cursors of a buffer of any size; CRC of any bytes.
  *
  * EVA: -eva-slevel 200
- * PLANT: lib/src/bytes.c: at <= c->cap && n <= c->cap - at -> n <= c->cap - at
- * PLANT: lib/src/bytes.c: at <= c->cap && n <= c->cap - at -> at <= c->cap
- * PLANT: lib/src/bytes.c: for (; len_B >= 4; -> for (; len_B >= 3;
- * PLANT: lib/src/bytes.c: (int32_t)u - 0x10000 -> (int32_t)u
- * PLANT: lib/src/bytes.c: nibble[16] -> nibble[15]
- * PLANT: lib/src/bytes.c: (uint32_t)B : UINT32_MAX - 1 -> (uint32_t)B : UINT32_MAX
+ * PLANT: lib/src/num/bytes.c: at <= c->cap && n <= c->cap - at -> n <= c->cap - at
+ * PLANT: lib/src/num/bytes.c: at <= c->cap && n <= c->cap - at -> at <= c->cap
+ * PLANT: lib/src/num/bytes.c: for (; len_B >= 4; -> for (; len_B >= 3;
+ * PLANT: lib/src/num/bytes.c: (int32_t)u - 0x10000 -> (int32_t)u
+ * PLANT: lib/src/num/bytes.c: nibble[16] -> nibble[15]
+ * PLANT: lib/src/num/bytes.c: (uint32_t)B : UINT32_MAX - 1 -> (uint32_t)B : UINT32_MAX
  */
-#include "bytes.c"
+#include "num/bytes.c"
 
 #include "any.h"
 

@@ -5,16 +5,16 @@
  * some sizes; lines through any points.
  *
  * EVA: -eva-slevel 60
- * PLANT: lib/src/calibrate.c: if (h.points > c->cap) { return -EXH_E_SHORT; } -> (void)0;
- * PLANT: lib/src/calibrate.c: if (cap < last + 2u) { return refuse(bad, EXH_CALIB_FORCE_TABLE, last, -EXH_E_SHORT); } -> (void)0;
- * PLANT: lib/src/calibrate.c: if (cap < 2u * last + 3u) { return refuse(bad, EXH_CALIB_MONITOR_TABLE, last, -EXH_E_SHORT); } -> (void)0;
- * PLANT: lib/src/calibrate.c: what < EXH_CALIB_WHATS -> what <= EXH_CALIB_WHATS
- * PLANT: lib/src/calibrate.c: if (n < 1 || n > EXH_CALIB_POINTS_MAX) { return -EXH_E_RANGE; } -> (void)0;
+ * PLANT: lib/src/bench/calibrate.c: if (h.points > c->cap) { return -EXH_E_SHORT; } -> (void)0;
+ * PLANT: lib/src/bench/calibrate.c: if (cap < last + 2u) { return refuse(bad, EXH_CALIB_FORCE_TABLE, last, -EXH_E_SHORT); } -> (void)0;
+ * PLANT: lib/src/bench/calibrate.c: if (cap < 2u * last + 3u) { return refuse(bad, EXH_CALIB_MONITOR_TABLE, last, -EXH_E_SHORT); } -> (void)0;
+ * PLANT: lib/src/bench/calibrate.c: what < EXH_CALIB_WHATS -> what <= EXH_CALIB_WHATS
+ * PLANT: lib/src/bench/calibrate.c: if (n < 1 || n > EXH_CALIB_POINTS_MAX) { return -EXH_E_RANGE; } -> (void)0;
  */
-#include "bytes.c"
-#include "fix.c"
+#include "num/bytes.c"
+#include "num/fix.c"
 #define exh_gain_set any_gain
-#include "calibrate.c"
+#include "bench/calibrate.c"
 #undef exh_gain_set
 
 #include "any.h"

@@ -3,32 +3,32 @@
  * The functions of a tick keep to contract.h: given what scenes are shown to give them (called.h), they leave what scenes are
  * shown to do with. That set-ups make such configurations, and bytes such states, unit setup shows.
  *
- * PLANT: lib/src/velocity.c: & (EXH_VELOCITY_N - 1u)); -> & EXH_VELOCITY_N);
- * PLANT: lib/src/safety.c: (int64_t)s->share_q30 + cfg->ramp_q30, 0, FULL_Q30) -> (int64_t)s->share_q30 + cfg->ramp_q30, 0, INT32_MAX)
- * PLANT: lib/src/quad.c: if (jump >= INT64_C(1) << (bits - 2)) { return -EXH_E_RANGE; } -> (void)0;
- * PLANT: lib/src/passivity.c: any ? exh_clamp(held, 0, INT32_MAX) : 0; -> any ? exh_clamp(held, INT32_MIN, INT32_MAX) : 0;
- * PLANT: lib/src/watch.c: exh_clamp(*vel_mps_q27, -most, most) -> exh_clamp(*vel_mps_q27, -most, INT32_MAX)
- * PLANT: lib/src/drive.c: s->fall_N_q20 = (int32_t)exh_gain_floor(permit->fall, s->force_N_q20) + 1; -> s->fall_N_q20 = s->force_N_q20 + 2;
- * PLANT: lib/src/contact.c: par->f0_N_q20 & -(int32_t)s->inward -> par->f0_N_q20 * 2
- * PLANT: lib/src/contact.c: EXH_WHEN_SLEWED, 0, EXH_Q(20, 1, EXH_Q_FORCE) -> EXH_WHEN_SLEWED, 0, EXH_Q(40, 1, EXH_Q_FORCE)
+ * PLANT: lib/src/sense/velocity.c: & (EXH_VELOCITY_N - 1u)); -> & EXH_VELOCITY_N);
+ * PLANT: lib/src/safe/safety.c: (int64_t)s->share_q30 + cfg->ramp_q30, 0, FULL_Q30) -> (int64_t)s->share_q30 + cfg->ramp_q30, 0, INT32_MAX)
+ * PLANT: lib/src/sense/quad.c: if (jump >= INT64_C(1) << (bits - 2)) { return -EXH_E_RANGE; } -> (void)0;
+ * PLANT: lib/src/law/passivity.c: any ? exh_clamp(held, 0, INT32_MAX) : 0; -> any ? exh_clamp(held, INT32_MIN, INT32_MAX) : 0;
+ * PLANT: lib/src/safe/watch.c: exh_clamp(*vel_mps_q27, -most, most) -> exh_clamp(*vel_mps_q27, -most, INT32_MAX)
+ * PLANT: lib/src/act/drive.c: s->fall_N_q20 = (int32_t)exh_gain_floor(permit->fall, s->force_N_q20) + 1; -> s->fall_N_q20 = s->force_N_q20 + 2;
+ * PLANT: lib/src/law/contact.c: par->f0_N_q20 & -(int32_t)s->inward -> par->f0_N_q20 * 2
+ * PLANT: lib/src/law/contact.c: EXH_WHEN_SLEWED, 0, EXH_Q(20, 1, EXH_Q_FORCE) -> EXH_WHEN_SLEWED, 0, EXH_Q(40, 1, EXH_Q_FORCE)
  */
-#include "bytes.c"
+#include "num/bytes.c"
 #define exh_udiv64 udiv64_by_steps
-#include "fix.c"
+#include "num/fix.c"
 #undef exh_udiv64
 #include "quotient.h"
-#include "quad.c"
+#include "sense/quad.c"
 #undef SPEED_MIN_MPS_Q27
-#include "velocity.c"
-#include "contact.c"
-#include "drive.c"
-#include "passivity.c"
+#include "sense/velocity.c"
+#include "law/contact.c"
+#include "act/drive.c"
+#include "law/passivity.c"
 #undef SPEED_MIN_MPS_Q27
-#include "gate.c" /* its proof is any_gate.c: what it writes beside what it is given, its WP */
-#include "safety.c"
-#include "track.c"
+#include "act/gate.c" /* its proof is any_gate.c: what it writes beside what it is given, its WP */
+#include "safe/safety.c"
+#include "act/track.c"
 #undef CUR_MIN_A_Q26
-#include "watch.c"
+#include "safe/watch.c"
 
 #include "contract.h"
 

@@ -6,9 +6,9 @@
  * WP: closed: force 0. Open: no force rises above `f_max` or the end of the table. Release: falls in every tick until 0, by no
  * more than `fall` a tick. |current asked| <= `i_peak` for every state and force.
  *
- * PLANT: lib/src/drive.c: exh_wrap_add64(f->spring_N_q20, f->damper_N_q20) -> f->spring_N_q20 + f->damper_N_q20
+ * PLANT: lib/src/act/drive.c: exh_wrap_add64(f->spring_N_q20, f->damper_N_q20) -> f->spring_N_q20 + f->damper_N_q20
  */
-#include "drive.c"
+#include "act/drive.c"
 
 #include "any.h"
 

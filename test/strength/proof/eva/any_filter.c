@@ -3,16 +3,16 @@
  * Each kind, with any coefficients and shift (those of damaged memory too), any bits in the states, any input,
  * up to three channels, which know nothing of each other; reset; from any coefficients to any others.
  *
- * PLANT: lib/src/filter_low.c: const int64_t p = exh_wrap_add64(s->vel, v); -> const int64_t p = s->vel + v;
- * PLANT: lib/src/filter_low.c: (int64_t)high_word(p) * c -> p * c
- * PLANT: lib/src/filter_high.c: exh_wrap_diff64(exh_wrap_add64(mid, mid), vel) -> exh_wrap_add64(mid, mid) - vel
- * PLANT: lib/src/filter_high.c: vel = bounded(s->vel); -> vel = 2 * s->vel;
- * PLANT: lib/src/filter.c: (v > most ? most : v < -most ? -most : v) * (INT64_C(1) << n) -> v * (INT64_C(1) << n)
+ * PLANT: lib/src/sense/filter_low.c: const int64_t p = exh_wrap_add64(s->vel, v); -> const int64_t p = s->vel + v;
+ * PLANT: lib/src/sense/filter_low.c: (int64_t)high_word(p) * c -> p * c
+ * PLANT: lib/src/sense/filter_high.c: exh_wrap_diff64(exh_wrap_add64(mid, mid), vel) -> exh_wrap_add64(mid, mid) - vel
+ * PLANT: lib/src/sense/filter_high.c: vel = bounded(s->vel); -> vel = 2 * s->vel;
+ * PLANT: lib/src/sense/filter.c: (v > most ? most : v < -most ? -most : v) * (INT64_C(1) << n) -> v * (INT64_C(1) << n)
  */
-#include "bytes.c"
-#include "filter.c"
-#include "filter_low.c"
-#include "filter_high.c"
+#include "num/bytes.c"
+#include "sense/filter.c"
+#include "sense/filter_low.c"
+#include "sense/filter_high.c"
 
 #include "any.h"
 

@@ -4,14 +4,14 @@
  * tolerance (those of damaged memory too), in any state that the bytes leave, of any count.
  *
  * EVA: -eva-slevel 20
- * PLANT: lib/src/velocity.c: if (s->at > EXH_VELOCITY_N) { s->at = EXH_VELOCITY_N; } -> (void)0;
- * PLANT: lib/src/velocity.c: (int64_t)n * d[n] -> n * d[n]
- * PLANT: lib/src/velocity.c: const int64_t off = d[j] * den -> const int64_t off = d[j] * (int32_t)den
- * PLANT: lib/src/velocity.c: at > 0 ? at - 1 : EXH_VELOCITY_N -> at - 1
+ * PLANT: lib/src/sense/velocity.c: if (s->at > EXH_VELOCITY_N) { s->at = EXH_VELOCITY_N; } -> (void)0;
+ * PLANT: lib/src/sense/velocity.c: (int64_t)n * d[n] -> n * d[n]
+ * PLANT: lib/src/sense/velocity.c: const int64_t off = d[j] * den -> const int64_t off = d[j] * (int32_t)den
+ * PLANT: lib/src/sense/velocity.c: at > 0 ? at - 1 : EXH_VELOCITY_N -> at - 1
  */
-#include "bytes.c"
-#include "fix.c"
-#include "velocity.c"
+#include "num/bytes.c"
+#include "num/fix.c"
+#include "sense/velocity.c"
 
 #include "any.h"
 

@@ -3,15 +3,15 @@
  * Any rule and any period into set-up. Of a rule that it takes, with any values in the knots that do not
  * count, any k and b asked; and of the way, any two pairs within the rows of k and b, any shift.
  *
- * PLANT: lib/src/gains.c: for (int32_t i = 1; i < rule->knots; i++) -> for (int32_t i = 1; i <= rule->knots; i++)
- * PLANT: lib/src/gains.c: !exh_inside(rule->knots, 2, EXH_GAINS_KNOTS) -> !exh_inside(rule->knots, 2, EXH_GAINS_KNOTS + 1)
- * PLANT: lib/src/gains.c: (off < 0 ? -off : off) * 100 <= want -> (off < 0 ? -off : off) * 10000000 <= want
- * PLANT: lib/src/gains.c: return (int64_t)exh_wrap_diff(a, b) * exh_wrap_diff(c, d); -> return exh_wrap_diff(a, b) * exh_wrap_diff(c, d);
+ * PLANT: lib/src/law/gains.c: for (int32_t i = 1; i < rule->knots; i++) -> for (int32_t i = 1; i <= rule->knots; i++)
+ * PLANT: lib/src/law/gains.c: !exh_inside(rule->knots, 2, EXH_GAINS_KNOTS) -> !exh_inside(rule->knots, 2, EXH_GAINS_KNOTS + 1)
+ * PLANT: lib/src/law/gains.c: (off < 0 ? -off : off) * 100 <= want -> (off < 0 ? -off : off) * 10000000 <= want
+ * PLANT: lib/src/law/gains.c: return (int64_t)exh_wrap_diff(a, b) * exh_wrap_diff(c, d); -> return exh_wrap_diff(a, b) * exh_wrap_diff(c, d);
  */
-#include "bytes.c"
-#include "gains.c"
-#include "params.c"
-#include "signal.c"
+#include "num/bytes.c"
+#include "law/gains.c"
+#include "num/params.c"
+#include "num/signal.c"
 
 #include "any.h"
 

@@ -7,10 +7,10 @@
  * before; a gate that is shut codes `dac_zero` for each finger and enables none; codes of fingers not in use are `dac_zero`;
  * nothing else is written.
  *
- * PLANT: lib/src/gate.c: (1u << n) - 1u : 0u -> (1u << n) : 0u
- * PLANT: lib/src/gate.c: exh_wrap_diff64(passed, asked) -> passed - asked
+ * PLANT: lib/src/act/gate.c: (1u << n) - 1u : 0u -> (1u << n) : 0u
+ * PLANT: lib/src/act/gate.c: exh_wrap_diff64(passed, asked) -> passed - asked
  */
-#include "gate.c"
+#include "act/gate.c"
 
 #define MAY_STOP /* a box whose state says fewer fingers than are asked for */
 #include "any.h"

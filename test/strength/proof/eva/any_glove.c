@@ -6,22 +6,22 @@
  * have no range but that of their types; a cause is one of the four.
  *
  * EVA: -eva-slevel 30
- * PLANT: lib/src/glove.c: cfg->crossed[n] < EXH_GLOVE_SENSORS ? cfg->crossed[n] : 0 -> cfg->crossed[n]
- * PLANT: lib/src/glove.c: if (cal->of[k] >= EXH_GLOVE_SENSORS) { continue; } -> if (cal->of[k] == EXH_GLOVE_NONE) { continue; }
- * PLANT: lib/src/glove.c: n < cfg->crosses && n < EXH_GLOVE_SENSORS -> n < cfg->crosses
- * PLANT: lib/src/glove.c: angle_turn_q32[i] = exh_sat32(sum); -> angle_turn_q32[i] = (int32_t)sum;
- * PLANT: lib/src/glove.c: if (s->cause[i] >= EXH_GLOVE_CAUSES) { s->cause[i] = EXH_GLOVE_OUTSIDE; } -> (void)0;
- * PLANT: lib/src/glove.c: exh_clamp((int64_t)s->high_raw + margin, INT16_MIN, par->high_raw - 1) -> (s->high_raw + margin)
+ * PLANT: lib/src/sense/glove.c: cfg->crossed[n] < EXH_GLOVE_SENSORS ? cfg->crossed[n] : 0 -> cfg->crossed[n]
+ * PLANT: lib/src/sense/glove.c: if (cal->of[k] >= EXH_GLOVE_SENSORS) { continue; } -> if (cal->of[k] == EXH_GLOVE_NONE) { continue; }
+ * PLANT: lib/src/sense/glove.c: n < cfg->crosses && n < EXH_GLOVE_SENSORS -> n < cfg->crosses
+ * PLANT: lib/src/sense/glove.c: angle_turn_q32[i] = exh_sat32(sum); -> angle_turn_q32[i] = (int32_t)sum;
+ * PLANT: lib/src/sense/glove.c: if (s->cause[i] >= EXH_GLOVE_CAUSES) { s->cause[i] = EXH_GLOVE_OUTSIDE; } -> (void)0;
+ * PLANT: lib/src/sense/glove.c: exh_clamp((int64_t)s->high_raw + margin, INT16_MIN, par->high_raw - 1) -> (s->high_raw + margin)
  */
-#include "bytes.c"
-#include "fix.c"
-#include "filter.c"
-#include "filter_low.c"
-#include "filter_high.c"
-#include "quantizer.c"
+#include "num/bytes.c"
+#include "num/fix.c"
+#include "sense/filter.c"
+#include "sense/filter_low.c"
+#include "sense/filter_high.c"
+#include "sense/quantizer.c"
 #define exh_filter_setup(cfg, par, T) filter_set_up(cfg)
 static int filter_set_up(struct exh_filter_cfg *cfg);
-#include "glove.c"
+#include "sense/glove.c"
 
 #include "any.h"
 

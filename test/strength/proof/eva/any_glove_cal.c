@@ -3,13 +3,13 @@
  * Any bytes of any length into a calibration: what is accepted has its sensors, ends and terms in range, what is
  * refused has no sensor present. Any calibration into judging, for any user, glove and day, and into an image of any size.
  *
- * PLANT: lib/src/glove_cal.c: of >= EXH_GLOVE_SENSORS || -> 0 ||
- * PLANT: lib/src/glove_cal.c: const int64_t gain = s->gain_turnpraw_q38; -> const int32_t gain = s->gain_turnpraw_q38;
- * PLANT: lib/src/glove_cal.c: if (err < 0) { cal->present = 0; } -> (void)0;
- * PLANT: lib/src/glove_cal.c: struct head h = {0, 0, 0}; -> struct head h;
+ * PLANT: lib/src/sense/glove_cal.c: of >= EXH_GLOVE_SENSORS || -> 0 ||
+ * PLANT: lib/src/sense/glove_cal.c: const int64_t gain = s->gain_turnpraw_q38; -> const int32_t gain = s->gain_turnpraw_q38;
+ * PLANT: lib/src/sense/glove_cal.c: if (err < 0) { cal->present = 0; } -> (void)0;
+ * PLANT: lib/src/sense/glove_cal.c: struct head h = {0, 0, 0}; -> struct head h;
  */
-#include "bytes.c"
-#include "glove_cal.c"
+#include "num/bytes.c"
+#include "sense/glove_cal.c"
 
 #include "any.h"
 

@@ -4,7 +4,7 @@
  * functions of the library keeping to contract_box.h; the gate with nothing to drive.
  *
  * EVA: -eva-slevel 40 -eva-split-return-function setup:0,glove_setup:0 -kernel-warn-key annot:missing-spec=abort
- * WITH: examples/glove/cal.c lib/src/glove_cal.c
+ * WITH: examples/glove/cal.c lib/src/sense/glove_cal.c
  * PLANT: examples/glove/glove.c: exh_hand_tip(&cfg->finger[f], joint, -> exh_hand_tip(&cfg->finger[f + 1], joint,
  * PLANT: examples/glove/glove.c: << (EXH_HAND_JOINTS * f); -> << (7 * EXH_HAND_JOINTS * f);
  * PLANT: examples/glove/glove.c: uint32_t limits = 0; -> uint32_t limits;

@@ -4,15 +4,15 @@
  * leaves a place in the area; with parameters and without, anything in these (any_params.c).
  *
  * EVA: -eva-slevel 200
- * PLANT: lib/src/guard.c: left < EXH_GUARD_B ? left : EXH_GUARD_B -> EXH_GUARD_B
- * PLANT: lib/src/guard.c: if (g->at < g->len_B) { return; } -> if (g->at <= g->len_B) { return; }
- * PLANT: lib/src/guard.c: EXH_GUARD_B - n) -> EXH_GUARD_B - n + 2)
- * PLANT: lib/src/guard.c: if (g->params) { look_at_params(g); } -> look_at_params(g);
+ * PLANT: lib/src/safe/guard.c: left < EXH_GUARD_B ? left : EXH_GUARD_B -> EXH_GUARD_B
+ * PLANT: lib/src/safe/guard.c: if (g->at < g->len_B) { return; } -> if (g->at <= g->len_B) { return; }
+ * PLANT: lib/src/safe/guard.c: EXH_GUARD_B - n) -> EXH_GUARD_B - n + 2)
+ * PLANT: lib/src/safe/guard.c: if (g->params) { look_at_params(g); } -> look_at_params(g);
  */
-#include "bytes.c"
-#include "fix.c"
-#include "guard.c"
-#include "params.c"
+#include "num/bytes.c"
+#include "num/fix.c"
+#include "safe/guard.c"
+#include "num/params.c"
 #include "../src/signal.c" /* not that of Frama-C */
 
 #include "table.h"

@@ -4,16 +4,16 @@
  * enough for every value is z3's (smt_hand.py), and that bound is what eva/hand_tip.acsl admits.
  *
  * EVA: -eva-slevel 60
- * PLANT: lib/src/hand.c: b->base_m_q32[i] > BASE_MAX_M_Q32 -> b->base_m_q32[i] > 2 * BASE_MAX_M_Q32
- * PLANT: lib/src/hand.c: const int64_t along_q54 = 2 * w2_radpm_q20 -> const int64_t along_q54 = 16 * w2_radpm_q20
- * PLANT: lib/src/hand.c: const int64_t sum_q54 = (int64_t)row_q30[0] -> const int64_t sum_q54 = 4 * (int64_t)row_q30[0]
- * PLANT: lib/src/hand.c: if (square_q60 < (uint64_t)ARM_MIN_M_Q30 * ARM_MIN_M_Q30) { return -EXH_E_RANGE; } -> (void)0;
+ * PLANT: lib/src/sense/hand.c: b->base_m_q32[i] > BASE_MAX_M_Q32 -> b->base_m_q32[i] > 2 * BASE_MAX_M_Q32
+ * PLANT: lib/src/sense/hand.c: const int64_t along_q54 = 2 * w2_radpm_q20 -> const int64_t along_q54 = 16 * w2_radpm_q20
+ * PLANT: lib/src/sense/hand.c: const int64_t sum_q54 = (int64_t)row_q30[0] -> const int64_t sum_q54 = 4 * (int64_t)row_q30[0]
+ * PLANT: lib/src/sense/hand.c: if (square_q60 < (uint64_t)ARM_MIN_M_Q30 * ARM_MIN_M_Q30) { return -EXH_E_RANGE; } -> (void)0;
  */
 #include <stdint.h>
 #define int_fast32_t int64_t
-#include "bytes.c"
+#include "num/bytes.c"
 #define exh_udiv64 udiv64_by_steps /* as in any_probe.c */
-#include "fix.c"
+#include "num/fix.c"
 #undef exh_udiv64
 #define exh_udiv64 udiv64
 static uint64_t udiv64(uint64_t num, uint64_t den, uint64_t *rem)
@@ -27,7 +27,7 @@ static uint64_t udiv64(uint64_t num, uint64_t den, uint64_t *rem)
 }
 #include "any.h"
 
-#include "sincos.h" /* its proof is any_angle.c */
+#include "num/sincos.h" /* its proof is any_angle.c */
 static struct exh_sincos any_sincos(int32_t x_turn_q32)
 {
     const struct exh_sincos y = {Frama_C_interval(-(1 << 30), 1 << 30),
@@ -36,7 +36,7 @@ static struct exh_sincos any_sincos(int32_t x_turn_q32)
     return y;
 }
 #define sincos_in_place any_sincos
-#include "hand.c"
+#include "sense/hand.c"
 
 #define PULL_MOST_RADPM_Q20 (PULL_MAX_RADPM_Q20 + 32)
 

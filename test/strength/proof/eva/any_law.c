@@ -2,10 +2,10 @@
 /* PROVES: contact law
  * The contact law: any state, position and velocity, parameters in their ranges.
  *
- * PLANT: lib/src/contact.c: (uint32_t)pos - (uint32_t)turn -> (uint32_t)(pos - turn)
- * PLANT: lib/src/contact.c: exh_diff_sat32(in.pos_m_q30, in.lim_m_q30) -> in.pos_m_q30 - in.lim_m_q30
+ * PLANT: lib/src/law/contact.c: (uint32_t)pos - (uint32_t)turn -> (uint32_t)(pos - turn)
+ * PLANT: lib/src/law/contact.c: exh_diff_sat32(in.pos_m_q30, in.lim_m_q30) -> in.pos_m_q30 - in.lim_m_q30
  */
-#include "contact.c"
+#include "law/contact.c"
 
 #include "any.h"
 

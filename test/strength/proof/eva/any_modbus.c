@@ -5,17 +5,17 @@
  * map than has room in these.
  *
  * EVA: -eva-slevel 60
- * PLANT: lib/src/modbus.c: if (n < 1 || n > READ_BITS) { return -EXH_MODBUS_VALUE; } -> (void)0;
- * PLANT: lib/src/modbus.c: if (n < 1 || n > READ_REGS) { return -EXH_MODBUS_VALUE; } -> (void)0;
- * PLANT: lib/src/modbus.c: if (q->len_B < 10) { return -EXH_MODBUS_VALUE; } -> (void)0;
- * PLANT: lib/src/modbus.c: if (q->len_B != 7) { return -EXH_MODBUS_VALUE; } -> (void)0;
- * PLANT: lib/src/modbus.c: n > WRITE_BITS || q->p[5] != (n + 7) >> 3 || q->len_B != 6u + q->p[5] -> n > WRITE_BITS || q->p[5] != (n + 7) >> 3
- * PLANT: lib/src/modbus.c: n > WRITE_REGS || q->p[5] != 2 * n || -> n > WRITE_REGS ||
- * PLANT: lib/src/modbus.c: put > BOTH_REGS || q->p[9] != 2 * put || -> put > BOTH_REGS ||
- * PLANT: lib/src/modbus.c: if (get < 1 || get > READ_REGS || put < 1 || -> if (get < 1 || put < 1 ||
- * PLANT: lib/src/modbus.c: if (len_B == 0) { return 0; } -> (void)0;
+ * PLANT: lib/src/talk/modbus.c: if (n < 1 || n > READ_BITS) { return -EXH_MODBUS_VALUE; } -> (void)0;
+ * PLANT: lib/src/talk/modbus.c: if (n < 1 || n > READ_REGS) { return -EXH_MODBUS_VALUE; } -> (void)0;
+ * PLANT: lib/src/talk/modbus.c: if (q->len_B < 10) { return -EXH_MODBUS_VALUE; } -> (void)0;
+ * PLANT: lib/src/talk/modbus.c: if (q->len_B != 7) { return -EXH_MODBUS_VALUE; } -> (void)0;
+ * PLANT: lib/src/talk/modbus.c: n > WRITE_BITS || q->p[5] != (n + 7) >> 3 || q->len_B != 6u + q->p[5] -> n > WRITE_BITS || q->p[5] != (n + 7) >> 3
+ * PLANT: lib/src/talk/modbus.c: n > WRITE_REGS || q->p[5] != 2 * n || -> n > WRITE_REGS ||
+ * PLANT: lib/src/talk/modbus.c: put > BOTH_REGS || q->p[9] != 2 * put || -> put > BOTH_REGS ||
+ * PLANT: lib/src/talk/modbus.c: if (get < 1 || get > READ_REGS || put < 1 || -> if (get < 1 || put < 1 ||
+ * PLANT: lib/src/talk/modbus.c: if (len_B == 0) { return 0; } -> (void)0;
  */
-#include "modbus.c"
+#include "talk/modbus.c"
 
 #include "any.h"
 

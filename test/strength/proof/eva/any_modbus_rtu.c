@@ -4,15 +4,15 @@
  * rate; an answer to any request that is ready, whatever the map says.
  *
  * EVA: -eva-slevel 40
- * PLANT: lib/src/modbus_rtu.c: if (u->len_B < EXH_MODBUS_ADU_B) { -> {
- * PLANT: lib/src/modbus_rtu.c: if (u->len_B <= EXH_MODBUS_ADU_B) { u->len_B++; } -> u->len_B++;
- * PLANT: lib/src/modbus_rtu.c: n >= LEAST_B && n <= EXH_MODBUS_ADU_B && -> n >= LEAST_B &&
- * PLANT: lib/src/modbus_rtu.c: baud < 300 || -> baud < 0 ||
- * PLANT: lib/src/modbus_rtu.c: nibble[16] -> nibble[15]
- * PLANT: lib/src/modbus_rtu.c: if (cap_B < EXH_MODBUS_ADU_B) { return -EXH_E_SHORT; } -> (void)0;
+ * PLANT: lib/src/talk/modbus_rtu.c: if (u->len_B < EXH_MODBUS_ADU_B) { -> {
+ * PLANT: lib/src/talk/modbus_rtu.c: if (u->len_B <= EXH_MODBUS_ADU_B) { u->len_B++; } -> u->len_B++;
+ * PLANT: lib/src/talk/modbus_rtu.c: n >= LEAST_B && n <= EXH_MODBUS_ADU_B && -> n >= LEAST_B &&
+ * PLANT: lib/src/talk/modbus_rtu.c: baud < 300 || -> baud < 0 ||
+ * PLANT: lib/src/talk/modbus_rtu.c: nibble[16] -> nibble[15]
+ * PLANT: lib/src/talk/modbus_rtu.c: if (cap_B < EXH_MODBUS_ADU_B) { return -EXH_E_SHORT; } -> (void)0;
  */
-#include "fix.c"
-#include "modbus_rtu.c"
+#include "num/fix.c"
+#include "talk/modbus_rtu.c"
 
 #include "any.h"
 

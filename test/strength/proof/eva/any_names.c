@@ -3,14 +3,14 @@
  * Names and texts of any number: of states, triggers, faults, limits, steps of arming, errors, what is wrong with a sensor or with a
  * calibration.
  *
- * PLANT: lib/src/safety_names.c: k < EXH_LIMITS ? -> k <= EXH_LIMITS ?
- * PLANT: lib/src/error.c: code <= -EXH_E_COUNT || -> code < -EXH_E_COUNT ||
- * PLANT: lib/src/glove_cal.c: sensor < EXH_GLOVE_SENSORS ? text[sensor] -> sensor <= EXH_GLOVE_SENSORS ? text[sensor]
+ * PLANT: lib/src/safe/safety_names.c: k < EXH_LIMITS ? -> k <= EXH_LIMITS ?
+ * PLANT: lib/src/num/error.c: code <= -EXH_E_COUNT || -> code < -EXH_E_COUNT ||
+ * PLANT: lib/src/sense/glove_cal.c: sensor < EXH_GLOVE_SENSORS ? text[sensor] -> sensor <= EXH_GLOVE_SENSORS ? text[sensor]
  */
-#include "calibrate.c"
-#include "error.c"
+#include "bench/calibrate.c"
+#include "num/error.c"
 #define limits glove_limits
-#include "glove.c"
+#include "sense/glove.c"
 #undef limits
 #undef IMAGE_MAGIC
 #define body_bytes cal_body_bytes /* calibrate.c has its own of these */
@@ -18,8 +18,8 @@
 #define head_bytes cal_head_bytes
 #define load       cal_load
 #define refuse     cal_refuse
-#include "glove_cal.c"
-#include "safety_names.c"
+#include "sense/glove_cal.c"
+#include "safe/safety_names.c"
 
 #include "any.h"
 

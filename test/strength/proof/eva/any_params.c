@@ -5,22 +5,22 @@
  * period. Images of any bytes and three lengths, a keyframe of any bytes; both written into buffers of some sizes.
  *
  * EVA: -eva-slevel 10 -eva-min-loop-unroll 16
- * PLANT: lib/src/params.c: const uint32_t i = p->at < p->count ? p->at : 0; -> const uint32_t i = p->at;
- * PLANT: lib/src/params.c: if (row == NULL) { return -EXH_E_UNKNOWN; } -> (void)0;
- * PLANT: lib/src/params.c: if (err < 0) { return err; } -> (void)err;
- * PLANT: lib/src/params.c: falls ? 0 : p->shift & 31u -> falls ? 0 : p->shift
- * PLANT: lib/src/params.c: for (uint32_t i = 0; i < p->count; i++) { put(p, p->staged, i, was[i]); } -> for (uint32_t i = 0; i <= p->count; i++) { put(p, p->staged, i, was[i]); }
- * PLANT: lib/src/params.c: first += (uint32_t)g->rows * g->instances; -> first += (uint32_t)g->rows * (g->instances + 1u);
- * PLANT: lib/src/params.c: &g->row[r], i++, take) -> &g->row[r], ++i, take)
- * PLANT: lib/src/params.c: if (bad != NULL) { *bad = i; } -> *bad = i;
- * PLANT: lib/src/params.c: if (len_B < body_B + IMAGE_CRC_B) { return -EXH_E_SHORT; } -> (void)0;
+ * PLANT: lib/src/num/params.c: const uint32_t i = p->at < p->count ? p->at : 0; -> const uint32_t i = p->at;
+ * PLANT: lib/src/num/params.c: if (row == NULL) { return -EXH_E_UNKNOWN; } -> (void)0;
+ * PLANT: lib/src/num/params.c: if (err < 0) { return err; } -> (void)err;
+ * PLANT: lib/src/num/params.c: falls ? 0 : p->shift & 31u -> falls ? 0 : p->shift
+ * PLANT: lib/src/num/params.c: for (uint32_t i = 0; i < p->count; i++) { put(p, p->staged, i, was[i]); } -> for (uint32_t i = 0; i <= p->count; i++) { put(p, p->staged, i, was[i]); }
+ * PLANT: lib/src/num/params.c: first += (uint32_t)g->rows * g->instances; -> first += (uint32_t)g->rows * (g->instances + 1u);
+ * PLANT: lib/src/num/params.c: &g->row[r], i++, take) -> &g->row[r], ++i, take)
+ * PLANT: lib/src/num/params.c: if (bad != NULL) { *bad = i; } -> *bad = i;
+ * PLANT: lib/src/num/params.c: if (len_B < body_B + IMAGE_CRC_B) { return -EXH_E_SHORT; } -> (void)0;
  */
-#include "bytes.c"
-#include "fix.c"
+#include "num/bytes.c"
+#include "num/fix.c"
 #define exh_signal_crc table_crc /* its proof is any_signal.c */
 struct exh_signal_table;
 uint32_t table_crc(const struct exh_signal_table *t);
-#include "params.c"
+#include "num/params.c"
 #undef exh_signal_crc
 #include "../src/signal.c" /* not that of Frama-C */
 

@@ -3,10 +3,10 @@
  * Passivity of a finger: any state that exh_passivity_bytes() lets pass, any count, any ledger of a law, any
  * current; a table of three knots with any values that exh_table_set() lets.
  *
- * PLANT: lib/src/passivity.c: = limited(e); -> = e;
+ * PLANT: lib/src/law/passivity.c: = limited(e); -> = e;
  */
-#include "drive.c"
-#include "passivity.c"
+#include "act/drive.c"
+#include "law/passivity.c"
 
 #include "any.h"
 

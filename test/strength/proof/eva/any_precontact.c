@@ -5,15 +5,15 @@
  * four, the planes none or with a unit normal (by eva/precontact.acsl).
  *
  * EVA: -eva-slevel 300
- * PLANT: lib/src/precontact.c: s->phase > EXH_PRECONTACT_FROZEN || -> 0 ||
- * PLANT: lib/src/precontact.c: cfg->material[m < cfg->materials ? m : 0] -> cfg->material[m]
- * PLANT: lib/src/precontact.c: is_unit(&p->normal_q30) && p->offset -> p->offset
- * PLANT: lib/src/precontact.c: exh_wrap_diff64(p->offset_m_q60, dot(&p->normal_q30, tip)) -> (p->offset_m_q60 - dot(&p->normal_q30, tip))
- * PLANT: lib/src/precontact.c: const int64_t free_m_q30 = (int64_t)cfg->par->d_lim_m_q30 - -> const int64_t free_m_q30 = 16 * cfg->par->d_lim_m_q30 -
- * PLANT: lib/src/precontact.c: exh_sat32(exh_wrap_diff64( -> (int32_t)(exh_wrap_diff64(
+ * PLANT: lib/src/law/precontact.c: s->phase > EXH_PRECONTACT_FROZEN || -> 0 ||
+ * PLANT: lib/src/law/precontact.c: cfg->material[m < cfg->materials ? m : 0] -> cfg->material[m]
+ * PLANT: lib/src/law/precontact.c: is_unit(&p->normal_q30) && p->offset -> p->offset
+ * PLANT: lib/src/law/precontact.c: exh_wrap_diff64(p->offset_m_q60, dot(&p->normal_q30, tip)) -> (p->offset_m_q60 - dot(&p->normal_q30, tip))
+ * PLANT: lib/src/law/precontact.c: const int64_t free_m_q30 = (int64_t)cfg->par->d_lim_m_q30 - -> const int64_t free_m_q30 = 16 * cfg->par->d_lim_m_q30 -
+ * PLANT: lib/src/law/precontact.c: exh_sat32(exh_wrap_diff64( -> (int32_t)(exh_wrap_diff64(
  */
-#include "bytes.c"
-#include "fix.c"
+#include "num/bytes.c"
+#include "num/fix.c"
 
 #include "contract_box.h"
 
@@ -25,7 +25,7 @@ static int32_t recip(int32_t x)
     return Frama_C_interval(1 << 21, 1 << 27);
 }
 #define exh_recip_q24 recip
-#include "precontact.c"
+#include "law/precontact.c"
 
 static struct exh_precontact s;
 static struct exh_precontact_cfg cfg;

@@ -4,24 +4,24 @@
  * state, at any count, with any currents. What is asked is within the current it is bounded by, a result one of the seven.
  *
  * EVA: -eva-slevel 60
- * PLANT: lib/src/probe.c: s->cur_A_q26 = exh_clamp(next, 0, EXH_PROBE_CUR_MAX_A_Q26); -> s->cur_A_q26 = (int32_t)next + cfg->end_A_q26;
- * PLANT: lib/src/probe.c: const int64_t size = step < 0 ? -step : step; -> const int64_t size = step < 0 ? -par->step_A_q26 : step;
- * PLANT: lib/src/probe.c: return scale.step_m_q42 > 0 && -> return
- * PLANT: lib/src/probe.c: const int64_t in = -(int64_t)exh_wrap_diff -> const int64_t in = -exh_wrap_diff
- * PLANT: lib/src/weigh.c: -moved >= cfg->up.move_cnt; -> -(int32_t)moved >= cfg->up.move_cnt;
- * PLANT: lib/src/weigh.c: s->cur_A_q26 = (s->lift_A_q26 + at_A_q26) >> 1; -> s->cur_A_q26 = 100 * s->lift_A_q26 + at_A_q26;
- * PLANT: lib/src/calibrate.c: if (m->n == 0) { return 0; } -> (void)0;
+ * PLANT: lib/src/bench/probe.c: s->cur_A_q26 = exh_clamp(next, 0, EXH_PROBE_CUR_MAX_A_Q26); -> s->cur_A_q26 = (int32_t)next + cfg->end_A_q26;
+ * PLANT: lib/src/bench/probe.c: const int64_t size = step < 0 ? -step : step; -> const int64_t size = step < 0 ? -par->step_A_q26 : step;
+ * PLANT: lib/src/bench/probe.c: return scale.step_m_q42 > 0 && -> return
+ * PLANT: lib/src/bench/probe.c: const int64_t in = -(int64_t)exh_wrap_diff -> const int64_t in = -exh_wrap_diff
+ * PLANT: lib/src/bench/weigh.c: -moved >= cfg->up.move_cnt; -> -(int32_t)moved >= cfg->up.move_cnt;
+ * PLANT: lib/src/bench/weigh.c: s->cur_A_q26 = (s->lift_A_q26 + at_A_q26) >> 1; -> s->cur_A_q26 = 100 * s->lift_A_q26 + at_A_q26;
+ * PLANT: lib/src/bench/calibrate.c: if (m->n == 0) { return 0; } -> (void)0;
  */
-#include "bytes.c"
+#include "num/bytes.c"
 #define exh_udiv64 udiv64_by_steps
-#include "fix.c"
+#include "num/fix.c"
 #undef exh_udiv64
 #include "quotient.h"
-#include "calibrate.c"
-#include "drive.c"
-#include "probe.c"
+#include "bench/calibrate.c"
+#include "act/drive.c"
+#include "bench/probe.c"
 #undef TIME_MAX_MS
-#include "weigh.c"
+#include "bench/weigh.c"
 
 #include "any.h"
 

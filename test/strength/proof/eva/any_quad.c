@@ -4,15 +4,15 @@
  * of any parameters, any period and any width: what it takes is a jump of a quarter of the counter at most.
  *
  * EVA: -eva-auto-loop-unroll 300 -eva-slevel 800
- * PLANT: lib/src/quad.c: s->ab &= 3; -> (void)0;
- * PLANT: lib/src/quad.c: jump >= INT64_C(1) << (bits - 2) -> 0
- * PLANT: lib/src/quad.c: (32u - bits) -> (33u - bits)
- * PLANT: lib/src/quad.c: exh_sat32(exh_mul_shr(cnt, -> (int32_t)(exh_mul_shr(cnt,
- * PLANT: lib/src/quad.c: mode->adds[past & 15u] -> mode->adds[past & 31u]
+ * PLANT: lib/src/sense/quad.c: s->ab &= 3; -> (void)0;
+ * PLANT: lib/src/sense/quad.c: jump >= INT64_C(1) << (bits - 2) -> 0
+ * PLANT: lib/src/sense/quad.c: (32u - bits) -> (33u - bits)
+ * PLANT: lib/src/sense/quad.c: exh_sat32(exh_mul_shr(cnt, -> (int32_t)(exh_mul_shr(cnt,
+ * PLANT: lib/src/sense/quad.c: mode->adds[past & 15u] -> mode->adds[past & 31u]
  */
-#include "bytes.c"
-#include "fix.c"
-#include "quad.c"
+#include "num/bytes.c"
+#include "num/fix.c"
+#include "sense/quad.c"
 
 #include "any.h"
 

@@ -2,11 +2,11 @@
 /* PROVES: quantizer
  * Any parameters into set-up; what it takes, in any state, of any input.
  *
- * PLANT: lib/src/quantizer.c: par->bits > 24 -> par->bits > 32
- * PLANT: lib/src/quantizer_tick.h: (uint32_t)x - (uint32_t)value : -> (uint32_t)(x - value) :
+ * PLANT: lib/src/sense/quantizer.c: par->bits > 24 -> par->bits > 32
+ * PLANT: lib/src/sense/quantizer_tick.h: (uint32_t)x - (uint32_t)value : -> (uint32_t)(x - value) :
  */
-#include "bytes.c"
-#include "quantizer.c"
+#include "num/bytes.c"
+#include "sense/quantizer.c"
 
 #include "any.h"
 

@@ -4,13 +4,13 @@
  * measures, anywhere; header and event through any.
  *
  * EVA: -eva-slevel 100
- * PLANT: lib/src/record.c: len_B < end + 4 -> len_B < end
- * PLANT: lib/src/record.c: (char)(u < 0x80u ? (int)u : (int)u - 0x100) -> (char)u
- * PLANT: lib/src/record.c: if (!exh_bytes_ok(c) || end < HEAD_B || end - HEAD_B > UINT16_MAX) { return 0; } -> (void)0;
- * PLANT: lib/src/record.c: c->mode == EXH_BYTES_WRITE ? exh_crc32(0, c->p, end) : 0 -> exh_crc32(0, c->p, end)
+ * PLANT: lib/src/talk/record.c: len_B < end + 4 -> len_B < end
+ * PLANT: lib/src/talk/record.c: (char)(u < 0x80u ? (int)u : (int)u - 0x100) -> (char)u
+ * PLANT: lib/src/talk/record.c: if (!exh_bytes_ok(c) || end < HEAD_B || end - HEAD_B > UINT16_MAX) { return 0; } -> (void)0;
+ * PLANT: lib/src/talk/record.c: c->mode == EXH_BYTES_WRITE ? exh_crc32(0, c->p, end) : 0 -> exh_crc32(0, c->p, end)
  */
-#include "bytes.c"
-#include "record.c"
+#include "num/bytes.c"
+#include "talk/record.c"
 
 #include "any.h"
 

@@ -5,28 +5,28 @@
  * two frames with anything in them: one register, two, all, and one more. Any bits; binary32 of any value.
  *
  * EVA: -eva-slevel 100 -eva-slevel-function block:1000,staged_count:600 -eva-slevel-merge-after-loop staged_count -eva-split-return-function exh_regs_trace_locate:0
- * PLANT: lib/src/regs.c: return s->end <= 2 * values ? 0 : EXH_MODBUS_ADDRESS; -> return s->end <= 2 * values + 1 ? 0 : EXH_MODBUS_ADDRESS;
- * PLANT: lib/src/regs_trace.c: return s->end <= 2 * values ? 0 : EXH_MODBUS_ADDRESS; -> return s->end <= 3 * values ? 0 : EXH_MODBUS_ADDRESS;
- * PLANT: lib/src/regs.c: while (r->name != NULL && i < 4 * part && r->name[i] != '\0') { i++; } -> while (r->name != NULL && i < 4 * part) { i++; }
- * PLANT: lib/src/regs.c: if (2 * i + 1 < s->end) { -> {
- * PLANT: lib/src/regs.c: if ((k & 7u) == 0) { to[k >> 3] = 0; } -> to[(k + 7u) >> 3] = 0;
- * PLANT: lib/src/regs.c: r->box.state < 32 ? UINT32_C(1) << r->box.state : 0 -> UINT32_C(1) << r->box.state
- * PLANT: lib/src/regs.h: if (++w.instance == w.group->instances) { -> {
- * PLANT: lib/src/regs_trace.c: if (r->trace == NULL) { return EXH_MODBUS_ADDRESS; } -> (void)0;
+ * PLANT: lib/src/talk/regs.c: return s->end <= 2 * values ? 0 : EXH_MODBUS_ADDRESS; -> return s->end <= 2 * values + 1 ? 0 : EXH_MODBUS_ADDRESS;
+ * PLANT: lib/src/talk/regs_trace.c: return s->end <= 2 * values ? 0 : EXH_MODBUS_ADDRESS; -> return s->end <= 3 * values ? 0 : EXH_MODBUS_ADDRESS;
+ * PLANT: lib/src/talk/regs.c: while (r->name != NULL && i < 4 * part && r->name[i] != '\0') { i++; } -> while (r->name != NULL && i < 4 * part) { i++; }
+ * PLANT: lib/src/talk/regs.c: if (2 * i + 1 < s->end) { -> {
+ * PLANT: lib/src/talk/regs.c: if ((k & 7u) == 0) { to[k >> 3] = 0; } -> to[(k + 7u) >> 3] = 0;
+ * PLANT: lib/src/talk/regs.c: r->box.state < 32 ? UINT32_C(1) << r->box.state : 0 -> UINT32_C(1) << r->box.state
+ * PLANT: lib/src/talk/regs.h: if (++w.instance == w.group->instances) { -> {
+ * PLANT: lib/src/talk/regs_trace.c: if (r->trace == NULL) { return EXH_MODBUS_ADDRESS; } -> (void)0;
  */
-#include "bytes.c"
-#include "fix.c"
+#include "num/bytes.c"
+#include "num/fix.c"
 #define exh_signal_crc table_crc /* its proof is any_signal.c */
 #define exh_float_of   any_float /* below */
-#include "regs.c"
+#include "talk/regs.c"
 #undef exh_signal_crc
 #undef exh_float_of
-#include "regs_float.c"
+#include "talk/regs_float.c"
 #define head_of head_of_trace
-#include "regs_trace.c"
+#include "talk/regs_trace.c"
 #undef head_of
-#include "safety.c"
-#include "trace.c"
+#include "safe/safety.c"
+#include "talk/trace.c"
 #include "../src/signal.c" /* not that of Frama-C */
 
 #include "registers.h"

@@ -5,26 +5,26 @@
  * is staged handed on, forgotten, taken; commands of anything. A value never leaves the table's own range.
  *
  * EVA: -eva-slevel 100 -eva-slevel-function block:1000 -eva-slevel-merge-after-loop exh_regs_judge,exh_regs_write -eva-split-return-function judge:0,written:0,from_float:0
- * PLANT: lib/src/regs_stage.c: if ((uint32_t)at + n > EXH_COILS) { return EXH_MODBUS_ADDRESS; } -> (void)0;
- * PLANT: lib/src/regs_stage.c: r->touched[i >> 5] &= ~bit; -> r->touched[i >> 2] &= ~bit;
- * PLANT: lib/src/regs_stage.c: const int high = 2 * i >= s->from, low = 2 * i + 1 < s->end; -> const int high = 2 * i >= s->from, low = 1;
- * PLANT: lib/src/regs_stage.c: if (raw < row->min || raw > row->max) { return EXH_MODBUS_VALUE; } -> (void)0;
- * PLANT: lib/src/regs_stage.c: const uint32_t apply = 1u << EXH_COIL_APPLY, discard = 1u << EXH_COIL_DISCARD; -> const uint32_t apply = 1u << EXH_COILS * at, discard = 1u << EXH_COIL_DISCARD;
- * PLANT: lib/src/regs_trace.c: &what.index[(at >> 1) - 1u] -> &what.index[at >> 1]
+ * PLANT: lib/src/talk/regs_stage.c: if ((uint32_t)at + n > EXH_COILS) { return EXH_MODBUS_ADDRESS; } -> (void)0;
+ * PLANT: lib/src/talk/regs_stage.c: r->touched[i >> 5] &= ~bit; -> r->touched[i >> 2] &= ~bit;
+ * PLANT: lib/src/talk/regs_stage.c: const int high = 2 * i >= s->from, low = 2 * i + 1 < s->end; -> const int high = 2 * i >= s->from, low = 1;
+ * PLANT: lib/src/talk/regs_stage.c: if (raw < row->min || raw > row->max) { return EXH_MODBUS_VALUE; } -> (void)0;
+ * PLANT: lib/src/talk/regs_stage.c: const uint32_t apply = 1u << EXH_COIL_APPLY, discard = 1u << EXH_COIL_DISCARD; -> const uint32_t apply = 1u << EXH_COILS * at, discard = 1u << EXH_COIL_DISCARD;
+ * PLANT: lib/src/talk/regs_trace.c: &what.index[(at >> 1) - 1u] -> &what.index[at >> 1]
  */
-#include "bytes.c"
-#include "fix.c"
+#include "num/bytes.c"
+#include "num/fix.c"
 #define exh_float_of  any_float /* any_regs.c has them */
 #define exh_float_raw any_raw
-#include "regs.c"
-#include "regs_stage.c"
+#include "talk/regs.c"
+#include "talk/regs_stage.c"
 #undef exh_float_of
 #undef exh_float_raw
 #define head_of head_of_trace
-#include "regs_trace.c"
+#include "talk/regs_trace.c"
 #undef head_of
-#include "safety.c"
-#include "trace.c"
+#include "safe/safety.c"
+#include "talk/trace.c"
 #include "../src/signal.c" /* not that of Frama-C */
 
 #include "registers.h"

@@ -6,13 +6,13 @@
  * pieces of any size.
  *
  * EVA: -eva-slevel 100 -eva-slevel-function main:3000
- * PLANT: lib/src/ring.c: return at < SLOTS ? at : at - SLOTS; -> return at;
- * PLANT: lib/src/ring.c: const uint32_t first = least(n, r->cap_B - at); -> const uint32_t first = n;
- * PLANT: lib/src/ring.c: r->head = copy_in(r, at, payload, len_B); -> r->head = at + len_B;
- * PLANT: lib/src/ring.c: if (begins && parts(r) == SLOTS) { drop_oldest(r); } -> (void)0;
- * PLANT: lib/src/ring.c: payload.at = payload.at + 1 < r->cap_B ? payload.at + 1 : 0; -> payload.at = payload.at + 1;
- * PLANT: lib/src/ring.c: if (payload.len_B > p->left_B - EXH_RING_HEAD_B) { return 0; } -> (void)0;
- * PLANT: lib/src/ring.c: n = least(n, o->cap_B - o->at); -> (void)o;
+ * PLANT: lib/src/talk/ring.c: return at < SLOTS ? at : at - SLOTS; -> return at;
+ * PLANT: lib/src/talk/ring.c: const uint32_t first = least(n, r->cap_B - at); -> const uint32_t first = n;
+ * PLANT: lib/src/talk/ring.c: r->head = copy_in(r, at, payload, len_B); -> r->head = at + len_B;
+ * PLANT: lib/src/talk/ring.c: if (begins && parts(r) == SLOTS) { drop_oldest(r); } -> (void)0;
+ * PLANT: lib/src/talk/ring.c: payload.at = payload.at + 1 < r->cap_B ? payload.at + 1 : 0; -> payload.at = payload.at + 1;
+ * PLANT: lib/src/talk/ring.c: if (payload.len_B > p->left_B - EXH_RING_HEAD_B) { return 0; } -> (void)0;
+ * PLANT: lib/src/talk/ring.c: n = least(n, o->cap_B - o->at); -> (void)o;
  */
 #include <stddef.h>
 #include <stdint.h>
@@ -20,7 +20,7 @@
 #include <string.h>             /* the contract of memcpy */
 #define volatile                /* for who reads it interrupted; nobody else writes */
 #define exh_crc32 crc32_of_each /* its proof is any_bytes.c */
-#include "bytes.c"
+#include "num/bytes.c"
 #undef exh_crc32
 #define exh_crc32 crc32
 static uint32_t crc32(uint32_t crc, const void *buf, size_t len_B)
@@ -28,8 +28,8 @@ static uint32_t crc32(uint32_t crc, const void *buf, size_t len_B)
     const uint8_t *p = buf;
     return len_B > 0 ? crc ^ p[0] ^ p[len_B - 1] : crc;
 }
-#include "record.c"
-#include "ring.c"
+#include "talk/record.c"
+#include "talk/ring.c"
 #undef volatile
 
 #include "any.h"

@@ -2,10 +2,10 @@
 /* PROVES: state of the box
  * The state of the box: any bit pattern of it, any input.
  *
- * PLANT: lib/src/safety.c: if (!sane(s)) { -> if (0) {
+ * PLANT: lib/src/safe/safety.c: if (!sane(s)) { -> if (0) {
  */
-#include "gate.c"
-#include "safety.c"
+#include "act/gate.c"
+#include "safe/safety.c"
 
 #define MAY_STOP /* a number of fingers that there is not */
 #include "any.h"

@@ -5,19 +5,19 @@
  * the sine (any_angle.c).
  *
  * EVA: -eva-slevel 100
- * PLANT: lib/src/selftest.c: k < sizeof want / sizeof want[0] -> k <= sizeof want / sizeof want[0]
+ * PLANT: lib/src/safe/selftest.c: k < sizeof want / sizeof want[0] -> k <= sizeof want / sizeof want[0]
  */
-#include "bytes.c"
-#include "fix.c"
-#include "filter.c"
-#include "filter_low.c"
-#include "filter_high.c"
+#include "num/bytes.c"
+#include "num/fix.c"
+#include "sense/filter.c"
+#include "sense/filter_low.c"
+#include "sense/filter_high.c"
 #define exh_filter_setup(cfg, ...) filter_set_up(cfg)
 static int filter_set_up(struct exh_filter_cfg *cfg);
 
 /* den is a constant of the program but for damage: a divisor of 0 stops it, as documented. */
 #define MAY_STOP
-#include "selftest.c"
+#include "safe/selftest.c"
 
 #include "any.h"
 

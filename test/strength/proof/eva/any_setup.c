@@ -5,28 +5,28 @@
  * they become is within what the ticks are proved for. Frames of any bytes; the monitor by any table that is taken.
  *
  * EVA: -eva-slevel 12 -eva-slevel-function setup_i2t:60,exh_passivity_setup:60
- * PLANT: lib/src/drive.c: s->i2t_q32 > INT64_MAX / 2) { s->i2t_q32 = INT64_MAX / 2; } -> 0) { s->i2t_q32 = 0; }
- * PLANT: lib/src/drive.c: if (n < 2 || n > 255) { return -EXH_E_RANGE; } -> (void)0;
- * PLANT: lib/src/drive.c: const int64_t dy = (int64_t)knot[i + 1].y - knot[i].y; -> const int64_t dy = knot[i + 1].y - knot[i].y;
- * PLANT: lib/src/passivity.c: if (way > WAY_MAX_CNT) { return -EXH_E_RANGE; } -> (void)0;
- * PLANT: lib/src/passivity.c: s->energy_Ncnt_q20 = limited(s->energy_Ncnt_q20); -> (void)0;
- * PLANT: lib/src/safety.c: cfg->arm_ticks = exh_ticks_in(par->arm_ms, T) + 1; -> cfg->arm_ticks = exh_ticks_in(par->arm_ms, T) - 1;
- * PLANT: lib/src/contact.c: s->inward = s->inward != 0; -> (void)0;
+ * PLANT: lib/src/act/drive.c: s->i2t_q32 > INT64_MAX / 2) { s->i2t_q32 = INT64_MAX / 2; } -> 0) { s->i2t_q32 = 0; }
+ * PLANT: lib/src/act/drive.c: if (n < 2 || n > 255) { return -EXH_E_RANGE; } -> (void)0;
+ * PLANT: lib/src/act/drive.c: const int64_t dy = (int64_t)knot[i + 1].y - knot[i].y; -> const int64_t dy = knot[i + 1].y - knot[i].y;
+ * PLANT: lib/src/law/passivity.c: if (way > WAY_MAX_CNT) { return -EXH_E_RANGE; } -> (void)0;
+ * PLANT: lib/src/law/passivity.c: s->energy_Ncnt_q20 = limited(s->energy_Ncnt_q20); -> (void)0;
+ * PLANT: lib/src/safe/safety.c: cfg->arm_ticks = exh_ticks_in(par->arm_ms, T) + 1; -> cfg->arm_ticks = exh_ticks_in(par->arm_ms, T) - 1;
+ * PLANT: lib/src/law/contact.c: s->inward = s->inward != 0; -> (void)0;
  */
-#include "bytes.c"
+#include "num/bytes.c"
 #define exh_udiv64 udiv64_by_steps
-#include "fix.c"
+#include "num/fix.c"
 #undef exh_udiv64
 #include "quotient.h"
-#include "contact.c"
-#include "drive.c"
-#include "passivity.c"
+#include "law/contact.c"
+#include "act/drive.c"
+#include "law/passivity.c"
 #undef SPEED_MIN_MPS_Q27
-#include "gate.c"
-#include "safety.c"
-#include "track.c"
+#include "act/gate.c"
+#include "safe/safety.c"
+#include "act/track.c"
 #undef CUR_MIN_A_Q26
-#include "watch.c"
+#include "safe/watch.c"
 
 #include "contract.h"
 

@@ -4,13 +4,13 @@
  * index, any id; their CRC.
  *
  * EVA: -eva-slevel 200
- * PLANT: lib/src/signal.c: for (; i >= grp->rows; k++) -> for (; i > grp->rows; k++)
- * PLANT: lib/src/signal.c: if (instance != NULL) { *instance = k; } -> *instance = k;
- * PLANT: lib/src/signal.c: r < grp->rows && instance < grp->instances -> r <= grp->rows
- * PLANT: lib/src/signal.c: uint8_t buf[16]; -> uint8_t buf[13];
- * PLANT: lib/src/signal.c: uint8_t head[2]; -> uint8_t head[1];
+ * PLANT: lib/src/num/signal.c: for (; i >= grp->rows; k++) -> for (; i > grp->rows; k++)
+ * PLANT: lib/src/num/signal.c: if (instance != NULL) { *instance = k; } -> *instance = k;
+ * PLANT: lib/src/num/signal.c: r < grp->rows && instance < grp->instances -> r <= grp->rows
+ * PLANT: lib/src/num/signal.c: uint8_t buf[16]; -> uint8_t buf[13];
+ * PLANT: lib/src/num/signal.c: uint8_t head[2]; -> uint8_t head[1];
  */
-#include "bytes.c"
+#include "num/bytes.c"
 #include "../src/signal.c" /* not that of Frama-C */
 
 #include "any.h"

@@ -4,15 +4,15 @@
  * saved next, of images of some lengths and of any, in buffers of some sizes.
  *
  * EVA: -eva-slevel 300
- * PLANT: lib/src/slots.c: if (len_B > slot_B - EXH_SLOT_B(0)) { return -EXH_E_SHORT; } -> (void)0;
- * PLANT: lib/src/slots.c: if (slot_B < EXH_SLOT_B(0)) { return -EXH_E_SHORT; } -> (void)0;
- * PLANT: lib/src/slots.c: if (!has_a && !has_b) { return -EXH_E_ABSENT; } -> (void)0;
- * PLANT: lib/src/slots.c: if (has_a && has_b) { -> {
- * PLANT: lib/src/slots.c: || image_B > room_B - EXH_SLOT_B(0) -> || 0
- * PLANT: lib/src/slots.c: uint32_t magic = MAGIC, len_B = (uint32_t)image_B, sequence, crc; -> uint32_t magic = MAGIC, len_B = (uint32_t)image_B + 1, sequence, crc;
+ * PLANT: lib/src/talk/slots.c: if (len_B > slot_B - EXH_SLOT_B(0)) { return -EXH_E_SHORT; } -> (void)0;
+ * PLANT: lib/src/talk/slots.c: if (slot_B < EXH_SLOT_B(0)) { return -EXH_E_SHORT; } -> (void)0;
+ * PLANT: lib/src/talk/slots.c: if (!has_a && !has_b) { return -EXH_E_ABSENT; } -> (void)0;
+ * PLANT: lib/src/talk/slots.c: if (has_a && has_b) { -> {
+ * PLANT: lib/src/talk/slots.c: || image_B > room_B - EXH_SLOT_B(0) -> || 0
+ * PLANT: lib/src/talk/slots.c: uint32_t magic = MAGIC, len_B = (uint32_t)image_B, sequence, crc; -> uint32_t magic = MAGIC, len_B = (uint32_t)image_B + 1, sequence, crc;
  */
-#include "bytes.c"
-#include "slots.c"
+#include "num/bytes.c"
+#include "talk/slots.c"
 
 #include "any.h"
 

@@ -4,15 +4,15 @@
  * or refused, looked for, led, dropped, and a step of all walls on their way.
  *
  * EVA: -eva-slevel 10 -eva-min-loop-unroll 8
- * PLANT: lib/src/gains.c: k < 0 || b < 0 || exh_gains_ok -> k < 0 || exh_gains_ok
- * PLANT: lib/src/gains.c: i >= 0 ? p->staged[i] : 0; -> p->staged[i];
- * PLANT: lib/src/gains.c: if (instance != NULL) { *instance = n; } -> *instance = n;
- * PLANT: lib/src/gains.c: if (b < 0) { continue; } -> (void)0;
+ * PLANT: lib/src/law/gains.c: k < 0 || b < 0 || exh_gains_ok -> k < 0 || exh_gains_ok
+ * PLANT: lib/src/law/gains.c: i >= 0 ? p->staged[i] : 0; -> p->staged[i];
+ * PLANT: lib/src/law/gains.c: if (instance != NULL) { *instance = n; } -> *instance = n;
+ * PLANT: lib/src/law/gains.c: if (b < 0) { continue; } -> (void)0;
  */
-#include "bytes.c"
-#include "fix.c"
-#include "gains.c"
-#include "params.c"
+#include "num/bytes.c"
+#include "num/fix.c"
+#include "law/gains.c"
+#include "num/params.c"
 #include "../src/signal.c" /* not that of Frama-C */
 
 #include "table.h"

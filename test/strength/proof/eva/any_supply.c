@@ -2,13 +2,13 @@
 /* PROVES: supply
  * Set-up of any parameters and period; the tick with any limits, any code, any ticks missed, in any state.
  *
- * PLANT: lib/src/supply.c: most >= INT16_MAX || least > most -> least > most
- * PLANT: lib/src/supply.c: if (!exh_period_ok(T)) { return -EXH_E_RATE; } -> (void)0;
- * PLANT: lib/src/supply.c: par->scale_V_q30 < 1 || par->time_ms < 1 || -> par->time_ms < 1 ||
+ * PLANT: lib/src/act/supply.c: most >= INT16_MAX || least > most -> least > most
+ * PLANT: lib/src/act/supply.c: if (!exh_period_ok(T)) { return -EXH_E_RATE; } -> (void)0;
+ * PLANT: lib/src/act/supply.c: par->scale_V_q30 < 1 || par->time_ms < 1 || -> par->time_ms < 1 ||
  */
-#include "bytes.c"
-#include "fix.c"
-#include "supply.c"
+#include "num/bytes.c"
+#include "num/fix.c"
+#include "act/supply.c"
 
 #include "any.h"
 

@@ -4,14 +4,14 @@
  * values; passed on between any two states. Set-up of any number of frames and signals.
  *
  * EVA: -eva-slevel 200
- * PLANT: lib/src/trace.c: t->what.index[i] >= t->signals -> t->what.index[i] > t->signals
- * PLANT: lib/src/trace.c: (what->index[i] >= t->signals) -> (0)
- * PLANT: lib/src/trace.c: &t->frame[t->head & t->mask] -> &t->frame[t->head & (t->mask + 1)]
- * PLANT: lib/src/trace.c: frames > EXH_TRACE_FRAMES -> frames > 2 * EXH_TRACE_FRAMES
- * PLANT: lib/src/trace.c: shown->frame[n & shown->mask] -> shown->frame[n & (shown->mask + 1)]
+ * PLANT: lib/src/talk/trace.c: t->what.index[i] >= t->signals -> t->what.index[i] > t->signals
+ * PLANT: lib/src/talk/trace.c: (what->index[i] >= t->signals) -> (0)
+ * PLANT: lib/src/talk/trace.c: &t->frame[t->head & t->mask] -> &t->frame[t->head & (t->mask + 1)]
+ * PLANT: lib/src/talk/trace.c: frames > EXH_TRACE_FRAMES -> frames > 2 * EXH_TRACE_FRAMES
+ * PLANT: lib/src/talk/trace.c: shown->frame[n & shown->mask] -> shown->frame[n & (shown->mask + 1)]
  */
-#include "bytes.c"
-#include "trace.c"
+#include "num/bytes.c"
+#include "talk/trace.c"
 
 #include "any.h"
 

@@ -4,9 +4,9 @@
  *
  * WP: met: the count starts anew; else it rises; told when it is reached; the band holds what was coded.
  *
- * PLANT: lib/src/track.c: (int64_t)s->hi_A_q26 + cfg->tol_A_q26 -> s->hi_A_q26 + cfg->tol_A_q26
+ * PLANT: lib/src/act/track.c: (int64_t)s->hi_A_q26 + cfg->tol_A_q26 -> s->hi_A_q26 + cfg->tol_A_q26
  */
-#include "track.c"
+#include "act/track.c"
 
 #include "any.h"
 

@@ -3,15 +3,15 @@
  * Difference and window, pole, track: any parameters into its set-up; with a step > 0, tables and shares as set-up leaves them,
  * in any state that its bytes leave, of any count. A state is afterwards within what bytes leave.
  *
- * PLANT: lib/src/velocity.c: & (EXH_VELOCITY_N - 1u)); -> );
- * PLANT: lib/src/velocity.c: s->at %= EXH_VELOCITY_N; -> (void)0;
- * PLANT: lib/src/velocity.c: s->v_mps_q55 = limit(s->v_mps_q55, POLE_MAX_MPS_Q55); -> (void)0;
- * PLANT: lib/src/velocity.c: s->vel_cnt_q32 = limit(s->vel_cnt_q32, TRACK_MAX_CNT_Q32); -> (void)0;
- * PLANT: lib/src/velocity.c: limit(s->err_cnt_q32 + s->vel_cnt_q32 - moved_q32, TRACK_MAX_CNT_Q32) -> 4 * (s->err_cnt_q32 + s->vel_cnt_q32 - moved_q32)
+ * PLANT: lib/src/sense/velocity.c: & (EXH_VELOCITY_N - 1u)); -> );
+ * PLANT: lib/src/sense/velocity.c: s->at %= EXH_VELOCITY_N; -> (void)0;
+ * PLANT: lib/src/sense/velocity.c: s->v_mps_q55 = limit(s->v_mps_q55, POLE_MAX_MPS_Q55); -> (void)0;
+ * PLANT: lib/src/sense/velocity.c: s->vel_cnt_q32 = limit(s->vel_cnt_q32, TRACK_MAX_CNT_Q32); -> (void)0;
+ * PLANT: lib/src/sense/velocity.c: limit(s->err_cnt_q32 + s->vel_cnt_q32 - moved_q32, TRACK_MAX_CNT_Q32) -> 4 * (s->err_cnt_q32 + s->vel_cnt_q32 - moved_q32)
  */
-#include "bytes.c"
-#include "fix.c"
-#include "velocity.c"
+#include "num/bytes.c"
+#include "num/fix.c"
+#include "sense/velocity.c"
 
 #include "any.h"
 

@@ -2,9 +2,9 @@
 /* PROVES: speed, standing
  * Speed and stand-still of a finger: any state, any constants, any input.
  *
- * PLANT: lib/src/watch.c: exh_clamp(*vel_mps_q27, -most, most) -> *vel_mps_q27
+ * PLANT: lib/src/safe/watch.c: exh_clamp(*vel_mps_q27, -most, most) -> *vel_mps_q27
  */
-#include "watch.c"
+#include "safe/watch.c"
 
 #include "any.h"
 

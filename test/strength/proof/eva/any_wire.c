@@ -4,19 +4,19 @@
  * buffers of any size; what came as a plane, and as a parameter of any table of ten values.
  *
  * EVA: -eva-slevel 20
- * PLANT: lib/src/wire.c: !exh_bytes_ok(&c) || len_B != HEAD_B + h->len_B + CRC_B -> !exh_bytes_ok(&c)
- * PLANT: lib/src/wire.c: if (late >= WINDOW) { -> if (late > WINDOW) {
- * PLANT: lib/src/wire.c: ahead < WINDOW ? rx->seen -> ahead <= WINDOW ? rx->seen
- * PLANT: lib/src/wire.c: i < t->frames && i < EXH_WIRE_FRAMES -> i < t->frames
- * PLANT: lib/src/wire.c: if (cap_B < end + CRC_B) { return -EXH_E_SHORT; } -> (void)0;
+ * PLANT: lib/src/talk/wire.c: !exh_bytes_ok(&c) || len_B != HEAD_B + h->len_B + CRC_B -> !exh_bytes_ok(&c)
+ * PLANT: lib/src/talk/wire.c: if (late >= WINDOW) { -> if (late > WINDOW) {
+ * PLANT: lib/src/talk/wire.c: ahead < WINDOW ? rx->seen -> ahead <= WINDOW ? rx->seen
+ * PLANT: lib/src/talk/wire.c: i < t->frames && i < EXH_WIRE_FRAMES -> i < t->frames
+ * PLANT: lib/src/talk/wire.c: if (cap_B < end + CRC_B) { return -EXH_E_SHORT; } -> (void)0;
  */
-#include "bytes.c"
-#include "fix.c"
-#include "params.c"
+#include "num/bytes.c"
+#include "num/fix.c"
+#include "num/params.c"
 #include "../src/signal.c"   /* not that of Frama-C */
 #define head       wire_head /* params.c has its own */
 #define head_bytes wire_head_bytes
-#include "wire.c"
+#include "talk/wire.c"
 
 #include "table.h"
 

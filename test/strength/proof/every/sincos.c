@@ -4,10 +4,10 @@
  * is 1 within 2^-27; and -x has -sin and cos, but at the eighth itself, where the two have changed places. All
  * other angles have these two, swapped or negated (test/module/prop/angle_test.c).
  *
- * PLANT: lib/src/sincos.h: #define S3_Q37  (-4930933) -> #define S3_Q37  (-4930033)
- * PLANT: lib/src/sincos.h: #define C1_Q32  1324675872 -> #define C1_Q32  1324675972
+ * PLANT: lib/src/num/sincos.h: #define S3_Q37  (-4930933) -> #define S3_Q37  (-4930033)
+ * PLANT: lib/src/num/sincos.h: #define C1_Q32  1324675872 -> #define C1_Q32  1324675972
  */
-#include "sincos.h"
+#include "num/sincos.h"
 
 int main(void)
 {

@@ -5,7 +5,7 @@
 #include "exhand/fix.h"
 
 #include "filter_tick.h"
-#include "real.h"
+#include "../num/real.h"
 
 #define POS_Q  EXH_FILTER_POS_Q
 #define VEL_Q  EXH_FILTER_VEL_Q

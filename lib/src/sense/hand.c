@@ -6,7 +6,7 @@
 #include "exhand/fix.h"
 #include "exhand/units.h"
 
-#include "sincos.h"
+#include "../num/sincos.h"
 
 #define ARM_MAX_M_Q30      EXH_Q(50, 1000, EXH_Q_POS)
 #define PAD_MAX_M_Q30      EXH_Q(25, 1000, EXH_Q_POS)
