@@ -45,6 +45,9 @@ warn := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wcast-
 base := -std=c99 -O$(O) -g $(warn) -ffunction-sections -fdata-sections -Ilib/include -Iexamples -MMD -MP \
         $(if $(UNCALIBRATED),-DUNCALIBRATED)
 
+# An assertion names its source without lib/src/: a layer's folder costs an image no bytes.
+base += -fmacro-prefix-map=lib/src/=
+
 # What all objects are compiled with. Another text here compiles all anew.
 stamp      := $(out)/flags
 flags_text := $(CC) | $(base) | $(PORT_CFLAGS) | $(PORT_FLOAT) | $(PORT_HOSTFLAGS) | $(CFLAGS) | $(LDFLAGS)
