@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "regs.h"
+#include "regs_parts.h"
 
 #include "exhand/error.h"
 #include "exhand/exhand.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The registers that change something: what is staged, what is commanded. */
-#include "regs.h"
+#include "regs_parts.h"
 
 #include "exhand/error.h"
 #include "exhand/fix.h"

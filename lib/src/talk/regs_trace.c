@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The registers of the trace. */
-#include "regs.h"
+#include "regs_parts.h"
 
 #define VALUES EXH_REGS_FRAME_VALUES
 

@@ -11,7 +11,7 @@
  * PLANT: lib/src/talk/regs.c: if (2 * i + 1 < s->end) { -> {
  * PLANT: lib/src/talk/regs.c: if ((k & 7u) == 0) { to[k >> 3] = 0; } -> to[(k + 7u) >> 3] = 0;
  * PLANT: lib/src/talk/regs.c: r->box.state < 32 ? UINT32_C(1) << r->box.state : 0 -> UINT32_C(1) << r->box.state
- * PLANT: lib/src/talk/regs.h: if (++w.instance == w.group->instances) { -> {
+ * PLANT: lib/src/talk/regs_parts.h: if (++w.instance == w.group->instances) { -> {
  * PLANT: lib/src/talk/regs_trace.c: if (r->trace == NULL) { return EXH_MODBUS_ADDRESS; } -> (void)0;
  */
 #include "num/bytes.c"
