@@ -13,7 +13,7 @@
 #include "num/fix.c"
 #include "safe/guard.c"
 #include "num/params.c"
-#include "../src/signal.c" /* not that of Frama-C */
+#include "num/signal.c" /* not that of Frama-C */
 
 #include "table.h"
 

@@ -22,7 +22,7 @@ struct exh_signal_table;
 uint32_t table_crc(const struct exh_signal_table *t);
 #include "num/params.c"
 #undef exh_signal_crc
-#include "../src/signal.c" /* not that of Frama-C */
+#include "num/signal.c" /* not that of Frama-C */
 
 #include "table.h"
 

@@ -27,7 +27,7 @@
 #undef head_of
 #include "safe/safety.c"
 #include "talk/trace.c"
-#include "../src/signal.c" /* not that of Frama-C */
+#include "num/signal.c" /* not that of Frama-C */
 
 #include "registers.h"
 

@@ -11,7 +11,7 @@
  * PLANT: lib/src/num/signal.c: uint8_t head[2]; -> uint8_t head[1];
  */
 #include "num/bytes.c"
-#include "../src/signal.c" /* not that of Frama-C */
+#include "num/signal.c" /* not that of Frama-C */
 
 #include "any.h"
 

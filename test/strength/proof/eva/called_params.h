@@ -5,7 +5,7 @@
 
 #include "called.h"
 
-#include "../src/signal.c" /* not that of Frama-C */
+#include "num/signal.c" /* not that of Frama-C */
 
 #include "exhand/run/calib_set.h"
 
