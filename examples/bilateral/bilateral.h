@@ -56,7 +56,7 @@ struct bilateral_paper {
     int32_t c;
     int32_t f_mon_N_q20;
     int32_t d_m_q30;     /* INT32_MIN: there is no plane */
-    int32_t q_lim_m_q30; /* EXH_PRECONTACT_NEVER: no contact can be */
+    int32_t q_lim_m_q30; /* EXH_PRECONTACT_NO_LIM: no contact can be */
 };
 
 struct bilateral_more {

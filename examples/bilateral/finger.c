@@ -102,7 +102,7 @@ uint32_t bilateral_finger_feel(struct bilateral *s, const struct bilateral_cfg *
     struct bilateral_finger *now = &s->finger[f];
     const struct exh_precontact_in where = {now->tip_m_q30, now->slope_q24, p->q_m_q30,
                                             bilateral_finger_age(s, cfg, f), now->contact.touching};
-    struct exh_contact_in q = {p->q_m_q30, p->qd_mps_q27, EXH_PRECONTACT_NEVER};
+    struct exh_contact_in q = {p->q_m_q30, p->qd_mps_q27, 0};
     struct exh_contact_par law;
     struct exh_force_ledger force;
     const struct exh_axis axis = bilateral_axis(s, cfg, place);
@@ -112,7 +112,12 @@ uint32_t bilateral_finger_feel(struct bilateral *s, const struct bilateral_cfg *
     p->d_m_q30 = now->precontact.d_m_q30;
     q.lim_m_q30 = now->precontact.lim_m_q30;
     law = touch(s, cfg, f);
-    p->c = exh_contact_law(&now->contact, &law, q, &force);
+    p->c = 0;
+    if (exh_precontact_none(&now->precontact)) {
+        exh_contact_free(&now->contact, &law, q.pos_m_q30, &force);
+    } else {
+        p->c = exh_contact_law(&now->contact, &law, q, &force);
+    }
     wind_in(now, cfg->rest_ticks);
     limits = exh_axis_force(&axis, permit, &force, i);
     p->f_des_N_q20 = force.force_N_q20;

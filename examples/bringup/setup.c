@@ -104,16 +104,6 @@ EXH_STATIC_ASSERT(bringup_signals_match_rows,
 
 /* --- set-up --- */
 
-/* Whoever has the parameters in ROM passed no rows. */
-static int own_ok(const struct bringup_own_par *own)
-{
-    const int32_t *const v = (const int32_t *)(const void *)own;
-    for (size_t i = 0; i < COUNT(own_rows); i++) {
-        if (v[i] < own_rows[i].min || v[i] > own_rows[i].max) { return 0; }
-    }
-    return 1;
-}
-
 static uint32_t crc_word(uint32_t crc, int32_t v)
 {
     uint8_t byte[4];
@@ -238,7 +228,7 @@ int bringup_setup(struct bringup_cfg *cfg, const struct bringup_par *par,
                                          .drive = &cfg->drive,
                                          .drive_par = &cfg->drive_par};
     const struct exh_table to_cur = {cfg->to_cur, 2}, none = {NULL, 0};
-    int err = own_ok(&par->own) ? 0 : -EXH_E_RANGE;
+    int err = exh_rows_hold(own_rows, COUNT(own_rows), &par->own) ? 0 : -EXH_E_RANGE;
     if (err < 0) { return err; }
     cfg->par = par;
     cfg->drive_par = par->drive;

@@ -89,10 +89,7 @@ EXH_STATIC_ASSERT(calibrate_signals_match_rows,
  * current beyond i_max. */
 static int own_ok(const struct calibrate_own_par *own)
 {
-    const int32_t *const v = (const int32_t *)(const void *)own;
-    for (size_t i = 0; i < COUNT(own_rows); i++) {
-        if (v[i] < own_rows[i].min || v[i] > own_rows[i].max) { return 0; }
-    }
+    if (!exh_rows_hold(own_rows, COUNT(own_rows), own)) { return 0; }
     return own->pol_max_A_q26 <= own->i_max_A_q26 && own->home_A_q26 <= own->i_max_A_q26 &&
            own->slack_A_q26 <= own->i_max_A_q26;
 }

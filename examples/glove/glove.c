@@ -116,7 +116,7 @@ int glove_setup(struct glove_cfg *cfg, const struct glove_par *par, struct exh_p
     int err;
     glove_cal_of_par(&cfg->cal, par);
     err = exh_glove_setup(&cfg->glove, &par->glove, &cfg->cal, T);
-    for (unsigned f = 0; err == 0 && f < EXH_HAND_FINGERS; f++) {
+    for (unsigned f = 0; err == 0 && f < EXH_FINGERS; f++) {
         err = exh_hand_setup(&cfg->finger[f], &exh_hit2_bones[f], &par->hand);
     }
     return err;
@@ -127,7 +127,7 @@ void glove_frame(struct glove *s, const struct glove_cfg *cfg, const struct exh_
     struct glove_signals *sig = &s->sig;
     uint32_t clamped = 0;
     sig->faults = (int32_t)exh_glove_step(&s->glove, &cfg->glove, in, sig->angle_turn_q32);
-    for (unsigned f = 0; f < EXH_HAND_FINGERS; f++) {
+    for (unsigned f = 0; f < EXH_FINGERS; f++) {
         int32_t *joint = sig->joint_turn_q32[f];
         clamped |= exh_hand_joints(&exh_hit2_map, f, sig->angle_turn_q32, joint)
                    << (EXH_HAND_JOINTS * f);

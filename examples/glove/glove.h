@@ -21,16 +21,16 @@ struct glove_par {
 struct glove_signals {
     int32_t angle_turn_q32[EXH_GLOVE_SENSORS];
     int32_t faults; /* bit i: sensor i */
-    int32_t joint_turn_q32[EXH_HAND_FINGERS][EXH_HAND_JOINTS];
+    int32_t joint_turn_q32[EXH_FINGERS][EXH_HAND_JOINTS];
     int32_t clamped; /* bit 3 f + j: joint j of finger f */
-    struct exh_vec3 tip_m_q30[EXH_HAND_FINGERS];
+    struct exh_vec3 tip_m_q30[EXH_FINGERS];
     int32_t age_ticks;
 };
 
 struct glove_cfg {
     struct exh_glove_cal cal;
     struct exh_glove_cfg glove;
-    struct exh_hand_finger finger[EXH_HAND_FINGERS];
+    struct exh_hand_finger finger[EXH_FINGERS];
 };
 
 struct glove {

@@ -44,7 +44,7 @@ static const struct exh_precontact_par par = {-5368709, 1073741, 1 << 24, 0, 0,
 struct box {
     struct exh_wire_rx rx;
     struct exh_wire_packet last;
-    struct exh_precontact finger[EXH_WIRE_FINGERS];
+    struct exh_precontact finger[EXH_FINGERS];
     int32_t active[EXH_MATERIAL_ROWS], staged[EXH_MATERIAL_ROWS];
     uint8_t pending;
 };
@@ -79,7 +79,7 @@ static int was_frozen(const struct exh_precontact *s)
 
 static void planes_came(struct box *b, const struct exh_precontact_cfg *cfg)
 {
-    for (unsigned f = 0; f < EXH_WIRE_FINGERS; f++) {
+    for (unsigned f = 0; f < EXH_FINGERS; f++) {
         const struct exh_plane p = exh_wire_plane_of(&b->last.u.planes, f);
         struct exh_precontact *s = &b->finger[f];
         const struct exh_precontact was = *s;
@@ -105,7 +105,7 @@ static void planes_came(struct box *b, const struct exh_precontact_cfg *cfg)
 /* Every finger's tick: it is where the world's bytes say, which is as hostile as can be. */
 static void tick(struct box *b, const struct exh_precontact_cfg *cfg, int on_the_plane)
 {
-    for (unsigned f = 0; f < EXH_WIRE_FINGERS; f++) {
+    for (unsigned f = 0; f < EXH_FINGERS; f++) {
         struct exh_precontact *s = &b->finger[f];
         const struct exh_wire_plane *p = &b->last.u.planes.plane[f];
         const int32_t *at = on_the_plane ? p->point_m_q30 : p->hit_m_q30;

@@ -132,7 +132,7 @@ static void stage(struct golden *g, struct golden_rng *r, int32_t k, int32_t b)
     golden_put(g, instance);
     golden_put(g, raw);
     err = exh_gains_staged(&params, &rule, &at);
-    if (err < 0) { exh_gains_drop(&params); }
+    if (err < 0) { exh_params_drop(&params); }
     golden_put(g, err);
     golden_put(g, at);
     golden_put(g, golden_draw(r, 0, 3) ? move() : -1);

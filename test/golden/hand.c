@@ -64,13 +64,13 @@ static void any_bones(struct golden_rng *r, struct exh_hand_bones *b)
 
 struct some_hand {
     struct exh_hand_map map;
-    struct exh_hand_bones bones[EXH_HAND_FINGERS];
-    struct exh_hand_finger finger[EXH_HAND_FINGERS];
+    struct exh_hand_bones bones[EXH_FINGERS];
+    struct exh_hand_finger finger[EXH_FINGERS];
 };
 
 static void any_hand(struct golden_rng *r, struct some_hand *h)
 {
-    for (unsigned f = 0; f < EXH_HAND_FINGERS; f++) {
+    for (unsigned f = 0; f < EXH_FINGERS; f++) {
         struct exh_hand_par par = {.pad_m_q30 = 0};
         for (unsigned j = 0; j < EXH_HAND_JOINTS; j++) { any_joint(r, &h->map.joint[f][j]); }
         any_bones(r, &h->bones[f]);
@@ -105,14 +105,14 @@ void golden_hand(struct golden *g, uint32_t rate_Hz)
                     INT32_C(1) << golden_draw(&r, 16, 28));
     }
     while (g->tick < GOLDEN_TICKS) {
-        const unsigned f = g->tick % EXH_HAND_FINGERS;
-        int32_t sensor[EXH_HAND_SENSORS];
+        const unsigned f = g->tick % EXH_FINGERS;
+        int32_t sensor[EXH_GLOVE_SENSORS];
         int32_t joint[EXH_HAND_JOINTS];
         struct exh_vec3 tip;
         struct exh_vec3 again;
         struct exh_vec3 slope;
         if (g->tick == 0 || g->tick == GOLDEN_AGAIN) { any_hand(&r, &h); }
-        for (int i = 0; i < EXH_HAND_SENSORS; i++) { sensor[i] = w[i & 3].at[g->tick] ^ i; }
+        for (int i = 0; i < EXH_GLOVE_SENSORS; i++) { sensor[i] = w[i & 3].at[g->tick] ^ i; }
         golden_put(g, f);
         golden_put(g, exh_hand_joints(&h.map, f, sensor, joint));
         for (int j = 0; j < EXH_HAND_JOINTS; j++) { golden_put(g, joint[j]); }

@@ -30,6 +30,8 @@ struct exh_contact_par {
     int32_t hyst_m_q30;    /* contact ends at q < q_lim - hyst, m, 0 .. 10 mm */
 };
 #define EXH_CONTACT_ROWS 5
+#define EXH_CONTACT_K_ID 0x0401 /* of the row of k */
+#define EXH_CONTACT_B_ID 0x0402 /* of the row of b */
 extern const struct exh_signal exh_contact_rows[EXH_CONTACT_ROWS];
 
 /* What one finger's law remembers. A state of zeros is a string not yet seen: the first tick's
@@ -69,6 +71,11 @@ struct exh_force_ledger {
  * q >= q_lim and clears at q < q_lim - hyst. */
 int exh_contact_law(struct exh_contact *s, const struct exh_contact_par *par,
                     struct exh_contact_in in, struct exh_force_ledger *out);
+
+/* The same where there is nothing to touch: no q_lim is far enough away for every position. The
+ * pull-back force alone is left, and the contact has ended. */
+void exh_contact_free(struct exh_contact *s, const struct exh_contact_par *par, int32_t pos_m_q30,
+                      struct exh_force_ledger *out);
 
 /* State through a cursor (bytes.h). */
 void exh_contact_bytes(struct exh_bytes *c, struct exh_contact *s);

@@ -20,8 +20,6 @@
 extern "C" {
 #endif
 
-#define EXH_FINGERS 5 /* thumb, index, middle, ring, little */
-
 /* --- frames: raw codes of the device's own five axes, as a board moves them --- */
 
 /* digital inputs; every contact is normally closed: 1 = healthy */
@@ -168,8 +166,8 @@ struct exh_current_ledger {
 
 /* Set-up (divides). Tables must have passed exh_table_set() and outlive cfg, as
  * must par; force_to_cur must reach above 0 N and give 0 A there; cur_to_force may be {NULL, 0}
- * where no monitor is read. -EXH_E_RANGE when a table is not so, a parameter lies outside its range
- * above (parameters in ROM have passed no other check), or i_peak < i_cont. */
+ * where no monitor is read. -EXH_E_RATE: T. -EXH_E_RANGE when a table is not so, a parameter lies
+ * outside its range above (parameters in ROM have passed no other check), or i_peak < i_cont. */
 int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par, struct exh_period T,
                     struct exh_table force_to_cur, struct exh_table cur_to_force);
 

@@ -8,6 +8,8 @@
 #ifndef EXHAND_ERROR_H
 #define EXHAND_ERROR_H
 
+#include "exhand/units.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -43,9 +45,6 @@ void exh_assert_failed(const char *file, int line);
     do { \
         if (!(cond)) { exh_assert_failed(__FILE__, __LINE__); } \
     } while (0)
-
-/* Compile-time assertion in C99; name must be unique in its scope. */
-#define EXH_STATIC_ASSERT(name, cond) typedef char exh_static_##name[(cond) ? 1 : -1]
 
 #ifdef __cplusplus
 }

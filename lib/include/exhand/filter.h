@@ -51,7 +51,7 @@ struct exh_filter {
 };
 
 /* Set-up (divides). Coefficients for the period T. -EXH_E_CUTOFF: fc at or above half
- * the rate; -EXH_E_RANGE: order not 1 or 2, no period, fc not positive or below 2^-21
+ * the rate; -EXH_E_RATE: no period; -EXH_E_RANGE: order not 1 or 2, fc not positive or below 2^-21
  * (4.8e-7) of the rate. Relative error of fc below 2^-28; of Q, too, up to 0.45 of the rate,
  * above it below 2^-32 over what is left to half the rate. Gain at 0 Hz is 1. */
 int exh_filter_setup(struct exh_filter_cfg *cfg, const struct exh_filter_par *par,

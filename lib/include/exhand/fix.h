@@ -25,7 +25,7 @@ void exh_fix_saturated(const char *file, int line);
 #endif
 
 /* C99 leaves >> of a negative number to the compiler; we need the floor. */
-typedef char exh_needs_arithmetic_shift[((-3) >> 1) == -2 ? 1 : -1];
+EXH_STATIC_ASSERT(needs_arithmetic_shift, ((-3) >> 1) == -2);
 
 /* int may have 16 bits: a constant or product that needs more says so (INT32_C(1) << 30, one factor
  * cast). */
@@ -68,6 +68,12 @@ static inline int32_t exh_clamp(int64_t v, int32_t lo, int32_t hi)
 static inline int32_t exh_clamp32(int32_t v, int32_t lo, int32_t hi)
 {
     return v < lo ? lo : v > hi ? hi : v;
+}
+
+/* v limited to -most .. most of 64 bits, most >= 0. */
+static inline int64_t exh_clamp64(int64_t v, int64_t most)
+{
+    return v > most ? most : v < -most ? -most : v;
 }
 
 /* 1 if lo <= v <= hi. */

@@ -54,11 +54,10 @@ int exh_gains_stage(struct exh_params *p, const struct exh_gains_par *rule, uint
 
 /* Of a whole image, behind exh_params_load() and before exh_params_apply(): 0, or -EXH_E_GAINS with
  * *instance (may be NULL) the first whose staged k and b are outside. Then what is staged must not
- * be applied: exh_gains_drop() puts the active values back in its place. They are inside, in
+ * be applied: exh_params_drop() puts the active values back in its place. They are inside, in
  * mid-way too, where exh_gains_step() moves them. */
 int exh_gains_staged(const struct exh_params *p, const struct exh_gains_par *rule,
                      uint16_t *instance);
-void exh_gains_drop(struct exh_params *p);
 
 /* At set-up of a scene with a rule: on 1, k and b stand still in exh_params_apply() while locked
  * and are moved by exh_gains_step() alone; 0: as all slewed values. Who forgets the step stays

@@ -45,10 +45,10 @@ enum exh_glove_sensor_id {
     EXH_GLOVE_RING_PIJ,
     EXH_GLOVE_RING_DIJ,
     EXH_GLOVE_RING_MIDDLE_AB, /* 11 .. 14 */
-    EXH_GLOVE_PINKIE_MPJ,
-    EXH_GLOVE_PINKIE_PIJ,
-    EXH_GLOVE_PINKIE_DIJ,
-    EXH_GLOVE_PINKIE_RING_AB, /* 15 .. 18 */
+    EXH_GLOVE_LITTLE_MPJ,
+    EXH_GLOVE_LITTLE_PIJ,
+    EXH_GLOVE_LITTLE_DIJ,
+    EXH_GLOVE_LITTLE_RING_AB, /* 15 .. 18 */
     EXH_GLOVE_PALM_ARCH,
     EXH_GLOVE_WRIST_PITCH,
     EXH_GLOVE_WRIST_YAW, /* 19 .. 21: of the hand as a whole */
@@ -206,9 +206,9 @@ struct exh_glove {
 
 /* Set-up (divides); cal must outlive cfg. T is the time between frames, which is the
  * glove's own and may be several ticks of the loop. -EXH_E_CUTOFF: fc at or above half its
- * rate. -EXH_E_RANGE: a parameter outside its row, more hysteresis than a step, low_raw not
- * below high_raw, what exh_glove_cal_valid() refuses, or a calibrated span that touches a
- * rail. */
+ * rate. -EXH_E_RATE: no period. -EXH_E_RANGE: a parameter outside its row, more hysteresis than a
+ * step, low_raw not below high_raw, what exh_glove_cal_valid() refuses, or a calibrated span that
+ * touches a rail. */
 int exh_glove_setup(struct exh_glove_cfg *cfg, const struct exh_glove_par *par,
                     const struct exh_glove_cal *cal, struct exh_period T);
 

@@ -12,6 +12,7 @@
 #ifndef EXHAND_HAND_H
 #define EXHAND_HAND_H
 
+#include "exhand/glove.h"
 #include "exhand/signal.h"
 #include "exhand/units.h"
 
@@ -21,19 +22,8 @@
 extern "C" {
 #endif
 
-#define EXH_HAND_FINGERS 5  /* thumb, index, middle, ring, little */
-#define EXH_HAND_JOINTS  3  /* driven, of one finger: q0, q1, q2 */
-#define EXH_HAND_SENSORS 22 /* of the glove, in the order of glove.h */
-#define EXH_HAND_TERMS   2  /* sensors that move one joint, at most */
-
-/* A finger's number, in every array and mask by finger. */
-enum exh_hand_finger_id {
-    EXH_THUMB,
-    EXH_INDEX,
-    EXH_MIDDLE,
-    EXH_RING,
-    EXH_LITTLE /* 0 .. 4 */
-};
+#define EXH_HAND_JOINTS 3 /* driven, of one finger: q0, q1, q2 */
+#define EXH_HAND_TERMS  2 /* sensors that move one joint, at most */
 
 /* --- sensors to joints --- */
 
@@ -44,14 +34,14 @@ enum exh_hand_finger_id {
 struct exh_hand_joint {
     int32_t bias_turn_q32;            /* the joint's angle when all sensors are at 0 */
     int32_t gain_q24[EXH_HAND_TERMS]; /* -8 .. 8; 0: no term */
-    uint8_t sensor[EXH_HAND_TERMS];   /* below EXH_HAND_SENSORS */
+    uint8_t sensor[EXH_HAND_TERMS];   /* below EXH_GLOVE_SENSORS */
     int32_t lo_turn_q32, hi_turn_q32; /* the joint's limits, lo <= hi */
 };
 /* How all of a hand's joints follow them; data, in ROM or the caller's. */
 struct exh_hand_map {
-    struct exh_hand_joint joint[EXH_HAND_FINGERS][EXH_HAND_JOINTS]; /* q0, q1, q2 of each */
+    struct exh_hand_joint joint[EXH_FINGERS][EXH_HAND_JOINTS]; /* q0, q1, q2 of each */
     /* Sensors of the wearer's own joints that the string bends: arm1's, and the two beyond it. */
-    uint8_t bent[EXH_HAND_FINGERS][3]; /* below EXH_HAND_SENSORS; a thumb has one beyond, twice */
+    uint8_t bent[EXH_FINGERS][3]; /* below EXH_GLOVE_SENSORS; a thumb has one beyond, twice */
 };
 extern const struct exh_hand_map exh_hit2_map; /* of the DLR/HIT Hand II, right */
 
@@ -73,7 +63,7 @@ struct exh_hand_bones {
     int32_t rot_q30[3][3]; /* rows x, y, z of the palm: the base frame's axes are the columns */
     int32_t base_m_q32[3]; /* where q0 and q1 are; within +-0.125 m */
 };
-extern const struct exh_hand_bones exh_hit2_bones[EXH_HAND_FINGERS];
+extern const struct exh_hand_bones exh_hit2_bones[EXH_FINGERS];
 
 /* Parameters of one finger; rows in exh_hand_rows[]. */
 struct exh_hand_par {

@@ -15,8 +15,8 @@
  * there is no contact, and the force falls as fast as the drive lets it. d is that of the plane
  * taken at the freeze, so that nothing of this hangs on the link.
  *
- * Where no contact can be, q_lim is EXH_PRECONTACT_NEVER, which no string reaches. That
- * is so when
+ * exh_precontact_none() says that no contact can be; then exh_contact_free() has the place of the
+ * law. That is so when
  *   - no plane has come yet, or the world said that there is none (no hit);
  *   - the plane is older than age_max (only while q_lim moves along; a frozen one does
  *     not age);
@@ -41,7 +41,9 @@
 extern "C" {
 #endif
 
-#define EXH_PRECONTACT_NEVER INT32_MAX /* q_lim, m, q30: 2 m of string */
+/* What lim_m_q30 shows where there is no contact, for logs and people. The law goes by
+ * exh_precontact_none(): a q_lim at the format's end is a place like any other. */
+#define EXH_PRECONTACT_NO_LIM INT32_MAX
 
 /* --- what the world tells --- */
 
@@ -166,8 +168,8 @@ enum exh_precontact_bit {
 };
 
 /* Set-up (divides); par and the materials must outlive cfg. pad_m_q30: the pad's radius t,
- * m, 0 .. 25 mm (exh_hand_par has it). -EXH_E_RANGE: a parameter outside its range above, or no
- * material, or more than 255. Pad and its sign are those of planes told afterwards. */
+ * m, 0 .. 25 mm (exh_hand_par has it). -EXH_E_RATE: T. -EXH_E_RANGE: a parameter outside its range
+ * above, or no material, or more than 255. Pad and its sign are those of planes told afterwards. */
 int exh_precontact_setup(struct exh_precontact_cfg *cfg, const struct exh_precontact_par *par,
                          const struct exh_material_par *material, unsigned materials,
                          int32_t pad_m_q30, struct exh_period T);
@@ -178,6 +180,12 @@ int exh_precontact_setup(struct exh_precontact_cfg *cfg, const struct exh_precon
 int exh_precontact_tell(struct exh_precontact *s, const struct exh_precontact_cfg *cfg,
                         const struct exh_plane *plane, uint32_t age_ticks);
 
+/* 1: no contact can be, exh_contact_free() is due; 0: one can be at lim_m_q30. */
+static inline int exh_precontact_none(const struct exh_precontact *s)
+{
+    return s->phase < EXH_PRECONTACT_TRACK;
+}
+
 /* Ticks that were missed, before tell() and step() of the next: the plane told last is so much
  * older, and a doubt has lasted so much longer. */
 void exh_precontact_skip(struct exh_precontact *s, uint32_t missed);
@@ -185,7 +193,7 @@ void exh_precontact_skip(struct exh_precontact *s, uint32_t missed);
 /* One tick; call before the contact law and give it lim_m_q30. d is exact but for its one
  * rounding (1/2 LSB) and saturates at +-2 m; q_lim is within 1/2 LSB of q - s*d, and s of the
  * slope within 2^-25 + 2^-28*s; it saturates. Returns bits. With the law's own q, no input
- * makes the law touch before the freeze, but for q at the format's end, 2 m. */
+ * makes the law touch before the freeze, but for q at the format's end while q_lim moves along. */
 uint32_t exh_precontact_step(struct exh_precontact *s, const struct exh_precontact_cfg *cfg,
                              const struct exh_precontact_in *in);
 
@@ -215,8 +223,9 @@ struct exh_precontact_advice {
 
 /* Set-up or host (divides). d_lim_m_q30, < 0: the one to be judged, of which ray and speed are
  * told; it is too small if it is above advice->d_lim_m_q30. All rounded to the safe side, the
- * first within 2 LSB and 1 ns of motion. -EXH_E_RANGE: a need below 0, lag or age above 2 s,
- * d_lim not below 0, or an answer beyond 2 m or 16 m/s (the speed stands at 16 m/s instead). */
+ * first within 2 LSB and 1 ns of motion. -EXH_E_RATE: T. -EXH_E_RANGE: a need below 0, lag or age
+ * above 2 s, d_lim not below 0, or an answer beyond 2 m or 16 m/s (the speed stands at 16 m/s
+ * instead). */
 int exh_precontact_advise(struct exh_precontact_advice *advice,
                           const struct exh_precontact_need *need, struct exh_period T,
                           int32_t d_lim_m_q30);

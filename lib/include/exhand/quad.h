@@ -84,7 +84,7 @@ struct exh_quad {
 };
 
 /* Set-up (divides); par must outlive cfg. bits: the counter's width, from the
- * board. -EXH_E_RANGE: bits not 16 .. 32, step or speed_max outside its range
+ * board. -EXH_E_RATE: T. -EXH_E_RANGE: bits not 16 .. 32, step or speed_max outside its range
  * above, or speed_max moves the counter by a quarter of its width or more in one
  * tick: so a movement of up to three times that speed is still told as too fast. */
 int exh_quad_setup(struct exh_quad_cfg *cfg, const struct exh_quad_par *par, struct exh_period T,

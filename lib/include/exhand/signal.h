@@ -72,6 +72,10 @@ int32_t exh_signal_find(const struct exh_signal_table *t, uint16_t id, uint16_t 
  * give the same meaning to the same value array. */
 uint32_t exh_signal_crc(const struct exh_signal_table *t);
 
+/* 1 if n values in a row, a struct of int32_t as a module's parameters are, are each within their
+ * row: for parameters that have passed no other check, as those in ROM. */
+int exh_rows_hold(const struct exh_signal *row, unsigned n, const void *values);
+
 /* A scene's parameters. The caller owns both arrays, exh_signal_count() long; the active one is the
  * scene's parameter struct, the staged one what is wanted. Zero, or as exh_params_init() leaves it;
  * both arrays are written by the functions below only, or before exh_params_seal(). */

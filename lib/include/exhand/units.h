@@ -59,6 +59,19 @@ struct exh_vec3 {
     int32_t x, y, z; /* in the frame that whoever has it says */
 };
 
+/* The fingers of the device, in the order of all its arrays. */
+enum exh_finger { EXH_THUMB, EXH_INDEX, EXH_MIDDLE, EXH_RING, EXH_LITTLE };
+#define EXH_FINGERS 5 /* how many there are */
+
+/* Ends of ranges that several modules share. */
+#define EXH_FORCE_MAX_N_Q20 EXH_Q(100, 1, EXH_Q_FORCE) /* no force limit is higher */
+#define EXH_K_MAX_NPM_Q10   EXH_Q(1000000, 1, EXH_Q_K) /* stiffness */
+#define EXH_B_MAX_NSPM_Q20  EXH_Q(1000, 1, EXH_Q_B)    /* damping */
+#define EXH_PAD_MAX_M_Q30   EXH_Q(25, 1000, EXH_Q_POS) /* radius of a fingertip's pad */
+
+/* Compile-time assertion in C99; name must be unique in its scope. */
+#define EXH_STATIC_ASSERT(name, cond) typedef char exh_static_##name[(cond) ? 1 : -1]
+
 /* 1 if T is within 50 us .. 1 s, but for the 1000 ppm by which a timer may miss it: what
  * the loop and a replay ask before they start. */
 static inline int exh_period_ok(struct exh_period T)

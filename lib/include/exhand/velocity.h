@@ -59,7 +59,7 @@ struct exh_velocity_window {
 };
 
 /* Set-up (divides); the velocity, m/s, q27, in a tick of this count; state through a cursor.
- * -EXH_E_RANGE when p > 4 or one count per window is outside 2^-59..16 m/s. */
+ * -EXH_E_RATE: T; -EXH_E_RANGE when p > 4 or the step is not above 0. */
 int exh_velocity_window_setup(struct exh_velocity_window_cfg *cfg, struct exh_velocity_scale s,
                               const struct exh_velocity_par *par);
 int32_t exh_velocity_window_mps_q27(struct exh_velocity_window *s,

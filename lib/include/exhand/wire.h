@@ -26,7 +26,6 @@ extern "C" {
 
 #define EXH_WIRE_VERSION  2       /* 1: the state in STATE was 0 off, 1 run, 2 fault */
 #define EXH_WIRE_MAGIC    0x5758u /* first bytes of every packet, "XW" */
-#define EXH_WIRE_FINGERS  5       /* in every packet, in use or not */
 #define EXH_WIRE_OVERHEAD 22      /* bytes around a payload */
 #define EXH_WIRE_MAX_B    256     /* no packet is longer */
 #define EXH_WIRE_NEVER_MS 65535u  /* age: never, or so old */
@@ -78,12 +77,12 @@ struct exh_wire_state {
     uint8_t touching; /* mask */
     uint16_t age_ms;  /* of the newest planes; EXH_WIRE_NEVER_MS: never or longer */
     uint32_t faults;  /* enum exh_fault */
-    int32_t joint_turn_q32[EXH_WIRE_FINGERS][3]; /* theta: q0, q1, q2 */
-    int32_t tip_m_q30[EXH_WIRE_FINGERS][3];      /* P_F */
-    int32_t force_N_q20[EXH_WIRE_FINGERS];       /* commanded */
-    int32_t d_m_q30[EXH_WIRE_FINGERS];           /* distance; INT32_MIN: no plane */
-    int32_t q_m_q30[EXH_WIRE_FINGERS];           /* string pulled out */
-    int32_t q_lim_m_q30[EXH_WIRE_FINGERS];       /* EXH_PRECONTACT_NEVER: no contact can be */
+    int32_t joint_turn_q32[EXH_FINGERS][3]; /* theta: q0, q1, q2 */
+    int32_t tip_m_q30[EXH_FINGERS][3];      /* P_F */
+    int32_t force_N_q20[EXH_FINGERS];       /* commanded */
+    int32_t d_m_q30[EXH_FINGERS];           /* distance; INT32_MIN: no plane */
+    int32_t q_m_q30[EXH_FINGERS];           /* string pulled out */
+    int32_t q_lim_m_q30[EXH_FINGERS];       /* EXH_PRECONTACT_NO_LIM: no contact can be */
 };
 
 /* What is told of one finger. */
@@ -101,7 +100,7 @@ struct exh_wire_planes {
     uint32_t echo_seq;      /* of the state answered, and its time stamp: the sender */
     uint32_t echo_stamp_us; /* subtracts it from its clock and has the round trip */
     uint8_t fingers;        /* mask: told of; of the others kind is UNTOLD */
-    struct exh_wire_plane plane[EXH_WIRE_FINGERS]; /* by finger */
+    struct exh_wire_plane plane[EXH_FINGERS]; /* by finger */
 };
 
 /* PARAM: a parameter to be set. */

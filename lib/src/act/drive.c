@@ -6,7 +6,6 @@
 #include <stddef.h>
 
 /* What a parameter may be, whether it comes from a table or from ROM. */
-#define F_MAX_N_Q20       EXH_Q(100, 1, EXH_Q_FORCE)
 #define SLEW_MAX_NPS      10000000
 #define SLEW_DOWN_MIN_NPS 1000
 #define I_PEAK_MIN_A_Q26  EXH_Q(1, 10, EXH_Q_CUR)
@@ -15,8 +14,8 @@
 #define PEAK_MAX_MS       2700
 
 const struct exh_signal exh_drive_rows[EXH_DRIVE_ROWS] = {
-    {0x0501, EXH_Q_FORCE, EXH_WHEN_LIMIT, 0, F_MAX_N_Q20, EXH_Q(40, 1, EXH_Q_FORCE), "f_max", "n",
-     "force limit"},
+    {0x0501, EXH_Q_FORCE, EXH_WHEN_LIMIT, 0, EXH_FORCE_MAX_N_Q20, EXH_Q(40, 1, EXH_Q_FORCE),
+     "f_max", "n", "force limit"},
     {0x0502, 0, EXH_WHEN_ANY, 1, SLEW_MAX_NPS, 200000, "slew_up", "n_per_s",
      "fastest rise of force"},
     /* At 1 kN/s the 22 N of a CyberGrasp motor are gone in 22 ms: letting go is never slow. */
@@ -99,6 +98,11 @@ int32_t exh_table_at(struct exh_table t, int32_t x)
 
 /* --- set-up --- */
 
+/* Ticks of the longest peak at the highest rate, which a timer may exceed by 1000 ppm. */
+#define PEAK_TICKS_MAX ((int64_t)PEAK_MAX_MS * 20020 / 1000 + 1)
+EXH_STATIC_ASSERT(i2t_has_room, ((int64_t)I_PEAK_MAX_A_Q26 >> 10) * (I_PEAK_MAX_A_Q26 >> 10) <
+                                    INT64_MAX / 2 / PEAK_TICKS_MAX);
+
 /* I2t: heat above i_cont^2, in A^2 ticks with 32 fraction bits, so that no
  * multiplication by the period is needed in the tick. */
 static int setup_i2t(struct exh_drive_cfg *cfg, const struct exh_drive_par *par,
@@ -115,7 +119,6 @@ static int setup_i2t(struct exh_drive_cfg *cfg, const struct exh_drive_par *par,
     cfg->i2t_fold.mant = 0;
     cfg->i2t_fold.shift = 1;
     if (excess_q32 == 0) { return 0; }
-    if (ticks > exh_udiv64(INT64_MAX / 2, excess_q32, NULL)) { return -EXH_E_RANGE; }
     cfg->i2t_budget_q32 = (int64_t)(excess_q32 * ticks);
     while (cfg->i2t_budget_q32 >> cfg->i2t_shift > INT32_MAX) { cfg->i2t_shift++; }
     /* Never 0: one LSB of peak above i_cont, i_peak 0.1 A, is 2^13 already. */
@@ -136,7 +139,7 @@ static int table_ok(struct exh_table t)
  * gate. The rows are not linked for this: they are names and help besides. */
 static int par_ok(const struct exh_drive_par *par, int monitor)
 {
-    return exh_inside(par->f_max_N_q20, 0, F_MAX_N_Q20) &&
+    return exh_inside(par->f_max_N_q20, 0, EXH_FORCE_MAX_N_Q20) &&
            exh_inside(par->slew_up_Nps, 1, SLEW_MAX_NPS) &&
            exh_inside(par->slew_down_Nps, SLEW_DOWN_MIN_NPS, SLEW_MAX_NPS) &&
            exh_inside(par->i_peak_A_q26, I_PEAK_MIN_A_Q26, I_PEAK_MAX_A_Q26) &&
@@ -152,8 +155,9 @@ int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par, 
                     struct exh_table force_to_cur, struct exh_table cur_to_force)
 {
     int err;
-    if (!par_ok(par, cur_to_force.n > 0) || T.num == 0 || T.den == 0 || force_to_cur.n < 2 ||
-        !table_ok(force_to_cur) || !table_ok(cur_to_force)) {
+    if (!exh_period_ok(T)) { return -EXH_E_RATE; }
+    if (!par_ok(par, cur_to_force.n > 0) || force_to_cur.n < 2 || !table_ok(force_to_cur) ||
+        !table_ok(cur_to_force)) {
         return -EXH_E_RANGE;
     }
     if (force_to_cur.knot[0].x > 0 || force_to_cur.knot[force_to_cur.n - 1].x <= 0 ||
@@ -286,7 +290,7 @@ void exh_drive_bytes(struct exh_bytes *c, struct exh_drive *s)
     exh_bytes_i32(c, &s->fall_N_q20);
     exh_bytes_i64(c, &s->i2t_q32);
     /* From damaged bytes: no force out of range, and no heat that a sum with it overflows. */
-    s->force_N_q20 = exh_clamp(s->force_N_q20, 0, F_MAX_N_Q20);
-    s->fall_N_q20 = exh_clamp(s->fall_N_q20, 0, F_MAX_N_Q20 + 1);
+    s->force_N_q20 = exh_clamp(s->force_N_q20, 0, EXH_FORCE_MAX_N_Q20);
+    s->fall_N_q20 = exh_clamp(s->fall_N_q20, 0, EXH_FORCE_MAX_N_Q20 + 1);
     if (s->i2t_q32 < 0 || s->i2t_q32 > INT64_MAX / 2) { s->i2t_q32 = INT64_MAX / 2; }
 }

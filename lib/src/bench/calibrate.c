@@ -4,12 +4,11 @@
 #include "exhand/bytes.h"
 #include "exhand/error.h"
 
-#define IMAGE_MAGIC     0x43485845u /* "EXHC" */
-#define IMAGE_CRC_B     4u
-#define FORCE_MAX_N_Q20 EXH_Q(100, 1, EXH_Q_FORCE)
-#define CUR_MAX_A_Q26   EXH_Q(66, 10, EXH_Q_CUR)
-#define MON_MAX_A_Q26   EXH_Q(10, 1, EXH_Q_CUR)
-#define RATIO_MAX_NPA   2047 /* the least is 0.1 */
+#define IMAGE_MAGIC   0x43485845u /* "EXHC" */
+#define IMAGE_CRC_B   4u
+#define CUR_MAX_A_Q26 EXH_Q(66, 10, EXH_Q_CUR)
+#define MON_MAX_A_Q26 EXH_Q(10, 1, EXH_Q_CUR)
+#define RATIO_MAX_NPA 2047 /* the least is 0.1 */
 
 /* --- mean --- */
 
@@ -50,7 +49,7 @@ static int point_ok(const struct exh_calib_point *p, enum exh_calib_which which)
 {
     const int32_t cur = current_of(p, which);
     return ratio_ok(p->force_N_q20, cur) && p->force_N_q20 > 0 &&
-           p->force_N_q20 <= FORCE_MAX_N_Q20 &&
+           p->force_N_q20 <= EXH_FORCE_MAX_N_Q20 &&
            cur <= (which == EXH_CALIB_MONITOR ? MON_MAX_A_Q26 : CUR_MAX_A_Q26) &&
            p->friction_A_q26 >= 0 && p->friction_A_q26 <= CUR_MAX_A_Q26;
 }

@@ -39,7 +39,8 @@ int exh_precontact_advise(struct exh_precontact_advice *advice,
     const uint64_t slide = (uint64_t)need->slide_m_q30;
     uint64_t tick_ns, late_ns, d, ray, error, speed;
 
-    if (!is_need(need) || d_lim_m_q30 >= 0 || !exh_period_ok(T)) { return -EXH_E_RANGE; }
+    if (!exh_period_ok(T)) { return -EXH_E_RATE; }
+    if (!is_need(need) || d_lim_m_q30 >= 0) { return -EXH_E_RANGE; }
     tick_ns = div_up(NS * T.num, T.den);
     late_ns = tick_ns + UINT64_C(1000) * (uint64_t)need->lag_us;
     d = way_m_q30(need->speed_mps_q27, late_ns) + noise;

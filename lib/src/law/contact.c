@@ -5,9 +5,9 @@
 #include "exhand/units.h"
 
 const struct exh_signal exh_contact_rows[EXH_CONTACT_ROWS] = {
-    {0x0401, EXH_Q_K, EXH_WHEN_SLEWED, 0, EXH_Q(1000000, 1, EXH_Q_K), EXH_Q(1500, 1, EXH_Q_K), "k",
+    {EXH_CONTACT_K_ID, EXH_Q_K, EXH_WHEN_SLEWED, 0, EXH_K_MAX_NPM_Q10, EXH_Q(1500, 1, EXH_Q_K), "k",
      "n_per_m", "stiffness of the virtual wall"},
-    {0x0402, EXH_Q_B, EXH_WHEN_SLEWED, 0, EXH_Q(1000, 1, EXH_Q_B), 0, "b", "ns_per_m",
+    {EXH_CONTACT_B_ID, EXH_Q_B, EXH_WHEN_SLEWED, 0, EXH_B_MAX_NSPM_Q20, 0, "b", "ns_per_m",
      "damping of the virtual wall"},
     {0x0403, EXH_Q_FORCE, EXH_WHEN_SLEWED, 0, EXH_Q(20, 1, EXH_Q_FORCE),
      EXH_Q(107, 1000, EXH_Q_FORCE), "f0", "n", "pull-back force while the string runs in"},
@@ -34,8 +34,9 @@ static void follow_reversals(struct exh_contact *s, int32_t pos, int32_t band)
     }
 }
 
-int exh_contact_law(struct exh_contact *s, const struct exh_contact_par *par,
-                    struct exh_contact_in in, struct exh_force_ledger *out)
+/* There is something to touch: `there` is -1, else 0. */
+static inline int law(struct exh_contact *s, const struct exh_contact_par *par,
+                      struct exh_contact_in in, int32_t there, struct exh_force_ledger *out)
 {
     const int32_t pen = exh_diff_sat32(in.pos_m_q30, in.lim_m_q30);
     int touching;
@@ -44,6 +45,7 @@ int exh_contact_law(struct exh_contact *s, const struct exh_contact_par *par,
     follow_reversals(s, in.pos_m_q30, par->f0_band_m_q30);
     touching = pen >= 0 ||
                (s->touching && pen > ~par->hyst_m_q30); /* ~h is -h - 1, which fits for any h */
+    touching &= there;
     s->touching = (uint8_t)touching;
 
     /* Both products in every tick: the cost must not depend on contact. */
@@ -58,6 +60,18 @@ int exh_contact_law(struct exh_contact *s, const struct exh_contact_par *par,
     out->release_N_q20 = 0;
     out->force_N_q20 = 0;
     return touching;
+}
+
+int exh_contact_law(struct exh_contact *s, const struct exh_contact_par *par,
+                    struct exh_contact_in in, struct exh_force_ledger *out)
+{
+    return law(s, par, in, -1, out);
+}
+
+void exh_contact_free(struct exh_contact *s, const struct exh_contact_par *par, int32_t pos_m_q30,
+                      struct exh_force_ledger *out)
+{
+    (void)law(s, par, (struct exh_contact_in){pos_m_q30, 0, pos_m_q30}, 0, out);
 }
 
 void exh_contact_bytes(struct exh_bytes *c, struct exh_contact *s)

@@ -7,21 +7,16 @@
 
 #include <stddef.h>
 
-#define K_MAX EXH_Q(1000000, 1, EXH_Q_K)
-#define B_MAX EXH_Q(1000, 1, EXH_Q_B)
-#define K_ID  0x0401 /* rows of exhand/contact.h */
-#define B_ID  0x0402
-
 #define RATE_Q8(rate_Hz) (INT32_C(1) * (rate_Hz)*256)
 
 #define KNOT_B(i) \
     { \
-        0x1210 + (i), EXH_Q_B, EXH_WHEN_SETUP, 0, B_MAX, 0, "rule_b" #i, "ns_per_m", \
+        0x1210 + (i), EXH_Q_B, EXH_WHEN_SETUP, 0, EXH_B_MAX_NSPM_Q20, 0, "rule_b" #i, "ns_per_m", \
             "damping of a knot" \
     }
 #define KNOT_K(i) \
     { \
-        0x1220 + (i), EXH_Q_K, EXH_WHEN_SETUP, 0, K_MAX, 0, "rule_k" #i, "n_per_m", \
+        0x1220 + (i), EXH_Q_K, EXH_WHEN_SETUP, 0, EXH_K_MAX_NPM_Q10, 0, "rule_k" #i, "n_per_m", \
             "largest stiffness at it" \
     }
 
@@ -29,7 +24,7 @@ const struct exh_signal exh_gains_rows[EXH_GAINS_ROWS] = {
     {0x1201, 8, EXH_WHEN_SETUP, RATE_Q8(1), RATE_Q8(20000), RATE_Q8(2000), "rule_rate", "hz",
      "the loop rate that the rule of gains is for"},
     {0x1202, 0, EXH_WHEN_SETUP, 2, EXH_GAINS_KNOTS, 2, "rule_n", "", "knots of the rule of gains"},
-    {0x1203, EXH_Q_K, EXH_WHEN_SETUP, 0, K_MAX, 0, "rule_k_min", "n_per_m",
+    {0x1203, EXH_Q_K, EXH_WHEN_SETUP, 0, EXH_K_MAX_NPM_Q10, 0, "rule_k_min", "n_per_m",
      "smallest stiffness inside"},
     KNOT_B(0),
     KNOT_B(1),
@@ -72,12 +67,12 @@ int exh_gains_setup(const struct exh_gains_par *rule, struct exh_period T)
 {
     if (!exh_inside(rule->rate_Hz_q8, RATE_Q8(1), RATE_Q8(20000)) ||
         !exh_inside(rule->knots, 2, EXH_GAINS_KNOTS) ||
-        !exh_inside(rule->k_min_Npm_q10, 0, K_MAX)) {
+        !exh_inside(rule->k_min_Npm_q10, 0, EXH_K_MAX_NPM_Q10)) {
         return -EXH_E_RANGE;
     }
     for (int32_t i = 0; i < rule->knots; i++) {
-        if (!exh_inside(rule->b_Nspm_q20[i], 0, B_MAX) ||
-            !exh_inside(rule->k_Npm_q10[i], 0, K_MAX)) {
+        if (!exh_inside(rule->b_Nspm_q20[i], 0, EXH_B_MAX_NSPM_Q20) ||
+            !exh_inside(rule->k_Npm_q10[i], 0, EXH_K_MAX_NPM_Q10)) {
             return -EXH_E_RANGE;
         }
         if (i > 0 && rule->b_Nspm_q20[i] <= rule->b_Nspm_q20[i - 1]) { return -EXH_E_MONOTONE; }
@@ -127,8 +122,8 @@ int exh_gains_ok(const struct exh_gains_par *rule, int32_t k_Npm_q10, int32_t b_
 /* Both of an instance, or it has no wall. */
 static int pair_ok(const struct exh_params *p, const struct exh_gains_par *rule, uint16_t instance)
 {
-    const int32_t k = exh_signal_find(p->table, K_ID, instance);
-    const int32_t b = exh_signal_find(p->table, B_ID, instance);
+    const int32_t k = exh_signal_find(p->table, EXH_CONTACT_K_ID, instance);
+    const int32_t b = exh_signal_find(p->table, EXH_CONTACT_B_ID, instance);
     return k < 0 || b < 0 || exh_gains_ok(rule, p->staged[k], p->staged[b]);
 }
 
@@ -139,7 +134,10 @@ int exh_gains_stage(struct exh_params *p, const struct exh_gains_par *rule, uint
     const int32_t was = i >= 0 ? p->staged[i] : 0;
     const uint8_t pending = p->pending;
     const int err = exh_params_stage(p, id, instance, raw);
-    if (err < 0 || (id != K_ID && id != B_ID) || pair_ok(p, rule, instance)) { return err; }
+    if (err < 0 || (id != EXH_CONTACT_K_ID && id != EXH_CONTACT_B_ID) ||
+        pair_ok(p, rule, instance)) {
+        return err;
+    }
     (void)exh_params_stage(p, id, instance, was);
     p->pending = pending;
     return -EXH_E_GAINS;
@@ -148,7 +146,7 @@ int exh_gains_stage(struct exh_params *p, const struct exh_gains_par *rule, uint
 int exh_gains_staged(const struct exh_params *p, const struct exh_gains_par *rule,
                      uint16_t *instance)
 {
-    for (uint16_t n = 0; exh_signal_find(p->table, K_ID, n) >= 0; n++) {
+    for (uint16_t n = 0; exh_signal_find(p->table, EXH_CONTACT_K_ID, n) >= 0; n++) {
         if (!pair_ok(p, rule, n)) {
             if (instance != NULL) { *instance = n; }
             return -EXH_E_GAINS;
@@ -157,17 +155,12 @@ int exh_gains_staged(const struct exh_params *p, const struct exh_gains_par *rul
     return 0;
 }
 
-void exh_gains_drop(struct exh_params *p)
-{
-    exh_params_drop(p);
-}
-
 /* --- one step of the way --- */
 
 void exh_gains_lead(struct exh_params *p, int on)
 {
-    p->led[0] = on ? K_ID : 0;
-    p->led[1] = on ? B_ID : 0;
+    p->led[0] = on ? EXH_CONTACT_K_ID : 0;
+    p->led[1] = on ? EXH_CONTACT_B_ID : 0;
 }
 
 /* The k to go for: the goal's if no knot between is below the straight line there; else what passes
@@ -229,8 +222,8 @@ void exh_gains_step(struct exh_params *p, const struct exh_gains_par *rule)
 {
     const int moves = p->moving;
     int32_t k;
-    for (uint16_t n = 0; (k = exh_signal_find(p->table, K_ID, n)) >= 0; n++) {
-        const int32_t b = exh_signal_find(p->table, B_ID, n);
+    for (uint16_t n = 0; (k = exh_signal_find(p->table, EXH_CONTACT_K_ID, n)) >= 0; n++) {
+        const int32_t b = exh_signal_find(p->table, EXH_CONTACT_B_ID, n);
         const struct pair none = {0, 0};
         struct pair at, next;
         if (b < 0) { continue; }

@@ -5,7 +5,6 @@
 #include "exhand/fix.h"
 #include "exhand/units.h"
 
-#define F_MOST_N_Q20      EXH_Q(100, 1, EXH_Q_FORCE) /* no f_max is higher */
 #define SPEED_MIN_MPS_Q27 EXH_Q(1, 10, EXH_Q_VEL)
 #define WAY_MAX_CNT       (INT32_C(1) << 24) /* 10 m/s at 1 Hz and 1 um: 10^7 */
 #define LATE              2
@@ -23,7 +22,8 @@ int exh_passivity_setup(struct exh_passivity_cfg *cfg, const struct exh_passivit
                         const struct exh_drive_cfg *drive, struct exh_table held,
                         struct exh_velocity_scale scale, int32_t speed_mps_q27)
 {
-    const int32_t most = drive->f_top_N_q20 < F_MOST_N_Q20 ? drive->f_top_N_q20 : F_MOST_N_Q20;
+    const int32_t most =
+        drive->f_top_N_q20 < EXH_FORCE_MAX_N_Q20 ? drive->f_top_N_q20 : EXH_FORCE_MAX_N_Q20;
     struct exh_gain cnt; /* per m/s q27, in a tick */
     int64_t way;
 
@@ -44,18 +44,11 @@ int exh_passivity_setup(struct exh_passivity_cfg *cfg, const struct exh_passivit
     cfg->step_m_q42 = scale.step_m_q42;
     cfg->way_cnt = (int32_t)way;
     cfg->shift = 0;
-    while (way * F_MOST_N_Q20 >> cfg->shift >= INT32_MAX) { cfg->shift++; }
+    while (way * EXH_FORCE_MAX_N_Q20 >> cfg->shift >= INT32_MAX) { cfg->shift++; }
     return exh_gain_set(&cfg->share, UINT64_C(1) << cfg->shift, (uint64_t)way);
 }
 
 /* --- the tick --- */
-
-static int64_t limited(int64_t energy_Ncnt_q20)
-{
-    return energy_Ncnt_q20 > ENERGY_MAX_NCNT_Q20    ? ENERGY_MAX_NCNT_Q20
-           : energy_Ncnt_q20 < -ENERGY_MAX_NCNT_Q20 ? -ENERGY_MAX_NCNT_Q20
-                                                    : energy_Ncnt_q20;
-}
 
 /* Between two ticks. Moved out, the least that may have been held counts, moved in the most. */
 static void observe(struct exh_passivity *s, int32_t moved_cnt, int touching)
@@ -67,7 +60,7 @@ static void observe(struct exh_passivity *s, int32_t moved_cnt, int touching)
     /* A contact is over with a tick without it and without its force. Energy is not lent to the
      * next one. Debts are forgotten once no output can be on its way. */
     if (held == 0 && (!touching || !s->touching) && (e > 0 || late == 0)) { e = 0; }
-    s->energy_Ncnt_q20 = limited(e);
+    s->energy_Ncnt_q20 = exh_clamp64(e, ENERGY_MAX_NCNT_Q20);
 }
 
 /* owed / way, rounded up and by less than 3 LSB more; never less. */
@@ -124,7 +117,7 @@ void exh_passivity_bytes(struct exh_bytes *c, struct exh_passivity *s)
     exh_bytes_u8(c, &s->touching);
     exh_bytes_u8(c, &s->started);
     /* From damaged bytes: nothing that a sum overflows with, and no force that pushes. */
-    s->energy_Ncnt_q20 = limited(s->energy_Ncnt_q20);
+    s->energy_Ncnt_q20 = exh_clamp64(s->energy_Ncnt_q20, ENERGY_MAX_NCNT_Q20);
     s->held_N_q20 = exh_clamp(s->held_N_q20, 0, INT32_MAX);
     s->late_N_q20 = exh_clamp(s->late_N_q20, 0, INT32_MAX);
     s->touching = s->touching != 0;

@@ -5,17 +5,16 @@
 #include "exhand/fix.h"
 
 #define MATERIALS_MAX 255u
-#define PAD_MAX_M_Q30 EXH_Q(25, 1000, EXH_Q_POS)
 #define HALF_Q60      (INT64_C(1) << 29) /* of an LSB of d: rounds it half up */
 #define SCALE_MIN_Q24 (INT32_C(1) << 21)
 #define SCALE_MAX_Q24 (INT32_C(1) << 27)
 
 const struct exh_signal exh_material_rows[EXH_MATERIAL_ROWS] = {
-    {0x0B01, EXH_Q_K, EXH_WHEN_ANY, 0, EXH_Q(1000000, 1, EXH_Q_K), EXH_Q(20000, 1, EXH_Q_K),
-     "mat_k", "n_per_m", "stiffness of the material"},
-    {0x0B02, EXH_Q_B, EXH_WHEN_ANY, 0, EXH_Q(1000, 1, EXH_Q_B), EXH_Q(60, 1, EXH_Q_B), "mat_b",
+    {0x0B01, EXH_Q_K, EXH_WHEN_ANY, 0, EXH_K_MAX_NPM_Q10, EXH_Q(20000, 1, EXH_Q_K), "mat_k",
+     "n_per_m", "stiffness of the material"},
+    {0x0B02, EXH_Q_B, EXH_WHEN_ANY, 0, EXH_B_MAX_NSPM_Q20, EXH_Q(60, 1, EXH_Q_B), "mat_b",
      "ns_per_m", "damping of the material"},
-    {0x0B03, EXH_Q_FORCE, EXH_WHEN_ANY, 0, EXH_Q(100, 1, EXH_Q_FORCE), EXH_Q(12, 1, EXH_Q_FORCE),
+    {0x0B03, EXH_Q_FORCE, EXH_WHEN_ANY, 0, EXH_FORCE_MAX_N_Q20, EXH_Q(12, 1, EXH_Q_FORCE),
      "mat_f_max", "n", "force limit of the material"},
 };
 
@@ -36,15 +35,6 @@ const struct exh_signal exh_precontact_rows[EXH_PRECONTACT_ROWS] = {
     {0x0C09, 0, EXH_WHEN_SETUP, 1, 60000, 50, "tip_age_max", "ms", "an older fingertip is unknown"},
 };
 
-/* n values of parameters against their rows: those in ROM have passed no other check. */
-static int in_rows(const struct exh_signal *row, const int32_t *v, int n)
-{
-    for (int i = 0; i < n; i++) {
-        if (v[i] < row[i].min || v[i] > row[i].max) { return 0; }
-    }
-    return 1;
-}
-
 /* The first number of ticks that lasts longer. At 20 kHz and a minute 1.2 million: far from any
  * end. */
 static uint32_t more_than(int32_t ms, struct exh_period T)
@@ -56,12 +46,14 @@ int exh_precontact_setup(struct exh_precontact_cfg *cfg, const struct exh_precon
                          const struct exh_material_par *material, unsigned materials,
                          int32_t pad_m_q30, struct exh_period T)
 {
-    if (materials < 1 || materials > MATERIALS_MAX || pad_m_q30 < 0 || pad_m_q30 > PAD_MAX_M_Q30 ||
-        T.num == 0 || !in_rows(exh_precontact_rows, &par->d_lim_m_q30, EXH_PRECONTACT_ROWS)) {
+    if (!exh_period_ok(T)) { return -EXH_E_RATE; }
+    if (materials < 1 || materials > MATERIALS_MAX || pad_m_q30 < 0 ||
+        pad_m_q30 > EXH_PAD_MAX_M_Q30 ||
+        !exh_rows_hold(exh_precontact_rows, EXH_PRECONTACT_ROWS, par)) {
         return -EXH_E_RANGE;
     }
     for (unsigned i = 0; i < materials; i++) {
-        if (!in_rows(exh_material_rows, &material[i].k_Npm_q10, EXH_MATERIAL_ROWS)) {
+        if (!exh_rows_hold(exh_material_rows, EXH_MATERIAL_ROWS, &material[i])) {
             return -EXH_E_RANGE;
         }
     }
@@ -156,7 +148,7 @@ static uint32_t track(struct exh_precontact *s, const struct exh_precontact_par 
                                   ? scale_of_slope(&s->newest.normal_q30, &in->slope_q24, &bits)
                                   : par->scale_q24;
     s->lim_m_q30 = exh_clamp(in->pos_m_q30 - exh_mul_shr(scale_q24, s->d_m_q30, 24), INT32_MIN,
-                             EXH_PRECONTACT_NEVER);
+                             EXH_PRECONTACT_NO_LIM);
     s->phase = EXH_PRECONTACT_TRACK;
     return bits;
 }
@@ -175,7 +167,7 @@ static uint32_t freeze(struct exh_precontact *s, const struct exh_precontact_cfg
 static uint32_t be_inside(struct exh_precontact *s)
 {
     s->born_n += s->phase != EXH_PRECONTACT_INSIDE;
-    s->lim_m_q30 = EXH_PRECONTACT_NEVER;
+    s->lim_m_q30 = EXH_PRECONTACT_NO_LIM;
     s->phase = EXH_PRECONTACT_INSIDE;
     return EXH_PRECONTACT_AROUND;
 }
@@ -186,7 +178,7 @@ static uint32_t be_idle(struct exh_precontact *s, uint32_t left)
     const int stale = left == 0 && (n->x | n->y | n->z) != 0;
     s->stale_n += stale && s->phase == EXH_PRECONTACT_TRACK;
     s->d_m_q30 = INT32_MIN;
-    s->lim_m_q30 = EXH_PRECONTACT_NEVER;
+    s->lim_m_q30 = EXH_PRECONTACT_NO_LIM;
     s->phase = EXH_PRECONTACT_IDLE;
     return stale ? EXH_PRECONTACT_STALE : 0;
 }
@@ -203,7 +195,7 @@ static uint32_t stand(struct exh_precontact *s, const struct exh_precontact_cfg 
             return EXH_PRECONTACT_STANDS | EXH_PRECONTACT_DOUBT;
         }
         s->let_go_n++;
-        s->lim_m_q30 = EXH_PRECONTACT_NEVER;
+        s->lim_m_q30 = EXH_PRECONTACT_NO_LIM;
         s->phase = EXH_PRECONTACT_IDLE;
         return EXH_PRECONTACT_RELEASE | EXH_PRECONTACT_DOUBT | EXH_PRECONTACT_LETGO;
     }
@@ -264,11 +256,13 @@ static int plane_bytes(struct exh_bytes *c, struct exh_precontact_plane *p)
     return 0;
 }
 
-static void taken_bytes(struct exh_bytes *c, int32_t *v)
+/* In the order of the rows, each brought back into its range. */
+static void taken_bytes(struct exh_bytes *c, struct exh_material_par *m)
 {
+    int32_t *const v[EXH_MATERIAL_ROWS] = {&m->k_Npm_q10, &m->b_Nspm_q20, &m->f_max_N_q20};
     for (int i = 0; i < EXH_MATERIAL_ROWS; i++) {
-        exh_bytes_i32(c, &v[i]);
-        v[i] = exh_clamp(v[i], exh_material_rows[i].min, exh_material_rows[i].max);
+        exh_bytes_i32(c, v[i]);
+        *v[i] = exh_clamp32(*v[i], exh_material_rows[i].min, exh_material_rows[i].max);
     }
 }
 
@@ -277,7 +271,7 @@ void exh_precontact_bytes(struct exh_bytes *c, struct exh_precontact *s)
     int told, held;
     exh_bytes_i32(c, &s->d_m_q30);
     exh_bytes_i32(c, &s->lim_m_q30);
-    taken_bytes(c, &s->taken.k_Npm_q10);
+    taken_bytes(c, &s->taken);
     exh_bytes_u8(c, &s->phase);
     told = plane_bytes(c, &s->newest);
     held = plane_bytes(c, &s->held);

@@ -3,6 +3,7 @@
 
 #include "exhand/bytes.h"
 #include "exhand/error.h"
+#include "exhand/fix.h"
 
 uint32_t exh_signal_count(const struct exh_signal_table *t)
 {
@@ -45,6 +46,17 @@ int32_t exh_signal_find(const struct exh_signal_table *t, uint16_t id, uint16_t 
         first += (uint32_t)grp->rows * grp->instances;
     }
     return -EXH_E_UNKNOWN;
+}
+
+int exh_rows_hold(const struct exh_signal *row, unsigned n, const void *values)
+{
+    for (unsigned i = 0; i < n; i++) {
+        /* By bytes of the whole: no pointer to one member of a struct may go on to the next. */
+        const void *at = (const uint8_t *)values + i * sizeof(int32_t);
+        const int32_t v = *(const int32_t *)at;
+        if (!exh_inside(v, row[i].min, row[i].max)) { return 0; }
+    }
+    return 1;
 }
 
 uint32_t exh_signal_crc(const struct exh_signal_table *t)

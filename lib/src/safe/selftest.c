@@ -5,10 +5,14 @@
 #include "exhand/fix.h"
 #include "exhand/guard.h"
 
-/* What goes in is volatile, or the compiler would test itself. */
-static volatile int32_t a = 0x12345678, b = -0x0BCDEF01, tenth = -123456789;
-static volatile int64_t odd = INT64_C(-0x123456789ABCDEF);
-static volatile uint64_t num = UINT64_C(0xFEDCBA9876543210), den = UINT64_C(0x123456789);
+/* What goes in is volatile, or the compiler would test itself; constant, so it lies in ROM. A test
+ * that damages it says so. */
+#ifndef INPUT
+#define INPUT static const volatile
+#endif
+INPUT int32_t a = 0x12345678, b = -0x0BCDEF01, tenth = -123456789;
+INPUT int64_t odd = INT64_C(-0x123456789ABCDEF);
+INPUT uint64_t num = UINT64_C(0xFEDCBA9876543210), den = UINT64_C(0x123456789);
 
 static int shift_fails(void)
 {

@@ -82,7 +82,9 @@ int exh_filter_setup(struct exh_filter_cfg *cfg, const struct exh_filter_par *pa
     struct exh_real g, damped;
     int high;
 
-    if (num == 0 || den == 0 || par->order < 1 || par->order > 2) { return -EXH_E_RANGE; }
+    /* Frames of a glove may come slower than any loop runs. */
+    if (T.num == 0 || T.den == 0) { return -EXH_E_RATE; }
+    if (num == 0 || par->order < 1 || par->order > 2) { return -EXH_E_RANGE; }
     if (num >= den / 2) { return -EXH_E_CUTOFF; }
     if (num < den >> 21) { return -EXH_E_RANGE; }
 
@@ -135,7 +137,7 @@ void exh_filter_reset(struct exh_filter *s, const int32_t *x, unsigned n)
 static int64_t narrowed(int64_t v, unsigned n)
 {
     const int64_t most = INT64_C(1) << (62 - n);
-    return (v > most ? most : v < -most ? -most : v) * (INT64_C(1) << n);
+    return exh_clamp64(v, most) * (INT64_C(1) << n);
 }
 
 /* Both states keep what they mean: the output does not jump, it goes on from there. The

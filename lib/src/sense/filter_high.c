@@ -11,8 +11,7 @@
  * stop, which takes energy and so cannot start an oscillation. */
 static int64_t bounded(int64_t v)
 {
-    const int64_t most = INT64_C(1) << (31 + 5 + Q);
-    return v > most ? most : v < -most ? -most : v;
+    return exh_clamp64(v, INT64_C(1) << (31 + 5 + Q));
 }
 
 /* What a reset, or a low kind before, left: into our format. A low kind that is settled stands

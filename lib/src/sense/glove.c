@@ -44,21 +44,6 @@ const char *exh_glove_cause_text(unsigned cause)
 
 /* --- set-up --- */
 
-static int inside(int32_t v, const struct exh_signal *row)
-{
-    return v >= row->min && v <= row->max;
-}
-
-static int par_ok(const struct exh_glove_par *par)
-{
-    const struct exh_signal *row = exh_glove_rows;
-    return inside(par->order, &row[0]) && inside(par->fc_Hz_q16, &row[1]) &&
-           inside(par->bits, &row[2]) && inside(par->hyst_raw_q16, &row[3]) &&
-           inside(par->low_raw, &row[4]) && inside(par->high_raw, &row[5]) &&
-           inside(par->open_high, &row[6]) && inside(par->debounce_frames, &row[7]) &&
-           inside(par->margin_q16, &row[8]);
-}
-
 /* The codes that each sensor is believed at: its span, its margin, between the rails. A span
  * between them also tells that the rails are in order. */
 static int limits(struct exh_glove_cfg *cfg, const struct exh_glove_par *par)
@@ -86,7 +71,8 @@ int exh_glove_setup(struct exh_glove_cfg *cfg, const struct exh_glove_par *par,
 {
     const struct exh_quantizer_par quantizer = {par->bits, par->hyst_raw_q16};
     const struct exh_filter_par filter = {par->order, par->fc_Hz_q16};
-    int err = par_ok(par) ? exh_glove_cal_valid(cal, NULL) : -EXH_E_RANGE;
+    int err = exh_rows_hold(exh_glove_rows, EXH_GLOVE_ROWS, par) ? exh_glove_cal_valid(cal, NULL)
+                                                                 : -EXH_E_RANGE;
     if (err == 0 && par->order > 0) { err = exh_filter_setup(&cfg->filter, &filter, T); }
     if (err == 0) { err = exh_quantizer_setup(&cfg->quantizer, &quantizer); }
     if (err < 0) { return err; }

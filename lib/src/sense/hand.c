@@ -9,7 +9,6 @@
 #include "../num/sincos.h"
 
 #define ARM_MAX_M_Q30      EXH_Q(50, 1000, EXH_Q_POS)
-#define PAD_MAX_M_Q30      EXH_Q(25, 1000, EXH_Q_POS)
 #define ARM_MIN_M_Q30      EXH_Q(4, 1000, EXH_Q_POS)
 #define LEN_MAX_M_Q34      EXH_Q(120, 1000, 34)
 #define BASE_MAX_M_Q32     EXH_Q(125, 1000, 32)
@@ -25,8 +24,8 @@ const struct exh_signal exh_hand_rows[EXH_HAND_ROWS] = {
      "string per radian of the joint beyond"},
     {0x0A03, EXH_Q_POS, EXH_WHEN_SETUP, 0, ARM_MAX_M_Q30, EXH_Q(12, 1000, EXH_Q_POS), "arm3", "m",
      "string per radian of the last joint"},
-    {0x0A04, EXH_Q_POS, EXH_WHEN_SETUP, 0, PAD_MAX_M_Q30, EXH_Q(105, 10000, EXH_Q_POS), "pad", "m",
-     "radius of the fingertip's pad"},
+    {0x0A04, EXH_Q_POS, EXH_WHEN_SETUP, 0, EXH_PAD_MAX_M_Q30, EXH_Q(105, 10000, EXH_Q_POS), "pad",
+     "m", "radius of the fingertip's pad"},
 };
 
 /* --- sensors to joints --- */
@@ -34,7 +33,7 @@ const struct exh_signal exh_hand_rows[EXH_HAND_ROWS] = {
 static int joint_ok(const struct exh_hand_joint *j)
 {
     for (unsigned t = 0; t < EXH_HAND_TERMS; t++) {
-        if (j->sensor[t] >= EXH_HAND_SENSORS || j->gain_q24[t] > EXH_HAND_GAIN_MAX_Q24 ||
+        if (j->sensor[t] >= EXH_GLOVE_SENSORS || j->gain_q24[t] > EXH_HAND_GAIN_MAX_Q24 ||
             j->gain_q24[t] < -EXH_HAND_GAIN_MAX_Q24) {
             return 0;
         }
@@ -44,9 +43,9 @@ static int joint_ok(const struct exh_hand_joint *j)
 
 int exh_hand_map_check(const struct exh_hand_map *map)
 {
-    for (unsigned f = 0; f < EXH_HAND_FINGERS; f++) {
+    for (unsigned f = 0; f < EXH_FINGERS; f++) {
         for (unsigned j = 0; j < EXH_HAND_JOINTS; j++) {
-            if (!joint_ok(&map->joint[f][j]) || map->bent[f][j] >= EXH_HAND_SENSORS) {
+            if (!joint_ok(&map->joint[f][j]) || map->bent[f][j] >= EXH_GLOVE_SENSORS) {
                 return -EXH_E_RANGE;
             }
         }
@@ -125,7 +124,7 @@ int exh_hand_setup(struct exh_hand_finger *f, const struct exh_hand_bones *bones
 {
     uint64_t arm_m_q30[2], square_q60;
     if (!arm_ok(par->arm1_m_q30) || !arm_ok(par->arm2_m_q30) || !arm_ok(par->arm3_m_q30) ||
-        par->pad_m_q30 < 0 || par->pad_m_q30 > PAD_MAX_M_Q30 || !bones_ok(bones)) {
+        par->pad_m_q30 < 0 || par->pad_m_q30 > EXH_PAD_MAX_M_Q30 || !bones_ok(bones)) {
         return -EXH_E_RANGE;
     }
     arm_m_q30[0] = (uint64_t)par->arm1_m_q30;

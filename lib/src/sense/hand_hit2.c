@@ -28,7 +28,7 @@
 /* Places and turns as published for the hand's model (roll, pitch, yaw about fixed axes). The four
  * fingers stand upright, spread by 5 degrees and 10 (little); the thumb's are 0.225810, -1.083656,
  * 0.411355 rad. Each constant is the nearest of its format. */
-const struct exh_hand_bones exh_hit2_bones[EXH_HAND_FINGERS] = {
+const struct exh_hand_bones exh_hit2_bones[EXH_FINGERS] = {
     [EXH_THUMB] = {BONES,
                    {{460690812, -613157138, -751481074},
                     {200973197, 874240148, -590114771},
@@ -111,14 +111,14 @@ const struct exh_hand_map exh_hit2_map =
                 /* The little finger's sensors reach farther in all recordings. */
                 [EXH_LITTLE] = {{0,
                                  {SPREAD_GAIN, SPREAD_GAIN},
-                                 {EXH_GLOVE_RING_MIDDLE_AB, EXH_GLOVE_PINKIE_RING_AB},
+                                 {EXH_GLOVE_RING_MIDDLE_AB, EXH_GLOVE_LITTLE_RING_AB},
                                  SIDE_LIMITS},
-                                KNUCKLE(EXH_GLOVE_PINKIE_MPJ),
-                                CURL(EXH_GLOVE_PINKIE_PIJ, EXH_GLOVE_PINKIE_DIJ, -40, 275)},
+                                KNUCKLE(EXH_GLOVE_LITTLE_MPJ),
+                                CURL(EXH_GLOVE_LITTLE_PIJ, EXH_GLOVE_LITTLE_DIJ, -40, 275)},
             },
         .bent = {{EXH_GLOVE_THUMB_MPJ, EXH_GLOVE_THUMB_IJ, EXH_GLOVE_THUMB_IJ},
                  {EXH_GLOVE_INDEX_MPJ, EXH_GLOVE_INDEX_PIJ, EXH_GLOVE_INDEX_DIJ},
                  {EXH_GLOVE_MIDDLE_MPJ, EXH_GLOVE_MIDDLE_PIJ, EXH_GLOVE_MIDDLE_DIJ},
                  {EXH_GLOVE_RING_MPJ, EXH_GLOVE_RING_PIJ, EXH_GLOVE_RING_DIJ},
-                 {EXH_GLOVE_PINKIE_MPJ, EXH_GLOVE_PINKIE_PIJ, EXH_GLOVE_PINKIE_DIJ}},
+                 {EXH_GLOVE_LITTLE_MPJ, EXH_GLOVE_LITTLE_PIJ, EXH_GLOVE_LITTLE_DIJ}},
 };

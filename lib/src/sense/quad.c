@@ -110,6 +110,7 @@ int exh_quad_setup(struct exh_quad_cfg *cfg, const struct exh_quad_par *par, str
 {
     struct exh_gain per_tick; /* counts per m/s q27 */
     int64_t jump;
+    if (!exh_period_ok(T)) { return -EXH_E_RATE; }
     if (bits < 16 || bits > 32 || par->step_m_q42 < STEP_MIN_M_Q42 ||
         par->speed_max_mps_q27 < SPEED_MIN_MPS_Q27 ||
         exh_gain_set(&per_tick, (uint64_t)T.num << (EXH_Q_STEP - EXH_Q_VEL),

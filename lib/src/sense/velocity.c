@@ -7,27 +7,23 @@ const struct exh_signal exh_velocity_rows[EXH_VELOCITY_ROWS] = {
     {0x0301, 0, EXH_WHEN_SETUP, 0, 4, 1, "vel_p", "", "velocity window of 2^p ticks"},
 };
 
-static int64_t limit(int64_t v, int64_t most)
-{
-    return v > most ? most : v < -most ? -most : v;
-}
-
 /* Gain from m to m/s q27, when v = m * step / (T * n). n < 2^13. */
 static int scale(struct exh_gain *g, struct exh_velocity_scale s, uint32_t n)
 {
     const uint64_t period = ((uint64_t)s.T.num * n) << (EXH_Q_STEP - EXH_Q_VEL);
-    if (s.step_m_q42 <= 0 || s.T.num == 0 || s.T.den == 0) { return -EXH_E_RANGE; }
+    if (!exh_period_ok(s.T)) { return -EXH_E_RATE; }
+    if (s.step_m_q42 <= 0) { return -EXH_E_RANGE; }
     return exh_gain_set(g, (uint64_t)(uint32_t)s.step_m_q42 * s.T.den, period);
 }
 
-/* T / (T + tau) in q31, at least 1 LSB, at most 1 - 2^-31. */
+/* T / (T + tau) in q31, at most 1 - 2^-31. */
 static int32_t share_q31(struct exh_period T, uint32_t tau_us)
 {
     const uint64_t t = (uint64_t)T.num * 1000000u;
     struct exh_gain g;
-    if (exh_gain_set(&g, t, t + (uint64_t)T.den * tau_us) < 0) { return 1; }
-    if (g.shift < 31) { return INT32_MAX; }
-    return g.shift == 31 ? g.mant : exh_clamp(exh_shr_round(g.mant, g.shift - 31u), 1, INT32_MAX);
+    /* Of a period that is none the caller knows. */
+    if (exh_gain_set(&g, t, t + (uint64_t)T.den * tau_us) < 0 || g.shift < 31) { return INT32_MAX; }
+    return g.shift == 31 ? g.mant : (int32_t)exh_shr_round(g.mant, g.shift - 31u);
 }
 
 int exh_velocity_window_setup(struct exh_velocity_window_cfg *cfg, struct exh_velocity_scale s,
@@ -88,7 +84,7 @@ int32_t exh_velocity_pole_mps_q27(struct exh_velocity_pole *s,
 void exh_velocity_pole_bytes(struct exh_bytes *c, struct exh_velocity_pole *s)
 {
     exh_bytes_i64(c, &s->v_mps_q55);
-    s->v_mps_q55 = limit(s->v_mps_q55, POLE_MAX_MPS_Q55);
+    s->v_mps_q55 = exh_clamp64(s->v_mps_q55, POLE_MAX_MPS_Q55);
     exh_bytes_i32(c, &s->cnt);
     exh_bytes_u8(c, &s->started);
 }
@@ -191,12 +187,13 @@ int32_t exh_velocity_track_mps_q27(struct exh_velocity_track *s,
     const int32_t moved = s->started ? exh_wrap_diff(cnt, s->cnt) : 0;
     const int64_t moved_q32 =
         exh_clamp(moved, -(INT32_C(1) << 28), INT32_C(1) << 28) * (INT64_C(1) << 32);
-    const int64_t off = limit(s->err_cnt_q32 + s->vel_cnt_q32 - moved_q32, TRACK_MAX_CNT_Q32);
+    const int64_t off = exh_clamp64(s->err_cnt_q32 + s->vel_cnt_q32 - moved_q32, TRACK_MAX_CNT_Q32);
 
     s->cnt = cnt;
     s->started = 1;
     s->err_cnt_q32 = off - exh_mul64_q31(off, cfg->alpha_q31);
-    s->vel_cnt_q32 = limit(s->vel_cnt_q32 - exh_mul64_q31(off, cfg->beta_q31), TRACK_MAX_CNT_Q32);
+    s->vel_cnt_q32 =
+        exh_clamp64(s->vel_cnt_q32 - exh_mul64_q31(off, cfg->beta_q31), TRACK_MAX_CNT_Q32);
     return exh_sat32(exh_shr_round(exh_mul64_q31(s->vel_cnt_q32, cfg->gain.mant),
                                    (cfg->gain.shift < 62u ? cfg->gain.shift : 62u) + 1u));
 }
@@ -205,8 +202,8 @@ void exh_velocity_track_bytes(struct exh_bytes *c, struct exh_velocity_track *s)
 {
     exh_bytes_i64(c, &s->err_cnt_q32);
     exh_bytes_i64(c, &s->vel_cnt_q32);
-    s->err_cnt_q32 = limit(s->err_cnt_q32, TRACK_MAX_CNT_Q32);
-    s->vel_cnt_q32 = limit(s->vel_cnt_q32, TRACK_MAX_CNT_Q32);
+    s->err_cnt_q32 = exh_clamp64(s->err_cnt_q32, TRACK_MAX_CNT_Q32);
+    s->vel_cnt_q32 = exh_clamp64(s->vel_cnt_q32, TRACK_MAX_CNT_Q32);
     exh_bytes_i32(c, &s->cnt);
     exh_bytes_u8(c, &s->started);
 }

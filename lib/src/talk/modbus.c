@@ -139,23 +139,21 @@ static int write_and_read(struct exh_regs *r, const struct request *q, uint8_t *
 /* --- device identification, 43/14: the three objects that every device has --- */
 
 #define OBJECTS 3u
-EXH_STATIC_ASSERT(one_digit,
-                  EXH_VERSION_MAJOR < 10 && EXH_VERSION_MINOR < 10 && EXH_VERSION_PATCH < 10);
-#define CONFORMS 0x81u /* those, as a stream or one by one */
+/* The version as text, made by the preprocessor: a number of any length. */
+#define TEXT_OF(v) #v
+#define TEXT(v)    TEXT_OF(v)
+#define VERSION    TEXT(EXH_VERSION_MAJOR) "." TEXT(EXH_VERSION_MINOR) "." TEXT(EXH_VERSION_PATCH)
+#define CONFORMS   0x81u /* those, as a stream or one by one */
 
 static uint8_t *object(uint8_t *to, uint32_t id)
 {
-    static const char text[OBJECTS][8] = {"exhand", "exhand", "0.0.0"};
+    static const char text[OBJECTS][sizeof VERSION > 7 ? sizeof VERSION : 7] = {"exhand", "exhand",
+                                                                                VERSION};
     uint8_t *len = to + 1;
     to[0] = (uint8_t)id;
     to += 2;
     for (uint32_t i = 0; text[id][i] != '\0'; i++) { *to++ = (uint8_t)text[id][i]; }
     *len = (uint8_t)(to - len - 1);
-    if (id == 2) { /* one digit each */
-        to[-5] = (uint8_t)('0' + EXH_VERSION_MAJOR);
-        to[-3] = (uint8_t)('0' + EXH_VERSION_MINOR);
-        to[-1] = (uint8_t)('0' + EXH_VERSION_PATCH);
-    }
     return to;
 }
 

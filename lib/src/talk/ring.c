@@ -4,8 +4,7 @@
 #include "exhand/error.h"
 
 #include <stddef.h>
-
-void *memcpy(void *to, const void *from, size_t n); /* no C library, no header of one */
+#include "../num/mem.h"
 
 #define SLOTS (EXH_RING_PARTS + 2u)
 

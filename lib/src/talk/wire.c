@@ -7,7 +7,7 @@
 #define HEAD_B     UINT32_C(18)
 #define LEN_AT     4u
 #define CRC_B      4u
-#define FINGERS_OF ((1u << EXH_WIRE_FINGERS) - 1u)
+#define FINGERS_OF ((1u << EXH_FINGERS) - 1u)
 #define WINDOW     64 /* sequence numbers back that are remembered */
 
 struct head {
@@ -58,7 +58,7 @@ static void state_bytes(struct exh_bytes *c, struct exh_wire_state *s)
     exh_bytes_u8(c, &s->touching);
     exh_bytes_u16(c, &s->age_ms);
     exh_bytes_u32(c, &s->faults);
-    for (unsigned f = 0; f < EXH_WIRE_FINGERS; f++) {
+    for (unsigned f = 0; f < EXH_FINGERS; f++) {
         i32s_bytes(c, s->joint_turn_q32[f], 3);
         i32s_bytes(c, s->tip_m_q30[f], 3);
         exh_bytes_i32(c, &s->force_N_q20[f]);
@@ -86,7 +86,7 @@ static void planes_bytes(struct exh_bytes *c, struct exh_wire_planes *s)
     exh_bytes_u32(c, &s->echo_stamp_us);
     exh_bytes_u8(c, &s->fingers);
     demand(c, s->fingers <= FINGERS_OF);
-    for (unsigned f = 0; f < EXH_WIRE_FINGERS; f++) {
+    for (unsigned f = 0; f < EXH_FINGERS; f++) {
         plane_bytes(c, &s->plane[f]);
         demand(c, s->fingers >> f & 1 || s->plane[f].kind == EXH_PLANE_UNTOLD);
     }

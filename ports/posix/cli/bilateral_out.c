@@ -75,7 +75,7 @@ int bilateral_out_csv(const char *dir, const struct bilateral_run *r, unsigned f
                 s.i_des_A, s.c, s.f_mon_N);
         if (p->d_m_q30 != INT32_MIN) { fprintf(to, "%.9g", ldexp(p->d_m_q30, -EXH_Q_POS)); }
         fputc(',', to);
-        if (p->q_lim_m_q30 != EXH_PRECONTACT_NEVER) {
+        if (p->q_lim_m_q30 != EXH_PRECONTACT_NO_LIM) {
             fprintf(to, "%.9g", ldexp(p->q_lim_m_q30, -EXH_Q_POS));
         }
         fputc('\n', to);

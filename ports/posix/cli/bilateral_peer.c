@@ -32,14 +32,14 @@ void peer_look(const struct peer_world *w, const struct exh_wire_state *in, doub
         return;
     }
     *out = w->wall;
-    for (unsigned f = 0; w->jump_s > 0 && t_s >= w->jump_s && f < EXH_WIRE_FINGERS; f++) {
+    for (unsigned f = 0; w->jump_s > 0 && t_s >= w->jump_s && f < EXH_FINGERS; f++) {
         struct exh_wire_plane *p = &out->plane[f];
         for (int i = 0; i < 3; i++) {
             p->point_m_q30[i] += (int32_t)(w->jump_m * p->normal_q30[i]);
         }
     }
     out->fingers &= in->fingers;
-    for (unsigned f = 0; f < EXH_WIRE_FINGERS; f++) {
+    for (unsigned f = 0; f < EXH_FINGERS; f++) {
         const int used = (int)(out->fingers >> f & 1);
         const int far = w->ray_m > 0 && peer_gap_m(&out->plane[f], in->tip_m_q30[f]) < -w->ray_m;
         if (!used || far) { memset(&out->plane[f], 0, sizeof out->plane[f]); }

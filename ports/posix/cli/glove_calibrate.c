@@ -318,9 +318,9 @@ static void topology(struct glove_result *r, const struct glove_options *o)
     } bent[] = {{EXH_GLOVE_THUMB_AB, {EXH_GLOVE_THUMB_ROTATE, EXH_GLOVE_NONE}},
                 {EXH_GLOVE_MIDDLE_INDEX_AB, {EXH_GLOVE_INDEX_MPJ, EXH_GLOVE_MIDDLE_MPJ}},
                 {EXH_GLOVE_RING_MIDDLE_AB, {EXH_GLOVE_MIDDLE_MPJ, EXH_GLOVE_RING_MPJ}},
-                {EXH_GLOVE_PINKIE_RING_AB, {EXH_GLOVE_RING_MPJ, EXH_GLOVE_PINKIE_MPJ}}};
+                {EXH_GLOVE_LITTLE_RING_AB, {EXH_GLOVE_RING_MPJ, EXH_GLOVE_LITTLE_MPJ}}};
     static const uint8_t last[] = {EXH_GLOVE_INDEX_DIJ, EXH_GLOVE_MIDDLE_DIJ, EXH_GLOVE_RING_DIJ,
-                                   EXH_GLOVE_PINKIE_DIJ};
+                                   EXH_GLOVE_LITTLE_DIJ};
     r->cal.present = (1u << EXH_GLOVE_SENSORS) - 1u;
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
         r->cal.sensor[i].of[0] = r->cal.sensor[i].of[1] = EXH_GLOVE_NONE;

@@ -143,13 +143,13 @@ void glove_line(const struct glove_options *o, double t_s, const struct glove_si
     for (int i = 0; i < SENSORS; i++) { printf(",%.9g", s->angle_turn_q32[i] * turn); }
     printf(",%ld", (long)s->faults);
     if (o->tips) {
-        for (int f = 0; f < EXH_HAND_FINGERS; f++) {
+        for (int f = 0; f < EXH_FINGERS; f++) {
             for (int j = 0; j < EXH_HAND_JOINTS; j++) {
                 printf(",%.9g", s->joint_turn_q32[f][j] * turn);
             }
         }
         printf(",%ld", (long)s->clamped);
-        for (int f = 0; f < EXH_HAND_FINGERS; f++) {
+        for (int f = 0; f < EXH_FINGERS; f++) {
             const struct exh_vec3 *p = &s->tip_m_q30[f];
             printf(",%.9g,%.9g,%.9g", p->x / 1073741824.0, p->y / 1073741824.0,
                    p->z / 1073741824.0);

@@ -12,10 +12,10 @@
 #define PI     3.14159265358979323846
 
 #define S(name) (1u << EXH_GLOVE_##name)
-#define MPJS    (S(INDEX_MPJ) | S(MIDDLE_MPJ) | S(RING_MPJ) | S(PINKIE_MPJ))
-#define PIJS    (S(INDEX_PIJ) | S(MIDDLE_PIJ) | S(RING_PIJ) | S(PINKIE_PIJ))
-#define DIJS    (S(INDEX_DIJ) | S(MIDDLE_DIJ) | S(RING_DIJ) | S(PINKIE_DIJ))
-#define ABS     (S(MIDDLE_INDEX_AB) | S(RING_MIDDLE_AB) | S(PINKIE_RING_AB))
+#define MPJS    (S(INDEX_MPJ) | S(MIDDLE_MPJ) | S(RING_MPJ) | S(LITTLE_MPJ))
+#define PIJS    (S(INDEX_PIJ) | S(MIDDLE_PIJ) | S(RING_PIJ) | S(LITTLE_PIJ))
+#define DIJS    (S(INDEX_DIJ) | S(MIDDLE_DIJ) | S(RING_DIJ) | S(LITTLE_DIJ))
+#define ABS     (S(MIDDLE_INDEX_AB) | S(RING_MIDDLE_AB) | S(LITTLE_RING_AB))
 #define EVERY   ((1u << EXH_GLOVE_SENSORS) - 1u)
 
 #define GROUPS 3
@@ -50,10 +50,10 @@ static const struct {
     {"ring",
      "the ring finger alone bent 60 degrees at its knuckle",
      {{S(RING_MPJ), 60},
-      {S(MIDDLE_MPJ) | S(PINKIE_MPJ) | S(RING_MIDDLE_AB) | S(PINKIE_RING_AB), 0}}},
+      {S(MIDDLE_MPJ) | S(LITTLE_MPJ) | S(RING_MIDDLE_AB) | S(LITTLE_RING_AB), 0}}},
     {"little",
      "the little finger alone bent 60 degrees at its knuckle",
-     {{S(PINKIE_MPJ), 60}, {S(RING_MPJ) | S(PINKIE_RING_AB), 0}}},
+     {{S(LITTLE_MPJ), 60}, {S(RING_MPJ) | S(LITTLE_RING_AB), 0}}},
     {"thumb",
      "flat; the thumb bent 30 degrees at its knuckle, 70 at its last joint",
      {{S(THUMB_MPJ), 30}, {S(THUMB_IJ), 70}, {S(THUMB_ROTATE) | S(THUMB_AB), 0}}},

@@ -14,7 +14,7 @@
 #define MOVES   4
 
 struct tips {
-    double m[EXH_HAND_FINGERS][3];
+    double m[EXH_FINGERS][3];
 };
 
 struct errors {
@@ -24,7 +24,7 @@ struct errors {
 
 /* Fingertips of 22 angles by the library, whose own error is 0.01 um. Binary angles, so the
  * A/D's codes are not in it. */
-static struct tips tips_of(const struct exh_hand_finger finger[EXH_HAND_FINGERS],
+static struct tips tips_of(const struct exh_hand_finger finger[EXH_FINGERS],
                            const double rad[SENSORS])
 {
     int32_t turn[SENSORS], joint[EXH_HAND_JOINTS];
@@ -33,7 +33,7 @@ static struct tips tips_of(const struct exh_hand_finger finger[EXH_HAND_FINGERS]
         const double v = rad[i] * (4294967296.0 / (2 * PI));
         turn[i] = (int32_t)(v < 0 ? v - 0.5 : v + 0.5);
     }
-    for (unsigned f = 0; f < EXH_HAND_FINGERS; f++) {
+    for (unsigned f = 0; f < EXH_FINGERS; f++) {
         struct exh_vec3 p;
         exh_hand_joints(&exh_hit2_map, f, turn, joint);
         exh_hand_tip(&finger[f], joint, &p);
@@ -53,7 +53,7 @@ static double root(double v)
 
 static void add(struct errors *e, const struct tips *a, const struct tips *b)
 {
-    for (int f = 0; f < EXH_HAND_FINGERS; f++) {
+    for (int f = 0; f < EXH_FINGERS; f++) {
         double d2 = 0;
         for (int k = 0; k < 3; k++) { d2 += (a->m[f][k] - b->m[f][k]) * (a->m[f][k] - b->m[f][k]); }
         e->squares_m2 += d2;
@@ -107,8 +107,8 @@ int glove_skew(const struct glove_options *o)
     static const double move_s[] = {0.5, 0.2};
     static const struct exh_hand_par par = {EXH_Q(20, 1000, 30), EXH_Q(16, 1000, 30),
                                             EXH_Q(12, 1000, 30), 0};
-    struct exh_hand_finger finger[EXH_HAND_FINGERS];
-    for (unsigned f = 0; f < EXH_HAND_FINGERS; f++) {
+    struct exh_hand_finger finger[EXH_FINGERS];
+    for (unsigned f = 0; f < EXH_FINGERS; f++) {
         const int err = exh_hand_setup(&finger[f], &exh_hit2_bones[f], &par);
         if (err < 0) {
             cli_complain("hand: %s", exh_error_text(err));

@@ -98,7 +98,7 @@ TEST(a_plane_told_before_the_first_glove_frame_is_not_kept)
     for (int k = 0; k < 60000; k++) { (void)tick(0, 0); } /* a minute without a glove */
     (void)tick(1, 0);
     CHECK_EQ_I64(phase(), EXH_PRECONTACT_IDLE);
-    CHECK_EQ_I64(sig.paper[F].q_lim_m_q30, EXH_PRECONTACT_NEVER);
+    CHECK_EQ_I64(sig.paper[F].q_lim_m_q30, EXH_PRECONTACT_NO_LIM);
     planes();
     (void)tick(1, 0);
     CHECK_EQ_I64(phase(), EXH_PRECONTACT_TRACK);
@@ -108,7 +108,7 @@ TEST(a_finger_whose_sensor_is_not_believed_has_no_contact)
 {
     static const struct {
         int sensor, blind;
-    } at[] = {{EXH_GLOVE_INDEX_MPJ, 1}, {EXH_GLOVE_PINKIE_MPJ, 0}};
+    } at[] = {{EXH_GLOVE_INDEX_MPJ, 1}, {EXH_GLOVE_LITTLE_MPJ, 0}};
     for (size_t i = 0; i < sizeof at / sizeof at[0]; i++) {
         int16_t *raw = &from_board.glove.raw[at[i].sensor];
         int16_t good;
@@ -127,7 +127,7 @@ TEST(a_finger_whose_sensor_is_not_believed_has_no_contact)
         }
         CHECK_EQ_I64(box.glove_faults, INT64_C(1) << at[i].sensor);
         CHECK_EQ_I64(phase(), at[i].blind ? EXH_PRECONTACT_IDLE : EXH_PRECONTACT_TRACK);
-        CHECK_EQ_I64(sig.paper[F].q_lim_m_q30 == EXH_PRECONTACT_NEVER, at[i].blind);
+        CHECK_EQ_I64(sig.paper[F].q_lim_m_q30 == EXH_PRECONTACT_NO_LIM, at[i].blind);
         *raw = good;
         for (int k = 0; k < 300; k++) { (void)tick(1, 0); }
         CHECK_EQ_I64(box.glove_faults, 0);
@@ -218,7 +218,7 @@ TEST(an_old_glove_frame)
     CHECK_EQ_I64(phase(), EXH_PRECONTACT_TRACK);
     from_board.glove.age_ticks++;
     (void)tick(0, 0);
-    CHECK(phase() == EXH_PRECONTACT_IDLE && sig.paper[F].q_lim_m_q30 == EXH_PRECONTACT_NEVER,
+    CHECK(phase() == EXH_PRECONTACT_IDLE && sig.paper[F].q_lim_m_q30 == EXH_PRECONTACT_NO_LIM,
           "tracking: there is no contact");
     from_board.glove.age_ticks = 0;
     (void)tick(1, 0);

@@ -544,7 +544,7 @@ TEST(a_user_calibrates_it_by_poses)
             WORDS("glove", "--serial", far.link, "--calibration", image, "--deg", "--glove-rate",
                   "20", "--seconds", "2"));
     CHECK(s.status == 0 && last_is_near(s.out, EXH_GLOVE_INDEX_MPJ, 80, 1.5) &&
-              last_is_near(s.out, EXH_GLOVE_PINKIE_PIJ, 0, 1.5),
+              last_is_near(s.out, EXH_GLOVE_LITTLE_PIJ, 0, 1.5),
           "%d: %s%s", s.status, s.out, s.err);
     command(&s, dir,
             WORDS("glove", "--serial", far.link, "--calibration", csv, "--seconds", "0.5"));

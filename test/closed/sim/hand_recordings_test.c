@@ -24,7 +24,7 @@ static const struct {
 #define FILES (sizeof file / sizeof file[0])
 
 struct tally {
-    uint32_t rows, clamped[EXH_HAND_FINGERS][EXH_HAND_JOINTS];
+    uint32_t rows, clamped[EXH_FINGERS][EXH_HAND_JOINTS];
 };
 
 /* --- reading --- */
@@ -75,7 +75,7 @@ static void to_sensors(const double *column, int32_t *sensor)
     static const uint8_t bend[][2] = {{EXH_GLOVE_INDEX_MPJ, 4},
                                       {EXH_GLOVE_MIDDLE_MPJ, 8},
                                       {EXH_GLOVE_RING_MPJ, 12},
-                                      {EXH_GLOVE_PINKIE_MPJ, 16}};
+                                      {EXH_GLOVE_LITTLE_MPJ, 16}};
     memset(sensor, 0, EXH_GLOVE_SENSORS * sizeof sensor[0]);
     for (size_t i = 0; i < 4; i++) {
         sensor[EXH_GLOVE_THUMB_ROTATE + i] = turn_q32(-column[i]);
@@ -85,7 +85,7 @@ static void to_sensors(const double *column, int32_t *sensor)
     }
     sensor[EXH_GLOVE_MIDDLE_INDEX_AB] = turn_q32(column[11] - column[7]);
     sensor[EXH_GLOVE_RING_MIDDLE_AB] = turn_q32(column[15] - column[11]);
-    sensor[EXH_GLOVE_PINKIE_RING_AB] = turn_q32(column[19] - column[15]);
+    sensor[EXH_GLOVE_LITTLE_RING_AB] = turn_q32(column[19] - column[15]);
 }
 
 /* --- the claim --- */
@@ -95,7 +95,7 @@ static void follow(const double *column, struct tally *t)
     int32_t sensor[EXH_GLOVE_SENSORS], q[EXH_HAND_JOINTS];
     to_sensors(column, sensor);
     t->rows++;
-    for (unsigned f = 0; f < EXH_HAND_FINGERS; f++) {
+    for (unsigned f = 0; f < EXH_FINGERS; f++) {
         const uint32_t clamped = exh_hand_joints(&exh_hit2_map, f, sensor, q);
         for (unsigned j = 0; j < EXH_HAND_JOINTS; j++) {
             const struct exh_hand_joint *limit = &exh_hit2_map.joint[f][j];
@@ -121,7 +121,7 @@ static void print(const char *name, const struct tally *t)
 {
     char text[160];
     int n = 0;
-    for (unsigned f = 0; f < EXH_HAND_FINGERS; f++) {
+    for (unsigned f = 0; f < EXH_FINGERS; f++) {
         for (unsigned j = 0; j < EXH_HAND_JOINTS; j++) {
             n += snprintf(text + n, sizeof text - (size_t)n, "%s%.2f",
                           j   ? " "
@@ -149,7 +149,7 @@ TEST(joints_keep_their_limits)
         CHECK(one.rows >= 200, "%s: %u rows", file[i].path, one.rows);
         print(file[i].path, &one);
         all.rows += one.rows;
-        for (unsigned k = 0; k < EXH_HAND_FINGERS * EXH_HAND_JOINTS; k++) {
+        for (unsigned k = 0; k < EXH_FINGERS * EXH_HAND_JOINTS; k++) {
             all.clamped[k / 3][k % 3] += one.clamped[k / 3][k % 3];
         }
     }
@@ -159,7 +159,7 @@ TEST(joints_keep_their_limits)
         return;
     }
     print("all", &all);
-    for (unsigned k = 0; k < EXH_HAND_FINGERS * EXH_HAND_JOINTS; k++) {
+    for (unsigned k = 0; k < EXH_FINGERS * EXH_HAND_JOINTS; k++) {
         CHECK(1000 * (uint64_t)all.clamped[k / 3][k % 3] <=
                   CLAMPED_MAX_PER_MILLE * (uint64_t)all.rows,
               "finger %u, joint %u: %u of %u rows clamped", k / 3, k % 3, all.clamped[k / 3][k % 3],

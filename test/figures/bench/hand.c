@@ -9,9 +9,9 @@
 #define CASES   1000000
 #define LSB_RAD (3.14159265358979323846264338327950288L / 2147483648.0L)
 
-static struct exh_hand_finger finger[EXH_HAND_FINGERS];
-static int32_t joint[BENCH_OPS][EXH_HAND_FINGERS][EXH_HAND_JOINTS];
-static int32_t sensor[BENCH_OPS][EXH_HAND_SENSORS];
+static struct exh_hand_finger finger[EXH_FINGERS];
+static int32_t joint[BENCH_OPS][EXH_FINGERS][EXH_HAND_JOINTS];
+static int32_t sensor[BENCH_OPS][EXH_GLOVE_SENSORS];
 
 /* Every second posture within a hand's limits, the others any angles at all. */
 static void any_posture(int32_t q[EXH_HAND_JOINTS])
@@ -27,12 +27,12 @@ static void setup(void)
     const struct exh_hand_par par = {exh_hand_rows[0].dflt, exh_hand_rows[1].dflt,
                                      exh_hand_rows[2].dflt, exh_hand_rows[3].dflt};
     bench_seed();
-    for (uint32_t f = 0; f < EXH_HAND_FINGERS; f++) {
+    for (uint32_t f = 0; f < EXH_FINGERS; f++) {
         EXH_ASSERT(exh_hand_setup(&finger[f], &exh_hit2_bones[f], &par) == 0);
         for (uint32_t i = 0; i < BENCH_OPS; i++) { any_posture(joint[i][f]); }
     }
-    for (uint32_t i = 0; i < BENCH_OPS * EXH_HAND_SENSORS; i++) {
-        sensor[i / EXH_HAND_SENSORS][i % EXH_HAND_SENSORS] = bench_in(-(1 << 29), 1 << 30);
+    for (uint32_t i = 0; i < BENCH_OPS * EXH_GLOVE_SENSORS; i++) {
+        sensor[i / EXH_GLOVE_SENSORS][i % EXH_GLOVE_SENSORS] = bench_in(-(1 << 29), 1 << 30);
     }
 }
 
@@ -63,7 +63,7 @@ static void sincos_error(struct error *e)
 static void joints_op(uint32_t i)
 {
     int32_t q[EXH_HAND_JOINTS];
-    for (uint32_t f = 0; f < EXH_HAND_FINGERS; f++) {
+    for (uint32_t f = 0; f < EXH_FINGERS; f++) {
         bench_sink = (int64_t)exh_hand_joints(&exh_hit2_map, f, sensor[i], q) + q[0] + q[1] + q[2];
     }
 }
@@ -71,12 +71,12 @@ static void joints_op(uint32_t i)
 static void joints_error(struct error *e)
 {
     setup();
-    for (uint32_t i = 0; i < BENCH_OPS * EXH_HAND_FINGERS; i++) {
-        const int32_t *in = sensor[i / EXH_HAND_FINGERS];
+    for (uint32_t i = 0; i < BENCH_OPS * EXH_FINGERS; i++) {
+        const int32_t *in = sensor[i / EXH_FINGERS];
         int32_t q[EXH_HAND_JOINTS];
-        exh_hand_joints(&exh_hit2_map, i % EXH_HAND_FINGERS, in, q);
+        exh_hand_joints(&exh_hit2_map, i % EXH_FINGERS, in, q);
         for (uint32_t k = 0; k < EXH_HAND_JOINTS; k++) {
-            const struct exh_hand_joint *j = &exh_hit2_map.joint[i % EXH_HAND_FINGERS][k];
+            const struct exh_hand_joint *j = &exh_hit2_map.joint[i % EXH_FINGERS][k];
             long double sum = j->bias_turn_q32;
             for (uint32_t t = 0; t < EXH_HAND_TERMS; t++) {
                 sum += bench_q((long double)j->gain_q24[t] * in[j->sensor[t]], 24);
@@ -135,7 +135,7 @@ static void tip_op(uint32_t i)
 static void tips_op(uint32_t i)
 {
     struct exh_vec3 tip;
-    for (uint32_t f = 0; f < EXH_HAND_FINGERS; f++) {
+    for (uint32_t f = 0; f < EXH_FINGERS; f++) {
         exh_hand_tip(&finger[f], joint[i][f], &tip);
         bench_sink = tip.x ^ tip.y ^ tip.z;
     }
@@ -152,7 +152,7 @@ static void tip_error(struct error *e)
 {
     setup();
     for (uint32_t i = 0; i < CASES; i++) {
-        const struct exh_hand_finger *f = &finger[i % EXH_HAND_FINGERS];
+        const struct exh_hand_finger *f = &finger[i % EXH_FINGERS];
         int32_t q[EXH_HAND_JOINTS];
         struct exh_vec3 tip;
         struct exact want;
@@ -167,7 +167,7 @@ static void slope_error(struct error *e)
 {
     setup();
     for (uint32_t i = 0; i < CASES / 4; i++) {
-        const struct exh_hand_finger *f = &finger[i % EXH_HAND_FINGERS];
+        const struct exh_hand_finger *f = &finger[i % EXH_FINGERS];
         int32_t q[EXH_HAND_JOINTS];
         struct exh_vec3 tip, slope;
         struct exact want;

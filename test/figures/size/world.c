@@ -18,7 +18,7 @@ static int32_t size_of(int32_t v)
 void world_place(void)
 {
     planes.fingers = newest.fingers;
-    for (unsigned f = 0; f < EXH_WIRE_FINGERS; f++) {
+    for (unsigned f = 0; f < EXH_FINGERS; f++) {
         const int32_t *was = first.tip_m_q30[f], *is = newest.tip_m_q30[f];
         struct exh_wire_plane *p = &planes.plane[f];
         int axis = 0;

@@ -156,7 +156,8 @@ class Finger:
         self.pre.taken = k, b, most = tuple(self.pre.taken)  # it keeps what it took
         own = self.par.drive[0]
         self.drive.f_max = min(own, most) if self.pre.phase == pre.FROZEN else own
-        c, spring, damper, pull = self.contact.tick((k, b, *self.par.f0), q, v, lim)
+        there = lim if self.pre.phase >= pre.TRACK else None
+        c, spring, damper, pull = self.contact.tick((k, b, *self.par.f0), q, v, there)
         self.wind_in(rest_ticks)
         limits, _, _, _, force = self.drive.take(permit, spring + damper + pull)
         more, i0, peak, i2t = self.drive.current()

@@ -13,6 +13,7 @@ class Contact:
         self.turn = self.inward = self.touching = self.started = 0
 
     def tick(self, par, q, v, lim):
+        """lim None: there is nothing to touch."""
         k, b, f0, band, hyst = par
         if not self.started:
             self.turn, self.started = q, 1
@@ -25,7 +26,9 @@ class Contact:
             self.turn = q
         elif self.turn - q > band:
             self.turn, self.inward = q, 1
-        if q >= lim:
+        if lim is None:
+            self.touching = 0
+        elif q >= lim:
             self.touching = 1
         elif q < lim - hyst:
             self.touching = 0

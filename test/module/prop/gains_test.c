@@ -177,7 +177,7 @@ TEST(inside_in_every_tick)
                 CHECK_EQ_I64(exh_params_stage(&params, 0x0401, w, k), 0);
                 CHECK_EQ_I64(exh_params_stage(&params, 0x0402, w, b), 0);
             }
-            if (check_i32_in(0, 99) == 0) { exh_gains_drop(&params); }
+            if (check_i32_in(0, 99) == 0) { exh_params_drop(&params); }
             (void)exh_params_apply(&params);
             exh_gains_step(&params, &r);
             CHECK(!exh_params_look(&params), "told in tick %d", t);

@@ -103,7 +103,7 @@ static struct exh_hand_par any_arms(void)
 /* The hand's own finger (1), or one of any lengths, arms and place (2; 0 if there is none). */
 static int any_finger(struct exh_hand_finger *f, struct exh_hand_bones *own)
 {
-    const unsigned id = (unsigned)(check_u64() % EXH_HAND_FINGERS);
+    const unsigned id = (unsigned)(check_u64() % EXH_FINGERS);
     struct exh_hand_par par = {exh_hand_rows[0].dflt, exh_hand_rows[1].dflt, exh_hand_rows[2].dflt,
                                exh_hand_rows[3].dflt};
     const int any = (int)(check_u64() & 1);
@@ -176,12 +176,12 @@ TEST(slope_is_what_tips_differ_by)
 {
     const struct exh_hand_par par = {exh_hand_rows[0].dflt, exh_hand_rows[1].dflt,
                                      exh_hand_rows[2].dflt, exh_hand_rows[3].dflt};
-    struct exh_hand_finger finger[EXH_HAND_FINGERS];
-    for (unsigned i = 0; i < EXH_HAND_FINGERS; i++) {
+    struct exh_hand_finger finger[EXH_FINGERS];
+    for (unsigned i = 0; i < EXH_FINGERS; i++) {
         CHECK_EQ_I64(exh_hand_setup(&finger[i], &exh_hit2_bones[i], &par), 0);
     }
     while (check_case(20)) {
-        const struct exh_hand_finger *f = &finger[check_u64() % EXH_HAND_FINGERS];
+        const struct exh_hand_finger *f = &finger[check_u64() % EXH_FINGERS];
         int32_t q[3], more[3], less[3];
         struct exh_vec3 tip, slope, far, near;
         any_posture(q);
@@ -232,7 +232,7 @@ static void any_joint(struct exh_hand_joint *j)
     j->bias_turn_q32 = check_i32();
     for (unsigned t = 0; t < EXH_HAND_TERMS; t++) {
         j->gain_q24[t] = check_i32_in(-EXH_HAND_GAIN_MAX_Q24, EXH_HAND_GAIN_MAX_Q24);
-        j->sensor[t] = (uint8_t)(check_u64() % EXH_HAND_SENSORS);
+        j->sensor[t] = (uint8_t)(check_u64() % EXH_GLOVE_SENSORS);
     }
     j->lo_turn_q32 = a < b ? a : b;
     j->hi_turn_q32 = a < b ? b : a;
@@ -242,10 +242,10 @@ TEST(joints_are_rounded_once_and_limited)
 {
     static struct exh_hand_map map;
     while (check_case(1)) {
-        const unsigned finger = (unsigned)(check_u64() % EXH_HAND_FINGERS);
-        int32_t sensor[EXH_HAND_SENSORS], q[EXH_HAND_JOINTS];
+        const unsigned finger = (unsigned)(check_u64() % EXH_FINGERS);
+        int32_t sensor[EXH_GLOVE_SENSORS], q[EXH_HAND_JOINTS];
         uint32_t limited;
-        for (unsigned i = 0; i < EXH_HAND_SENSORS; i++) { sensor[i] = check_i32(); }
+        for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) { sensor[i] = check_i32(); }
         for (unsigned i = 0; i < EXH_HAND_JOINTS; i++) { any_joint(&map.joint[finger][i]); }
         limited = exh_hand_joints(&map, finger, sensor, q);
         for (unsigned i = 0; i < EXH_HAND_JOINTS; i++) {

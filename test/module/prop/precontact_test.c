@@ -115,7 +115,7 @@ TEST(distance_and_limit_are_exact)
                       (s.lim_m_q30 == INT32_MAX && wide_negative(off)),
                   "q_lim %" PRId32, s.lim_m_q30);
         } else {
-            CHECK(s.lim_m_q30 == EXH_PRECONTACT_NEVER, "q_lim %" PRId32, s.lim_m_q30);
+            CHECK(s.lim_m_q30 == EXH_PRECONTACT_NO_LIM, "q_lim %" PRId32, s.lim_m_q30);
         }
     }
 }

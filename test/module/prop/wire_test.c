@@ -19,14 +19,14 @@ static struct exh_wire_packet any_packet(uint8_t type)
         p.u.state.fingers = check_u64() & 31;
         p.u.state.frozen = check_u64() & 31;
         p.u.state.state = (uint8_t)(check_u64() % 3);
-        for (unsigned f = 0; f < EXH_WIRE_FINGERS; f++) {
+        for (unsigned f = 0; f < EXH_FINGERS; f++) {
             p.u.state.tip_m_q30[f][f % 3] = check_i32();
             p.u.state.q_lim_m_q30[f] = check_i32();
         }
     } else if (type == EXH_WIRE_PLANES) {
         p.u.planes.echo_seq = (uint32_t)check_u64();
         p.u.planes.fingers = check_u64() & 31;
-        for (unsigned f = 0; f < EXH_WIRE_FINGERS; f++) {
+        for (unsigned f = 0; f < EXH_FINGERS; f++) {
             p.u.planes.plane[f].kind = p.u.planes.fingers >> f & 1 ? (uint8_t)(check_u64() % 3) : 0;
             p.u.planes.plane[f].point_m_q30[f % 3] = check_i32();
         }

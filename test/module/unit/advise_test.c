@@ -50,8 +50,8 @@ TEST(advice)
     n.speed_mps_q27 = -1;
     CHECK_EQ_I64(exh_precontact_advise(&a, &n, fast, -MM(5)), -EXH_E_RANGE);
     n = (struct exh_precontact_need){1, 0, 0, 1, 1, 1, MM(20)};
-    CHECK_EQ_I64(exh_precontact_advise(&a, &n, (struct exh_period){0, 1000}, -MM(5)), -EXH_E_RANGE);
-    CHECK_EQ_I64(exh_precontact_advise(&a, &n, (struct exh_period){1, 0}, -MM(5)), -EXH_E_RANGE);
+    CHECK_EQ_I64(exh_precontact_advise(&a, &n, (struct exh_period){0, 1000}, -MM(5)), -EXH_E_RATE);
+    CHECK_EQ_I64(exh_precontact_advise(&a, &n, (struct exh_period){1, 0}, -MM(5)), -EXH_E_RATE);
 }
 
 /* Up to 2^31 - 1 each figure is given, the others far from it. */

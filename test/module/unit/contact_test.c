@@ -185,7 +185,30 @@ TEST(state_round_trip)
     CHECK(back.inward == 1 && back.touching == 1, "damaged flags");
 }
 
+/* A position at the format's end is a place like any other: without a contact nothing acts there.
+ * A contact that was there has ended. */
+TEST(nothing_to_touch)
+{
+    static const int32_t at[] = {INT32_MIN, -1, 0, 1, INT32_MAX};
+    const struct exh_contact_par par = {EXH_Q(1000, 1, EXH_Q_K), EXH_Q(60, 1, EXH_Q_B),
+                                        EXH_Q(1, 10, EXH_Q_FORCE), 1000, 1000};
+    for (size_t i = 0; i < sizeof at / sizeof at[0]; i++) {
+        for (int was = 0; was < 4; was++) {
+            struct exh_contact s = {at[i], (uint8_t)(was & 1), (uint8_t)(was >> 1), 1};
+            struct exh_contact same = s;
+            struct exh_force_ledger f, want;
+            exh_contact_free(&s, &par, at[i], &f);
+            (void)exh_contact_law(&same, &par, (struct exh_contact_in){at[i], 7, INT32_MAX}, &want);
+            CHECK(s.touching == 0 && f.spring_N_q20 == 0 && f.damper_N_q20 == 0, "at %" PRId32,
+                  at[i]);
+            CHECK(f.pullback_N_q20 == want.pullback_N_q20 && s.inward == same.inward &&
+                      s.turn_m_q30 == same.turn_m_q30,
+                  "F0 as ever at %" PRId32, at[i]);
+        }
+    }
+}
+
 TEST_MAIN("unit/contact", truth_table, the_rest_of_the_ledger_is_zeroed,
           contact_boundary_and_hysteresis, no_hysteresis_by_default, far_ends_do_not_wrap,
           pullback_follows_the_direction, at_most_one_switch_per_reversal_under_noise,
-          state_round_trip);
+          state_round_trip, nothing_to_touch);

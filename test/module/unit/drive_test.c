@@ -78,7 +78,7 @@ TEST(setup_rejections)
     }
     axis_par(&a.par);
     for (size_t i = 0; i < LEN(period); i++) {
-        CHECK(axis_setup(&a, period[i]) == -EXH_E_RANGE, "period %zu", i);
+        CHECK(axis_setup(&a, period[i]) == -EXH_E_RATE, "period %zu", i);
     }
 }
 
@@ -555,26 +555,23 @@ TEST(hostile_bytes_come_into_range)
     }
 }
 
-/* The heat that I2t may reach fits half of 63 bits, or it is refused. */
+/* The heat that I2t may reach, at the highest rate, for the longest peak of the highest current. */
 TEST(the_greatest_budget)
 {
     struct exh_knot k[2] = {{0, 0, {0, 1}}, {1 << 20, 1 << 26, {0, 1}}};
-    const int64_t peak_q16 = EXH_Q(66, 10, 26) >> 10, cont_q16 = EXH_Q(33, 10, 26) >> 10;
-    const int64_t excess = peak_q16 * peak_q16 - cont_q16 * cont_q16, most = INT64_MAX / 2 / excess;
+    const int64_t peak_q16 = EXH_Q(66, 10, 26) >> 10;
     struct exh_drive_par par;
     struct exh_drive_cfg cfg;
-    for (unsigned i = 0; i < EXH_DRIVE_ROWS; i++) {
-        ((int32_t *)(void *)&par)[i] = exh_drive_rows[i].dflt;
-    }
+    axis_par(&par);
     CHECK_EQ_I64(exh_table_set(k, 2), 0);
-    par.peak_ms = 1000;
-    for (int64_t more = -1; more <= 1; more++) { /* and one tick by itself */
-        const struct exh_period T = {1, (uint32_t)(most - 1 + more)};
-        CHECK_EQ_I64(
-            exh_drive_setup(&cfg, &par, T, (struct exh_table){k, 2}, (struct exh_table){NULL, 0}),
-            more > 0 ? -EXH_E_RANGE : 0);
-        CHECK(more > 0 || cfg.i2t_budget_q32 == excess * (most + more), "budget");
-    }
+    par.i_peak_A_q26 = EXH_Q(66, 10, 26);
+    par.i_cont_A_q26 = 0;
+    par.peak_ms = 2700;
+    CHECK_EQ_I64(exh_drive_setup(&cfg, &par, (struct exh_period){1, 20000},
+                                 (struct exh_table){k, 2}, (struct exh_table){NULL, 0}),
+                 0);
+    CHECK_EQ_I64(cfg.i2t_budget_q32, peak_q16 * peak_q16 * 54001);
+    CHECK(cfg.i2t_budget_q32 < INT64_MAX / 2, "room for a tick more");
 }
 
 /* Where no peak is allowed above the lasting current nothing of an earlier set-up stays. */

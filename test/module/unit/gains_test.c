@@ -186,7 +186,7 @@ TEST(a_whole_image_is_asked_and_dropped)
     CHECK_EQ_I64(exh_gains_staged(&params, &rule, &instance), -EXH_E_GAINS);
     CHECK_EQ_I64(exh_gains_staged(&params, &rule, NULL), -EXH_E_GAINS);
     CHECK_EQ_I64(instance, 1);
-    exh_gains_drop(&params);
+    exh_params_drop(&params);
     CHECK_EQ_I64(exh_params_apply(&params), 0);
     CHECK_EQ_I64(staged.contact[1].k_Npm_q10, K(1500));
     CHECK_EQ_I64(exh_gains_staged(&params, &rule, &instance), 0);
@@ -216,7 +216,7 @@ TEST(through_a_valley)
         was = now->k_Npm_q10;
         low = was < low ? was : low;
         if (n == 20) {
-            exh_gains_drop(&params);
+            exh_params_drop(&params);
             CHECK(exh_gains_ok(&valley, now->k_Npm_q10, now->b_Nspm_q20), "dropped outside");
             CHECK_EQ_I64(exh_params_stage(&params, 0x0401, 0, K(10000)), 0);
             CHECK_EQ_I64(exh_params_stage(&params, 0x0402, 0, B(40)), 0);

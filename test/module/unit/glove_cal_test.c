@@ -144,7 +144,7 @@ TEST(every_word_is_there)
         CHECK(check_same_text(exh_glove_sensor_text(i), "unknown") == (i == EXH_GLOVE_SENSORS),
               "%u", i);
     }
-    CHECK(check_same_text(exh_glove_sensor_text(EXH_GLOVE_PINKIE_RING_AB), "PinkieRingAb"), "18");
+    CHECK(check_same_text(exh_glove_sensor_text(EXH_GLOVE_LITTLE_RING_AB), "PinkieRingAb"), "18");
 }
 
 /* --- image --- */

@@ -71,7 +71,7 @@ TEST(published_vectors)
 /* Rows and columns of each finger's turn: of length 1 and square to each other to 3 LSB. */
 TEST(turns_are_turns)
 {
-    for (unsigned f = 0; f < EXH_HAND_FINGERS; f++) {
+    for (unsigned f = 0; f < EXH_FINGERS; f++) {
         for (unsigned i = 0; i < 18; i++) {
             const unsigned a = i / 3 % 3, b = i % 3, columns = i / 9;
             const int64_t one_q60 = a == b ? INT64_C(1) << 60 : 0;
@@ -162,9 +162,9 @@ TEST(setup_refuses)
 
 TEST(map_of_the_hand_is_sound)
 {
-    int32_t sensor[EXH_HAND_SENSORS] = {0};
+    int32_t sensor[EXH_GLOVE_SENSORS] = {0};
     CHECK_EQ_I64(exh_hand_map_check(&exh_hit2_map), 0);
-    for (unsigned f = 0; f < EXH_HAND_FINGERS; f++) {
+    for (unsigned f = 0; f < EXH_FINGERS; f++) {
         int32_t q[3];
         CHECK(exh_hand_joints(&exh_hit2_map, f, sensor, q) == 0, "finger %u at rest", f);
     }
@@ -183,12 +183,12 @@ TEST(a_finger_follows_its_own_sensors)
         {EXH_GLOVE_MIDDLE_INDEX_AB, EXH_INDEX, 0, -1}, {EXH_GLOVE_MIDDLE_MPJ, EXH_MIDDLE, 1, 1},
         {EXH_GLOVE_MIDDLE_PIJ, EXH_MIDDLE, 2, 1},      {EXH_GLOVE_MIDDLE_DIJ, EXH_MIDDLE, 2, 1},
         {EXH_GLOVE_RING_MPJ, EXH_RING, 1, 1},          {EXH_GLOVE_RING_PIJ, EXH_RING, 2, 1},
-        {EXH_GLOVE_RING_DIJ, EXH_RING, 2, 1},          {EXH_GLOVE_PINKIE_MPJ, EXH_LITTLE, 1, 1},
-        {EXH_GLOVE_PINKIE_PIJ, EXH_LITTLE, 2, 1},      {EXH_GLOVE_PINKIE_DIJ, EXH_LITTLE, 2, 1},
-        {EXH_GLOVE_PINKIE_RING_AB, EXH_LITTLE, 0, 1}};
+        {EXH_GLOVE_RING_DIJ, EXH_RING, 2, 1},          {EXH_GLOVE_LITTLE_MPJ, EXH_LITTLE, 1, 1},
+        {EXH_GLOVE_LITTLE_PIJ, EXH_LITTLE, 2, 1},      {EXH_GLOVE_LITTLE_DIJ, EXH_LITTLE, 2, 1},
+        {EXH_GLOVE_LITTLE_RING_AB, EXH_LITTLE, 0, 1}};
     for (size_t i = 0; i < LEN(row); i++) {
-        for (unsigned f = 0; f < EXH_HAND_FINGERS; f++) {
-            int32_t sensor[EXH_HAND_SENSORS] = {0}, rest[3], bent[3];
+        for (unsigned f = 0; f < EXH_FINGERS; f++) {
+            int32_t sensor[EXH_GLOVE_SENSORS] = {0}, rest[3], bent[3];
             (void)exh_hand_joints(&exh_hit2_map, f, sensor, rest);
             sensor[row[i].sensor] = EXH_DEG(20, 1);
             CHECK(exh_hand_joints(&exh_hit2_map, f, sensor, bent) == 0, "row %zu", i);
@@ -213,13 +213,13 @@ TEST(spans_end_at_the_limits)
                {EXH_GLOVE_INDEX_MPJ, EXH_INDEX, 1, -30, 0, 110, 85},
                {EXH_GLOVE_MIDDLE_MPJ, EXH_MIDDLE, 1, -30, 0, 110, 85},
                {EXH_GLOVE_RING_MPJ, EXH_RING, 1, -30, 0, 110, 85},
-               {EXH_GLOVE_PINKIE_MPJ, EXH_LITTLE, 1, -30, 0, 110, 85}};
+               {EXH_GLOVE_LITTLE_MPJ, EXH_LITTLE, 1, -30, 0, 110, 85}};
     for (size_t i = 0; i < LEN(row); i++) {
         for (int end = 0; end < 2; end++) {
             const int32_t at = end ? row[i].to_deg : row[i].from_deg;
             const int32_t want = EXH_DEG(end ? row[i].hi_deg : row[i].lo_deg, 1);
             const int32_t sign = end ? 1 : -1;
-            int32_t sensor[EXH_HAND_SENSORS] = {0}, q[3];
+            int32_t sensor[EXH_GLOVE_SENSORS] = {0}, q[3];
             sensor[row[i].sensor] = EXH_DEG(at - sign, 1);
             CHECK(exh_hand_joints(&exh_hit2_map, row[i].finger, sensor, q) == 0, "row %zu", i);
             sensor[row[i].sensor] = EXH_DEG(at + sign, 1);
@@ -236,10 +236,10 @@ TEST(map_check_refuses)
         struct exh_hand_map m = exh_hit2_map;
         struct exh_hand_joint *j = &m.joint[EXH_LITTLE][2];
         switch (i) {
-        case 0: j->sensor[1] = EXH_HAND_SENSORS; break;
+        case 0: j->sensor[1] = EXH_GLOVE_SENSORS; break;
         case 1: j->gain_q24[0] = EXH_HAND_GAIN_MAX_Q24 + 1; break;
         case 2: j->gain_q24[0] = INT32_MIN; break;
-        case 3: m.bent[EXH_LITTLE][2] = EXH_HAND_SENSORS; break;
+        case 3: m.bent[EXH_LITTLE][2] = EXH_GLOVE_SENSORS; break;
         default: j->lo_turn_q32 = j->hi_turn_q32 + 1; break;
         }
         CHECK(exh_hand_map_check(&m) == -EXH_E_RANGE, "map %u", i);
@@ -252,7 +252,7 @@ static void pulled(const struct exh_hand_finger *own, const struct exh_hand_fing
                    int64_t out_um, int32_t *q, struct exh_vec3 *tip)
 {
     const uint8_t *bent = exh_hit2_map.bent[i];
-    int32_t sensor[EXH_HAND_SENSORS] = {0};
+    int32_t sensor[EXH_GLOVE_SENSORS] = {0};
     for (unsigned k = 0; k < 3; k++) { /* 683.565 LSB are 1 urad */
         sensor[bent[k]] =
             (int32_t)((own->pull_radpm_q20[k > 0] * out_um >> 10) * 683565 / 1000 >> 10);
@@ -269,7 +269,7 @@ static int32_t axis(const struct exh_vec3 *v, int c)
 /* The string bends the wearer, the map the robot: what the slope says is what the tip does. */
 TEST(slope_is_that_of_the_string_through_the_map)
 {
-    for (unsigned i = 0; i < EXH_HAND_FINGERS; i++) {
+    for (unsigned i = 0; i < EXH_FINGERS; i++) {
         const struct exh_hand_finger own = finger(i);
         struct exh_hand_finger f = own;
         CHECK_EQ_I64(exh_hand_follow(&f, &exh_hit2_map, i), 0);
@@ -342,7 +342,7 @@ TEST(mirror_images_are_no_turns)
 /* What the hand's description leaves open is 0, so that two of them can be compared. */
 TEST(what_a_hand_does_not_use_is_zero)
 {
-    for (unsigned f = 0; f < EXH_HAND_FINGERS; f++) {
+    for (unsigned f = 0; f < EXH_FINGERS; f++) {
         for (unsigned q = 0; q < EXH_HAND_JOINTS; q++) {
             const struct exh_hand_joint *j = &exh_hit2_map.joint[f][q];
             for (unsigned t = 0; t < EXH_HAND_TERMS; t++) {
@@ -350,7 +350,7 @@ TEST(what_a_hand_does_not_use_is_zero)
             }
         }
     }
-    for (unsigned f = EXH_INDEX; f < EXH_HAND_FINGERS;
+    for (unsigned f = EXH_INDEX; f < EXH_FINGERS;
          f++) { /* fingers bend about an axis of the palm */
         const int32_t(*r)[3] = exh_hit2_bones[f].rot_q30;
         CHECK(r[0][0] == 0 && r[1][0] == 0 && r[2][0] == 1 << 30 && r[2][1] == 0 && r[2][2] == 0,

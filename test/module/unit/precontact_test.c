@@ -95,13 +95,14 @@ TEST(no_plane_means_no_contact)
 {
     start();
     at(MM(150));
-    CHECK(s.lim_m_q30 == EXH_PRECONTACT_NEVER && s.d_m_q30 == INT32_MIN && bits == 0, "first tick");
+    CHECK(s.lim_m_q30 == EXH_PRECONTACT_NO_LIM && s.d_m_q30 == INT32_MIN && bits == 0,
+          "first tick");
     tell((struct exh_plane){EXH_PLANE_UNTOLD, 9, 9, {1, 2, 3}, {4, 5, 6}});
     at(MM(150));
-    CHECK(s.lim_m_q30 == EXH_PRECONTACT_NEVER && bits == 0, "untold");
+    CHECK(s.lim_m_q30 == EXH_PRECONTACT_NO_LIM && bits == 0, "untold");
     tell((struct exh_plane){EXH_PLANE_NONE, 9, 9, {1, 2, 3}, {4, 5, 6}});
     at(MM(90));
-    CHECK(s.lim_m_q30 == EXH_PRECONTACT_NEVER && bits == 0, "no hit");
+    CHECK(s.lim_m_q30 == EXH_PRECONTACT_NO_LIM && bits == 0, "no hit");
     CHECK(s.born_n == 0 && s.refused_n == 0 && s.stale_n == 0, "nothing to count");
 }
 
@@ -191,7 +192,7 @@ TEST(a_contact_that_the_glove_denies_is_let_go)
     CHECK(n == 12 && f.spring_N_q20 == 0, "force in %d ticks", n);
     CHECK(bits == (EXH_PRECONTACT_RELEASE | EXH_PRECONTACT_DOUBT | EXH_PRECONTACT_LETGO),
           "%" PRIx32, bits);
-    CHECK(s.let_go_n == 1 && s.lim_m_q30 == EXH_PRECONTACT_NEVER, "counted");
+    CHECK(s.let_go_n == 1 && s.lim_m_q30 == EXH_PRECONTACT_NO_LIM, "counted");
     tell(floor_plane);
     at(MM(150));
     CHECK(bits == EXH_PRECONTACT_TRACKS && s.doubt_ticks == 0, "as new");
@@ -223,7 +224,7 @@ TEST(an_unknown_fingertip)
     CHECK(bits == EXH_PRECONTACT_TRACKS, "as old as may be");
     in.tip_age_ticks = 21;
     at(MM(150));
-    CHECK(bits == EXH_PRECONTACT_BLIND && s.lim_m_q30 == EXH_PRECONTACT_NEVER &&
+    CHECK(bits == EXH_PRECONTACT_BLIND && s.lim_m_q30 == EXH_PRECONTACT_NO_LIM &&
               s.d_m_q30 == INT32_MIN && s.stale_n == 0,
           "tracking: no contact, %" PRIx32, bits);
     in.tip_age_ticks = 0;
@@ -292,7 +293,7 @@ TEST(what_comes_while_frozen_is_ignored_and_counted)
     CHECK(s.ignored_n == 3 && s.lim_m_q30 == lim && s.phase == EXH_PRECONTACT_FROZEN, "gone");
     CHECK_EQ_I64(s.taken.k_Npm_q10, material[0].k_Npm_q10);
     at(MM(150));
-    CHECK(s.lim_m_q30 == EXH_PRECONTACT_NEVER && bits == EXH_PRECONTACT_RELEASE,
+    CHECK(s.lim_m_q30 == EXH_PRECONTACT_NO_LIM && bits == EXH_PRECONTACT_RELEASE,
           "left, and there is none any more");
 }
 
@@ -304,7 +305,7 @@ TEST(what_came_while_frozen_is_new_at_the_release)
     tell(p);
     at(MM(117));
     CHECK(bits == (EXH_PRECONTACT_RELEASE | EXH_PRECONTACT_AROUND) && s.born_n == 1, "no snap");
-    CHECK(s.lim_m_q30 == EXH_PRECONTACT_NEVER && s.d_m_q30 == MM(120) - MM(117) + MM(10), "d");
+    CHECK(s.lim_m_q30 == EXH_PRECONTACT_NO_LIM && s.d_m_q30 == MM(120) - MM(117) + MM(10), "d");
 }
 
 TEST(born_inside_gives_no_contact_until_left)
@@ -314,10 +315,10 @@ TEST(born_inside_gives_no_contact_until_left)
     tell(p);
     at(MM(112));
     CHECK(bits == EXH_PRECONTACT_AROUND, "bits %" PRIx32, bits);
-    CHECK(s.lim_m_q30 == EXH_PRECONTACT_NEVER && s.born_n == 1, "first");
+    CHECK(s.lim_m_q30 == EXH_PRECONTACT_NO_LIM && s.born_n == 1, "first");
     tell(p);
     at(MM(90));
-    CHECK(s.lim_m_q30 == EXH_PRECONTACT_NEVER && s.born_n == 1, "the same is counted once");
+    CHECK(s.lim_m_q30 == EXH_PRECONTACT_NO_LIM && s.born_n == 1, "the same is counted once");
     p.object = 7;
     tell(p);
     at(MM(90));
@@ -375,7 +376,7 @@ TEST(a_stale_plane_is_none)
         CHECK(bits & EXH_PRECONTACT_TRACKS, "tick %d", i);
     }
     at(MM(150));
-    CHECK(bits == EXH_PRECONTACT_STALE && s.lim_m_q30 == EXH_PRECONTACT_NEVER && s.stale_n == 1,
+    CHECK(bits == EXH_PRECONTACT_STALE && s.lim_m_q30 == EXH_PRECONTACT_NO_LIM && s.stale_n == 1,
           "too old: %" PRIx32, bits);
     at(MM(112));
     CHECK(bits == EXH_PRECONTACT_STALE && s.stale_n == 1, "counted once");
@@ -490,7 +491,7 @@ TEST(scale_and_slope)
     par.from_slope = 0;
     par.scale_q24 = INT32_C(1) << 27;
     at(INT32_MAX); /* 1.89 m off, 8 times as far */
-    CHECK_EQ_I64(s.lim_m_q30, EXH_PRECONTACT_NEVER);
+    CHECK_EQ_I64(s.lim_m_q30, EXH_PRECONTACT_NO_LIM);
 }
 
 TEST(set_up_refuses)
@@ -521,7 +522,7 @@ TEST(set_up_refuses)
     CHECK_EQ_I64(exh_precontact_setup(&cfg, &par, material, 2, -1, TICK), -EXH_E_RANGE);
     CHECK_EQ_I64(exh_precontact_setup(&cfg, &par, material, 2, MM(25) + 1, TICK), -EXH_E_RANGE);
     CHECK_EQ_I64(exh_precontact_setup(&cfg, &par, material, 2, 0, (struct exh_period){0, 1000}),
-                 -EXH_E_RANGE);
+                 -EXH_E_RATE);
     for (int i = 0; i < EXH_PRECONTACT_ROWS; i++) {
         CHECK(exh_precontact_rows[i].dflt >= exh_precontact_rows[i].min &&
                   exh_precontact_rows[i].dflt <= exh_precontact_rows[i].max,
@@ -617,7 +618,7 @@ TEST(restored_tracking_touches_nothing_at_once)
     s.left_ticks = UINT32_MAX;
     round_trip();
     at(MM(114));
-    CHECK(bits == EXH_PRECONTACT_AROUND && s.lim_m_q30 == EXH_PRECONTACT_NEVER, "%" PRIx32, bits);
+    CHECK(bits == EXH_PRECONTACT_AROUND && s.lim_m_q30 == EXH_PRECONTACT_NO_LIM, "%" PRIx32, bits);
     CHECK(s.left_ticks == cfg.age_ticks - 1, "%" PRIu32 " left", s.left_ticks);
     start(); /* and what was written goes on as if it had not been */
     tell(floor_plane);

@@ -367,12 +367,14 @@ TEST(setup_rejections)
         {69049330, INT32_MAX, 16, {1, 10}, "a quarter of 16 bits in a tick"},
         {69049330, INT32_MIN, 24, {1, 1000}, "a negative speed"},
         {69049330, INT32_MAX, 16, {1, 1}, "16 bits a second: direction can't be told"},
-        {69049330, INT32_MAX, 24, {1, 0}, "no period"},
     };
     struct exh_quad_cfg cfg;
     const struct exh_quad_par good = {69049330, INT32_MAX};
     CHECK_EQ_I64(exh_quad_setup(&cfg, &good, (struct exh_period){1, 1000}, 16), 0);
     CHECK_EQ_I64(exh_quad_setup(&cfg, &good, (struct exh_period){1, 1}, 24), 0);
+    CHECK_EQ_I64(exh_quad_setup(&cfg, &good, (struct exh_period){1, 0}, 24), -EXH_E_RATE);
+    CHECK_EQ_I64(exh_quad_setup(&cfg, &good, (struct exh_period){0, 1}, 24), -EXH_E_RATE);
+    CHECK_EQ_I64(exh_quad_setup(&cfg, &good, (struct exh_period){1, 40000}, 24), -EXH_E_RATE);
     for (size_t i = 0; i < LEN(row); i++) {
         const struct exh_quad_par par = {row[i].step, row[i].speed};
         CHECK(exh_quad_setup(&cfg, &par, row[i].T, row[i].bits) == -EXH_E_RANGE, "%s", row[i].what);

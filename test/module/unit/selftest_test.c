@@ -121,6 +121,7 @@ int bad_selftest_glove(void);
 #define exh_filter_step    bad_filter_step
 #define exh_selftest       bad_selftest
 #define exh_selftest_glove bad_selftest_glove
+#define INPUT static volatile
 #include "../../../lib/src/safe/selftest.c"
 
 /* Results in the order in which they are looked at: up to each of these they are its group's. */

@@ -26,7 +26,7 @@ static struct exh_wire_packet sample(uint8_t type)
         p.u.state.touching = 2;
         p.u.state.age_ms = EXH_WIRE_NEVER_MS;
         p.u.state.faults = 0x80000001u;
-        for (unsigned f = 0; f < EXH_WIRE_FINGERS; f++) {
+        for (unsigned f = 0; f < EXH_FINGERS; f++) {
             for (unsigned k = 0; k < 3; k++) {
                 p.u.state.joint_turn_q32[f][k] = v += 0x01010101;
                 p.u.state.tip_m_q30[f][k] = -(v += 77);

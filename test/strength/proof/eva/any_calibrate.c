@@ -64,7 +64,7 @@ static void in_range(uint8_t points)
 {
     any_calib(points, points);
     for (unsigned i = 0; i < EXH_CALIB_POINTS_MAX; i++) {
-        point[i].force_N_q20 = Frama_C_interval(1, FORCE_MAX_N_Q20);
+        point[i].force_N_q20 = Frama_C_interval(1, EXH_FORCE_MAX_N_Q20);
         point[i].cur_A_q26 = Frama_C_interval(1, CUR_MAX_A_Q26);
         point[i].mon_A_q26 = Frama_C_interval(1, MON_MAX_A_Q26);
     }

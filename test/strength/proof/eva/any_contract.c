@@ -76,6 +76,8 @@ static void law(void)
     ANY(in);
     touching = exh_contact_law(&s, &par, in, &f);
     /*@ assert law: contact(&s) && law_ledger(&f) && bit(touching); */
+    exh_contact_free(&s, &par, in.pos_m_q30, &f);
+    /*@ assert law_free: contact(&s) && law_ledger(&f); */
 }
 
 /* Parameters that no set-up looks at: the rows' ranges are what the law takes. */

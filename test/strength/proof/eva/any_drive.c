@@ -39,7 +39,7 @@ static void any_cfg(void)
     knot[0].y = Frama_C_interval(INT32_MIN, -2);
     knot[1].y = Frama_C_interval(-1, 0);
     knot[2].y = Frama_C_interval(1, INT32_MAX);
-    par.f_max_N_q20 = Frama_C_interval(0, F_MAX_N_Q20);
+    par.f_max_N_q20 = Frama_C_interval(0, EXH_FORCE_MAX_N_Q20);
     par.slew_up_Nps = Frama_C_interval(1, SLEW_MAX_NPS);
     par.slew_down_Nps = Frama_C_interval(SLEW_DOWN_MIN_NPS, SLEW_MAX_NPS);
     par.i_peak_A_q26 = Frama_C_interval(I_CONT_MAX_A_Q26, I_PEAK_MAX_A_Q26);
@@ -61,8 +61,8 @@ static void any_state(void)
     ANY(f);
     ANY(i);
     ANY(permit);
-    s.force_N_q20 = Frama_C_interval(0, F_MAX_N_Q20);
-    s.fall_N_q20 = Frama_C_interval(0, F_MAX_N_Q20 + 1);
+    s.force_N_q20 = Frama_C_interval(0, EXH_FORCE_MAX_N_Q20);
+    s.fall_N_q20 = Frama_C_interval(0, EXH_FORCE_MAX_N_Q20 + 1);
     s.i2t_q32 = (int64_t)Frama_C_unsigned_long_long_interval(0, INT64_MAX / 2);
     permit.share_q30 = Frama_C_interval(0, 1 << 30);
     permit.fall.mant = Frama_C_interval(0, INT32_MAX);

@@ -7,7 +7,7 @@
  * PLANT: lib/src/sense/filter_low.c: (int64_t)high_word(p) * c -> p * c
  * PLANT: lib/src/sense/filter_high.c: exh_wrap_diff64(exh_wrap_add64(mid, mid), vel) -> exh_wrap_add64(mid, mid) - vel
  * PLANT: lib/src/sense/filter_high.c: vel = bounded(s->vel); -> vel = 2 * s->vel;
- * PLANT: lib/src/sense/filter.c: (v > most ? most : v < -most ? -most : v) * (INT64_C(1) << n) -> v * (INT64_C(1) << n)
+ * PLANT: lib/src/sense/filter.c: exh_clamp64(v, most) * (INT64_C(1) << n) -> v * (INT64_C(1) << n)
  */
 #include "num/bytes.c"
 #include "sense/filter.c"

@@ -4,7 +4,7 @@
  * any pulls into those that follow. The DLR/HIT II's own map passes.
  *
  * EVA: -eva-slevel 40
- * PLANT: lib/src/sense/hand.c: map->bent[f][j] >= EXH_HAND_SENSORS -> map->bent[f + 1][j] >= EXH_HAND_SENSORS
+ * PLANT: lib/src/sense/hand.c: map->bent[f][j] >= EXH_GLOVE_SENSORS -> map->bent[f + 1][j] >= EXH_GLOVE_SENSORS
  * PLANT: lib/src/sense/hand.c: (int64_t)j->gain_q24[t] * sensor_turn_q32[j->sensor[t]] -> j->gain_q24[t] * sensor_turn_q32[j->sensor[t]]
  * PLANT: lib/src/sense/hand.c: exh_clamp32(exh_limit32(want), j->lo_turn_q32, j->hi_turn_q32) -> (int32_t)want
  * PLANT: lib/src/sense/hand.c: if (sum_q44 > PULL_MAX_RADPM_Q20 || sum_q44 < -PULL_MAX_RADPM_Q20) -> if (sum_q44 > PULL_MAX_RADPM_Q20)
@@ -31,24 +31,24 @@ static void checked(void)
 static void any_map(void)
 {
     ANY(map);
-    for (unsigned f = 0; f < EXH_HAND_FINGERS; f++) {
+    for (unsigned f = 0; f < EXH_FINGERS; f++) {
         for (unsigned i = 0; i < EXH_HAND_JOINTS; i++) {
             struct exh_hand_joint *j = &map.joint[f][i];
             for (unsigned t = 0; t < EXH_HAND_TERMS; t++) {
                 j->gain_q24[t] = Frama_C_interval(-EXH_HAND_GAIN_MAX_Q24, EXH_HAND_GAIN_MAX_Q24);
-                j->sensor[t] = (uint8_t)Frama_C_unsigned_int_interval(0, EXH_HAND_SENSORS - 1);
+                j->sensor[t] = (uint8_t)Frama_C_unsigned_int_interval(0, EXH_GLOVE_SENSORS - 1);
             }
-            map.bent[f][i] = (uint8_t)Frama_C_unsigned_int_interval(0, EXH_HAND_SENSORS - 1);
+            map.bent[f][i] = (uint8_t)Frama_C_unsigned_int_interval(0, EXH_GLOVE_SENSORS - 1);
         }
     }
 }
 
 static void finger(const struct exh_hand_map *of, unsigned at)
 {
-    static int32_t sensor_turn_q32[EXH_HAND_SENSORS], joint_turn_q32[EXH_HAND_JOINTS];
+    static int32_t sensor_turn_q32[EXH_GLOVE_SENSORS], joint_turn_q32[EXH_HAND_JOINTS];
     static struct exh_hand_finger f;
     uint32_t limited;
-    for (unsigned i = 0; i < EXH_HAND_SENSORS; i++) { sensor_turn_q32[i] = any32(); }
+    for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) { sensor_turn_q32[i] = any32(); }
     limited = exh_hand_joints(of, at, sensor_turn_q32, joint_turn_q32);
     /*@ assert three: limited <= 7; */
     f.pull_radpm_q20[0] = Frama_C_interval(-PULL_MAX_RADPM_Q20, PULL_MAX_RADPM_Q20);
@@ -61,7 +61,7 @@ int main(void)
 {
     checked();
     any_map();
-    for (unsigned at = 0; at < EXH_HAND_FINGERS; at++) {
+    for (unsigned at = 0; at < EXH_FINGERS; at++) {
         finger(&map, at);
         finger(&exh_hit2_map, at);
     }

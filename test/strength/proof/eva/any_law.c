@@ -9,7 +9,7 @@
 
 #include "any.h"
 
-static void law(struct exh_force_ledger *f)
+static void laws(struct exh_force_ledger *f)
 {
     static struct exh_contact s;
     struct exh_contact_par par;
@@ -23,12 +23,14 @@ static void law(struct exh_force_ledger *f)
     par.hyst_m_q30 = Frama_C_interval(0, 10737418);
     (void)exh_contact_law(&s, &par, in, f);
     /*@ assert law_is_finite: -(1 << 52) * 256 <= f->spring_N_q20 <= (1 << 52) * 256; */
+    exh_contact_free(&s, &par, in.pos_m_q30, f);
+    /*@ assert free_of_contact: f->spring_N_q20 == 0 && f->damper_N_q20 == 0 && s.touching == 0; */
 }
 
 int main(void)
 {
     static struct exh_force_ledger f;
-    law(&f);
+    laws(&f);
     END();
     return 0;
 }

@@ -3,7 +3,7 @@
  * Passivity of a finger: any state that exh_passivity_bytes() lets pass, any count, any ledger of a law, any
  * current; a table of three knots with any values that exh_table_set() lets.
  *
- * PLANT: lib/src/law/passivity.c: = limited(e); -> = e;
+ * PLANT: lib/src/law/passivity.c: = exh_clamp64(e, ENERGY_MAX_NCNT_Q20); -> = e;
  */
 #include "act/drive.c"
 #include "law/passivity.c"
@@ -36,7 +36,7 @@ static void any_cfg(void)
     knot[0].y = Frama_C_interval(INT32_MIN, -2);
     knot[1].y = Frama_C_interval(-1, 0);
     knot[2].y = Frama_C_interval(1, INT32_MAX);
-    par.f_max_N_q20 = Frama_C_interval(0, F_MAX_N_Q20);
+    par.f_max_N_q20 = Frama_C_interval(0, EXH_FORCE_MAX_N_Q20);
     cfg.f_top_N_q20 = Frama_C_interval(1, INT32_MAX);
     cfg.step_m_q42 = Frama_C_interval(1, INT32_MAX);
     cfg.share.mant = Frama_C_interval(0, INT32_MAX);

@@ -14,6 +14,7 @@
  */
 #include "num/bytes.c"
 #include "num/fix.c"
+#include "num/signal.c"
 
 #include "contract_box.h"
 
@@ -61,7 +62,8 @@ static void any_cfg(unsigned materials)
     cfg.par = &par;
     cfg.material = material;
     cfg.materials = (uint8_t)materials;
-    cfg.pad_m_q60 = Frama_C_long_long_interval(-PAD_MAX_M_Q30, PAD_MAX_M_Q30) * (INT64_C(1) << 30);
+    cfg.pad_m_q60 =
+        Frama_C_long_long_interval(-EXH_PAD_MAX_M_Q30, EXH_PAD_MAX_M_Q30) * (INT64_C(1) << 30);
 }
 
 static void ticks(unsigned materials)
@@ -86,7 +88,8 @@ static void ticks(unsigned materials)
 
 static void set_up(void)
 {
-    const struct exh_period T = {any_u32(), any_u32()};
+    /* What exh_period_ok() takes has a numerator; Eva does not see it through the call. */
+    const struct exh_period T = {Frama_C_unsigned_int_interval(1, UINT32_MAX), any_u32()};
     ANY(par);
     ANY(material);
     if (exh_precontact_setup(&cfg, &par, material, Frama_C_unsigned_int_interval(0, 3), any32(),

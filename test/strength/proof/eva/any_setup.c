@@ -9,7 +9,7 @@
  * PLANT: lib/src/act/drive.c: if (n < 2 || n > 255) { return -EXH_E_RANGE; } -> (void)0;
  * PLANT: lib/src/act/drive.c: const int64_t dy = (int64_t)knot[i + 1].y - knot[i].y; -> const int64_t dy = knot[i + 1].y - knot[i].y;
  * PLANT: lib/src/law/passivity.c: if (way > WAY_MAX_CNT) { return -EXH_E_RANGE; } -> (void)0;
- * PLANT: lib/src/law/passivity.c: s->energy_Ncnt_q20 = limited(s->energy_Ncnt_q20); -> (void)0;
+ * PLANT: lib/src/law/passivity.c: s->energy_Ncnt_q20 = exh_clamp64(s->energy_Ncnt_q20, ENERGY_MAX_NCNT_Q20); -> (void)0;
  * PLANT: lib/src/safe/safety.c: cfg->arm_ticks = exh_ticks_in(par->arm_ms, T) + 1; -> cfg->arm_ticks = exh_ticks_in(par->arm_ms, T) - 1;
  * PLANT: lib/src/law/contact.c: s->inward = s->inward != 0; -> (void)0;
  */

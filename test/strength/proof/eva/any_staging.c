@@ -40,10 +40,10 @@ static void any_rule(void)
 {
     ANY(rule);
     rule.knots = EXH_GAINS_KNOTS;
-    rule.k_min_Npm_q10 = Frama_C_interval(0, K_MAX);
+    rule.k_min_Npm_q10 = Frama_C_interval(0, EXH_K_MAX_NPM_Q10);
     for (int32_t i = 0; i < EXH_GAINS_KNOTS; i++) {
-        rule.b_Nspm_q20[i] = Frama_C_interval(0, B_MAX);
-        rule.k_Npm_q10[i] = Frama_C_interval(0, K_MAX);
+        rule.b_Nspm_q20[i] = Frama_C_interval(0, EXH_B_MAX_NSPM_Q20);
+        rule.k_Npm_q10[i] = Frama_C_interval(0, EXH_K_MAX_NPM_Q10);
     }
 }
 
@@ -51,8 +51,8 @@ static void any_rule(void)
 static void any_pairs(void)
 {
     for (unsigned i = 0; i < TABLE_VALUES; i++) {
-        active[i] = Frama_C_interval(0, B_MAX);
-        staged[i] = Frama_C_interval(0, B_MAX);
+        active[i] = Frama_C_interval(0, EXH_B_MAX_NSPM_Q20);
+        staged[i] = Frama_C_interval(0, EXH_B_MAX_NSPM_Q20);
     }
 }
 
@@ -67,7 +67,7 @@ int main(void)
     exh_gains_lead(&p, any32());
     any_pairs();
     exh_gains_step(&p, &rule);
-    exh_gains_drop(&p);
+    exh_params_drop(&p);
     END();
     return 0;
 }

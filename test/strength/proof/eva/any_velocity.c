@@ -5,9 +5,9 @@
  *
  * PLANT: lib/src/sense/velocity.c: & (EXH_VELOCITY_N - 1u)); -> );
  * PLANT: lib/src/sense/velocity.c: s->at %= EXH_VELOCITY_N; -> (void)0;
- * PLANT: lib/src/sense/velocity.c: s->v_mps_q55 = limit(s->v_mps_q55, POLE_MAX_MPS_Q55); -> (void)0;
- * PLANT: lib/src/sense/velocity.c: s->vel_cnt_q32 = limit(s->vel_cnt_q32, TRACK_MAX_CNT_Q32); -> (void)0;
- * PLANT: lib/src/sense/velocity.c: limit(s->err_cnt_q32 + s->vel_cnt_q32 - moved_q32, TRACK_MAX_CNT_Q32) -> 4 * (s->err_cnt_q32 + s->vel_cnt_q32 - moved_q32)
+ * PLANT: lib/src/sense/velocity.c: s->v_mps_q55 = exh_clamp64(s->v_mps_q55, POLE_MAX_MPS_Q55); -> (void)0;
+ * PLANT: lib/src/sense/velocity.c: s->vel_cnt_q32 = exh_clamp64(s->vel_cnt_q32, TRACK_MAX_CNT_Q32); -> (void)0;
+ * PLANT: lib/src/sense/velocity.c: exh_clamp64(s->err_cnt_q32 + s->vel_cnt_q32 - moved_q32, TRACK_MAX_CNT_Q32) -> 4 * (s->err_cnt_q32 + s->vel_cnt_q32 - moved_q32)
  */
 #include "num/bytes.c"
 #include "num/fix.c"

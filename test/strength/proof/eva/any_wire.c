@@ -56,7 +56,7 @@ static void use(void)
     exh_params_init(&params, &table, active, staged);
     ANY(p);
     (void)exh_wire_stage(&params, &p);
-    (void)exh_wire_plane_of(&p.u.planes, Frama_C_unsigned_int_interval(0, EXH_WIRE_FINGERS - 1));
+    (void)exh_wire_plane_of(&p.u.planes, Frama_C_unsigned_int_interval(0, EXH_FINGERS - 1));
     ANY(ours);
     ANY(theirs);
     (void)exh_wire_differs(&ours, &theirs);

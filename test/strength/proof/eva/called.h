@@ -101,6 +101,15 @@ int exh_contact_law(struct exh_contact *s, const struct exh_contact_par *par,
     return any8() & 1;
 }
 
+void exh_contact_free(struct exh_contact *s, const struct exh_contact_par *par, int32_t pos_m_q30,
+                      struct exh_force_ledger *f)
+{
+    (void)pos_m_q30;
+    /*@ assert law_free: contact(s) && contact_par(par); */
+    *s = any_contact();
+    *f = any_law_ledger();
+}
+
 void exh_contact_bytes(struct exh_bytes *c, struct exh_contact *s)
 {
     (void)c;

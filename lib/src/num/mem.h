@@ -1,0 +1,10 @@
+/* SPDX-License-Identifier: MIT */
+/* memcpy() without <string.h>, which a compiler without a C library does not have. */
+#ifndef NUM_MEM_H
+#define NUM_MEM_H
+
+#include <stddef.h>
+
+void *memcpy(void *to, const void *from, size_t n);
+
+#endif
