@@ -7,10 +7,10 @@
 #include "check.h"
 
 #include <dirent.h>
+#include <glob.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #define DOC "docs/SAFETY.md"
 
@@ -25,20 +25,27 @@ static const char *read_into(char *buf, size_t cap, const char *path)
     return buf;
 }
 
-/* folder/name is test/folder/name or test/folder/name_test.c. */
+static int matches(const char *before, const char *name, size_t len, const char *after)
+{
+    char pattern[200];
+    glob_t found;
+    snprintf(pattern, sizeof pattern, "%s%.*s%s", before, (int)len, name, after);
+    const int there = glob(pattern, 0, NULL, &found) == 0;
+    globfree(&found);
+    return there;
+}
+
+/* folder/name is that path or folder/name_test.c, below test or below a subject of it. */
 static int is_there(const char *name, size_t len)
 {
-    char path[200];
-    snprintf(path, sizeof path, "test/%.*s", (int)len, name);
-    if (access(path, R_OK) == 0) { return 1; }
-    snprintf(path, sizeof path, "test/%.*s_test.c", (int)len, name);
-    return access(path, R_OK) == 0;
+    return matches("test/", name, len, "") || matches("test/", name, len, "_test.c") ||
+           matches("test/*/", name, len, "") || matches("test/*/", name, len, "_test.c");
 }
 
 TEST(tests_that_are_named_are_there)
 {
     static const char *const folder[] = {"unit/",   "prop/",  "sim/",    "cards/",
-                                         "stress/", "pc104/", "golden/", "board/",
+                                         "stress/", "pc104/", "golden/", "port/",
                                          "proof/",  "emu/",   "size/"};
     int n = 0;
     for (const char *p = read_into(doc, sizeof doc, DOC); (p = strchr(p, '`')) != NULL; p++) {
