@@ -7,8 +7,8 @@
  * what it has not: calibration and polarity.
  *
  * Prints the force at the deepest point and a CRC-32 over all codes that went to the D/A: the same
- * on every CPU, by every compiler and however the library was linked (test/walk/link checks all of them
- * against each other). */
+ * on every CPU, by every compiler and however the library was linked (test/walk/link checks all of
+ * them against each other). */
 #include "exhand/exhand.h"
 
 #include <stdio.h>

@@ -10,7 +10,8 @@ struct times {
     double access_us, byte_us, timer_us, cpi, settle_us, convert_us, update_us, sample_us, every;
 };
 
-/* Dearest ticks, as `make hil` counts them; accesses to cards as test/device/cards demands them too. */
+/* Dearest ticks, as `make hil` counts them; accesses to cards as test/device/cards demands them
+ * too. */
 static const struct load {
     const char *name;
     double goal_Hz;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* What Linux does: the port accesses that Debian's drivers s526 and dmm32at were seen to make
- * (test/device/strangers), made again here, where no kernel is. Every reading must be what it was there.
+ * (test/device/strangers), made again here, where no kernel is. Every reading must be what it was
+ * there.
  */
 #include "rig.h"
 

@@ -9,9 +9,9 @@
  * Their number goes to stdout. Usage: ticks N contact|run|all [WORD...]
  *     0xID=RAW    a parameter, of every finger or whatever there are several of; 0xID.N=RAW: of one
  * With any other word a tick is what the loop makes of it, parameters applied, and with
- *     link=0|1|2  the link not called, its packets written and nobody there, or a world (world.h)
- * that answers with planes log=1       lib/src/run/log.c, to a board that takes every record glove=0
- * no glove frame ever came */
+ *     link=0|1|2  the link not called; packets written, nobody there; a world that answers
+ *     log=1       lib/src/run/log.c, to a board that takes every record
+ *     glove=0     no glove frame ever came */
 #include "world.h"
 
 #include "exhand/run/log.h"
