@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The known answers of guard.h's self-test: each of them wrong alone is told, by its group. What
- * computes them is spoiled here, by names that lib/src/safe/selftest.c is compiled with once more. */
+ * computes them is spoiled here, by names that lib/src/safe/selftest.c is compiled with once more.
+ */
 #include "exhand/angle.h"
 #include "exhand/bytes.h"
 #include "exhand/filter.h"
@@ -121,7 +122,7 @@ int bad_selftest_glove(void);
 #define exh_filter_step    bad_filter_step
 #define exh_selftest       bad_selftest
 #define exh_selftest_glove bad_selftest_glove
-#define INPUT static volatile
+#define INPUT              static volatile
 #include "../../../lib/src/safe/selftest.c"
 
 /* Results in the order in which they are looked at: up to each of these they are its group's. */

@@ -13,7 +13,7 @@
 #include "num/bytes.c"
 #include "num/fix.c"
 #include "num/params.c"
-#include "num/signal.c" /* not that of Frama-C */
+#include "num/signal.c"      /* not that of Frama-C */
 #define head       wire_head /* params.c has its own */
 #define head_bytes wire_head_bytes
 #include "talk/wire.c"
