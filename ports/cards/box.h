@@ -16,7 +16,7 @@
 #include "mm32xat.h"
 #include "s526.h"
 
-#include "exhand/drive.h"
+#include "exhand/frame.h"
 #include "exhand/glove.h"
 
 #include <stddef.h>

@@ -6,8 +6,8 @@
 #include "sim/codes.h"
 #include "sim/mass.h"
 
-#include "exhand/drive.h"
 #include "exhand/error.h"
+#include "exhand/frame.h"
 #include "exhand/safety.h"
 
 #include <string.h>

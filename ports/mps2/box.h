@@ -3,7 +3,7 @@
 #ifndef MPS2_BOX_H
 #define MPS2_BOX_H
 
-#include "exhand/drive.h"
+#include "exhand/frame.h"
 #include "exhand/glove.h"
 
 int mps2_box_open(void); /* finds what is there, drives disabled: 0 or -EXH_E_ABSENT, -EXH_E_IO */

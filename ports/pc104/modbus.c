@@ -13,7 +13,8 @@
 
 #include "exhand/error.h"
 #include "exhand/fix.h"
-#include "exhand/modbus.h"
+#include "exhand/modbus_rtu.h"
+#include "exhand/regs.h"
 
 #include <string.h>
 

@@ -7,7 +7,7 @@
 
 #include "emu/emu.h"
 
-#include "exhand/drive.h"
+#include "exhand/frame.h"
 #include "exhand/glove.h"
 
 #include <stdint.h>

@@ -4,7 +4,7 @@
 #ifndef POSIX_GPIO_H
 #define POSIX_GPIO_H
 
-#include "exhand/drive.h"
+#include "exhand/frame.h"
 #include "exhand/units.h"
 
 #include <stdint.h>

@@ -16,6 +16,8 @@
 
 #include "exhand/error.h"
 #include "exhand/modbus.h"
+#include "exhand/modbus_rtu.h"
+#include "exhand/regs.h"
 
 #include <signal.h>
 #include <stdio.h>

@@ -3,6 +3,7 @@
 #include "modules.h"
 
 #include "exhand/drive.h"
+#include "exhand/table.h"
 
 #define KNOTS 8
 

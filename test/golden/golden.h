@@ -13,6 +13,8 @@
 #include "exhand/glove.h"
 #include "exhand/safety.h"
 #include "exhand/signal.h"
+#include "exhand/supply.h"
+#include "exhand/track.h"
 #include "exhand/units.h"
 #include "exhand/watch.h"
 

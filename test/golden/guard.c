@@ -2,9 +2,9 @@
 /* guard and supply: is what must stand still what it was, and are the drives fed? */
 #include "modules.h"
 
-#include "exhand/drive.h"
 #include "exhand/fix.h"
 #include "exhand/guard.h"
+#include "exhand/supply.h"
 
 #define AREA_B 40
 

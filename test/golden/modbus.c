@@ -6,6 +6,7 @@
 
 #include "exhand/error.h"
 #include "exhand/fix.h"
+#include "exhand/modbus_rtu.h"
 
 static struct golden_box box;
 

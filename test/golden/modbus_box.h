@@ -5,7 +5,7 @@
 
 #include "golden.h"
 
-#include "exhand/modbus.h"
+#include "exhand/regs.h"
 
 #define BOX_SIGNALS   64
 #define BOX_PARAMS    68

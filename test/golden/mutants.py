@@ -29,7 +29,7 @@ FLAGS = "-std=c99 -O1 -w -Ilib/include -Iexamples -Itest -D_POSIX_C_SOURCE=20080
 
 L, H, X, Y = "lib/src/", "lib/include/exhand/", "examples/drop/", "examples/bilateral/"
 VELOCITY, QUAD, DRIVE, SAFETY = L + "sense/velocity.c", L + "sense/quad.c", L + "act/drive.c", L + "safe/safety.c"
-TRACK, WATCH, GATE = L + "act/track.c", L + "safe/watch.c", L + "act/gate.c"
+TRACK, WATCH, GATE, TABLE = L + "act/track.c", L + "safe/watch.c", L + "act/gate.c", L + "act/table.c"
 PASSIVITY, GAINS = L + "law/passivity.c", L + "law/gains.c"
 
 # module, source, text, what stands there instead. A changed header is compiled into the module's own
@@ -104,8 +104,8 @@ MUTANTS = (
     ("contact", L + "law/contact.c", "pen >= 0 ||", "pen > 0 ||"),
     ("contact", L + "law/contact.c", "pen > ~par->hyst_m_q30", "pen > -par->hyst_m_q30"),
     ("contact", L + "law/contact.c", "exh_diff_sat32(in.pos_m_q30, in.lim_m_q30)", "exh_wrap_diff(in.pos_m_q30, in.lim_m_q30)"),
-    ("table", DRIVE, "exh_clamp32(x, t.knot[0].x, t.knot[last].x);", "exh_clamp32(x, t.knot[0].x, t.knot[last].x - 1);"),
-    ("table", DRIVE, "i += in >= t.knot[k].x;", "i += in > t.knot[k].x + 1;"),
+    ("table", TABLE, "exh_clamp32(x, t.knot[0].x, t.knot[last].x);", "exh_clamp32(x, t.knot[0].x, t.knot[last].x - 1);"),
+    ("table", TABLE, "i += in >= t.knot[k].x;", "i += in > t.knot[k].x + 1;"),
     ("table", H + "fix.h", "(g.shift & 63u), 1) >> 1", "(g.shift & 63u), 0) >> 1"),
     ("drive", DRIVE, "(held > end) == rises ? end : held", "(held < end) == rises ? end : held"),
     ("drive", DRIVE, ">> cfg->i2t_shift >> 2;", ">> cfg->i2t_shift >> 1;"),
@@ -169,7 +169,7 @@ MUTANTS = (
     ("safety", SAFETY, "s->present == EXH_FAULT_DEADMAN && !", "!"),
     ("safety", SAFETY, "s->steps >= cfg->arm_ticks", "s->steps > cfg->arm_ticks"),
     ("safety", SAFETY, "p.ticks = add_sat(missed, 1);", "p.ticks = 1;"),
-    ("safety", GATE, "s->state == EXH_STATE_ARM && s->share_q30 > 0", "s->state == EXH_STATE_ARM"),
+    ("safety", L + "safe/safety_open.c", "(s->state == EXH_STATE_ARM && s->share_q30 > 0)", "s->state == EXH_STATE_ARM"),
     ("safety", GATE, "asked, -span, span", "asked, 0, span"),
     ("safety", GATE, "    s->limits = 0;", ""),
     ("safety", GATE, "falls ? s->off_raw[k] : UINT16_MAX", "UINT16_MAX"),
@@ -347,7 +347,7 @@ THIN = {
 }
 
 # Where the inline functions of a header are called for a module.
-CALLS = {"fix": "test/golden/basics.c", "velocity_window": VELOCITY, "table": DRIVE, "angle": L + "num/angle.c",
+CALLS = {"fix": "test/golden/basics.c", "velocity_window": VELOCITY, "table": TABLE, "angle": L + "num/angle.c",
          "precontact": L + "law/precontact.c", "quantizer": L + "sense/quantizer.c", "guard": L + "safe/guard.c"}
 
 

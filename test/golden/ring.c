@@ -3,6 +3,7 @@
 #include "modules.h"
 
 #include "exhand/record.h"
+#include "exhand/ring.h"
 
 #define MOST_B  512u
 #define ROOM_B  (65536u + EXH_RECORD_OVERHEAD)

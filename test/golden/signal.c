@@ -4,6 +4,7 @@
 #include "modules.h"
 
 #include "exhand/error.h"
+#include "exhand/params.h"
 #include "exhand/signal.h"
 
 static const struct exh_signal some_rows[] = {

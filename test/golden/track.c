@@ -4,6 +4,7 @@
 
 #include "exhand/drive.h"
 #include "exhand/fix.h"
+#include "exhand/track.h"
 
 void golden_track_par(struct exh_track_par *p, struct golden_rng *r, uint32_t rate_Hz)
 {

@@ -20,8 +20,10 @@
 
 #include "exhand/drive.h"
 #include "exhand/error.h"
+#include "exhand/frame.h"
 #include "exhand/quad.h"
 #include "exhand/safety.h"
+#include "exhand/track.h"
 #include "exhand/velocity.h"
 #include "exhand/watch.h"
 

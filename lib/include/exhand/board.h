@@ -8,7 +8,7 @@
 #ifndef EXHAND_BOARD_H
 #define EXHAND_BOARD_H
 
-#include "exhand/drive.h"
+#include "exhand/frame.h"
 #include "exhand/glove.h"
 #include "exhand/units.h"
 

@@ -11,8 +11,8 @@
 #ifndef EXHAND_CALIBRATE_H
 #define EXHAND_CALIBRATE_H
 
-#include "exhand/drive.h"
 #include "exhand/fix.h"
+#include "exhand/table.h"
 
 #include <stddef.h>
 #include <stdint.h>

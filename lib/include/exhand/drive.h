@@ -12,6 +12,7 @@
 #include "exhand/contact.h"
 #include "exhand/fix.h"
 #include "exhand/signal.h"
+#include "exhand/table.h"
 #include "exhand/units.h"
 
 #include <stdint.h>
@@ -19,36 +20,6 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-/* --- frames: raw codes of the device's own five axes, as a board moves them --- */
-
-/* digital inputs; every contact is normally closed: 1 = healthy */
-enum exh_din {
-    EXH_DIN_ESTOP = 1u << 0,    /* emergency-stop loop closed */
-    EXH_DIN_DEADMAN = 1u << 1,  /* dead-man switch held */
-    EXH_DIN_WATCHDOG = 1u << 2, /* no watchdog has fired since power-on */
-    EXH_DIN_CARDS = 1u << 3,    /* the cards answer and do what they are told */
-    EXH_DIN_DRIVE0 = 1u << 8    /* drive of finger i ready: EXH_DIN_DRIVE0 << i */
-};
-
-/* What a board reads in a tick, latched together. */
-struct exh_drive_in {
-    uint32_t enc_raw[EXH_FINGERS]; /* counter value, the board's width, low bits */
-    int16_t mon_raw[EXH_FINGERS];  /* current monitor, two's complement */
-    int16_t supply_raw;            /* supply monitor */
-    uint32_t din;                  /* enum exh_din */
-};
-
-/* What it writes in a tick; made by exh_gate() alone. */
-struct exh_drive_out {
-    uint16_t dac_raw[EXH_FINGERS]; /* offset binary */
-    uint8_t enable;                /* bit i: drive of finger i enabled */
-    uint8_t alive;                 /* changes once per completed tick: the watchdog's kick */
-};
-
-/* The first n fingers of a frame through a cursor. */
-void exh_drive_in_bytes(struct exh_bytes *c, struct exh_drive_in *in, unsigned n);
-void exh_drive_out_bytes(struct exh_bytes *c, struct exh_drive_out *out, unsigned n);
 
 /* --- limits: a limit acts and is reported, it is not a fault --- */
 
@@ -86,34 +57,6 @@ struct exh_permit {
     uint32_t ticks;       /* 1, and one for each missed before it */
     struct exh_gain fall; /* release: of the force held at its start, a tick */
 };
-
-/* --- conversion tables: strictly rising, linear between knots --- */
-
-/* One knot; units and formats are the table's, any int32_t. */
-struct exh_knot {
-    int32_t x, y;          /* both above those of the knot before */
-    struct exh_gain slope; /* to the next knot; exh_table_set() fills it */
-};
-/* A table; passed by value. */
-struct exh_table {
-    const struct exh_knot *knot; /* n of them, the caller's; may live in ROM */
-    uint8_t n;                   /* >= 2 */
-};
-
-/* Checks n knots and fills the slopes. -EXH_E_RANGE (n not 2 .. 255, x or y spans
- * more than 2^31-1, or a slope is 2^31 or more or below 2^-32), -EXH_E_MONOTONE (x or y does not
- * rise strictly). */
-int exh_table_set(struct exh_knot *knot, unsigned n);
-
-/* The inverse table: dst may be src. Where all segments are at least (or all at most)
- * 1 steep, there and back, through the steeper first, comes within 1 LSB, 2 from
- * spans of 2^30. Errors as exh_table_set(). */
-int exh_table_invert(struct exh_knot *dst, const struct exh_knot *src, unsigned n);
-
-/* y at x: monotone, exact at every knot, within 1.5 LSB of y between them (1 LSB
- * where a segment rises less than 2^30), and the end values outside. Cost depends
- * on n alone, not on x. */
-int32_t exh_table_at(struct exh_table t, int32_t x);
 
 /* --- one axis --- */
 
@@ -194,94 +137,6 @@ int32_t exh_drive_monitor_N_q20(const struct exh_drive_cfg *cfg, int32_t mon_A_q
 
 /* State through a cursor. A state of zeros is an axis at rest and cold. */
 void exh_drive_bytes(struct exh_bytes *c, struct exh_drive *s);
-
-/* --- does the current follow the code? (track.c) ---
- *
- * A D/A that says it has updated and has not leaves its last current on the finger; no
- * card reads back its outputs, the current monitor can tell. Whoever is to follow with an
- * unknown delay must come by: the monitor has to meet, within the tolerance, what was coded
- * since it last did. From then on the band of currents coded begins anew, so it
- * does not grow wide by a current that was left long ago.
- *
- * No false alarm by any sequence of codes while the drive's delay, in ticks, and its lag are such
- * that after time + 4 ticks less than tolerance - noise is left of any step. What is not seen:
- * a current within the tolerance of what is coded, or one that is coded again and again.
- * A scene that moves a motor calls both functions for each finger; one whose port has no
- * monitor names EXH_UNTRACKED instead (safety.h). */
-
-/* Parameters of one axis's tracking; rows in exh_track_rows[]. */
-struct exh_track_par {
-    int32_t tol_A_q26; /* monitor off by no more, A, 0.1 .. 1 */
-    int32_t time_ms;   /* for no longer, ms, 1 .. 100, and 4 ticks */
-};
-#define EXH_TRACK_ROWS 2
-extern const struct exh_signal exh_track_rows[EXH_TRACK_ROWS];
-
-/* One axis's tracking as it is set up. */
-struct exh_track_cfg {
-    int32_t tol_A_q26; /* the parameter */
-    uint32_t ticks;    /* time + 4 ticks, rounded up */
-};
-
-/* One axis's tracking from tick to tick. */
-struct exh_track {
-    int32_t lo_A_q26, hi_A_q26; /* least and most that was coded since the monitor met it */
-    uint32_t off_ticks;         /* since when it does not, 0 .. ticks */
-};
-
-/* Set-up (divides). -EXH_E_RANGE: a parameter outside its range above; -EXH_E_RATE: T. */
-int exh_track_setup(struct exh_track_cfg *cfg, const struct exh_track_par *par,
-                    struct exh_period T);
-
-/* First thing of a tick, with the current monitored (exh_drive_monitor_A_q26). 1 while the
- * current has not followed for cfg->ticks ticks, this one among them: to be raised as
- * EXH_FAULT_TRACKING, in every state; else 0. */
-int exh_track_step(struct exh_track *s, const struct exh_track_cfg *cfg, int32_t mon_A_q26);
-
-/* Behind the gate, with the current that the code stands for (coded of the ledger). Who forgets
- * it gets the fault with the first current. */
-void exh_track_coded(struct exh_track *s, int32_t coded_A_q26);
-
-/* State through a cursor. A state of zeros is a drive at rest. Damaged bytes at worst raise
- * the fault until the monitor is met. */
-void exh_track_bytes(struct exh_bytes *c, struct exh_track *s);
-
-/* --- the drives' supply (supply.c) --- */
-
-/* Parameters of the supply; rows in exh_supply_rows[]. */
-struct exh_supply_par {
-    int32_t min_V_q20;   /* V, 0 .. 100; 0: the box has no monitor of it, it is not judged */
-    int32_t max_V_q20;   /* V, min .. 100 */
-    int32_t scale_V_q30; /* volt per code of supply_raw, > 0 .. 2 */
-    int32_t time_ms;     /* ms, 1 .. 1000 */
-};
-#define EXH_SUPPLY_ROWS 4
-extern const struct exh_signal exh_supply_rows[EXH_SUPPLY_ROWS];
-
-/* The supply's limits as they are set up, in codes: no product in the tick. */
-struct exh_supply_cfg {
-    int16_t min_raw, max_raw; /* codes within the limits, both included */
-    uint32_t ticks;           /* the time, rounded down, and one more */
-};
-
-/* The supply from tick to tick. */
-struct exh_supply {
-    uint32_t off_ticks; /* outside on end, 0 .. ticks */
-};
-
-/* Set-up (divides). -EXH_E_RANGE: a parameter outside its range above, or limits between which
- * there is no code, or of which the upper is not below the highest code; -EXH_E_RATE: T. */
-int exh_supply_setup(struct exh_supply_cfg *cfg, const struct exh_supply_par *par,
-                     struct exh_period T);
-
-/* A tick's code, after so many that were missed, which count as this one. 1 while the voltage is
- * outside its limits for cfg->ticks ticks on end: to be raised as EXH_FAULT_SUPPLY; else 0. */
-int exh_supply_step(struct exh_supply *s, const struct exh_supply_cfg *cfg, int16_t raw,
-                    uint32_t missed);
-
-/* State through a cursor. A state of zeros is a supply that was never outside. Damaged bytes at
- * worst raise the fault until a voltage within the limits is seen. */
-void exh_supply_bytes(struct exh_bytes *c, struct exh_supply *s);
 
 #ifdef __cplusplus
 }

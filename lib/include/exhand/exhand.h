@@ -2,26 +2,22 @@
 /* exhand: from 22 glove voltages and 5 encoder counts to 5 motor currents, in
  * integers, without allocation, with the same bits on every machine.
  *
- *   fix units bytes error        below everything
- *   angle                        binary angles, sine and cosine
- *   signal                       one descriptor per value; parameters
- *   glove                        its codes to 22 joint angles; a user's calibration from poses
- *   hand                         the glove's angles to the robot hand's joints and fingertips
- *   quad -> velocity -> contact -> drive -> safety (the gate)      one tick
- *   axis                         that tick of one finger, in its order, for scenes and firmware
- *   passivity                    no contact gives back more energy than it was given
- *   guard                        configuration that must stand still; self-test
- *   watch                        speed limit of a finger, and an encoder that stands
- *   filter, quantizer            glove voltages to codes that stand still
- *   gains                        which stiffness and damping are taken at this rate
- *   precontact                   the virtual contact q_lim, frozen before it is felt
- *   wire                         packets between controller and world
- *   calibrate, probe             tables of the box, and the motions that measure them
- *   record                       log and replay
- *   trace                        a few signals of every n-th tick, until somebody fetches them
- *   slots                        images in flash that outlive a power cut
- *   modbus                       the box as registers; a Modbus slave
- *   board                        what a port provides; only the loop calls it
+ *   numbers   units fix bytes angle error      formats, arithmetic, cursors, sine and cosine
+ *             signal params                    one descriptor per value; values that may change
+ *   sensing   frame                            raw codes of a tick, as a board reads and writes
+ * them quad velocity                    counts to position and velocity filter quantizer glove
+ * glove voltages to codes that stand still, to angles hand                             glove angles
+ * to the robot hand's fingertips laws      contact passivity                a force from a contact,
+ * and no energy out of it gains precontact                 limits of stiffness; the virtual contact
+ * q_lim actuation table drive                      force to current, within limits supply track the
+ * drives' voltage; does the current follow? safety    safety watch guard               states and
+ * gate; speed limit; configuration, self-test a finger  axis                             the tick
+ * of one finger, in its order bench     calibrate probe                  tables of the box, and the
+ * motions that measure them talking   record ring trace                the log, the newest of it, a
+ * few signals wire                             packets between controller and world regs modbus
+ * modbus_rtu           the box as registers; a Modbus slave slots                            images
+ * in flash that outlive a power cut board                                      what a port
+ * provides; only the loop calls it
  *
  * A scene is a pure function over these modules (examples/minimal is the
  * shortest); lib/src/run/loop.c is the one loop around it. docs/DESIGN.md says why.
@@ -38,33 +34,56 @@
 #define EXH_VERSION_NUMBER \
     ((uint32_t)EXH_VERSION_MAJOR << 16 | (uint32_t)EXH_VERSION_MINOR << 8 | EXH_VERSION_PATCH)
 
+/* numbers */
 #include "exhand/angle.h"
-#include "exhand/axis.h"
 #include "exhand/bytes.h"
-#include "exhand/calibrate.h"
-#include "exhand/contact.h"
-#include "exhand/drive.h"
 #include "exhand/error.h"
-#include "exhand/filter.h"
 #include "exhand/fix.h"
-#include "exhand/gains.h"
+#include "exhand/params.h"
+#include "exhand/signal.h"
+#include "exhand/units.h"
+
+/* sensing */
+#include "exhand/filter.h"
+#include "exhand/frame.h"
 #include "exhand/glove.h"
-#include "exhand/guard.h"
 #include "exhand/hand.h"
-#include "exhand/modbus.h"
-#include "exhand/passivity.h"
-#include "exhand/precontact.h"
-#include "exhand/probe.h"
 #include "exhand/quad.h"
 #include "exhand/quantizer.h"
-#include "exhand/record.h"
+#include "exhand/velocity.h"
+
+/* laws */
+#include "exhand/contact.h"
+#include "exhand/gains.h"
+#include "exhand/passivity.h"
+#include "exhand/precontact.h"
+
+/* actuation */
+#include "exhand/drive.h"
+#include "exhand/supply.h"
+#include "exhand/table.h"
+#include "exhand/track.h"
+
+/* safety */
+#include "exhand/guard.h"
 #include "exhand/safety.h"
-#include "exhand/signal.h"
+#include "exhand/watch.h"
+
+/* the tick of one finger */
+#include "exhand/axis.h"
+
+/* measuring the box */
+#include "exhand/calibrate.h"
+#include "exhand/probe.h"
+
+/* talking */
+#include "exhand/modbus.h"
+#include "exhand/modbus_rtu.h"
+#include "exhand/record.h"
+#include "exhand/regs.h"
+#include "exhand/ring.h"
 #include "exhand/slots.h"
 #include "exhand/trace.h"
-#include "exhand/units.h"
-#include "exhand/velocity.h"
-#include "exhand/watch.h"
 #include "exhand/wire.h"
 
 #endif

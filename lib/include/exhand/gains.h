@@ -11,6 +11,7 @@
 #ifndef EXHAND_GAINS_H
 #define EXHAND_GAINS_H
 
+#include "exhand/params.h"
 #include "exhand/signal.h"
 #include "exhand/units.h"
 

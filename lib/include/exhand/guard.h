@@ -7,7 +7,7 @@
 #ifndef EXHAND_GUARD_H
 #define EXHAND_GUARD_H
 
-#include "exhand/signal.h"
+#include "exhand/params.h"
 
 #include <stddef.h>
 #include <stdint.h>

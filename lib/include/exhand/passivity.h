@@ -36,6 +36,7 @@
 #include "exhand/contact.h"
 #include "exhand/drive.h"
 #include "exhand/signal.h"
+#include "exhand/table.h"
 #include "exhand/velocity.h"
 
 #include <stdint.h>

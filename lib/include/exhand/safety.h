@@ -10,6 +10,7 @@
 
 #include "exhand/bytes.h"
 #include "exhand/drive.h"
+#include "exhand/frame.h"
 #include "exhand/signal.h"
 
 #include <stdint.h>

@@ -13,6 +13,7 @@
 #define EXHAND_WIRE_H
 
 #include "exhand/bytes.h"
+#include "exhand/params.h"
 #include "exhand/precontact.h"
 #include "exhand/signal.h"
 #include "exhand/trace.h"

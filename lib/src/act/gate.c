@@ -4,12 +4,6 @@
 #include "exhand/error.h"
 #include "exhand/fix.h"
 
-int exh_safety_open(const struct exh_safety *s)
-{
-    return exh_safety_runs(s) || s->state == EXH_STATE_RELEASE ||
-           (s->state == EXH_STATE_ARM && s->share_q30 > 0);
-}
-
 /* The code for one current: within the span of zero, no further from it than `most`, and of 16
  * bits. */
 static uint16_t code_of(const struct exh_drive_par *par, int32_t cur_A_q26, uint16_t most_raw,

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "exhand/drive.h"
+#include "exhand/track.h"
 
 #include "exhand/error.h"
 #include "exhand/fix.h"

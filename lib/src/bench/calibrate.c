@@ -3,6 +3,7 @@
 
 #include "exhand/bytes.h"
 #include "exhand/error.h"
+#include "exhand/frame.h"
 
 #define IMAGE_MAGIC   0x43485845u /* "EXHC" */
 #define IMAGE_CRC_B   4u

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "exhand/signal.h"
+#include "exhand/params.h"
 
 #include "exhand/error.h"
 #include "exhand/fix.h"

@@ -3,6 +3,7 @@
 
 #include "exhand/error.h"
 #include "exhand/fix.h"
+#include "exhand/ring.h"
 
 #define KEYFRAMES_MIN 8u
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "exhand/modbus.h"
+#include "exhand/modbus_rtu.h"
 
 #include "exhand/error.h"
 #include "exhand/fix.h"

@@ -23,6 +23,11 @@ static int table_setup(const struct exh_signal_table *t, uint32_t *n, uint32_t *
     return *n > EXH_REGS_VALUES ? -EXH_E_RANGE : 0;
 }
 
+void exh_regs_forget(struct exh_regs *r)
+{
+    for (uint32_t w = 0; w < EXH_REGS_WORDS(r->params_n); w++) { r->touched[w] = 0; }
+}
+
 int exh_regs_setup(struct exh_regs *r)
 {
     int err = table_setup(r->signals, &r->signals_n, &r->signals_crc);

@@ -2,7 +2,7 @@
 /* binary32 and back, by integers: a register's mirror. */
 #include "exhand/fix.h"
 #include "exhand/error.h"
-#include "exhand/modbus.h"
+#include "exhand/regs.h"
 
 #define FRACTION 23 /* bits of a binary32 behind its leading one */
 #define BIAS     127

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The map in words, for people and documents; an image that prints none links none. */
-#include "exhand/modbus.h"
+#include "exhand/regs.h"
 
 const struct exh_regs_row exh_regs_head_row[EXH_HEADS] = {
     {"magic", "u32", "0x45584831, \"EXH1\""},

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* What the two files of the register map share; not part of the library's interface. */
+/* What the sources of the register map share; not part of the library's interface. */
 #ifndef EXH_REGS_PRIVATE_H
 #define EXH_REGS_PRIVATE_H
 
-#include "exhand/modbus.h"
+#include "exhand/regs.h"
 
 /* --- walking a table --- */
 

@@ -5,11 +5,6 @@
 #include "exhand/error.h"
 #include "exhand/fix.h"
 
-void exh_regs_forget(struct exh_regs *r)
-{
-    for (uint32_t w = 0; w < EXH_REGS_WORDS(r->params_n); w++) { r->touched[w] = 0; }
-}
-
 /* --- staging --- */
 
 static void stage(struct exh_regs *r, uint32_t i, int32_t raw)

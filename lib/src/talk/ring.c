@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "exhand/record.h"
+#include "exhand/ring.h"
 
 #include "exhand/error.h"
 

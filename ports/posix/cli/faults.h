@@ -10,7 +10,7 @@
 
 #include "exhand/run/scene.h"
 
-#include "exhand/drive.h"
+#include "exhand/frame.h"
 #include "exhand/guard.h"
 #include "exhand/safety.h"
 

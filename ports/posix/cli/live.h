@@ -8,7 +8,7 @@
 #include "exhand/run/loop.h"
 #include "run.h"
 
-#include "exhand/drive.h"
+#include "exhand/frame.h"
 
 #include <stdint.h>
 #include <stdio.h>

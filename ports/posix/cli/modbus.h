@@ -14,7 +14,7 @@
 
 #include "exhand/run/scene.h"
 
-#include "exhand/modbus.h"
+#include "exhand/regs.h"
 
 struct mail_cfg {
     const char *save; /* SAVE writes the parameters there; NULL: refused */

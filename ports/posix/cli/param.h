@@ -3,6 +3,7 @@
 #ifndef CLI_PARAM_H
 #define CLI_PARAM_H
 
+#include "exhand/params.h"
 #include "exhand/signal.h"
 
 #include <stdio.h>

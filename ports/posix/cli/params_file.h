@@ -4,7 +4,7 @@
 #ifndef CLI_PARAMS_FILE_H
 #define CLI_PARAMS_FILE_H
 
-#include "exhand/signal.h"
+#include "exhand/params.h"
 
 #define PARAMS_FILE_B 65536 /* the largest image that is taken */
 

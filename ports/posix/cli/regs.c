@@ -12,7 +12,7 @@
 #include "glove/glove.h"
 #include "guarded/guarded.h"
 
-#include "exhand/modbus.h"
+#include "exhand/regs.h"
 
 #include <stdio.h>
 #include <string.h>

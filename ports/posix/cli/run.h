@@ -10,7 +10,7 @@
 
 #include "exhand/run/loop.h"
 
-#include "exhand/signal.h"
+#include "exhand/params.h"
 
 /* a parameter of the scene, by name, in SI */
 struct run_setting {

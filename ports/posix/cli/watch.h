@@ -5,7 +5,7 @@
 
 #include "exhand/run/scene.h"
 
-#include "exhand/modbus.h"
+#include "exhand/regs.h"
 
 #include <stdio.h>
 

@@ -11,7 +11,7 @@
 #include "guarded/guarded.h"
 
 #include "exhand/error.h"
-#include "exhand/modbus.h"
+#include "exhand/regs.h"
 
 #include <math.h>
 

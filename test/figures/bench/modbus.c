@@ -5,6 +5,8 @@
 
 #include "exhand/error.h"
 #include "exhand/modbus.h"
+#include "exhand/modbus_rtu.h"
+#include "exhand/regs.h"
 
 #include <math.h>
 #include <string.h>

@@ -3,8 +3,8 @@
 #include "plain.h"
 #include "work.h"
 
-#include "exhand/drive.h"
 #include "exhand/error.h"
+#include "exhand/table.h"
 
 #define CASES 300000u
 #define SPAN  (INT32_C(1) << 26) /* between two knots: a grid that all can have */

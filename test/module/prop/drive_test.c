@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* drive.h against exact arithmetic: tables, both ledgers, the monitor. */
 #include "exhand/drive.h"
+#include "exhand/table.h"
 
 #include "exhand/error.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* modbus.h: the binary32 mirror against exact arithmetic; every register there and back; whatever
  * is asked, the map keeps its promises. */
-#include "exhand/modbus.h"
+#include "exhand/regs.h"
 
 #include "exhand/error.h"
 

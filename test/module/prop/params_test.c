@@ -3,6 +3,7 @@
  * ticks than the header says, the rest as exact division has it; the guard's sum whatever is staged
  * and applied. */
 #include "exhand/fix.h"
+#include "exhand/params.h"
 #include "exhand/signal.h"
 
 #include "check.h"

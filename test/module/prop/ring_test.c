@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* record.h's ring against a plain list of everything that was ever put. */
 #include "exhand/record.h"
+#include "exhand/ring.h"
 
 #include "exhand/error.h"
 

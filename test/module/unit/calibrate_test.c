@@ -2,7 +2,9 @@
 /* calibrate.h: means, tables out of points, what is refused and by which name, the image. */
 #include "exhand/calibrate.h"
 
+#include "exhand/bytes.h"
 #include "exhand/error.h"
+#include "exhand/frame.h"
 
 #include "check.h"
 

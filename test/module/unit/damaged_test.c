@@ -4,11 +4,13 @@
  * sanitizers that unit tests run under are what tells. */
 #include "exhand/drive.h"
 #include "exhand/filter.h"
+#include "exhand/frame.h"
 #include "exhand/glove.h"
 #include "exhand/precontact.h"
 #include "exhand/quad.h"
 #include "exhand/quantizer.h"
 #include "exhand/safety.h"
+#include "exhand/table.h"
 #include "exhand/velocity.h"
 
 #include "check.h"

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* drive.h: limits, I2t and slew, on numbers worked out by hand. */
 #include "exhand/drive.h"
+#include "exhand/frame.h"
+#include "exhand/table.h"
 
 #include "exhand/error.h"
 

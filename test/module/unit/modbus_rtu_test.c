@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* modbus.h: a serial line, byte by byte and silence by silence. */
-#include "exhand/modbus.h"
+#include "exhand/modbus_rtu.h"
+#include "exhand/regs.h"
 
 #include "exhand/error.h"
 

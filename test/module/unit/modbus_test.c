@@ -2,6 +2,7 @@
 /* modbus.h: the slave, request by request. The examples of the Modbus specification (V1.1b3,
  * chapter 6) with its addresses replaced by ours, each exception, and each edge of a count. */
 #include "exhand/modbus.h"
+#include "exhand/regs.h"
 
 #include "exhand/error.h"
 #include "exhand/exhand.h"

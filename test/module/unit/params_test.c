@@ -4,6 +4,7 @@
 #include "exhand/error.h"
 #include "exhand/fix.h"
 #include "exhand/guard.h"
+#include "exhand/params.h"
 #include "exhand/signal.h"
 
 #include "check.h"

@@ -7,6 +7,9 @@
 #include "exhand/probe.h"
 #include "exhand/quad.h"
 #include "exhand/safety.h"
+#include "exhand/supply.h"
+#include "exhand/table.h"
+#include "exhand/track.h"
 #include "exhand/watch.h"
 
 #include "check.h"

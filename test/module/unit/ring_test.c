@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* record.h's ring and records in pieces: what is kept, what goes, what cannot be held. */
 #include "exhand/record.h"
+#include "exhand/ring.h"
 
 #include "exhand/error.h"
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* signal.h: tables, the one way to change a parameter, and its image. */
+#include "exhand/params.h"
 #include "exhand/signal.h"
 
 #include "exhand/bytes.h"
@@ -8,6 +9,7 @@
 #include "exhand/error.h"
 #include "exhand/quad.h"
 #include "exhand/safety.h"
+#include "exhand/track.h"
 #include "exhand/velocity.h"
 
 #include "check.h"

@@ -5,6 +5,7 @@
 #include "exhand/bytes.h"
 #include "exhand/calibrate.h"
 #include "exhand/error.h"
+#include "exhand/params.h"
 #include "exhand/signal.h"
 
 #include "check.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* drive.h, the drives' supply: which codes are within the limits, for how long others may come. */
-#include "exhand/drive.h"
+#include "exhand/supply.h"
 
 #include "exhand/error.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* drive.h, tables: at, between and outside knots, what is refused, and the way back, on numbers
  * worked out by hand. */
-#include "exhand/drive.h"
+#include "exhand/table.h"
 
 #include "exhand/error.h"
 

@@ -4,7 +4,7 @@
 #include "exhand/trace.h"
 
 #include "exhand/error.h"
-#include "exhand/modbus.h"
+#include "exhand/regs.h"
 
 #include "check.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* drive.h, does the current follow the code: ranges, when it is told, when not. */
-#include "exhand/drive.h"
+#include "exhand/track.h"
 
 #include "exhand/error.h"
 

@@ -27,11 +27,15 @@ GONE_THROUGH = ["-std=c99", "-O2", "-fsanitize=undefined", "-fno-sanitize-recove
 # Units with functions that WP judges: the source, and which.
 WP = {
     "fix": ("lib/src/num/fix.c", ["exh_sat32", "exh_clamp"]),
-    "gate": ("lib/src/act/gate.c", ["any_gate", "code_of", "exh_safety_open"]),
+    "gate": ("lib/src/act/gate.c", ["any_gate", "code_of"]),
+    "safety": ("lib/src/safe/safety_open.c", ["exh_safety_open"]),
     "drive": ("lib/src/act/drive.c",
               ["no_force", "release", "exh_drive_force", "i2t_limit", "exh_drive_current"]),
     "track": ("lib/src/act/track.c", ["exh_track_step", "exh_track_coded"]),
 }
+
+# Contracts of other units that a unit is judged by, beside those of fix.
+WP_BESIDE = {"gate": ["safety"]}
 
 # Planted errors that WP must tell: unit, in which function and by which of its properties, file, text, what it becomes.
 WP_PLANTS = [
@@ -50,6 +54,10 @@ WP_PLANTS = [
     ("drive", "exh_drive_current", "lib/src/act/drive.c", "exh_clamp32(peak, -hot, hot)", "exh_clamp(2 * (int64_t)peak, -2 * hot, 2 * hot)"),
     ("track", "exh_track_step", "lib/src/act/track.c", "s->off_ticks >= cfg->ticks", "s->off_ticks > cfg->ticks"),
 ]
+
+
+def wp_specs(unit):
+    return sorted({"fix", unit, *WP_BESIDE.get(unit, ())})
 
 
 def run(cmd, limit, env=None):
@@ -264,7 +272,7 @@ class Proof:
             return self.key(unit.harness, tree, GONE_THROUGH + [unit.body])
         source, functions = WP[unit.name]
         return self.key(os.path.join(tree, source), tree,
-                        functions + [read(os.path.join(HERE, "wp", s + ".acsl")) for s in sorted({"fix", unit.name})])
+                        functions + [read(os.path.join(HERE, "wp", s + ".acsl")) for s in wp_specs(unit.name)])
 
     def kept(self, key, f, *args):
         """The result of f, or what it was with the same key."""
@@ -331,7 +339,7 @@ class Proof:
     def wp(self, unit, tree, name, seconds, functions):
         source, every = WP[unit.name]
         functions, _, named = (functions or "").partition("@")
-        for spec in sorted({"fix", unit.name}):
+        for spec in wp_specs(unit.name):
             annotate(os.path.join(HERE, "wp", spec + ".acsl"), tree)
         inline = ["-inline-calls", "exh_gate", "-remove-inlined", "exh_gate"] if unit.name == "gate" else []
         code, said, s = run(["frama-c", "-cpp-extra-args=-I%s/lib/include -I%s/lib/src" % (tree, tree),

@@ -9,6 +9,7 @@
 #include "exhand/run/scene.h"
 
 #include "exhand/calibrate.h"
+#include "exhand/params.h"
 #include "exhand/signal.h"
 
 struct exh_calib_set_par {

@@ -9,8 +9,9 @@
 #define EXHAND_RUN_SCENE_H
 
 #include "exhand/bytes.h"
-#include "exhand/drive.h"
+#include "exhand/frame.h"
 #include "exhand/glove.h"
+#include "exhand/params.h"
 #include "exhand/safety.h"
 #include "exhand/signal.h"
 

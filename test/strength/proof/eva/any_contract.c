@@ -21,11 +21,13 @@
 #undef SPEED_MIN_MPS_Q27
 #include "sense/velocity.c"
 #include "law/contact.c"
+#include "act/table.c"
 #include "act/drive.c"
 #include "law/passivity.c"
 #undef SPEED_MIN_MPS_Q27
 #include "act/gate.c" /* its proof is any_gate.c: what it writes beside what it is given, its WP */
 #include "safe/safety.c"
+#include "safe/safety_open.c"
 #include "act/track.c"
 #undef CUR_MIN_A_Q26
 #include "safe/watch.c"

@@ -8,6 +8,7 @@
  *
  * PLANT: lib/src/act/drive.c: exh_wrap_add64(f->spring_N_q20, f->damper_N_q20) -> f->spring_N_q20 + f->damper_N_q20
  */
+#include "act/table.c"
 #include "act/drive.c"
 
 #include "any.h"

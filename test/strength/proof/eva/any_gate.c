@@ -11,6 +11,7 @@
  * PLANT: lib/src/act/gate.c: exh_wrap_diff64(passed, asked) -> passed - asked
  */
 #include "act/gate.c"
+#include "safe/safety_open.c"
 
 #define MAY_STOP /* a box whose state says fewer fingers than are asked for */
 #include "any.h"

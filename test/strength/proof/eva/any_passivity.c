@@ -5,6 +5,7 @@
  *
  * PLANT: lib/src/law/passivity.c: = exh_clamp64(e, ENERGY_MAX_NCNT_Q20); -> = e;
  */
+#include "act/table.c"
 #include "act/drive.c"
 #include "law/passivity.c"
 

@@ -18,6 +18,7 @@
 #undef exh_udiv64
 #include "quotient.h"
 #include "bench/calibrate.c"
+#include "act/table.c"
 #include "act/drive.c"
 #include "bench/probe.c"
 #undef TIME_MAX_MS

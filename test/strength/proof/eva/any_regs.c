@@ -48,11 +48,6 @@ uint32_t any_float(int32_t raw, unsigned frac)
     return any_u32();
 }
 
-void exh_regs_forget(struct exh_regs *of) /* any_regs_stage.c */
-{
-    (void)of;
-}
-
 static void set_up(void)
 {
     any_regs();

@@ -6,6 +6,7 @@
  */
 #include "act/gate.c"
 #include "safe/safety.c"
+#include "safe/safety_open.c"
 
 #define MAY_STOP /* a number of fingers that there is not */
 #include "any.h"

@@ -6,8 +6,8 @@
  *
  * EVA: -eva-slevel 12 -eva-slevel-function setup_i2t:60,exh_passivity_setup:60
  * PLANT: lib/src/act/drive.c: s->i2t_q32 > INT64_MAX / 2) { s->i2t_q32 = INT64_MAX / 2; } -> 0) { s->i2t_q32 = 0; }
- * PLANT: lib/src/act/drive.c: if (n < 2 || n > 255) { return -EXH_E_RANGE; } -> (void)0;
- * PLANT: lib/src/act/drive.c: const int64_t dy = (int64_t)knot[i + 1].y - knot[i].y; -> const int64_t dy = knot[i + 1].y - knot[i].y;
+ * PLANT: lib/src/act/table.c: if (n < 2 || n > 255) { return -EXH_E_RANGE; } -> (void)0;
+ * PLANT: lib/src/act/table.c: const int64_t dy = (int64_t)knot[i + 1].y - knot[i].y; -> const int64_t dy = knot[i + 1].y - knot[i].y;
  * PLANT: lib/src/law/passivity.c: if (way > WAY_MAX_CNT) { return -EXH_E_RANGE; } -> (void)0;
  * PLANT: lib/src/law/passivity.c: s->energy_Ncnt_q20 = exh_clamp64(s->energy_Ncnt_q20, ENERGY_MAX_NCNT_Q20); -> (void)0;
  * PLANT: lib/src/safe/safety.c: cfg->arm_ticks = exh_ticks_in(par->arm_ms, T) + 1; -> cfg->arm_ticks = exh_ticks_in(par->arm_ms, T) - 1;
@@ -19,11 +19,14 @@
 #undef exh_udiv64
 #include "quotient.h"
 #include "law/contact.c"
+#include "act/frame.c"
+#include "act/table.c"
 #include "act/drive.c"
 #include "law/passivity.c"
 #undef SPEED_MIN_MPS_Q27
 #include "act/gate.c"
 #include "safe/safety.c"
+#include "safe/safety_open.c"
 #include "act/track.c"
 #undef CUR_MIN_A_Q26
 #include "safe/watch.c"

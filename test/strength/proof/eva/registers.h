@@ -5,7 +5,7 @@
 
 #include "table.h"
 
-#include "exhand/modbus.h"
+#include "exhand/regs.h"
 
 #define FRAMES    2
 #define REGISTERS (2 * TABLE_VALUES)

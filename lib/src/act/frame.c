@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: MIT */
+/* Frames through a cursor. */
+#include "exhand/frame.h"
+
+void exh_drive_in_bytes(struct exh_bytes *c, struct exh_drive_in *in, unsigned n)
+{
+    for (unsigned i = 0; i < n; i++) { exh_bytes_u32(c, &in->enc_raw[i]); }
+    for (unsigned i = 0; i < n; i++) { exh_bytes_i16(c, &in->mon_raw[i]); }
+    exh_bytes_i16(c, &in->supply_raw);
+    exh_bytes_u32(c, &in->din);
+}
+
+void exh_drive_out_bytes(struct exh_bytes *c, struct exh_drive_out *out, unsigned n)
+{
+    for (unsigned i = 0; i < n; i++) { exh_bytes_u16(c, &out->dac_raw[i]); }
+    exh_bytes_u8(c, &out->enable);
+    exh_bytes_u8(c, &out->alive);
+}
