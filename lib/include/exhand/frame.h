@@ -11,8 +11,6 @@
 extern "C" {
 #endif
 
-#define EXH_FINGERS 5 /* thumb, index, middle, ring, little */
-
 /* digital inputs; every contact is normally closed: 1 = healthy */
 enum exh_din {
     EXH_DIN_ESTOP = 1u << 0,    /* emergency-stop loop closed */
