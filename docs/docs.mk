@@ -48,5 +48,5 @@ faults: all
 	    /^<!-- end -->/ { skip = 0 } !skip { print } /^<!-- exhand faults -->/ { put(a) } /^<!-- exhand faults --times -->/ { put(b) }' \
 	    docs/FAULTS.md > $(B)/FAULTS.md.new && cp $(B)/FAULTS.md.new docs/FAULTS.md
 	@mkdir -p $(B)/faults && $(exhand) faults --out $(B)/faults && if command -v gnuplot >/dev/null; then \
-	    (cd $(B)/faults && gnuplot -c faults.gp "$(CURDIR)/ports/posix/cli/plot") && cp $(B)/faults/faults.png docs/faults.png; fi
+	    (cd $(B)/faults && gnuplot -c faults.gp "$(CURDIR)/ports/posix/exhand/plot") && cp $(B)/faults/faults.png docs/faults.png; fi
 	@tail -n 1 $(B)/faults.md; tail -n 1 $(B)/faults_20kHz.md; grep 'times:' $(B)/faults_times.md

@@ -5,7 +5,7 @@
 #include "solo.h"
 #include "view.h"
 
-#include "cli/option.h"
+#include "base/option.h"
 
 #include <errno.h>
 #include <stdio.h>

@@ -8,7 +8,7 @@
 #include "solo.h"
 #include "view.h"
 
-#include "cli/option.h"
+#include "base/option.h"
 #include "sim/lag.h"
 #include "sim/random.h"
 

@@ -9,7 +9,7 @@
 #include "view.h"
 
 #include "bilateral/bilateral.h"
-#include "cli/option.h"
+#include "base/option.h"
 
 #include <pthread.h>
 #include <signal.h>

@@ -2,7 +2,7 @@
 /* world: the world simulator as a program of its own. */
 #include "run.h"
 
-#include "cli/option.h"
+#include "base/option.h"
 
 #include "exhand/exhand.h"
 

@@ -3,9 +3,9 @@
 #include "logs.h"
 #include "said.h"
 
-#include "cli/logfile.h"
-#include "cli/param.h"
-#include "cli/run.h"
+#include "base/logfile.h"
+#include "base/param.h"
+#include "base/run.h"
 #include "posix.h"
 
 #include "exhand/run/blackbox.h"

@@ -3,7 +3,7 @@
  * bounded on both sides where there is chance. */
 #include "check.h"
 
-#include "cli/run.h"
+#include "base/run.h"
 #include "posix.h"
 #include "sim/plant.h"
 

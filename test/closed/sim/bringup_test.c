@@ -4,7 +4,7 @@
  * and from then on nothing comes out. */
 #include "said.h"
 
-#include "cli/bringup_run.h"
+#include "bench/bringup_run.h"
 #include "posix.h"
 
 #include "exhand/error.h"

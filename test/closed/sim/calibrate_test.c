@@ -7,7 +7,7 @@
  * found as kf (1 - b^2) / (1 + a b), 2.4 % low with the committed device. */
 #include "said.h"
 
-#include "cli/calibration.h"
+#include "bench/calibration.h"
 #include "posix.h"
 
 #include "calibrate/calibrate.h"

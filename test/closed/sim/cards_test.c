@@ -3,7 +3,7 @@
  * through them. */
 #include "said.h"
 
-#include "cli/run.h"
+#include "base/run.h"
 #include "posix.h"
 
 #include "exhand/error.h"

@@ -4,7 +4,7 @@
  * changed. */
 #include "check.h"
 
-#include "cli/bilateral_run.h"
+#include "contact/run.h"
 
 #include "guarded/guarded.h"
 

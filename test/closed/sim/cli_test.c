@@ -3,10 +3,10 @@
  * where, what an interruption leaves. */
 #include "said.h"
 
-#include "cli/jobs.h"
-#include "cli/logfile.h"
-#include "cli/param.h"
-#include "cli/table2.h"
+#include "base/jobs.h"
+#include "base/logfile.h"
+#include "base/param.h"
+#include "drop/table2.h"
 
 #include "drop/drop.h"
 

@@ -7,7 +7,7 @@
  * nearly all of the time and decides nothing. */
 #include "check.h"
 
-#include "cli/part.h"
+#include "drop/part.h"
 #include "sim/random.h"
 
 #include <stdlib.h>

@@ -5,7 +5,7 @@
 
 #include "check.h"
 
-#include "cli/analysis.h"
+#include "drop/analysis.h"
 
 #include <math.h>
 #include <stdint.h>

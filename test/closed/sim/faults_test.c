@@ -3,7 +3,7 @@
  * anything at a few thousand random times (`make faults`: 10^5). */
 #include "said.h"
 
-#include "cli/faults.h"
+#include "lab/faults/faults.h"
 #include "posix.h"
 
 static struct said s;

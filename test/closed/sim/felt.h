@@ -5,7 +5,7 @@
 
 #include "check.h"
 
-#include "cli/bilateral_run.h"
+#include "contact/run.h"
 
 #include <string.h>
 

@@ -3,7 +3,7 @@
  * seed, and on from where it was cut off. */
 #include "said.h"
 
-#include "fit/search.h"
+#include "lab/fit/search.h"
 #include "sim/plant.h"
 
 static double gap(double a, double b)

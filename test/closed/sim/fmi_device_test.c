@@ -5,7 +5,7 @@
 
 #include "../../../ports/fmi/device.c"
 
-#include "cli/assign.h"
+#include "base/assign.h"
 
 static uint32_t place_of(const char *name)
 {

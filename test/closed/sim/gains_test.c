@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* exhand advise gains: the model of a fall, the lattice, and a rule that lies inside of it. */
-#include "cli/gains.h"
+#include "advise/gains.h"
 #include "said.h"
 
 #include "sim/random.h"

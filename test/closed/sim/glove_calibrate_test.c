@@ -3,7 +3,7 @@
  * is told by name, and files come in and go out. */
 #include "said.h"
 
-#include "cli/glove_poses.h"
+#include "glove/poses.h"
 #include "sim/glove.h"
 
 #include "exhand/error.h"

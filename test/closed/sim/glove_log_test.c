@@ -2,7 +2,7 @@
 /* exhand glove --record: logs that are as long as they should be and replay bit for bit. */
 #include "glove_said.h"
 
-#include "cli/logfile.h"
+#include "base/logfile.h"
 
 #include "glove/glove.h"
 #include "exhand/run/log.h"

@@ -7,8 +7,8 @@
 #include "glove_said.h"
 #include "terminal.h"
 
-#include "cli/glove.h"
-#include "cli/glove_poses.h"
+#include "glove/modes.h"
+#include "glove/poses.h"
 #include "emu/cyber.h"
 #include "posix.h"
 

@@ -3,7 +3,7 @@
  * rays for it. */
 #include "check.h"
 
-#include "cli/bilateral_run.h"
+#include "contact/run.h"
 
 #include "world/world.h"
 

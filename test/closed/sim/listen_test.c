@@ -2,7 +2,7 @@
 /* exhand listen: pieces of a log that come late, twice, from elsewhere, or never. */
 #include "check.h"
 
-#include "cli/cli.h"
+#include "base/cli.h"
 #include "udp.h"
 
 #include "exhand/run/stream.h"

@@ -2,8 +2,8 @@
 /* A log of whole runs: reads, replays bit for bit, and tells damage, loss and forgery. */
 #include "logs.h"
 
-#include "cli/logfile.h"
-#include "cli/run.h"
+#include "base/logfile.h"
+#include "base/run.h"
 #include "posix.h"
 
 #include "drop/drop.h"

@@ -5,7 +5,7 @@
 
 #include "check.h"
 
-#include "cli/cli.h"
+#include "base/cli.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -3,8 +3,8 @@
  * at its tick, and comes out of the replay bit for bit. */
 #include "logs.h"
 
-#include "cli/arming.h"
-#include "cli/logfile.h"
+#include "base/arming.h"
+#include "base/logfile.h"
 #include "posix.h"
 
 #include "drop/drop.h"

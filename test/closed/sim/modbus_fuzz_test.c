@@ -15,7 +15,7 @@ TEST_MAIN("modbus_fuzz", nothing_without_the_package);
 
 #include "check.h"
 
-#include "cli/modbus.h"
+#include "live/modbus.h"
 
 #include "guarded/guarded.h"
 

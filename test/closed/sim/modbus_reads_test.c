@@ -6,7 +6,7 @@
 
 #ifdef EXH_MODBUS
 
-#include "cli/logfile.h"
+#include "base/logfile.h"
 
 #define SIGNALS 62 /* of bilateral: what one request can have */
 

@@ -7,8 +7,8 @@
 
 #ifdef EXH_MODBUS
 
-#include "cli/logfile.h"
-#include "cli/param.h"
+#include "base/logfile.h"
+#include "base/param.h"
 
 #include <fcntl.h>
 #include <math.h>

@@ -6,7 +6,7 @@
 
 #ifdef EXH_MODBUS
 
-#include "cli/param.h"
+#include "base/param.h"
 
 #include "drop/drop.h"
 

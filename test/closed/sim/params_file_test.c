@@ -3,8 +3,8 @@
  */
 #include "said.h"
 
-#include "cli/cli.h"
-#include "cli/params_file.h"
+#include "base/cli.h"
+#include "base/params_file.h"
 
 #include "bilateral/bilateral.h"
 #include "drop/drop.h"

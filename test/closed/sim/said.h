@@ -5,8 +5,8 @@
 
 #include "check.h"
 
-#include "cli/cli.h"
-#include "cli/option.h"
+#include "base/cli.h"
+#include "base/option.h"
 
 #include <fcntl.h>
 #include <signal.h>

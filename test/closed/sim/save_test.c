@@ -3,8 +3,8 @@
  * wanted. */
 #include "said.h"
 
-#include "cli/modbus.h"
-#include "cli/params_file.h"
+#include "live/modbus.h"
+#include "base/params_file.h"
 
 #include "drop/drop.h"
 

@@ -3,7 +3,7 @@
  * and not where the encoder's counter stands. */
 #include "check.h"
 
-#include "cli/run.h"
+#include "base/run.h"
 #include "posix.h"
 
 #include "drop/drop.h"

@@ -4,8 +4,8 @@
  * not used to fit the device. */
 #include "check.h"
 
-#include "cli/jobs.h"
-#include "cli/table2.h"
+#include "base/jobs.h"
+#include "drop/table2.h"
 
 #include <string.h>
 

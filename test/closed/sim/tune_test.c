@@ -4,7 +4,7 @@
  * of it. */
 #include "logs.h"
 
-#include "cli/run.h"
+#include "base/run.h"
 #include "posix.h"
 
 #include "drop/drop.h"

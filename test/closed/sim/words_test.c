@@ -5,8 +5,8 @@
 
 #include "terminal.h"
 
-#include "cli/option.h"
-#include "cli/words.h"
+#include "base/option.h"
+#include "base/messages.h"
 
 #include <errno.h>
 #include <stdio.h>

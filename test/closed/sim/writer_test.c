@@ -3,7 +3,7 @@
  * ends. */
 #include "check.h"
 
-#include "cli/writer.h"
+#include "base/writer.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -13,9 +13,9 @@
 #include "gpio.h"
 #include "posix.h"
 
-#include "cli/images.h"
-#include "cli/live.h"
-#include "cli/words.h"
+#include "base/images.h"
+#include "live/live.h"
+#include "base/messages.h"
 #include "drop/drop.h"
 #include "exhand/run/loop.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "class.h"
 
-#include "cli/param.h"
+#include "base/param.h"
 #include "exhand/precontact.h"
 #include "exhand/wire.h"
 

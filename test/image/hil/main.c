@@ -3,7 +3,7 @@
 #include "run.h"
 #include "where.h"
 
-#include "cli/option.h"
+#include "base/option.h"
 
 #include <inttypes.h>
 #include <stdlib.h>

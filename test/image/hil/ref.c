@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "ref.h"
 
-#include "cli/param.h"
+#include "base/param.h"
 #include "exhand/run/deadman.h"
 #include "exhand/run/loop.h"
 

@@ -4,7 +4,7 @@
 #include "bilateral/bilateral.h"
 #include "drop/drop.h"
 
-#include "cli/bilateral_run.h"
+#include "contact/run.h"
 
 #include <string.h>
 

@@ -16,9 +16,9 @@
  * gains, half as many at 1.5 times; the same seeds for all methods. */
 #include "method.h"
 
-#include "cli/jobs.h"
-#include "cli/run.h"
-#include "cli/table2.h"
+#include "base/jobs.h"
+#include "base/run.h"
+#include "drop/table2.h"
 
 #include <stdio.h>
 #include <stdlib.h>

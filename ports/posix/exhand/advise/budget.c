@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: MIT */
+/* exhand budget: the highest rate of the loop that the box can hold, bound by bound. */
+#include "base/cli.h"
+
+#include "base/option.h"
+
+#include <stdio.h>
+
+struct times {
+    double access_us, byte_us, timer_us, cpi, settle_us, convert_us, update_us, sample_us, every;
+};
+
+/* Dearest ticks, as `make hil` counts them; accesses to cards as test/device/cards demands them
+ * too. */
+static const struct load {
+    const char *name;
+    double goal_Hz;
+    int words, bytes;    /* accesses to motor cards, 16 bits; to the glove's card, 8 bits */
+    int insns, channels; /* channels: converted by one board and tick */
+    int parts;           /* ticks in which a glove scan is taken; 0: no glove */
+    const char *counted;
+} load[] = {
+    {"drop", 20000, 14, 0, 8051, 2, 0, "make hil ARGS=rates, all in every tick"},
+    {"drop, in turn", 20000, 11, 0, 7952, 1, 0, "make hil ARGS=rates, turns=1"},
+    {"bilateral, a frame at once", 10000, 44, 49, 36887, 4, 1,
+     "accesses: test/device/cards; instructions as below"},
+    {"bilateral, in turn, frame", 10000, 30, 1, 36887, 1, 6,
+     "make hil ARGS=box, turns=1 scan_slice=4: frame and packet"},
+    {"bilateral, in turn, part", 10000, 30, 10, 26375, 1, 6,
+     "the same less a frame's 10512: packet, and 4 samples"},
+};
+#define LOADS       ((int)(sizeof load / sizeof load[0]))
+#define TIMER_READS 5 /* and one access to the interrupt controller, in every tick */
+
+static double larger(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+/* What does not hang on access times. */
+static double insns_us(const struct load *l, const struct times *t)
+{
+    return l->insns * t->cpi / 1600.0 + TIMER_READS * t->timer_us;
+}
+
+static double bus_us(const struct load *l, const struct times *t)
+{
+    return (l->words + 1) * t->access_us + l->bytes * t->byte_us;
+}
+
+static void print(const struct load *l, const struct times *t, int csv)
+{
+    const double insns = insns_us(l, t), bus = bus_us(l, t);
+    const double ad = t->settle_us + l->channels * t->convert_us;
+    const double scan_us = l->parts ? 22 * t->sample_us : 0;
+    const double glove =
+        l->parts && t->every > l->parts + 1 ? scan_us / (t->every - l->parts - 1) : scan_us;
+    const double period = larger(larger(insns + bus, ad), larger(t->update_us, glove));
+    const double holds_us = (1e6 / l->goal_Hz - insns) / (l->words + 1 + l->bytes);
+    const char *by = period > insns + bus ? period == ad      ? "A/D"
+                                            : period == glove ? "glove"
+                                                              : "D/A"
+                     : bus > insns        ? "bus"
+                                          : "instructions";
+    if (csv) {
+        printf("\"%s\",%.0f,%d,%d,%d,%.3f,%.3f,%.3f,%.3f,%.3f,%.0f,%s,%.3f\n", l->name, l->goal_Hz,
+               l->words, l->bytes, l->insns, insns, bus, ad, t->update_us, glove, 1e6 / period, by,
+               holds_us);
+        return;
+    }
+    printf("%-27s %3d + %2d %6d | %6.1f %6.1f %6.1f %6.1f %6.1f | %6.0f %-12s | %5.0f %-4s %6.2f\n",
+           l->name, l->words, l->bytes, l->insns, insns, bus, ad, t->update_us, glove, 1e6 / period,
+           by, l->goal_Hz, 1e6 / period >= l->goal_Hz ? "ok" : "no", holds_us);
+}
+
+static void head(void)
+{
+    printf("The dearest tick of a scene, and the highest rate at which all ticks may be such\n\n"
+           "scene                       accesses  instr. |  each alone, us a tick               |  "
+           " rate bound "
+           "by     |  goal      holds to\n"
+           "                            16 +  8          | instr.    bus    A/D    D/A  glove |    "
+           " Hz          "
+           "    |    Hz       us access\n");
+}
+
+static void foot(const struct times *t)
+{
+    printf("\nInstructions and bus come one after the other, converters run beside them. Stated: "
+           "access %.2f us, of "
+           "8 bits %.2f,\ntimer %.2f (uncertain: ISA 0.4..2 us); CPI %.2f at 1.6 GHz (assumed); "
+           "A/D settles %.0f us "
+           "and takes %.0f a channel, D/A %.0f\n(uncertain); glove %.0f us a sample (4..20, "
+           "known), a frame every %.0f "
+           "ticks. Instructions and accesses are counted:\n",
+           t->access_us, t->byte_us, t->timer_us, t->cpi, t->settle_us, t->convert_us, t->update_us,
+           t->sample_us, t->every);
+    for (int i = 0; i < LOADS; i++) { printf("  %-27s %s\n", load[i].name, load[i].counted); }
+}
+
+int cli_budget(int argc, char **argv)
+{
+    struct times t = {1, -1, 0.25, 2, 15, 10, 10, 10, 20};
+    int csv = 0, err;
+    const struct cli_option option[] = {
+        {"access-us", CLI_REAL, &t.access_us, 0.01, 100, "US",
+         "an access of 16 bits to a port (1)"},
+        {"byte-us", CLI_REAL, &t.byte_us, 0.01, 100, "US", "one of 8 bits (as 16 bits)"},
+        {"timer-us", CLI_REAL, &t.timer_us, 0, 100, "US", "a read of the timer (0.25)"},
+        {"cpi", CLI_REAL, &t.cpi, 0.1, 100, "N", "cycles an instruction, of 1.6 GHz (2)"},
+        {"settle-us", CLI_REAL, &t.settle_us, 0, 1000, "US", "A/D settling, once a scan (15)"},
+        {"convert-us", CLI_REAL, &t.convert_us, 0, 1000, "US", "A/D conversion of a channel (10)"},
+        {"update-us", CLI_REAL, &t.update_us, 0, 1000, "US", "D/A update (10)"},
+        {"sample-us", CLI_REAL, &t.sample_us, 1, 100, "US", "glove, from sample to sample (10)"},
+        {"every", CLI_REAL, &t.every, 1, 1000, "TICKS", "from one glove frame to the next (20)"},
+        {"csv", CLI_FLAG, &csv, 0, 0, NULL, "comma-separated values instead of the table"},
+    };
+    const struct cli_command c = {
+        "budget",
+        "[options]",
+        "The highest rate of the loop that the box can hold, bound by bound, from accesses and "
+        "instructions\n"
+        "as the tests count them and from times as they are stated here.\n"
+        "holds to: the longest access at which the goal holds, all accesses alike.",
+        option,
+        (int)(sizeof option / sizeof option[0]),
+        0};
+    err = cli_parse(&c, argc, argv, NULL);
+    if (err) { return err == 1 ? 0 : err; }
+    if (t.byte_us < 0) { t.byte_us = t.access_us; }
+    if (csv) {
+        printf("scene,goal_hz,accesses_16,accesses_8,instructions,instructions_us,bus_us,ad_us,da_"
+               "us,glove_us,"
+               "rate_hz,bound,access_holds_us\n");
+    } else {
+        head();
+    }
+    for (int i = 0; i < LOADS; i++) { print(&load[i], &t, csv); }
+    if (!csv) { foot(&t); }
+    return 0;
+}

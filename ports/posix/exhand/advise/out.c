@@ -1,0 +1,150 @@
+/* SPDX-License-Identifier: MIT */
+#include "advise/gains.h"
+
+#include "base/option.h"
+#include "drop/table2.h"
+
+#include <errno.h>
+#include <string.h>
+
+static double si(int32_t raw, int frac)
+{
+    return (double)raw / (double)(INT32_C(1) << frac);
+}
+
+static void nodes(FILE *f, struct gains_rate *r, int n, const struct gains_map *map)
+{
+    (void)map;
+    fprintf(f, "rate_hz,k_n_per_m,b_ns_per_m,holds\n");
+    for (; n > 0; n--, r++) {
+        const struct region *g = &r->region;
+        for (int j = 0; j <= g->o.rows; j++) {
+            for (int i = 0; i <= g->o.columns; i++) {
+                fprintf(f, "%.9g,%.9g,%.9g,%d\n", r->share.rate_Hz, region_k(g, i), region_b(g, j),
+                        g->node[j * (g->o.columns + 1) + i]);
+            }
+        }
+    }
+}
+
+/* Along each row of pieces, from where to where k is allowed. */
+static void allowed(FILE *f, struct gains_rate *r, int n, const struct gains_map *map)
+{
+    (void)map;
+    fprintf(f, "rate_hz,b_low_ns_per_m,b_high_ns_per_m,k_low_n_per_m,k_high_n_per_m\n");
+    for (; n > 0; n--, r++) {
+        struct region *g = &r->region;
+        for (int j = 0; j < g->o.rows; j++) {
+            int from = -1;
+            for (int i = 0; i <= g->o.columns; i++) {
+                const int is = region_piece(g, i, j);
+                if (is && from < 0) { from = i; }
+                if (!is && from >= 0) {
+                    fprintf(f, "%.9g,%.9g,%.9g,%.9g,%.9g\n", r->share.rate_Hz, region_b(g, j),
+                            region_b(g, j + 1), region_k(g, from), region_k(g, i));
+                    from = -1;
+                }
+            }
+        }
+    }
+}
+
+static void rules(FILE *f, struct gains_rate *r, int n, const struct gains_map *map)
+{
+    (void)map;
+    fprintf(f, "rate_hz,knot,b_ns_per_m,k_n_per_m,k_min_n_per_m\n");
+    for (; n > 0; n--, r++) {
+        for (int i = 0; r->has_rule && i < r->rule.knots; i++) {
+            fprintf(f, "%.9g,%d,%.9g,%.9g,%.9g\n", r->share.rate_Hz, i,
+                    si(r->rule.b_Nspm_q20[i], EXH_Q_B), si(r->rule.k_Npm_q10[i], EXH_Q_K),
+                    si(r->rule.k_min_Npm_q10, EXH_Q_K));
+        }
+    }
+}
+
+static void judged(FILE *f, struct gains_rate *r, int n, const struct gains_map *map)
+{
+    (void)map;
+    fprintf(f,
+            "rate_hz,cells,stable,at_rest,allowed_stable,allowed_at_rest,rule_stable,linear_stable,"
+            "linear_unstable,energy_stable,energy_unstable,inside,unstable,falls,restless\n");
+    for (; n > 0; n--, r++) {
+        const struct gains_share *s = &r->share;
+        fprintf(f, "%.9g,%d,%d,%d,%d,%d,%d,%d,%d,%d,%d,%d,%d,%ld,%ld\n", s->rate_Hz, s->cells,
+                s->stable, s->at_rest, s->allowed_stable, s->allowed_at_rest, s->rule_stable,
+                s->linear_stable, s->linear_unstable, s->energy_stable, s->energy_unstable,
+                s->inside, s->unstable, s->falls, s->restless);
+    }
+}
+
+static void cells(FILE *f, struct gains_rate *r, int n, const struct gains_map *map)
+{
+    (void)r;
+    (void)n;
+    fprintf(f, "rate_hz,k_n_per_m,b_ns_per_m,stable_falls,falls\n");
+    for (int i = 0; map != NULL && i < map->n; i++) {
+        const struct cell *c = &map->at[i];
+        fprintf(f, "%.9g,%.9g,%.9g,%d,%d\n", c->rate_Hz, c->k_Npm, c->b_Nspm, c->stable_falls,
+                c->falls);
+    }
+}
+
+static void picture(FILE *f, struct gains_rate *r, int n, const struct gains_map *map)
+{
+    fprintf(f,
+            "# Made by exhand advise gains. Inside this directory, PLOTS the way to "
+            "ports/posix/exhand/plot:\n#   gnuplot -c gains.gp PLOTS\nplots=ARG1\n"
+            "out='gains.png'; has_map=%d\nrates='",
+            map != NULL);
+    for (int i = 0; i < n; i++) { fprintf(f, "%s%.6g", i ? " " : "", r[i].share.rate_Hz); }
+    fprintf(f, "'; k_tops='");
+    for (int i = 0; i < n; i++) { fprintf(f, "%s%.6g", i ? " " : "", r[i].region.k_top_Npm); }
+    fprintf(f, "'; b_tops='");
+    for (int i = 0; i < n; i++) { fprintf(f, "%s%.6g", i ? " " : "", r[i].region.b_top_Nspm); }
+    fprintf(f, "'; paper_ks='");
+    for (int i = 0; i < n; i++) {
+        const struct table2_row *row = table2_at(r[i].share.rate_Hz);
+        fprintf(f, "%s%.6g", i ? " " : "", row ? row->k_Npm : -1);
+    }
+    fprintf(f, "'; paper_bs='");
+    for (int i = 0; i < n; i++) {
+        const struct table2_row *row = table2_at(r[i].share.rate_Hz);
+        fprintf(f, "%s%.6g", i ? " " : "", row ? row->b_Nspm : -1);
+    }
+    fprintf(f, "'\nload plots.'/gains.gp'\n");
+}
+
+int gains_write(const char *dir, struct gains_rate *r, int n, const struct gains_map *map)
+{
+    static const struct {
+        const char *name;
+        int of_map;
+    } file[] = {{"gains.csv", 0}, {"allowed.csv", 0}, {"rule.csv", 0},
+                {"gains.gp", 0},  {"map.csv", 1},     {"judge.csv", 1}};
+    for (size_t i = 0; i < sizeof file / sizeof file[0]; i++) {
+        char path[TABLE2_PATH_B];
+        FILE *f;
+        int bad;
+        if (file[i].of_map && map == NULL) { continue; }
+        snprintf(path, sizeof path, "%.700s/%s", dir, file[i].name);
+        f = fopen(path, "w");
+        if (f == NULL) {
+            cli_complain("%s: %s", path, strerror(errno));
+            return 1;
+        }
+        switch (i) {
+        case 0: nodes(f, r, n, map); break;
+        case 1: allowed(f, r, n, map); break;
+        case 2: rules(f, r, n, map); break;
+        case 3: picture(f, r, n, map); break;
+        case 4: cells(f, r, n, map); break;
+        default: judged(f, r, n, map); break;
+        }
+        bad = ferror(f);
+        if (fclose(f) != 0 || bad) {
+            cli_complain("%s: can't be written", path);
+            return 1;
+        }
+    }
+    return 0;
+}

@@ -1,0 +1,166 @@
+/* SPDX-License-Identifier: MIT */
+#include "base/params_file.h"
+
+#include "base/option.h"
+#include "base/outfile.h"
+#include "base/param.h"
+
+#include "exhand/bytes.h"
+#include "exhand/error.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define PATH_B 1024
+#define HEAD_B 12u
+
+/* --- out --- */
+
+/* 0 or an errno. */
+static int put(int fd, const unsigned char *b, size_t n)
+{
+    while (n > 0) {
+        const ssize_t done = write(fd, b, n);
+        if (done < 0 && errno == EINTR) { continue; }
+        if (done <= 0) { return done < 0 ? errno : EIO; }
+        b += done;
+        n -= (size_t)done;
+    }
+    return fsync(fd) != 0 ? errno : 0;
+}
+
+/* The name is on disk when its directory is. Not everywhere can one be synchronised. */
+static void sync_dir(const char *path)
+{
+    char dir[PATH_B];
+    const char *slash = strrchr(path, '/');
+    const size_t n = slash == NULL ? 0 : slash == path ? 1 : (size_t)(slash - path);
+    int fd;
+    memcpy(dir, n ? path : ".", n ? n : 1);
+    dir[n ? n : 1] = '\0';
+    fd = open(dir, O_RDONLY);
+    if (fd >= 0) {
+        (void)fsync(fd);
+        (void)close(fd);
+    }
+}
+
+int params_write(const char *path, const void *image, size_t len_B)
+{
+    char beside[PATH_B];
+    const int len = snprintf(beside, sizeof beside, "%s.%ld", path, (long)getpid());
+    int fd, failed;
+    if (len < 0 || len >= PATH_B) { return ENAMETOOLONG; }
+    fd = open(beside, O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    if (fd < 0) { return errno; }
+    failed = put(fd, image, len_B);
+    if (close(fd) != 0 && !failed) { failed = errno; }
+    if (!failed && rename(beside, path) != 0) { failed = errno; }
+    if (failed) {
+        (void)remove(beside);
+        return failed;
+    }
+    sync_dir(path);
+    return 0;
+}
+
+int params_save_file(const char *path, const struct exh_params *p)
+{
+    unsigned char image[PARAMS_FILE_B];
+    const int32_t n = exh_params_save(p, image, sizeof image);
+    const int why = n < 0 ? EFBIG : params_write(path, image, (size_t)n);
+    if (why == 0) { return 0; }
+    cli_complain("%s: can't be written: %s: make room, or give another file", path, strerror(why));
+    return 1;
+}
+
+/* --- in --- */
+
+/* Another version, or the values of another scene. */
+static void tell_head(const char *name, const struct exh_params *p, const void *image, size_t len_B)
+{
+    struct exh_bytes c = exh_bytes_reader(image, len_B);
+    uint32_t magic, table;
+    uint16_t version, count;
+    exh_bytes_u32(&c, &magic);
+    exh_bytes_u16(&c, &version);
+    exh_bytes_u16(&c, &count);
+    exh_bytes_u32(&c, &table);
+    if (memcmp(image, "EXHP", 4) != 0) {
+        cli_complain("%s: no image of parameters: give one that was saved", name);
+    } else if (version != EXH_PARAMS_VERSION) {
+        cli_complain("%s: an image of version %u, this program's is %d: save it anew", name,
+                     version, EXH_PARAMS_VERSION);
+    } else {
+        cli_complain("%s: %u values of table %08" PRIx32 ", this scene has %" PRIu32
+                     " of table %08" PRIx32 ": give an image of this scene, of this version",
+                     name, count, table, p->count, exh_signal_crc(p->table));
+    }
+}
+
+static int32_t value_of(const void *image, size_t len_B, uint32_t i)
+{
+    struct exh_bytes c = exh_bytes_reader(image, len_B);
+    int32_t v;
+    c.at = HEAD_B + 4 * i;
+    exh_bytes_i32(&c, &v);
+    return v;
+}
+
+static void tell_value(const char *name, const struct exh_params *p, uint32_t i, int32_t raw,
+                       int err)
+{
+    uint16_t instance = 0;
+    const struct exh_signal *r = exh_signal_at(p->table, i, &instance);
+    if (err == -EXH_E_STATE) {
+        cli_complain("%s: %s (instance %u): %.12g: only before it runs: start with it", name,
+                     r->name, instance, cli_signal_value(r, raw));
+    } else {
+        cli_complain(
+            "%s: %s (instance %u): %.12g (allowed %.12g..%.12g%s%s): nothing of it is taken", name,
+            r->name, instance, cli_signal_value(r, raw), cli_signal_value(r, r->min),
+            cli_signal_value(r, r->max), r->unit[0] ? " " : "", r->unit);
+    }
+}
+
+int params_take(const char *name, struct exh_params *p, const void *image, size_t len_B)
+{
+    const size_t whole_B = HEAD_B + 4 * (size_t)p->count + 4;
+    uint32_t bad = 0;
+    const int err = exh_params_load(p, image, len_B, &bad);
+    if (err == -EXH_E_VERSION) {
+        tell_head(name, p, image, len_B);
+    } else if (err == -EXH_E_SHORT) {
+        cli_complain("%s: cut off, %zu bytes of %zu: nothing of it is taken", name, len_B, whole_B);
+    } else if (err == -EXH_E_CRC) {
+        cli_complain("%s: damaged, its CRC is another: nothing of it is taken", name);
+    } else if (err < 0) {
+        tell_value(name, p, bad, value_of(image, len_B, bad), err);
+    }
+    return err;
+}
+
+int params_file_read(struct params_file *f)
+{
+    long len;
+    f->len_B = 0;
+    if (f->load == NULL) { return 0; }
+    len = outfile_read("load-params", f->load, "image of parameters", f->image, sizeof f->image);
+    if (len < 0) { return (int)-len; }
+    f->len_B = (size_t)len;
+    return 0;
+}
+
+int params_load_file(const char *path, struct exh_params *p)
+{
+    static struct params_file f;
+    int err;
+    f.load = path;
+    err = params_file_read(&f);
+    return err ? err : params_take(path, p, f.image, f.len_B) < 0 ? 2 : 0;
+}

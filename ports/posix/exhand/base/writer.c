@@ -1,0 +1,165 @@
+/* SPDX-License-Identifier: MIT */
+#include "base/writer.h"
+
+#include "base/thread.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#define PIECE_B     65536u /* at most at once, so that room comes back soon */
+#define LOOK_NS     100000000L
+#define LOOKS_PER_S 10
+
+/* What can be written in one piece from the ring's head on; the lock is held. */
+static size_t piece(const struct writer *w)
+{
+    const size_t straight = w->cap_B - w->head, n = w->held < straight ? w->held : straight;
+    return n < PIECE_B ? n : PIECE_B;
+}
+
+/* errno of it, without the lock. */
+static int open_path(struct writer *w)
+{
+    if (w->path == NULL) { return 0; }
+    do {
+        w->fd = open(w->path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    } while (w->fd < 0 && errno == EINTR);
+    return w->fd < 0 ? errno : 0;
+}
+
+static int close_path(const struct writer *w)
+{
+    return w->path && w->fd >= 0 && close(w->fd) != 0 ? errno : 0;
+}
+
+static void *write_on(void *ctx)
+{
+    struct writer *w = ctx;
+    int error = open_path(w);
+    pthread_mutex_lock(&w->lock);
+    w->error = error;
+    while (w->error == 0 && (w->held || !w->ends)) {
+        const size_t n = piece(w);
+        ssize_t done;
+        if (n == 0) {
+            pthread_cond_wait(&w->moved, &w->lock);
+            continue;
+        }
+        pthread_mutex_unlock(&w->lock);
+        do {
+            done = write(w->fd, w->ring + w->head, n);
+        } while (done < 0 && errno == EINTR);
+        error = done < 0 ? errno : 0;
+        pthread_mutex_lock(&w->lock);
+        w->error = error;
+        if (done > 0) {
+            w->head = (w->head + (size_t)done) % w->cap_B;
+            w->held -= (size_t)done;
+        }
+        pthread_cond_broadcast(&w->moved);
+    }
+    pthread_mutex_unlock(&w->lock);
+    error = close_path(w);
+    pthread_mutex_lock(&w->lock);
+    if (w->error == 0) { w->error = error; }
+    w->over = 1;
+    pthread_cond_broadcast(&w->moved);
+    pthread_mutex_unlock(&w->lock);
+    return NULL;
+}
+
+static int start(struct writer *w, int fd, const char *path, void *ring, size_t cap_B)
+{
+    pthread_t thread;
+    int err;
+    memset(w, 0, sizeof *w);
+    w->fd = fd;
+    w->path = path;
+    w->ring = ring;
+    w->cap_B = cap_B;
+    pthread_mutex_init(&w->lock, NULL);
+    pthread_cond_init(&w->moved, NULL);
+    err = thread_start(&thread, write_on, w); /* a pipe without a reader is an error and no end */
+    if (err == 0) { (void)pthread_detach(thread); }
+    return err;
+}
+
+int writer_start(struct writer *w, int fd, void *ring, size_t cap_B)
+{
+    return start(w, fd, NULL, ring, cap_B);
+}
+
+int writer_start_file(struct writer *w, const char *path, void *ring, size_t cap_B)
+{
+    return start(w, -1, path, ring, cap_B);
+}
+
+/* A tenth of a second, or until something moves; the lock is held. */
+static void look(struct writer *w)
+{
+    struct timespec until;
+    (void)clock_gettime(CLOCK_REALTIME, &until);
+    until.tv_nsec += LOOK_NS;
+    if (until.tv_nsec >= 1000000000L) {
+        until.tv_nsec -= 1000000000L;
+        until.tv_sec++;
+    }
+    (void)pthread_cond_timedwait(&w->moved, &w->lock, &until);
+}
+
+/* Until there is room, or the thread has ended, or nothing moved for so long; the lock is held. */
+static void wait_for(struct writer *w, size_t room_B, double patience_s)
+{
+    unsigned looks = 0;
+    size_t held = w->held;
+    while (!w->over && room_B > w->cap_B - w->held && looks < LOOKS_PER_S * patience_s) {
+        look(w);
+        looks = w->held == held ? looks + 1 : 0;
+        held = w->held;
+    }
+}
+
+int writer_put(struct writer *w, const void *bytes, size_t n, double patience_s)
+{
+    size_t at, straight;
+    int error, takes;
+    pthread_mutex_lock(&w->lock);
+    wait_for(w, n, patience_s);
+    error = w->error;
+    takes = error == 0 && n <= w->cap_B - w->held;
+    at = (w->head + w->held) % w->cap_B;
+    pthread_mutex_unlock(&w->lock);
+    if (!takes) { return error ? -1 : 0; }
+    straight = w->cap_B - at < n ? w->cap_B - at : n; /* nobody else touches what is not held */
+    memcpy(w->ring + at, bytes, straight);
+    memcpy(w->ring, (const uint8_t *)bytes + straight, n - straight);
+    pthread_mutex_lock(&w->lock);
+    w->held += n;
+    pthread_cond_broadcast(&w->moved);
+    pthread_mutex_unlock(&w->lock);
+    return 1;
+}
+
+size_t writer_held(struct writer *w)
+{
+    size_t held;
+    pthread_mutex_lock(&w->lock);
+    held = w->held;
+    pthread_mutex_unlock(&w->lock);
+    return held;
+}
+
+int writer_end(struct writer *w, double patience_s)
+{
+    int err;
+    pthread_mutex_lock(&w->lock);
+    w->ends = 1;
+    pthread_cond_broadcast(&w->moved);
+    wait_for(w, SIZE_MAX, patience_s); /* so much room there never is */
+    err = w->over ? w->error : -1;
+    pthread_mutex_unlock(&w->lock);
+    return err;
+}

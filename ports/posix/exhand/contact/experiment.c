@@ -1,0 +1,199 @@
+/* SPDX-License-Identifier: MIT */
+/* exhand bilateral: three speeds, run, judged, printed, written. */
+#include "contact/bilateral.h"
+
+#include "base/names.h"
+#include "base/option.h"
+#include "drop/table2.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct bilateral_run_cfg bilateral_at_speed(const struct bilateral_options *o, double mps)
+{
+    struct bilateral_run_cfg c = o->run;
+    c.setting = o->setting;
+    c.settings = o->settings;
+    c.board.seed = (uint64_t)o->seed;
+    c.board.cards.how = o->cards ? POSIX_CARDS_INSTANT : POSIX_CARDS_NONE;
+    c.fit_scale = !o->own_scale;
+    for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
+        c.board.exo.path[f].speed_mps = mps;
+        c.board.exo.path[f].approaches = (double)o->approaches;
+    }
+    return c;
+}
+
+static int by_size(const void *a, const void *b)
+{
+    const double d = *(const double *)a - *(const double *)b;
+    return d < 0 ? -1 : d > 0;
+}
+
+static void judge(const struct bilateral_run *r, unsigned f, const char *plot,
+                  struct bilateral_result *out)
+{
+    static double settle[BILATERAL_CONTACTS_MAX];
+    const int n = bilateral_judge(r, f, out->contact, BILATERAL_CONTACTS_MAX);
+    out->finger = f;
+    out->contacts = n < BILATERAL_CONTACTS_MAX ? n : BILATERAL_CONTACTS_MAX;
+    out->touch_m = r->finger[f].touch_m;
+    out->scale = r->finger[f].scale > 0 ? r->finger[f].scale : 1;
+    for (int i = 0; i < out->contacts; i++) {
+        const struct bilateral_contact *c = &out->contact[i];
+        if (c->settle_s >= 0) { settle[out->settled++] = c->settle_s; }
+        out->missed += c->missed;
+        out->early += c->early;
+    }
+    qsort(settle, (size_t)out->settled, sizeof settle[0], by_size);
+    out->settle_s = out->settled ? settle[out->settled / 2] : 0;
+    out->stiffness_Npm = bilateral_stiffness_Npm(r, f, 0, plot);
+}
+
+static double local_Npm(const struct bilateral_options *o)
+{
+    struct run_cfg c = {.rate_Hz = o->run.rate_Hz, .k_Npm = o->run.k_Npm, .b_Nspm = o->run.b_Nspm};
+    struct table2_result r;
+    if (c.k_Npm < 0 || c.b_Nspm < 0) { return 0; }
+    c.board = posix_config_default();
+    c.board.device = o->run.board.device;
+    c.board.seed = (uint64_t)o->seed;
+    c.board.falls = 10;
+    r = table2_measure(&c, NULL, TABLE2_SAME);
+    return r.done && r.line == FALL_OK ? r.b_Npm : 0;
+}
+
+/* The same approaches over a perfect link: which fingers had every bit of theirs. */
+static void print_beside_perfect(const struct bilateral_run_cfg *given,
+                                 const struct bilateral_run *r)
+{
+    struct bilateral_run_cfg c = *given;
+    struct bilateral_run perfect;
+    c.board.log = NULL;
+    c.blackbox = NULL;
+    c.keep = 0;
+    c.board.line = posix_line_default();
+    c.from_s = c.again_s = 0;
+    c.until_s = 1e30;
+    if (bilateral_run(&c, &perfect) == 0) {
+        printf("  beside a perfect link:");
+        for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
+            const struct bilateral_track *a = &r->finger[f], *b = &perfect.finger[f];
+            if (!(c.board.exo.fingers >> f & 1)) { continue; }
+            printf(" %s %s;", bilateral_finger_name[f],
+                   a->freezes == 0          ? "felt nothing"
+                   : a->digest == b->digest ? "the same bits from the first freeze on"
+                                            : "not the same");
+        }
+        printf("\n");
+    }
+    bilateral_run_free(&perfect);
+}
+
+/* One speed: its results of all fingers in use behind the others'. */
+static int one_speed(const struct bilateral_options *o, int i, struct bilateral_result *result,
+                     int *n)
+{
+    struct bilateral_run_cfg c = bilateral_at_speed(o, o->speed[i].mps);
+    struct bilateral_run r;
+    char path[1024], fault[1024], what[NAMES_B];
+    int err;
+    c.keep = 1;
+    if (o->out && c.blackbox == NULL) {
+        bilateral_out_name(fault, sizeof fault, o->out, o->speed[i].name, -1, "_fault.exh");
+        (void)remove(fault); /* an earlier run's */
+        c.blackbox = fault;
+    }
+    if (o->out) {
+        bilateral_out_name(path, sizeof path, o->out, o->speed[i].name, -1, ".exh");
+        c.board.log = fopen(path, "wb");
+        if (c.board.log == NULL) {
+            cli_complain("%s: %s", path, strerror(errno));
+            return 1;
+        }
+    }
+    err = bilateral_run(&c, &r) < 0 ? 2 : 0;
+    if (c.board.log && (fclose(c.board.log) != 0 || r.lost) && err == 0) {
+        cli_complain("%s: can't be written: %lu records lost", path, (unsigned long)r.lost);
+        err = 1;
+    }
+    for (unsigned f = 0; err == 0 && f < BILATERAL_FINGERS; f++) {
+        struct bilateral_result *to = &result[*n];
+        if (!(c.board.exo.fingers >> f & 1)) { continue; }
+        bilateral_out_name(path, sizeof path, o->out, o->speed[i].name, (int)f, "");
+        to->speed = &o->speed[i];
+        to->contact = calloc(BILATERAL_CONTACTS_MAX, sizeof *to->contact);
+        if (to->contact == NULL) { return 1; }
+        judge(&r, f, o->out ? path : NULL, to);
+        bilateral_print(stdout, to);
+        if (o->out) { err = bilateral_out_csv(o->out, &r, f, o->speed[i].name); }
+        if (r.finger[f].unfrozen) {
+            cli_complain("%s, %s: %ld ticks of contact before its freeze", to->speed->name,
+                         bilateral_finger_name[f], r.finger[f].unfrozen);
+            err = 1;
+        }
+        ++*n;
+    }
+    if (err == 0 && r.faults) {
+        names_faults(what, sizeof what, r.faults);
+        cli_complain("%s: the box stopped with faults %#x: %s", o->speed[i].name,
+                     (unsigned)r.faults, what);
+        err = 1;
+    }
+    if (err == 0) {
+        printf("  packets: %d came, %d missing, %d reordered, %d duplicate, %d too old, %d "
+               "refused; newest trip "
+               "%.1f ms\n",
+               r.box.accepted, r.box.missing, r.box.reordered, r.box.duplicate, r.box.old,
+               r.box.corrupt + r.box.version + r.box.unknown + r.box.stranger, r.box.trip_us / 1e3);
+    }
+    if (err == 0 && c.trace_every) {
+        printf("  trace: %lu frames of every %d ticks, ticks %lu to %lu; %lu missed\n",
+               (unsigned long)r.trace.frames, c.trace_every, (unsigned long)r.trace.first_tick,
+               (unsigned long)r.trace.last_tick, (unsigned long)r.trace.missed);
+    }
+    if (err == 0 && (o->scene || o->record || o->udp)) {
+        bilateral_print_session(stdout, &r, c.board.exo.fingers);
+    }
+    if (err == 0 && o->udp == NULL &&
+        (strcmp(o->link, "none") != 0 || c.from_s > 0 || c.until_s < 1e29)) {
+        print_beside_perfect(&c, &r);
+    }
+    bilateral_run_free(&r);
+    return err;
+}
+
+int bilateral_experiment(const struct bilateral_options *o)
+{
+    static struct bilateral_result result[BILATERAL_SPEEDS_MAX * BILATERAL_FINGERS];
+    const double local = local_Npm(o);
+    FILE *csv;
+    int n = 0, err = 0;
+    memset(result, 0, sizeof result);
+    if (o->run.k_Npm < 0 || o->run.b_Nspm < 0) {
+        printf("%.6g Hz, %s's own k and b", (double)o->run.rate_Hz, o->scene);
+    } else {
+        printf("%.6g Hz, k %.6g N/m, b %.6g Ns/m", (double)o->run.rate_Hz, o->run.k_Npm,
+               o->run.b_Nspm);
+    }
+    printf(", link %s, world at %.6g frames/s\n\n", o->udp ? o->udp : o->link, o->run.fps);
+    bilateral_print_head(stdout);
+    for (int i = 0; err == 0 && i < o->speeds && !posix_interrupted(); i++) {
+        err = one_speed(o, i, result, &n);
+    }
+    if (err == 0 && n > 0) {
+        bilateral_print_advice(stdout, o, result, n);
+        bilateral_print_paper(stdout, result, n, local);
+    }
+    if (err == 0 && o->out) {
+        csv = bilateral_out_file(o->out, "contacts.csv");
+        if (csv == NULL) { return 1; }
+        bilateral_csv_head(csv);
+        for (int i = 0; i < n; i++) { bilateral_csv(csv, &result[i]); }
+        err = fclose(csv) != 0 ? 1 : 0;
+        err |= bilateral_out_pictures(o->out, result, n, o->run.k_Npm, o->run.b_Nspm, o->link);
+    }
+    for (int i = 0; i < n; i++) { free(result[i].contact); }
+    return err ? err : posix_interrupted() ? 130 : 0;
+}

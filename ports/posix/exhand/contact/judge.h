@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: MIT */
+/* What a contact was like: speed, settling, stiffness, and whether it was there in its time. */
+#ifndef CLI_BILATERAL_JUDGE_H
+#define CLI_BILATERAL_JUDGE_H
+
+#include "contact/run.h"
+
+#define PAPER_SETTLING_S    0.025
+#define PAPER_STIFFNESS_NPM 41250.0
+#define PAPER_LOCAL_NPM     50004.0
+#define SETTLED_BAND        0.05
+#define EARLY_M             1e-3 /* contact so much before pad and object touch */
+
+struct bilateral_contact {
+    unsigned finger;
+    int approach;
+    int frozen, missed, early; /* missed: none though the finger went 1 mm beyond */
+    size_t first, hold_end;    /* samples: first of contact, behind the last of hold */
+    double t_s, speed_mps;     /* at contact */
+    double lim_m;              /* q_lim */
+    double off_m;              /* q_lim less where pad and object touch */
+    double settle_s;           /* < 0: never, or no contact */
+    double rest_s;             /* the same of position within 0.2 mm, F_mon within 1.5 N */
+    double held_N;             /* F_mon at the end of the hold */
+    double f_max_N;            /* F_des */
+    double rise_Nps;           /* steepest millisecond of F_mon in the first three */
+    double stiffness_Npm;      /* position over force, inverted; 0: none */
+};
+
+/* SI of a sample. */
+struct fall_sample bilateral_si(const struct bilateral_sample *s, size_t tick, struct exh_period T);
+
+/* Contacts of finger f, one per approach, at most cap: how many approaches there were. */
+int bilateral_judge(const struct bilateral_run *r, unsigned f, struct bilateral_contact *c,
+                    int cap);
+
+/* The paper's line through the pairs of all approaches (approach 0) or of one; plot: files for
+ * force_position.gp, prefix or NULL. 0: no line. */
+double bilateral_stiffness_Npm(const struct bilateral_run *r, unsigned f, int approach,
+                               const char *plot);
+
+#endif

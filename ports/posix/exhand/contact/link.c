@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: MIT */
+/* --link: what the network between controller and world is like. */
+#include "contact/bilateral.h"
+
+#include "base/option.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define PATH_B 512
+
+static int bad(const char *text, const char *why)
+{
+    cli_complain("--link: %s: %s: e.g. none, trace=FILE, delay=0.02,jitter=0.005,loss=0.1", text,
+                 why);
+    return 2;
+}
+
+static int is_log(const char *path)
+{
+    return strstr(path, ".csv") != NULL;
+}
+
+static int take_trace(struct bilateral_options *o, const char *path)
+{
+    char why[256];
+    if (sim_trace_read(&o->trace, path, is_log(path) ? SIM_TRACE_ROUND : SIM_TRACE_MS, why,
+                       sizeof why) < 0) {
+        return bad(path, why);
+    }
+    for (int w = 0; w < SIM_LINK_WAYS; w++) {
+        o->run.board.line.trace[w] = &o->trace;
+        o->run.board.line.way[w].trace_scale = 0.5; /* recorded there and back */
+    }
+    return 0;
+}
+
+static int take_value(struct bilateral_options *o, const char *name, const char *text)
+{
+    const struct sim_device_row *row = NULL;
+    char *end;
+    const double v = strtod(text, &end);
+    int err = 0;
+    if (end == text || *end != '\0') { return bad(name, "give NAME=VALUE"); }
+    for (int w = 0; w < SIM_LINK_WAYS; w++) {
+        struct sim_link_par *p = &o->run.board.line.way[w];
+        err |= sim_link_set(p, name, v, &row);
+        if (strcmp(name, "jitter") == 0 && p->jitter == SIM_LINK_CONSTANT) {
+            p->jitter = SIM_LINK_UNIFORM;
+        }
+    }
+    if (err && row) {
+        cli_complain("--link: %s: %.12g (allowed %.12g..%.12g%s%s): choose a value in that range",
+                     name, v, row->min, row->max, row->unit[0] ? " " : "", row->unit);
+    }
+    return err == 0 ? 0 : row ? 2 : bad(name, "no such property of a link: --params lists them");
+}
+
+int bilateral_take_link(void *ctx, const char *text)
+{
+    struct bilateral_options *o = ctx;
+    char all[PATH_B], *at = all;
+    if (strlen(text) >= sizeof all) { return bad(text, "too long"); }
+    strcpy(all, text);
+    o->link = text;
+    if (strcmp(text, "none") == 0) { return 0; }
+    while (at != NULL) {
+        char *name = at, *comma = strchr(at, ','), *equals;
+        int err;
+        if (comma != NULL) { *comma = '\0'; }
+        at = comma ? comma + 1 : NULL;
+        equals = strchr(name, '=');
+        if (equals == NULL) { return bad(name, "give NAME=VALUE"); }
+        *equals = '\0';
+        err = strcmp(name, "trace") == 0 ? take_trace(o, equals + 1)
+                                         : take_value(o, name, equals + 1);
+        if (err) { return err; }
+    }
+    return 0;
+}

@@ -1,0 +1,133 @@
+/* SPDX-License-Identifier: MIT */
+/* What --out leaves behind. */
+#include "contact/bilateral.h"
+
+#include "base/option.h"
+#include "base/outfile.h"
+
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+
+#define PATH_B 1024
+
+int bilateral_out_open(const char *dir)
+{
+    static const char *const made[] = {"contact.png", "force.png", "sweep.png", "contacts.csv",
+                                       "crisp.png",   "hands.png", "crisp.csv", "hands.csv",
+                                       "crisp.gp",    "hands.gp",  "sweep.csv", "bilateral.gp",
+                                       "sweep.gp"};
+    const int err = outfile_dir(dir, "bilateral_natural_index_raw.csv");
+    if (err) { return err; }
+    for (size_t i = 0; i < sizeof made / sizeof made[0]; i++) {
+        char path[PATH_B];
+        snprintf(path, sizeof path, "%s/%s", dir, made[i]);
+        (void)remove(path); /* nothing of an earlier experiment stays beside this one's */
+    }
+    return 0;
+}
+
+FILE *bilateral_out_file(const char *dir, const char *name)
+{
+    char path[PATH_B];
+    FILE *f;
+    const int len = snprintf(path, sizeof path, "%s/%s", dir, name);
+    if (len < 0 || len >= PATH_B) {
+        cli_complain("%s/%s: too long a path: give a shorter --out", dir, name);
+        return NULL;
+    }
+    f = fopen(path, "wb");
+    if (f == NULL) {
+        cli_complain("%s: %s: make room or give another --out", path, strerror(errno));
+    }
+    return f;
+}
+
+void bilateral_out_name(char *to, size_t cap_B, const char *dir, const char *speed, int finger,
+                        const char *suffix)
+{
+    snprintf(to, cap_B, "%s%sbilateral_%s%s%s%s", dir ? dir : "", dir ? "/" : "", speed,
+             finger < 0 ? "" : "_", finger < 0 ? "" : bilateral_finger_name[finger], suffix);
+}
+
+static int done(FILE *f, const char *name)
+{
+    const int bad = ferror(f);
+    if (fclose(f) == 0 && !bad) { return 0; }
+    cli_complain("%s: can't be written whole: make room or give another --out", name);
+    return 1;
+}
+
+/* The paper's nine. */
+int bilateral_out_csv(const char *dir, const struct bilateral_run *r, unsigned f, const char *speed)
+{
+    const struct bilateral_track *t = &r->finger[f];
+    char name[PATH_B];
+    FILE *to;
+    bilateral_out_name(name, sizeof name, NULL, speed, (int)f, ".csv");
+    to = bilateral_out_file(dir, name);
+    if (to == NULL) { return 1; }
+    fprintf(to, "t_s,q_m,qd_m_per_s,f_des_n,i_des_a,c,f_mon_n,d_m,q_lim_m\n");
+    for (size_t i = 0; i < t->n; i++) {
+        const struct fall_sample s = bilateral_si(&t->at[i], i, r->T);
+        const struct bilateral_paper *p = &t->at[i].raw;
+        fprintf(to, "%.9f,%.9g,%.9g,%.9g,%.9g,%d,%.9g,", s.t_s, s.q_m, s.qd_mps, s.f_des_N,
+                s.i_des_A, s.c, s.f_mon_N);
+        if (p->d_m_q30 != INT32_MIN) { fprintf(to, "%.9g", ldexp(p->d_m_q30, -EXH_Q_POS)); }
+        fputc(',', to);
+        if (p->q_lim_m_q30 != EXH_PRECONTACT_NO_LIM) {
+            fprintf(to, "%.9g", ldexp(p->q_lim_m_q30, -EXH_Q_POS));
+        }
+        fputc('\n', to);
+    }
+    return done(to, name);
+}
+
+/* The contact that is shown: the first that was one. */
+static const struct bilateral_contact *shown(const struct bilateral_result *r)
+{
+    for (int i = 0; i < r->contacts; i++) {
+        if (r->contact[i].t_s > 0) { return &r->contact[i]; }
+    }
+    return NULL;
+}
+
+static void list(FILE *f, const char *name)
+{
+    fprintf(f, "'\n%s='", name);
+}
+
+int bilateral_out_pictures(const char *dir, const struct bilateral_result *r, int n, double k_Npm,
+                           double b_Nspm, const char *link)
+{
+    FILE *f = bilateral_out_file(dir, "bilateral.gp");
+    char name[PATH_B];
+    if (f == NULL) { return 1; }
+    fprintf(
+        f,
+        "# Made by exhand bilateral. Inside this directory, PLOTS the way to "
+        "ports/posix/exhand/plot:\n"
+        "#   gnuplot -c bilateral.gp PLOTS\nplots=ARG1\nk='%.6g'; b='%.6g'; link=\"%s\"; names='",
+        k_Npm, b_Nspm, link);
+    for (int i = 0; i < n; i++) { fprintf(f, " %s", r[i].speed->name); }
+    list(f, "fingers");
+    for (int i = 0; i < n; i++) { fprintf(f, " %s", bilateral_finger_name[r[i].finger]); }
+    list(f, "files");
+    for (int i = 0; i < n; i++) {
+        bilateral_out_name(name, sizeof name, NULL, r[i].speed->name, (int)r[i].finger, "");
+        fprintf(f, " %s", name);
+    }
+    list(f, "contacts");
+    for (int i = 0; i < n; i++) { fprintf(f, " %.9g", shown(&r[i]) ? shown(&r[i])->t_s : -1); }
+    list(f, "speeds");
+    for (int i = 0; i < n; i++) { fprintf(f, " %.3f", shown(&r[i]) ? shown(&r[i])->speed_mps : 0); }
+    list(f, "settles");
+    for (int i = 0; i < n; i++) {
+        fprintf(f, " %.1f",
+                shown(&r[i]) && shown(&r[i])->settle_s >= 0 ? 1e3 * shown(&r[i])->settle_s : -1);
+    }
+    list(f, "stiffnesses");
+    for (int i = 0; i < n; i++) { fprintf(f, " %.0f", r[i].stiffness_Npm); }
+    fprintf(f, "'\nload plots.'/contact.gp'\nload plots.'/bilateral_force.gp'\n");
+    return done(f, "bilateral.gp");
+}

@@ -1,0 +1,202 @@
+/* SPDX-License-Identifier: MIT */
+/* The experiment as tables. */
+#include "contact/bilateral.h"
+
+#include "exhand/error.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define TWO_PI 6.283185307179586
+
+const char *const bilateral_finger_name[BILATERAL_FINGERS] = {"thumb", "index", "middle", "ring",
+                                                              "little"};
+
+/* --- contacts --- */
+
+static void number(FILE *f, int width, int digits, double v, int there)
+{
+    if (there) {
+        fprintf(f, " %*.*f", width, digits, v);
+    } else {
+        fprintf(f, " %*s", width, "-");
+    }
+}
+
+void bilateral_print_head(FILE *f)
+{
+    fprintf(f, "speed    finger   n   contact   speed  settled    rest   place  F_des    F_mon  "
+               "stiffness\n"
+               "                            s     m/s    5 %%, ms      ms      mm  max, N  held, N "
+               "       N/m\n");
+}
+
+static const char *remark(const struct bilateral_contact *c, int nothing_there)
+{
+    return nothing_there && c->t_s <= 0 ? "  nothing in its way"
+           : c->missed                  ? "  missed"
+           : c->early                   ? "  early"
+           : c->frozen                  ? ""
+                                        : "  no plane in time";
+}
+
+void bilateral_print(FILE *f, const struct bilateral_result *r)
+{
+    for (int i = 0; i < r->contacts; i++) {
+        const struct bilateral_contact *c = &r->contact[i];
+        const int there = c->t_s > 0;
+        fprintf(f, "%-8s %-7s %3d", r->speed->name, bilateral_finger_name[r->finger], c->approach);
+        number(f, 9, 4, c->t_s, there);
+        number(f, 7, 3, c->speed_mps, there);
+        number(f, 8, 1, 1e3 * c->settle_s, c->settle_s >= 0);
+        number(f, 8, 1, 1e3 * c->rest_s, c->rest_s >= 0);
+        number(f, 7, 2, 1e3 * c->off_m, there && r->touch_m >= 0);
+        number(f, 6, 2, c->f_max_N, 1);
+        number(f, 8, 2, c->held_N, there);
+        number(f, 10, 0, c->stiffness_Npm, c->stiffness_Npm > 0);
+        fprintf(f, "%s\n", remark(c, r->touch_m < 0));
+    }
+}
+
+static void beside(FILE *f, const char *what, double ours, double paper, const char *unit,
+                   int digits)
+{
+    fprintf(f, "  %-34s", what);
+    number(f, 9, digits, ours, ours > 0);
+    fprintf(f, " %-4s paper %9.*f\n", unit, digits, paper);
+}
+
+void bilateral_print_paper(FILE *f, const struct bilateral_result *r, int n, double local_Npm)
+{
+    for (int i = 0; i < n; i++) {
+        fprintf(f, "\n%s, %s: %d approaches, %d missed, %d early, %d settled\n", r[i].speed->name,
+                bilateral_finger_name[r[i].finger], r[i].contacts, r[i].missed, r[i].early,
+                r[i].settled);
+        beside(f, "settled within 5 % of F_mon held", 1e3 * r[i].settle_s, 1e3 * PAPER_SETTLING_S,
+               "ms", 1);
+        beside(f, "stiffness, all approaches", r[i].stiffness_Npm, PAPER_STIFFNESS_NPM, "N/m", 0);
+        beside(f, "bilateral / local stiffness", local_Npm > 0 ? r[i].stiffness_Npm / local_Npm : 0,
+               PAPER_STIFFNESS_NPM / PAPER_LOCAL_NPM, "", 3);
+    }
+    fprintf(f,
+            "\nLocal: ten falls of 0.5 kg at the same rate and gains, %.0f N/m (paper %.0f).\n"
+            "settled: F_mon stays within 5 %% of its mean over the last 0.2 s of the hold; rest: "
+            "position\n"
+            "within 0.2 mm and F_mon within 1.5 N of it. place: q_lim less the string at which pad "
+            "and\n"
+            "object touch. No data of a hand in this device exist: finger and hand are guesses, "
+            "and the\n"
+            "spread over them is wider than the distance to the paper.\n",
+            local_Npm, PAPER_LOCAL_NPM);
+}
+
+void bilateral_csv_head(FILE *f)
+{
+    fprintf(
+        f,
+        "speed,finger,approach,t_s,speed_m_per_s,settle_s,rest_s,place_m,f_des_max_n,f_mon_held_n,"
+        "stiffness_n_per_m,frozen,missed,early\n");
+}
+
+static void cell(FILE *f, double v, int there)
+{
+    fputc(',', f);
+    if (there) { fprintf(f, "%.9g", v); }
+}
+
+void bilateral_csv(FILE *f, const struct bilateral_result *r)
+{
+    for (int i = 0; i < r->contacts; i++) {
+        const struct bilateral_contact *c = &r->contact[i];
+        const int there = c->t_s > 0;
+        fprintf(f, "%s,%s,%d", r->speed->name, bilateral_finger_name[r->finger], c->approach);
+        cell(f, c->t_s, there);
+        cell(f, c->speed_mps, there);
+        cell(f, c->settle_s, c->settle_s >= 0);
+        cell(f, c->rest_s, c->rest_s >= 0);
+        cell(f, c->off_m, there && r->touch_m >= 0);
+        cell(f, c->f_max_N, 1);
+        cell(f, c->held_N, there);
+        cell(f, c->stiffness_Npm, c->stiffness_Npm > 0);
+        fprintf(f, ",%d,%d,%d\n", c->frozen, c->missed, c->early);
+    }
+}
+
+/* --- a session --- */
+
+static double deg(int32_t turn_q32)
+{
+    return ldexp(360.0 * turn_q32, -EXH_Q_TURN);
+}
+
+void bilateral_print_session(FILE *f, const struct bilateral_run *r, unsigned fingers)
+{
+    fprintf(f, "  finger      string, mm    knuckle, deg     middle, deg  contacts   touched, s   "
+               "largest force, N\n");
+    for (unsigned i = 0; i < BILATERAL_FINGERS; i++) {
+        const struct bilateral_track *t = &r->finger[i];
+        const struct bilateral_range *g = &t->range;
+        if (!(fingers >> i & 1)) { continue; }
+        fprintf(f, "  %-7s %6.1f ..%6.1f %6.1f ..%6.1f %6.1f ..%6.1f %9ld %12.2f %18.2f\n",
+                bilateral_finger_name[i], 1e3 * g->lo_m, 1e3 * g->hi_m, deg(g->lo_turn_q32[1]),
+                deg(g->hi_turn_q32[1]), deg(g->lo_turn_q32[2]), deg(g->hi_turn_q32[2]), t->contacts,
+                (double)g->touched * r->T.num / r->T.den, ldexp(g->f_max_N_q20, -EXH_Q_FORCE));
+    }
+}
+
+/* --- d_lim --- */
+
+static int32_t fixed(double v, int frac)
+{
+    return (int32_t)floor(ldexp(v, frac) + 0.5);
+}
+
+/* Parameters as the scene has them after the run. */
+static const struct bilateral_par *par(void)
+{
+    return (const struct bilateral_par *)(const void *)exh_scene_bilateral.params->active;
+}
+
+struct exh_precontact_need bilateral_need(const struct bilateral_options *o, double scale,
+                                          double mps)
+{
+    const struct exh_glove_par *g = &par()->glove;
+    const double fc_Hz = g->fc_Hz_q16 / 65536.0;
+    const double filter_s = g->order == 2 ? sqrt(2) / (TWO_PI * fc_Hz)
+                            : g->order    ? 1 / (TWO_PI * fc_Hz)
+                                          : 0;
+    const double lag_s = filter_s + 1 / (TWO_PI * o->run.board.glove_par.cutoff_Hz) +
+                         EXH_GLOVE_SENSORS * o->run.board.glove_par.interval_s +
+                         (par()->glove_own.every - 1) / (double)o->run.rate_Hz;
+    /* A step of the quantizer and its hysteresis, at 0.2 m of lever for all joints together. */
+    const double codes = ldexp(1, 16 - g->bits) + g->hyst_raw_q16 / 65536.0;
+    const double turn = ldexp(fabs((double)par()->sensor[4].gain_turnpraw_q38), -38) * codes;
+    const struct exh_precontact_need n = {
+        .speed_mps_q27 = fixed(mps / scale, EXH_Q_VEL),
+        .lag_us = (int32_t)ceil(1e6 * lag_s),
+        .noise_m_q30 = fixed(0.2 * TWO_PI * turn, EXH_Q_POS),
+        .age_us = (int32_t)ceil(1e6 / o->run.fps),
+    };
+    return n;
+}
+
+void bilateral_print_advice(FILE *f, const struct bilateral_options *o,
+                            const struct bilateral_result *r, int n)
+{
+    for (int i = 0; i < n; i++) {
+        const struct exh_period T = {1, o->run.rate_Hz};
+        const int32_t d_lim = par()->precontact[r[i].finger].d_lim_m_q30;
+        const double fastest = r[i].speed->mps * (1 + o->run.board.exo.path[r[i].finger].vary);
+        const struct exh_precontact_need need = bilateral_need(o, r[i].scale, fastest);
+        struct exh_precontact_advice a;
+        if (exh_precontact_advise(&a, &need, T, d_lim) < 0) { continue; }
+        fprintf(f,
+                "%sd_lim %.2f mm, %s at %.2f m/s: %s %.2f mm (fingertip %.2f m/s, lag %.2f ms, "
+                "noise %.2f mm)\n",
+                i ? "" : "\n", ldexp(1e3 * d_lim, -30), bilateral_finger_name[r[i].finger], fastest,
+                d_lim <= a.d_lim_m_q30 ? "enough; wanted" : "TOO SMALL: make it",
+                floor(ldexp(1e5 * a.d_lim_m_q30, -30)) / 100, ldexp(need.speed_mps_q27, -27),
+                need.lag_us / 1e3, ldexp(1e3 * need.noise_m_q30, -30));
+    }
+}

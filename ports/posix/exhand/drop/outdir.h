@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: MIT */
+/* The directory that `exhand drop --out` leaves its files in. */
+#ifndef CLI_OUTDIR_H
+#define CLI_OUTDIR_H
+
+#include "drop/table2.h"
+
+/* Makes the directory if need be, removes the tables and pictures of an earlier
+ * experiment and sees whether files can be made. 0, or 2 after a line on stderr. */
+int outdir_open(const char *dir);
+
+/* DIR/drop_RATEHz + suffix: what belongs to one rate. */
+void outdir_path(char to[TABLE2_PATH_B], const char *dir, double rate_Hz, const char *suffix);
+
+/* table2.csv, and spread.csv unless s is NULL. 0, or 1 after a line on stderr. */
+int outdir_tables(const char *dir, const struct table2_result *r, const struct table2_spread *s,
+                  int rows);
+
+/* pictures.gp: what gnuplot needs to draw the pictures, run inside the directory.
+ * 0, or 1 after a line on stderr. rows > 0. */
+int outdir_pictures(const char *dir, const struct sim_device *d, const struct table2_result *r,
+                    int rows);
+
+#endif

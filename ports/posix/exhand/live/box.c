@@ -1,0 +1,140 @@
+/* SPDX-License-Identifier: MIT */
+/* exhand run: the two kinds of box, and who is told what happens in them. */
+#include "live/live.h"
+
+#include "base/dumpfile.h"
+#include "live/modbus.h"
+#include "drop/table2.h"
+
+#include "exhand/error.h"
+
+#include <limits.h>
+#include <string.h>
+
+/* --- who is told what happens --- */
+
+static struct {
+    int on, status;
+} clients; /* of Modbus */
+
+static void start(const struct exh_scene *sc, struct exh_scene_board board)
+{
+    live_person_start(sc, board);
+    live_status_start(sc, board);
+    if (!clients.on) { return; }
+    clients.status = mail_start(sc, board) < 0 ? 1 : live_modbus_serve();
+    if (clients.status) { posix_stop(); }
+}
+
+static void before(uint32_t tick, struct exh_scene_in *in)
+{
+    live_person_before(tick, in);
+    if (clients.on) { mail_before(in); }
+}
+
+static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
+{
+    if (clients.on) { mail_after(in); }
+    (void)out;
+    live_status_after(tick, in);
+}
+
+static const struct exh_loop_hooks hooks = {start, before, after};
+
+/* --- the box --- */
+
+static void board(const struct live_options *o, struct posix_config *b)
+{
+    b->seed = (uint64_t)o->seed;
+    b->pace = o->pace;
+    b->gpio = o->gpio.given;
+    b->slack_s = o->slack_s;
+    b->log = live_log_file();
+    b->log_put = b->log ? live_log_put : NULL;
+    b->wires_in = live_wires;
+    b->max_ticks = (uint32_t)(o->seconds * o->rate_Hz + 0.5);
+    if (o->seconds > 0 && b->max_ticks == 0) { b->max_ticks = 1; } /* 0: never */
+}
+
+/* A dump that could not be written is an error of its own. */
+static int dumped(int err, int dumps)
+{
+    return err == 0 && dumps < 0 ? -EXH_E_IO : err;
+}
+
+/* A mass that is let fall again and again. */
+static int run_mass(const struct live_options *o, const struct exh_scene *sc)
+{
+    const struct table2_row *g = table2_gains(o->rate_Hz);
+    struct run_cfg c = {.scene = sc,
+                        .rate_Hz = (uint32_t)(o->rate_Hz + 0.5),
+                        .k_Npm = g->k_Npm,
+                        .b_Nspm = g->b_Nspm,
+                        .setting = o->setting,
+                        .settings = o->sets,
+                        .more = &hooks,
+                        .blackbox = o->blackbox,
+                        .live = o->live};
+    struct run r;
+    int err;
+    c.board = posix_config_default();
+    c.board.falls = INT_MAX;
+    board(o, &c.board);
+    live_status(0);
+    err = run_drop(&c, &r);
+    err = dumped(err, r.dumps);
+    run_free(&r);
+    return err;
+}
+
+static unsigned lowest(unsigned mask)
+{
+    unsigned i = 0;
+    while (mask > 1 && !(mask & 1)) {
+        mask >>= 1;
+        i++;
+    }
+    return i;
+}
+
+/* Fingers that approach a wall again and again. */
+static int run_hand(struct live_options *o)
+{
+    const struct table2_row *g = table2_gains(o->rate_Hz);
+    struct bilateral_run_cfg c;
+    struct bilateral_run r;
+    int err;
+    o->hand.seed = o->seed;
+    o->hand.approaches = 0; /* for ever */
+    c = bilateral_at_speed(&o->hand, o->hand.speed[0].mps);
+    c.rate_Hz = (uint32_t)(o->rate_Hz + 0.5);
+    c.k_Npm = g->k_Npm;
+    c.b_Nspm = g->b_Nspm;
+    c.live = o->live;
+    c.more = &hooks;
+    c.blackbox = o->blackbox;
+    if (o->live.image) { c.fit_scale = 0; } /* it was, when that was saved */
+    board(o, &c.board);
+    c.board.glove_tty = o->glove ? &o->tty : NULL;
+    c.glove_cal = o->glove_image ? &o->glove_cal : NULL;
+    live_status(lowest(c.board.exo.fingers));
+    err = bilateral_run(&c, &r);
+    err = dumped(err, r.dumps);
+    bilateral_run_free(&r);
+    if (o->glove) { glove_tty_close(&o->tty); }
+    return err;
+}
+
+int live_box(struct live_options *o, const struct exh_scene *sc)
+{
+    dumpfile_paced(o->pace);
+    clients.on = o->modbus != NULL;
+    clients.status = 0;
+    live_person(&(struct live_person){o->grip, o->let_go_s});
+    return sc == &exh_scene_bilateral ? run_hand(o) : run_mass(o, sc);
+}
+
+int live_box_clients(void)
+{
+    return clients.status;
+}

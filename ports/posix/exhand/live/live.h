@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: MIT */
+/* exhand run: what its parts share. */
+#ifndef CLI_LIVE_H
+#define CLI_LIVE_H
+
+#include "contact/bilateral.h"
+#include "base/contacts.h"
+#include "exhand/run/loop.h"
+#include "base/run.h"
+
+#include "exhand/frame.h"
+
+#include <stdint.h>
+#include <stdio.h>
+
+#define LIVE_SETTINGS_MAX 64
+
+struct live_options {
+    const char *scene, *params, *log, *blackbox, *modbus, *save, *glove, *glove_image;
+    double rate_Hz, seconds, let_go_s, slack_s;
+    int64_t seed;
+    int pace, grip, list, remote;
+    struct contacts gpio;
+    const char *set[LIVE_SETTINGS_MAX];
+    int sets;
+    struct run_setting setting[LIVE_SETTINGS_MAX];
+    struct bilateral_options hand;
+    struct run_live live;
+    struct glove_tty tty; /* of --glove-serial, while it runs */
+    struct exh_glove_cal glove_cal;
+};
+
+/* live_box.c. The box of this scene, until it ends: 0, or the -EXH_E... of board or scene. */
+int live_box(struct live_options *o, const struct exh_scene *sc);
+/* What a client's thread could not do: an exit status; 0: nothing. */
+int live_box_clients(void);
+
+/* live_person.c. Who holds the dead-man switch of the simulated box: takes hold of it a tenth of a
+ * second after the start, and lets go when asked; nobody, where --gpio has a real one. */
+struct live_person {
+    int again;       /* lets go and takes hold anew while the box is in OFF or FAULT; else once */
+    double let_go_s; /* 0: never */
+};
+void live_person(const struct live_person *is);
+void live_wires(struct exh_drive_in *in); /* posix_config.wires_in */
+/* Hooks: the grip's command. */
+void live_person_start(const struct exh_scene *sc, struct exh_scene_board board);
+void live_person_before(uint32_t tick, struct exh_scene_in *in);
+
+/* live_status.c. A line of status on a terminal, which no tick waits for; and what became of it, on
+ * standard output. finger: whose values are shown. */
+void live_status(unsigned finger);
+void live_status_start(const struct exh_scene *sc, struct exh_scene_board board);
+void live_status_after(uint32_t tick, const struct exh_scene_in *in);
+void live_status_end(void);
+
+/* live_log.c. --log: paced, no tick waits for it either: what finds no room is lost and counted.
+ * ends: the run has an end. An exit status, after a line on stderr; 0: fine, also without a path.
+ */
+int live_log_open(const char *path, int paced, int ends);
+FILE *live_log_file(void);                       /* NULL: none */
+int live_log_put(const void *rec, size_t len_B); /* posix_config.log_put */
+uint64_t live_log_lost(void);                    /* records */
+int live_log_close(void);
+
+#endif

@@ -1,0 +1,393 @@
+/* SPDX-License-Identifier: MIT */
+/* exhand watch: what a running box does, as it does it. */
+#include "live/watch.h"
+
+#include "base/cli.h"
+#include "base/names.h"
+#include "base/option.h"
+#include "base/param.h"
+#include "base/until.h"
+
+#include "bilateral/bilateral.h"
+#include "bringup/bringup.h"
+#include "calibrate/calibrate.h"
+#include "drop/drop.h"
+#include "glove/glove.h"
+#include "guarded/guarded.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#define DRAWN_HZ 10.0 /* a terminal is not drawn more often */
+#define LATE_S   0.05 /* Ctrl-C and --seconds wait no longer */
+
+static const struct exh_scene *const scenes[] = {&exh_scene_drop,      &exh_scene_guarded,
+                                                 &exh_scene_bilateral, &exh_scene_glove,
+                                                 &exh_scene_calibrate, &exh_scene_bringup};
+
+static struct {
+    const char *modbus, *listen, *names, *finger, *csv, *plot;
+    double hz, seconds, last_s;
+    int64_t trace; /* ticks from frame to frame; 0: none */
+    struct watch_box box;
+    struct watch_pick pick;
+    const struct exh_scene *picked; /* of this scene */
+    FILE *file;
+    int tty, taken; /* taken: a sample of this tick is there */
+    uint32_t tick;
+    double shown_s;
+} w;
+
+double watch_age_s(const struct watch_box *b)
+{
+    return until_now_s() - (b->heard ? b->heard_s : b->since_s);
+}
+
+/* --- what is watched --- */
+
+int watch_scene(struct watch_box *b, const char *name, uint32_t crc, uint32_t count)
+{
+    const struct exh_scene *sc = NULL;
+    for (size_t i = 0; i < sizeof scenes / sizeof scenes[0]; i++) {
+        if (strcmp(scenes[i]->name, name) == 0) { sc = scenes[i]; }
+    }
+    if (sc == NULL) {
+        cli_complain("the box runs the scene %s, which this program does not have", name);
+        return 1;
+    }
+    if (exh_signal_crc(sc->signals) != crc || exh_signal_count(sc->signals) != count) {
+        cli_complain(
+            "scene %s: the box's table of signals (%lu, CRC %08lx) is another than this program's "
+            "(%lu, CRC %08lx): watch it with the program of its version",
+            name, (unsigned long)count, (unsigned long)crc,
+            (unsigned long)exh_signal_count(sc->signals),
+            (unsigned long)exh_signal_crc(sc->signals));
+        return 1;
+    }
+    b->scene = sc;
+    return 0;
+}
+
+static int unknown(const struct exh_signal_table *t, const char *name)
+{
+    const char *last = "";
+    fprintf(stderr, "exhand watch: --signals: %s: no such signal: one of", name);
+    for (uint32_t i = 0; i < exh_signal_count(t); i++) {
+        const char *is = exh_signal_at(t, i, NULL)->name;
+        uint32_t first;
+        (void)cli_signal_find(t, is, &first);
+        if (first == i && strcmp(is, last) != 0) { fprintf(stderr, " %s", is); }
+        last = is;
+    }
+    fputc('\n', stderr);
+    return 2;
+}
+
+static int add(struct watch_pick *p, int32_t i, const char *name, const struct exh_signal_table *t)
+{
+    if (i < 0) { return unknown(t, name); }
+    if (p->n == WATCH_SIGNALS) {
+        cli_complain("--signals: at most %d", WATCH_SIGNALS);
+        return 2;
+    }
+    p->index[p->n++] = (uint32_t)i;
+    return 0;
+}
+
+/* "q" or "q[1]". */
+static int add_named(struct watch_pick *p, const struct exh_signal_table *t, char *name,
+                     unsigned finger)
+{
+    char *bracket = strchr(name, '['), *end = NULL;
+    const struct exh_signal *row;
+    unsigned long k = finger;
+    if (bracket) {
+        *bracket = '\0';
+        k = strtoul(bracket + 1, &end, 10);
+        if (end == bracket + 1 || strcmp(end, "]") != 0 || k > UINT16_MAX) {
+            return unknown(t, name);
+        }
+    }
+    row = cli_signal_find(t, name, NULL);
+    if (row == NULL) { return unknown(t, name); }
+    if (!bracket && exh_signal_find(t, row->id, 1) < 0) { k = 0; } /* there is one of it */
+    return add(p, exh_signal_find(t, row->id, (uint16_t)k), name, t);
+}
+
+int watch_pick(struct watch_pick *p, const struct exh_signal_table *t, const char *names,
+               unsigned finger)
+{
+    const struct exh_signal_group *paper = &t->group[0];
+    int err = 0;
+    p->n = 0;
+    for (uint16_t i = 0; names == NULL && err == 0 && i < paper->rows && i < WATCH_SIGNALS; i++) {
+        const uint16_t k = (uint16_t)(finger < paper->instances ? finger : 0);
+        err = add(p, exh_signal_find(t, paper->row[i].id, k), paper->row[i].name, t);
+    }
+    while (names && *names && err == 0) {
+        const size_t len = strcspn(names, ",");
+        char name[WATCH_NAME_B];
+        snprintf(name, sizeof name, "%.*s", (int)(len < sizeof name ? len : sizeof name - 1),
+                 names);
+        err = add_named(p, t, name, finger);
+        names += len + (names[len] == ',');
+    }
+    return err;
+}
+
+const struct exh_signal *watch_name(char to[WATCH_NAME_B], const struct exh_signal_table *t,
+                                    uint32_t i)
+{
+    uint16_t k = 0;
+    const struct exh_signal *row = exh_signal_at(t, i, &k);
+    if (exh_signal_find(t, row->id, 1) >= 0) {
+        snprintf(to, WATCH_NAME_B, "%s[%u]", row->name, (unsigned)k);
+    } else {
+        snprintf(to, WATCH_NAME_B, "%s", row->name);
+    }
+    return row;
+}
+
+/* Now that the scene is known. */
+static int pick(struct watch_box *b)
+{
+    const int finger = names_find(&names_finger, w.finger);
+    const int err = watch_pick(&w.pick, b->scene->signals, w.names, (unsigned)finger);
+    if (err) { return err; }
+    b->from = UINT32_MAX;
+    b->to = 0;
+    for (uint32_t i = 0; i < w.pick.n; i++) {
+        if (w.pick.index[i] < b->from) { b->from = w.pick.index[i]; }
+        if (w.pick.index[i] > b->to) { b->to = w.pick.index[i]; }
+    }
+    if (w.trace && w.names && w.pick.n > EXH_TRACE_SIGNALS) {
+        cli_complain("--trace: of %d signals at most: give fewer --signals", EXH_TRACE_SIGNALS);
+        return 2;
+    }
+    if (w.trace && w.pick.n > EXH_TRACE_SIGNALS) { w.pick.n = EXH_TRACE_SIGNALS; }
+    for (uint32_t i = 0; i < EXH_TRACE_SIGNALS; i++) {
+        b->index[i] = w.pick.index[i < w.pick.n ? i : 0];
+    }
+    b->every = (uint32_t)w.trace;
+    w.picked = b->scene;
+    return 0;
+}
+
+/* --- samples --- */
+
+static int csv_failed(void)
+{
+    cli_complain("--csv: %s: %s", w.csv, strerror(errno));
+    return 1;
+}
+
+static int csv_sample(const struct watch_box *b, int first)
+{
+    char name[WATCH_NAME_B];
+    if (first) {
+        fprintf(w.file, "t_s,tick,state,faults,present,limits");
+        for (uint32_t i = 0; i < w.pick.n; i++) {
+            const struct exh_signal *row = watch_name(name, b->scene->signals, w.pick.index[i]);
+            fprintf(w.file, ",%s%s%s", name, row->unit[0] ? "_" : "", row->unit);
+        }
+        fputc('\n', w.file);
+    }
+    fprintf(w.file, "%.9f,%lu,%u,%lu,%lu,%lu", (double)b->tick * b->T.num / b->T.den,
+            (unsigned long)b->tick, (unsigned)b->state, (unsigned long)b->faults,
+            (unsigned long)b->present, (unsigned long)b->limits);
+    for (uint32_t i = 0; i < w.pick.n; i++) {
+        const struct exh_signal *row = exh_signal_at(b->scene->signals, w.pick.index[i], NULL);
+        fprintf(w.file, ",%.9g", cli_signal_value(row, b->value[w.pick.index[i]]));
+    }
+    fputc('\n', w.file);
+    return ferror(w.file) || (!w.tty && fflush(w.file) != 0) ? csv_failed() : 0;
+}
+
+/* A log has every tick: one of them each 1/hz of the box's time, later ones only. A box that
+ * has begun anew counts from 0. */
+static int due(const struct watch_box *b)
+{
+    const uint32_t passed = b->tick - w.tick;
+    const double passed_s = (double)passed * b->T.num / b->T.den;
+    return !w.taken || w.modbus || passed >= UINT32_C(0x80000000) || passed_s * w.hz >= 1 - 1e-9;
+}
+
+static int fresh(struct watch_box *b)
+{
+    int err = 0, first = w.picked == NULL;
+    if (w.picked != b->scene) {
+        err = pick(b);
+        if (err || w.modbus) { return err; } /* those chosen are asked for from now on */
+    }
+    if (!due(b)) { return 0; }
+    first |= !w.taken;
+    w.taken = 1;
+    w.tick = b->tick;
+    if (w.file) { err = csv_sample(b, first); }
+    if (err == 0 && w.plot) { err = watch_plot_sample(b, &w.pick); }
+    watch_view_sample(b, &w.pick);
+    if (!w.tty) { watch_view_line(b, &w.pick); }
+    return err;
+}
+
+/* --- until it is over --- */
+
+static void show(void)
+{
+    const double now_s = until_now_s();
+    const int silent = watch_age_s(&w.box) > 1;
+    if (now_s - w.shown_s < (w.tty ? 1 / DRAWN_HZ : 1)) { return; }
+    if (w.tty) {
+        watch_view_draw(&w.box, &w.pick, w.modbus ? w.modbus : w.listen);
+    } else if (silent) {
+        printf("silent for %.1f s%s%s\n", watch_age_s(&w.box), w.box.trouble ? ": " : "",
+               w.box.trouble ? w.box.trouble : "");
+        fflush(stdout);
+    }
+    w.shown_s = now_s;
+}
+
+static void sleep_until(double s)
+{
+    const double left_s = s - until_now_s();
+    const struct timespec t = {0, (long)(left_s * 1e9)};
+    if (left_s > 0 && left_s < 1) { (void)nanosleep(&t, NULL); }
+}
+
+static int go(void)
+{
+    const double end_s = w.seconds > 0 ? until_now_s() + w.seconds : 1e300;
+    double next_s = until_now_s();
+    int err = 0;
+    w.box.since_s = w.shown_s = next_s;
+    while (err == 0 && !until_stopped() && !w.box.ended && until_now_s() < end_s) {
+        const double now_s = until_now_s();
+        const double wake_s = next_s < now_s + LATE_S ? next_s : now_s + LATE_S;
+        if (w.listen) {
+            err = watch_stream_look(&w.box, now_s + LATE_S, fresh);
+        } else if (now_s >= next_s) {
+            err = watch_modbus_look(&w.box, fresh);
+            next_s = next_s + 1 / w.hz > now_s ? next_s + 1 / w.hz : now_s;
+        } else {
+            sleep_until(wake_s);
+        }
+        show();
+    }
+    return err;
+}
+
+static int finish(int err)
+{
+    if (w.tty) {
+        if (w.picked) { watch_view_draw(&w.box, &w.pick, w.modbus ? w.modbus : w.listen); }
+        watch_view_end();
+    }
+    if (w.file && fclose(w.file) != 0 && err == 0) { err = csv_failed(); }
+    if (err == 0 && w.plot && w.taken) { err = watch_plot_draw(&w.box, &w.pick); }
+    if (err) { return err; }
+    if (!w.taken) {
+        cli_complain("%s: nothing was heard%s%s", w.modbus ? w.modbus : w.listen,
+                     w.box.trouble ? ": " : "", w.box.trouble ? w.box.trouble : "");
+        return until_stopped() ? 130 : 1;
+    }
+    if (w.box.breaks) {
+        cli_complain("the link was lost %lu times: nothing is known of what was between",
+                     (unsigned long)w.box.breaks);
+    }
+    if (w.box.mixed) {
+        cli_complain(
+            "%llu of %llu readings are of more than one tick: --trace has four signals of one",
+            (unsigned long long)w.box.mixed, (unsigned long long)w.box.heard);
+    }
+    if (w.box.lost) {
+        cli_complain("%llu %s were lost on the way", (unsigned long long)w.box.lost,
+                     w.trace ? "frames" : "ticks");
+    }
+    if (!w.box.ended && !until_stopped() && watch_age_s(&w.box) > 1) {
+        cli_complain("silent for %.1f s at the end", watch_age_s(&w.box));
+        return 1;
+    }
+    return until_stopped() ? 130 : 0;
+}
+
+/* --- command --- */
+
+static int prepare(void)
+{
+    int err = 0;
+    if ((w.modbus != NULL) + (w.listen != NULL) != 1) {
+        cli_complain("--modbus or --listen: where the box is heard: give one of them");
+        return 2;
+    }
+    if (w.trace && w.listen) {
+        cli_complain("--trace: a log has every tick: only with --modbus");
+        return 2;
+    }
+    if (names_find(&names_finger, w.finger) < 0) {
+        cli_complain("--finger: %s: give thumb, index, middle, ring or little", w.finger);
+        return 2;
+    }
+    if (w.plot) { err = watch_plot_open(w.plot, w.last_s); }
+    if (err == 0) { err = w.modbus ? watch_modbus_open(w.modbus) : watch_stream_open(w.listen); }
+    if (err == 0 && w.csv) {
+        w.file = fopen(w.csv, "w");
+        if (w.file == NULL) {
+            (void)csv_failed();
+            err = 2;
+        }
+    }
+    return err;
+}
+
+int cli_watch(int argc, char **argv)
+{
+    const struct cli_option option[] = {
+        {"modbus", CLI_TEXT, &w.modbus, 0, 0, "WHERE",
+         "a box that serves its registers: tcp:ADDRESS:PORT or rtu:DEVICE:BAUD"},
+        {"listen", CLI_TEXT, &w.listen, 0, 0, "ADDRESS:PORT",
+         "a box that sends its log there (pc104: log=udp)"},
+        {"trace", CLI_INT, &w.trace, 0, 1e6, "N",
+         "of Modbus: every N-th tick, four signals, what is lost is told"},
+        {"signals", CLI_TEXT, &w.names, 0, 0, "A[,B[I]...]",
+         "which, of one finger with its number (the paper's)"},
+        {"finger", CLI_TEXT, &w.finger, 0, 0, "F", "whose, without a number (index)"},
+        {"hz", CLI_REAL, &w.hz, 0.1, 1000, "HZ", "samples a second, of a trace looks (10, 50)"},
+        {"seconds", CLI_REAL, &w.seconds, 0, 1e9, "S", "then it ends (never)"},
+        {"csv", CLI_TEXT, &w.csv, 0, 0, "FILE", "every sample"},
+        {"plot", CLI_TEXT, &w.plot, 0, 0, "FILE.png",
+         "the last seconds, drawn at the end by gnuplot"},
+        {"last", CLI_REAL, &w.last_s, 0.1, 3600, "S", "of --plot (10)"},
+    };
+    const struct cli_command c = {"watch",
+                                  "--modbus WHERE | --listen ADDRESS:PORT [options]",
+                                  "Live values, state, faults and limits of a running box, until "
+                                  "Ctrl-C: in place on a terminal,\n"
+                                  "else a line a sample. It only reads.",
+                                  option,
+                                  (int)(sizeof option / sizeof option[0]),
+                                  0};
+    int err;
+    memset(&w, 0, sizeof w);
+    w.finger = "index";
+    w.last_s = 10;
+    err = cli_parse(&c, argc, argv, NULL);
+    if (err) { return err == 1 ? 0 : err; }
+    w.tty = isatty(STDOUT_FILENO);
+    if (w.trace && w.hz == 0) { w.hz = 50; }
+    if (w.hz == 0) { w.hz = 10; }
+    err = prepare();
+    if (err) { return err; }
+    until_catch();
+    (void)signal(SIGPIPE, SIG_IGN);
+    err = finish(go());
+    if (w.modbus) {
+        watch_modbus_close();
+    } else {
+        watch_stream_close();
+    }
+    return err;
+}

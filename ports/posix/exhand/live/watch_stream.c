@@ -1,0 +1,150 @@
+/* SPDX-License-Identifier: MIT */
+/* The log of a box, as it comes over the network: each frame has every signal. */
+#include "live/watch.h"
+
+#include "base/option.h"
+#include "udp.h"
+#include "base/until.h"
+
+#include "exhand/run/log.h"
+
+#include "exhand/run/stream.h"
+
+#include "exhand/error.h"
+
+#include <errno.h>
+#include <poll.h>
+#include <string.h>
+
+#define BUFFER_B (65536u + STREAM_PIECE_B)
+#define NEW_S    2.0 /* nothing for so long: another box, or the same anew, may begin */
+
+static struct {
+    struct udp udp;
+    uint32_t session, place; /* of the byte behind the last */
+    double heard_s;
+    int begun;
+    uint8_t byte[BUFFER_B]; /* not yet records */
+    uint32_t n;
+} in;
+
+int watch_stream_open(const char *at)
+{
+    if (udp_open(&in.udp, at, NULL) == 0) { return 0; }
+    cli_complain("--listen: %s: %s: give ADDRESS:PORT of this machine", at, strerror(errno));
+    return 2;
+}
+
+void watch_stream_close(void)
+{
+    udp_close(&in.udp);
+}
+
+/* --- records --- */
+
+static int on_header(struct watch_box *b, const struct exh_record *r)
+{
+    struct exh_bytes c = exh_bytes_reader(r->payload, r->len_B);
+    struct exh_record_header h;
+    memset(&h, 0, sizeof h);
+    exh_record_header_bytes(&c, &h);
+    if (!exh_bytes_ok(&c) || !exh_period_ok(h.T)) { return 0; }
+    h.scene[sizeof h.scene - 1] = '\0';
+    b->T = h.T;
+    return watch_scene(b, h.scene, h.signal_crc, h.signals);
+}
+
+/* All bits that any value of this name has. */
+static uint32_t bits_of(const struct watch_box *b, const char *name)
+{
+    const struct exh_signal_table *t = b->scene->signals;
+    const uint32_t n = exh_signal_count(t);
+    uint32_t bits = 0;
+    for (uint32_t i = 0; i < n; i++) {
+        if (strcmp(exh_signal_at(t, i, NULL)->name, name) == 0) { bits |= (uint32_t)b->value[i]; }
+    }
+    return bits;
+}
+
+static int on_frame(struct watch_box *b, const struct exh_record *r, watch_fresh fresh)
+{
+    struct exh_bytes c = exh_bytes_reader(r->payload, r->len_B);
+    struct exh_scene_in was;
+    struct exh_drive_out out;
+    if (b->scene == NULL) { return 0; } /* its header did not come */
+    memset(&was, 0, sizeof was);
+    exh_log_frame_bytes(&c, b->scene, &was, &out, b->value);
+    if (!exh_bytes_ok(&c) || c.at != r->len_B) { return 0; }
+    if (b->heard > 0 && r->tick - b->tick - 1 < UINT32_C(0x80000000)) {
+        b->lost += r->tick - b->tick - 1;
+    }
+    b->tick = r->tick;
+    b->state = (uint8_t)bits_of(b, "state");
+    b->faults = bits_of(b, "faults");
+    b->present = bits_of(b, "present");
+    b->limits = bits_of(b, "limits");
+    b->heard++;
+    b->heard_s = until_now_s();
+    return fresh(b);
+}
+
+/* Whole records at the start of the buffer; what is damaged is skipped. */
+static int records(struct watch_box *b, watch_fresh fresh)
+{
+    uint32_t at = 0;
+    int err = 0;
+    while (err == 0 && at < in.n) {
+        struct exh_record r;
+        const int32_t len = exh_record_read(in.byte + at, in.n - at, &r);
+        if (len == -EXH_E_SHORT && in.n - at < BUFFER_B - STREAM_DATA_B) { break; }
+        at += len > 0 ? (uint32_t)len : 1;
+        if (len <= 0) { continue; }
+        if (r.type == EXH_RECORD_HEADER) { err = on_header(b, &r); }
+        if (r.type == EXH_RECORD_FRAME) { err = on_frame(b, &r, fresh); }
+        if (r.type == EXH_RECORD_END) { b->ended = 1; }
+    }
+    in.n -= at;
+    memmove(in.byte, in.byte + at, in.n);
+    return err;
+}
+
+/* --- pieces --- */
+
+/* In their order; what comes late is not waited for. */
+static int piece(struct watch_box *b, const struct stream_piece *p, watch_fresh fresh)
+{
+    const double now_s = until_now_s();
+    if (in.begun && p->session != in.session && now_s - in.heard_s < NEW_S) { return 0; }
+    if (!in.begun || p->session != in.session) {
+        in.session = p->session;
+        in.place = p->place;
+        in.n = 0;
+        in.begun = 1;
+        b->heard = 0;
+    }
+    if (p->place - in.place >= UINT32_C(0x80000000)) { return 0; }
+    if (p->place != in.place) { in.n = 0; }
+    in.heard_s = now_s;
+    in.place = p->place + (uint32_t)p->n;
+    memcpy(in.byte + in.n, p->byte, p->n);
+    in.n += (uint32_t)p->n;
+    b->trouble =
+        b->scene ? NULL
+                 : "the log's beginning, which names the scene, is not heard: start the box anew";
+    return records(b, fresh);
+}
+
+int watch_stream_look(struct watch_box *b, double until_s, watch_fresh fresh)
+{
+    uint8_t datagram[STREAM_PIECE_B];
+    struct pollfd f = {in.udp.fd, POLLIN, 0};
+    const double left_s = until_s - until_now_s();
+    int err = 0, n;
+    (void)poll(&f, 1, left_s > 0 ? 1 + (int)(1000 * left_s) : 0);
+    while (err == 0 && (n = udp_recv(&in.udp, datagram, sizeof datagram)) > 0) {
+        struct stream_piece p;
+        if (stream_read(&p, datagram, (size_t)n)) { err = piece(b, &p, fresh); }
+        if (until_now_s() > until_s + 0.2) { break; } /* the picture, too, wants to be drawn */
+    }
+    return err;
+}

@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: MIT */
+/* What happened in a log, in the words of a person: commands, states, arming, contacts and limits
+ * with their peaks, faults by name, what was missed or lost. */
+#ifndef CLI_TIMELINE_H
+#define CLI_TIMELINE_H
+
+#include "base/logfile.h"
+
+#include <stdio.h>
+
+/* The whole log, from its first record on. 0, or 1 after a line on stderr (memory). */
+int timeline_print(struct logfile *l, FILE *to);
+
+/* timeline_note.c: lines that are put in order at the end. */
+struct timeline_notes {
+    struct timeline_note {
+        uint64_t tick;
+        size_t order;
+        char text[160];
+    } * at;
+    size_t n, cap;
+    int no_memory;
+    uint64_t fault_tick; /* the first of them; told beside each line if has_fault */
+    int has_fault;
+};
+#ifdef __GNUC__
+__attribute__((format(printf, 3, 4)))
+#endif
+void timeline_say(struct timeline_notes *n, uint64_t tick, const char *format, ...);
+/* In order of ticks, with times; frees them. */
+void timeline_out(struct timeline_notes *n, const struct logfile *l, FILE *to);
+
+/* Something that is on or off in a tick; on again within `gap` ticks is the same. */
+struct timeline_span {
+    uint64_t begin, last; /* ticks in which it was on */
+    uint32_t times, ticks;
+    double peak;
+    int open;
+};
+/* 1: it is over, *was holds it. Also to be called with on 0 at the end, gap 0. */
+int timeline_span(struct timeline_span *s, int on, uint64_t tick, uint64_t gap, double value,
+                  struct timeline_span *was);
+
+#endif

@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: MIT */
+/* exhand drop --friction N: the stability border against the friction of the string.
+ *
+ * At each rate both gains are raised together, along the ray through the paper's point,
+ * until the falls no longer come to rest; with N amounts of friction from none to twice
+ * the device's: all of it, its dry part alone, its viscous part alone. */
+#ifndef CLI_FRICTION_H
+#define CLI_FRICTION_H
+
+#include "lab/drop/sweep.h"
+
+#define FRICTION_POINTS_MAX 65
+
+/* A table on stdout; friction.csv and friction.gp in o->dir, which must be given. The
+ * exit status. */
+int friction_run(const struct sweep_opt *o, int points);
+
+#endif

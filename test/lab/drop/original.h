@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: MIT */
+/* exhand drop --preset original. */
+#ifndef CLI_DROP_ORIGINAL_H
+#define CLI_DROP_ORIGINAL_H
+
+#include "base/run.h"
+
+/* original: a run at 90 Hz; box: at 2 kHz. The exit status. */
+int drop_original(const struct run_cfg *original, const struct run_cfg *box, const char *dir);
+
+#endif

@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: MIT */
+#include "lab/fit/search.h"
+
+#include <string.h>
+
+#define BEST     5    /* children go towards one of these */
+#define TOO_NEAR 0.01 /* in every row: the better of the two stays */
+
+void search_init(struct search *s, uint64_t seed)
+{
+    memset(s, 0, sizeof *s);
+    s->rng.state = seed;
+    s->start = space_start();
+    s->kept = SEARCH_MEMBERS;
+    for (int i = 0; i < READINGS; i++) { s->used[i] = 1; }
+}
+
+/* Normal enough: deviation 1, within +-3.5. */
+static double bell(struct sim_random *r)
+{
+    return 6.9 * sim_random_bell(r);
+}
+
+static double mirrored(double u)
+{
+    if (u < 0) { u = -u; }
+    if (u > 1) { u = 2 - u; }
+    return u < 0 ? 0 : u;
+}
+
+/* Mirrors at the walls; pinned rows keep the start's value. */
+static void tidy(const struct search *s, struct plant_point *p)
+{
+    for (int i = 0; i < SPACE_ROWS; i++) {
+        p->u[i] = s->pinned[i] ? s->start.u[i] : mirrored(p->u[i]);
+    }
+}
+
+/* Every other one is anywhere, every other one near the start. */
+struct plant_point search_first(struct search *s, int i)
+{
+    struct plant_point p = s->start;
+    for (int k = 0; i > 0 && k < SPACE_ROWS; k++) {
+        p.u[k] = i % 2 ? sim_random_unit(&s->rng) : p.u[k] + 0.1 * bell(&s->rng);
+    }
+    tidy(s, &p);
+    return p;
+}
+
+static int pick(struct sim_random *r, int n)
+{
+    return (int)(sim_random_unit(r) * n);
+}
+
+static struct plant_point evolve(struct search *s, const struct search_population *of, int best)
+{
+    const struct plant_point *towards = &of->member[best].p;
+    const struct plant_point *a = &of->member[pick(&s->rng, of->members)].p;
+    const struct plant_point *b = &of->member[pick(&s->rng, of->members)].p;
+    const struct plant_point *from = &of->member[pick(&s->rng, of->members)].p;
+    const double step = 0.3 + 0.6 * sim_random_unit(&s->rng);
+    const double share = 0.3 + 0.7 * sim_random_unit(&s->rng);
+    struct plant_point p = pick(&s->rng, 2) ? *from : *towards;
+    for (int i = 0; i < SPACE_ROWS; i++) {
+        if (sim_random_unit(&s->rng) < share) {
+            p.u[i] = from->u[i] + step * (towards->u[i] - from->u[i]) + step * (a->u[i] - b->u[i]);
+        }
+    }
+    return p;
+}
+
+static struct plant_point nudge(struct search *s, const struct search_population *of, int best)
+{
+    static const double size[] = {0.005, 0.01, 0.02, 0.04, 0.08, 0.16};
+    const double by = size[pick(&s->rng, 6)];
+    const double share = 0.1 + 0.6 * sim_random_unit(&s->rng);
+    struct plant_point p = of->member[best].p;
+    for (int i = 0; i < SPACE_ROWS; i++) {
+        if (sim_random_unit(&s->rng) < share) { p.u[i] += by * bell(&s->rng); }
+    }
+    return p;
+}
+
+int search_round(struct search *s, struct plant_point child[READINGS])
+{
+    int n = 0;
+    for (int i = 0; i < READINGS; i++) {
+        const struct search_population *of = &s->of[i];
+        if (!s->used[i]) { continue; }
+        if (of->members == 0) { /* nothing has come through yet */
+            child[n] = search_first(s, 1);
+        } else {
+            const int best = pick(&s->rng, of->members < BEST ? of->members : BEST);
+            child[n] = pick(&s->rng, 2) ? evolve(s, of, best) : nudge(s, of, best);
+        }
+        tidy(s, &child[n++]);
+    }
+    return n;
+}
+
+double search_bound(const struct search *s)
+{
+    double bound = 0;
+    for (int i = 0; i < READINGS; i++) {
+        const struct search_population *of = &s->of[i];
+        if (!s->used[i]) { continue; }
+        if (of->members < s->kept) { return 1e9; }
+        if (of->member[of->members - 1].cost > bound) { bound = of->member[of->members - 1].cost; }
+    }
+    return bound;
+}
+
+static int near(const struct plant_point *a, const struct plant_point *b)
+{
+    for (int i = 0; i < SPACE_ROWS; i++) {
+        const double d = a->u[i] - b->u[i];
+        if (d > TOO_NEAR || d < -TOO_NEAR) { return 0; }
+    }
+    return 1;
+}
+
+/* Keeps the members in order of cost. */
+static void insert(struct search_population *of, int kept, const struct search_member *m)
+{
+    int at;
+    for (int i = 0; i < of->members; i++) {
+        if (!near(&of->member[i].p, &m->p)) { continue; }
+        if (of->member[i].cost <= m->cost) { return; }
+        memmove(&of->member[i], &of->member[i + 1],
+                (size_t)(of->members - 1 - i) * sizeof of->member[0]);
+        of->members--;
+        i--;
+    }
+    for (at = of->members; at > 0 && m->cost < of->member[at - 1].cost; at--) {}
+    if (at >= kept) { return; }
+    if (of->members == kept) { of->members--; }
+    memmove(&of->member[at + 1], &of->member[at],
+            (size_t)(of->members - at) * sizeof of->member[0]);
+    of->member[at] = *m;
+    of->members++;
+}
+
+void search_offer(struct search *s, const struct plant_point *p, const struct score *score)
+{
+    struct search_member m = {*p, *score, 0};
+    if (!score->done) { return; }
+    for (int i = 0; i < READINGS; i++) {
+        m.cost = score_cost(score, i);
+        insert(&s->of[i], s->kept, &m);
+    }
+}
+
+int search_cull(struct search *s, struct plant_point kept[SEARCH_BATCH])
+{
+    int n = 0;
+    for (int i = 0; i < READINGS; i++) {
+        for (int k = 0; k < s->of[i].members && k < SEARCH_KEPT; k++) {
+            int seen = 0;
+            for (int j = 0; j < n && !seen; j++) {
+                seen = memcmp(&kept[j], &s->of[i].member[k].p, sizeof kept[j]) == 0;
+            }
+            if (!seen && s->used[i]) { kept[n++] = s->of[i].member[k].p; }
+        }
+        s->of[i].members = 0;
+    }
+    s->kept = SEARCH_KEPT;
+    return n;
+}
+
+const struct search_member *search_best(const struct search *s, int reading)
+{
+    return s->of[reading].members ? &s->of[reading].member[0] : NULL;
+}
