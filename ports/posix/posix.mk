@@ -2,7 +2,7 @@
 # The host program build/posix/exhand, and what it prints for the documents.
 
 # Every scene that has a subcommand, over the simulated device.
-cli_src := $(wildcard ports/posix/exhand/*.c ports/posix/exhand/*/*.c test/lab/*/*.c) \
+cli_src := $(wildcard ports/posix/exhand/*.c ports/posix/exhand/*/*.c test/lab/*.c test/lab/*/*.c) \
            $(addprefix lib/src/run/,log.c blackbox.c deadman.c calib_set.c) \
            $(addprefix examples/,drop/drop.c guarded/guarded.c calibrate/calibrate.c glove/glove.c \
              glove/cal.c) \

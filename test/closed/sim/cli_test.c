@@ -6,7 +6,7 @@
 #include "base/jobs.h"
 #include "base/logfile.h"
 #include "base/param.h"
-#include "drop/table2.h"
+#include "base/table2.h"
 
 #include "drop/drop.h"
 

@@ -7,7 +7,7 @@
  * nearly all of the time and decides nothing. */
 #include "check.h"
 
-#include "drop/part.h"
+#include "base/fall.h"
 #include "sim/random.h"
 
 #include <stdlib.h>

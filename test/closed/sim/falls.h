@@ -5,7 +5,7 @@
 
 #include "check.h"
 
-#include "drop/analysis.h"
+#include "base/analysis.h"
 
 #include <math.h>
 #include <stdint.h>

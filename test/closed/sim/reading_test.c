@@ -3,9 +3,9 @@
  * analysis itself gives. */
 #include "falls.h"
 
-#include "drop/reading.h"
+#include "lab/drop/reading.h"
 #include "base/run.h"
-#include "drop/table2.h"
+#include "base/table2.h"
 
 #define STEP_M 1e-3
 

@@ -2,7 +2,7 @@
 /* exhand drop --sweep: whatever way its cells came about, the file is the same. */
 #include "said.h"
 
-#include "advise/cells.h"
+#include "lab/drop/cells.h"
 
 #include <signal.h>
 #include <time.h>

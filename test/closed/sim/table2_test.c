@@ -5,7 +5,7 @@
 #include "check.h"
 
 #include "base/jobs.h"
-#include "drop/table2.h"
+#include "base/table2.h"
 
 #include <string.h>
 

@@ -4,8 +4,8 @@
 
 #include "base/option.h"
 #include "lab/drop/preset.h"
-#include "drop/quantile.h"
-#include "drop/table2.h"
+#include "lab/drop/quantile.h"
+#include "base/table2.h"
 
 #include <stdlib.h>
 #include <string.h>

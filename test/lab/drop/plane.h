@@ -3,7 +3,7 @@
 #ifndef CLI_PLANE_H
 #define CLI_PLANE_H
 
-#include "advise/cells.h"
+#include "lab/drop/cells.h"
 #include "lab/drop/sweep.h"
 
 #define PLANE_MAX 200 /* columns, rows */

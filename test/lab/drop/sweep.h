@@ -9,7 +9,7 @@
 #ifndef CLI_SWEEP_H
 #define CLI_SWEEP_H
 
-#include "advise/cells.h"
+#include "lab/drop/cells.h"
 #include "base/run.h"
 
 struct sweep_opt {

@@ -6,8 +6,8 @@
 
 #include "lab/fit/space.h"
 
-#include "drop/reading.h"
-#include "drop/table2.h"
+#include "lab/drop/reading.h"
+#include "base/table2.h"
 
 struct score_plan {
     int runs;                         /* of ten falls a row, at the gains */

@@ -3,7 +3,7 @@
 
 #include "base/jobs.h"
 #include "base/option.h"
-#include "drop/quantile.h"
+#include "lab/drop/quantile.h"
 
 #include <errno.h>
 #include <stdio.h>

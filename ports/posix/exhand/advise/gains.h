@@ -3,7 +3,7 @@
 #ifndef CLI_GAINS_H
 #define CLI_GAINS_H
 
-#include "advise/cells.h"
+#include "lab/drop/cells.h"
 #include "advise/region.h"
 
 #include "exhand/gains.h"

@@ -3,7 +3,7 @@
 #ifndef CLI_RUN_H
 #define CLI_RUN_H
 
-#include "drop/analysis.h"
+#include "base/analysis.h"
 #include "base/guard.h"
 #include "base/images.h"
 #include "posix.h"

@@ -3,7 +3,7 @@
 #ifndef CLI_BILATERAL_RUN_H
 #define CLI_BILATERAL_RUN_H
 
-#include "drop/analysis.h"
+#include "base/analysis.h"
 #include "contact/peer.h"
 #include "base/images.h"
 #include "posix.h"

@@ -3,7 +3,7 @@
 #ifndef CLI_OUTDIR_H
 #define CLI_OUTDIR_H
 
-#include "drop/table2.h"
+#include "base/table2.h"
 
 /* Makes the directory if need be, removes the tables and pictures of an earlier
  * experiment and sees whether files can be made. 0, or 2 after a line on stderr. */

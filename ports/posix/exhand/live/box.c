@@ -4,7 +4,7 @@
 
 #include "base/dumpfile.h"
 #include "live/modbus.h"
-#include "drop/table2.h"
+#include "base/table2.h"
 
 #include "exhand/error.h"
 

@@ -18,7 +18,7 @@
 
 #include "base/jobs.h"
 #include "base/run.h"
-#include "drop/table2.h"
+#include "base/table2.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "drop/quantile.h"
+#include "lab/drop/quantile.h"
 
 #include <stdlib.h>
 

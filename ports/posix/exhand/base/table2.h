@@ -3,7 +3,7 @@
 #ifndef CLI_TABLE2_H
 #define CLI_TABLE2_H
 
-#include "drop/reading.h"
+#include "lab/drop/reading.h"
 #include "base/run.h"
 
 #include <stdio.h>

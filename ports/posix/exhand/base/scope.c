@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "drop/part.h"
+#include "base/fall.h"
 
 /* The first sample of the tail in which position stays within one count. */
 static size_t stop_of(const struct fall_log *log, size_t fall, double step_m)

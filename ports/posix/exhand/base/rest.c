@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "drop/part.h"
+#include "base/fall.h"
 
 const struct fall_rest_opt fall_rest_opt_default = {
     .observe_s = 5.0,

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "advise/cells.h"
+#include "lab/drop/cells.h"
 
 #include "base/option.h"
 

@@ -9,7 +9,7 @@
 #ifndef CLI_READING_H
 #define CLI_READING_H
 
-#include "drop/analysis.h"
+#include "base/analysis.h"
 
 struct reading {
     const char *name; /* direction-pairs-scope */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "drop/reading.h"
+#include "lab/drop/reading.h"
 
 #include <string.h>
 

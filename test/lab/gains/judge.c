@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "advise/gains.h"
 
-#include "advise/cells.h"
+#include "lab/drop/cells.h"
 #include "base/option.h"
 
 #include "sim/eigen.h"

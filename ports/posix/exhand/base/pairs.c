@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "drop/part.h"
+#include "base/fall.h"
 
 #include <stdlib.h>
 

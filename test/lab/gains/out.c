@@ -2,7 +2,7 @@
 #include "advise/gains.h"
 
 #include "base/option.h"
-#include "drop/table2.h"
+#include "base/table2.h"
 
 #include <errno.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include "drop/table2.h"
+#include "base/table2.h"
 
-#include "drop/quantile.h"
+#include "lab/drop/quantile.h"
 
 #define RUNS_MAX 1000
 

@@ -3,7 +3,7 @@
 #ifndef CLI_PART_H
 #define CLI_PART_H
 
-#include "drop/analysis.h"
+#include "base/analysis.h"
 
 /* Physical values lie far below; the square of this is far from overflow. */
 #define VALUE_MAX 1e9

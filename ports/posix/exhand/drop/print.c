@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "drop/table2.h"
+#include "base/table2.h"
 
 #include <string.h>
 
