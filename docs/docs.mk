@@ -30,8 +30,8 @@ diagrams: all
 
 ## Write the table of docs/CARDS.md: every misbehaviour of a card in every phase of its driver.
 .PHONY: cards
-cards: all
-	@$(exhand) cards > $(B)/cards.md
+cards: $(lab)
+	@$(lab) cards > $(B)/cards.md
 	@awk '/^<!-- end -->/ { skip = 0 } !skip { print } \
 	    /^<!-- exhand cards -->/ { skip = 1; while ((getline line < "$(B)/cards.md") > 0) print line }' \
 	    docs/CARDS.md > $(B)/CARDS.md.new && cp $(B)/CARDS.md.new docs/CARDS.md && tail -n 1 $(B)/cards.md
@@ -40,13 +40,13 @@ FAULTS_TIMES ?= 100000
 
 ## Write docs/FAULTS.md: every fault in every state, any fault at any tick (FAULTS_TIMES=100000, ten minutes).
 .PHONY: faults
-faults: all
-	@$(exhand) faults > $(B)/faults.md || { tail -n 3 $(B)/faults.md; exit 1; }
-	@$(exhand) faults --rate 20000 > $(B)/faults_20kHz.md || { tail -n 3 $(B)/faults_20kHz.md; exit 1; }
-	@$(exhand) faults --times $(FAULTS_TIMES) > $(B)/faults_times.md || { cat $(B)/faults_times.md; exit 1; }
+faults: $(lab)
+	@$(lab) faults > $(B)/faults.md || { tail -n 3 $(B)/faults.md; exit 1; }
+	@$(lab) faults --rate 20000 > $(B)/faults_20kHz.md || { tail -n 3 $(B)/faults_20kHz.md; exit 1; }
+	@$(lab) faults --times $(FAULTS_TIMES) > $(B)/faults_times.md || { cat $(B)/faults_times.md; exit 1; }
 	@awk -v a="$(B)/faults.md" -v b="$(B)/faults_times.md" 'function put(f, l) { skip = 1; while ((getline l < f) > 0) print l } \
 	    /^<!-- end -->/ { skip = 0 } !skip { print } /^<!-- exhand faults -->/ { put(a) } /^<!-- exhand faults --times -->/ { put(b) }' \
 	    docs/FAULTS.md > $(B)/FAULTS.md.new && cp $(B)/FAULTS.md.new docs/FAULTS.md
-	@mkdir -p $(B)/faults && $(exhand) faults --out $(B)/faults && if command -v gnuplot >/dev/null; then \
+	@mkdir -p $(B)/faults && $(lab) faults --out $(B)/faults && if command -v gnuplot >/dev/null; then \
 	    (cd $(B)/faults && gnuplot -c faults.gp "$(CURDIR)/ports/posix/exhand/plot") && cp $(B)/faults/faults.png docs/faults.png; fi
 	@tail -n 1 $(B)/faults.md; tail -n 1 $(B)/faults_20kHz.md; grep 'times:' $(B)/faults_times.md

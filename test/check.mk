@@ -50,5 +50,5 @@ hil-short:
 picture:
 	@$(world) --headless --script --seconds 1 --scene ports/posix/world/scenes/collision.world --png $(B)/world.png || [ $$? = 3 ]
 bits:
-	@$(exhand) faults --rate 100 > $(B)/faults_100Hz.txt
-	@JOBS=$(jobs) FAULTS=$(B)/faults_100Hz.txt test/closed/sim/bits.sh $(B)/bits $(B)/demo $(variants:%=$(B)/variant/%/posix/exhand)
+	@$(lab) faults --rate 100 > $(B)/faults_100Hz.txt
+	@JOBS=$(jobs) FAULTS=$(B)/faults_100Hz.txt test/closed/sim/bits.sh $(B)/bits $(B)/demo $(variants:%=$(B)/variant/%/posix/exhand-lab)

@@ -2,7 +2,7 @@
 # The host program build/posix/exhand, and what it prints for the documents.
 
 # Every scene that has a subcommand, over the simulated device.
-cli_src := $(wildcard ports/posix/exhand/*.c ports/posix/exhand/*/*.c test/lab/*.c test/lab/*/*.c) \
+cli_src := $(wildcard ports/posix/exhand/*.c ports/posix/exhand/*/*.c) \
            $(addprefix lib/src/run/,log.c blackbox.c deadman.c calib_set.c) \
            $(addprefix examples/,drop/drop.c guarded/guarded.c calibrate/calibrate.c glove/glove.c \
              glove/cal.c) \
@@ -11,7 +11,10 @@ modbus   := $(if $(call gives,modbus/modbus.h,modbus,modbus_reply),libmodbus,non
 cli_src  := $(filter-out ports/posix/exhand/live/modbus_%.c ports/posix/exhand/base/scene_custom.c,$(cli_src)) ports/posix/exhand/live/modbus_mail.c \
             $(wildcard ports/posix/exhand/live/modbus_$(modbus)*.c)
 # The world's core answers in the same process, without pictures.
-cli_obj  := $(cli_src:%.c=$(B)/posix/%.o) $(world_core:%.c=$(B)/posix/%.o) $(world_mesh)
+exh_obj  := $(cli_src:%.c=$(B)/posix/%.o) $(world_core:%.c=$(B)/posix/%.o) $(world_mesh)
+# What proves and studies is a program of its own, which has all commands of the other, too.
+lab_obj  := $(patsubst %.c,$(B)/posix/%.o,$(wildcard test/lab/*.c test/lab/*/*.c))
+cli_obj  := $(exh_obj) $(lab_obj)
 cli_libs := $(if $(world_rays),-ldl) $(if $(filter libmodbus,$(modbus)),-lmodbus) -pthread -lm
 # Lines of a GPIO chip, by the version of libgpiod. Tests and benches link none, so that they are the same on every machine.
 gives_gpio = $(call gives,gpiod.h,gpiod,$(1))
@@ -26,17 +29,20 @@ dev_src := $(filter-out ports/posix/gpio_v%.c ports/posix/gpio_none.c,$(wildcard
 dev_obj := $(dev_src:%.c=$(B)/posix/%.o) $(B)/posix/lib/src/run/loop.o
 sim_obj := $(dev_obj) $(gpio_none)
 exhand  := $(B)/posix/exhand
+lab     := $(B)/posix/exhand-lab
 
-$(exhand): $(cli_obj) $(dev_obj) $(gpio_obj) $(B)/posix/libexhand.a
+$(exhand): $(exh_obj) $(dev_obj) $(gpio_obj) $(B)/posix/libexhand.a
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(cli_libs) $(gpio_libs)
+$(lab): $(filter-out %/exhand/main.o,$(cli_obj)) $(dev_obj) $(gpio_obj) $(B)/posix/libexhand.a
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(cli_libs) $(gpio_libs)
 
 # The host program with a model in it.
 exhand_custom := $(B)/posix/exhand-$(MODEL_NAME)
 custom_obj    := $(patsubst %.c,$(B)/posix/%.o,ports/posix/exhand/base/scene_custom.c examples/custom/custom.c examples/custom/slot_real.c)
-$(exhand_custom): $(filter-out %/scene_none.o,$(cli_obj)) $(custom_obj) $(model_obj) $(dev_obj) $(gpio_obj) $(B)/posix/libexhand.a
+$(exhand_custom): $(filter-out %/scene_none.o,$(exh_obj)) $(custom_obj) $(model_obj) $(dev_obj) $(gpio_obj) $(B)/posix/libexhand.a
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(cli_libs) $(gpio_libs)
 
-# Coarse where finer steps do not change the answer; `exhand drop --sweep` and --friction have finer ones.
+# Coarse where finer steps do not change the answer; `exhand-lab drop --sweep` and --friction have finer ones.
 demo_runs := calibration:"calibrate --out $(B)/demo/calibration" table2:"drop --out $(B)/demo --spread 20" \
              stability:"drop --out $(B)/demo --sweep --grid 12x10 --falls 3" \
              friction:"drop --out $(B)/demo --friction 5 --falls 3" table1:"glove --selftest" \
@@ -48,12 +54,12 @@ demo_says     := bilateral calibration table1 stability friction table2
 ##@ The host program
 ##2 Run the paper's experiments on the simulated device; results go to build/demo.
 .PHONY: demo
-demo: all
+demo: all $(lab)
 	@.ci/deps "the pictures" gnuplot gnuplot-nox fonts-dejavu-core || true
 	@mkdir -p $(B)/demo && rm -f $(B)/demo/stability*.csv
 	@for r in $(demo_runs); do \
-	    $(if $(V),echo "$(exhand) $${r#*:}";) \
-	    $(exhand) $${r#*:} > $(B)/demo/$${r%%:*}.txt || { s=$$?; cat $(B)/demo/$${r%%:*}.txt; exit $$s; }; \
+	    $(if $(V),echo "$(lab) $${r#*:}";) \
+	    $(lab) $${r#*:} > $(B)/demo/$${r%%:*}.txt || { s=$$?; cat $(B)/demo/$${r%%:*}.txt; exit $$s; }; \
 	done
 	@s=0; if command -v gnuplot >/dev/null; then \
 	    for g in pictures sweep friction calibration/pictures bilateral/bilateral; do (cd $(B)/demo/$$(dirname $$g) && \
@@ -62,10 +68,14 @@ demo: all
 	    if [ -s $$p ]; then echo "picture: $$p"; else echo "picture missing: $$p" >&2; fi; done; \
 	cat $(demo_says:%=$(B)/demo/%.txt); exit $$s
 
+##2 Build the program that proves and studies, build/posix/exhand-lab.
+.PHONY: lab
+lab: $(lab)
+
 FIT_BUDGET ?= 6000
 
 ## Search for the plant by every reading of the analysis, for hours (FIT_BUDGET=N plants); state is in build/fit.
 .PHONY: fit
-fit: all
-	$(Q)$(exhand) fit --budget $(FIT_BUDGET) --out $(B)/fit $(ARGS) > $(B)/fit.txt.new
+fit: $(lab)
+	$(Q)$(lab) fit --budget $(FIT_BUDGET) --out $(B)/fit $(ARGS) > $(B)/fit.txt.new
 	@mv $(B)/fit.txt.new $(B)/fit.txt && cat $(B)/fit.txt

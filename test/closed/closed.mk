@@ -70,7 +70,7 @@ variants   := $(patsubst v_%,%,$(filter v_%,$(.VARIABLES)))
 
 .PHONY: $(variants:%=variant-%)
 $(variants:%=variant-%): variant-%:
-	@$(MAKE) --no-print-directory B=$(B)/variant/$* $(v_$*) WERROR=1 all
+	@$(MAKE) --no-print-directory B=$(B)/variant/$* $(v_$*) WERROR=1 all lab
 
 # Golden vectors by the compilers that link CMocka, at a tenth of the rates.
 .PHONY: $(variants:%=golden-%)

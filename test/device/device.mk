@@ -3,7 +3,7 @@
 
 # The host program with Linux's drivers of the cards in the place of ours, and cards that are outside.
 strangers_obj := $(B)/posix/test/device/strangers/cards.o $(B)/posix/test/device/strangers/guest/linux.o
-$(B)/posix/exhand-linux: $(cli_obj) $(filter-out %/ports/posix/cards.o,$(sim_obj)) $(strangers_obj) $(B)/posix/libexhand.a
+$(B)/posix/exhand-linux: $(exh_obj) $(filter-out %/ports/posix/cards.o,$(sim_obj)) $(strangers_obj) $(B)/posix/libexhand.a
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(cli_libs)
 
 .PHONY: linux-program

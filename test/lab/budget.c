@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand budget: the highest rate of the loop that the box can hold, bound by bound. */
-#include "base/cli.h"
+/* exhand-lab budget: the highest rate of the loop that the box can hold, bound by bound. */
+#include "lab/lab.h"
 
 #include "base/option.h"
 

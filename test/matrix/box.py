@@ -22,11 +22,11 @@ def built(t, where):
     make = [os.environ.get("MAKE", "make"), "--no-print-directory", "-s", "-j" + (os.environ.get("JOBS") or "1"), "B=" + where,
             "WERROR=1", "PORT=posix"]
     make += [c for c in commands(t, "gcc-O2") if not c.startswith("SUITE")]
-    if subprocess.run(make + [where + "/posix/exhand"], cwd=ROOT, env=dict(os.environ, MAKEFLAGS="")).returncode != 0:
+    if subprocess.run(make + [where + "/posix/exhand-lab"], cwd=ROOT, env=dict(os.environ, MAKEFLAGS="")).returncode != 0:
         return None
     script = os.path.join(where, "exhand")
     with open(script, "w") as f:
-        f.write('#!/bin/sh\nexec %s "${0%%/*}/posix/exhand" "$@"\n' % t["emulator"])
+        f.write('#!/bin/sh\nexec %s "${0%%/*}/posix/exhand-lab" "$@"\n' % t["emulator"])
     os.chmod(script, 0o755)
     return script
 

@@ -4,7 +4,7 @@
 ##@ Walks through the documents
 ## Run the sweeps of examples/sweep by GNU parallel, ssh and Slurm on this machine, and compare with one process.
 .PHONY: scale
-scale: all
+scale: $(lab)
 	@.ci/deps "GNU parallel" "command -v parallel && command -v rsync" parallel rsync || :
 	@.ci/deps "ssh to this machine" "ls /usr/sbin/sshd" openssh-server openssh-client || :
 	@.ci/deps "Slurm" "command -v sbatch && command -v slurmctld && command -v slurmd && command -v munged" \
@@ -40,7 +40,7 @@ fresh-ways:
 
 ## Check that all names in the documents exist, and that the documents list every page, port, scene and test folder.
 .PHONY: doc-names
-doc-names: $(exhand)
+doc-names: $(exhand) $(lab)
 	@PYTHONDONTWRITEBYTECODE=1 test/walk/docs/docs.py $(exhand) $(world)
 
 ## Check that no two sources need each other, no room includes what it may not, none is above its budget.

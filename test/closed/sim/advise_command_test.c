@@ -2,6 +2,7 @@
 /* exhand advise freeze: the figures of the formulas, and what is too small is said with the
  * number that is wanted. */
 #include "said.h"
+#include "lab/lab.h"
 
 #define LEN(a) (sizeof(a) / sizeof((a)[0]))
 
@@ -39,7 +40,7 @@ TEST(figures_and_judgements)
         for (size_t k = 0; k < LEN(row[i].word) && row[i].word[k]; k++) {
             word[k + 1] = row[i].word[k];
         }
-        said(&s, dir, cli_advise, word);
+        said(&s, dir, lab_advise, word);
         CHECK(s.status == row[i].status && strstr(s.out, row[i].says) && s.err[0] == '\0',
               "row %d: %d\n%s%s", (int)i, s.status, s.out, s.err);
     }
@@ -49,18 +50,18 @@ TEST(figures_and_judgements)
 TEST(what_cannot_be_answered)
 {
     char *dir = said_dir();
-    said(&s, dir, cli_advise, WORDS("advise", "freeze", "--speed", "10", "--lag", "2000"));
+    said(&s, dir, lab_advise, WORDS("advise", "freeze", "--speed", "10", "--lag", "2000"));
     CHECK(s.status == 1 && strstr(s.err, "beyond 2 m"), "%s", s.err);
-    said(&s, dir, cli_advise, WORDS("advise", "gain"));
+    said(&s, dir, lab_advise, WORDS("advise", "gain"));
     CHECK(s.status == 2 && strstr(s.err, "gain: nothing is known"), "%s", s.err);
-    said(&s, dir, cli_advise, WORDS("advise"));
+    said(&s, dir, lab_advise, WORDS("advise"));
     CHECK(s.status == 2 && strstr(s.err, "a word is missing"), "%s", s.err);
-    said(&s, dir, cli_advise, WORDS("advise", "freeze", "--d-lim", "1"));
+    said(&s, dir, lab_advise, WORDS("advise", "freeze", "--d-lim", "1"));
     CHECK(s.status == 2 && strstr(s.err, "--d-lim: 1 (allowed -200..-0.1)"), "%s", s.err);
-    said(&s, dir, cli_advise, WORDS("advise", "gains", "--judge", "/nowhere/at/all"));
+    said(&s, dir, lab_advise, WORDS("advise", "gains", "--judge", "/nowhere/at/all"));
     CHECK(s.status == 3 && strstr(s.err, "--judge: /nowhere/at/all: No such file"), "%d %s",
           s.status, s.err);
-    said(&s, dir, cli_advise, WORDS("advise", "gains", "--judge", "/dev/null"));
+    said(&s, dir, lab_advise, WORDS("advise", "gains", "--judge", "/dev/null"));
     CHECK(s.status == 2 && strstr(s.err, "--judge: /dev/null: no cell in it"), "%d %s", s.status,
           s.err);
     said_clean(dir);

@@ -2,6 +2,7 @@
 /* exhand bilateral as people use and misuse it: logs that replay, tables, files, scenes, recorded
  * hands. */
 #include "said.h"
+#include "lab/lab.h"
 
 #include "exhand/record.h"
 
@@ -124,7 +125,7 @@ TEST(no_random_approach_is_felt_before_its_freeze)
 {
     const char *dir = said_dir();
     static struct said s;
-    said(&s, dir, cli_bilateral, WORDS("bilateral", "--check", "50"));
+    said(&s, dir, lab_bilateral, WORDS("bilateral", "--check", "50"));
     CHECK(s.status == 0 && strstr(s.out, "50 random approaches") &&
               strstr(s.out, " 0 before the freeze"),
           "%d: %s%s", s.status, s.out, s.err);
@@ -170,7 +171,7 @@ TEST(over_hands_there_is_a_row_each)
     const char *dir = said_dir();
     static struct said s;
     char head[LINE_B];
-    said(&s, dir, cli_bilateral, WORDS("bilateral", "--hands", "--approaches", "1", "--out", dir));
+    said(&s, dir, lab_bilateral, WORDS("bilateral", "--hands", "--approaches", "1", "--out", dir));
     CHECK(s.status == 0 && strstr(s.out, "paper 25 ms"), "%d: %s%s", s.status, s.out, s.err);
     CHECK_EQ_I64(lines_of(said_path(dir, "hands.csv"), head), 81);
     said_clean(dir);
@@ -375,7 +376,7 @@ TEST(bad_usage_is_refused_by_name)
     said(&s, dir, cli_bilateral,
          WORDS("bilateral", "--device", "rotor=0.0001", "--device", "substep=0.0001"));
     CHECK(s.status == 2 && strstr(s.err, "give --device substep=1e-05"), "%d: %s", s.status, s.err);
-    said(&s, dir, cli_bilateral, WORDS("bilateral", "--help"));
+    said(&s, dir, lab_bilateral, WORDS("bilateral", "--help"));
     CHECK(s.status == 0 && strstr(s.out, "--sweep") && strstr(s.out, "--udp"), "%d: %s", s.status,
           s.err);
     said(&s, dir, cli_bilateral, WORDS("bilateral", "--params"));

@@ -3,7 +3,7 @@
 # bits.sh DIR LOGS EXHAND...: every EXHAND (other compilers, optimisations, CPUs) must
 # make the same tables and logs as those in LOGS, and replay these bit for bit from
 # the start and from keyframes. Works in DIR; ends with `N passed, N failed`.
-# Environment: JOBS (1), of them at a time; FAULTS, what `exhand faults --rate 100` says, when it is to be compared, too.
+# Environment: JOBS (1), of them at a time; FAULTS, what `exhand-lab faults --rate 100` says, when it is to be compared, too.
 
 # one EXHAND: what it says, and its `N of N` at the end
 one()

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand budget: its arithmetic by hand, and the goals at the stated times. */
+/* exhand-lab budget: its arithmetic by hand, and the goals at the stated times. */
 #include "said.h"
+#include "lab/lab.h"
 
 #include <stdlib.h>
 
@@ -66,7 +67,8 @@ TEST(the_reports_table_is_the_same)
         n = bytes ? snprintf(want, sizeof want, "%d + %d | %d |", words, bytes, insns)
                   : snprintf(want, sizeof want, "%d | %d |", words, insns);
         CHECK(strncmp(table, want, (size_t)n) == 0,
-              "%s: stale: exhand budget has %s, docs/REPORT.md %.30s", row[i].report, want, table);
+              "%s: stale: exhand-lab budget has %s, docs/REPORT.md %.30s", row[i].report, want,
+              table);
     }
     said_clean(dir);
 }

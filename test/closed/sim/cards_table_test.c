@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* The table of docs/CARDS.md is what `exhand cards` says now (make cards), and nothing in it is
+/* The table of docs/CARDS.md is what `exhand-lab cards` says now (make cards), and nothing in it is
  * undefined. */
 #include "said.h"
+#include "lab/lab.h"
 
 static struct said s;
 

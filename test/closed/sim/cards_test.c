@@ -2,6 +2,7 @@
 /* --cards: the same bytes through drivers, bus and emulated cards as without; and it does go
  * through them. */
 #include "said.h"
+#include "lab/lab.h"
 
 #include "base/run.h"
 #include "posix.h"
@@ -109,8 +110,8 @@ TEST(glove_at_several_rates)
               with.err);
         if (without.status == 0) { same_file(a, b); }
     }
-    said(&without, dir, cli_glove, WORDS("glove", "--selftest", "--seconds", "2"));
-    said(&with, dir, cli_glove, WORDS("glove", "--selftest", "--seconds", "2", "--cards"));
+    said(&without, dir, lab_glove, WORDS("glove", "--selftest", "--seconds", "2"));
+    said(&with, dir, lab_glove, WORDS("glove", "--selftest", "--seconds", "2", "--cards"));
     CHECK(with.status == 0 && strcmp(without.out, with.out) == 0, "%s", with.err);
     said_clean(dir);
 }

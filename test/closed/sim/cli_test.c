@@ -2,11 +2,14 @@
 /* exhand drop as people use and misuse it: what is refused by name, what is written
  * where, what an interruption leaves. */
 #include "said.h"
+#include "lab/lab.h"
 
 #include "base/jobs.h"
 #include "base/logfile.h"
 #include "base/param.h"
 #include "base/table2.h"
+#include "drop/print.h"
+#include "lab/drop/spread.h"
 
 #include "drop/drop.h"
 
@@ -45,7 +48,6 @@ TEST(bad_usage_is_refused_by_name)
         {{"--falls", "2.5"}, "whole number"},
         {{"--seed", "99999999999999999999"}, "--seed: 99999999999999999999"},
         {{"--k", "1e6", "--scale", "100"}, "k: 100000000 "},
-        {{"--k", "1e6", "--spread", "1"}, "k: 1500000 "},
         {{"--b", "1000", "--scale", "3"}, "b: 3000 "},
         {{"--set", "k=5"}, "give --k"},
         {{"--set", "kf"}, "--set: kf: give NAME=VALUE"},
@@ -58,7 +60,6 @@ TEST(bad_usage_is_refused_by_name)
         {{"--device", "cable_b=1000", "--device", "rotor=0.0001"}, "substep: none is short enough"},
         {{"--blackbox", "/nowhere/at/all", "--rate", "90"},
          "--blackbox: /nowhere/at/all: No such file"},
-        {{"--sweep", "--let-go", "1"}, "leave out --k, --b, --scale, --spread, --pace, --let-go"},
         {{"--out", "/dev/null"}, "--out: /dev/null: Not a directory"},
         {{"--out", "/nowhere/at/all"}, "--out: /nowhere/at/all: No such file"},
         {{"--out", LONG_512 LONG_512}, "--out: 0123456789"},
@@ -71,6 +72,30 @@ TEST(bad_usage_is_refused_by_name)
         CHECK(s.status == 2, "row %zu: status %d: %s", i, s.status, s.err);
         CHECK(strstr(s.err, row[i].says) != NULL, "row %zu: %s", i, s.err);
         CHECK(strncmp(s.err, "exhand drop: ", 13) == 0, "row %zu: %s", i, s.err);
+        CHECK(strchr(s.err, '\n') == s.err + strlen(s.err) - 1, "row %zu: %s", i, s.err);
+        CHECK(s.out[0] == '\0', "row %zu: %s", i, s.out);
+    }
+    said_clean(dir);
+}
+
+/* Those of a study, which stand beside the others. */
+TEST(bad_usage_of_a_study)
+{
+    static const struct {
+        const char *word[4];
+        const char *says;
+    } row[] = {
+        {{"--k", "1e6", "--spread", "1"}, "k: 1500000 "},
+        {{"--sweep", "--let-go", "1"}, "leave out --k, --b, --scale, --spread, --pace, --let-go"},
+        {{"--k", "1e6", "--scale", "100"}, "k: 100000000 "},
+    };
+    const char *dir = said_dir();
+    for (size_t i = 0; i < LEN(row); i++) {
+        const char *const *w = row[i].word;
+        static struct said s;
+        said(&s, dir, lab_drop, WORDS("drop", w[0], w[1], w[2], w[3]));
+        CHECK(s.status == 2, "row %zu: status %d: %s", i, s.status, s.err);
+        CHECK(strstr(s.err, row[i].says) != NULL, "row %zu: %s", i, s.err);
         CHECK(strchr(s.err, '\n') == s.err + strlen(s.err) - 1, "row %zu: %s", i, s.err);
         CHECK(s.out[0] == '\0', "row %zu: %s", i, s.out);
     }
@@ -201,7 +226,7 @@ TEST(no_line_is_no_number)
     char *dir = said_dir();
     static struct said s;
     static char text[SAID_B];
-    said(&s, dir, cli_drop,
+    said(&s, dir, lab_drop,
          WORDS("drop", "--rate", "90,2000", "--k", "0", "--b", "0", "--falls", "2", "--spread", "2",
                "--out", dir));
     CHECK(s.status == 1 && strstr(s.err, "not seen to their end"), "%d: %s", s.status, s.err);
@@ -347,7 +372,7 @@ TEST(what_was_finished_is_kept)
         char *dir = said_dir();
         static struct said s;
         static char text[SAID_B];
-        const pid_t pid = said_start(dir, cli_drop,
+        const pid_t pid = said_start(dir, lab_drop,
                                      WORDS("drop", "--rate", "90,20000", "--falls", "200",
                                            "--spread", "1000", "--jobs", jobs[i], "--out", dir));
         for (int n = 0; n < 2000 && said_size(said_path(dir, "drop_90Hz.csv")) <= 0; n++) {
@@ -391,8 +416,9 @@ TEST(a_job_that_dies_is_an_error)
     }
 }
 
-TEST_MAIN("cli", bad_usage_is_refused_by_name, a_stiff_device_is_integrated_in_shorter_steps,
-          what_ends_the_ramp_is_named, printed_ranges_are_the_true_ones, gains_are_the_nearest_rows,
+TEST_MAIN("cli", bad_usage_of_a_study, bad_usage_is_refused_by_name,
+          a_stiff_device_is_integrated_in_shorter_steps, what_ends_the_ramp_is_named,
+          printed_ranges_are_the_true_ones, gains_are_the_nearest_rows,
           the_paper_stands_beside_its_own_gains_alone, no_line_is_no_number,
           medians_are_of_runs_with_a_line, the_judge_observes_as_long_as_the_device,
           any_directory_name_will_do, what_cannot_be_written_is_named,

@@ -7,7 +7,7 @@
  * nearly all of the time and decides nothing. */
 #include "check.h"
 
-#include "base/fall.h"
+#include "base/analysis.h"
 #include "sim/random.h"
 
 #include <stdlib.h>
@@ -65,7 +65,7 @@ static void estimate(const struct fall_pairs *sorted, double *a, double *slope)
 {
     struct fall_pairs averaged = {averaged_at, 0};
     struct fall_fit fit;
-    part_average_into(sorted, FALL_FORCE_CENTRE, &averaged);
+    fall_average_into(sorted, FALL_FORCE_CENTRE, &averaged);
     fall_fit_line(&averaged, &fit);
     *a = fit.a_Npm;
     *slope = fit.r2 > 0 ? fit.r2 / fit.a_Npm : 0;

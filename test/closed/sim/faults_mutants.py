@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Mutants of the library's safety that `exhand faults` must tell: errors planted one at a time.
+"""Mutants of the library's safety that `exhand-lab faults` must tell: errors planted one at a time.
 
-Each row: source, a text in it, what stands there instead, what is asked of exhand faults (TABLE: the table at one rate; TIMES: so many
-random times), the promise that it breaks. The changed source is linked before the library, and exhand faults must end with status 1
+Each row: source, a text in it, what stands there instead, what is asked of exhand-lab faults (TABLE: the table at one rate; TIMES: so many
+random times), the promise that it breaks. The changed source is linked before the library, and exhand-lab faults must end with status 1
 and a WRONG, which is printed with V=1.
 
     faults_mutants.py [--some N] [--seed S] OBJECTS... LIBRARIES...     CC: the compiler (cc); --some N: every Nth, as the seed deals them

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* The table of docs/FAULTS.md is what `exhand faults` says now, and nothing in it is wrong; nor is
- * anything at a few thousand random times (`make faults`: 10^5). */
+/* The table of docs/FAULTS.md is what `exhand-lab faults` says now, and nothing in it is wrong; nor
+ * is anything at a few thousand random times (`make faults`: 10^5). */
 #include "said.h"
+#include "lab/lab.h"
 
 #include "lab/faults/faults.h"
 #include "posix.h"

@@ -2,6 +2,7 @@
 /* The search for a plant: equal effort for every reading, the same again from the same
  * seed, and on from where it was cut off. */
 #include "said.h"
+#include "lab/lab.h"
 
 #include "lab/fit/search.h"
 #include "sim/plant.h"

@@ -2,6 +2,7 @@
 /* exhand advise gains: the model of a fall, the lattice, and a rule that lies inside of it. */
 #include "advise/gains.h"
 #include "said.h"
+#include "lab/lab.h"
 
 #include "sim/random.h"
 
@@ -220,18 +221,18 @@ TEST(over_the_wire_too)
 TEST(a_pair_is_judged)
 {
     char *dir = said_dir();
-    said(&s, dir, cli_advise,
+    said(&s, dir, lab_advise,
          WORDS("advise", "gains", "--rate", "500", "--k", "4000", "--b", "15", SMALL));
     CHECK(s.status == 0 && strstr(s.out, ": allowed (") && strstr(s.out, "margin: k "), "%d\n%s%s",
           s.status, s.out, s.err);
-    said(&s, dir, cli_advise,
+    said(&s, dir, lab_advise,
          WORDS("advise", "gains", "--rate", "500", "--k", "14000", "--b", "15", SMALL));
     CHECK(s.status == 1 && strstr(s.out, "NOT allowed") && strstr(s.out, "largest k at this b"),
           "%d\n%s%s", s.status, s.out, s.err);
-    said(&s, dir, cli_advise,
+    said(&s, dir, lab_advise,
          WORDS("advise", "gains", "--rate", "500", "--k", "1000000", "--b", "15", SMALL));
     CHECK(s.status == 1 && strstr(s.out, "beyond all"), "%d\n%s%s", s.status, s.out, s.err);
-    said(&s, dir, cli_advise, WORDS("advise", "gains", "--rate", "500", "--rule", SMALL));
+    said(&s, dir, lab_advise, WORDS("advise", "gains", "--rate", "500", "--rule", SMALL));
     CHECK(s.status == 0 &&
               strncmp(s.out, "--set rule_on=1 --set rule_rate=500 --set rule_n=", 49) == 0,
           "%d\n%s%s", s.status, s.out, s.err);
@@ -244,11 +245,11 @@ TEST(a_run_is_refused_by_its_rule)
 #define RULE \
     "--set", "rule_on=1", "--set", "rule_rate=500", "--set", "rule_b1=30", "--set", \
         "rule_k0=9000", "--set", "rule_k1=2000"
-    said(&s, dir, cli_drop,
+    said(&s, dir, lab_drop,
          WORDS("drop", "--guarded", "--rate", "500", "--falls", "1", "--k", "9001", "--b", "0",
                RULE));
     CHECK(s.status == 2 && strstr(s.err, "outside the rule of gains"), "%d %s", s.status, s.err);
-    said(&s, dir, cli_drop,
+    said(&s, dir, lab_drop,
          WORDS("drop", "--guarded", "--rate", "500", "--falls", "1", "--k", "5000", "--b", "15",
                RULE));
     CHECK(s.status == 0, "%d %s", s.status, s.err);
@@ -277,7 +278,7 @@ TEST(bad_usage_is_named)
     for (size_t i = 0; i < sizeof row / sizeof row[0]; i++) {
         const char *word[7] = {"advise", "gains"};
         for (int k = 0; k < 4 && row[i].word[k]; k++) { word[k + 2] = row[i].word[k]; }
-        said(&s, dir, cli_advise, word);
+        said(&s, dir, lab_advise, word);
         CHECK(s.status == row[i].status && strstr(s.err, row[i].says), "row %d: %d %s", (int)i,
               s.status, s.err);
     }
@@ -297,7 +298,7 @@ TEST(a_map_is_judged)
             "500,3000,0,10,10,,1\n500,14000,0,10,10,,1\n500,3000,15,8,10,,1\n500,14000,15,0,10,,1\n"
             "500,4000,12,10,10,,1\n");
     fclose(f);
-    said(&s, dir, cli_advise, WORDS("advise", "gains", "--judge", path, "--out", dir, SMALL));
+    said(&s, dir, lab_advise, WORDS("advise", "gains", "--judge", path, "--out", dir, SMALL));
     CHECK(s.status == 1 && strstr(s.out, "   500 |      2      2 |  50.0 %   50.0 % |  50.0 % |"),
           "%d\n%s%s", s.status, s.out, s.err);
     CHECK(strstr(s.out, "|       3        1 |     30            2\n"), "%s", s.out);

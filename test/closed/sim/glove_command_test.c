@@ -2,6 +2,7 @@
 /* exhand glove as people use and misuse it: recordings of every shape, bad ones refused by name,
  * options that make no sense. */
 #include "glove_said.h"
+#include "lab/lab.h"
 
 #include <math.h>
 #include <signal.h>
@@ -36,7 +37,7 @@ TEST(every_line_end_and_header_reads_alike)
     for (size_t i = 0; i < LEN(dress); i++) {
         const char *csv = said_path(dir, "in.csv");
         write_text(csv, dress[i]);
-        said(&s, dir, cli_glove, WORDS("glove", "--csv", csv, "--rate", "200"));
+        said(&s, dir, lab_glove, WORDS("glove", "--csv", csv, "--rate", "200"));
         CHECK(s.status == 0 && s.err[0] == '\0', "%zu: status %d: %s", i, s.status, s.err);
         if (i == 0) { strcpy(first, s.out); }
         CHECK(strcmp(first, s.out) == 0, "%zu: %s", i, s.out);
@@ -86,12 +87,12 @@ TEST(bad_recordings_are_refused_by_line)
     for (size_t i = 0; i < LEN(row); i++) {
         const char *csv = said_path(dir, "in.csv");
         write_text(csv, row[i].text);
-        said(&s, dir, cli_glove, WORDS("glove", "--csv", csv, "--rate", "200"));
+        said(&s, dir, lab_glove, WORDS("glove", "--csv", csv, "--rate", "200"));
         CHECK(s.status == 2, "%zu: status %d: %s", i, s.status, s.err);
         CHECK(strstr(s.err, row[i].says) != NULL, "%zu: %s", i, s.err);
         CHECK(s.out[0] == '\0', "%zu: %s", i, s.out);
     }
-    said(&s, dir, cli_glove, WORDS("glove", "--csv", "/nowhere", "--rate", "200"));
+    said(&s, dir, lab_glove, WORDS("glove", "--csv", "/nowhere", "--rate", "200"));
     CHECK(s.status == 3 && strstr(s.err, "/nowhere: No such file"), "%s", s.err);
     said_clean(dir);
 }
@@ -103,7 +104,7 @@ TEST(units_are_guessed_or_told)
     const char *csv = said_path(dir, "in.csv");
     write_text(csv,
                "10,20,30,40,50,60,70,80,90,100,110,120,130,140,150,-10,-20,-30,-40,-50,-60,-70\n");
-    said(&s, dir, cli_glove,
+    said(&s, dir, lab_glove,
          WORDS("glove", "--csv", csv, "--rate", "200", "--unit", "deg", "--deg", "--set",
                "glove_bits=24", "--set", "glove_hyst=0", "--set", "glove_order=0"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
@@ -115,7 +116,7 @@ TEST(units_are_guessed_or_told)
     write_text(
         csv,
         ".25,.01,.02,.03,.04,.05,.06,.07,.08,.09,.1,.11,.12,.13,.14,-.1,-.2,-.3,-.4,-.45,0,0\n");
-    said(&s, dir, cli_glove,
+    said(&s, dir, lab_glove,
          WORDS("glove", "--csv", csv, "--rate", "200", "--unit", "turn", "--deg", "--set",
                "glove_bits=24", "--set", "glove_hyst=0", "--set", "glove_order=0"));
     CHECK(number_after(s.out, "\n0", 0) > 89.99 && number_after(s.out, "\n0", 0) < 90.01, "%s",
@@ -124,9 +125,9 @@ TEST(units_are_guessed_or_told)
           "%s", s.out);
     write_text(csv,
                "10,20,30,40,50,60,70,80,90,100,110,120,130,140,150,-10,-20,-30,-40,-50,-60,-70\n");
-    said(&s, dir, cli_glove, WORDS("glove", "--csv", csv, "--rate", "200", "--unit", "radians"));
+    said(&s, dir, lab_glove, WORDS("glove", "--csv", csv, "--rate", "200", "--unit", "radians"));
     CHECK(s.status == 2 && strstr(s.err, "--unit: codes, rad, deg or turn"), "%s", s.err);
-    said(&s, dir, cli_glove, WORDS("glove", "--csv", csv, "--rate", "200", "--deg"));
+    said(&s, dir, lab_glove, WORDS("glove", "--csv", csv, "--rate", "200", "--deg"));
     CHECK(s.status == 0, "as codes: %d: %s", s.status, s.err); /* through nobody's calibration */
     CHECK(number_after(s.out, "\n0", 4) > 28 && number_after(s.out, "\n0", 4) < 29.5, "%s", s.out);
     said_clean(dir);
@@ -150,7 +151,7 @@ TEST(angles_pass_a_calibration_and_back)
     CHECK(f != NULL && fwrite(image, 1, sizeof image, f) == sizeof image && fclose(f) == 0,
           "image");
     write_text(csv, ".1,.2,.3,.4,.5,.6,.7,.8,.9,1,.3,1.2,1.3,1.4,.4,.6,.7,.8,.3,.2,.1,-.1\n");
-    said(&s, dir, cli_glove,
+    said(&s, dir, lab_glove,
          WORDS("glove", "--csv", csv, "--rate", "200", "--calibration", cal_path, "--set",
                "glove_bits=24", "--set", "glove_hyst=0", "--set", "glove_order=0"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
@@ -165,7 +166,7 @@ TEST(angles_pass_a_calibration_and_back)
     f = fopen(cal_path, "wb");
     CHECK(f != NULL && fwrite(image, 1, sizeof image, f) == sizeof image && fclose(f) == 0,
           "image");
-    said(&s, dir, cli_glove,
+    said(&s, dir, lab_glove,
          WORDS("glove", "--csv", csv, "--rate", "200", "--calibration", cal_path));
     CHECK(s.status == 2 && strstr(s.err, "user.glove: ") && strstr(s.err, "damaged"), "%s", s.err);
     said_clean(dir);
@@ -185,12 +186,12 @@ TEST(its_own_output_is_an_input)
         }
     }
     write_text(csv, text);
-    said(&s, dir, cli_glove,
+    said(&s, dir, lab_glove,
          WORDS("glove", "--csv", csv, "--rate", "60", "--set", "glove_order=0", "--tips"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     strcpy(first, s.out);
     write_text(back, first);
-    said(&s, dir, cli_glove,
+    said(&s, dir, lab_glove,
          WORDS("glove", "--csv", back, "--rate", "60", "--set", "glove_order=0", "--tips"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     CHECK(strcmp(first, s.out) == 0, "not the same");
@@ -214,7 +215,7 @@ TEST(a_real_recording_comes_through)
         said_clean(dir);
         return;
     }
-    said(&s, dir, cli_glove,
+    said(&s, dir, lab_glove,
          WORDS("glove", "--csv", in_path, "--rate", "10", "--set", "glove_order=0"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     out = fopen(said_path(dir, "said.out"), "r");
@@ -248,12 +249,12 @@ TEST(the_low_pass_fits_the_rate)
     const char *dir = said_dir();
     const char *csv = said_path(dir, "in.csv");
     write_text(csv, ROW_A "\n" ROW_B "\n");
-    said(&s, dir, cli_glove, WORDS("glove", "--csv", csv, "--rate", "60"));
+    said(&s, dir, lab_glove, WORDS("glove", "--csv", csv, "--rate", "60"));
     CHECK(s.status == 0 && strstr(s.err, "at 60 Hz the low-pass is at 15 Hz"), "%d: %s", s.status,
           s.err);
-    said(&s, dir, cli_glove, WORDS("glove", "--csv", csv, "--rate", "60", "--set", "glove_fc=30"));
+    said(&s, dir, lab_glove, WORDS("glove", "--csv", csv, "--rate", "60", "--set", "glove_fc=30"));
     CHECK(s.status == 2 && strstr(s.err, "cut-off"), "%d: %s", s.status, s.err);
-    said(&s, dir, cli_glove, WORDS("glove", "--csv", csv, "--rate", "60", "--set", "glove_fc=29"));
+    said(&s, dir, lab_glove, WORDS("glove", "--csv", csv, "--rate", "60", "--set", "glove_fc=29"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     said_clean(dir);
 }
@@ -305,7 +306,7 @@ TEST(bad_usage_is_refused_by_name)
     const char *dir = said_dir();
     for (size_t i = 0; i < LEN(row); i++) {
         const char *const *w = row[i].word;
-        said(&s, dir, cli_glove, WORDS("glove", w[0], w[1], w[2], w[3], w[4], w[5]));
+        said(&s, dir, lab_glove, WORDS("glove", w[0], w[1], w[2], w[3], w[4], w[5]));
         CHECK(s.status == 2, "row %zu: status %d: %s", i, s.status, s.err);
         CHECK(strstr(s.err, row[i].says) != NULL, "row %zu: %s", i, s.err);
         CHECK(strncmp(s.err, "exhand glove: ", 14) == 0, "row %zu: %s", i, s.err);
@@ -319,7 +320,7 @@ TEST(what_is_not_there_is_said_by_status)
     static const char *const option[] = {"--calibration", "--log"};
     const char *dir = said_dir();
     for (size_t i = 0; i < LEN(option); i++) {
-        said(&s, dir, cli_glove, WORDS("glove", "--selftest", option[i], "/nowhere"));
+        said(&s, dir, lab_glove, WORDS("glove", "--selftest", option[i], "/nowhere"));
         CHECK(s.status == 3 && strstr(s.err, "/nowhere: No such file"), "%d: %s", s.status, s.err);
     }
     said(&s, dir, cli_replay, WORDS("replay", "/nowhere"));
@@ -335,7 +336,7 @@ TEST(an_interrupt_is_no_success)
     const char *pipe = said_path(dir, "pipe");
     pid_t pid;
     CHECK_EQ_I64(mkfifo(pipe, 0600), 0);
-    pid = said_start(dir, cli_glove, WORDS("glove", "--csv", pipe, "--rate", "100"));
+    pid = said_start(dir, lab_glove, WORDS("glove", "--csv", pipe, "--rate", "100"));
     nanosleep(&while_it_waits, NULL);
     CHECK_EQ_I64(kill(pid, SIGINT), 0);
     said_end(&s, dir, pid);
@@ -346,9 +347,9 @@ TEST(an_interrupt_is_no_success)
 TEST(help_and_parameters_are_listed)
 {
     const char *dir = said_dir();
-    said(&s, dir, cli_glove, WORDS("glove", "--help"));
+    said(&s, dir, lab_glove, WORDS("glove", "--help"));
     CHECK(s.status == 0 && strstr(s.out, "--selftest") && strstr(s.out, "--tips"), "%s", s.out);
-    said(&s, dir, cli_glove, WORDS("glove", "--params"));
+    said(&s, dir, lab_glove, WORDS("glove", "--params"));
     CHECK(s.status == 0 && strstr(s.out, "glove_fc") && strstr(s.out, "settle"), "%s", s.out);
     CHECK(strstr(s.out, "every") && strstr(s.out, "cal_zero") == NULL, "22 of each: %s", s.out);
     said_clean(dir);

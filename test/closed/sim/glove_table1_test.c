@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand glove --selftest and --skew: Table I within bounds on both sides, and failing when it
+/* exhand-lab glove --selftest and --skew: Table I within bounds on both sides, and failing when it
  * should; the scan's skew in proportion. */
 #include "glove_said.h"
+#include "lab/lab.h"
 
 static struct said s;
 
@@ -14,7 +15,7 @@ TEST(the_selftest_gives_the_papers_rows)
     const char *dir = said_dir();
     for (size_t i = 0; i < LEN(seed) * LEN(rate); i++) {
         double pp;
-        said(&s, dir, cli_glove,
+        said(&s, dir, lab_glove,
              WORDS("glove", "--selftest", "--seed", seed[i % LEN(seed)], "--rate",
                    rate[i / LEN(seed)], "--seconds", i / LEN(seed) == 2 ? "2" : "30"));
         CHECK(s.status == 0, "status %d: %s%s", s.status, s.err, s.out);
@@ -47,7 +48,7 @@ TEST(a_low_pass_gives_bits_for_delay)
                {"\n        10", 0.105, 22.508, 14, 15},
                {"\n         3", 0.0577, 75.026, 15, 16}};
     const char *dir = said_dir();
-    said(&s, dir, cli_glove, WORDS("glove", "--selftest", "--seconds", "30"));
+    said(&s, dir, lab_glove, WORDS("glove", "--selftest", "--seconds", "30"));
     for (size_t i = 0; i < LEN(row); i++) {
         const double pp = number_after(s.out, row[i].fc, 0);
         const double delay = number_after(strstr(s.out, row[i].fc), "mV", 1);
@@ -72,20 +73,20 @@ TEST(too_much_noise_falls_short)
     const char *dir = said_dir();
     for (size_t i = 0; i < LEN(row); i++) {
         const char *at;
-        said(&s, dir, cli_glove, WORDS("glove", "--selftest", "--device", row[i].device));
+        said(&s, dir, lab_glove, WORDS("glove", "--selftest", "--device", row[i].device));
         CHECK(s.status == 1, "%s: status %d", row[i].device, s.status);
         at = strstr(s.out, "falls short");
         CHECK(at != NULL && strstr(at + 1, "falls short") == NULL, "%s", s.out);
         while (at && *at != '\n') { at--; }
         CHECK(at && strncmp(at + 3, row[i].row, strlen(row[i].row)) == 0, "%s", s.out);
     }
-    said(&s, dir, cli_glove, WORDS("glove", "--selftest", "--set", "glove_hyst=0"));
+    said(&s, dir, lab_glove, WORDS("glove", "--selftest", "--set", "glove_hyst=0"));
     CHECK(s.status == 1 && strstr(s.out, "changes of its 22 angles 0\n") == NULL, "%s", s.out);
-    said(&s, dir, cli_glove, WORDS("glove", "--selftest", "--travel", "0.033"));
+    said(&s, dir, lab_glove, WORDS("glove", "--selftest", "--travel", "0.033"));
     CHECK(s.status == 1 && strstr(s.out, "497)") &&
               strstr(s.out, " 8   1 encoder step     9   falls"),
           "%s", s.out);
-    said(&s, dir, cli_glove, WORDS("glove", "--selftest", "--device", "decode=4"));
+    said(&s, dir, lab_glove, WORDS("glove", "--selftest", "--device", "decode=4"));
     CHECK(s.status == 0 && strstr(s.out, " 11   1 encoder step     9\n"), "%s", s.out);
     said_clean(dir);
 }
@@ -94,7 +95,7 @@ TEST(too_much_noise_falls_short)
 TEST(a_dead_glove_fails)
 {
     const char *dir = said_dir();
-    said(&s, dir, cli_glove, WORDS("glove", "--selftest", "--device", "excite=0.1"));
+    said(&s, dir, lab_glove, WORDS("glove", "--selftest", "--device", "excite=0.1"));
     CHECK(s.status == 1, "%d: %s", s.status, s.out);
     CHECK(strstr(s.out, "Not believed: ThumbRotate ThumbMPJ ") && strstr(s.out, " WristYaw\n"),
           "%s", s.out);
@@ -114,16 +115,16 @@ TEST(frames_have_a_rate_of_their_own)
          "\n100000 frames of 22 channels at 10000 Hz, 10 s"}};
     const char *dir = said_dir();
     for (size_t i = 0; i < LEN(row); i++) {
-        said(&s, dir, cli_glove,
+        said(&s, dir, lab_glove,
              WORDS("glove", "--selftest", "--rate", row[i].rate, "--set", row[i].set, "--device",
                    row[i].device));
         CHECK(s.status == 0 && strstr(s.out, row[i].says), "row %zu: %d: %s", i, s.status, s.out);
         CHECK(number_after(strstr(s.out, "\n        30"), "mV", 1) < 7.52, "row %zu: %s", i, s.out);
     }
-    said(&s, dir, cli_glove,
+    said(&s, dir, lab_glove,
          WORDS("glove", "--record", "/dev/null", "--set", "every=5", "--set", "glove_fc=199"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
-    said(&s, dir, cli_glove,
+    said(&s, dir, lab_glove,
          WORDS("glove", "--record", "/dev/null", "--set", "every=5", "--set", "glove_fc=201"));
     CHECK(s.status == 2 && strstr(s.err, "at or above half the rate"), "of 400 Hz: %d: %s",
           s.status, s.err);
@@ -145,22 +146,22 @@ TEST(the_selftest_takes_recordings)
         }
     }
     write_text(csv, text);
-    said(&s, dir, cli_glove, WORDS("glove", "--selftest", "--csv", csv, "--rate", "100"));
+    said(&s, dir, lab_glove, WORDS("glove", "--selftest", "--csv", csv, "--rate", "100"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     CHECK(strstr(s.out, "(32 codes)") && strstr(s.out, "IndexPIJ") && strstr(s.out, " 11   6.1 mV"),
           "%s", s.out);
     CHECK(strstr(s.out, "motor") == strstr(s.out, "motor at rest"), "no motor in it: %s", s.out);
     said(
-        &s, dir, cli_glove,
+        &s, dir, lab_glove,
         WORDS("glove", "--selftest", "--csv", csv, "--rate", "100", "--to", "0.01", "--span", "5"));
     CHECK(s.status == 0 && strstr(s.out, "(1 codes)") && strstr(s.out, " 14   6.1 mV"), "%s",
           s.out);
-    said(&s, dir, cli_glove,
+    said(&s, dir, lab_glove,
          WORDS("glove", "--selftest", "--csv", csv, "--rate", "100", "--from", "0.2"));
     CHECK(s.status == 2 && strstr(s.err, "it ends at 0.2 s"), "%d: %s", s.status, s.err);
-    said(&s, dir, cli_glove, WORDS("glove", "--record", log, "--seconds", "5"));
+    said(&s, dir, lab_glove, WORDS("glove", "--record", log, "--seconds", "5"));
     CHECK_EQ_I64(s.status, 0);
-    said(&s, dir, cli_glove, WORDS("glove", "--selftest", "--log", log));
+    said(&s, dir, lab_glove, WORDS("glove", "--selftest", "--log", log));
     CHECK(s.status == 0 && strstr(s.out, "10000 frames"), "%d: %s%s", s.status, s.err, s.out);
     said_clean(dir);
 }
@@ -174,7 +175,7 @@ TEST(skew_grows_with_interval_and_speed)
     const char *dir = said_dir();
     double um[2][5][4];
     const char *at;
-    said(&s, dir, cli_glove, WORDS("glove", "--skew"));
+    said(&s, dir, lab_glove, WORDS("glove", "--skew"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     at = strstr(s.out, "         0.5");
     if (at == NULL) { at = strstr(s.out, "      0.5 "); }

@@ -2,18 +2,25 @@
 /* --gpio on the command line: what is refused before any line is asked for. Tests are linked
  * without libgpiod, whatever the machine has. */
 #include "said.h"
+#include "lab/lab.h"
 
 #define LINES "gpiochip0:estop=4,enable=6"
 
 static const char *dir;
 static struct said s;
 
-static void refused(int status, const char *says, const char *const *word)
+static void refused_by(int (*command)(int, char **), int status, const char *says,
+                       const char *const *word)
 {
-    said(&s, dir, cli_drop, word);
+    said(&s, dir, command, word);
     CHECK(s.status == status && strstr(s.err, says) != NULL, "status %d, want %d and %s: %s",
           s.status, status, says, s.err);
     CHECK(s.out[0] == '\0', "it ran: %s", s.out);
+}
+
+static void refused(int status, const char *says, const char *const *word)
+{
+    refused_by(cli_drop, status, says, word);
 }
 
 TEST(refusals)
@@ -21,10 +28,10 @@ TEST(refusals)
     dir = said_dir();
     refused(2, "--gpio: without --pace", WORDS("drop", "--rate", "200", "--gpio", LINES));
     refused(2, "--gpio: one rate and one run", WORDS("drop", "--pace", "--gpio", LINES));
-    refused(2, "--gpio: one rate and one run",
-            WORDS("drop", "--rate", "200", "--pace", "--spread", "2", "--gpio", LINES));
-    refused(2, "--gpio: one rate and one run",
-            WORDS("drop", "--rate", "200", "--pace", "--sweep", "--gpio", LINES));
+    refused_by(lab_drop, 2, "--gpio: one rate and one run",
+               WORDS("drop", "--rate", "200", "--pace", "--spread", "2", "--gpio", LINES));
+    refused_by(lab_drop, 2, "--gpio: one rate and one run",
+               WORDS("drop", "--rate", "200", "--pace", "--sweep", "--gpio", LINES));
     refused(2, "--gpio: given twice",
             WORDS("drop", "--rate", "200", "--pace", "--gpio", LINES, "--gpio", LINES));
     refused(2, "--gpio: estopp=4: there are",

@@ -2,6 +2,7 @@
 /* --preset original: the glove of 8 bits a frame late is one, and what is said of it beside this
  * box follows from that. */
 #include "said.h"
+#include "lab/lab.h"
 
 #include "posix.h"
 
@@ -102,7 +103,7 @@ static double value(const char *what, int n)
 TEST(a_fall_on_the_wall_of_before_is_soft_and_deep)
 {
     char *dir = said_dir();
-    said(&s, dir, cli_drop, WORDS("drop", "--preset", "original", "--out", dir));
+    said(&s, dir, lab_drop, WORDS("drop", "--preset", "original", "--out", dir));
     CHECK(s.status == 0 && s.err[0] == '\0', "%d: %s", s.status, s.err);
     CHECK(value("loop", 0) == 90 && value("loop", 2) == 2000, "%s", s.out);
     CHECK(value("stiffness", 2) > 10 * value("stiffness", 0) && value("stiffness", 0) > 1200 &&
@@ -129,7 +130,7 @@ TEST(a_fall_on_the_wall_of_before_is_soft_and_deep)
 TEST(a_finger_is_told_of_the_wall_late)
 {
     char *dir = said_dir();
-    said(&s, dir, cli_bilateral, WORDS("bilateral", "--preset", "original", "--out", dir));
+    said(&s, dir, lab_bilateral, WORDS("bilateral", "--preset", "original", "--out", dir));
     CHECK(s.status == 0 && s.err[0] == '\0', "%d: %s", s.status, s.err);
     CHECK(value("loop", 2) == 90 && value("loop", 3) == 2000 && value("approaches", 2) == 5, "%s",
           s.out);
@@ -152,14 +153,14 @@ TEST(what_says_otherwise_is_refused)
         int (*run)(int, char **);
         const char *word[6], *says;
     } row[] = {
-        {cli_drop, {"drop", "--preset", "modern"}, "--preset: modern: no such preset (original)"},
-        {cli_drop, {"drop", "--preset", "original", "--rate", "90"}, "--preset: goes with --falls"},
-        {cli_drop, {"drop", "--preset", "original", "--sweep"}, "--preset: goes with --falls"},
-        {cli_bilateral, {"bilateral", "--preset", "Original"}, "no such preset"},
-        {cli_bilateral,
+        {lab_drop, {"drop", "--preset", "modern"}, "--preset: modern: no such preset (original)"},
+        {lab_drop, {"drop", "--preset", "original", "--rate", "90"}, "--preset: goes with --falls"},
+        {lab_drop, {"drop", "--preset", "original", "--sweep"}, "--preset: goes with --falls"},
+        {lab_bilateral, {"bilateral", "--preset", "Original"}, "no such preset"},
+        {lab_bilateral,
          {"bilateral", "--preset", "original", "--rate", "1000"},
          "--preset: goes with up to three"},
-        {cli_bilateral,
+        {lab_bilateral,
          {"bilateral", "--preset", "original", "--speed", "slow,natural,fast,1"},
          "--preset: goes with up to three"},
     };

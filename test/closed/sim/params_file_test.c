@@ -2,6 +2,7 @@
 /* Images of parameters on disk: there and back, whole or not at all, and what is said of bad ones.
  */
 #include "said.h"
+#include "lab/lab.h"
 
 #include "base/cli.h"
 #include "base/params_file.h"
@@ -184,7 +185,7 @@ TEST(experiments_take_and_leave_them)
     said(&b, dir, cli_drop,
          WORDS("drop", "--rate", "500", "--falls", "1", "--k", "500", "--load-params", file));
     CHECK(b.status < 2 && strcmp(a.out, b.out) != 0, "--k does not come behind it: %s", b.err);
-    said(&b, dir, cli_drop, WORDS("drop", "--sweep", "--load-params", file));
+    said(&b, dir, lab_drop, WORDS("drop", "--sweep", "--load-params", file));
     CHECK(b.status == 2 && strstr(b.err, "no plane"), "%d: %s", b.status, b.err);
     said(&b, dir, cli_drop, WORDS("drop", "--save-params", file));
     CHECK(b.status == 2 && strstr(b.err, "one rate"), "%d: %s", b.status, b.err);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand drop --sweep: whatever way its cells came about, the file is the same. */
+/* exhand-lab drop --sweep: whatever way its cells came about, the file is the same. */
 #include "said.h"
+#include "lab/lab.h"
 
 #include "lab/drop/cells.h"
 
@@ -29,7 +30,7 @@ static void copy(const char *from, const char *to, long bytes)
 /* The sweep at one go, into `whole`. */
 static void one_go(const char *dir, struct said *s)
 {
-    said(s, dir, cli_drop, WORDS(SMALL(dir)));
+    said(s, dir, lab_drop, WORDS(SMALL(dir)));
     CHECK(s->status == 0 && s->err[0] == '\0', "%d: %s", s->status, s->err);
     said_read(whole, said_path(dir, "stability.csv"));
     CHECK(strlen(whole) > 2000 && strlen(whole) < SAID_B - 1, "%zu bytes", strlen(whole));
@@ -91,7 +92,7 @@ TEST(the_linear_border_does_not_hang_on_the_grid)
     for (int i = 0; i < 2; i++) {
         static struct said s;
         const char *dir = said_dir();
-        said(&s, dir, cli_drop,
+        said(&s, dir, lab_drop,
              WORDS("drop", "--sweep", "--rate", "90,2000", "--falls", "1", "--grid", grid[i],
                    "--device", "observe=0.6", "--device", "substep=0.0001", "--out", dir));
         CHECK(s.status == 0, "%d: %s", s.status, s.err);
@@ -112,7 +113,7 @@ TEST(the_end_of_the_grid_is_no_border)
 {
     static struct said s;
     const char *dir = said_dir();
-    said(&s, dir, cli_drop,
+    said(&s, dir, lab_drop,
          WORDS("drop", "--sweep", "--rate", "5", "--falls", "1", "--device", "substep=0.001",
                "--out", dir));
     CHECK(s.status == 0 && strstr(s.out, ">= 8 ") && strstr(s.out, ">=: stable up to"), "%d: %s%s",
@@ -127,7 +128,7 @@ TEST(a_slow_rate_has_a_border)
     static struct said s;
     const char *dir = said_dir();
     double k = 0;
-    said(&s, dir, cli_drop,
+    said(&s, dir, lab_drop,
          WORDS("drop", "--sweep", "--rate", "5", "--falls", "1", "--grid", "3x3", "--device",
                "observe=2", "--out", dir));
     for (const char *at = strstr(s.out, "\n     5 |"); at != NULL; at = NULL) { k = atof(at + 9); }
@@ -151,7 +152,7 @@ TEST(a_resumed_sweep_gives_the_same_file)
             size - 1, size, (long)(strstr(whole, "\n500,") - whole) + 1};
         strcpy(rest, said_dir());
         copy(said_path(dir, "stability.csv"), said_path(rest, "stability.csv"), cut[i]);
-        said(&s, rest, cli_drop, WORDS(SMALL(rest)));
+        said(&s, rest, lab_drop, WORDS(SMALL(rest)));
         CHECK(s.status == 0, "cut at %ld: %d: %s", cut[i], s.status, s.err);
         said_read(again, said_path(rest, "stability.csv"));
         CHECK(strcmp(whole, again) == 0, "cut at %ld: another file", cut[i]);
@@ -174,7 +175,7 @@ TEST(an_interrupted_sweep_keeps_its_cells)
     path = said_path(dir, "stability.csv");
     for (int i = 0; i < 10; i++) { /* a busy machine may let it end first: again */
         remove(path);
-        pid = said_start(dir, cli_drop, WORDS(SMALL(dir)));
+        pid = said_start(dir, lab_drop, WORDS(SMALL(dir)));
         for (int ms = 0; ms < 20000 && said_size(path) < (long)strlen(whole) / 3; ms += 2) {
             nanosleep(&moment, NULL);
         }
@@ -186,7 +187,7 @@ TEST(an_interrupted_sweep_keeps_its_cells)
     said_read(again, said_path(dir, "stability.csv"));
     known = lines(again) - 2;
     CHECK(known > 10 && known < lines(whole) - 2, "%d cells", known);
-    said(&s, dir, cli_drop, WORDS(SMALL(dir)));
+    said(&s, dir, lab_drop, WORDS(SMALL(dir)));
     CHECK(s.status == 0 && strstr(s.err, "goes on from"), "%d: %s", s.status, s.err);
     said_read(again, said_path(dir, "stability.csv"));
     CHECK(strcmp(whole, again) == 0, "another file");
@@ -206,14 +207,14 @@ TEST(a_killed_sweep_goes_on)
     for (int part = 4; part > 1; part--) { /* three times, each further on */
         pid_t pid;
         if (part == 4) { remove(path); }
-        pid = said_start(dir, cli_drop, WORDS(SMALL(dir)));
+        pid = said_start(dir, lab_drop, WORDS(SMALL(dir)));
         for (int ms = 0; ms < 20000 && said_size(path) < (long)strlen(whole) / part; ms += 2) {
             nanosleep(&moment, NULL);
         }
         kill(-pid, SIGKILL);
         said_end(&s, dir, pid);
     }
-    said(&s, dir, cli_drop, WORDS(SMALL(dir)));
+    said(&s, dir, lab_drop, WORDS(SMALL(dir)));
     CHECK(s.status == 0 && strstr(s.err, "goes on from"), "%d: %s", s.status, s.err);
     said_read(again, path);
     CHECK(strcmp(whole, again) == 0, "another file");
@@ -232,7 +233,7 @@ TEST(shards_make_the_whole)
     strcpy(strung, said_dir());
     after_one_go(dir, &s);
     for (int i = 0; i < 3; i++) {
-        said(&s, shards, cli_drop, WORDS(SMALL(shards), "--shard", part[i]));
+        said(&s, shards, lab_drop, WORDS(SMALL(shards), "--shard", part[i]));
         CHECK(s.status == 0, "%d: %s", s.status, s.err);
         said_read(again, said_path(shards, file[i]));
         CHECK(lines(again) < lines(whole), "part %d has %d lines of %d", i, lines(again),
@@ -248,7 +249,7 @@ TEST(shards_make_the_whole)
     for (int i = 0; i < 2; i++) { /* beside each other, and strung together */
         const char *to = i ? strung : shards, *goes_on;
         int known = 0;
-        said(&s, to, cli_drop, WORDS(SMALL(to)));
+        said(&s, to, lab_drop, WORDS(SMALL(to)));
         CHECK(s.status == 0, "%d: %s", s.status, s.err);
         said_read(again, said_path(to, "stability.csv"));
         CHECK(strcmp(whole, again) == 0, "%d: another file", i);
@@ -283,7 +284,7 @@ TEST(a_file_of_other_settings_is_refused_by_name)
     static struct said s;
     after_one_go(dir, &s);
     for (size_t i = 0; i < LEN(row); i++) {
-        said(&s, dir, cli_drop, WORDS(SMALL(dir), row[i].word[0], row[i].word[1]));
+        said(&s, dir, lab_drop, WORDS(SMALL(dir), row[i].word[0], row[i].word[1]));
         CHECK(s.status == 2 && strstr(s.err, row[i].says), "row %zu: %d: %s", i, s.status, s.err);
         said_read(again, said_path(dir, "stability.csv"));
         CHECK(strcmp(whole, again) == 0, "row %zu: touched", i);
@@ -319,7 +320,7 @@ TEST(a_damaged_file_is_refused_by_line)
         if (i > 0) { fwrite(whole, 1, (size_t)(cells - whole), f); }
         fputs(row[i].text, f);
         fclose(f);
-        said(&s, dir, cli_drop, WORDS(SMALL(dir)));
+        said(&s, dir, lab_drop, WORDS(SMALL(dir)));
         CHECK(s.status == 2 && strstr(s.err, row[i].says), "row %zu: %d: %s", i, s.status, s.err);
     }
     said_clean(dir);
@@ -346,15 +347,15 @@ TEST(bad_usage_is_refused_by_name)
     const char *dir = said_dir();
     static struct said s;
     for (size_t i = 0; i < LEN(row); i++) {
-        said(&s, dir, cli_drop, WORDS(SMALL(dir), row[i].word[0], row[i].word[1]));
+        said(&s, dir, lab_drop, WORDS(SMALL(dir), row[i].word[0], row[i].word[1]));
         CHECK(s.status == 2 && strstr(s.err, row[i].says), "row %zu: %d: %s", i, s.status, s.err);
     }
-    said(&s, dir, cli_drop, WORDS("drop", "--sweep"));
+    said(&s, dir, lab_drop, WORDS("drop", "--sweep"));
     CHECK(s.status == 2 && strstr(s.err, "--sweep: needs --out DIR"), "%d: %s", s.status, s.err);
-    said(&s, dir, cli_drop, WORDS("drop", "--grid", "5x5"));
+    said(&s, dir, lab_drop, WORDS("drop", "--grid", "5x5"));
     CHECK(s.status == 2 && strstr(s.err, "--grid and --shard: only with --sweep"), "%d: %s",
           s.status, s.err);
-    said(&s, dir, cli_drop, WORDS("drop", "--border-check", "--falls", "5"));
+    said(&s, dir, lab_drop, WORDS("drop", "--border-check", "--falls", "5"));
     CHECK(s.status == 2 && strstr(s.err, "--falls and --border-check: "), "%d: %s", s.status,
           s.err);
     said_clean(dir);
@@ -381,7 +382,7 @@ TEST(the_simulated_border_is_the_linear_one)
     static struct said s;
     int cells = 0, agree = 0;
     strcpy(dir, said_dir());
-    said(&s, dir, cli_drop,
+    said(&s, dir, lab_drop,
          WORDS("drop", "--border-check", "--rate", "500,2000", "--grid", "6x4", "--out", dir));
     CHECK(s.status == 0 && s.err[0] == '\0', "%d: %s", s.status, s.err);
     for (const char *at = strstr(s.out, "   all |"); at != NULL; at = NULL) {
@@ -416,7 +417,7 @@ TEST(a_border_that_cannot_be_checked_is_refused)
     static struct said s;
     const char *dir = said_dir();
     for (size_t i = 0; i < LEN(row); i++) {
-        said(&s, dir, cli_drop,
+        said(&s, dir, lab_drop,
              WORDS("drop", "--border-check", row[i].word[0], row[i].word[1], row[i].word[2],
                    row[i].word[3]));
         CHECK(s.status == 2 && strstr(s.err, row[i].says), "row %zu: %d: %s", i, s.status, s.err);
@@ -432,7 +433,7 @@ TEST(friction_moves_the_border_outwards)
     double most[3][3];
     const char *at;
     strcpy(dir, said_dir());
-    said(&s, dir, cli_drop,
+    said(&s, dir, lab_drop,
          WORDS("drop", "--friction", "3", "--falls", "1", "--rate", "200", "--out", dir));
     CHECK(s.status == 0 && s.err[0] == '\0', "%d: %s", s.status, s.err);
     said_read(again, said_path(dir, "friction.csv"));
@@ -445,9 +446,9 @@ TEST(friction_moves_the_border_outwards)
         CHECK(most[i][0] < most[i][1] && most[i][1] < most[i][2], "%d: %g %g %g", i, most[i][0],
               most[i][1], most[i][2]);
     }
-    said(&s, dir, cli_drop, WORDS("drop", "--friction", "3"));
+    said(&s, dir, lab_drop, WORDS("drop", "--friction", "3"));
     CHECK(s.status == 2 && strstr(s.err, "--friction: needs --out DIR"), "%d: %s", s.status, s.err);
-    said(&s, dir, cli_drop, WORDS("drop", "--friction", "3", "--sweep", "--out", dir));
+    said(&s, dir, lab_drop, WORDS("drop", "--friction", "3", "--sweep", "--out", dir));
     CHECK(s.status == 2 && strstr(s.err, "one at a time"), "%d: %s", s.status, s.err);
     said_clean(dir);
 }
@@ -457,7 +458,7 @@ TEST(a_ray_ends_where_the_scene_does)
     char dir[64];
     static struct said s;
     strcpy(dir, said_dir());
-    said(&s, dir, cli_drop, /* sticks at any gain; the b of 2000 Hz meets the scene's limit first */
+    said(&s, dir, lab_drop, /* sticks at any gain; the b of 2000 Hz meets the scene's limit first */
          WORDS("drop", "--friction", "2", "--falls", "1", "--rate", "90,2000", "--device",
                "coulomb=1", "--device", "mu_motor=0.2", "--device", "mu_mass=0.2", "--device",
                "observe=0.6", "--out", dir));
@@ -465,7 +466,7 @@ TEST(a_ray_ends_where_the_scene_does)
           s.err, s.out);
     said_read(again, said_path(dir, "friction.csv"));
     CHECK(strstr(again, "\ndry,90,2,16.9407,,"), "%s", again);
-    said(&s, dir, cli_drop,
+    said(&s, dir, lab_drop,
          WORDS("drop", "--friction", "2", "--falls", "1", "--rate", "2000", "--device",
                "coulomb=10", "--device", "observe=0.6", "--out", dir));
     CHECK(s.status == 0 && s.err[0] == '\0', "%d: %s", s.status, s.err);

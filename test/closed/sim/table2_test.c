@@ -6,6 +6,7 @@
 
 #include "base/jobs.h"
 #include "base/table2.h"
+#include "lab/drop/spread.h"
 
 #include <string.h>
 

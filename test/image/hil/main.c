@@ -113,18 +113,14 @@ static int judge(void)
 
 int main(int argc, char **argv)
 {
-    const struct cli_call setting = {take_setting, NULL};
+    struct cli_call setting = {take_setting, NULL};
     /* an option's place to write to is not const; this one is only called */
-    union {
-        const struct cli_call *call;
-        void *to;
-    } set = {&setting};
     const struct cli_option option[] = {
         {"ticks", CLI_INT, &opt.ticks, 1, 1e9, "N", "to be run (1000)"},
         {"rate", CLI_INT, &opt.rate_Hz, 0, 20000, "HZ", "of the loop; 0: the scene's (0)"},
         {"loop", CLI_FLAG, &opt.loop, 0, 0, NULL,
          "closed: cards wired to the simulated device, POSIX port beside it"},
-        {"set", CLI_CALL, set.to, 0, 0, "NAME=VALUE",
+        {"set", CLI_CALL, &setting, 0, 0, "NAME=VALUE",
          "a parameter of the scene, with --loop, on both sides"},
         {"absent", CLI_FLAG, &opt.absent, 0, 0, NULL, "no cards"},
         {"board", CLI_FLAG, &opt.board, 0, 0, NULL,

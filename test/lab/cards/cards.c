@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand cards: every misbehaviour of a card in every phase of its driver, and how it ends. */
+/* exhand-lab cards: every misbehaviour of a card in every phase of its driver, and how it ends. */
 #include "lab/cards/cards.h"
 
-#include "base/cli.h"
+#include "lab/lab.h"
 #include "base/jobs.h"
 #include "base/names.h"
 #include "base/option.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand bilateral --check: random approaches in closed loop. */
-#include "contact/bilateral.h"
+/* exhand-lab bilateral --check: random approaches in closed loop. */
+#include "lab/contact/studies.h"
 
 #include "base/option.h"
 
@@ -154,9 +154,9 @@ static void say_missed(const struct outcome *r, int n)
            cautious, told);
 }
 
-int bilateral_check(const struct bilateral_options *o)
+int bilateral_check(const struct bilateral_options *o, int64_t approaches)
 {
-    const int n = (int)o->check;
+    const int n = (int)approaches;
     struct outcome *r = calloc((size_t)n, sizeof *r);
     const struct jobs jobs = {n, (int)o->jobs, sizeof *r,      r, work,
                               o, "approaches", posix_interrupt};

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand bilateral --hands and --crisp: the experiment over fingers and hands, and over k and b. */
-#include "contact/bilateral.h"
+/* exhand-lab bilateral --hands and --crisp: the experiment over fingers and hands, and over k and
+ * b. */
+#include "lab/contact/studies.h"
 
 #include "base/option.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand bilateral --preset original: a hand in the system before, and in this box. */
-#include "contact/bilateral.h"
+/* exhand-lab bilateral --preset original: a hand in the system before, and in this box. */
+#include "lab/contact/studies.h"
 
 #include "base/option.h"
 #include "lab/drop/preset.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand bilateral --sweep: what is felt over delay, jitter and loss. */
-#include "contact/bilateral.h"
+/* exhand-lab bilateral --sweep: what is felt over delay, jitter and loss. */
+#include "lab/contact/studies.h"
 
 #include "base/option.h"
 

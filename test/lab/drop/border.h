@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand drop --border-check: does the simulation have the border of the linear test
+/* exhand-lab drop --border-check: does the simulation have the border of the linear test
  * when nothing is in it but what that test knows, and what does each thing more do to it.
  *
  * The test knows a taut string and small movements. So the mass hangs on the wall, held a

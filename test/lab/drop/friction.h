@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand drop --friction N: the stability border against the friction of the string.
+/* exhand-lab drop --friction N: the stability border against the friction of the string.
  *
  * At each rate both gains are raised together, along the ray through the paper's point,
  * until the falls no longer come to rest; with N amounts of friction from none to twice

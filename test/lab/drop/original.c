@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand drop --preset original: the falling mass on the wall of the system before, and on this
+/* exhand-lab drop --preset original: the falling mass on the wall of the system before, and on this
  * box's. */
 #include "lab/drop/original.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand drop --preset original. */
+/* exhand-lab drop --preset original. */
 #ifndef CLI_DROP_ORIGINAL_H
 #define CLI_DROP_ORIGINAL_H
 

@@ -6,8 +6,6 @@
 #include "lab/drop/cells.h"
 #include "lab/drop/sweep.h"
 
-#define PLANE_MAX 200 /* columns, rows */
-
 struct plane_want {
     double rate_Hz, k_Npm, b_Nspm;
 };

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include "base/table2.h"
+#include "lab/drop/spread.h"
 
 #include "lab/drop/quantile.h"
+#include "lab/drop/reading.h"
 
 #define RUNS_MAX 1000
 
@@ -74,4 +75,10 @@ void table2_readings_csv(FILE *f, const struct table2_readings *t)
             fputc('\n', f);
         }
     }
+}
+
+void readings_judge(const struct fall_log *log, const struct sim_device *d, struct table2_result *r)
+{
+    const enum fall_status status = reading_all(log, d->step_m / d->decode, r->reading_Npm);
+    if (status != FALL_OK) { table2_failed(r, "readings", fall_status_text(status)); }
 }

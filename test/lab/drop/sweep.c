@@ -25,17 +25,6 @@
 
 /* --- options --- */
 
-int sweep_take_grid(const char *text, int *columns, int *rows)
-{
-    char more;
-    if (sscanf(text, "%dx%d%c", columns, rows, &more) == 2 && *columns >= 2 && *rows >= 2 &&
-        *columns <= PLANE_MAX && *rows <= PLANE_MAX) {
-        return 0;
-    }
-    cli_complain("--grid: %s (KxB cells, 2..%d each): e.g. --grid 20x16", text, PLANE_MAX);
-    return 2;
-}
-
 int sweep_take_shard(const char *text, int *shard, int *shards)
 {
     char more;

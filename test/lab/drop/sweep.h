@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand drop --sweep: the stability border in the k-b plane, at each rate.
+/* exhand-lab drop --sweep: the stability border in the k-b plane, at each rate.
  *
  * First octaves: k and b are doubled until a whole column and a whole row of cells is
  * unstable; k begins the lower the slower the rate. Then a grid over what that spans, then
@@ -22,8 +22,7 @@ struct sweep_opt {
     const char *dir;
 };
 
-/* "12x9" and "2/3". 0, or 2 after a line on stderr. */
-int sweep_take_grid(const char *text, int *columns, int *rows);
+/* "2/3". 0, or 2 after a line on stderr. */
 int sweep_take_shard(const char *text, int *shard, int *shards);
 
 /* Falls at one cell, judged. *error: 0, 1 after a line on stderr, -1 interrupted. */

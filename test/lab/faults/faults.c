@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand faults: every fault in every state, and any fault at any tick. */
-#include "base/cli.h"
+/* exhand-lab faults: every fault in every state, and any fault at any tick. */
+#include "lab/lab.h"
 #include "lab/faults/part.h"
 #include "base/jobs.h"
 #include "base/option.h"

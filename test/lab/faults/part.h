@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand faults: what its parts share. */
+/* exhand-lab faults: what its parts share. */
 #ifndef CLI_FAULTS_PART_H
 #define CLI_FAULTS_PART_H
 

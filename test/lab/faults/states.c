@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand faults --states: the state machine as the library has it. */
+/* exhand-lab faults --states: the state machine as the library has it. */
 #include "lab/faults/part.h"
 #include "base/names.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand fit: which plant, under which reading of the paper's analysis, comes closest. */
-#include "base/cli.h"
+/* exhand-lab fit: which plant, under which reading of the paper's analysis, comes closest. */
+#include "lab/lab.h"
 #include "base/jobs.h"
 #include "base/option.h"
 
@@ -277,15 +277,11 @@ int cli_fit(int argc, char **argv)
 {
     static struct fit_options o;
     int list = 0, err;
-    const struct cli_call pin = {take_pin, &o};
-    union {
-        const struct cli_call *view;
-        void *to;
-    } u = {&pin};
+    struct cli_call pin = {take_pin, &o};
     const struct cli_option option[] = {
         {"budget", CLI_INT, &o.budget, 8, 1e8, "N", "plants run; every reading judges each (6000)"},
         {"variant", CLI_TEXT, &o.only, 0, 0, "NAME", "only this reading makes plants (all)"},
-        {"pin", CLI_CALL, u.to, 0, 0, "NAME=VALUE", "keep a value instead of searching it"},
+        {"pin", CLI_CALL, &pin, 0, 0, "NAME=VALUE", "keep a value instead of searching it"},
         {"fixed-wall", CLI_FLAG, &o.search.fixed_wall, 0, 0, NULL,
          "the wall where q_lim and step put it between two counts, not anywhere"},
         {"seed", CLI_INT, &o.seed, 0, 1e9, "N", "of the search (1)"},
@@ -321,7 +317,8 @@ int cli_fit(int argc, char **argv)
     if (o.only != NULL) {
         const int x = reading_find(o.only);
         if (x < 0) {
-            cli_complain("--variant: %s: no such reading: `exhand fit --space` lists them", o.only);
+            cli_complain("--variant: %s: no such reading: `exhand-lab fit --space` lists them",
+                         o.only);
             return 2;
         }
         for (int i = 0; i < READINGS; i++) { o.search.used[i] = x == i; }

@@ -1,27 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-#include "advise/gains.h"
+#include "lab/gains/gains.h"
 
 #include "lab/drop/cells.h"
 #include "base/option.h"
 
-#include "sim/eigen.h"
 #include "sim/linear.h"
 
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define PI 3.14159265358979323846
-
-int gains_energy(const struct region_opt *o, double k_Npm, double b_Nspm)
-{
-    const struct sim_device *d = &o->device;
-    const double w_radps = sim_sqrt(k_Npm / (d->mass_kg + d->rotor_kg));
-    const double late_s = o->wall.T_s / 2 + d->delay_tick * o->wall.T_s + d->delay_s +
-                          0.5 / d->servo_hz + 1 / (2 * PI * d->current_hz);
-    const double lead_s = (b_Nspm + d->viscous_nspm) / k_Npm;
-    return d->mu_motor + d->mu_mass > PI / 2 * w_radps * (late_s - lead_s);
-}
 
 /* --- the map --- */
 
@@ -68,16 +55,17 @@ int gains_map(struct gains_map *m, const char *path)
     int err;
     memset(m, 0, sizeof *m);
     if (f == NULL) {
-        cli_complain("--judge: %s: %s: give the stability.csv of exhand drop --sweep", path,
+        cli_complain("--judge: %s: %s: give the stability.csv of exhand-lab drop --sweep", path,
                      strerror(errno));
         return 3;
     }
     err = read_all(f, m);
     fclose(f);
     if (err == 0 && m->n > 0 && m->columns > 1 && m->rows > 1) { return 0; }
-    cli_complain(err ? "--judge: %s: out of memory"
-                     : "--judge: %s: no cell in it: give the stability.csv of exhand drop --sweep",
-                 path);
+    cli_complain(
+        err ? "--judge: %s: out of memory"
+            : "--judge: %s: no cell in it: give the stability.csv of exhand-lab drop --sweep",
+        path);
     return err ? 1 : 2;
 }
 
@@ -122,7 +110,7 @@ static void count_grid(struct gains_share *s, struct region *r, const struct exh
     const int stable = cell_stable(c), rests = c->stable_falls == c->falls;
     const double rho =
         linear_rho(&r->o.device, r->o.wall.T_s, c->k_Npm, c->b_Nspm, r->o.wall.window);
-    const int linear = rho >= 0 && rho < 1, energy = gains_energy(&r->o, c->k_Npm, c->b_Nspm);
+    const int linear = rho >= 0 && rho < 1, energy = region_energy(&r->o, c->k_Npm, c->b_Nspm);
     s->cells++;
     s->stable += stable;
     s->at_rest += rests;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "advise/gains.h"
+#include "lab/gains/gains.h"
 
 #include "base/option.h"
 #include "base/table2.h"
@@ -20,7 +20,7 @@ static void nodes(FILE *f, struct gains_rate *r, int n, const struct gains_map *
         const struct region *g = &r->region;
         for (int j = 0; j <= g->o.rows; j++) {
             for (int i = 0; i <= g->o.columns; i++) {
-                fprintf(f, "%.9g,%.9g,%.9g,%d\n", r->share.rate_Hz, region_k(g, i), region_b(g, j),
+                fprintf(f, "%.9g,%.9g,%.9g,%d\n", r->rate_Hz, region_k(g, i), region_b(g, j),
                         g->node[j * (g->o.columns + 1) + i]);
             }
         }
@@ -40,7 +40,7 @@ static void allowed(FILE *f, struct gains_rate *r, int n, const struct gains_map
                 const int is = region_piece(g, i, j);
                 if (is && from < 0) { from = i; }
                 if (!is && from >= 0) {
-                    fprintf(f, "%.9g,%.9g,%.9g,%.9g,%.9g\n", r->share.rate_Hz, region_b(g, j),
+                    fprintf(f, "%.9g,%.9g,%.9g,%.9g,%.9g\n", r->rate_Hz, region_b(g, j),
                             region_b(g, j + 1), region_k(g, from), region_k(g, i));
                     from = -1;
                 }
@@ -55,21 +55,19 @@ static void rules(FILE *f, struct gains_rate *r, int n, const struct gains_map *
     fprintf(f, "rate_hz,knot,b_ns_per_m,k_n_per_m,k_min_n_per_m\n");
     for (; n > 0; n--, r++) {
         for (int i = 0; r->has_rule && i < r->rule.knots; i++) {
-            fprintf(f, "%.9g,%d,%.9g,%.9g,%.9g\n", r->share.rate_Hz, i,
+            fprintf(f, "%.9g,%d,%.9g,%.9g,%.9g\n", r->rate_Hz, i,
                     si(r->rule.b_Nspm_q20[i], EXH_Q_B), si(r->rule.k_Npm_q10[i], EXH_Q_K),
                     si(r->rule.k_min_Npm_q10, EXH_Q_K));
         }
     }
 }
 
-static void judged(FILE *f, struct gains_rate *r, int n, const struct gains_map *map)
+static void judged(FILE *f, const struct gains_share *s, int n)
 {
-    (void)map;
     fprintf(f,
             "rate_hz,cells,stable,at_rest,allowed_stable,allowed_at_rest,rule_stable,linear_stable,"
             "linear_unstable,energy_stable,energy_unstable,inside,unstable,falls,restless\n");
-    for (; n > 0; n--, r++) {
-        const struct gains_share *s = &r->share;
+    for (; n > 0; n--, s++) {
         fprintf(f, "%.9g,%d,%d,%d,%d,%d,%d,%d,%d,%d,%d,%d,%d,%ld,%ld\n", s->rate_Hz, s->cells,
                 s->stable, s->at_rest, s->allowed_stable, s->allowed_at_rest, s->rule_stable,
                 s->linear_stable, s->linear_unstable, s->energy_stable, s->energy_unstable,
@@ -96,25 +94,26 @@ static void picture(FILE *f, struct gains_rate *r, int n, const struct gains_map
             "ports/posix/exhand/plot:\n#   gnuplot -c gains.gp PLOTS\nplots=ARG1\n"
             "out='gains.png'; has_map=%d\nrates='",
             map != NULL);
-    for (int i = 0; i < n; i++) { fprintf(f, "%s%.6g", i ? " " : "", r[i].share.rate_Hz); }
+    for (int i = 0; i < n; i++) { fprintf(f, "%s%.6g", i ? " " : "", r[i].rate_Hz); }
     fprintf(f, "'; k_tops='");
     for (int i = 0; i < n; i++) { fprintf(f, "%s%.6g", i ? " " : "", r[i].region.k_top_Npm); }
     fprintf(f, "'; b_tops='");
     for (int i = 0; i < n; i++) { fprintf(f, "%s%.6g", i ? " " : "", r[i].region.b_top_Nspm); }
     fprintf(f, "'; paper_ks='");
     for (int i = 0; i < n; i++) {
-        const struct table2_row *row = table2_at(r[i].share.rate_Hz);
+        const struct table2_row *row = table2_at(r[i].rate_Hz);
         fprintf(f, "%s%.6g", i ? " " : "", row ? row->k_Npm : -1);
     }
     fprintf(f, "'; paper_bs='");
     for (int i = 0; i < n; i++) {
-        const struct table2_row *row = table2_at(r[i].share.rate_Hz);
+        const struct table2_row *row = table2_at(r[i].rate_Hz);
         fprintf(f, "%s%.6g", i ? " " : "", row ? row->b_Nspm : -1);
     }
     fprintf(f, "'\nload plots.'/gains.gp'\n");
 }
 
-int gains_write(const char *dir, struct gains_rate *r, int n, const struct gains_map *map)
+int gains_write(const char *dir, struct gains_rate *r, const struct gains_share *s, int n,
+                const struct gains_map *map)
 {
     static const struct {
         const char *name;
@@ -138,7 +137,7 @@ int gains_write(const char *dir, struct gains_rate *r, int n, const struct gains
         case 2: rules(f, r, n, map); break;
         case 3: picture(f, r, n, map); break;
         case 4: cells(f, r, n, map); break;
-        default: judged(f, r, n, map); break;
+        default: judged(f, s, n); break;
         }
         bad = ferror(f);
         if (fclose(f) != 0 || bad) {

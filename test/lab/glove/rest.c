@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Where exhand glove --selftest gets hand and motor at rest from. */
-#include "glove/modes.h"
+/* Where exhand-lab glove --selftest gets hand and motor at rest from. */
+#include "lab/glove/glove.h"
 
 #include "base/logfile.h"
 #include "base/option.h"
@@ -134,7 +134,7 @@ int glove_rest_csv(struct glove_rest *r, const struct glove_options *o)
 }
 
 /* --from and --to of a recording. */
-int glove_rest_cut(struct glove_frames *f, const struct glove_options *o)
+int glove_rest_cut(struct glove_frames *f, const struct rest_options *o)
 {
     const double T_s = (double)f->T.num / f->T.den;
     const long from = (long)(o->from_s / T_s + 0.5);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand glove --skew: what the scan's skew does to the fingertips. */
-#include "glove/modes.h"
+/* exhand-lab glove --skew: what the scan's skew does to the fingertips. */
+#include "lab/glove/glove.h"
 
 #include "base/option.h"
 

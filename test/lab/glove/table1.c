@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand glove --selftest: the paper's Table I, peak-to-peak noise and stable bits of joint
+/* exhand-lab glove --selftest: the paper's Table I, peak-to-peak noise and stable bits of joint
  * angle, motor position and motor current at rest, and what low-pass and quantizer make of
  * the first. */
-#include "glove/modes.h"
+#include "lab/glove/glove.h"
 
 #include "base/option.h"
 
@@ -12,6 +12,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+static const struct rest_options *is; /* of the run */
 
 #define SENSORS EXH_GLOVE_SENSORS
 #define CODES   65536.0 /* in 20 V */
@@ -104,12 +106,12 @@ static int row(const char *name, const char *noise, const char *span, int bits, 
     return bits < want;
 }
 
-static int joint_row(const struct glove_options *o, double pp)
+static int joint_row(double pp)
 {
-    const double span = o->span_V / 20 * CODES;
+    const double span = is->span_V / 20 * CODES;
     char noise[64], width_text[64];
     snprintf(noise, sizeof noise, "%.2f mV (%.0f codes)", pp * 20e3 / CODES, pp);
-    snprintf(width_text, sizeof width_text, "%.4g V", o->span_V);
+    snprintf(width_text, sizeof width_text, "%.4g V", is->span_V);
     return row("joint angle", noise, width_text, stable_bits(span, pp), "6.1 mV", 11);
 }
 
@@ -120,13 +122,14 @@ static int motor_rows(const struct glove_options *o, const struct glove_rest *r)
     int err = position_pp(r, &o->device, &pp_m, &step_m), fails;
     if (err) { return err; }
     snprintf(noise, sizeof noise, "%.2f um (steps: %.3g)", pp_m * 1e6, pp_m / step_m);
-    snprintf(span, sizeof span, "%.4g mm (steps: %ld)", o->travel_m * 1e3,
-             (long)(o->travel_m / step_m));
-    fails = row("motor position", noise, span, stable_bits(o->travel_m, pp_m), "1 encoder step", 9);
+    snprintf(span, sizeof span, "%.4g mm (steps: %ld)", is->travel_m * 1e3,
+             (long)(is->travel_m / step_m));
+    fails =
+        row("motor position", noise, span, stable_bits(is->travel_m, pp_m), "1 encoder step", 9);
     pp_A = current_pp(r, &o->device);
     snprintf(noise, sizeof noise, "%.1f mA", pp_A * 1e3);
-    snprintf(span, sizeof span, "%.4g A", o->span_A);
-    return row("motor current", noise, span, stable_bits(o->span_A, pp_A), "47.2 mA", 7) || fails;
+    snprintf(span, sizeof span, "%.4g A", is->span_A);
+    return row("motor current", noise, span, stable_bits(is->span_A, pp_A), "47.2 mA", 7) || fails;
 }
 
 /* --- behind filter and quantizer --- */
@@ -184,7 +187,7 @@ static void widths(const struct glove_frames *f, const struct exh_filter_cfg *cf
     }
 }
 
-static int behind_filter(const struct glove_options *o, const struct glove_frames *f, double fc_Hz)
+static int behind_filter(const struct glove_frames *f, double fc_Hz)
 {
     const double rate_Hz = (double)f->T.den / f->T.num;
     const long settle = fc_Hz > 0 ? (long)(3 * rate_Hz / fc_Hz) + 1 : 0;
@@ -199,7 +202,7 @@ static int behind_filter(const struct glove_options *o, const struct glove_frame
         return 0;
     }
     widths(f, fc_Hz > 0 ? &cfg : NULL, settle, &b, NULL);
-    b.bits = stable_bits(o->span_V / 20 * CODES, b.pp_raw);
+    b.bits = stable_bits(is->span_V / 20 * CODES, b.pp_raw);
     if (b.bits > 24) { b.bits = 24; }
     if (fc_Hz > 0) { delay_s = delay_ticks(&cfg, settle) / rate_Hz; }
     qp[0] = (struct exh_quantizer_par){b.bits, (int32_t)(b.pp_raw * 65536 + 0.5)};
@@ -218,7 +221,7 @@ static int behind_filter(const struct glove_options *o, const struct glove_frame
     return b.flips[0] > 0;
 }
 
-static int behind_table(const struct glove_options *o, const struct glove_frames *f)
+static int behind_table(const struct glove_frames *f)
 {
     static const double fc_Hz[] = {0, 300, 100, 30, 10, 3};
     int err = 0;
@@ -228,7 +231,7 @@ static int behind_table(const struct glove_options *o, const struct glove_frames
            "  low-pass     peak to peak   bits       delay     changes      changes\n"
            "        Hz                                         without         with\n");
     for (size_t i = 0; i < sizeof fc_Hz / sizeof fc_Hz[0]; i++) {
-        err |= behind_filter(o, f, fc_Hz[i]);
+        err |= behind_filter(f, fc_Hz[i]);
     }
     if (err) { cli_complain("a code changed within its hysteresis"); }
     return err;
@@ -294,29 +297,30 @@ static int report(const struct glove_options *o, const struct glove_rest *r, con
            "  %-15s %-28s %-26s %4s   %-15s %4s\n",
            source, f->n, rate_Hz, (double)f->n / rate_Hz, exh_glove_sensor_text((unsigned)worst),
            "signal", "peak to peak", "span", "bits", "paper", "bits");
-    fails = joint_row(o, pp);
+    fails = joint_row(pp);
     if (r->enc != NULL) { fails = worse(fails, motor_rows(o, r)); }
-    fails = worse(fails, behind_table(o, f));
+    fails = worse(fails, behind_table(f));
     return worse(fails, module_line(o, f, r->enc != NULL));
 }
 
-int glove_table1(const struct glove_options *o)
+int glove_table1(const struct glove_options *o, const struct rest_options *rest)
 {
     struct glove_rest r;
     char source[300];
     int err;
+    is = rest;
     memset(&r, 0, sizeof r);
     if (o->csv) {
         snprintf(source, sizeof source, "recorded: %s", o->csv);
         err = glove_rest_csv(&r, o);
-    } else if (o->log) {
-        snprintf(source, sizeof source, "recorded: %s", o->log);
-        err = glove_rest_log(&r, o->log);
+    } else if (is->log) {
+        snprintf(source, sizeof source, "recorded: %s", is->log);
+        err = glove_rest_log(&r, is->log);
     } else {
         snprintf(source, sizeof source, "hand and motor at rest, board %s", exh_board_info.name);
         err = glove_rest_board(&r, o);
     }
-    if (err == 0 && (o->csv || o->log)) { err = glove_rest_cut(&r.frames, o); }
+    if (err == 0 && (o->csv || is->log)) { err = glove_rest_cut(&r.frames, is); }
     if (err == 0) { err = report(o, &r, source); }
     free(r.frames.raw);
     free(r.enc);

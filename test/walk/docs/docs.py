@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""docs.py EXHAND WORLD: what the documents of the tree name is there. In code, that is between backticks or in a block: every make
+"""docs.py EXHAND WORLD: what the documents of the tree name is there; EXHAND-lab stands beside EXHAND. In code, that is between backticks or in a block: every make
 target, variable, port and scene, every command of these programs and every option that stands behind one, options alone (some
 program or script has them), names of functions, signals and tests; anywhere: files, documents and links. And the other way: every
 document, port, scene and folder of tests has its place in the page that lists them, every picture is shown, the bench's table is that
@@ -27,7 +27,7 @@ PLANTED = """
 docs/NONE.md, `test/no-place`, [link](no-file.md), `unit/none`, `build/test/prop/none`, `exh_no_such()`.
 
     $ make test && build/posix/exhand drop --rate 500   # and make sense of it
-`make SCENE=drop all`, `--rate`, docs/DESIGN.md, `unit/drive`, `exh_drive_rows`, `build/test/prop/drive_test`, `exhand drop|bilateral --rate HZ`, to make no mistake.
+`make SCENE=drop all`, `--rate`, docs/DESIGN.md, `unit/drive`, `exh_drive_rows`, `build/test/prop/drive_test`, `exhand drop|bilateral --rate HZ`, `exhand-lab drop --sweep`, to make no mistake.
 """
 PLANTED_FAULTS = 12
 
@@ -118,16 +118,16 @@ class Page:
             if option:
                 self.want(option.group() in helps(*command), "%s has no %s" % (" ".join(command[1:]) or command[0], option.group()))
 
-    def exhand(self, words):
+    def exhand(self, words, lab=""):
         if not words or not re.match(r"[a-z]", words[0]):
             return
         for sub in words[0].split("|"):
-            found = "  " + sub in helps(self.program)
-            self.want(found, "exhand: no command " + sub)
+            found = "  " + sub in helps(self.program + lab)
+            self.want(found, "exhand%s: no command %s" % (lab, sub))
             more = words[1].split("|") if sub == "advise" and len(words) > 1 and re.match(r"[a-z]", words[1]) else [None]
             more = ["--glove"] if sub == "calibrate" and "--glove" in words else more
             for m in more if found else ():
-                self.options((self.program, sub) + ((m,) if m else ()), words[1:])
+                self.options((self.program + lab, sub) + ((m,) if m else ()), words[1:])
 
     def command(self, text):
         words = re.findall(r"""(?:[^\s"']|"[^"]*"|'[^']*')+""", text)
@@ -138,6 +138,8 @@ class Page:
             self.make(words[1:])
         elif name == "exhand" and words[0] != "/exhand":
             self.exhand(words[1:])
+        elif name == "exhand-lab":
+            self.exhand(words[1:], "-lab")
         elif name == "world" and os.path.exists(self.world):
             self.options((self.world,), words[1:])
         elif name.startswith("--") and len(words) < 3:

@@ -24,7 +24,7 @@ same() # WHAT DIR
 
 # shellcheck disable=SC2086 # a list of words
 {
-build/posix/exhand drop --sweep $map --jobs 1 --out "$dir/one" >/dev/null || exit 1
+build/posix/exhand-lab drop --sweep $map --jobs 1 --out "$dir/one" >/dev/null || exit 1
 
 if command -v parallel >/dev/null; then
     examples/sweep/parallel.sh "$dir/here" 3 : $map >"$dir/here.txt" 2>&1
@@ -53,7 +53,7 @@ fi
 if command -v sbatch >/dev/null && command -v slurmctld >/dev/null && [ "$(id -u)" = 0 ]; then
     test/walk/sweep/slurm.sh "$dir/slurm.d" sbatch --wait --array=1-3 -o "$PWD/$dir/slurm-%a.txt" examples/sweep/sweep.sbatch "$dir/slurm" $map \
         >"$dir/slurm.txt" 2>&1
-    build/posix/exhand drop --sweep $map --out "$dir/slurm" >>"$dir/slurm.txt" 2>&1
+    build/posix/exhand-lab drop --sweep $map --out "$dir/slurm" >>"$dir/slurm.txt" 2>&1
     same "Slurm, an array of three tasks" slurm
 else
     echo "Slurm: not here, or not root: left out"

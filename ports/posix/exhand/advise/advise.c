@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* exhand advise: gains is in gains.c; freeze is d_lim and the length of the ray, for a hand and a
  * link. */
-#include "base/cli.h"
+#include "advise/gains.h"
 
+#include "base/cli.h"
 #include "base/option.h"
 
 #include "exhand/precontact.h"
@@ -92,7 +93,7 @@ static int is_about(int argc, char **argv, const char *what)
     return 0;
 }
 
-int cli_advise(int argc, char **argv)
+int advise_command(int argc, char **argv, const struct gains_study *study)
 {
     struct asked a = {.speed_mps = 0.87, .rate_Hz = 2000, .fps = 100};
     const char *about[1] = {NULL};
@@ -124,7 +125,7 @@ int cli_advise(int argc, char **argv)
         sizeof option / sizeof option[0],
         1};
     int err;
-    if (is_about(argc, argv, "gains")) { return cli_advise_gains(argc, argv); }
+    if (is_about(argc, argv, "gains")) { return gains_command(argc, argv, study); }
     err = cli_parse(&c, argc, argv, about);
     if (err) { return err == 1 ? 0 : err; }
     if (strcmp(about[0], "freeze") != 0) {
@@ -132,4 +133,10 @@ int cli_advise(int argc, char **argv)
         return 2;
     }
     return advise(&a);
+}
+
+int cli_advise(int argc, char **argv)
+{
+    static const struct gains_study none = {{NULL, 0, "judge out"}, NULL, NULL, NULL};
+    return advise_command(argc, argv, &none);
 }

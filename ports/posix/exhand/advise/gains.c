@@ -7,7 +7,6 @@
 #include "base/jobs.h"
 #include "base/option.h"
 #include "base/param.h"
-#include "lab/drop/sweep.h"
 
 #include "sim/linear.h"
 
@@ -16,19 +15,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct asked {
-    struct region_opt o;
-    double rate_Hz[GAINS_RATES], k_Npm, b_Nspm, off_percent, margin_percent;
-    int64_t cases, window, jobs;
-    int rates, rates_given, rule;
-    const char *grid, *out, *judge;
-};
-
 /* --- options --- */
 
 static int take_rates(void *ctx, const char *text)
 {
-    struct asked *a = ctx;
+    struct gains_options *a = ctx;
     a->rates = 0;
     a->rates_given = 1;
     for (const char *at = text; a->rates < GAINS_RATES; at++) {
@@ -46,7 +37,7 @@ static int take_rates(void *ctx, const char *text)
 
 static int take_device(void *ctx, const char *text)
 {
-    struct asked *a = ctx;
+    struct gains_options *a = ctx;
     return assign_device(&a->o.device, "drop", text);
 }
 
@@ -57,7 +48,7 @@ static double of_scene(const char *name)
     return cli_signal_value(row, row->dflt);
 }
 
-static void defaults(struct asked *a)
+static void defaults(struct gains_options *a)
 {
     memset(a, 0, sizeof *a);
     exh_scene_drop.defaults();
@@ -75,11 +66,11 @@ static void defaults(struct asked *a)
     a->jobs = jobs_cores();
 }
 
-static int refuse(struct asked *a)
+static int refuse(struct gains_options *a)
 {
     struct sim_device *d = &a->o.device;
     if (assign_step(d, 0, 0)) { return 2; }
-    if (sweep_take_grid(a->grid ? a->grid : "64x48", &a->o.columns, &a->o.rows)) { return 2; }
+    if (assign_grid(a->grid ? a->grid : "64x48", &a->o.columns, &a->o.rows)) { return 2; }
     if ((a->k_Npm >= 0) != (a->b_Nspm >= 0)) {
         cli_complain("--k and --b: a pair is judged: give both");
         return 2;
@@ -102,7 +93,7 @@ static int refuse(struct asked *a)
     a->o.cases = (int)a->cases;
     a->o.wall.window = (int)a->window;
     a->o.jobs = (int)a->jobs;
-    return a->out ? sweep_open_dir(a->out, "out") : 0;
+    return 0;
 }
 
 /* --- what is said of a rate --- */
@@ -178,7 +169,7 @@ static double first_run(struct region *r, int i, int j, int of_k)
 }
 
 /* Whether it is allowed. */
-static int print_pair(const struct asked *a, struct region *r)
+static int print_pair(const struct gains_options *a, struct region *r)
 {
     const double k = a->k_Npm, b = a->b_Nspm;
     const double rho = linear_rho(&r->o.device, r->o.wall.T_s, k, b, r->o.wall.window);
@@ -186,7 +177,7 @@ static int print_pair(const struct asked *a, struct region *r)
     ok = region_find(r, k, b, &i, &j) && region_piece(r, i, j);
     printf("  k %.6g N/m, b %.6g Ns/m: %s (linear test alone: rho %.4f, %s; energy: %s)\n", k, b,
            ok ? "allowed" : "NOT allowed", rho, rho >= 0 && rho < 1 ? "stable" : "not stable",
-           gains_energy(&r->o, k, b) ? "stable" : "not stable");
+           region_energy(&r->o, k, b) ? "stable" : "not stable");
     if (ok) {
         const double k_up = region_k(r, i + 1 + along(r, i, j, 1, 0));
         const double b_up = region_b(r, j + 1 + along(r, i, j, 0, 1));
@@ -207,85 +198,65 @@ static int print_pair(const struct asked *a, struct region *r)
 }
 
 /* 0, or an exit status. */
-static int do_rate(const struct asked *a, double rate_Hz, struct gains_rate *x,
-                   const struct gains_map *map)
+static int do_rate(const struct gains_options *a, struct gains_rate *x, int i,
+                   const struct gains_study *study, int *restless)
 {
     struct region_opt o = a->o;
     int err, ok = 1;
-    o.wall.T_s = 1 / rate_Hz;
-    x->share.rate_Hz = rate_Hz;
+    o.wall.T_s = 1 / x->rate_Hz;
     err = region_open(&x->region, &o);
     if (err == 0) { err = region_fill(&x->region); }
     if (err) { return err; }
     x->has_rule = gains_rule(&x->rule, &x->region) == 0;
-    if (map != NULL) { x->share = gains_judge(&x->region, &x->rule, map); }
+    if (study->rate) { *restless |= study->rate(x, i); }
     if (a->rule) {
         if (x->has_rule) { gains_rule_print(stdout, &x->rule); }
         return !x->has_rule;
     }
     printf("%.6g Hz: k < %.6g N/m, b < %.6g Ns/m looked at, in pieces of %.4g N/m by %.3g Ns/m\n",
-           rate_Hz, x->region.k_top_Npm, x->region.b_top_Nspm, x->region.k_top_Npm / o.columns,
+           x->rate_Hz, x->region.k_top_Npm, x->region.b_top_Nspm, x->region.k_top_Npm / o.columns,
            x->region.b_top_Nspm / o.rows);
     if (a->k_Npm >= 0) { ok = print_pair(a, &x->region); }
     print_best(&x->region);
     return !ok;
 }
 
-static int rates_of(struct asked *a, const struct gains_map *map)
-{
-    if (a->rates_given || map == NULL) { return 0; }
-    a->rates = 0;
-    for (int i = 0; i < map->n && a->rates < GAINS_RATES; i++) {
-        int known = 0;
-        for (int m = 0; m < a->rates; m++) { known |= a->rate_Hz[m] == map->at[i].rate_Hz; }
-        if (!known) { a->rate_Hz[a->rates++] = map->at[i].rate_Hz; }
-    }
-    return 0;
-}
-
-static int advise(struct asked *a)
+static int advise(struct gains_options *a, const struct gains_study *study)
 {
     static struct gains_rate rate[GAINS_RATES];
-    static struct gains_share share[GAINS_RATES];
-    struct gains_map m = {NULL, 0, 0, 0}, *map = a->judge ? &m : NULL;
-    int worst = map ? gains_map(map, a->judge) : 0, inside = 1, restless = 0, n = 0;
+    int worst = study->begin ? study->begin(a) : 0, inside = 1, restless = 0, n = 0;
     memset(rate, 0, sizeof rate);
-    if (worst == 0) { worst = rates_of(a, map); }
-    for (; n < a->rates && (worst == 0 || worst == 1) && (map == NULL || m.n > 0); n++) {
-        const int err = do_rate(a, a->rate_Hz[n], &rate[n], map);
-        share[n] = rate[n].share;
+    for (; n < a->rates && (worst == 0 || worst == 1); n++) {
+        int err;
+        rate[n].rate_Hz = a->rate_Hz[n];
+        err = do_rate(a, &rate[n], n, study, &restless);
         inside &= err == 0;
-        restless |= share[n].unstable > 0;
         if (err > 1) { worst = err; }
         fflush(stdout);
     }
-    if (worst == 0 && map != NULL) { gains_judge_print(share, n); }
-    if (worst == 0 && a->out != NULL) { worst = gains_write(a->out, rate, n, map); }
+    if (study->end) {
+        const int err = study->end(rate, n, worst == 0);
+        worst = worst ? worst : err;
+    }
     if (worst == JOBS_INTERRUPTED) {
         cli_complain("interrupted: gains keeps nothing of what it has run");
     }
     for (int i = 0; i < a->rates; i++) { region_free(&rate[i].region); }
-    free(m.at);
     return worst ? worst : !inside || restless;
 }
 
-int cli_advise_gains(int argc, char **argv)
+int gains_command(int argc, char **argv, const struct gains_study *study)
 {
-    static struct asked a;
+    static struct gains_options a;
     const char *about[1] = {NULL};
-    const struct cli_call rates = {take_rates, &a}, device = {take_device, &a};
-    union {
-        const struct cli_call *view;
-        void *to;
-    } u[2] = {{&rates}, {&device}};
+    struct cli_call rates = {take_rates, &a}, device = {take_device, &a};
     const struct cli_option option[] = {
-        {"rate", CLI_CALL, u[0].to, 0, 0, "HZ[,HZ...]",
-         "of the control loop (2000; with --judge the map's)"},
+        {"rate", CLI_CALL, &rates, 0, 0, "HZ[,HZ...]", "of the control loop (2000)"},
         {"k", CLI_REAL, &a.k_Npm, 0, 1e6, "N/M",
          "judge this stiffness, with --b: exit 1 if not allowed"},
         {"b", CLI_REAL, &a.b_Nspm, 0, 1e3, "NS/M", "and this damping"},
         {"window", CLI_INT, &a.window, 1, 16, "N", "ticks of the velocity (2)"},
-        {"device", CLI_CALL, u[1].to, 0, 0, "NAME=VALUE",
+        {"device", CLI_CALL, &device, 0, 0, "NAME=VALUE",
          "mass, rotor, step, decode, delay, mu_motor, ...: exhand drop --params"},
         {"off", CLI_REAL, &a.off_percent, 0, 50, "PERCENT",
          "also with masses so much more and less, and friction so much less (0)"},
@@ -294,9 +265,6 @@ int cli_advise_gains(int argc, char **argv)
         {"cases", CLI_INT, &a.cases, 2, 1000, "N", "falls of each node; more allow less (32)"},
         {"grid", CLI_TEXT, &a.grid, 0, 0, "KxB", "pieces along k and b (64x48)"},
         {"rule", CLI_FLAG, &a.rule, 0, 0, NULL, "print only the rule, as --set takes it and as C"},
-        {"judge", CLI_TEXT, &a.judge, 0, 0, "FILE",
-         "against a stability.csv of exhand drop --sweep"},
-        {"out", CLI_TEXT, &a.out, 0, 0, "DIR", "CSVs and what gnuplot needs for the picture there"},
         {"jobs", CLI_INT, &a.jobs, 1, 1024, "N", "processes at a time (one a core)"},
     };
     const struct cli_command c = {
@@ -316,8 +284,8 @@ int cli_advise_gains(int argc, char **argv)
         1};
     int err;
     defaults(&a);
-    err = cli_parse(&c, argc, argv, about);
+    err = cli_parse_more(&c, &study->more, argc, argv, about);
     if (err) { return err == 1 ? 0 : err; }
     err = refuse(&a);
-    return err ? err : advise(&a);
+    return err ? err : advise(&a, study);
 }

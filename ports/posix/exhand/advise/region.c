@@ -5,6 +5,7 @@
 #include "base/option.h"
 
 #include "posix.h"
+#include "sim/eigen.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -223,4 +224,16 @@ int region_fill(struct region *r)
     }
     free(row);
     return posix_interrupted() ? JOBS_INTERRUPTED : status;
+}
+
+#define PI 3.14159265358979323846
+
+int region_energy(const struct region_opt *o, double k_Npm, double b_Nspm)
+{
+    const struct sim_device *d = &o->device;
+    const double w_radps = sim_sqrt(k_Npm / (d->mass_kg + d->rotor_kg));
+    const double late_s = o->wall.T_s / 2 + d->delay_tick * o->wall.T_s + d->delay_s +
+                          0.5 / d->servo_hz + 1 / (2 * PI * d->current_hz);
+    const double lead_s = (b_Nspm + d->viscous_nspm) / k_Npm;
+    return d->mu_motor + d->mu_mass > PI / 2 * w_radps * (late_s - lead_s);
 }

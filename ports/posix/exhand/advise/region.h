@@ -50,4 +50,8 @@ int region_find(const struct region *r, double k_Npm, double b_Nspm, int *i, int
 /* Whether all pieces are allowed that a pair lies in or on the edge of. */
 int region_allows(struct region *r, double k_Npm, double b_Nspm);
 
+/* mu > (pi/2) w (T/2 + delay + lag - (b + c)/k), w = sqrt(k / (mass + rotor)): what friction in
+ * proportion to the tension takes out of a bounce, against what hold and delay put in. */
+int region_energy(const struct region_opt *o, double k_Npm, double b_Nspm);
+
 #endif

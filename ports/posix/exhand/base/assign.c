@@ -5,6 +5,7 @@
 
 #include "sim/plant.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -59,5 +60,16 @@ int assign_step(struct sim_device *d, double hand_npm, double hand_nspm)
                      "heavier rotor, or "
                      "less of cable_k and cable_b");
     }
+    return 2;
+}
+
+int assign_grid(const char *text, int *columns, int *rows)
+{
+    char more;
+    if (sscanf(text, "%dx%d%c", columns, rows, &more) == 2 && *columns >= 2 && *rows >= 2 &&
+        *columns <= ASSIGN_GRID_MAX && *rows <= ASSIGN_GRID_MAX) {
+        return 0;
+    }
+    cli_complain("--grid: %s (KxB cells, 2..%d each): e.g. --grid 20x16", text, ASSIGN_GRID_MAX);
     return 2;
 }

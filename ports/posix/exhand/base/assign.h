@@ -5,7 +5,8 @@
 
 #include "sim/device.h"
 
-#define ASSIGN_NAME_B 32
+#define ASSIGN_NAME_B   32
+#define ASSIGN_GRID_MAX 200 /* columns, rows */
 
 /* Name and value apart. 0, or 2 after a line on stderr. */
 int assign_split(const char *option, const char *text, char name[ASSIGN_NAME_B], double *value);
@@ -22,5 +23,8 @@ int assign_device(struct sim_device *d, const char *command, const char *text);
  * stiffness of a hand, 0 without. The table's own step is shortened to one that will do; another is
  * refused: 0, or 2 after a line on stderr with the step that would do. */
 int assign_step(struct sim_device *d, double hand_npm, double hand_nspm);
+
+/* "12x9". 0, or 2 after a line on stderr. */
+int assign_grid(const char *text, int *columns, int *rows);
 
 #endif

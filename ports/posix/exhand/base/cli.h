@@ -5,17 +5,12 @@
 #define CLI_CLI_H
 
 int cli_advise(int argc, char **argv);
-int cli_advise_gains(int argc, char **argv); /* `exhand advise gains` */
 int cli_bilateral(int argc, char **argv);
 int cli_bringup(int argc, char **argv);
-int cli_budget(int argc, char **argv);
 int cli_calibrate(int argc, char **argv);
 int cli_calibrate_glove(int argc, char **argv); /* `exhand calibrate --glove` */
-int cli_cards(int argc, char **argv);
-int cli_faults(int argc, char **argv);
 int cli_drop(int argc, char **argv);
 int cli_glove(int argc, char **argv);
-int cli_fit(int argc, char **argv);
 int cli_listen(int argc, char **argv);
 int cli_csv(int argc, char **argv);
 int cli_run(int argc, char **argv);

@@ -1,24 +1,24 @@
 /* SPDX-License-Identifier: MIT */
-#include "base/fall.h"
+#include "base/dissect.h"
 
 #include <stdlib.h>
 
 static int sample_sane(const struct fall_sample *s)
 {
-    return sane(s->t_s) && sane(s->q_m) && sane(s->qd_mps) && sane(s->f_des_N) &&
-           sane(s->i_des_A) && sane(s->f_mon_N);
+    return fall_sane(s->t_s) && fall_sane(s->q_m) && fall_sane(s->qd_mps) &&
+           fall_sane(s->f_des_N) && fall_sane(s->i_des_A) && fall_sane(s->f_mon_N);
 }
 
-size_t part_fall_end(const struct fall_log *log, size_t fall)
+size_t fall_end(const struct fall_log *log, size_t fall)
 {
     return fall + 1 < log->falls ? log->start[fall + 1] : log->samples;
 }
 
-enum fall_status part_check_log(const struct fall_log *log)
+enum fall_status fall_check_log(const struct fall_log *log)
 {
     if (log->falls == 0) { return FALL_BAD_LOG; }
     for (size_t f = 0; f < log->falls; f++) {
-        const size_t end = part_fall_end(log, f);
+        const size_t end = fall_end(log, f);
         if (log->start[f] >= end || end > log->samples) { return FALL_BAD_LOG; }
         for (size_t i = log->start[f]; i < end; i++) {
             const struct fall_sample *s = &log->sample[i];
@@ -33,7 +33,7 @@ enum fall_status part_check_log(const struct fall_log *log)
 static int next_contact(const struct fall_log *log, size_t fall, size_t from,
                         struct fall_contact *out)
 {
-    const size_t end = part_fall_end(log, fall);
+    const size_t end = fall_end(log, fall);
     size_t i = from;
 
     while (i < end && !log->sample[i].c) { i++; }
@@ -66,11 +66,11 @@ enum fall_status fall_dissect(const struct fall_log *log, size_t min_samples,
                               struct fall_contacts *out)
 {
     *out = (struct fall_contacts){NULL, 0};
-    const enum fall_status status = part_check_log(log);
+    const enum fall_status status = fall_check_log(log);
     if (status != FALL_OK) { return status; }
 
     const size_t n = scan(log, min_samples, NULL);
-    out->at = part_alloc(n, sizeof *out->at);
+    out->at = fall_alloc(n, sizeof *out->at);
     if (!out->at) { return FALL_NO_MEMORY; }
     out->n = scan(log, min_samples, out->at);
     return FALL_OK;

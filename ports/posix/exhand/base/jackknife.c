@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include "base/fall.h"
+#include "base/jackknife.h"
+
+#include "base/line.h"
+#include "base/pairs.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -64,7 +67,7 @@ static double slope_mpN(const struct fall_fit *fit)
 
 static double inverse_or_0(double slope)
 {
-    return slope > 1.0 / VALUE_MAX ? 1.0 / slope : 0.0;
+    return slope > 1.0 / FALL_VALUE_MAX ? 1.0 / slope : 0.0;
 }
 
 static int has_line(const struct fall_fit *fit)
@@ -93,18 +96,18 @@ enum fall_status fall_jackknife(const struct fall_pairs *sorted, size_t falls,
     int every = 1;
 
     *a = *b = (struct fall_interval){.status = FALL_FEW_FALLS};
-    enum fall_status status = part_pairs_alloc(&rest, sorted->n);
-    if (status == FALL_OK) { status = part_pairs_alloc(&averaged, sorted->n); }
+    enum fall_status status = fall_pairs_alloc(&rest, sorted->n);
+    if (status == FALL_OK) { status = fall_pairs_alloc(&averaged, sorted->n); }
     for (size_t f = 0; status == FALL_OK && every && f < falls; f++) {
         if (leave_out(sorted, f, &rest) == 0) { continue; }
-        part_average_into(&rest, force, &averaged);
+        fall_average_into(&rest, force, &averaged);
         fall_fit_line(&averaged, &fit);
         every = has_line(&fit);
         take(&of_a, fit.a_Npm);
         take(&of_slope, slope_mpN(&fit));
     }
     if (status == FALL_OK && every && of_a.n >= 2) {
-        part_average_into(sorted, force, &averaged);
+        fall_average_into(sorted, force, &averaged);
         fall_fit_line(&averaged, &fit);
         if (has_line(&fit)) { intervals(&fit, &of_a, &of_slope, a, b); }
     }

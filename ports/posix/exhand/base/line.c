@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "base/fall.h"
+#include "base/line.h"
 
 /* Spread or correlation below this share of the value is rounding, not data:
  * 1e-12 of a 10 mm position is far below any encoder step. */

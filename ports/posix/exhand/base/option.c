@@ -43,11 +43,16 @@ int cli_finish(int status)
     return status ? status : 1;
 }
 
-static void help(const struct cli_command *c)
+static const struct cli_option *row(const struct cli_command *c, const struct cli_more *more, int i)
+{
+    return i < c->options ? &c->option[i] : &more->option[i - c->options];
+}
+
+static void help(const struct cli_command *c, const struct cli_more *more)
 {
     printf("%s%s%s %s\n%s\n", cli_program, blank(c->name), c->name, c->args, c->what);
-    for (int i = 0; i < c->options; i++) {
-        const struct cli_option *o = &c->option[i];
+    for (int i = 0; i < c->options + more->options; i++) {
+        const struct cli_option *o = row(c, more, i);
         char left[40];
         snprintf(left, sizeof left, "--%s%s%s", o->name, o->arg ? " " : "", o->arg ? o->arg : "");
         printf("  %-24s %s\n", left, o->help);
@@ -94,24 +99,39 @@ static int take(const struct cli_option *o, const char *text)
     return 0;
 }
 
-static const struct cli_option *find(const struct cli_command *c, const char *name, size_t len)
+static const struct cli_option *find(const struct cli_command *c, const struct cli_more *more,
+                                     const char *name, size_t len)
 {
-    for (int i = 0; i < c->options; i++) {
-        if (strlen(c->option[i].name) == len && strncmp(c->option[i].name, name, len) == 0) {
-            return &c->option[i];
-        }
+    for (int i = 0; i < c->options + more->options; i++) {
+        const struct cli_option *o = row(c, more, i);
+        if (strlen(o->name) == len && strncmp(o->name, name, len) == 0) { return o; }
     }
     return NULL;
 }
 
+int cli_listed(const char *names, const char *name, size_t len)
+{
+    for (const char *at = names; at != NULL && *at != '\0'; at += strspn(at, " ")) {
+        const size_t n = strcspn(at, " ");
+        if (n == len && strncmp(at, name, len) == 0) { return 1; }
+        at += n;
+    }
+    return 0;
+}
+
 /* One word that starts with --, and its value. *i moves past what was used. */
-static int take_word(const struct cli_command *c, int argc, char **argv, int *i)
+static int take_word(const struct cli_command *c, const struct cli_more *more, int argc,
+                     char **argv, int *i)
 {
     const char *word = argv[*i];
     const char *equals = strchr(word, '=');
     const size_t len = equals ? (size_t)(equals - word) : strlen(word);
-    const struct cli_option *o = find(c, word + 2, len - 2);
+    const struct cli_option *o = find(c, more, word + 2, len - 2);
 
+    if (o == NULL && cli_listed(more->moved, word + 2, len - 2)) {
+        cli_complain("%.*s: a study: `exhand-lab %s` has it (make lab)", (int)len, word, c->name);
+        return 2;
+    }
     if (o == NULL) { return bad(c, word, "no such option"); }
     if (o->kind == CLI_FLAG) { return equals ? bad(c, word, "takes no value") : take(o, NULL); }
     if (equals) { return take(o, equals + 1); }
@@ -120,17 +140,18 @@ static int take_word(const struct cli_command *c, int argc, char **argv, int *i)
     return take(o, argv[*i]);
 }
 
-int cli_parse(const struct cli_command *c, int argc, char **argv, const char **operand)
+int cli_parse_more(const struct cli_command *c, const struct cli_more *more, int argc, char **argv,
+                   const char **operand)
 {
     int n = 0;
     command = c->name;
     for (int i = 1; i < argc; i++) {
         if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
-            help(c);
+            help(c, more);
             return 1;
         }
         if (strncmp(argv[i], "--", 2) == 0) {
-            const int err = take_word(c, argc, argv, &i);
+            const int err = take_word(c, more, argc, argv, &i);
             if (err) { return err; }
         } else if (n < c->operands) {
             operand[n++] = argv[i];
@@ -139,4 +160,10 @@ int cli_parse(const struct cli_command *c, int argc, char **argv, const char **o
         }
     }
     return n < c->operands ? bad(c, c->args, "a word is missing") : 0;
+}
+
+int cli_parse(const struct cli_command *c, int argc, char **argv, const char **operand)
+{
+    static const struct cli_more none = {NULL, 0, NULL};
+    return cli_parse_more(c, &none, argc, argv, operand);
 }

@@ -3,6 +3,8 @@
 #ifndef CLI_OPTION_H
 #define CLI_OPTION_H
 
+#include <stddef.h>
+
 enum cli_kind { CLI_FLAG, CLI_INT, CLI_REAL, CLI_TEXT, CLI_CALL };
 
 struct cli_option {
@@ -28,9 +30,21 @@ struct cli_command {
     int operands; /* how many operands it takes */
 };
 
+/* Beside a command's own options. */
+struct cli_more {
+    const struct cli_option *option; /* a study's, behind the others */
+    int options;
+    const char *moved; /* names of options that the lab's program has, blanks between; or NULL */
+};
+
 /* Parses; operands go to operand[]. 0 go on, 1 help was asked for and printed,
  * 2 bad usage, said on stderr. */
 int cli_parse(const struct cli_command *c, int argc, char **argv, const char **operand);
+int cli_parse_more(const struct cli_command *c, const struct cli_more *more, int argc, char **argv,
+                   const char **operand);
+
+/* Whether a name is in a list with blanks between. */
+int cli_listed(const char *names, const char *name, size_t len);
 
 /* What stands before a command's name in messages: "exhand"; "" for a program that is one command.
  */

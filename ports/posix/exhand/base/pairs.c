@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-#include "base/fall.h"
+#include "base/pairs.h"
 
 #include <stdlib.h>
 
-enum fall_status part_pairs_alloc(struct fall_pairs *p, size_t cap)
+enum fall_status fall_pairs_alloc(struct fall_pairs *p, size_t cap)
 {
     p->n = 0;
-    p->at = part_alloc(cap, sizeof *p->at);
+    p->at = fall_alloc(cap, sizeof *p->at);
     return p->at ? FALL_OK : FALL_NO_MEMORY;
 }
 
@@ -25,7 +25,7 @@ enum fall_status fall_pool(const struct fall_log *log, const struct fall_contact
         const size_t len = contacts->at[i].end - contacts->at[i].first;
         n += len > lag ? len - lag : 0;
     }
-    if (part_pairs_alloc(out, n) != FALL_OK) { return FALL_NO_MEMORY; }
+    if (fall_pairs_alloc(out, n) != FALL_OK) { return FALL_NO_MEMORY; }
     for (size_t i = 0; i < contacts->n; i++) {
         const struct fall_contact *c = &contacts->at[i];
         for (size_t q = c->first; lag < c->end - q; q++) {
@@ -58,7 +58,7 @@ static enum fall_status sort_by_force(struct fall_pairs *p)
 {
     struct fall_pairs tmp;
 
-    if (part_pairs_alloc(&tmp, p->n) != FALL_OK) { return FALL_NO_MEMORY; }
+    if (fall_pairs_alloc(&tmp, p->n) != FALL_OK) { return FALL_NO_MEMORY; }
     for (size_t run = 1; run < p->n; run *= 2) {
         for (size_t lo = 0; lo < p->n; lo += 2 * run) {
             const size_t mid = run < p->n - lo ? lo + run : p->n;
@@ -76,7 +76,7 @@ static enum fall_status sort_by_force(struct fall_pairs *p)
 enum fall_status fall_band(const struct fall_pairs *in, double lo_N, double hi_N,
                            struct fall_pairs *out)
 {
-    if (part_pairs_alloc(out, in->n) != FALL_OK) { return FALL_NO_MEMORY; }
+    if (fall_pairs_alloc(out, in->n) != FALL_OK) { return FALL_NO_MEMORY; }
     for (size_t i = 0; i < in->n; i++) {
         if (in->at[i].f_N >= lo_N && in->at[i].f_N <= hi_N) { out->at[out->n++] = in->at[i]; }
     }
@@ -103,7 +103,7 @@ static struct fall_pair window(const struct fall_pair *first, enum fall_force fo
 }
 
 /* `out` has room for as many pairs as `sorted` holds. */
-void part_average_into(const struct fall_pairs *sorted, enum fall_force force,
+void fall_average_into(const struct fall_pairs *sorted, enum fall_force force,
                        struct fall_pairs *out)
 {
     out->n = sorted->n < FALL_WINDOW ? 0 : sorted->n - (FALL_WINDOW - 1);
@@ -113,7 +113,7 @@ void part_average_into(const struct fall_pairs *sorted, enum fall_force force,
 enum fall_status fall_average(const struct fall_pairs *sorted, enum fall_force force,
                               struct fall_pairs *out)
 {
-    if (part_pairs_alloc(out, sorted->n) != FALL_OK) { return FALL_NO_MEMORY; }
-    part_average_into(sorted, force, out);
+    if (fall_pairs_alloc(out, sorted->n) != FALL_OK) { return FALL_NO_MEMORY; }
+    fall_average_into(sorted, force, out);
     return FALL_OK;
 }

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include "base/fall.h"
+#include "base/rest.h"
+
+#include "base/dissect.h"
 
 const struct fall_rest_opt fall_rest_opt_default = {
     .observe_s = 5.0,
@@ -51,7 +53,7 @@ static enum fall_rest_class judge(double travel_m, double force_N, const struct 
 static void rest_of_fall(const struct fall_log *log, const struct fall_contact *contact,
                          const struct fall_rest_opt *opt, struct fall_rest *out)
 {
-    const size_t first = log->start[contact->fall], end = part_fall_end(log, contact->fall);
+    const size_t first = log->start[contact->fall], end = fall_end(log, contact->fall);
     struct span w = {0.0, 0.0, 0.0, 0.0, 0, 0};
 
     out->t_contact_s = log->sample[contact->first].t_s;
@@ -81,16 +83,16 @@ static void rest_of_fall(const struct fall_log *log, const struct fall_contact *
 
 static int rest_opt_ok(const struct fall_rest_opt *o)
 {
-    return o->window_s > 0.0 && o->window_s <= o->observe_s && sane(o->observe_s) &&
-           o->travel_m >= 0.0 && sane(o->travel_m) && o->force_N >= 0.0 && sane(o->force_N) &&
-           o->encoder_step_m >= 0.0 && sane(o->encoder_step_m) && o->range_m > 0.0 &&
-           sane(o->range_m);
+    return o->window_s > 0.0 && o->window_s <= o->observe_s && fall_sane(o->observe_s) &&
+           o->travel_m >= 0.0 && fall_sane(o->travel_m) && o->force_N >= 0.0 &&
+           fall_sane(o->force_N) && o->encoder_step_m >= 0.0 && fall_sane(o->encoder_step_m) &&
+           o->range_m > 0.0 && fall_sane(o->range_m);
 }
 
 enum fall_status fall_rest(const struct fall_log *log, const struct fall_contacts *contacts,
                            const struct fall_rest_opt *opt, struct fall_rest *out)
 {
-    const enum fall_status status = part_check_log(log);
+    const enum fall_status status = fall_check_log(log);
 
     if (status != FALL_OK) { return status; }
     if (!rest_opt_ok(opt)) { return FALL_BAD_OPT; }

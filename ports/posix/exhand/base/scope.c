@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-#include "base/fall.h"
+#include "base/scope.h"
+
+#include "base/dissect.h"
 
 /* The first sample of the tail in which position stays within one count. */
 static size_t stop_of(const struct fall_log *log, size_t fall, double step_m)
 {
-    size_t i = part_fall_end(log, fall) - 1;
+    size_t i = fall_end(log, fall) - 1;
     double lo = log->sample[i].q_m, hi = lo;
     for (; i > log->start[fall]; i--) {
         const double q = log->sample[i - 1].q_m;
@@ -46,7 +48,7 @@ static void widen(const struct fall_log *log, struct fall_contacts *c)
     keep_first(c);
     for (size_t i = 0; i < c->n; i++) {
         c->at[i].first = log->start[c->at[i].fall];
-        c->at[i].end = part_fall_end(log, c->at[i].fall);
+        c->at[i].end = fall_end(log, c->at[i].fall);
         c->at[i].open = 1;
     }
 }

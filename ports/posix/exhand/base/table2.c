@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/table2.h"
 
-#include "lab/drop/quantile.h"
-
+#include "base/analysis.h"
 #include "base/option.h"
 
 #include <string.h>
@@ -32,7 +31,7 @@ const struct table2_row *table2_gains(double rate_Hz)
 
 /* --- one run --- */
 
-static void failed(struct table2_result *r, const char *what, const char *why)
+void table2_failed(struct table2_result *r, const char *what, const char *why)
 {
     cli_complain("%.6g Hz: %s: %s", r->rate_Hz, what, why);
     r->error = 1;
@@ -54,7 +53,7 @@ static void judge_rest(const struct run *run, const struct sim_device *d, struct
         if (status == FALL_OK) { status = fall_rest(&run->log, &contacts, &opt, rest); }
         fall_contacts_free(&contacts);
     }
-    if (status != FALL_OK) { failed(r, "rest", fall_status_text(status)); }
+    if (status != FALL_OK) { table2_failed(r, "rest", fall_status_text(status)); }
     for (size_t i = 0; r->error == 0 && i < run->log.falls; i++) {
         r->oscillating += rest[i].rest == FALL_OSCILLATES;
         r->buzzing += rest[i].rest == FALL_BUZZ;
@@ -107,7 +106,7 @@ static void judge_stiffness(const struct run *run, const char *plot_prefix, enum
     status = fall_stiffness(&run->log, &opt, &s);
     r->line = s.fit.status;
     if (status != FALL_OK) {
-        failed(r, "stiffness", fall_status_text(status));
+        table2_failed(r, "stiffness", fall_status_text(status));
     } else if (s.fit.status == FALL_OK) {
         r->b_Npm = s.fit.b_Npm;
         r->a_Npm = s.fit.a_Npm;
@@ -124,7 +123,9 @@ static void judge_stiffness(const struct run *run, const char *plot_prefix, enum
     if (status != FALL_OK || ask < TABLE2_SAME) { return; }
     opt.lag = 0;
     status = fall_stiffness(&run->log, &opt, &s);
-    if (status != FALL_OK) { failed(r, "stiffness at the same tick", fall_status_text(status)); }
+    if (status != FALL_OK) {
+        table2_failed(r, "stiffness at the same tick", fall_status_text(status));
+    }
     if (status == FALL_OK && s.fit.status == FALL_OK) {
         r->b_same_Npm = s.fit.b_Npm;
         r->a_same_Npm = s.fit.a_Npm;
@@ -132,15 +133,8 @@ static void judge_stiffness(const struct run *run, const char *plot_prefix, enum
     fall_stiffness_free(&s);
 }
 
-static void judge_readings(const struct run *run, const struct sim_device *d,
-                           struct table2_result *r)
-{
-    const enum fall_status status = reading_all(&run->log, d->step_m / d->decode, r->reading_Npm);
-    if (status != FALL_OK) { failed(r, "readings", fall_status_text(status)); }
-}
-
-struct table2_result table2_measure(const struct run_cfg *c, const char *plot_prefix,
-                                    enum table2_ask ask)
+struct table2_result table2_measure_more(const struct run_cfg *c, const char *plot_prefix,
+                                         enum table2_ask ask, table2_judge *more)
 {
     struct table2_result r;
     struct run run;
@@ -155,7 +149,7 @@ struct table2_result table2_measure(const struct run_cfg *c, const char *plot_pr
         r.rate_Hz = (double)run.T.den / run.T.num;
         judge_rest(&run, &c->board.device, &r);
         if (ask >= TABLE2_LINE) { judge_stiffness(&run, plot_prefix, ask, &r); }
-        if (ask >= TABLE2_READINGS) { judge_readings(&run, &c->board.device, &r); }
+        if (more) { more(&run.log, &c->board.device, &r); }
         r.faults = run.faults;
         r.lost = run.lost;
         r.guard = run.guard;
@@ -164,64 +158,8 @@ struct table2_result table2_measure(const struct run_cfg *c, const char *plot_pr
     return r;
 }
 
-/* --- many runs --- */
-
-#define RUNS_MAX 1000
-
-struct values {
-    double at[RUNS_MAX];
-    int n;
-};
-
-static void add(struct values *v, double value)
+struct table2_result table2_measure(const struct run_cfg *c, const char *plot_prefix,
+                                    enum table2_ask ask)
 {
-    v->at[v->n++] = value;
-}
-
-/* What was not seen to come to rest has not come to rest, nor was it seen to
- * oscillate: incomplete falls count against us on either side. */
-static double share(const struct table2_result *r, int runs, int with_incomplete)
-{
-    int falls = 0, oscillating = 0;
-    for (int i = 0; i < runs; i++) {
-        if (!r[i].done) { continue; }
-        falls += r[i].falls;
-        oscillating += r[i].oscillating + (with_incomplete ? r[i].incomplete : 0);
-    }
-    return falls ? (double)oscillating / falls : -1;
-}
-
-struct table2_spread table2_spread(const struct table2_result *at_1,
-                                   const struct table2_result *at_15, int runs)
-{
-    static struct values b, a, b_same, a_same;
-    const int n = runs < RUNS_MAX ? runs : RUNS_MAX;
-    const double restless = share(at_1, n, 1);
-    struct table2_spread s;
-
-    memset(&s, 0, sizeof s);
-    b.n = a.n = b_same.n = a_same.n = 0;
-    for (int i = 0; i < n; i++) {
-        if (!at_1[i].done) { continue; }
-        s.runs++;
-        if (at_1[i].b_Npm > 0) {
-            add(&b, at_1[i].b_Npm);
-            add(&a, at_1[i].a_Npm);
-        }
-        if (at_1[i].b_same_Npm > 0) {
-            add(&b_same, at_1[i].b_same_Npm);
-            add(&a_same, at_1[i].a_same_Npm);
-        }
-    }
-    s.lines = b.n;
-    s.lines_same = b_same.n;
-    s.b_Npm = quantile(b.at, b.n, s.runs, 0.5);
-    s.b_low_Npm = quantile(b.at, b.n, s.runs, 0.05);
-    s.b_high_Npm = quantile(b.at, b.n, s.runs, 0.95);
-    s.a_Npm = quantile(a.at, a.n, s.runs, 0.5);
-    s.b_same_Npm = quantile(b_same.at, b_same.n, s.runs, 0.5);
-    s.a_same_Npm = quantile(a_same.at, a_same.n, s.runs, 0.5);
-    s.rest = restless < 0 ? -1 : 1 - restless;
-    s.oscillates = share(at_15, n, 0);
-    return s;
+    return table2_measure_more(c, plot_prefix, ask, NULL);
 }

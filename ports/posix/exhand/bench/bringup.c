@@ -40,11 +40,7 @@ int cli_bringup(int argc, char **argv)
     static struct bringup_run r;
     int64_t rate_Hz = 1000, seed = 1, phase = -1;
     int list = 0, faults = 0, cards = 0, pace = 0, err;
-    const struct cli_call fault = {take_wrong, &c};
-    union {
-        const struct cli_call *view;
-        void *to;
-    } u = {&fault};
+    struct cli_call fault = {take_wrong, &c};
     const struct cli_option option[] = {
         {"boot", CLI_TEXT, &c.boot, 0, 0, "LINE",
          "\"name=value ...\", as on the image's command line"},
@@ -53,7 +49,7 @@ int cli_bringup(int argc, char **argv)
         {"cards", CLI_FLAG, &cards, 0, 0, NULL,
          "through the drivers and emulated cards: the same words"},
         {"pace", CLI_FLAG, &pace, 0, 0, NULL, "follow the wall clock, for people who watch"},
-        {"wrong", CLI_CALL, u.to, 0, 0, "NAME", "something is wrong"},
+        {"wrong", CLI_CALL, &fault, 0, 0, "NAME", "something is wrong"},
         {"phase", CLI_INT, &phase, 0, 9, "N",
          "from 0.2 s into this phase on, the first is 0 (power-on)"},
         {"faults", CLI_FLAG, &faults, 0, 0, NULL,

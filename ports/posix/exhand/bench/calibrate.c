@@ -412,19 +412,15 @@ int cli_calibrate(int argc, char **argv)
     static struct calibrate_options o;
     static const double mass_kg[] = {0.1, 0.2, 0.3, 0.5, 0.7};
     int list = 0, glove = 0, err; /* --glove never gets as far as being set */
-    const struct cli_call known = {take_masses, &o}, setting = {take_setting, &o};
-    const struct cli_call device = {take_device, &o}, fault = {take_wrong, &o};
-    const struct cli_call hung = {take_hung, &o};
-    union {
-        const struct cli_call *view;
-        void *to;
-    } u[5] = {{&known}, {&setting}, {&device}, {&fault}, {&hung}};
+    struct cli_call known = {take_masses, &o}, setting = {take_setting, &o};
+    struct cli_call device = {take_device, &o}, fault = {take_wrong, &o};
+    struct cli_call hung = {take_hung, &o};
     const struct cli_option option[] = {
         {"glove", CLI_FLAG, &glove, 0, 0, NULL,
          "the glove, from poses: --glove --help lists its options"},
-        {"mass", CLI_CALL, u[0].to, 0, 0, "KG[,KG...]",
+        {"mass", CLI_CALL, &known, 0, 0, "KG[,KG...]",
          "known masses, rising (0.1,0.2,0.3,0.5,0.7)"},
-        {"hung", CLI_CALL, u[4].to, 0, 0, "KG[,KG...]",
+        {"hung", CLI_CALL, &hung, 0, 0, "KG[,KG...]",
          "what really hangs on the string, as many (the same)"},
         {"rate", CLI_INT, &o.rate_Hz, 20, 20000, "HZ", "loop rate (2000)"},
         {"out", CLI_TEXT, &o.out, 0, 0, "DIR", "write image, CSVs and a picture's script there"},
@@ -439,9 +435,9 @@ int cli_calibrate(int argc, char **argv)
         {"cards", CLI_FLAG, &o.cards, 0, 0, NULL,
          "through the drivers and emulated cards: the same bits"},
         {"pace", CLI_FLAG, &o.pace, 0, 0, NULL, "follow the wall clock, for people who watch"},
-        {"set", CLI_CALL, u[1].to, 0, 0, "NAME=VALUE", "a parameter of the scene"},
-        {"device", CLI_CALL, u[2].to, 0, 0, "NAME=VALUE", "a value of the simulated device"},
-        {"wrong", CLI_CALL, u[3].to, 0, 0, "NAME", "something that is wrong at the bench"},
+        {"set", CLI_CALL, &setting, 0, 0, "NAME=VALUE", "a parameter of the scene"},
+        {"device", CLI_CALL, &device, 0, 0, "NAME=VALUE", "a value of the simulated device"},
+        {"wrong", CLI_CALL, &fault, 0, 0, "NAME", "something that is wrong at the bench"},
         {"params", CLI_FLAG, &list, 0, 0, NULL, "list these three, with units and ranges"},
     };
     const struct cli_command c = {

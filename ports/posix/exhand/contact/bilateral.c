@@ -5,7 +5,6 @@
 #include "base/assign.h"
 #include "base/cli.h"
 #include "base/option.h"
-#include "lab/drop/preset.h"
 #include "base/param.h"
 
 #include "world/world.h"
@@ -91,9 +90,8 @@ static int take_gains(struct bilateral_options *o)
 
 static int load_params(struct bilateral_options *o)
 {
-    const int several = o->sweep || o->check || o->hands || o->crisp;
     int err;
-    if ((o->params.load || o->params.save) && several) {
+    if ((o->params.load || o->params.save) && o->study) {
         cli_complain("--load-params, --save-params: leave out --sweep, --check, --hands, --crisp");
         return 2;
     }
@@ -122,7 +120,7 @@ static int load_record(struct bilateral_options *o)
 {
     int err;
     if (o->record == NULL) { return 0; }
-    if (o->sweep || o->check || o->hands || o->crisp) {
+    if (o->study) {
         cli_complain("--record: what was recorded is played once: leave out --sweep, --check, "
                      "--hands, --crisp");
         return 2;
@@ -154,26 +152,23 @@ static int steps_too_long(struct bilateral_options *o)
     return err;
 }
 
-/* What says otherwise how the two are to be. */
-static int take_preset(const struct bilateral_options *o, double rate_Hz)
+/* Options that do not go together: 0, or 2 after a line on stderr. */
+static int refuse(const struct bilateral_options *o)
 {
-    int err = o->preset ? original_take(o->preset) : 0;
-    if (o->preset == NULL || err) { return err; }
-    if (rate_Hz != ORIGINAL_BOX_HZ || o->run.k_Npm >= 0 || o->run.b_Nspm >= 0 || o->scene ||
-        o->record || o->udp || o->params.load || o->params.save || o->run.trace_every ||
-        o->run.blackbox || o->sweep || o->check || o->hands || o->crisp ||
-        2 * o->speeds > ORIGINAL_COLUMNS) {
-        cli_complain("--preset: goes with up to three --speed, --fingers, --approaches, --at, "
-                     "--pose, --link, --fps, --set, --device, "
-                     "--calibration, --cards, --seed and --out alone");
-        err = 2;
+    if (o->run.trace_every && o->udp) {
+        cli_complain("--trace: leave out --udp: a world elsewhere asks for its own");
+        return 2;
     }
-    return err;
+    if (o->run.blackbox && (o->speeds != 1 || o->study)) {
+        cli_complain("--blackbox: one speed, once: --out names a dump for each speed");
+        return 2;
+    }
+    return 0;
 }
 
-static int go(struct bilateral_options *o, double rate_Hz)
+static int go(struct bilateral_options *o, double rate_Hz, const struct bilateral_study *study)
 {
-    int err = take_preset(o, rate_Hz);
+    int err = study->refuse ? study->refuse(o, rate_Hz) : 0;
     if (err == 0) { err = steps_too_long(o); }
     if (err == 0) { err = load_scene(o); }
     if (err == 0) { err = load_record(o); }
@@ -189,105 +184,74 @@ static int go(struct bilateral_options *o, double rate_Hz)
         o->run.board.pace = 1;
         o->run.board.slack_s = UDP_SLACK_S;
     }
-    if (o->run.trace_every && o->udp) {
-        cli_complain("--trace: leave out --udp: a world elsewhere asks for its own");
-        return 2;
-    }
-    if (o->sweep + (o->check > 0) + o->hands + o->crisp > 1) {
-        cli_complain("--sweep, --check, --hands, --crisp: one at a time");
-        return 2;
-    }
-    if (o->run.blackbox && (o->speeds != 1 || o->sweep || o->check || o->hands || o->crisp)) {
-        cli_complain("--blackbox: one speed, once: --out names a dump for each speed");
-        return 2;
-    }
-    if (o->out) { err = bilateral_out_open(o->out); }
+    err = refuse(o);
+    if (err == 0 && o->out) { err = bilateral_out_open(o->out); }
     if (err) { return err; }
     err = probe(o);
     if (err) { return err; }
-    err = o->sweep    ? bilateral_sweep(o)
-          : o->check  ? bilateral_check(o)
-          : o->hands  ? bilateral_hands(o)
-          : o->crisp  ? bilateral_crisp(o)
-          : o->preset ? bilateral_original(o)
-                      : bilateral_experiment(o);
+    err = study->run ? study->run(o) : bilateral_experiment(o);
     world_free(o->run.scene);
     sim_trace_free(&o->trace);
     hand_record_free(&o->hand);
     return err;
 }
 
-int cli_bilateral(int argc, char **argv)
+int bilateral_command(int argc, char **argv, struct bilateral_options *o,
+                      const struct bilateral_study *study)
 {
-    static struct bilateral_options o;
     int list = 0, err;
     double rate_Hz = 2000;
-    const struct cli_call speeds = {bilateral_take_speeds, &o},
-                          fingers = {bilateral_take_fingers, &o}, link = {bilateral_take_link, &o};
-    const struct cli_call calibration = {images_take, &o.images};
-    const struct cli_call setting = {bilateral_take_setting, &o},
-                          device = {bilateral_take_device, &o}, pose = {bilateral_take_pose, &o};
-    union {
-        const struct cli_call *view;
-        void *to;
-    } u[7] = {{&speeds}, {&fingers}, {&link}, {&setting}, {&device}, {&pose}, {&calibration}};
+    struct cli_call speeds = {bilateral_take_speeds, o}, fingers = {bilateral_take_fingers, o};
+    struct cli_call link = {bilateral_take_link, o}, setting = {bilateral_take_setting, o};
+    struct cli_call device = {bilateral_take_device, o}, pose = {bilateral_take_pose, o};
+    struct cli_call calibration = {images_take, &o->images};
     const struct cli_option option[] = {
-        {"speed", CLI_CALL, u[0].to, 0, 0, "V[,V...]",
+        {"speed", CLI_CALL, &speeds, 0, 0, "V[,V...]",
          "slow, natural, fast or m/s of string (these three)"},
-        {"fingers", CLI_CALL, u[1].to, 0, 0, "F[,F...]",
+        {"fingers", CLI_CALL, &fingers, 0, 0, "F[,F...]",
          "thumb, index, middle, ring, little or all (index)"},
-        {"record", CLI_TEXT, &o.record, 0, 0, "FILE",
+        {"record", CLI_TEXT, &o->record, 0, 0, "FILE",
          "the fingers do what a glove recorded, instead of approaches"},
-        {"record-rate", CLI_REAL, &o.record_Hz, 0.1, 10000, "HZ",
+        {"record-rate", CLI_REAL, &o->record_Hz, 0.1, 10000, "HZ",
          "of its rows, if they have no clock (100)"},
-        {"approaches", CLI_INT, &o.approaches, 1, BILATERAL_CONTACTS_MAX, "N", "at each speed (5)"},
-        {"at", CLI_REAL, &o.run.at_m, 0.008, 0.06, "M",
+        {"approaches", CLI_INT, &o->approaches, 1, BILATERAL_CONTACTS_MAX, "N",
+         "at each speed (5)"},
+        {"at", CLI_REAL, &o->run.at_m, 0.008, 0.06, "M",
          "the wall stands where so much string is out (0.030)"},
-        {"pose", CLI_CALL, u[5].to, 0, 0, "NAME",
-         "the hand, where no finger in use bends it (flat)"},
-        {"scene", CLI_TEXT, &o.scene, 0, 0, "FILE",
+        {"pose", CLI_CALL, &pose, 0, 0, "NAME", "the hand, where no finger in use bends it (flat)"},
+        {"scene", CLI_TEXT, &o->scene, 0, 0, "FILE",
          "a scene of the world simulator instead of walls"},
         {"rate", CLI_REAL, &rate_Hz, 1, 20000, "HZ", "of the loop (2000)"},
-        {"k", CLI_REAL, &o.run.k_Npm, 0, 1e6, "N/M",
+        {"k", CLI_REAL, &o->run.k_Npm, 0, 1e6, "N/M",
          "stiffness (20000; with --scene its materials')"},
-        {"b", CLI_REAL, &o.run.b_Nspm, 0, 1e3, "NS/M", "damping (60; with --scene its materials')"},
-        {"link", CLI_CALL, u[2].to, 0, 0, "SPEC",
+        {"b", CLI_REAL, &o->run.b_Nspm, 0, 1e3, "NS/M",
+         "damping (60; with --scene its materials')"},
+        {"link", CLI_CALL, &link, 0, 0, "SPEC",
          "none, trace=FILE (round trips), delay=S,jitter=S,loss=SHARE,... (none)"},
-        {"fps", CLI_REAL, &o.run.fps, 1, 2000, "N", "frames of the world a second (400)"},
-        {"trace", CLI_INT, &o.run.trace_every, 1, 1e6, "N",
+        {"fps", CLI_REAL, &o->run.fps, 1, 2000, "N", "frames of the world a second (400)"},
+        {"trace", CLI_INT, &o->run.trace_every, 1, 1e6, "N",
          "the world asks for a trace of every N-th tick, over the link (none)"},
-        {"ray", CLI_REAL, &o.run.ray_m, 0, 1, "M",
+        {"ray", CLI_REAL, &o->run.ray_m, 0, 1, "M",
          "a wall is not seen from farther off (no limit)"},
-        {"world-from", CLI_REAL, &o.run.from_s, 0, 1e9, "S", "the world is not there before (0)"},
-        {"world-until", CLI_REAL, &o.run.until_s, 0, 1e30, "S", "it dies then (never)"},
-        {"udp", CLI_TEXT, &o.udp, 0, 0, "HOST:PORT",
+        {"world-from", CLI_REAL, &o->run.from_s, 0, 1e9, "S", "the world is not there before (0)"},
+        {"world-until", CLI_REAL, &o->run.until_s, 0, 1e30, "S", "it dies then (never)"},
+        {"udp", CLI_TEXT, &o->udp, 0, 0, "HOST:PORT",
          "the world is another process there; in real time"},
-        {"cards", CLI_FLAG, &o.cards, 0, 0, NULL,
+        {"cards", CLI_FLAG, &o->cards, 0, 0, NULL,
          "through the drivers and emulated cards: the same bits"},
-        {"seed", CLI_INT, &o.seed, 0, 1e9, "N", "of all chance in the simulation (1)"},
-        {"out", CLI_TEXT, &o.out, 0, 0, "DIR", "write logs, CSVs and what pictures need there"},
-        {"blackbox", CLI_TEXT, &o.run.blackbox, 0, 0, "FILE",
+        {"seed", CLI_INT, &o->seed, 0, 1e9, "N", "of all chance in the simulation (1)"},
+        {"out", CLI_TEXT, &o->out, 0, 0, "DIR", "write logs, CSVs and what pictures need there"},
+        {"blackbox", CLI_TEXT, &o->run.blackbox, 0, 0, "FILE",
          "the last seconds before a fault, a log (with --out beside the others)"},
-        {"let-go", CLI_REAL, &o.run.board.let_go_s, 0, 1e9, "S",
+        {"let-go", CLI_REAL, &o->run.board.let_go_s, 0, 1e9, "S",
          "the dead-man switch opens then: a fault (never)"},
-        {"set", CLI_CALL, u[3].to, 0, 0, "NAME=VALUE", "a parameter of the scene, of all fingers"},
-        {"device", CLI_CALL, u[4].to, 0, 0, "NAME=VALUE",
+        {"set", CLI_CALL, &setting, 0, 0, "NAME=VALUE", "a parameter of the scene, of all fingers"},
+        {"device", CLI_CALL, &device, 0, 0, "NAME=VALUE",
          "a value of the simulated hand, glove or motors"},
-        PARAMS_FILE_OPTIONS(o.params),
-        {"calibration", CLI_CALL, u[6].to, 0, 0, "FILE[,FILE...]",
+        PARAMS_FILE_OPTIONS(o->params),
+        {"calibration", CLI_CALL, &calibration, 0, 0, "FILE[,FILE...]",
          "of the fingers, or a directory of them (none: the simulated device as it is, "
          "uncalibrated=1)"},
-        {"preset", CLI_TEXT, &o.preset, 0, 0, "NAME",
-         "original: the commercial system at 90 Hz, beside this box at 2 kHz"},
-        {"sweep", CLI_FLAG, &o.sweep, 0, 0, NULL,
-         "stiffness and missed contacts over delay, jitter and loss"},
-        {"check", CLI_INT, &o.check, 1, 1e6, "N",
-         "random approaches: none may be felt before its freeze"},
-        {"hands", CLI_FLAG, &o.hands, 0, 0, NULL,
-         "80 fingers and hands: settling and stiffness of each"},
-        {"crisp", CLI_FLAG, &o.crisp, 0, 0, NULL, "how fast force rises, over a grid of k and b"},
-        {"jobs", CLI_INT, &o.jobs, 1, 1024, "N",
-         "processes at a time, of all but the experiment (one a core)"},
         {"params", CLI_FLAG, &list, 0, 0, NULL, "list all values, with units and ranges"},
     };
     const struct cli_command c = {
@@ -302,12 +266,20 @@ int cli_bilateral(int argc, char **argv)
         (int)(sizeof option / sizeof option[0]),
         0};
 
-    bilateral_defaults(&o);
-    err = cli_parse(&c, argc, argv, NULL);
+    bilateral_defaults(o);
+    err = cli_parse_more(&c, &study->more, argc, argv, NULL);
     if (err) { return err == 1 ? 0 : err; }
     if (list) {
         bilateral_print_params();
         return 0;
     }
-    return go(&o, rate_Hz);
+    return go(o, rate_Hz, study);
+}
+
+int cli_bilateral(int argc, char **argv)
+{
+    static struct bilateral_options o;
+    static const struct bilateral_study none = {
+        {NULL, 0, "preset sweep check hands crisp jobs"}, NULL, NULL};
+    return bilateral_command(argc, argv, &o, &none);
 }

@@ -6,6 +6,7 @@
 #include "contact/judge.h"
 #include "contact/hand_record.h"
 #include "base/jobs.h"
+#include "base/option.h"
 #include "base/params_file.h"
 
 #include <stdio.h>
@@ -23,9 +24,10 @@ struct bilateral_options {
     struct bilateral_run_cfg run; /* all but the speed */
     struct bilateral_speed speed[BILATERAL_SPEEDS_MAX];
     int speeds;
-    int64_t approaches, seed, jobs, check;
-    int sweep, hands, crisp, cards, own_scale; /* own_scale: s was set, it is not fitted */
-    const char *scene, *out, *udp, *link, *record, *preset;
+    int64_t approaches, seed, jobs;
+    int study, cards, own_scale; /* own_scale: s was set, it is not fitted; study: the lab
+                                  * runs many */
+    const char *scene, *out, *udp, *link, *record;
     double record_Hz;
     struct run_setting setting[BILATERAL_SETTINGS_MAX];
     int settings;
@@ -52,9 +54,6 @@ void bilateral_print_params(void);
 
 /* bilateral_experiment.c: exit status. */
 int bilateral_experiment(const struct bilateral_options *o);
-
-/* bilateral_original.c: exit status. */
-int bilateral_original(const struct bilateral_options *o);
 
 /* The run of one speed. */
 struct bilateral_run_cfg bilateral_at_speed(const struct bilateral_options *o, double mps);
@@ -95,12 +94,15 @@ int bilateral_out_csv(const char *dir, const struct bilateral_run *r, unsigned f
 int bilateral_out_pictures(const char *dir, const struct bilateral_result *r, int n, double k_Npm,
                            double b_Nspm, const char *link);
 
-/* bilateral_sweep.c, bilateral_check.c: exit status. */
-int bilateral_sweep(const struct bilateral_options *o);
-int bilateral_check(const struct bilateral_options *o);
+/* What the lab does with the options besides. */
+struct bilateral_study {
+    struct cli_more more;
+    int (*refuse)(struct bilateral_options *o, double rate_Hz); /* 0 or 2; NULL: nothing */
+    int (*run)(const struct bilateral_options *o);              /* NULL: the experiment */
+};
 
-/* bilateral_grid.c: over hands, or over k and b: exit status. */
-int bilateral_hands(const struct bilateral_options *o);
-int bilateral_crisp(const struct bilateral_options *o);
+/* The command: exit status. */
+int bilateral_command(int argc, char **argv, struct bilateral_options *o,
+                      const struct bilateral_study *study);
 
 #endif

@@ -2,6 +2,7 @@
 #include "drop/outdir.h"
 
 #include "base/option.h"
+#include "drop/print.h"
 
 #include <errno.h>
 #include <string.h>
@@ -17,7 +18,7 @@ static void path(char to[TABLE2_PATH_B], const char *dir, const char *name)
     snprintf(to, TABLE2_PATH_B, "%s/%s", dir, name);
 }
 
-static FILE *create(const char *dir, const char *name)
+FILE *outdir_create(const char *dir, const char *name)
 {
     char p[TABLE2_PATH_B];
     FILE *f;
@@ -27,8 +28,7 @@ static FILE *create(const char *dir, const char *name)
     return f;
 }
 
-/* 0, or 1 after a line on stderr. */
-static int finish(FILE *f, const char *dir, const char *name)
+int outdir_finish(FILE *f, const char *dir, const char *name)
 {
     const int bad = ferror(f);
     if (fclose(f) == 0 && !bad) { return 0; }
@@ -69,23 +69,14 @@ void outdir_path(char to[TABLE2_PATH_B], const char *dir, double rate_Hz, const 
     snprintf(to, TABLE2_PATH_B, "%s/drop_%gHz%s", dir, rate_Hz, suffix);
 }
 
-int outdir_tables(const char *dir, const struct table2_result *r, const struct table2_spread *s,
-                  int rows)
+int outdir_table(const char *dir, const struct table2_result *r, int rows)
 {
-    FILE *f = create(dir, "table2.csv");
+    FILE *f = outdir_create(dir, "table2.csv");
     int err = f == NULL;
     if (f) {
         table2_csv_header(f);
         for (int i = 0; i < rows; i++) { table2_csv_line(f, &r[i]); }
-        err |= finish(f, dir, "table2.csv");
-    }
-    if (s == NULL) { return err; }
-    f = create(dir, "spread.csv");
-    err |= f == NULL;
-    if (f) {
-        table2_spread_csv_header(f);
-        for (int i = 0; i < rows; i++) { table2_spread_csv_line(f, &r[i], &s[i]); }
-        err |= finish(f, dir, "spread.csv");
+        err |= outdir_finish(f, dir, "table2.csv");
     }
     return err;
 }
@@ -144,7 +135,7 @@ static void item_stiffness(FILE *f, const struct table2_result *r)
 int outdir_pictures(const char *dir, const struct sim_device *d, const struct table2_result *r,
                     int rows)
 {
-    FILE *f = create(dir, "pictures.gp");
+    FILE *f = outdir_create(dir, "pictures.gp");
     if (f == NULL) { return 1; }
     fprintf(
         f,
@@ -164,5 +155,5 @@ int outdir_pictures(const char *dir, const struct sim_device *d, const struct ta
     list(f, "bs", r, rows, item_b);
     list(f, "stiffnesses", r, rows, item_stiffness);
     fprintf(f, "load plots.'/fall.gp'\n");
-    return finish(f, dir, "pictures.gp");
+    return outdir_finish(f, dir, "pictures.gp");
 }

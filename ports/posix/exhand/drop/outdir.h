@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* The directory that `exhand drop --out` leaves its files in. */
-#ifndef CLI_OUTDIR_H
-#define CLI_OUTDIR_H
+#ifndef DROP_OUTDIR_H
+#define DROP_OUTDIR_H
 
 #include "base/table2.h"
+
+#include <stdio.h>
 
 /* Makes the directory if need be, removes the tables and pictures of an earlier
  * experiment and sees whether files can be made. 0, or 2 after a line on stderr. */
@@ -12,9 +14,12 @@ int outdir_open(const char *dir);
 /* DIR/drop_RATEHz + suffix: what belongs to one rate. */
 void outdir_path(char to[TABLE2_PATH_B], const char *dir, double rate_Hz, const char *suffix);
 
-/* table2.csv, and spread.csv unless s is NULL. 0, or 1 after a line on stderr. */
-int outdir_tables(const char *dir, const struct table2_result *r, const struct table2_spread *s,
-                  int rows);
+/* A file there, and its end: NULL, or 1 after a line on stderr. */
+FILE *outdir_create(const char *dir, const char *name);
+int outdir_finish(FILE *f, const char *dir, const char *name);
+
+/* table2.csv. 0, or 1 after a line on stderr. */
+int outdir_table(const char *dir, const struct table2_result *r, int rows);
 
 /* pictures.gp: what gnuplot needs to draw the pictures, run inside the directory.
  * 0, or 1 after a line on stderr. rows > 0. */

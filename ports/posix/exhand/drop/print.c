@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "base/table2.h"
+#include "drop/print.h"
 
 #include <string.h>
 
@@ -47,24 +47,6 @@ void table2_csv_line(FILE *f, const struct table2_result *r)
     fputc('\n', f);
 }
 
-void table2_spread_csv_header(FILE *f)
-{
-    fprintf(f, "rate_hz,k_n_per_m,b_ns_per_m,runs,median_b_n_per_m,low_b_n_per_m,high_b_n_per_m,"
-               "median_a_n_per_m,median_b_same_tick_n_per_m,median_a_same_tick_n_per_m,rest_share,"
-               "oscillating_share_at_1_5x,runs_with_line,runs_with_line_same_tick\n");
-}
-
-void table2_spread_csv_line(FILE *f, const struct table2_result *r, const struct table2_spread *s)
-{
-    const double value[] = {s->b_Npm, s->b_low_Npm,  s->b_high_Npm,
-                            s->a_Npm, s->b_same_Npm, s->a_same_Npm};
-    fprintf(f, "%.9g,%.9g,%.9g,%d", r->rate_Hz, r->k_Npm, r->b_Nspm, s->runs);
-    for (size_t i = 0; i < sizeof value / sizeof value[0]; i++) { positive(f, value[i]); }
-    share(f, s->rest >= 0, s->rest);
-    share(f, s->oscillates >= 0, s->oscillates);
-    fprintf(f, ",%d,%d\n", s->lines, s->lines_same);
-}
-
 /* --- for people --- */
 
 struct text {
@@ -79,13 +61,6 @@ static const char *text(struct text *t, int known, int decimals, double v)
     } else {
         strcpy(t->s, "-");
     }
-    return t->s;
-}
-
-static const char *percent(struct text *t, double share)
-{
-    if (share < 0) { return text(t, 0, 0, 0); }
-    snprintf(t->s, sizeof t->s, "%.1f %%", 100 * share);
     return t->s;
 }
 
@@ -115,7 +90,7 @@ static void print_run(FILE *f, const struct table2_result *r)
             text(&ratio, paper != NULL && line, 2, r->b_Npm / theirs_Npm));
 }
 
-static void print_runs(FILE *f, const struct table2_result *r, int rows)
+void table2_print_runs(FILE *f, const struct table2_result *r, int rows)
 {
     fprintf(
         f,
@@ -129,43 +104,6 @@ static void print_runs(FILE *f, const struct table2_result *r, int rows)
     for (int i = 0; i < rows; i++) {
         if (r[i].line != FALL_OK) {
             fprintf(f, "%6.6g Hz: no stiffness: %s.\n", r[i].rate_Hz, fall_status_text(r[i].line));
-        }
-    }
-}
-
-static void print_spread_row(FILE *f, const struct table2_result *r, const struct table2_spread *s)
-{
-    const int line = s->b_Npm > 0;
-    struct text b, interval, per_k, a, b_same, a_same, rest, oscillates;
-    fprintf(f, "%6.6g %10s %18s %5s |%9s %13s %13s |%8s %19s\n", r->rate_Hz,
-            text(&b, line, 0, s->b_Npm), range(&interval, s->b_low_Npm, s->b_high_Npm),
-            text(&per_k, line && r->k_Npm > 0, 2, s->b_Npm / r->k_Npm), text(&a, line, 0, s->a_Npm),
-            text(&b_same, s->b_same_Npm > 0, 0, s->b_same_Npm),
-            text(&a_same, s->a_same_Npm > 0, 0, s->a_same_Npm), percent(&rest, s->rest),
-            percent(&oscillates, s->oscillates));
-}
-
-static void print_spread(FILE *f, const struct table2_result *r, const struct table2_spread *s,
-                         int rows)
-{
-    int runs = 0;
-    for (int i = 0; i < rows; i++) { runs = s[i].runs > runs ? s[i].runs : runs; }
-    if (runs == 0) { return; }
-    fprintf(f,
-            "\n%d further runs a rate: one run is one draw of this\n\n"
-            "  rate   median B  5 %%..95 %% of runs  B/k | median A   B same tick   A same tick |"
-            " at rest   1.5x gains oscillate\n",
-            runs);
-    for (int i = 0; i < rows; i++) {
-        if (s[i].runs > 0) { print_spread_row(f, &r[i], &s[i]); }
-    }
-    for (int i = 0; i < rows; i++) {
-        if (s[i].runs > 0 && (s[i].lines < runs || s[i].lines_same < runs)) {
-            fprintf(
-                f,
-                "%6.6g Hz: of %d runs %d gave a line, %d at the same tick: medians are of these, "
-                "if they are most.\n",
-                r[i].rate_Hz, s[i].runs, s[i].lines, s[i].lines_same);
         }
     }
 }
@@ -210,11 +148,9 @@ static void print_deviations(FILE *f, const struct table2_result *r, int rows)
     }
 }
 
-void table2_print(FILE *f, const struct table2_result *r, const struct table2_spread *s, int rows)
+void table2_print_paper(FILE *f, const struct table2_result *r, int rows)
 {
     double slow_Npm = 0, fast_Npm = 0;
-    print_runs(f, r, rows);
-    if (s != NULL) { print_spread(f, r, s, rows); }
     for (int i = 0; i < rows; i++) {
         const struct table2_row *paper = compared(&r[i]);
         if (paper == &table2_paper[0]) { slow_Npm = r[i].b_Npm; }

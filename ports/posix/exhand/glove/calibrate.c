@@ -376,11 +376,7 @@ static int calibrate(const struct glove_options *o)
 int cli_calibrate_glove(int argc, char **argv)
 {
     static struct glove_options o;
-    const struct cli_call fault = {take_fault, &o}, device = {take_device, &o};
-    union {
-        const struct cli_call *view;
-        void *to;
-    } u[2] = {{&fault}, {&device}};
+    struct cli_call fault = {take_fault, &o}, device = {take_device, &o};
     int glove, list = 0, params = 0, err;
     const struct cli_option option[] = {
         {"glove", CLI_FLAG, &glove, 0, 0, NULL, "the glove, not a finger's motor"},
@@ -406,8 +402,8 @@ int cli_calibrate_glove(int argc, char **argv)
         {"miss", CLI_REAL, &o.bench.miss_deg, 0, 20, "DEG",
          "by how much the simulated person misses each angle (1)"},
         {"seed", CLI_INT, &o.bench.seed, 0, 1e9, "N", "of all chance in the simulation (1)"},
-        {"device", CLI_CALL, u[1].to, 0, 0, "NAME=VALUE", "a value of the simulated glove"},
-        {"wrong", CLI_CALL, u[0].to, 0, 0, "SENSOR=KIND",
+        {"device", CLI_CALL, &device, 0, 0, "NAME=VALUE", "a value of the simulated glove"},
+        {"wrong", CLI_CALL, &fault, 0, 0, "SENSOR=KIND",
          "a fault of the simulated glove: open, short, stuck"},
         {"params", CLI_FLAG, &params, 0, 0, NULL, "list these values and sensors"},
     };

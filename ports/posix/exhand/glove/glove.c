@@ -1,16 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand glove: the glove's Table I, recordings as stable angles, the scan's skew, logs, a stock
- * glove. */
+/* exhand glove: recordings as stable angles, logs, a stock glove. */
 #include "glove/modes.h"
 
 #include "base/assign.h"
 #include "base/cli.h"
-#include "glove/image.h"
 #include "glove_tty.h"
 #include "base/option.h"
 #include "base/param.h"
 
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -73,30 +70,9 @@ static void print_params(void)
     }
 }
 
-/* --- calibration --- */
-
-int glove_load_calibration(const char *path)
-{
-    static struct exh_glove_cal cal;
-    const int err = glove_image_read(&cal, "calibration", path);
-    return err ? err : glove_stage_cal(&cal, NULL) < 0 ? 2 : 0; /* one that was read is taken */
-}
-
 /* --- the command --- */
 
-static void interrupted(int sig)
-{
-    (void)sig;
-    posix_interrupt();
-}
-
-void glove_catch(void)
-{
-    signal(SIGINT, interrupted);
-    signal(SIGTERM, interrupted);
-}
-
-static int bad_combination(const char *what)
+int glove_bad(const char *what)
 {
     cli_complain("%s: `exhand glove --help` lists the options", what);
     return 2;
@@ -105,7 +81,6 @@ static int bad_combination(const char *what)
 /* What would do nothing is not meant so. */
 static int check_rest(const struct glove_options *o)
 {
-    const int recorded = o->selftest && (o->csv || o->log);
     const struct {
         int wrong;
         const char *why;
@@ -121,47 +96,38 @@ static int check_rest(const struct glove_options *o)
          "--does and --pose: go with --record, --pose with --serial, too"},
         {(o->does || o->pose) && o->play,
          "--play: says what the hand does: leave --does and --pose out"},
-        {(o->from_s > 0 || o->to_s > 0) && !recorded,
-         "--from and --to: go with --selftest of a recording"},
-        {o->seconds > 0 && (o->csv || o->log), "--seconds: a recording is as long as it is"},
-        {o->skew && (o->rate_Hz > 0 || o->seconds > 0 || o->calibration),
-         "--skew: does not depend on --rate, --seconds or --calibration"},
+        {o->seconds > 0 && o->csv, "--seconds: a recording is as long as it is"},
     };
     for (size_t i = 0; i < sizeof row / sizeof row[0]; i++) {
-        if (row[i].wrong) { return bad_combination(row[i].why); }
+        if (row[i].wrong) { return glove_bad(row[i].why); }
     }
     return 0;
 }
 
 static int check(const struct glove_options *o)
 {
-    if (!o->selftest && !o->csv && !o->skew && !o->record && !o->serial) {
-        return bad_combination(
-            "what to do is missing: --selftest, --csv, --skew, --record or --serial");
+    if (!o->study && !o->csv && !o->record && !o->serial) {
+        return glove_bad("what to do is missing: --csv, --record or --serial");
     }
-    if ((o->skew != 0) + (o->record || o->serial) + (o->selftest || o->csv) > 1) {
-        return bad_combination(
-            "--skew, --record or --serial, and --selftest or --csv: one at a time");
+    if ((o->record || o->serial) && o->csv) {
+        return glove_bad("--record or --serial, and --csv: one at a time");
     }
-    if (o->log && !o->selftest) { return bad_combination("--log: goes with --selftest"); }
-    if (o->csv && o->log) { return bad_combination("--csv and --log: one of them"); }
     if (o->csv && o->rate_Hz <= 0) {
-        return bad_combination("--csv: --rate HZ says how fast its rows came");
+        return glove_bad("--csv: --rate HZ says how fast its rows came");
     }
-    if (o->log && o->rate_Hz > 0) { return bad_combination("--rate: a log knows its own"); }
     if (o->unit && recording_unit_of(o->unit) == RECORDING_GUESS) {
-        return bad_combination("--unit: codes, rad, deg or turn");
+        return glove_bad("--unit: codes, rad, deg or turn");
     }
-    if ((o->tips || o->deg) && (!(o->csv || (o->serial && !o->record)) || o->selftest)) {
-        return bad_combination(
-            "--tips and --deg: go with --csv, or with --serial without --record");
+    if ((o->tips || o->deg) && (!(o->csv || (o->serial && !o->record)) || o->study)) {
+        return glove_bad("--tips and --deg: go with --csv, or with --serial without --record");
     }
     return check_rest(o);
 }
 
-static int run(struct glove_options *o)
+static int run(struct glove_options *o, const struct glove_study *study)
 {
-    int err = check(o);
+    int err = study->check ? study->check(o) : 0;
+    if (err == 0) { err = check(o); }
     if (err == 0 && o->calibration && !o->serial) { err = glove_load_calibration(o->calibration); }
     if (err) { return err; }
     if ((o->record || o->serial) && o->rate_Hz <= 0) { o->rate_Hz = exh_scene_glove.rate_Hz; }
@@ -170,31 +136,23 @@ static int run(struct glove_options *o)
         return glove_serial(o);
     }
     if (o->record) { return glove_record(o); }
-    return o->skew ? glove_skew(o) : o->selftest ? glove_table1(o) : glove_csv(o);
+    return o->study ? study->run(o) : glove_csv(o);
 }
 
-int cli_glove(int argc, char **argv)
+int glove_command(int argc, char **argv, const struct glove_study *study)
 {
     static struct glove_options o;
     int params = 0;
-    const struct cli_call set = {take_setting, &o}, device = {take_device, &o};
-    union {
-        const struct cli_call *view;
-        void *to;
-    } u[2] = {{&set}, {&device}};
+    struct cli_call set = {take_setting, &o}, device = {take_device, &o};
     const struct cli_option option[] = {
-        {"selftest", CLI_FLAG, &o.selftest, 0, 0, NULL,
-         "the paper's Table I, on the board or a recording"},
         {"csv", CLI_TEXT, &o.csv, 0, 0, "FILE",
          "a recording: 22 codes or angles a line; - is standard input"},
-        {"log", CLI_TEXT, &o.log, 0, 0, "FILE", "a log made by --record"},
         {"rate", CLI_REAL, &o.rate_Hz, 1, RATE_TOP, "HZ", "of the rows, or of the loop (2000)"},
         {"tips", CLI_FLAG, &o.tips, 0, 0, NULL, "joints and fingertips of the robot hand too"},
         {"deg", CLI_FLAG, &o.deg, 0, 0, NULL, "angles in degrees, not radians"},
         {"unit", CLI_TEXT, &o.unit, 0, 0, "UNIT",
          "of the rows: codes, rad, deg, turn; else guessed"},
         {"calibration", CLI_TEXT, &o.calibration, 0, 0, "FILE", "instead of nobody's"},
-        {"skew", CLI_FLAG, &o.skew, 0, 0, NULL, "what the scan's skew does to the fingertips"},
         {"record", CLI_TEXT, &o.record, 0, 0, "FILE",
          "run the scene on the simulated glove, or --serial, log it there"},
         {"serial", CLI_TEXT, &o.serial, 0, 0, "DEVICE",
@@ -209,41 +167,38 @@ int cli_glove(int argc, char **argv)
          "--glove`, named so"},
         {"seconds", CLI_REAL, &o.seconds, 0.001, 100000, "S",
          "how long the board is asked (10, or all of --play; --serial: until Ctrl-C)"},
-        {"from", CLI_REAL, &o.from_s, 0, 1e6, "S", "selftest: a recording is at rest from here"},
-        {"to", CLI_REAL, &o.to_s, 0, 1e6, "S", "to here"},
-        {"span", CLI_REAL, &o.span_V, 0.001, 20, "V", "all that a joint's signal can be (20)"},
-        {"travel", CLI_REAL, &o.travel_m, 1e-6, 2, "M", "a finger's string (0.034)"},
-        {"span-current", CLI_REAL, &o.span_A, 0.001, 100, "A",
-         "all that a motor's current can be (6.6)"},
         {"cards", CLI_FLAG, &o.cards, 0, 0, NULL,
          "the board's codes through the drivers and emulated cards: the same bits"},
         {"seed", CLI_INT, &o.seed, 0, 9e15, "N", "of the simulation"},
-        {"set", CLI_CALL, u[0].to, 0, 0, "NAME=VALUE", "a parameter of the scene"},
-        {"device", CLI_CALL, u[1].to, 0, 0, "NAME=VALUE", "one of the simulation"},
+        {"set", CLI_CALL, &set, 0, 0, "NAME=VALUE", "a parameter of the scene"},
+        {"device", CLI_CALL, &device, 0, 0, "NAME=VALUE", "one of the simulation"},
         {"params", CLI_FLAG, &params, 0, 0, NULL, "list both"},
     };
-    const struct cli_command c = {
-        "glove",
-        "--selftest | --csv FILE --rate HZ | --skew | --record FILE | --serial DEVICE",
-        "Glove codes to stable angles and fingertips.",
-        option,
-        (int)(sizeof option / sizeof option[0]),
-        0};
+    const struct cli_command c = {"glove",
+                                  "--csv FILE --rate HZ | --record FILE | --serial DEVICE",
+                                  "Glove codes to stable angles and fingertips.",
+                                  option,
+                                  (int)(sizeof option / sizeof option[0]),
+                                  0};
     int err;
     memset(&o, 0, sizeof o);
-    o.span_V = 20;
-    o.travel_m = 0.034;
-    o.span_A = 6.6;
     o.seed = 1;
     o.device = sim_device_default();
     o.chain = sim_glove_default();
     exh_scene_glove.defaults();
-    err = cli_parse(&c, argc, argv, NULL);
+    err = cli_parse_more(&c, &study->more, argc, argv, NULL);
     if (err) { return err == 1 ? 0 : err; }
     if (params) {
         print_params();
         return 0;
     }
     if (assign_step(&o.device, 0, 0)) { return 2; }
-    return run(&o);
+    return run(&o, study);
+}
+
+int cli_glove(int argc, char **argv)
+{
+    static const struct glove_study none = {
+        {NULL, 0, "selftest skew log from to span travel span-current"}, NULL, NULL};
+    return glove_command(argc, argv, &none);
 }

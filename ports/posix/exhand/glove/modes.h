@@ -3,6 +3,7 @@
 #ifndef CLI_GLOVE_H
 #define CLI_GLOVE_H
 
+#include "base/option.h"
 #include "base/recording.h"
 
 #include "glove/serial.h"
@@ -16,13 +17,11 @@
 #define GLOVE_SETTINGS 64
 
 struct glove_options {
-    int selftest, skew, tips, deg, cards;
-    const char *serial, *csv, *log, *record, *play, *calibration, *unit, *does, *pose;
+    int tips, deg, cards, study; /* study: the lab asks for no mode of these */
+    const char *serial, *csv, *record, *play, *calibration, *unit, *does, *pose;
     double rate_Hz;  /* 0: not said */
     double glove_Hz; /* of --serial */
     double seconds;  /* 0: not said */
-    double from_s, to_s;
-    double travel_m, span_A, span_V;
     int64_t seed;
     struct sim_device device;
     struct sim_glove_par chain;
@@ -38,22 +37,8 @@ struct glove_frames {
     struct exh_period T;
 };
 
-/* What was taken at rest. */
-struct glove_rest {
-    struct glove_frames frames;
-    uint32_t *enc; /* and mon: ticks of them; NULL: no motor in the recording */
-    int16_t *mon;
-    long ticks, cap;
-};
-
-/* From the board, from a log, from a recording; what of a recording lies between --from and --to.
- * 0, or an exit status after a line on stderr. Free the three arrays. */
-int glove_rest_board(struct glove_rest *r, const struct glove_options *o);
-int glove_rest_log(struct glove_rest *r, const char *path);
-int glove_rest_csv(struct glove_rest *r, const struct glove_options *o);
-int glove_rest_cut(struct glove_frames *f, const struct glove_options *o);
-
-/* From here on Ctrl-C ends the board's run, not the program: what there is of a log gets whole. */
+/* catch.c: from here on Ctrl-C ends the board's run, not the program: what there is of a log gets
+ * whole. */
 void glove_catch(void);
 
 /* 1 / rate as a ratio, to 1/1000 Hz. */
@@ -76,10 +61,21 @@ void glove_line(const struct glove_options *o, double t_s, const struct glove_si
 /* The calibration of a file, staged. 0, or 2 after a line on stderr. */
 int glove_load_calibration(const char *path);
 
+/* Options that do not go together: 2 after a line on stderr. */
+int glove_bad(const char *what);
+
+/* What the lab does with the options besides. */
+struct glove_study {
+    struct cli_more more;
+    int (*check)(struct glove_options *o); /* 0 or 2; NULL: nothing */
+    int (*run)(const struct glove_options *o);
+};
+
+/* The command; study->run NULL: the modes alone. Exit status. */
+int glove_command(int argc, char **argv, const struct glove_study *study);
+
 /* The modes: exit status. */
-int glove_table1(const struct glove_options *o);
 int glove_csv(const struct glove_options *o);
-int glove_skew(const struct glove_options *o);
 int glove_record(const struct glove_options *o);
 int glove_serial(const struct glove_options *o);
 

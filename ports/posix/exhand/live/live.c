@@ -189,13 +189,8 @@ static int go(struct live_options *o)
 int cli_run(int argc, char **argv)
 {
     static struct live_options o;
-    const struct cli_call set = {take_set, &o}, fingers = {take_fingers, &o},
-                          speed = {take_speed, &o};
-    const struct cli_call gpio = {contacts_take, &o.gpio};
-    union {
-        const struct cli_call *view;
-        void *to;
-    } u[4] = {{&set}, {&fingers}, {&speed}, {&gpio}};
+    struct cli_call set = {take_set, &o}, fingers = {take_fingers, &o}, speed = {take_speed, &o};
+    struct cli_call gpio = {contacts_take, &o.gpio};
     const struct cli_option option[] = {
         {"scene", CLI_TEXT, &o.scene, 0, 0, "NAME",
          "drop, guarded or bilateral (drop); custom where the program has one"},
@@ -205,11 +200,11 @@ int cli_run(int argc, char **argv)
         {"slack", CLI_REAL, &o.slack_s, 0, 1, "S",
          "with --pace: a tick so late is made up for, else it is missed (0)"},
         {"seconds", CLI_REAL, &o.seconds, 0, 1e9, "S", "the box's time, then it ends (never)"},
-        {"fingers", CLI_CALL, u[1].to, 0, 0, "F[,F...]",
+        {"fingers", CLI_CALL, &fingers, 0, 0, "F[,F...]",
          "of bilateral: thumb, index, ... or all (index)"},
-        {"speed", CLI_CALL, u[2].to, 0, 0, "V",
+        {"speed", CLI_CALL, &speed, 0, 0, "V",
          "of bilateral: slow, natural, fast or m/s (natural)"},
-        {"set", CLI_CALL, u[0].to, 0, 0, "NAME=VALUE", "a parameter of the scene"},
+        {"set", CLI_CALL, &set, 0, 0, "NAME=VALUE", "a parameter of the scene"},
         {"load-params", CLI_TEXT, &o.params, 0, 0, "FILE",
          "an image of parameters, restored before --set"},
         {"grip", CLI_FLAG, &o.grip, 0, 0, NULL,
@@ -226,7 +221,7 @@ int cli_run(int argc, char **argv)
          "of bilateral: a stock glove there instead of the simulated one; fingers stay simulated"},
         {"glove-calibration", CLI_TEXT, &o.glove_image, 0, 0, "FILE",
          "its user's, of `exhand calibrate --glove` (nobody's)"},
-        {"gpio", CLI_CALL, u[3].to, 0, 0, CONTACTS_ARG, CONTACTS_HELP},
+        {"gpio", CLI_CALL, &gpio, 0, 0, CONTACTS_ARG, CONTACTS_HELP},
         {"log", CLI_TEXT, &o.log, 0, 0, "FILE", "for `exhand replay` and `exhand csv`"},
         {"blackbox", CLI_TEXT, &o.blackbox, 0, 0, "FILE", "the last seconds before a fault, a log"},
         {"seed", CLI_INT, &o.seed, 0, 1e9, "N", "of all chance in the simulation (1)"},

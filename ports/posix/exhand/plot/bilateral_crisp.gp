@@ -5,7 +5,7 @@
 #   gnuplot -e "data='crisp.csv'; speed='0.2'" bilateral_crisp.gp
 #
 #   data         k_n_per_m,b_ns_per_m,contacts,settled,rested,...,rise_n_per_m,speed_m_per_s
-#                (exhand bilateral --crisp)
+#                (exhand-lab bilateral --crisp)
 #   speed        of the approach, m/s of string
 # Optional:
 #   out          PNG to write                            (crisp.png)

@@ -5,7 +5,7 @@
 #   gnuplot -e "data='hands.csv'; k='20000'; b='60'; speed='0.87'" bilateral_hands.gp
 #
 #   data         mass_kg,hand_k_n_per_m,hand_b_ns_per_m,contacts,settled,rested,settle_s,rest_s,
-#                stiffness_n_per_m,...,quick,quickest_s (exhand bilateral --hands)
+#                stiffness_n_per_m,...,quick,quickest_s (exhand-lab bilateral --hands)
 # Optional:
 #   out          PNG to write                            (hands.png)
 

@@ -5,7 +5,7 @@
 #   gnuplot -e "data='sweep.csv'; jitters='0 0.5 1'; losses='0 0.1'; ..." bilateral_sweep.gp
 #
 #   data         delay_s,jitter,loss,approaches,felt,missed,early,same_bits,share
-#                (exhand bilateral --sweep); delay of one way, jitter as a share of it
+#                (exhand-lab bilateral --sweep); delay of one way, jitter as a share of it
 #   jitters, losses   values in data, in its order (losses run fastest), spaces between them
 #   speed        m/s of string; ray_mm: from where walls are seen; fps: frames of the world
 #   allowed_ms   delay there and back up to which a wall is known in time by the advice

@@ -5,7 +5,7 @@
 #   gnuplot -e "data='friction.csv'; rates='90 100 ...'" friction.gp
 #
 #   data         friction,rate_hz,times,gain_stable,gain_unstable,gain_linear
-#                (exhand drop --friction); gain_stable 0: at rest at no gain tried;
+#                (exhand-lab drop --friction); gain_stable 0: at rest at no gain tried;
 #                gain_unstable empty: the ray ended first, no border
 #   rates        Hz, spaces between them
 # Optional:

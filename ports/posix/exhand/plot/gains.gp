@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # The gains that are allowed at each loop rate, over a simulated map, with the rule of the target.
 #
-#   gnuplot -c gains.gp PLOTS        in a directory of `exhand advise gains --out`
+#   gnuplot -c gains.gp PLOTS        in a directory of `exhand-lab advise gains --out`
 #
 #   allowed.csv  rate_hz, b_low, b_high, k_low, k_high: boxes that are allowed
 #   rule.csv     rate_hz, knot, b, k, k_min

@@ -4,7 +4,7 @@
 #
 #   gnuplot -e "data='stiffness.csv'" rate.gp
 #
-#   data         rate_hz,k_n_per_m,...,linear_k_n_per_m,...   (exhand drop --sweep)
+#   data         rate_hz,k_n_per_m,...,linear_k_n_per_m,...   (exhand-lab drop --sweep)
 # Optional:
 #   held         the same with the velocity's window held at 0.8 ms
 #   out          PNG to write                            (rate.png)

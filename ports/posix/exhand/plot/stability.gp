@@ -4,7 +4,7 @@
 #
 #   gnuplot -e "cells='stability.csv'; border='border.csv'; rho='rho.csv'; ..." stability.gp
 #
-#   cells        rate_hz,k_n_per_m,b_ns_per_m,stable_falls,falls,...   (exhand drop --sweep)
+#   cells        rate_hz,k_n_per_m,b_ns_per_m,stable_falls,falls,...   (exhand-lab drop --sweep)
 #   border       rate_hz,along,k_n_per_m,b_ns_per_m: points between stable and unstable
 #   rho          rate,k,b,rho on a grid; two empty lines between rates, in order of rates
 #   rates        Hz; k_tops, b_tops: ends of the axes, N/m and Ns/m, one per rate

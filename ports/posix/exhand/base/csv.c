@@ -1,0 +1,166 @@
+/* SPDX-License-Identifier: MIT */
+#include "base/csv.h"
+
+#include "base/logfile.h"
+#include "base/option.h"
+#include "base/param.h"
+
+#include "exhand/run/log.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+/* --- the rows of a log --- */
+
+struct walk {
+    struct logfile *log;
+    unsigned what;
+    uint64_t tick; /* of the row */
+    struct exh_scene_in in;
+    int32_t fall; /* the last mark: 0 between falls */
+    uint32_t rows;
+    uint32_t malformed; /* records of another length than they must have */
+    uint32_t unordered; /* frames whose tick does not rise */
+};
+
+static void take_mark(struct walk *w, const struct exh_record *r)
+{
+    struct exh_bytes c = exh_bytes_reader(r->payload, r->len_B);
+    struct exh_event e;
+    exh_event_bytes(&c, &e);
+    if (!exh_bytes_ok(&c) || c.at != r->len_B) {
+        w->malformed++;
+    } else if (e.type == EXH_EVENT_MARK) {
+        w->fall = e.value;
+    }
+}
+
+/* The next row, its values in the scene's signals and w->in; 0 at the end. */
+static int next_row(struct walk *w)
+{
+    struct exh_record r;
+    struct exh_drive_out out;
+    while (logfile_next(w->log, &r)) {
+        struct exh_bytes c = exh_bytes_reader(r.payload, r.len_B);
+        if (r.type == EXH_RECORD_EVENT) { take_mark(w, &r); }
+        if (r.type != EXH_RECORD_FRAME) { continue; }
+        if ((w->what & CSV_FALLS) && w->fall == 0) { continue; }
+        memset(&w->in, 0, sizeof w->in);
+        exh_log_frame_bytes(&c, w->log->scene, &w->in, &out, w->log->scene->signal);
+        if (!exh_bytes_ok(&c) || c.at != r.len_B) {
+            w->malformed++;
+        } else if (w->rows > 0 && w->log->tick <= w->tick) {
+            w->unordered++;
+        } else {
+            w->tick = w->log->tick;
+            w->rows++;
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* --- as text --- */
+
+static uint32_t columns(const struct exh_signal_table *t, unsigned what)
+{
+    /* the first group is the paper's */
+    return what & CSV_ALL ? exh_signal_count(t) : t->group[0].rows;
+}
+
+static void header_line(FILE *to, const struct exh_signal_table *t, uint32_t n, int glove)
+{
+    fprintf(to, "t_s");
+    for (uint32_t i = 0; i < n; i++) {
+        const struct exh_signal *r = exh_signal_at(t, i, NULL);
+        fprintf(to, ",%s%s%s", r->name, r->unit[0] ? "_" : "", r->unit);
+    }
+    for (int i = 0; glove && i < EXH_GLOVE_SENSORS; i++) { fprintf(to, ",raw%d", i); }
+    fputc('\n', to);
+}
+
+static void line(FILE *to, const struct exh_signal_table *t, uint32_t n, double t_s,
+                 const int32_t *v, const int16_t *raw)
+{
+    fprintf(to, "%.9f", t_s);
+    for (uint32_t i = 0; i < n; i++) {
+        fprintf(to, ",%.9g", cli_signal_value(exh_signal_at(t, i, NULL), v[i]));
+    }
+    for (int i = 0; raw && i < EXH_GLOVE_SENSORS; i++) { fprintf(to, ",%d", raw[i]); }
+    fputc('\n', to);
+}
+
+static int write_rows(struct walk *w, FILE *to)
+{
+    const struct exh_scene *sc = w->log->scene;
+    const struct exh_period T = w->log->header.T;
+    const uint32_t n = columns(sc->signals, w->what);
+    const int glove = sc->read_glove && (w->what & CSV_ALL); /* the codes, too */
+    header_line(to, sc->signals, n, glove);
+    while (next_row(w)) {
+        line(to, sc->signals, n, (double)w->tick * T.num / T.den, sc->signal,
+             glove ? w->in.glove.raw : NULL);
+    }
+    return ferror(to) || fflush(to) != 0;
+}
+
+/* --- whole files --- */
+
+static int same_file(const char *a, const char *b)
+{
+    struct stat sa, sb;
+    return stat(a, &sa) == 0 && stat(b, &sb) == 0 && sa.st_dev == sb.st_dev &&
+           sa.st_ino == sb.st_ino;
+}
+
+/* Reads the log once for nothing but its faults: 0 when there are rows. */
+static int survey(struct logfile *l, unsigned what)
+{
+    struct walk w = {.log = l, .what = what};
+    const uint32_t begin = l->at;
+    while (next_row(&w)) {}
+    logfile_rewind(l, begin);
+    if (w.malformed || w.unordered) {
+        cli_complain("%s: %lu records of a wrong length and %lu frames whose tick does not rise: "
+                     "left out",
+                     l->path, (unsigned long)w.malformed, (unsigned long)w.unordered);
+    }
+    if (w.rows > 0) { return w.malformed || w.unordered; }
+    cli_complain("%s: holds no %s", l->path, what & CSV_FALLS ? "fall" : "frame");
+    return 2;
+}
+
+static int convert(struct logfile *l, const char *to_path, unsigned what)
+{
+    struct walk w = {.log = l, .what = what};
+    FILE *to = to_path ? fopen(to_path, "w") : stdout;
+    int err;
+    if (to == NULL) {
+        cli_complain("%s: %s", to_path, strerror(errno));
+        return 2;
+    }
+    err = write_rows(&w, to);
+    if (to_path && fclose(to) != 0) { err = 1; }
+    if (err && to_path) { cli_complain("%s: %s", to_path, strerror(errno)); }
+    return err | logfile_complain(l);
+}
+
+int csv_write(const char *log_path, const char *to_path, unsigned what)
+{
+    struct logfile l;
+    int err;
+    if (to_path && same_file(log_path, to_path)) {
+        cli_complain("%s: is the log itself: choose another file", to_path);
+        return 2;
+    }
+    err = logfile_open(&l, log_path);
+    if (err == 0) { err = survey(&l, what); }
+    if (err < 2) {
+        const int wrote = convert(&l, to_path, what);
+        err = wrote > err ? wrote : err;
+    }
+    logfile_close(&l);
+    return err;
+}

@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: MIT */
+/* The commands of the host program: what people do with a box and with what it leaves behind. */
+#include "commands.h"
+
+#include "base/cli.h"
+
+static const struct program_command command[] = {
+    {"advise", "freeze: where q_lim stands still, how far to look; gains: stable k, b", cli_advise},
+    {"bilateral", "hand, glove, link and world: contacts as in the paper's second experiment",
+     cli_bilateral},
+    {"bringup", "first power-up, step by step, rehearsed on the simulated device", cli_bringup},
+    {"calibrate", "known masses, F0 and home: tables of force and current; or --glove, poses",
+     cli_calibrate},
+    {"drop", "the paper's falling-mass experiment on the simulated device", cli_drop},
+    {"glove", "glove codes to stable angles and fingertips; the paper's Table I", cli_glove},
+    {"csv", "a log as comma-separated values", cli_csv},
+    {"listen", "the log of a box that sends it over the network, as a file", cli_listen},
+    {"run", "a box that goes on: live values and parameters, over Modbus too", cli_run},
+    {"regs", "the Modbus registers of a scene: address, name, unit, range", cli_regs},
+    {"watch", "live values, state and faults of a running box, and a picture of them", cli_watch},
+    {"replay", "the recorded inputs again, every output compared bit for bit", cli_replay},
+    {"quad", "samples of an encoder's two lines: count, edges, illegal steps", cli_quad},
+};
+
+const struct program_commands exhand_commands = {command, sizeof command / sizeof command[0]};

@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: MIT */
+/* exhand drop: its options, and what a study of the lab adds to it. */
+#ifndef DROP_OPTIONS_H
+#define DROP_OPTIONS_H
+
+#include "base/contacts.h"
+#include "base/images.h"
+#include "base/option.h"
+#include "base/params_file.h"
+#include "base/table2.h"
+
+#define DROP_RATES_MAX    64
+#define DROP_SETTINGS_MAX 64
+
+struct drop_options {
+    struct params_file params;
+    double rate_Hz[DROP_RATES_MAX];
+    int rates, rates_given;
+    double k_Npm, b_Nspm, scale; /* < 0: the paper's at that rate */
+    int64_t falls, seed, jobs;
+    int pace, cards, guarded, custom;
+    const char *out, *blackbox;
+    double let_go_s;
+    struct run_setting setting[DROP_SETTINGS_MAX];
+    int settings;
+    struct sim_device device;
+    struct images images;
+    struct exh_period T;
+    struct contacts gpio;
+    /* Of a study: it chooses the gains itself; makes further runs at 1 and 1.5 times both gains;
+     * judges each run besides. */
+    int plane, further;
+    table2_judge *more;
+};
+
+/* What the lab does with the options besides. */
+struct drop_study {
+    struct cli_more more;
+    int (*refuse)(struct drop_options *o); /* 0, or 2 after a line on stderr; NULL: nothing */
+    int (*run)(const struct drop_options *o);
+};
+
+/* The command; study->run NULL: the experiment. Exit status. */
+int drop_command(int argc, char **argv, struct drop_options *o, const struct drop_study *study);
+
+/* take.c: options by cli_call, ctx the struct above. 0, or 2 after a line on stderr. */
+int drop_take_rates(void *ctx, const char *text);
+int drop_take_period(void *ctx, const char *text);
+int drop_take_setting(void *ctx, const char *text);
+int drop_take_device(void *ctx, const char *text);
+void drop_print_params(const struct exh_scene *scene);
+const struct exh_scene *drop_scene(const struct drop_options *o);
+
+/* experiment.c. The run of rate i at so many times both gains; run and written under its rate. */
+struct run_cfg drop_run_cfg(const struct drop_options *o, int i, double scale, uint64_t seed);
+struct table2_result drop_shown(const struct drop_options *o, int i);
+/* What is wrong with the runs that were done, and the rows that were, as tables and for people:
+ * 0, or 1 after a line on stderr. The first returns how many rows; row has room for all rates. */
+int drop_check(const struct drop_options *o, const struct table2_result *r, int n);
+int drop_write(const struct drop_options *o, const struct table2_result *row, int rows);
+int drop_done(const struct table2_result *r, int n);
+/* What passivity takes away. */
+void drop_report_guard(const struct drop_options *o, const struct table2_result *r);
+int drop_experiment(const struct drop_options *o);
+
+#endif

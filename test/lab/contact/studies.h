@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: MIT */
+/* What is studied of the contact experiment: exit status. */
+#ifndef LAB_CONTACT_STUDIES_H
+#define LAB_CONTACT_STUDIES_H
+
+#include "contact/bilateral.h"
+
+int bilateral_sweep(const struct bilateral_options *o);
+/* So many random approaches. */
+int bilateral_check(const struct bilateral_options *o, int64_t approaches);
+/* Over fingers and hands; over k and b. */
+int bilateral_hands(const struct bilateral_options *o);
+int bilateral_crisp(const struct bilateral_options *o);
+/* A hand in the system before, and in this box. */
+int bilateral_original(const struct bilateral_options *o);
+
+#endif
