@@ -56,7 +56,7 @@ const struct freeze_type freeze_drive =
          F(exh_drive_cfg, i2t_fold, GAIN), F(exh_drive_cfg, i2t_shift, U8),
          F(exh_drive_cfg, dac_A_q26, GAIN));
 const struct freeze_type freeze_track =
-    TYPE(exh_track_cfg, F(exh_track_cfg, tol_A_q26, I32), F(exh_track_cfg, ticks, U32));
+    TYPE(exh_tracking_cfg, F(exh_tracking_cfg, tol_A_q26, I32), F(exh_tracking_cfg, ticks, U32));
 const struct freeze_type freeze_safety =
     TYPE(exh_safety_cfg, F(exh_safety_cfg, late_max, U32), F(exh_safety_cfg, small_N_q20, I32),
          F(exh_safety_cfg, arm_ticks, U32), F(exh_safety_cfg, ramp_q30, I32),

@@ -166,7 +166,7 @@ static void tell_box(struct bilateral_box *b, const struct bilateral *s,
     b->silences = exh_from_u32(rx->silences);
     b->differs = (int32_t)s->wire.differs;
     b->odd = exh_from_u32(s->wire.odd);
-    b->arm_step = exh_safety_arm(&s->safety);
+    b->arm_step = exh_safety_arm_step(&s->safety);
 }
 
 /* Steps of arming that hold. A calibration that is none, a glove's or a finger's, was refused at
@@ -193,7 +193,7 @@ void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,
     sense(s, cfg, &in->drive, sig->paper, now);
     age_glove(s, in);
     for (unsigned k = 0; k < n; k++) {
-        exh_precontact_skip(&s->finger[bilateral_at(cfg, k)].precontact, in->missed);
+        exh_precontact_advance(&s->finger[bilateral_at(cfg, k)].precontact, in->missed);
     }
     bilateral_wire_take(s, cfg, mail, in->missed, params);
     see(s, cfg, in);
@@ -204,13 +204,13 @@ void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,
         limits[k] = now[k].limits | bilateral_finger_feel(s, cfg, k, &permit, &i[k], &sig->paper[f],
                                                           &sig->more[f].bits);
     }
-    exh_gate(&s->safety, cfg->drive, n, i, limits, &placed);
+    exh_gate_step(&s->safety, cfg->drive, n, i, limits, &placed);
     out_by_finger(cfg, &placed, out);
     for (unsigned k = 0; k < n; k++) {
         const unsigned f = bilateral_at(cfg, k);
         const struct exh_axis axis = bilateral_axis(s, cfg, k);
         sig->paper[f].i_des_A_q26 = i[k].coded_A_q26;
-        exh_axis_coded(&axis, now[k].cnt, i[k].coded_A_q26);
+        exh_axis_update(&axis, now[k].cnt, i[k].coded_A_q26);
         sig->more[f].limits = (int32_t)limits[k];
         tell_finger(&sig->more[f], &s->finger[f]);
     }
@@ -220,12 +220,12 @@ void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,
 void bilateral_bytes(struct exh_bytes *c, struct bilateral *s)
 {
     for (unsigned f = 0; f < BILATERAL_FINGERS; f++) { bilateral_finger_bytes(c, &s->finger[f]); }
-    exh_safety_bytes(c, &s->safety);
-    exh_glove_bytes(c, &s->glove);
+    exh_safety_serialize(c, &s->safety);
+    exh_glove_serialize(c, &s->glove);
     bilateral_wire_bytes(c, &s->wire);
     exh_bytes_u8(c, &s->worn);
     exh_bytes_u32(c, &s->glove_faults);
-    exh_supply_bytes(c, &s->supply);
+    exh_supply_serialize(c, &s->supply);
     exh_bytes_u32(c, &s->unsure_ticks);
 }
 
@@ -236,13 +236,13 @@ static struct exh_params params;
 static struct bilateral_signals signals;
 static struct bilateral_cfg cfg;
 static struct bilateral state;
-static struct exh_guard guard;
+static struct exh_integrity guard;
 static struct exh_scene_calib calib;
 static struct exh_scene_mail mail_in, mail_out;
 
 static void defaults(void)
 {
-    exh_params_init(&params, &bilateral_params, (int32_t *)&active, (int32_t *)&staged);
+    exh_params_setup(&params, &bilateral_params, (int32_t *)&active, (int32_t *)&staged);
     glove_rows_of_cal(&active.glove_own, active.sensor, &exh_glove_cal_default);
     active.glove.fc_Hz_q16 = EXH_Q(200, 1, EXH_Q_RAW); /* it lags little: 1.1 ms */
     for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
@@ -253,9 +253,9 @@ static void defaults(void)
     staged = active;
 }
 
-int bilateral_stage_cal(const struct exh_glove_cal *cal, struct exh_glove_bad *bad)
+int bilateral_stage_cal(const struct exh_glove_cal *cal, struct exh_glove_error *bad)
 {
-    const int err = exh_glove_cal_valid(cal, bad);
+    const int err = exh_glove_cal_validate(cal, bad);
     if (err == 0) {
         glove_rows_of_cal(&staged.glove_own, staged.sensor, cal);
         params.pending = 1;
@@ -277,14 +277,14 @@ static int setup(struct exh_scene_board board)
     }
     err = exh_calib_set_load(&calib, &params, &active.calib, (1u << BILATERAL_FINGERS) - 1u);
     if (err == 0) { err = bilateral_setup(&cfg, &state, &active, board, &calib); }
-    exh_params_slew(&params, &active.tune, board.T);
-    exh_guard_seal(&guard, &cfg, sizeof cfg, &params);
+    exh_params_slew_setup(&params, &active.tune, board.T);
+    exh_integrity_seal(&guard, &cfg, sizeof cfg, &params);
     return err;
 }
 
 static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
 {
-    state.broken = (uint8_t)exh_guard_step(&guard);
+    state.broken = (uint8_t)exh_integrity_step(&guard);
     bilateral_tick(&state, &cfg, in, &mail_in, &params, out, &signals);
 }
 
@@ -304,7 +304,7 @@ struct bilateral *bilateral_memory(struct bilateral_cfg **c)
     return &state;
 }
 
-struct exh_guard *bilateral_guard(void)
+struct exh_integrity *bilateral_guard(void)
 {
     return &guard;
 }

@@ -31,8 +31,8 @@ struct bilateral_par {
     struct exh_velocity_par velocity[BILATERAL_FINGERS];
     struct exh_contact_par contact[BILATERAL_FINGERS]; /* k and b are the material's */
     struct exh_drive_par drive[BILATERAL_FINGERS];
-    struct exh_track_par track[BILATERAL_FINGERS];
-    struct exh_watch_par watch[BILATERAL_FINGERS];
+    struct exh_tracking_par track[BILATERAL_FINGERS];
+    struct exh_motion_par watch[BILATERAL_FINGERS];
     int32_t kf_NpA_q20[BILATERAL_FINGERS];
     struct exh_hand_par hand[BILATERAL_FINGERS];
     struct exh_precontact_par precontact[BILATERAL_FINGERS];
@@ -79,7 +79,7 @@ struct bilateral_box {
     int32_t set;          /* parameters set over the link */
     int32_t accepted, missing, duplicate, reordered, old, stranger, corrupt, version, unknown;
     int32_t far, silences;
-    int32_t differs;  /* enum exh_wire_differs, of the newest HELLO */
+    int32_t differs;  /* enum exh_wire_difference, of the newest HELLO */
     int32_t odd;      /* HELLOs that differed */
     int32_t arm_step; /* enum exh_arm: on which arming is, or was refused */
 };
@@ -99,8 +99,8 @@ struct bilateral_finger_cfg {
     struct exh_velocity_window_cfg velocity;
     struct exh_hand_finger hand;
     struct exh_precontact_cfg precontact;
-    struct exh_track_cfg track;
-    struct exh_watch_cfg watch;
+    struct exh_tracking_cfg track;
+    struct exh_motion_cfg watch;
     struct exh_calib_tables calib;
     uint32_t sensors; /* bit i: sensor i moves it */
 };
@@ -110,8 +110,8 @@ struct bilateral_finger {
     struct exh_velocity_window velocity;
     struct exh_contact contact;
     struct exh_drive drive;
-    struct exh_track track;
-    struct exh_watch watch;
+    struct exh_tracking track;
+    struct exh_motion watch;
     struct exh_precontact precontact;
     int32_t out_m_q30;                       /* how far the string has run out */
     uint32_t rest_ticks;                     /* since then */
@@ -151,7 +151,7 @@ struct bilateral_wire {
     uint32_t exchanges;
     uint32_t set;
     uint32_t wait_ticks; /* to the next exchange */
-    uint32_t differs;    /* enum exh_wire_differs, of the newest HELLO */
+    uint32_t differs;    /* enum exh_wire_difference, of the newest HELLO */
     uint32_t odd;        /* HELLOs that differed */
     uint8_t acks;        /* answers to be given at the end of this tick */
     struct exh_wire_ack ack[EXH_SCENE_PACKETS];
@@ -275,11 +275,11 @@ uint32_t bilateral_finger_feel(struct bilateral *s, const struct bilateral_cfg *
 
 /* Stages a calibration in the scene's parameters, between defaults() and set-up: 0, or
  * -EXH_E_RANGE with *bad (may be NULL). */
-int bilateral_stage_cal(const struct exh_glove_cal *cal, struct exh_glove_bad *bad);
+int bilateral_stage_cal(const struct exh_glove_cal *cal, struct exh_glove_error *bad);
 
 /* The memory of the one instance, for who damages it to see what happens. */
 struct bilateral *bilateral_memory(struct bilateral_cfg **cfg);
-struct exh_guard *bilateral_guard(void);
+struct exh_integrity *bilateral_guard(void);
 
 extern const struct exh_scene exh_scene_bilateral;
 

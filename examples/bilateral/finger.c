@@ -40,7 +40,7 @@ int bilateral_finger_setup(struct bilateral_cfg *cfg, struct bilateral *s, unsig
                              exh_calib_to_force(&c->calib));
     }
     if (err == 0) { err = exh_hand_setup(&c->hand, &exh_hit2_bones[f], &par->hand[f]); }
-    if (err == 0) { err = exh_hand_follow(&c->hand, &exh_hit2_map, f); }
+    if (err == 0) { err = exh_hand_couple(&c->hand, &exh_hit2_map, f); }
     if (err == 0) {
         err = exh_precontact_setup(&c->precontact, &par->precontact[f], par->material,
                                    BILATERAL_MATERIALS, par->hand[f].pad_m_q30, board.T);
@@ -114,9 +114,9 @@ uint32_t bilateral_finger_feel(struct bilateral *s, const struct bilateral_cfg *
     law = touch(s, cfg, f);
     p->c = 0;
     if (exh_precontact_none(&now->precontact)) {
-        exh_contact_free(&now->contact, &law, q.pos_m_q30, &force);
+        exh_contact_step_free(&now->contact, &law, q.pos_m_q30, &force);
     } else {
-        p->c = exh_contact_law(&now->contact, &law, q, &force);
+        p->c = exh_contact_step(&now->contact, &law, q, &force);
     }
     wind_in(now, cfg->rest_ticks);
     limits = exh_axis_force(&axis, permit, &force, i);
@@ -127,13 +127,13 @@ uint32_t bilateral_finger_feel(struct bilateral *s, const struct bilateral_cfg *
 
 void bilateral_finger_bytes(struct exh_bytes *c, struct bilateral_finger *s)
 {
-    exh_quad_bytes(c, &s->quad);
-    exh_velocity_window_bytes(c, &s->velocity);
-    exh_contact_bytes(c, &s->contact);
-    exh_drive_bytes(c, &s->drive);
-    exh_track_bytes(c, &s->track);
-    exh_watch_bytes(c, &s->watch);
-    exh_precontact_bytes(c, &s->precontact);
+    exh_quad_serialize(c, &s->quad);
+    exh_velocity_window_serialize(c, &s->velocity);
+    exh_contact_serialize(c, &s->contact);
+    exh_drive_serialize(c, &s->drive);
+    exh_tracking_serialize(c, &s->track);
+    exh_motion_serialize(c, &s->watch);
+    exh_precontact_serialize(c, &s->precontact);
     exh_bytes_i32(c, &s->out_m_q30);
     exh_bytes_u32(c, &s->rest_ticks);
     for (unsigned j = 0; j < EXH_HAND_JOINTS; j++) { exh_bytes_i32(c, &s->joint_turn_q32[j]); }

@@ -101,8 +101,8 @@ static const struct exh_signal_group param_groups[] = {
     EACH(exh_velocity_rows, EXH_VELOCITY_ROWS),
     EACH(exh_contact_rows, EXH_CONTACT_ROWS),
     EACH(exh_drive_rows, EXH_DRIVE_ROWS),
-    EACH(exh_track_rows, EXH_TRACK_ROWS),
-    EACH(exh_watch_rows, EXH_WATCH_ROWS),
+    EACH(exh_tracking_rows, EXH_TRACKING_ROWS),
+    EACH(exh_motion_rows, EXH_MOTION_ROWS),
     EACH(kf_rows, LEN(kf_rows)),
     EACH(exh_hand_rows, EXH_HAND_ROWS),
     EACH(exh_precontact_rows, EXH_PRECONTACT_ROWS),
@@ -131,8 +131,8 @@ EXH_STATIC_ASSERT(bilateral_par_matches_rows,
                       sizeof(int32_t) *
                           (BILATERAL_FINGERS *
                                (EXH_QUAD_ROWS + EXH_VELOCITY_ROWS + EXH_CONTACT_ROWS +
-                                EXH_DRIVE_ROWS + EXH_TRACK_ROWS + EXH_WATCH_ROWS + LEN(kf_rows) +
-                                EXH_HAND_ROWS + EXH_PRECONTACT_ROWS) +
+                                EXH_DRIVE_ROWS + EXH_TRACKING_ROWS + EXH_MOTION_ROWS +
+                                LEN(kf_rows) + EXH_HAND_ROWS + EXH_PRECONTACT_ROWS) +
                            BILATERAL_MATERIALS * EXH_MATERIAL_ROWS + EXH_SAFETY_ROWS +
                            EXH_SUPPLY_ROWS + EXH_GLOVE_ROWS + LEN(own_rows) + EXH_CALIB_SET_ROWS +
                            GLOVE_OWN_ROWS + GLOVE_CAL_ROWS * EXH_GLOVE_SENSORS + EXH_TUNE_ROWS));

@@ -18,7 +18,7 @@ static struct exh_trace *of(struct bilateral_trace *t)
     return &t->of;
 }
 
-static int start(struct bilateral_trace *t, const struct exh_trace_what *what)
+static int start(struct bilateral_trace *t, const struct exh_trace_request *what)
 {
     const int err = exh_trace_start(of(t), what);
     if (err == 0) {
@@ -30,13 +30,13 @@ static int start(struct bilateral_trace *t, const struct exh_trace_what *what)
 
 void bilateral_trace_stop(struct bilateral_trace *t)
 {
-    static const struct exh_trace_what nothing;
+    static const struct exh_trace_request nothing;
     (void)start(t, &nothing);
     t->answer = 0;
     t->result = 0;
 }
 
-static int same(const struct exh_trace_what *a, const struct exh_trace_what *b)
+static int same(const struct exh_trace_request *a, const struct exh_trace_request *b)
 {
     int is = a->every == b->every;
     for (unsigned i = 0; i < EXH_TRACE_SIGNALS; i++) { is &= a->index[i] == b->index[i]; }
@@ -47,7 +47,7 @@ static int same(const struct exh_trace_what *a, const struct exh_trace_what *b)
  * before, so that all frames are of the newest request. */
 void bilateral_trace_ask(struct bilateral_trace *t, const struct exh_wire_packet *p)
 {
-    struct exh_trace_what what = {p->u.trace_ask.every, {0}};
+    struct exh_trace_request what = {p->u.trace_ask.every, {0}};
     for (unsigned i = 0; i < EXH_TRACE_SIGNALS; i++) { what.index[i] = p->u.trace_ask.index[i]; }
     if (t->result < 0 || !same(&what, &t->of.what)) {
         const int err = start(t, &what);
@@ -91,7 +91,7 @@ void bilateral_trace_write(struct bilateral *s, const struct bilateral_signals *
     struct bilateral_trace *t = &s->wire.trace;
     uint32_t n;
     if (t->of.what.every == 0 && !t->answer) { return; } /* nobody asked */
-    exh_trace_tick(of(t), s->safety.tick, (const int32_t *)(const void *)sig);
+    exh_trace_step(of(t), s->safety.tick, (const int32_t *)(const void *)sig);
     n = waiting(t);
     if (n > 0 && t->wait_ticks < WAIT_TICKS) { t->wait_ticks++; }
     if (out->packets == EXH_SCENE_PACKETS) { return; }
@@ -101,7 +101,7 @@ void bilateral_trace_write(struct bilateral *s, const struct bilateral_signals *
 
 void bilateral_trace_bytes(struct exh_bytes *c, struct bilateral_trace *t)
 {
-    exh_trace_bytes(c, of(t));
+    exh_trace_serialize(c, of(t));
     exh_bytes_u32(c, &t->request_seq);
     exh_bytes_u32(c, &t->next);
     exh_bytes_u32(c, &t->wait_ticks);

@@ -36,15 +36,15 @@ static void take_planes(struct bilateral *s, const struct bilateral_cfg *cfg,
 {
     struct bilateral_wire *w = &s->wire;
     uint32_t age_ticks;
-    w->trip_us = exh_wire_trip_us(now_us(w), planes);
+    w->trip_us = exh_wire_round_trip_us(now_us(w), planes);
     w->age_ticks = 0;
     age_ticks = (uint32_t)((uint64_t)w->trip_us * cfg->wire.ticks_per_us_q32 >> 32);
     for (unsigned k = 0; k < bilateral_n(cfg); k++) {
         const unsigned f = bilateral_at(cfg, k);
         const struct exh_plane plane = exh_wire_plane_of(planes, f);
         if (bilateral_finger_age(s, cfg, f) == UINT32_MAX) { continue; }
-        (void)exh_precontact_tell(&s->finger[f].precontact, &cfg->finger[f].precontact, &plane,
-                                  age_ticks); /* a refused one it counts itself */
+        (void)exh_precontact_update(&s->finger[f].precontact, &cfg->finger[f].precontact, &plane,
+                                    age_ticks); /* a refused one it counts itself */
     }
 }
 
@@ -68,7 +68,7 @@ void bilateral_wire_take(struct bilateral *s, const struct bilateral_cfg *cfg,
     struct bilateral_wire *w = &s->wire;
     const uint32_t before_us = now_us(w);
     w->now_us_q20 += cfg->wire.tick_us_q20 * (missed + UINT64_C(1));
-    if (exh_wire_pass(&w->rx, now_us(w) - before_us, 1000u * (uint32_t)cfg->par->own.quiet_ms)) {
+    if (exh_wire_poll(&w->rx, now_us(w) - before_us, 1000u * (uint32_t)cfg->par->own.quiet_ms)) {
         w->exchanges = 0; /* perhaps it does not know us any more */
     }
     w->age_ticks += missed < UINT32_MAX - w->age_ticks ? missed : UINT32_MAX - w->age_ticks;
@@ -77,14 +77,14 @@ void bilateral_wire_take(struct bilateral *s, const struct bilateral_cfg *cfg,
     for (unsigned i = 0; i < in->packets; i++) {
         struct exh_wire_packet p;
         const uint32_t session = w->rx.session;
-        const int type = exh_wire_take(&w->rx, &p, in->byte[i], in->len_B[i]);
+        const int type = exh_wire_decode(&w->rx, &p, in->byte[i], in->len_B[i]);
         if (w->rx.session !=
             session) { /* a world that does not know us yet, and has asked for nothing */
             w->exchanges = 0;
             bilateral_trace_stop(&w->trace);
         }
         if (type == EXH_WIRE_HELLO) {
-            w->differs = exh_wire_differs(&cfg->wire.hello, &p.u.hello);
+            w->differs = exh_wire_compare(&cfg->wire.hello, &p.u.hello);
             w->odd += w->differs != 0;
         } else if (type == EXH_WIRE_PLANES) {
             take_planes(s, cfg, &p.u.planes);
@@ -105,7 +105,7 @@ void bilateral_wire_put(struct bilateral_wire *w, struct exh_scene_mail *out,
 {
     int32_t n;
     if (out->packets == EXH_SCENE_PACKETS) { return; }
-    n = exh_wire_write(&w->tx, p, now_us(w), out->byte[out->packets], EXH_SCENE_PACKET_B);
+    n = exh_wire_encode(&w->tx, p, now_us(w), out->byte[out->packets], EXH_SCENE_PACKET_B);
     if (n > 0) { out->len_B[out->packets++] = (uint16_t)n; }
 }
 
@@ -186,8 +186,8 @@ void bilateral_write(struct bilateral *s, const struct bilateral_cfg *cfg,
 void bilateral_wire_bytes(struct exh_bytes *c, struct bilateral_wire *s)
 {
     int64_t now_us_q20 = exh_from_u64(s->now_us_q20);
-    exh_wire_tx_bytes(c, &s->tx);
-    exh_wire_rx_bytes(c, &s->rx);
+    exh_wire_tx_serialize(c, &s->tx);
+    exh_wire_rx_serialize(c, &s->rx);
     exh_bytes_i64(c, &now_us_q20);
     s->now_us_q20 = (uint64_t)now_us_q20;
     exh_bytes_u32(c, &s->age_ticks);

@@ -72,7 +72,7 @@ static void wait(struct bringup *s, const struct bringup_cfg *cfg, const struct 
                  uint8_t command, int32_t cnt)
 {
     const uint32_t cause = s->safety.present;
-    const int run = exh_safety_runs(&s->safety);
+    const int run = exh_safety_is_running(&s->safety);
     if (cause & EXH_FAULT_DEADMAN) { s->let_go = 1; }
     if (p->hands || p->ask == BRINGUP_ASK_NOTHING || (run && s->let_go)) {
         begin_phase(s, cnt);
@@ -107,7 +107,7 @@ static int32_t go_on(struct bringup *s, const struct bringup_cfg *cfg, uint8_t c
 {
     const struct bringup_own_par *own = &cfg->par->own;
     const struct bringup_phase *p = bringup_phase(cfg->list, s->phase);
-    const int run = exh_safety_runs(&s->safety);
+    const int run = exh_safety_is_running(&s->safety);
     int32_t f_N_q20 = 0;
     uint8_t r = EXH_PROBE_BUSY;
     if (s->result != EXH_PROBE_BUSY) { return 0; }
@@ -220,7 +220,7 @@ void bringup_tick(struct bringup *s, const struct bringup_cfg *cfg, const struct
     s->tell_raw = s->code_raw;
     permit = exh_axis_permit(&s->safety, &cfg->safety, &now, 1, box);
     f.pullback_N_q20 = go_on(s, cfg, command, v);
-    live = s->result == EXH_PROBE_BUSY && exh_safety_runs(&s->safety) && needs_run(s, cfg);
+    live = s->result == EXH_PROBE_BUSY && exh_safety_is_running(&s->safety) && needs_run(s, cfg);
     if (!live) { permit.mode = EXH_PERMIT_CLOSED; } /* at once, whatever was held */
     limits = now.limits | exh_axis_force(&axis, &permit, &f, &i);
     exh_axis_out(&axis, &s->safety, now.cnt, &i, &limits, out);

@@ -172,7 +172,7 @@ static int setup_levels(struct bringup_cfg *cfg)
         (own->stage == 4 && own->home_A_q26 > top_A_q26)) {
         return -EXH_E_RANGE;
     }
-    return exh_table_set(cfg->to_cur, 2);
+    return exh_table_setup(cfg->to_cur, 2);
 }
 
 static int setup_motions(struct bringup_cfg *cfg, struct exh_period T)
@@ -228,7 +228,7 @@ int bringup_setup(struct bringup_cfg *cfg, const struct bringup_par *par,
                                          .drive = &cfg->drive,
                                          .drive_par = &cfg->drive_par};
     const struct exh_table to_cur = {cfg->to_cur, 2}, none = {NULL, 0};
-    int err = exh_rows_hold(own_rows, COUNT(own_rows), &par->own) ? 0 : -EXH_E_RANGE;
+    int err = exh_rows_validate(own_rows, COUNT(own_rows), &par->own) ? 0 : -EXH_E_RANGE;
     if (err < 0) { return err; }
     cfg->par = par;
     cfg->drive_par = par->drive;
@@ -260,7 +260,7 @@ static struct bringup state;
 
 static void defaults(void)
 {
-    exh_params_init(&params, &param_table, (int32_t *)&active, (int32_t *)&staged);
+    exh_params_setup(&params, &param_table, (int32_t *)&active, (int32_t *)&staged);
 }
 
 static int setup(struct exh_scene_board board)

@@ -220,5 +220,5 @@ const char *bringup_result_text(unsigned result)
     };
     return result >= EXH_PROBE_RESULTS && result < BRINGUP_RESULTS
                ? text[result - EXH_PROBE_RESULTS]
-               : exh_probe_text(result);
+               : exh_probe_result_text(result);
 }

@@ -68,18 +68,21 @@ static const struct exh_signal signal_rows[] = {
 #define COUNT(r) (sizeof(r) / sizeof((r)[0]))
 
 static const struct exh_signal_group param_groups[] = {
-    {exh_quad_rows, EXH_QUAD_ROWS, 1},   {exh_drive_rows, EXH_DRIVE_ROWS, 1},
-    {exh_track_rows, EXH_TRACK_ROWS, 1}, {exh_safety_rows, EXH_SAFETY_ROWS, 1},
-    {own_rows, COUNT(own_rows), 1},      {mass_rows, 1, CALIBRATE_MASSES},
+    {exh_quad_rows, EXH_QUAD_ROWS, 1},
+    {exh_drive_rows, EXH_DRIVE_ROWS, 1},
+    {exh_tracking_rows, EXH_TRACKING_ROWS, 1},
+    {exh_safety_rows, EXH_SAFETY_ROWS, 1},
+    {own_rows, COUNT(own_rows), 1},
+    {mass_rows, 1, CALIBRATE_MASSES},
 };
 static const struct exh_signal_table param_table = {param_groups, 6};
 static const struct exh_signal_group signal_groups[] = {{signal_rows, COUNT(signal_rows), 1}};
 static const struct exh_signal_table signal_table = {signal_groups, 1};
 
 EXH_STATIC_ASSERT(calibrate_par_matches_rows, sizeof(struct calibrate_par) / sizeof(int32_t) ==
-                                                  EXH_QUAD_ROWS + EXH_DRIVE_ROWS + EXH_TRACK_ROWS +
-                                                      EXH_SAFETY_ROWS + COUNT(own_rows) +
-                                                      CALIBRATE_MASSES);
+                                                  EXH_QUAD_ROWS + EXH_DRIVE_ROWS +
+                                                      EXH_TRACKING_ROWS + EXH_SAFETY_ROWS +
+                                                      COUNT(own_rows) + CALIBRATE_MASSES);
 EXH_STATIC_ASSERT(calibrate_signals_match_rows,
                   sizeof(struct calibrate_signals) / sizeof(int32_t) == COUNT(signal_rows));
 
@@ -89,7 +92,7 @@ EXH_STATIC_ASSERT(calibrate_signals_match_rows,
  * current beyond i_max. */
 static int own_ok(const struct calibrate_own_par *own)
 {
-    if (!exh_rows_hold(own_rows, COUNT(own_rows), own)) { return 0; }
+    if (!exh_rows_validate(own_rows, COUNT(own_rows), own)) { return 0; }
     return own->pol_max_A_q26 <= own->i_max_A_q26 && own->home_A_q26 <= own->i_max_A_q26 &&
            own->slack_A_q26 <= own->i_max_A_q26;
 }
@@ -170,7 +173,7 @@ int calibrate_setup(struct calibrate_cfg *cfg, const struct calibrate_par *par,
     cfg->one_to_one[0] = (struct exh_knot){0, 0, {0, 0}};
     cfg->one_to_one[1] =
         (struct exh_knot){end_A_q26 >> (EXH_Q_CUR - EXH_Q_FORCE), end_A_q26, {0, 0}};
-    err = exh_table_set(cfg->one_to_one, 2);
+    err = exh_table_setup(cfg->one_to_one, 2);
     if (err == 0) { err = exh_axis_setup(&parts, board.T, board.enc_bits, to_cur, none); }
     if (err == 0) { err = exh_safety_setup(&cfg->safety, &par->safety, board.T); }
     if (err == 0) { err = setup_motions(cfg, &par->own, scale); }
@@ -272,7 +275,7 @@ const char *calibrate_result_text(unsigned result)
     };
     return result >= EXH_PROBE_RESULTS && result < CALIBRATE_RESULTS
                ? text[result - EXH_PROBE_RESULTS]
-               : exh_probe_text(result);
+               : exh_probe_result_text(result);
 }
 
 /* From here on the person's word counts, not the one that is there already. */
@@ -347,7 +350,7 @@ void calibrate_tick(struct calibrate *s, const struct calibrate_cfg *cfg,
     const struct view v = {now.cnt, now.mon_A_q26, in->drive.mon_raw[0]};
     const struct exh_safety_in box = {in->drive.din, 0, in->missed, in->command, 1, VOUCHED};
     const struct exh_permit permit = exh_axis_permit(&s->safety, &cfg->safety, &now, 1, box);
-    const int32_t cur_A_q26 = go_on(s, cfg, v, exh_safety_runs(&s->safety));
+    const int32_t cur_A_q26 = go_on(s, cfg, v, exh_safety_is_running(&s->safety));
     struct exh_force_ledger f = {0};
     struct exh_current_ledger i;
     uint32_t limits;
@@ -408,7 +411,7 @@ static struct calibrate state;
 
 static void defaults(void)
 {
-    exh_params_init(&params, &param_table, (int32_t *)&active, (int32_t *)&staged);
+    exh_params_setup(&params, &param_table, (int32_t *)&active, (int32_t *)&staged);
     /* The monitor's zero is not known yet: what it is off by is no current. */
     active.track.tol_A_q26 = staged.track.tol_A_q26 = EXH_Q(1, 2, EXH_Q_CUR);
 }

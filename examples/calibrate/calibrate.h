@@ -66,7 +66,7 @@ struct calibrate_own_par {
 struct calibrate_par {
     struct exh_quad_par quad;
     struct exh_drive_par drive;
-    struct exh_track_par track;
+    struct exh_tracking_par track;
     struct exh_safety_par safety;
     struct calibrate_own_par own;
     int32_t mass_kg_q20[CALIBRATE_MASSES]; /* rising; the first 0 ends the list */
@@ -86,7 +86,7 @@ struct calibrate_cfg {
     const struct calibrate_par *par;
     struct exh_quad_cfg quad;
     struct exh_drive_cfg drive;
-    struct exh_track_cfg track;
+    struct exh_tracking_cfg track;
     struct exh_safety_cfg safety;
     struct exh_knot one_to_one[2];
     struct exh_probe_cfg polarity, f0;
@@ -99,7 +99,7 @@ struct calibrate_cfg {
 struct calibrate {
     struct exh_quad quad;
     struct exh_drive drive;
-    struct exh_track track;
+    struct exh_tracking track;
     struct exh_safety safety;
     struct exh_mean zero_raw; /* monitor codes at no current */
     struct exh_probe polarity, f0;

@@ -34,7 +34,7 @@ static struct custom_signals signals;
 static struct custom_inputs inputs;
 static struct drop_cfg cfg;
 static struct custom state;
-static struct exh_guard guard;
+static struct exh_integrity guard;
 static struct exh_scene_calib calib;
 static struct slot_wire wire[SLOT_INPUTS];
 static const char *unknown;
@@ -44,7 +44,7 @@ static int32_t answer;
 
 static void defaults(void)
 {
-    exh_params_init(&params, &param_table, (int32_t *)&active, (int32_t *)&staged);
+    exh_params_setup(&params, &param_table, (int32_t *)&active, (int32_t *)&staged);
 }
 
 static int same(const char *a, const char *b)
@@ -112,8 +112,8 @@ static int setup(struct exh_scene_board board)
     err = exh_calib_set_load(&calib, &params, &active.calib, 1u);
     if (err == 0) { err = drop_setup(&cfg, &active, board, &calib); }
     if (err == 0) { err = plug_in(board.T); }
-    exh_params_slew(&params, &active.tune, board.T);
-    exh_guard_seal(&guard, &cfg, sizeof cfg, &params);
+    exh_params_slew_setup(&params, &active.tune, board.T);
+    exh_integrity_seal(&guard, &cfg, sizeof cfg, &params);
     return err;
 }
 
@@ -130,7 +130,7 @@ static int32_t ask(void)
 static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
 {
     struct drop_now now;
-    state.drop.broken = (uint8_t)exh_guard_step(&guard);
+    state.drop.broken = (uint8_t)exh_integrity_step(&guard);
     state.drop.more = state.dumb ? (uint32_t)EXH_FAULT_LOGIC : 0;
     drop_law(&state.drop, &cfg, in, &now, &signals.drop);
     inputs.q_m_q30 = signals.drop.q_m_q30;

@@ -38,7 +38,7 @@ static const struct exh_signal_table signal_table = {signal_groups, DROP_SIGNAL_
 #define PARAMS (sizeof(struct drop_par) / sizeof(int32_t))
 EXH_STATIC_ASSERT(drop_par_matches_rows,
                   PARAMS == EXH_QUAD_ROWS + EXH_VELOCITY_ROWS + EXH_CONTACT_ROWS + EXH_DRIVE_ROWS +
-                                EXH_TRACK_ROWS + EXH_WATCH_ROWS + EXH_SAFETY_ROWS +
+                                EXH_TRACKING_ROWS + EXH_MOTION_ROWS + EXH_SAFETY_ROWS +
                                 EXH_SUPPLY_ROWS + DROP_OWN_ROWS + EXH_CALIB_SET_ROWS +
                                 EXH_TUNE_ROWS);
 
@@ -89,7 +89,7 @@ void drop_law(struct drop *s, const struct drop_cfg *cfg, const struct exh_scene
     now->permit = exh_axis_permit(&s->safety, &cfg->safety, &of, 1, box);
     now->cnt = of.cnt;
     now->limits = of.limits;
-    sig->c = exh_contact_law(&s->contact, &cfg->par->contact, q, &now->f);
+    sig->c = exh_contact_step(&s->contact, &cfg->par->contact, q, &now->f);
     sig->q_m_q30 = of.pos_m_q30;
     sig->qd_mps_q27 = of.vel_mps_q27;
     sig->f_mon_N_q20 = exh_drive_monitor_N_q20(&cfg->drive, of.mon_A_q26);
@@ -108,7 +108,7 @@ void drop_out(struct drop *s, const struct drop_cfg *cfg, struct drop_now *now,
     sig->state = s->safety.state;
     sig->faults = exh_from_u32(s->safety.faults);
     sig->present = (int32_t)s->safety.present;
-    sig->arm_step = exh_safety_arm(&s->safety);
+    sig->arm_step = exh_safety_arm_step(&s->safety);
 }
 
 void drop_tick(struct drop *s, const struct drop_cfg *cfg, const struct exh_scene_in *in,
@@ -121,14 +121,14 @@ void drop_tick(struct drop *s, const struct drop_cfg *cfg, const struct exh_scen
 
 void drop_bytes(struct exh_bytes *c, struct drop *s)
 {
-    exh_quad_bytes(c, &s->quad);
-    exh_velocity_window_bytes(c, &s->velocity);
-    exh_contact_bytes(c, &s->contact);
-    exh_drive_bytes(c, &s->drive);
-    exh_track_bytes(c, &s->track);
-    exh_watch_bytes(c, &s->watch);
-    exh_safety_bytes(c, &s->safety);
-    exh_supply_bytes(c, &s->supply);
+    exh_quad_serialize(c, &s->quad);
+    exh_velocity_window_serialize(c, &s->velocity);
+    exh_contact_serialize(c, &s->contact);
+    exh_drive_serialize(c, &s->drive);
+    exh_tracking_serialize(c, &s->track);
+    exh_motion_serialize(c, &s->watch);
+    exh_safety_serialize(c, &s->safety);
+    exh_supply_serialize(c, &s->supply);
 }
 
 /* --- the one instance of this image --- */
@@ -138,12 +138,12 @@ static struct exh_params params;
 static struct drop_signals signals;
 static struct drop_cfg cfg;
 static struct drop state;
-static struct exh_guard guard;
+static struct exh_integrity guard;
 static struct exh_scene_calib calib;
 
 static void defaults(void)
 {
-    exh_params_init(&params, &param_table, (int32_t *)&active, (int32_t *)&staged);
+    exh_params_setup(&params, &param_table, (int32_t *)&active, (int32_t *)&staged);
 }
 
 static int setup(struct exh_scene_board board)
@@ -153,14 +153,14 @@ static int setup(struct exh_scene_board board)
     state = power_on;
     err = exh_calib_set_load(&calib, &params, &active.calib, 1u);
     if (err == 0) { err = drop_setup(&cfg, &active, board, &calib); }
-    exh_params_slew(&params, &active.tune, board.T);
-    exh_guard_seal(&guard, &cfg, sizeof cfg, &params);
+    exh_params_slew_setup(&params, &active.tune, board.T);
+    exh_integrity_seal(&guard, &cfg, sizeof cfg, &params);
     return err;
 }
 
 static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
 {
-    state.broken = (uint8_t)exh_guard_step(&guard);
+    state.broken = (uint8_t)exh_integrity_step(&guard);
     drop_tick(&state, &cfg, in, out, &signals);
 }
 
@@ -175,7 +175,7 @@ struct drop *drop_memory(struct drop_cfg **c)
     return &state;
 }
 
-struct exh_guard *drop_guard(void)
+struct exh_integrity *drop_guard(void)
 {
     return &guard;
 }

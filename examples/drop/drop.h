@@ -26,7 +26,7 @@ extern const struct exh_signal drop_more_rows[DROP_MORE_ROWS];
 #define DROP_PARAM_GROUPS \
     {exh_quad_rows, EXH_QUAD_ROWS, 1}, {exh_velocity_rows, EXH_VELOCITY_ROWS, 1}, \
         {exh_contact_rows, EXH_CONTACT_ROWS, 1}, {exh_drive_rows, EXH_DRIVE_ROWS, 1}, \
-        {exh_track_rows, EXH_TRACK_ROWS, 1}, {exh_watch_rows, EXH_WATCH_ROWS, 1}, \
+        {exh_tracking_rows, EXH_TRACKING_ROWS, 1}, {exh_motion_rows, EXH_MOTION_ROWS, 1}, \
         {exh_safety_rows, EXH_SAFETY_ROWS, 1}, {exh_supply_rows, EXH_SUPPLY_ROWS, 1}, \
         {drop_own_rows, DROP_OWN_ROWS, 1}, {exh_calib_set_rows, EXH_CALIB_SET_ROWS, 1}, \
     { \
@@ -46,8 +46,8 @@ struct drop_par {
     struct exh_velocity_par velocity;
     struct exh_contact_par contact;
     struct exh_drive_par drive;
-    struct exh_track_par track;
-    struct exh_watch_par watch;
+    struct exh_tracking_par track;
+    struct exh_motion_par watch;
     struct exh_safety_par safety;
     struct exh_supply_par supply;
     struct drop_own_par own;
@@ -75,8 +75,8 @@ struct drop_cfg {
     struct exh_quad_cfg quad;
     struct exh_velocity_window_cfg velocity;
     struct exh_drive_cfg drive;
-    struct exh_track_cfg track;
-    struct exh_watch_cfg watch;
+    struct exh_tracking_cfg track;
+    struct exh_motion_cfg watch;
     struct exh_safety_cfg safety;
     struct exh_supply_cfg supply;
     uint8_t tested; /* 1: the self-test passed */
@@ -88,8 +88,8 @@ struct drop {
     struct exh_velocity_window velocity;
     struct exh_contact contact;
     struct exh_drive drive;
-    struct exh_track track;
-    struct exh_watch watch;
+    struct exh_tracking track;
+    struct exh_motion watch;
     struct exh_safety safety;
     struct exh_supply supply;
     uint8_t broken; /* 1: the guard found a change in configuration; not saved */
@@ -126,7 +126,7 @@ void drop_tick(struct drop *s, const struct drop_cfg *cfg, const struct exh_scen
 
 /* The memory of the one instance, for who damages it to see what happens. */
 struct drop *drop_memory(struct drop_cfg **cfg);
-struct exh_guard *drop_guard(void);
+struct exh_integrity *drop_guard(void);
 
 extern const struct exh_scene exh_scene_drop;
 

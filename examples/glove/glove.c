@@ -151,14 +151,14 @@ static struct exh_safety shut;
 
 static void defaults(void)
 {
-    exh_params_init(&params, &param_table, (int32_t *)&active, (int32_t *)&staged);
+    exh_params_setup(&params, &param_table, (int32_t *)&active, (int32_t *)&staged);
     glove_par_of_cal(&active, &exh_glove_cal_default);
     staged = active;
 }
 
-int glove_stage_cal(const struct exh_glove_cal *cal, struct exh_glove_bad *bad)
+int glove_stage_cal(const struct exh_glove_cal *cal, struct exh_glove_error *bad)
 {
-    const int err = exh_glove_cal_valid(cal, bad);
+    const int err = exh_glove_cal_validate(cal, bad);
     if (err == 0) {
         glove_par_of_cal(&staged, cal);
         params.pending = 1;
@@ -184,15 +184,15 @@ static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
     state.sig.age_ticks = in->glove.age_ticks;
     signals = state.sig;
     /* It never opens, so EXH_UNTRACKED. */
-    exh_gate(&shut, &idle_cfg, 1, &none, &limits, out);
+    exh_gate_step(&shut, &idle_cfg, 1, &none, &limits, out);
 }
 
 static void state_bytes(struct exh_bytes *c)
 {
     int32_t *held = (int32_t *)&state.sig; /* what the next ticks show again */
-    exh_glove_bytes(c, &state.glove);
+    exh_glove_serialize(c, &state.glove);
     for (unsigned i = 0; i < SIGNALS; i++) { exh_bytes_i32(c, &held[i]); }
-    exh_safety_bytes(c, &shut);
+    exh_safety_serialize(c, &shut);
 }
 
 const struct exh_scene exh_scene_glove = {

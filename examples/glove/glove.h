@@ -50,7 +50,7 @@ void glove_cal_of_par(struct exh_glove_cal *cal, const struct glove_par *par);
 
 /* Stages a calibration in the scene's parameters, between defaults() and set-up: 0, or
  * -EXH_E_RANGE with *bad (may be NULL). */
-int glove_stage_cal(const struct exh_glove_cal *cal, struct exh_glove_bad *bad);
+int glove_stage_cal(const struct exh_glove_cal *cal, struct exh_glove_error *bad);
 
 extern const struct exh_scene exh_scene_glove;
 

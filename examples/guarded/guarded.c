@@ -59,7 +59,7 @@ void guarded_tick(struct guarded *s, const struct guarded_cfg *cfg, const struct
     drop_law(&s->drop, &cfg->drop, in, &now, &sig->drop);
     now.limits |= exh_passivity_step(&s->passivity, &cfg->passivity, now.cnt, sig->drop.c, &now.f);
     drop_out(&s->drop, &cfg->drop, &now, out, &sig->drop);
-    exh_passivity_held(&s->passivity, &cfg->passivity, &now.f, now.i.coded_A_q26);
+    exh_passivity_update(&s->passivity, &cfg->passivity, &now.f, now.i.coded_A_q26);
     sig->energy_J_q24 = exh_passivity_J_q24(&s->passivity, &cfg->passivity);
     sig->passivity_N_q20 = exh_sat32(now.f.passivity_N_q20);
 }
@@ -67,7 +67,7 @@ void guarded_tick(struct guarded *s, const struct guarded_cfg *cfg, const struct
 void guarded_bytes(struct exh_bytes *c, struct guarded *s)
 {
     drop_bytes(c, &s->drop);
-    exh_passivity_bytes(c, &s->passivity);
+    exh_passivity_serialize(c, &s->passivity);
 }
 
 /* --- the one instance of this image --- */
@@ -78,11 +78,11 @@ static struct guarded_signals signals;
 static struct guarded_cfg cfg;
 static struct guarded state;
 static struct exh_scene_calib calib;
-static struct exh_guard guard;
+static struct exh_integrity guard;
 
 static void defaults(void)
 {
-    exh_params_init(&params, &param_table, (int32_t *)&active, (int32_t *)&staged);
+    exh_params_setup(&params, &param_table, (int32_t *)&active, (int32_t *)&staged);
 }
 
 static int setup(struct exh_scene_board board)
@@ -90,11 +90,11 @@ static int setup(struct exh_scene_board board)
     static const struct guarded power_on;
     int err;
     state = power_on;
-    exh_params_slew(&params, &active.drop.tune, board.T);
-    exh_gains_lead(&params, active.own.rule_on);
+    exh_params_slew_setup(&params, &active.drop.tune, board.T);
+    exh_gains_enable(&params, active.own.rule_on);
     err = exh_calib_set_load(&calib, &params, &active.drop.calib, 1u);
     if (err == 0) { err = guarded_setup(&cfg, &active, board, &calib); }
-    exh_guard_seal(&guard, &cfg, sizeof cfg, &params);
+    exh_integrity_seal(&guard, &cfg, sizeof cfg, &params);
     return err;
 }
 
@@ -106,13 +106,13 @@ int guarded_stage(uint16_t id, uint16_t instance, int32_t raw)
 
 static int allowed(void)
 {
-    return active.own.rule_on ? exh_gains_staged(&params, &active.gains, NULL) : 0;
+    return active.own.rule_on ? exh_gains_validate(&params, &active.gains, NULL) : 0;
 }
 
 static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
 {
     if (active.own.rule_on) { exh_gains_step(&params, &active.gains); }
-    state.drop.broken = (uint8_t)exh_guard_step(&guard);
+    state.drop.broken = (uint8_t)exh_integrity_step(&guard);
     guarded_tick(&state, &cfg, in, out, &signals);
 }
 

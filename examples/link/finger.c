@@ -79,7 +79,7 @@ static const struct exh_drive_par drive_par = {
     EXH_Q(324900, 176, EXH_Q_DAC), /* zero, span, codes/A */
     0,
     EXH_Q(5164, 10000000, EXH_Q_MON)}; /* zero, A/code */
-static const struct exh_track_par track_par = {EXH_Q(1, 4, EXH_Q_CUR), 20};
+static const struct exh_tracking_par track_par = {EXH_Q(1, 4, EXH_Q_CUR), 20};
 static const struct exh_safety_par safety_par = {1, EXH_Q(1, 1, EXH_Q_FORCE), 50, 500, 15};
 static struct exh_knot knot[2] = {{0, 0, {0, 0}},
                                   {EXH_Q(22, 1, EXH_Q_FORCE), EXH_Q(66, 10, EXH_Q_CUR), {0, 0}}};
@@ -87,14 +87,14 @@ static struct exh_knot knot[2] = {{0, 0, {0, 0}},
 static struct exh_quad_cfg quad_cfg;
 static struct exh_velocity_window_cfg vel_cfg;
 static struct exh_drive_cfg drive_cfg;
-static struct exh_track_cfg track_cfg;
+static struct exh_tracking_cfg track_cfg;
 static struct exh_safety_cfg safety_cfg;
 
 static struct exh_quad quad;
 static struct exh_velocity_window vel;
 static struct exh_contact contact;
 static struct exh_drive drive;
-static struct exh_track track;
+static struct exh_tracking track;
 static struct exh_safety safety;
 static uint8_t vouched = EXH_UNCALIBRATED | EXH_UNPOLARISED;
 
@@ -119,7 +119,7 @@ static int setup(void)
                                                 .drive_par = &drive_par};
     const struct exh_period T = {1, RATE_Hz};
     const struct exh_table force_to_cur = {knot, 2}, no_table = {0, 0};
-    int err = exh_table_set(knot, 2);
+    int err = exh_table_setup(knot, 2);
     if (err == 0) { err = exh_axis_setup(&parts, T, 24, force_to_cur, no_table); }
     if (err == 0) { err = exh_safety_setup(&safety_cfg, &safety_par, T); }
     if (exh_selftest() == EXH_SELFTEST_OK) { vouched |= EXH_ARM_SELFTEST; }
@@ -136,7 +136,7 @@ static void tick(const struct exh_drive_in *in, uint8_t command, struct exh_driv
     struct exh_current_ledger current;
     uint32_t limits;
 
-    exh_contact_law(&contact, &wall, q, &force);
+    exh_contact_step(&contact, &wall, q, &force);
     limits = now.limits | exh_axis_force(&axis, &permit, &force, &current);
     exh_axis_out(&axis, &safety, now.cnt, &current, &limits, out);
 }

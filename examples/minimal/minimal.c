@@ -19,7 +19,7 @@ static const struct exh_drive_par drive_par = {.f_max_N_q20 = EXH_Q(5, 1, EXH_Q_
                                                .dac_span_raw = 12184,
                                                .dac_rawpA_q16 = EXH_Q(324900, 176, EXH_Q_DAC),
                                                .mon_A_q40 = EXH_Q(5164, 10000000, EXH_Q_MON)};
-static const struct exh_track_par track_par = {EXH_Q(1, 4, EXH_Q_CUR), 20};
+static const struct exh_tracking_par track_par = {EXH_Q(1, 4, EXH_Q_CUR), 20};
 static const struct exh_safety_par safety_par = {1, EXH_Q(1, 1, EXH_Q_FORCE), 50, 500, 15};
 /* Its parameters are constants. */
 #define vouched (EXH_UNTESTED | EXH_UNCALIBRATED | EXH_UNPOLARISED)
@@ -31,7 +31,7 @@ static const int32_t wall_m_q30 = EXH_Q(2, 100, EXH_Q_POS);
 static struct exh_quad_cfg quad_cfg;
 static struct exh_velocity_window_cfg vel_cfg;
 static struct exh_drive_cfg drive_cfg;
-static struct exh_track_cfg track_cfg;
+static struct exh_tracking_cfg track_cfg;
 static struct exh_safety_cfg safety_cfg;
 static struct exh_knot knot[2] = {{0, 0, {0, 0}},
                                   {EXH_Q(22, 1, EXH_Q_FORCE), EXH_Q(66, 10, EXH_Q_CUR), {0, 0}}};
@@ -41,7 +41,7 @@ static struct state {
     struct exh_velocity_window vel;
     struct exh_contact contact;
     struct exh_drive drive;
-    struct exh_track track;
+    struct exh_tracking track;
     struct exh_safety safety;
 } s;
 
@@ -63,7 +63,7 @@ static int setup(struct exh_scene_board board)
                                                 .drive = &drive_cfg,
                                                 .drive_par = &drive_par};
     const struct exh_table to_cur = {knot, 2}, no_table = {0, 0};
-    int err = exh_table_set(knot, 2);
+    int err = exh_table_setup(knot, 2);
     s = (struct state){0};
     if (err == 0) { err = exh_axis_setup(&parts, board.T, board.enc_bits, to_cur, no_table); }
     if (err == 0) { err = exh_safety_setup(&safety_cfg, &safety_par, board.T); }
@@ -90,7 +90,7 @@ static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
     struct exh_current_ledger i;
     uint32_t limits;
 
-    exh_contact_law(&s.contact, &contact_par, q, &f);
+    exh_contact_step(&s.contact, &contact_par, q, &f);
     limits = now.limits | exh_axis_force(&axis, &permit, &f, &i);
     exh_axis_out(&axis, &s.safety, now.cnt, &i, &limits, out);
 }

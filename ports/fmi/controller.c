@@ -237,11 +237,11 @@ void unit_bytes(struct exh_bytes *c)
     exh_bytes_i32(c, &command);
     exh_bytes_u32(c, &in.missed);
     exh_bytes_u8(c, &started);
-    exh_drive_in_bytes(c, &in.drive, EXH_FINGERS);
-    exh_drive_out_bytes(c, &out, EXH_FINGERS);
+    exh_drive_in_serialize(c, &in.drive, EXH_FINGERS);
+    exh_drive_out_serialize(c, &out, EXH_FINGERS);
     for (uint32_t i = 0; i < n; i++) { exh_bytes_i32(c, &scene->signal[i]); }
     if (c->mode == EXH_BYTES_READ) { scene->params->locked = 0; }
-    exh_params_bytes(c, scene->params);
+    exh_params_serialize(c, scene->params);
     if (c->mode == EXH_BYTES_READ) { set_up_anew(c); }
     scene->params->locked = started;
     scene->state(c);

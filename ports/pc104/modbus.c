@@ -218,19 +218,19 @@ static int apply(void)
     memcpy(was, params->staged, 4 * (size_t)params->count);
     err = exh_regs_apply(&regs, params);
     if (err == 0 && scene_allows) { err = scene_allows(); }
-    if (err < 0) { exh_params_unstage(params, was, pending); }
+    if (err < 0) { exh_params_rollback(params, was, pending); }
     return err;
 }
 
 /* All that a request has asked for, between two ticks. */
 static void carry_out(void)
 {
-    const uint32_t asked = exh_regs_take(&regs);
+    const uint32_t asked = exh_regs_poll(&regs);
     const uint8_t wanted = exh_regs_command(asked);
-    if (asked >> EXH_COIL_APPLY & 1u) { exh_regs_did(&regs, apply()); }
+    if (asked >> EXH_COIL_APPLY & 1u) { exh_regs_complete(&regs, apply()); }
     if (wanted == EXH_CMD_NONE) { return; }
     command = wanted;
-    exh_regs_did(&regs, 0);
+    exh_regs_complete(&regs, 0);
 }
 
 /* Nothing is taken meanwhile: who asked waits for this, and what follows it waits in the FIFO. */
@@ -256,8 +256,8 @@ static uint32_t hear(void)
     for (; n < most; n++) {
         const uint8_t status = pc104_in8(COM2(UART_STATUS));
         if (!(status & UART_STATUS_READY)) { break; }
-        if (status & UART_STATUS_BAD) { exh_modbus_rtu_bad(&line); }
-        exh_modbus_rtu_byte(&line, pc104_in8(COM2(UART_DATA)));
+        if (status & UART_STATUS_BAD) { exh_modbus_rtu_discard(&line); }
+        exh_modbus_rtu_receive(&line, pc104_in8(COM2(UART_DATA)));
     }
     return n;
 }
@@ -265,13 +265,13 @@ static uint32_t hear(void)
 void pc104_modbus_poll(const struct exh_scene_in *in)
 {
     if (!open) { return; }
-    if (regs.trace) { exh_trace_tick(&trace, safety->tick, regs.signal); }
+    if (regs.trace) { exh_trace_step(&trace, safety->tick, regs.signal); }
     if (sending) {
         send();
         return;
     }
-    if (hear() > 0 || !exh_modbus_rtu_pass(&line, tick_us * (1u + in->missed))) { return; }
-    if (safety) { exh_regs_see(&regs, safety, in->drive.din); }
+    if (hear() > 0 || !exh_modbus_rtu_poll(&line, tick_us * (1u + in->missed))) { return; }
+    if (safety) { exh_regs_update(&regs, safety, in->drive.din); }
     regs.locked = params ? params->locked : 0;
     answer_B = (uint32_t)exh_modbus_rtu_answer(&line, &regs, answer, sizeof answer);
     sent_B = 0;
@@ -292,16 +292,16 @@ static void request(struct exh_modbus_rtu *u, const uint8_t *byte, uint32_t len_
 {
     const uint16_t crc = exh_crc16(byte, len_B);
     (void)exh_modbus_rtu_setup(u, 1, (uint32_t)par.baud);
-    for (uint32_t i = 0; i < len_B; i++) { exh_modbus_rtu_byte(u, byte[i]); }
-    exh_modbus_rtu_byte(u, (uint8_t)(crc & 0xFFu));
-    exh_modbus_rtu_byte(u, (uint8_t)(crc >> 8));
+    for (uint32_t i = 0; i < len_B; i++) { exh_modbus_rtu_receive(u, byte[i]); }
+    exh_modbus_rtu_receive(u, (uint8_t)(crc & 0xFFu));
+    exh_modbus_rtu_receive(u, (uint8_t)(crc >> 8));
 }
 
 static void dry_answer(const struct exh_modbus_rtu *asked)
 {
     static struct exh_modbus_rtu twin;
     twin = *asked;
-    (void)exh_modbus_rtu_pass(&twin, UINT32_MAX);
+    (void)exh_modbus_rtu_poll(&twin, UINT32_MAX);
     (void)exh_modbus_rtu_answer(&twin, &regs, answer, sizeof answer);
 }
 
@@ -320,7 +320,7 @@ static void prepare(void)
     ask[10] = (uint8_t)(2 * put);
     for (uint32_t i = 0; i < put / 2; i++) {
         const struct exh_signal *row = exh_signal_at(regs.params, i, NULL);
-        const uint32_t bits = exh_float_of(row->min / 2 + row->max / 2, row->frac);
+        const uint32_t bits = exh_float_from_raw(row->min / 2 + row->max / 2, row->frac);
         for (uint32_t k = 0; k < 4; k++) { ask[11 + 4 * i + k] = (uint8_t)(bits >> (24 - 8 * k)); }
     }
     request(&dearest, ask, 11 + 2 * put);
@@ -339,7 +339,7 @@ static void dry_apply(void)
     memset(touched, 0xFF, 4 * (size_t)EXH_REGS_WORDS(regs.params_n));
     dry_answer(&apply_all);
     carry_out();
-    exh_params_unstage(params, params->staged, pending);
+    exh_params_rollback(params, params->staged, pending);
 }
 
 /* A tick has no more than one of these: a request is answered when no character has come in that

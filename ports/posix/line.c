@@ -63,7 +63,7 @@ struct sim_link *posix_link(void)
 static void learn(const void *buf, size_t len_B)
 {
     struct exh_wire_packet p;
-    if (exh_wire_take(&line.rx, &p, buf, len_B) > 0) { udp_learn(&line.udp); }
+    if (exh_wire_decode(&line.rx, &p, buf, len_B) > 0) { udp_learn(&line.udp); }
 }
 
 /* Between the ways and the socket. */
@@ -71,7 +71,7 @@ static void pump(double now_s)
 {
     uint8_t buf[SIM_LINK_PACKET_B];
     int n;
-    (void)exh_wire_pass(&line.rx, (uint32_t)fmin(1e6 * (now_s - line.heard_s), 4e9), QUIET_US);
+    (void)exh_wire_poll(&line.rx, (uint32_t)fmin(1e6 * (now_s - line.heard_s), 4e9), QUIET_US);
     line.heard_s = now_s;
     while ((n = sim_link_recv(&line.link.way[SIM_LINK_OUT], now_s, buf, sizeof buf)) > 0) {
         (void)udp_send(&line.udp, buf, (size_t)n);

@@ -47,7 +47,7 @@ static void add_packet(struct input *in, struct exh_wire_tx *tx, unsigned right,
                        struct exh_wire_packet p)
 {
     uint8_t buf[EXH_WIRE_MAX_B];
-    const int32_t n = exh_wire_write(tx, &p, 1000, buf, sizeof buf);
+    const int32_t n = exh_wire_encode(tx, &p, 1000, buf, sizeof buf);
     if (n < 0) { exit(2); }
     add(in, right, buf, (size_t)n);
 }
@@ -65,7 +65,7 @@ static struct exh_wire_packet packet_of(uint8_t type)
     } else if (type == EXH_WIRE_PARAM) {
         p.u.param = (struct exh_wire_param){0x0B01, 0, 5};
     } else if (type == EXH_WIRE_TRACE_ASK) {
-        p.u.trace_ask = (struct exh_wire_trace_ask){4, {0, 1, 2, 300}};
+        p.u.trace_ask = (struct exh_wire_trace_request){4, {0, 1, 2, 300}};
     } else if (type == EXH_WIRE_TRACE) {
         p.u.trace.first = 0xFFFFFFFDu;
         p.u.trace.frames = EXH_WIRE_FRAMES;

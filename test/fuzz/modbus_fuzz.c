@@ -71,7 +71,7 @@ static struct box b;
 static void start(void)
 {
     memset(&b, 0, sizeof b);
-    exh_params_init(&b.p, &par_table, b.active, b.wanted);
+    exh_params_setup(&b.p, &par_table, b.active, b.wanted);
     b.p.locked = 1;
     b.r = (struct exh_regs){.name = "fuzz",
                             .signals = &out_table,
@@ -101,7 +101,7 @@ static void must_be_sound(void)
         MUST(row->when == EXH_WHEN_ANY && b.staged[i] != b.wanted[i]);
     }
     for (unsigned i = 0; i < EXH_TRACE_SIGNALS; i++) { MUST(b.trace.what.index[i] < SIGNALS); }
-    exh_trace_tick(&b.trace, 1, b.signal);
+    exh_trace_step(&b.trace, 1, b.signal);
     MUST(b.staged[PARAMS] == 0x5A5A && b.touched[EXH_REGS_WORDS(PARAMS)] == 0x5A5A);
     MUST((b.r.asked & ~(1u << EXH_COIL_APPLY | 1u << EXH_COIL_OFF)) == 0);
 }
@@ -175,7 +175,7 @@ static void must_reply(const uint8_t *frame, uint32_t len_B, int damaged)
 {
     uint8_t *resp = malloc(EXH_MODBUS_ADU_B);
     const struct box was = b;
-    const int ours = exh_modbus_rtu_pass(&b.u, b.u.silence_us);
+    const int ours = exh_modbus_rtu_poll(&b.u, b.u.silence_us);
     int n;
     if (resp == NULL) { exit(3); }
     MUST(b.u.taken + b.u.others + b.u.damaged <= was.u.taken + was.u.others + was.u.damaged + 1);
@@ -195,22 +195,22 @@ static void say(const uint8_t *q, uint32_t len_B, unsigned right)
     uint32_t n = len_B + 1;
     frame[0] = right & FIX_ADDRESS ? 17 : (uint8_t)(right & FIX_COUNT ? 0 : 18);
     memcpy(&frame[1], q, len_B);
-    for (uint32_t i = 0; i < n; i++) { exh_modbus_rtu_byte(&b.u, frame[i]); }
+    for (uint32_t i = 0; i < n; i++) { exh_modbus_rtu_receive(&b.u, frame[i]); }
     {
         const uint32_t crc = (uint32_t)exh_crc16(frame, n) ^ (right & WRONG_CRC ? 0x10u : 0u);
-        exh_modbus_rtu_byte(&b.u, (uint8_t)(crc & 0xFFu));
-        exh_modbus_rtu_byte(&b.u, (uint8_t)(crc >> 8));
+        exh_modbus_rtu_receive(&b.u, (uint8_t)(crc & 0xFFu));
+        exh_modbus_rtu_receive(&b.u, (uint8_t)(crc >> 8));
     }
     must_reply(frame, n, (right & WRONG_CRC) != 0);
 }
 
 static void carry_out(void)
 {
-    const uint32_t asked = exh_regs_take(&b.r);
+    const uint32_t asked = exh_regs_poll(&b.r);
     if (asked >> EXH_COIL_APPLY & 1u) {
         MUST(exh_regs_apply(&b.r, &b.p) == 0); /* all that is staged may be */
         (void)exh_params_apply(&b.p);
-        exh_regs_did(&b.r, 0);
+        exh_regs_complete(&b.r, 0);
     }
 }
 
@@ -227,7 +227,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         size -= 2 + len_B;
         put_right(right, q, &len_B);
         if (right & BYTES) {
-            for (uint32_t i = 0; i < len_B; i++) { exh_modbus_rtu_byte(&b.u, q[i]); }
+            for (uint32_t i = 0; i < len_B; i++) { exh_modbus_rtu_receive(&b.u, q[i]); }
             must_reply(q, 0, 0);
         } else if (right & SERIAL) {
             say(q, len_B, right);

@@ -83,7 +83,7 @@ static void planes_came(struct box *b, const struct exh_precontact_cfg *cfg)
         const struct exh_plane p = exh_wire_plane_of(&b->last.u.planes, f);
         struct exh_precontact *s = &b->finger[f];
         const struct exh_precontact was = *s;
-        const int r = exh_precontact_tell(s, cfg, &p, 0);
+        const int r = exh_precontact_update(s, cfg, &p, 0);
         const struct exh_vec3 *n = &s->newest.normal_q30;
         MUST(p.kind <= EXH_PLANE_HIT);
         MUST(p.kind == EXH_PLANE_UNTOLD || b->last.u.planes.fingers >> f & 1);
@@ -126,7 +126,7 @@ static void same_bytes(const struct box *b, const uint8_t *packet, size_t len)
     struct exh_wire_packet p = b->last;
     struct exh_wire_tx tx = {b->rx.session, p.seq};
     uint8_t again[EXH_WIRE_MAX_B];
-    MUST(exh_wire_write(&tx, &p, p.stamp_us, again, sizeof again) == (int32_t)len);
+    MUST(exh_wire_encode(&tx, &p, p.stamp_us, again, sizeof again) == (int32_t)len);
     MUST(memcmp(packet, again, len) == 0);
 }
 
@@ -148,7 +148,7 @@ static void time_goes_by(struct exh_wire_rx *rx, unsigned what)
 {
     const struct exh_wire_rx was = *rx;
     const uint32_t us = what & A_SILENCE ? LIMIT_US : what & A_WHILE ? LIMIT_US / 2 : 0;
-    const int now = exh_wire_pass(rx, us, LIMIT_US);
+    const int now = exh_wire_poll(rx, us, LIMIT_US);
     MUST(rx->silences == was.silences + (uint32_t)now);
     MUST(rx->open == (rx->session != 0 && rx->quiet_us >= LIMIT_US));
     MUST(rx->quiet_us >= was.quiet_us && rx->seq == was.seq && rx->session == was.session);
@@ -160,22 +160,22 @@ static void must_hear(struct exh_wire_rx *rx, uint32_t session)
     struct exh_wire_tx tx = {session, rx->seq - 1};
     struct exh_wire_packet p = {.type = EXH_WIRE_HELLO};
     uint8_t buf[EXH_WIRE_MAX_B];
-    int32_t n = exh_wire_write(&tx, &p, 0, buf, sizeof buf);
-    (void)exh_wire_pass(rx, LIMIT_US, LIMIT_US);
-    MUST(exh_wire_take(rx, &p, buf, (size_t)n) == EXH_WIRE_HELLO);
+    int32_t n = exh_wire_encode(&tx, &p, 0, buf, sizeof buf);
+    (void)exh_wire_poll(rx, LIMIT_US, LIMIT_US);
+    MUST(exh_wire_decode(rx, &p, buf, (size_t)n) == EXH_WIRE_HELLO);
     p.type = EXH_WIRE_PARAM;
-    n = exh_wire_write(&tx, &p, 0, buf, sizeof buf);
-    MUST(exh_wire_take(rx, &p, buf, (size_t)n) == EXH_WIRE_PARAM);
+    n = exh_wire_encode(&tx, &p, 0, buf, sizeof buf);
+    MUST(exh_wire_decode(rx, &p, buf, (size_t)n) == EXH_WIRE_PARAM);
 }
 
 /* Whatever is asked for is traced or refused; a trace of any values is read back as one in range.
  */
-static void asked(const struct exh_wire_trace_ask *a)
+static void asked(const struct exh_wire_trace_request *a)
 {
     struct exh_trace t;
     struct exh_trace_frame frame[4];
     const int32_t signal[300] = {0};
-    struct exh_trace_what what = {a->every, {0}};
+    struct exh_trace_request what = {a->every, {0}};
     struct exh_bytes c = exh_bytes_reader(a, sizeof *a);
     int bad = 0, r;
     for (unsigned i = 0; i < EXH_TRACE_SIGNALS; i++) {
@@ -185,17 +185,17 @@ static void asked(const struct exh_wire_trace_ask *a)
     MUST(exh_trace_setup(&t, frame, 4, 300) == 0);
     r = exh_trace_start(&t, &what);
     MUST((r < 0) == bad);
-    exh_trace_tick(&t, 1, signal);
+    exh_trace_step(&t, 1, signal);
     MUST(t.head == (r == 0 && a->every > 0));
-    exh_trace_bytes(&c, &t);
-    for (int k = 0; k < 9; k++) { exh_trace_tick(&t, 2, signal); }
+    exh_trace_serialize(&c, &t);
+    for (int k = 0; k < 9; k++) { exh_trace_step(&t, 2, signal); }
 }
 
 static void datagram(struct box *b, const struct exh_precontact_cfg *cfg, struct exh_params *params,
                      const uint8_t *packet, size_t len)
 {
     const struct box was = *b;
-    const int r = exh_wire_take(&b->rx, &b->last, packet, len);
+    const int r = exh_wire_decode(&b->rx, &b->last, packet, len);
     MUST(counters(&b->rx) == counters(&was.rx) + 1);
     if (r < 0) {
         MUST(b->rx.accepted == was.rx.accepted);
@@ -204,7 +204,7 @@ static void datagram(struct box *b, const struct exh_precontact_cfg *cfg, struct
     }
     MUST(r == b->last.type && b->rx.accepted == was.rx.accepted + 1);
     if (r == EXH_WIRE_HELLO) {
-        MUST(exh_wire_differs(&b->last.u.hello, &b->last.u.hello) == EXH_WIRE_ROLE);
+        MUST(exh_wire_compare(&b->last.u.hello, &b->last.u.hello) == EXH_WIRE_ROLE);
     }
     heard(&was.rx, &b->rx, b->last.seq, r);
     same_bytes(b, packet, len);
@@ -248,7 +248,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     const struct exh_period T = {1, 2000};
 
     memset(&b, 0, sizeof b); /* padding, too: boxes are compared byte by byte */
-    exh_params_init(&params, &table, b.active, b.staged);
+    exh_params_setup(&params, &table, b.active, b.staged);
     MUST(exh_precontact_setup(&cfg, &par, material, 2, 7516193, T) == 0);
     while (size >= 3) {
         const size_t asked = data[1] + 256u * data[2];

@@ -169,7 +169,7 @@ static void other_version(uint8_t *buf, uint32_t size)
 static void put_read(struct golden *g, const uint8_t *buf, uint32_t len)
 {
     struct exh_record rec;
-    const int32_t got = exh_record_read(buf, len, &rec);
+    const int32_t got = exh_record_decode(buf, len, &rec);
     if (got < 0) { (void)memset(&rec, 0, sizeof rec); }
     golden_put(g, got);
     golden_put(g, rec.type);

@@ -40,7 +40,7 @@ static struct rig {
     unsigned astray[FINGERS]; /* monitors */
     /* the world's end */
     struct exh_wire_tx tx;
-    struct exh_wire_trace_ask trace;
+    struct exh_wire_trace_request trace;
     struct object object[FINGERS];
     struct datagram late[LATE];
     unsigned lates;
@@ -174,7 +174,7 @@ static void set_up(struct golden_rng *r, uint32_t rate_Hz, uint32_t k)
     struct exh_scene_board board = {golden_period(rate_Hz, k), 16};
     int err;
     (void)memset(&rig, 0, sizeof rig);
-    exh_params_init(&rig.params, &bilateral_params, (int32_t *)&rig.par, (int32_t *)&rig.staged);
+    exh_params_setup(&rig.params, &bilateral_params, (int32_t *)&rig.par, (int32_t *)&rig.staged);
     any_par(r, rate_Hz, k);
     rig.staged = rig.par;
     while ((err = bilateral_setup(&rig.cfg, &rig.s, &rig.par, board, NULL)) != 0 &&
@@ -218,7 +218,7 @@ static void send(struct exh_wire_packet *p, struct golden_rng *r)
     const uint32_t stamp_us = any_u32(r);
     const int64_t how = golden_draw(r, 0, 23);
     struct datagram d;
-    d.len = (uint16_t)exh_wire_write(&rig.tx, p, stamp_us, d.b, sizeof d.b);
+    d.len = (uint16_t)exh_wire_encode(&rig.tx, p, stamp_us, d.b, sizeof d.b);
     if (how == 2) {
         const int64_t bit = golden_draw(r, 0, 8 * d.len - 1);
         d.b[bit >> 3] ^= (uint8_t)(INT32_C(1) << (bit & 7));

@@ -93,9 +93,9 @@ static void put_check(struct golden *g, struct golden_rng *r, const struct exh_c
 {
     const int64_t other = golden_draw(r, 0, 9);
     const uint32_t by = (uint32_t)golden_draw(r, 1, 500);
-    struct exh_calib_bad bad = {0, 0};
-    struct exh_calib_here h = {c->device_id,    c->finger,    c->day,         c->dac_rawpA_q16,
-                               c->dac_zero_raw, c->mon_A_q40, c->mon_zero_raw};
+    struct exh_calib_error bad = {0, 0};
+    struct exh_calib_target h = {c->device_id,    c->finger,    c->day,         c->dac_rawpA_q16,
+                                 c->dac_zero_raw, c->mon_A_q40, c->mon_zero_raw};
     int err;
     if (other == 0) { h.device_id ^= by; }
     if (other == 1) { h.finger += by; }
@@ -139,14 +139,14 @@ static void put_spoilt(struct golden *g, struct golden_rng *r, const struct exh_
 {
     const int64_t at = golden_draw(r, 0, c->points - 1);
     const int64_t which = golden_draw(r, 0, 1);
-    struct exh_calib_bad bad = {0, 0};
+    struct exh_calib_error bad = {0, 0};
     int err;
     if (at > 0) {
         int32_t *v = which == 0 ? &c->point[at].cur_A_q26 : &c->point[at].mon_A_q26;
         *v = which == 0 ? c->point[at - 1].cur_A_q26 : c->point[at - 1].mon_A_q26;
         *v -= (int32_t)golden_draw(r, 0, 1);
     }
-    err = exh_calib_valid(c, &bad);
+    err = exh_calib_validate(c, &bad);
     golden_put(g, err);
     golden_put(g, err == 0 ? 0 : bad.what);
     golden_put(g, err == 0 ? 0 : bad.at);

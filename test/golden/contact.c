@@ -68,7 +68,7 @@ void golden_contact(struct golden *g, uint32_t rate_Hz)
         if (g->tick >= 176 && g->tick < GOLDEN_AGAIN) {
             in.lim_m_q30 = (int32_t)golden_draw(&r, INT32_MIN, INT32_MAX);
         }
-        touching = exh_contact_law(&s, &par, in, &f);
+        touching = exh_contact_step(&s, &par, in, &f);
         golden_put(g, in.pos_m_q30);
         golden_put(g, in.vel_mps_q27);
         golden_put(g, in.lim_m_q30);
@@ -76,7 +76,7 @@ void golden_contact(struct golden *g, uint32_t rate_Hz)
         golden_put(g, f.spring_N_q20);
         golden_put(g, f.damper_N_q20);
         golden_put(g, f.pullback_N_q20);
-        GOLDEN_STATE(g, exh_contact_bytes, &s);
+        GOLDEN_STATE(g, exh_contact_serialize, &s);
         golden_tick(g);
     }
 }

@@ -45,7 +45,7 @@ void golden_table(struct golden *g, uint32_t rate_Hz)
         struct exh_gain s;
         if (g->tick % 64 == 0) {
             n = any_knots(&r, there);
-            CHECK_EQ_I64(exh_table_set(there, n), 0);
+            CHECK_EQ_I64(exh_table_setup(there, n), 0);
             CHECK_EQ_I64(exh_table_invert(back, there, n), 0);
         }
         i = (unsigned)golden_draw(&r, 0, n - 1);
@@ -83,7 +83,7 @@ static struct exh_table rising(struct golden_rng *r, struct exh_knot *knot, int3
         knot[i].x = x;
         knot[i].y = y;
     }
-    CHECK_EQ_I64(exh_table_set(knot, n), 0);
+    CHECK_EQ_I64(exh_table_setup(knot, n), 0);
     return (struct exh_table){knot, (uint8_t)n};
 }
 
@@ -196,8 +196,8 @@ void golden_drive(struct golden *g, uint32_t rate_Hz)
         golden_put(g, permit.ticks);
         raw = (int16_t)golden_draw(&r, -32768, 32767);
         golden_put(g, raw);
-        limits = exh_drive_force(&a.s, &a.cfg, &permit, &f);
-        limits |= exh_drive_current(&a.s, &a.cfg, &f, &i);
+        limits = exh_drive_force_step(&a.s, &a.cfg, &permit, &f);
+        limits |= exh_drive_current_step(&a.s, &a.cfg, &f, &i);
         golden_put(g, f.clamp_N_q20);
         golden_put(g, f.slew_N_q20);
         golden_put(g, f.release_N_q20);
@@ -208,7 +208,7 @@ void golden_drive(struct golden *g, uint32_t rate_Hz)
         golden_put(g, limits);
         golden_put(g, exh_drive_monitor_A_q26(&a.cfg, raw));
         golden_put(g, exh_drive_monitor_N_q20(&a.cfg, exh_drive_monitor_A_q26(&a.cfg, raw)));
-        GOLDEN_STATE(g, exh_drive_bytes, &a.s);
+        GOLDEN_STATE(g, exh_drive_serialize, &a.s);
         golden_tick(g);
     }
 }

@@ -111,14 +111,14 @@ static void put_out(struct golden *g, const struct guarded_signals *all, int gua
 
 static void put_state(struct golden *g, struct drop *s)
 {
-    GOLDEN_STATE(g, exh_quad_bytes, &s->quad);
-    GOLDEN_STATE(g, exh_velocity_window_bytes, &s->velocity);
-    GOLDEN_STATE(g, exh_contact_bytes, &s->contact);
-    GOLDEN_STATE(g, exh_drive_bytes, &s->drive);
-    GOLDEN_STATE(g, exh_track_bytes, &s->track);
-    GOLDEN_STATE(g, exh_watch_bytes, &s->watch);
-    GOLDEN_STATE(g, exh_safety_bytes, &s->safety);
-    GOLDEN_STATE(g, exh_supply_bytes, &s->supply);
+    GOLDEN_STATE(g, exh_quad_serialize, &s->quad);
+    GOLDEN_STATE(g, exh_velocity_window_serialize, &s->velocity);
+    GOLDEN_STATE(g, exh_contact_serialize, &s->contact);
+    GOLDEN_STATE(g, exh_drive_serialize, &s->drive);
+    GOLDEN_STATE(g, exh_tracking_serialize, &s->track);
+    GOLDEN_STATE(g, exh_motion_serialize, &s->watch);
+    GOLDEN_STATE(g, exh_safety_serialize, &s->safety);
+    GOLDEN_STATE(g, exh_supply_serialize, &s->supply);
 }
 
 /* What the string moves in a tick at most. */
@@ -170,7 +170,7 @@ static void play(struct golden *g, uint32_t rate_Hz, const char *name, int guard
         }
         put_out(g, &sig, guarded, &out);
         put_state(g, &d.s.drop);
-        if (guarded) { GOLDEN_STATE(g, exh_passivity_bytes, &d.s.passivity); }
+        if (guarded) { GOLDEN_STATE(g, exh_passivity_serialize, &d.s.passivity); }
         golden_tick(g);
     }
 }

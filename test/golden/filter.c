@@ -65,14 +65,14 @@ void golden_filter(struct golden *g, uint32_t rate_Hz)
             if (k == 0 || k == GOLDEN_AGAIN) {
                 exh_filter_reset(s, x, CHANNELS);
             } else {
-                exh_filter_retune(s, CHANNELS, &cfg[0], &cfg[1]);
+                exh_filter_retune(s, &cfg[0], &cfg[1], CHANNELS);
             }
         }
         golden_put(g, err);
         put_config(g, &cfg[1]);
         exh_filter_step(s, &cfg[1], x, y, CHANNELS);
         for (int i = 0; i < CHANNELS; i++) { golden_put(g, y[i]); }
-        for (int i = 0; i < CHANNELS; i++) { GOLDEN_STATE(g, exh_filter_bytes, &s[i]); }
+        for (int i = 0; i < CHANNELS; i++) { GOLDEN_STATE(g, exh_filter_serialize, &s[i]); }
         golden_tick(g);
     }
 }
@@ -113,7 +113,7 @@ void golden_quantizer(struct golden *g, uint32_t rate_Hz)
         golden_put(g, other.hyst_raw_q16);
         golden_put(g, err);
         golden_put(g, exh_quantizer_step(&s, &cfg, x));
-        GOLDEN_STATE(g, exh_quantizer_bytes, &s);
+        GOLDEN_STATE(g, exh_quantizer_serialize, &s);
         golden_tick(g);
     }
 }

@@ -131,8 +131,8 @@ static void stage(struct golden *g, struct golden_rng *r, int32_t k, int32_t b)
     golden_put(g, id);
     golden_put(g, instance);
     golden_put(g, raw);
-    err = exh_gains_staged(&params, &rule, &at);
-    if (err < 0) { exh_params_drop(&params); }
+    err = exh_gains_validate(&params, &rule, &at);
+    if (err < 0) { exh_params_discard(&params); }
     golden_put(g, err);
     golden_put(g, at);
     golden_put(g, golden_draw(r, 0, 3) ? move() : -1);
@@ -177,8 +177,8 @@ static void walk(struct golden *g, struct golden_rng *r, struct exh_period T)
     for (int i = 0; i < EXH_GAINS_KNOTS; i++) {
         if (own.k_Npm_q10[i] < own.k_min_Npm_q10) { own.k_Npm_q10[i] = own.k_min_Npm_q10; }
     }
-    exh_params_init(&p, &table, (int32_t *)is, (int32_t *)wanted);
-    exh_gains_lead(&p, 1);
+    exh_params_setup(&p, &table, (int32_t *)is, (int32_t *)wanted);
+    exh_gains_enable(&p, 1);
     for (int i = 0; i < 2; i++) { is[i] = place(r, &own); }
     p.locked = 1;
     p.shift = (uint8_t)golden_draw(r, 0, 5);
@@ -200,11 +200,11 @@ static void walk(struct golden *g, struct golden_rng *r, struct exh_period T)
 /* Two walls at power on: none, and the least at the first knot. */
 static void start(void)
 {
-    exh_params_init(&params, &table, (int32_t *)active, (int32_t *)staged);
+    exh_params_setup(&params, &table, (int32_t *)active, (int32_t *)staged);
     active[0].k_Npm_q10 = staged[0].k_Npm_q10 = 0; /* no wall: b first is outside */
     active[1].k_Npm_q10 = staged[1].k_Npm_q10 = rule.k_min_Npm_q10;
     active[1].b_Nspm_q20 = staged[1].b_Nspm_q20 = rule.b_Nspm_q20[0];
-    exh_gains_lead(&params, 1);
+    exh_gains_enable(&params, 1);
 }
 
 void golden_gains(struct golden *g, uint32_t rate_Hz)

@@ -149,7 +149,7 @@ static void frames(struct golden *g, const char *name, uint32_t rate_Hz, uint32_
         golden_put(g, angle[10]);
         golden_put(g, angle[21]);
         golden_put(g, crc_of(angle));
-        GOLDEN_STATE(g, exh_glove_bytes, &worn.s);
+        GOLDEN_STATE(g, exh_glove_serialize, &worn.s);
         golden_tick(g);
     }
 }

@@ -26,7 +26,7 @@ static void put_check(struct golden *g, struct golden_rng *r, const struct exh_g
 {
     const int64_t other = golden_draw(r, 0, 4);
     const uint32_t by = (uint32_t)golden_draw(r, 1, 500);
-    struct exh_glove_bad bad = {0, 0};
+    struct exh_glove_error bad = {0, 0};
     uint32_t day = cal->day;
     int err;
     if (other == 2) { day += by; }
@@ -65,7 +65,7 @@ void golden_glove_cal(struct golden *g, uint32_t rate_Hz)
     static struct exh_glove_cal cal;
     struct golden_rng r = golden_rng("glove_cal", rate_Hz, 0);
     while (g->tick < GOLDEN_TICKS) {
-        struct exh_glove_bad bad = {0, 0};
+        struct exh_glove_error bad = {0, 0};
         int err;
         if (g->tick % 8 == 0) { golden_glove_sensors(&whole, &r); }
         whole.user_id = (uint32_t)(golden_u64(&r) & UINT32_MAX);
@@ -80,7 +80,7 @@ void golden_glove_cal(struct golden *g, uint32_t rate_Hz)
         put_check(g, &r, &whole);
         cal = whole;
         spoil(&r, &cal);
-        err = exh_glove_cal_valid(&cal, &bad);
+        err = exh_glove_cal_validate(&cal, &bad);
         golden_put(g, err);
         golden_put(g, err == 0 ? 0 : bad.what);
         golden_put(g, err == 0 ? 0 : bad.at);

@@ -14,9 +14,9 @@
 #include "exhand/safety.h"
 #include "exhand/signal.h"
 #include "exhand/supply.h"
-#include "exhand/track.h"
+#include "exhand/tracking.h"
 #include "exhand/units.h"
-#include "exhand/watch.h"
+#include "exhand/motion.h"
 
 #include "check.h"
 
@@ -95,10 +95,10 @@ struct exh_period golden_period(uint32_t rate_Hz, uint32_t k);
 /* Any parameters of a drive that set-up takes, with a short peak. */
 void golden_drive_par(struct exh_drive_par *p, struct golden_rng *r, uint32_t rate_Hz);
 
-/* Any parameters of exh_track_setup(), with a short time. */
-void golden_track_par(struct exh_track_par *p, struct golden_rng *r, uint32_t rate_Hz);
+/* Any parameters of exh_tracking_setup(), with a short time. */
+void golden_track_par(struct exh_tracking_par *p, struct golden_rng *r, uint32_t rate_Hz);
 void golden_safety_par(struct exh_safety_par *p, struct golden_rng *r, uint32_t rate_Hz);
-void golden_watch_par(struct exh_watch_par *p, struct golden_rng *r, uint32_t rate_Hz);
+void golden_watch_par(struct exh_motion_par *p, struct golden_rng *r, uint32_t rate_Hz);
 
 /* The drives' supply: a code between the limits, and while it is off what it is then. */
 struct golden_rail {

@@ -3,13 +3,13 @@
 #include "modules.h"
 
 #include "exhand/fix.h"
-#include "exhand/guard.h"
+#include "exhand/integrity.h"
 #include "exhand/supply.h"
 
 #define AREA_B 40
 
 struct still {
-    struct exh_guard guard;
+    struct exh_integrity guard;
     struct exh_params params;
     int32_t active[GOLDEN_VALUES], staged[GOLDEN_VALUES];
     uint8_t area[AREA_B];
@@ -31,7 +31,7 @@ static void any_still(struct still *s, struct golden_rng *r)
     change(s, 0, 0);
     s->len_B = (uint32_t)golden_draw(r, 0, AREA_B);
     for (uint32_t i = 0; i < AREA_B; i++) { s->area[i] = (uint8_t)golden_draw(r, 0, 255); }
-    exh_guard_seal(&s->guard, s->area, s->len_B, golden_draw(r, 0, 3) ? &s->params : NULL);
+    exh_integrity_seal(&s->guard, s->area, s->len_B, golden_draw(r, 0, 3) ? &s->params : NULL);
 }
 
 /* A bit of the area or of a parameter turned over, and back again; a value being staged. */
@@ -57,7 +57,7 @@ void golden_guard(struct golden *g, uint32_t rate_Hz)
     static struct still s;
     struct golden_rng r = golden_rng("guard", rate_Hz, 0);
     (void)memset(&s, 0, sizeof s);
-    exh_params_init(&s.params, &golden_signals, s.active, s.staged);
+    exh_params_setup(&s.params, &golden_signals, s.active, s.staged);
     while (g->tick < GOLDEN_TICKS) {
         const int anew = golden_draw(&r, 0, 13) == 0;
         if (g->tick == 0 || g->tick == GOLDEN_AGAIN || anew) { any_still(&s, &r); }
@@ -67,7 +67,7 @@ void golden_guard(struct golden *g, uint32_t rate_Hz)
         golden_put(g, s.off);
         golden_put(g, s.params.pending);
         golden_put(g, s.params.moving);
-        golden_put(g, exh_guard_step(&s.guard));
+        golden_put(g, exh_integrity_step(&s.guard));
         golden_put(g, s.guard.at);
         golden_put(g, s.guard.crc);
         golden_put(g, s.params.at);
@@ -150,7 +150,7 @@ void golden_supply(struct golden *g, uint32_t rate_Hz)
         golden_put(g, cfg.max_raw);
         golden_put(g, cfg.ticks);
         golden_put(g, exh_supply_step(&s, &cfg, (int16_t)raw, missed));
-        GOLDEN_STATE(g, exh_supply_bytes, &s);
+        GOLDEN_STATE(g, exh_supply_serialize, &s);
         golden_tick(g);
     }
 }

@@ -83,9 +83,9 @@ static void any_hand(struct golden_rng *r, struct some_hand *h)
         }
         h->map.bent[f][2] = h->map.joint[f][1 + golden_draw(r, 0, 1)].sensor[golden_draw(r, 0, 1)];
         /* Where it is refused, the finger is as it was. */
-        if (golden_draw(r, 0, 3) != 0) { (void)exh_hand_follow(&h->finger[f], &h->map, f); }
+        if (golden_draw(r, 0, 3) != 0) { (void)exh_hand_couple(&h->finger[f], &h->map, f); }
     }
-    CHECK_EQ_I64(exh_hand_map_check(&h->map), 0);
+    CHECK_EQ_I64(exh_hand_map_validate(&h->map), 0);
 }
 
 static void put_vec(struct golden *g, const struct exh_vec3 *v)

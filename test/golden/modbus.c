@@ -76,14 +76,14 @@ static int bytes_come(struct exh_modbus_rtu *u, struct golden_rng *r, const uint
     const int64_t how = golden_draw(r, 0, 15);
     const uint32_t any = (uint32_t)golden_draw(r, 0, 2 * u->silence_us);
     int told;
-    for (uint32_t i = 0; i < at; i++) { exh_modbus_rtu_byte(u, frame[i]); }
-    told = exh_modbus_rtu_pass(u, how == 0   ? u->silence_us
+    for (uint32_t i = 0; i < at; i++) { exh_modbus_rtu_receive(u, frame[i]); }
+    told = exh_modbus_rtu_poll(u, how == 0   ? u->silence_us
                                   : how == 1 ? any
                                   : how == 2 ? UINT32_MAX
                                   : how < 8  ? u->silence_us - 1
                                              : 0);
-    if (how == 15) { exh_modbus_rtu_bad(u); }
-    for (uint32_t i = at; i < len_B; i++) { exh_modbus_rtu_byte(u, frame[i]); }
+    if (how == 15) { exh_modbus_rtu_discard(u); }
+    for (uint32_t i = at; i < len_B; i++) { exh_modbus_rtu_receive(u, frame[i]); }
     return told;
 }
 
@@ -96,9 +96,9 @@ static void one_frame(struct golden *g, struct exh_modbus_rtu *u, struct golden_
     golden_put_bytes(g, frame, len_B);
     golden_put(g, exh_crc16(frame, len_B > 0 ? len_B - 1 : 0));
     golden_put(g, bytes_come(u, r, frame, len_B));
-    golden_put(g, exh_modbus_rtu_pass(u, u->silence_us - 1));
+    golden_put(g, exh_modbus_rtu_poll(u, u->silence_us - 1));
     last = golden_draw(r, 0, 7);
-    golden_put(g, exh_modbus_rtu_pass(u, last == 0 ? 0 : last == 1 ? UINT32_MAX : 1));
+    golden_put(g, exh_modbus_rtu_poll(u, last == 0 ? 0 : last == 1 ? UINT32_MAX : 1));
     if (golden_draw(r, 0, 7) != 0) { n = exh_modbus_rtu_answer(u, &box.regs, resp, sizeof resp); }
     golden_put_bytes(g, resp, (uint32_t)n);
     golden_put(g, u->taken);
@@ -135,12 +135,12 @@ static uint32_t any_bits(struct golden_rng *r, unsigned frac)
     if (how == 0) { return any; }
     if (how == 1) { return (any & 0x807FFFFFu) | 0x7F800000u; }
     if (how == 2) { return any & 0x807FFFFFu; }
-    if (how == 3) { return exh_float_of(small >> 10, frac > 124 ? frac : frac + 2); }
-    if (how == 4) { return exh_float_of(small, frac > 125 ? frac : frac + 1); }
-    return (exh_float_of(how == 5   ? INT32_MIN
-                         : how == 6 ? INT32_MAX
-                                    : exh_from_u32(any),
-                         frac) +
+    if (how == 3) { return exh_float_from_raw(small >> 10, frac > 124 ? frac : frac + 2); }
+    if (how == 4) { return exh_float_from_raw(small, frac > 125 ? frac : frac + 1); }
+    return (exh_float_from_raw(how == 5   ? INT32_MIN
+                               : how == 6 ? INT32_MAX
+                                          : exh_from_u32(any),
+                               frac) +
             (uint32_t)near) &
            0xFFFFFFFFu;
 }
@@ -156,11 +156,11 @@ void golden_mirror(struct golden *g, uint32_t rate_Hz)
             const int32_t of = any >> golden_draw(&r, 0, 31);
             const uint32_t bits = any_bits(&r, frac);
             int32_t raw = 99;
-            const int err = exh_float_raw(bits, frac, &raw);
+            const int err = exh_float_to_raw(bits, frac, &raw);
             golden_put(g, frac);
             golden_put(g, of);
             golden_put(g, bits);
-            golden_put(g, exh_float_of(of, frac));
+            golden_put(g, exh_float_from_raw(of, frac));
             golden_put(g, err);
             golden_put(g, raw);
         }

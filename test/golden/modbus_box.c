@@ -41,7 +41,7 @@ void golden_box_setup(struct golden_box *b, struct golden_rng *r, struct exh_per
     static const char *const name[] = {NULL, "x", "bilateral", "seventeen letters"};
     const int no_trace = golden_draw(r, 0, 7) == 0;
     const int no_signals = golden_draw(r, 0, 15) == 0;
-    exh_params_init(&b->params, &par_table, b->active, b->wanted);
+    exh_params_setup(&b->params, &par_table, b->active, b->wanted);
     for (uint32_t i = 0; i < BOX_SIGNALS; i++) { b->signal[i] = exh_from_u32(i * 0x9E3779B1u); }
     CHECK_EQ_I64(exh_trace_setup(&b->trace, b->frame, BOX_FRAMES, BOX_SIGNALS), 0);
     b->regs = (struct exh_regs){.name = name[golden_draw(r, 0, 3)],
@@ -85,13 +85,13 @@ void golden_box_tick(struct golden_box *b, struct golden_rng *r, uint32_t k)
     s.limits = (uint32_t)(v >> 30 & 0x7FF);
     s.first = (uint32_t)(v >> 41 & 0x7FFF);
     s.state = (uint8_t)(v >> 56 & 0x27);
-    exh_regs_see(&b->regs, &s, (uint32_t)(u >> 8 & 0x1FFF));
+    exh_regs_update(&b->regs, &s, (uint32_t)(u >> 8 & 0x1FFF));
     for (unsigned i = 0; i < 2; i++) {
         const int64_t at = golden_draw(r, 0, BOX_SIGNALS - 1);
         const int32_t any = any_i32(r);
         b->signal[at] = any >> golden_draw(r, 0, 31);
     }
-    exh_trace_tick(&b->trace, s.tick, b->signal);
+    exh_trace_step(&b->trace, s.tick, b->signal);
     b->params.locked = (k + 3) >> 4 & 1; /* before the registers know */
     b->regs.locked = k >> 4 & 1;
     if (golden_draw(r, 0, 7) == 0) { /* somebody else wants something */
@@ -188,7 +188,7 @@ static uint32_t value_of_param(const struct golden_box *b, struct golden_rng *r,
     if (how >= 96 || (how >= 2 && b->regs.locked && row->when == EXH_WHEN_SETUP)) {
         raw = how < 128 ? b->wanted[i] : held(b, i);
     }
-    return is_float ? exh_float_of(raw, row->frac) : (uint32_t)raw;
+    return is_float ? exh_float_from_raw(raw, row->frac) : (uint32_t)raw;
 }
 
 static uint32_t value_at(const struct golden_box *b, struct golden_rng *r, uint32_t at)
@@ -390,13 +390,13 @@ void golden_box_between(struct golden *g, struct golden_box *b, struct golden_rn
     golden_put(g, staged[3]);
     golden_put(g, b->regs.asked);
     if (golden_draw(r, 0, 1) != 0) {
-        const uint32_t asked = exh_regs_take(&b->regs);
+        const uint32_t asked = exh_regs_poll(&b->regs);
         if (asked >> EXH_COIL_APPLY & 1) {
-            exh_regs_did(&b->regs, exh_regs_apply(&b->regs, &b->params));
+            exh_regs_complete(&b->regs, exh_regs_apply(&b->regs, &b->params));
         }
-        if (asked >> EXH_COIL_SAVE & 1) { exh_regs_did(&b->regs, -EXH_E_IO); }
+        if (asked >> EXH_COIL_SAVE & 1) { exh_regs_complete(&b->regs, -EXH_E_IO); }
         command = exh_regs_command(asked);
-        if (command != EXH_CMD_NONE) { exh_regs_did(&b->regs, 0); }
+        if (command != EXH_CMD_NONE) { exh_regs_complete(&b->regs, 0); }
         (void)exh_params_apply(&b->params);
     }
     golden_put(g, command);

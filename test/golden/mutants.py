@@ -29,7 +29,7 @@ FLAGS = "-std=c99 -O1 -w -Ilib/include -Iexamples -Itest -D_POSIX_C_SOURCE=20080
 
 L, H, X, Y = "lib/src/", "lib/include/exhand/", "examples/drop/", "examples/bilateral/"
 VELOCITY, QUAD, DRIVE, SAFETY = L + "sense/velocity.c", L + "sense/quad.c", L + "act/drive.c", L + "safe/safety.c"
-TRACK, WATCH, GATE, TABLE = L + "act/track.c", L + "safe/watch.c", L + "act/gate.c", L + "act/table.c"
+TRACK, WATCH, GATE, TABLE = L + "act/tracking.c", L + "safe/motion.c", L + "act/gate.c", L + "act/table.c"
 PASSIVITY, GAINS = L + "law/passivity.c", L + "law/gains.c"
 
 # module, source, text, what stands there instead. A changed header is compiled into the module's own
@@ -151,12 +151,12 @@ MUTANTS = (
     ("watch", WATCH, "return !on ? 0 :", "return !on ? ticks :"),
     ("watch", WATCH, "    s->cnt = cnt;", ""),
     ("watch", WATCH, "exh_ticks_in(ms, T) + 1;", "exh_ticks_in(ms, T) + 2;"),
-    ("guard", L + "safe/guard.c", "if (g->crc != g->want) {", "if (g->crc > g->want) {"),
-    ("guard", L + "safe/guard.c", "    g->at = g->crc = 0;\n}", "    g->at = 0;\n}"),
+    ("guard", L + "safe/integrity.c", "if (g->crc != g->want) {", "if (g->crc > g->want) {"),
+    ("guard", L + "safe/integrity.c", "    g->at = g->crc = 0;\n}", "    g->at = 0;\n}"),
     ("guard", L + "num/params.c", "!p->pending && !p->moving;", "!p->moving;"),
     ("guard", L + "num/params.c", "!p->pending && !p->moving;", "!p->pending;"),
     ("guard", L + "num/params.c", "bad |= p->passed != p->sum;", ""),
-    ("guard", H + "guard.h", "EXH_GUARD_WORDS 2", "EXH_GUARD_WORDS 1"),
+    ("guard", H + "guard.h", "EXH_INTEGRITY_WORDS 2", "EXH_INTEGRITY_WORDS 1"),
     ("supply", L + "act/supply.c", "raw <= cfg->max_raw", "raw < cfg->max_raw"),
     ("supply", L + "act/supply.c", "raw >= cfg->min_raw", "raw > cfg->min_raw"),
     ("supply", L + "act/supply.c", "least += rest != 0;", ""),
@@ -283,9 +283,9 @@ MUTANTS = (
     ("modbus", L + "talk/regs.c", "? r->active[i]", "? r->wanted[i]"),
     ("modbus", L + "talk/regs_stage.c", "if (raw != r->wanted[i]) { r->touched", "if (1) { r->touched"),
     ("modbus", L + "talk/regs_stage.c", "r->touched[i >> 5] &= ~bit;", ""),
-    ("modbus", L + "talk/regs_stage.c", "if (bits == exh_float_of(now, row->frac))", "if (0)"),
-    ("modbus", L + "talk/regs_stage.c", "} else if (bits == exh_float_of(row->min, row->frac)) {", "} else if (0) {"),
-    ("modbus", L + "talk/regs_stage.c", "} else if (bits == exh_float_of(row->max, row->frac)) {", "} else if (0) {"),
+    ("modbus", L + "talk/regs_stage.c", "if (bits == exh_float_from_raw(now, row->frac))", "if (0)"),
+    ("modbus", L + "talk/regs_stage.c", "} else if (bits == exh_float_from_raw(row->min, row->frac)) {", "} else if (0) {"),
+    ("modbus", L + "talk/regs_stage.c", "} else if (bits == exh_float_from_raw(row->max, row->frac)) {", "} else if (0) {"),
     ("modbus", L + "talk/regs_stage.c", "raw < row->min || raw > row->max", "raw < row->min"),
     ("modbus", L + "talk/regs_stage.c", "fixed && raw != r->wanted[i]", "fixed"),
     ("modbus", L + "talk/regs_stage.c", "s->is_float && (!high || !low)", "s->is_float && !high"),
@@ -294,7 +294,7 @@ MUTANTS = (
     ("modbus", L + "talk/regs_stage.c", "if ((on & discard) && (r->asked & apply)) { return EXH_MODBUS_BUSY; }", ""),
     ("modbus", L + "talk/regs_stage.c", "r->asked |= on & ~discard;", "r->asked |= on;"),
     ("modbus", L + "talk/regs_stage.c", "if (asked >> EXH_COIL_CLEAR & 1u) { return EXH_CMD_CLEAR; }", ""),
-    ("modbus", L + "talk/regs_stage.c", "    exh_regs_forget(r);\n    return err;", "    return err;"),
+    ("modbus", L + "talk/regs_stage.c", "    exh_regs_discard(r);\n    return err;", "    return err;"),
     ("modbus", L + "talk/regs_trace.c", "what.index[i] >= r->trace->signals", "what.index[i] > r->trace->signals"),
     ("modbus", L + "talk/regs_trace.c", "return k == 0 ?", "return k != 0 ?"),
     ("modbus", L + "talk/regs_trace.c", "    if (carry_out) { (void)exh_trace_start(r->trace, &what); }",
@@ -316,10 +316,10 @@ MUTANTS = (
     ("guarded", "examples/guarded/guarded.c", "par->drop.watch.speed_mps_q27);", "EXH_Q(3, 1, EXH_Q_VEL));"),
     ("drop", X + "drop.c", "s->quad.lost ? EXH_FAULT_ENCODER : 0u", "0u"),
     ("drop", X + "drop.c", "(starved ? EXH_FAULT_SUPPLY : 0u)", "0u"),
-    ("drop", X + "drop.c", "    exh_track_coded(&s->track, now->i.coded_A_q26);", ""),
-    ("drop", X + "drop.c", "limits |= exh_drive_current", "limits = exh_drive_current"),
-    ("drop", X + "drop.c", "exh_velocity_window_mps_q27(&s->velocity, &cfg->velocity, cnt)",
-     "exh_velocity_window_mps_q27(&s->velocity, &cfg->velocity, cnt + 1)"),
+    ("drop", X + "drop.c", "    exh_tracking_update(&s->track, now->i.coded_A_q26);", ""),
+    ("drop", X + "drop.c", "limits |= exh_drive_current_step", "limits = exh_drive_current_step"),
+    ("drop", X + "drop.c", "exh_velocity_window_step(&s->velocity, &cfg->velocity, cnt)",
+     "exh_velocity_window_step(&s->velocity, &cfg->velocity, cnt + 1)"),
 )
 # What 256 ticks show at fewer rates, as the fingers of one box hinder each other at arming: what it must be seen at all
 # the same, and what tells it besides. Open: stimuli that come to these at every rate.
@@ -337,8 +337,8 @@ THIN = {
     "q->len_B != 10u + q->p[9]": 0.88,
     "? r->active[i]": 0.50,
     "r->touched[i >> 5] &= ~bit;": 0.78,
-    "} else if (bits == exh_float_of(row->min, row->frac)) {": 0.68,
-    "} else if (bits == exh_float_of(row->max, row->frac)) {": 0.90,
+    "} else if (bits == exh_float_from_raw(row->min, row->frac)) {": 0.68,
+    "} else if (bits == exh_float_from_raw(row->max, row->frac)) {": 0.90,
     "raw < row->min || raw > row->max": 0.90,
     "if ((on & discard) && (r->asked & apply)) { return EXH_MODBUS_BUSY; }": 0.68,
     "if (asked >> EXH_COIL_CLEAR & 1u) { return EXH_CMD_CLEAR; }": 0.82,
@@ -348,7 +348,7 @@ THIN = {
 
 # Where the inline functions of a header are called for a module.
 CALLS = {"fix": "test/golden/basics.c", "velocity_window": VELOCITY, "table": TABLE, "angle": L + "num/angle.c",
-         "precontact": L + "law/precontact.c", "quantizer": L + "sense/quantizer.c", "guard": L + "safe/guard.c"}
+         "precontact": L + "law/precontact.c", "quantizer": L + "sense/quantizer.c", "guard": L + "safe/integrity.c"}
 
 
 def objects_but(original):

@@ -24,7 +24,7 @@ static void any_tables(struct finger *d, struct golden_rng *r)
         d->to_cur[i].y =
             d->to_cur[i - 1].y + (int32_t)golden_draw(r, INT32_C(1) << 24, INT32_C(1) << 27);
     }
-    CHECK_EQ_I64(exh_table_set(d->to_cur, 3), 0);
+    CHECK_EQ_I64(exh_table_setup(d->to_cur, 3), 0);
     CHECK_EQ_I64(exh_table_invert(d->held, d->to_cur, 3), 0);
 }
 
@@ -96,7 +96,7 @@ void golden_passivity(struct golden *g, uint32_t rate_Hz)
         f.force_N_q20 = exh_clamp(
             f.spring_N_q20 + f.damper_N_q20 + f.pullback_N_q20 + f.passivity_N_q20, 0, most);
         coded = any_coded(&d, &r, f.force_N_q20);
-        exh_passivity_held(&d.s, &d.cfg, &f, coded);
+        exh_passivity_update(&d.s, &d.cfg, &f, coded);
         golden_put(g, d.par.on);
         golden_put(g, d.cnt);
         golden_put(g, d.touching);
@@ -109,7 +109,7 @@ void golden_passivity(struct golden *g, uint32_t rate_Hz)
         golden_put(g, exh_passivity_J_q24(&d.s, &d.cfg));
         golden_put(g, d.s.held_N_q20);
         golden_put(g, d.s.late_N_q20);
-        GOLDEN_STATE(g, exh_passivity_bytes, &d.s);
+        GOLDEN_STATE(g, exh_passivity_serialize, &d.s);
         golden_tick(g);
     }
 }

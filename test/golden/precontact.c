@@ -269,11 +269,11 @@ static void one_finger(unsigned f, uint32_t k, int32_t d, int32_t pos, struct go
     const int64_t age = how == 29 ? golden_draw(r, old - 1, old + 2) : golden_draw(r, 0, 3);
     struct exh_precontact_in in = any_in(f, k, d, r);
     in.pos_m_q30 = pos;
-    if (golden_draw(r, 0, 2) == 0) { exh_precontact_skip(s, (uint32_t)golden_draw(r, 0, 4)); }
+    if (golden_draw(r, 0, 2) == 0) { exh_precontact_advance(s, (uint32_t)golden_draw(r, 0, 4)); }
     row[0] = plane.kind;
     row[1] = age;
     row[2] = in.touching;
-    row[3] = exh_precontact_tell(s, cfg, &plane, (uint32_t)age);
+    row[3] = exh_precontact_update(s, cfg, &plane, (uint32_t)age);
     row[4] = exh_precontact_step(s, cfg, &in);
     row[5] = s->d_m_q30;
     row[6] = s->lim_m_q30;
@@ -303,7 +303,7 @@ void golden_precontact(struct golden *g, uint32_t rate_Hz)
         golden_put(g, said);
         put_advice(g, T, &r);
         for (unsigned f = 0; f < FINGERS; f++) {
-            GOLDEN_STATE(g, exh_precontact_bytes, &world.s[f]);
+            GOLDEN_STATE(g, exh_precontact_serialize, &world.s[f]);
         }
         golden_tick(g);
     }

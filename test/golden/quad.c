@@ -42,14 +42,14 @@ void golden_quad(struct golden *g, uint32_t rate_Hz)
         /* What is above the counter's width is nothing. */
         shown =
             (uint32_t)((raw & ((UINT64_C(1) << bits) - 1)) | (golden_u64(&r) << bits & UINT32_MAX));
-        cnt = exh_quad_extend(&s, &cfg, shown);
+        cnt = exh_quad_step(&s, &cfg, shown);
         golden_put(g, shown);
         golden_put(g, bits);
         golden_put(g, cfg.jump_cnt);
         golden_put(g, cnt);
         golden_put(g, exh_quad_pos_m_q30(&par, cnt));
         golden_put(g, exh_quad_pos_m_q30(&par, exh_from_u32(shown)));
-        GOLDEN_STATE(g, exh_quad_bytes, &s);
+        GOLDEN_STATE(g, exh_quad_serialize, &s);
         golden_tick(g);
     }
 }
@@ -107,11 +107,11 @@ static void put_decoders(struct golden *g, struct decoders *d)
     golden_put(g, d->x4.illegal);
     golden_put(g, d->word.cnt);
     golden_put(g, d->index.cnt);
-    GOLDEN_STATE(g, exh_quad_ab_bytes, &d->x1);
-    GOLDEN_STATE(g, exh_quad_ab_bytes, &d->x2);
-    GOLDEN_STATE(g, exh_quad_ab_bytes, &d->x4);
-    GOLDEN_STATE(g, exh_quad_ab_bytes, &d->word);
-    GOLDEN_STATE(g, exh_quad_index_bytes, &d->index);
+    GOLDEN_STATE(g, exh_quad_ab_serialize, &d->x1);
+    GOLDEN_STATE(g, exh_quad_ab_serialize, &d->x2);
+    GOLDEN_STATE(g, exh_quad_ab_serialize, &d->x4);
+    GOLDEN_STATE(g, exh_quad_ab_serialize, &d->word);
+    GOLDEN_STATE(g, exh_quad_index_serialize, &d->index);
 }
 
 void golden_quad_ab(struct golden *g, uint32_t rate_Hz)

@@ -35,7 +35,7 @@ static void box_setup(struct box *b, struct golden_rng *r, uint32_t rate_Hz, uin
     static struct exh_knot knot[2] = {{0, 0, {0, 0}}, {INT32_C(1) << 25, INT32_C(1) << 28, {0, 0}}};
     struct exh_safety_par par;
     (void)memset(b, 0, sizeof *b);
-    CHECK_EQ_I64(exh_table_set(knot, 2), 0);
+    CHECK_EQ_I64(exh_table_setup(knot, 2), 0);
     golden_safety_par(&par, r, rate_Hz);
     CHECK_EQ_I64(exh_safety_setup(&b->safety, &par, golden_period(rate_Hz, k)), 0);
     b->in.fingers = (uint8_t)golden_draw(r, 1, EXH_FINGERS);
@@ -138,11 +138,11 @@ void golden_safety(struct golden *g, uint32_t rate_Hz)
         golden_put(g, b.in.ready);
         permit = exh_safety_step(&b.s, &b.safety, b.in);
         put_permit(g, &permit);
-        exh_gate(&b.s, b.cfg, b.in.fingers, i, limits, &out);
+        exh_gate_step(&b.s, b.cfg, b.in.fingers, i, limits, &out);
         golden_put(g, out.enable);
         golden_put(g, out.alive);
         put_axes(g, b.in.fingers, i, limits, &out);
-        GOLDEN_STATE(g, exh_safety_bytes, &b.s);
+        GOLDEN_STATE(g, exh_safety_serialize, &b.s);
         golden_tick(g);
     }
 }

@@ -47,7 +47,7 @@ static uint32_t keyframe_crc(struct exh_params *p)
 {
     uint8_t b[8 * VALUES];
     struct exh_bytes c = exh_bytes_writer(b, sizeof b);
-    exh_params_bytes(&c, p);
+    exh_params_serialize(&c, p);
     return exh_crc32(0, b, c.at);
 }
 
@@ -84,7 +84,7 @@ static void one(struct golden *g, struct golden_rng *r, struct exh_params *p)
     golden_put(g, p->pending);
     golden_put(g, p->moving);
     golden_put(g, keyframe_crc(p));
-    golden_put(g, exh_params_look(p));
+    golden_put(g, exh_params_verify(p));
 }
 
 void golden_signal(struct golden *g, uint32_t rate_Hz)
@@ -96,12 +96,12 @@ void golden_signal(struct golden *g, uint32_t rate_Hz)
     CHECK_EQ_I64(exh_signal_count(&golden_signals), VALUES);
     while (g->tick < GOLDEN_TICKS) {
         if (g->tick == 0 || g->tick == GOLDEN_AGAIN) {
-            exh_params_init(&p, &golden_signals, active, staged);
+            exh_params_setup(&p, &golden_signals, active, staged);
         }
         if (g->tick % 64 == 0) {
             const struct exh_tune_par par = {(int32_t)golden_draw(&r, 0, 1000) >>
                                              golden_draw(&r, 0, 10)};
-            exh_params_slew(&p, &par, golden_period(rate_Hz, g->tick));
+            exh_params_slew_setup(&p, &par, golden_period(rate_Hz, g->tick));
         }
         p.locked = g->tick >> 3 & 1;
         golden_put(g, p.shift);

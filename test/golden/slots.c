@@ -74,7 +74,7 @@ static void any_save(struct golden *g, struct box *b, struct golden_rng *r)
     }
     if (!is_short && EXH_SLOT_B(b->image_B) > cap_B) { b->image_B = cap_B - EXH_SLOT_B(0); }
     (void)memcpy(buf + EXH_SLOT_HEAD_B, b->image, b->image_B);
-    n = exh_slots_next(&to, b->slot[0], b->slot[1], b->slot_B, buf, cap_B, b->image_B);
+    n = exh_slots_encode(&to, b->slot[0], b->slot[1], b->slot_B, buf, cap_B, b->image_B);
     golden_put(g, n);
     golden_put(g, to);
     blank = golden_draw(r, 0, 2);
@@ -89,9 +89,9 @@ static void put_what_counts(struct golden *g, const struct box *b)
     struct exh_slot is = {NULL, 0, 0};
     for (unsigned k = 0; k < 2; k++) {
         struct exh_slot one;
-        golden_put(g, exh_slot_read(&one, b->slot[k], b->slot_B));
+        golden_put(g, exh_slot_decode(&one, b->slot[k], b->slot_B));
     }
-    golden_put(g, exh_slots_pick(&is, b->slot[0], b->slot[1], b->slot_B));
+    golden_put(g, exh_slots_find(&is, b->slot[0], b->slot[1], b->slot_B));
     golden_put(g, is.sequence);
     golden_put(g, is.len_B);
     golden_put(g, is.image ? exh_crc32(0, is.image, is.len_B) : 0);

@@ -4,9 +4,9 @@
 
 #include "exhand/drive.h"
 #include "exhand/fix.h"
-#include "exhand/track.h"
+#include "exhand/tracking.h"
 
-void golden_track_par(struct exh_track_par *p, struct golden_rng *r, uint32_t rate_Hz)
+void golden_track_par(struct exh_tracking_par *p, struct golden_rng *r, uint32_t rate_Hz)
 {
     p->tol_A_q26 = (int32_t)golden_draw(r, 6710886, 67108864);
     p->time_ms = exh_clamp(golden_draw(r, 1, 12) * 1000 / rate_Hz, 1, 100);
@@ -35,9 +35,9 @@ void golden_track(struct golden *g, uint32_t rate_Hz)
 {
     static struct golden_wave coded;
     struct golden_rng r = golden_rng("track", rate_Hz, 0);
-    struct exh_track_par par = {0, 0};
-    struct exh_track_cfg cfg = {0, 0};
-    struct exh_track s = {0, 0, 0};
+    struct exh_tracking_par par = {0, 0};
+    struct exh_tracking_cfg cfg = {0, 0};
+    struct exh_tracking s = {0, 0, 0};
     int32_t last = 0;
     unsigned astray = 0;
     golden_wave(&coded, "track", rate_Hz, 1, INT32_MIN, INT32_MAX,
@@ -47,20 +47,20 @@ void golden_track(struct golden *g, uint32_t rate_Hz)
         int32_t mon;
         if (k == 0 || k == GOLDEN_AGAIN) {
             golden_track_par(&par, &r, rate_Hz);
-            CHECK_EQ_I64(exh_track_setup(&cfg, &par, golden_period(rate_Hz, k)), 0);
-            s = (struct exh_track){0, 0, 0};
+            CHECK_EQ_I64(exh_tracking_setup(&cfg, &par, golden_period(rate_Hz, k)), 0);
+            s = (struct exh_tracking){0, 0, 0};
             last = 0;
         }
         mon = any_monitor(&r, &astray, last, cfg.tol_A_q26);
         last = coded.at[k];
         golden_put(g, mon);
         golden_put(g, last);
-        golden_put(g, exh_track_step(&s, &cfg, mon));
-        exh_track_coded(&s, last);
+        golden_put(g, exh_tracking_step(&s, &cfg, mon));
+        exh_tracking_update(&s, last);
         golden_put(g, s.lo_A_q26);
         golden_put(g, s.hi_A_q26);
         golden_put(g, s.off_ticks);
-        GOLDEN_STATE(g, exh_track_bytes, &s);
+        GOLDEN_STATE(g, exh_tracking_serialize, &s);
         golden_tick(g);
     }
 }

@@ -52,8 +52,8 @@ void golden_velocity_window(struct golden *g, uint32_t rate_Hz)
             CHECK_EQ_I64(exh_velocity_window_setup(&cfg, a.scale, &par), 0);
             (void)memset(&s, 0, sizeof s);
         }
-        row(g, &a, exh_velocity_window_mps_q27(&s, &cfg, a.cnt.at[g->tick]));
-        GOLDEN_STATE(g, exh_velocity_window_bytes, &s);
+        row(g, &a, exh_velocity_window_step(&s, &cfg, a.cnt.at[g->tick]));
+        GOLDEN_STATE(g, exh_velocity_window_serialize, &s);
         golden_tick(g);
     }
 }
@@ -69,8 +69,8 @@ void golden_velocity_pole(struct golden *g, uint32_t rate_Hz)
             CHECK_EQ_I64(exh_velocity_pole_setup(&cfg, a.scale, tau(&a.rng)), 0);
             (void)memset(&s, 0, sizeof s);
         }
-        row(g, &a, exh_velocity_pole_mps_q27(&s, &cfg, a.cnt.at[g->tick]));
-        GOLDEN_STATE(g, exh_velocity_pole_bytes, &s);
+        row(g, &a, exh_velocity_pole_step(&s, &cfg, a.cnt.at[g->tick]));
+        GOLDEN_STATE(g, exh_velocity_pole_serialize, &s);
         golden_tick(g);
     }
 }
@@ -89,8 +89,8 @@ void golden_velocity_foaw(struct golden *g, uint32_t rate_Hz)
             CHECK_EQ_I64(exh_velocity_foaw_setup(&cfg, a.scale, n, tol > 0 ? tol : 1), 0);
             (void)memset(&s, 0, sizeof s);
         }
-        row(g, &a, exh_velocity_foaw_mps_q27(&s, &cfg, a.cnt.at[g->tick]));
-        GOLDEN_STATE(g, exh_velocity_foaw_bytes, &s);
+        row(g, &a, exh_velocity_foaw_step(&s, &cfg, a.cnt.at[g->tick]));
+        GOLDEN_STATE(g, exh_velocity_foaw_serialize, &s);
         golden_tick(g);
     }
 }
@@ -106,8 +106,8 @@ void golden_velocity_track(struct golden *g, uint32_t rate_Hz)
             CHECK_EQ_I64(exh_velocity_track_setup(&cfg, a.scale, tau(&a.rng)), 0);
             (void)memset(&s, 0, sizeof s);
         }
-        row(g, &a, exh_velocity_track_mps_q27(&s, &cfg, a.cnt.at[g->tick]));
-        GOLDEN_STATE(g, exh_velocity_track_bytes, &s);
+        row(g, &a, exh_velocity_track_step(&s, &cfg, a.cnt.at[g->tick]));
+        GOLDEN_STATE(g, exh_velocity_track_serialize, &s);
         golden_tick(g);
     }
 }

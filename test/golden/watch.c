@@ -3,9 +3,9 @@
 #include "modules.h"
 
 #include "exhand/fix.h"
-#include "exhand/watch.h"
+#include "exhand/motion.h"
 
-void golden_watch_par(struct exh_watch_par *p, struct golden_rng *r, uint32_t rate_Hz)
+void golden_watch_par(struct exh_motion_par *p, struct golden_rng *r, uint32_t rate_Hz)
 {
     p->speed_mps_q27 = (int32_t)golden_draw(r, 13421773, 1342177280);
     p->speed_ms = exh_clamp(golden_draw(r, 1, 5) * 1000 / rate_Hz, 1, 1000);
@@ -18,9 +18,9 @@ void golden_watch(struct golden *g, uint32_t rate_Hz)
 {
     static struct golden_wave moves;
     struct golden_rng r = golden_rng("watch", rate_Hz, 0);
-    struct exh_watch_par par = {0, 0, 0, 0};
-    struct exh_watch_cfg cfg = {NULL, 0, 0};
-    struct exh_watch s = {0, 0, 0};
+    struct exh_motion_par par = {0, 0, 0, 0};
+    struct exh_motion_cfg cfg = {NULL, 0, 0};
+    struct exh_motion s = {0, 0, 0};
     int32_t cnt = 0;
     unsigned stands = 0;
     unsigned fast = 0;
@@ -34,8 +34,8 @@ void golden_watch(struct golden *g, uint32_t rate_Hz)
         int32_t coded;
         if (k == 0 || k == GOLDEN_AGAIN) {
             golden_watch_par(&par, &r, rate_Hz);
-            CHECK_EQ_I64(exh_watch_setup(&cfg, &par, golden_period(rate_Hz, k)), 0);
-            s = (struct exh_watch){0, 0, 0};
+            CHECK_EQ_I64(exh_motion_setup(&cfg, &par, golden_period(rate_Hz, k)), 0);
+            s = (struct exh_motion){0, 0, 0};
         }
         if (golden_draw(&r, 0, 15) == 0) { stands ^= 1; }
         if (golden_draw(&r, 0, 15) == 0) { fast ^= 1; }
@@ -45,12 +45,12 @@ void golden_watch(struct golden *g, uint32_t rate_Hz)
         golden_put(g, vel);
         golden_put(g, cnt);
         golden_put(g, coded);
-        faults = exh_watch_step(&s, &cfg, &vel, &limits);
-        exh_watch_coded(&s, &cfg, cnt, coded);
+        faults = exh_motion_step(&s, &cfg, &vel, &limits);
+        exh_motion_update(&s, &cfg, cnt, coded);
         golden_put(g, faults);
         golden_put(g, vel);
         golden_put(g, limits);
-        GOLDEN_STATE(g, exh_watch_bytes, &s);
+        GOLDEN_STATE(g, exh_motion_serialize, &s);
         golden_tick(g);
     }
 }

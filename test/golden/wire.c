@@ -35,7 +35,7 @@ static void begin(struct golden_rng *r)
     (void)memset(&world, 0, sizeof world);
     world.tx.session = any_u32(r) | 1;
     world.tx.seq = (uint32_t)golden_draw(r, -40, 40);
-    exh_params_init(&world.params, &golden_signals, world.active, world.staged);
+    exh_params_setup(&world.params, &golden_signals, world.active, world.staged);
 }
 
 static void put_crc(struct datagram *d)
@@ -122,7 +122,7 @@ static void put_send(struct golden *g, struct golden_rng *r, int32_t said[2])
     if (golden_draw(r, 0, 7) == 0) { cap_B = (uint32_t)golden_draw(r, 0, 255); }
     if (golden_draw(r, 0, 63) == 0) { tx = &nobody; }
     (void)memset(d, 0, sizeof *d);
-    said[0] = exh_wire_write(tx, &p, stamp_us, d->b, cap_B);
+    said[0] = exh_wire_encode(tx, &p, stamp_us, d->b, cap_B);
     said[1] = 0;
     golden_put(g, p.type);
     golden_put(g, cap_B);
@@ -193,7 +193,7 @@ static void put_taken(struct golden *g, const struct datagram *d)
     struct exh_wire_packet p;
     struct exh_wire_ack ack = {{0, 0, 0}, 0, 0};
     int64_t v[5] = {0, 0, 0, 0, 0};
-    const int got = exh_wire_take(&world.rx, &p, d->b, d->len);
+    const int got = exh_wire_decode(&world.rx, &p, d->b, d->len);
     if (got > 0) {
         v[0] = p.seq;
         v[1] = p.stamp_us;
@@ -201,7 +201,7 @@ static void put_taken(struct golden *g, const struct datagram *d)
     }
     if (got == EXH_WIRE_PLANES) {
         v[3] = plane_crc(&p.u.planes, p.seq % 5);
-        v[4] = exh_wire_trip_us(p.stamp_us, &p.u.planes);
+        v[4] = exh_wire_round_trip_us(p.stamp_us, &p.u.planes);
     }
     if (got == EXH_WIRE_PARAM) {
         ack = exh_wire_stage(&world.params, &p);
@@ -230,7 +230,7 @@ static void put_time(struct golden *g, struct golden_rng *r)
     static const uint32_t long_us[] = {1, 999999, 1000000, UINT32_MAX};
     const int rest = golden_draw(r, 0, 3) == 0;
     const uint32_t us = rest ? long_us[golden_draw(r, 0, 3)] : (uint32_t)golden_draw(r, 0, 2);
-    golden_put(g, exh_wire_pass(&world.rx, us, 1000000));
+    golden_put(g, exh_wire_poll(&world.rx, us, 1000000));
 }
 
 void golden_wire(struct golden *g, uint32_t rate_Hz)
@@ -252,11 +252,11 @@ void golden_wire(struct golden *g, uint32_t rate_Hz)
         golden_put(g, said[0]);
         golden_put(g, (uint32_t)said[1]);
         put_taken(g, &d);
-        golden_put(g, how == 8 ? exh_wire_take(&world.rx, &p, d.b, d.len) : 0);
+        golden_put(g, how == 8 ? exh_wire_decode(&world.rx, &p, d.b, d.len) : 0);
         if (g->tick % 8 == 7) { (void)exh_params_apply(&world.params); }
         golden_put(g, values_crc());
-        GOLDEN_STATE(g, exh_wire_tx_bytes, &world.tx);
-        GOLDEN_STATE(g, exh_wire_rx_bytes, &world.rx);
+        GOLDEN_STATE(g, exh_wire_tx_serialize, &world.tx);
+        GOLDEN_STATE(g, exh_wire_rx_serialize, &world.rx);
         golden_tick(g);
     }
 }

@@ -12,8 +12,8 @@
  * a scene does not have is a NULL pointer in its struct exh_axis. The functions are inline: where
  * the pointer is a constant, the compiler drops the call and the linker drops the module.
  *
- * With n fingers the scene calls sense for each, permit once, law and force for each, exh_gate()
- * once and exh_axis_coded() for each: exh_axis_out() is these two for one finger.
+ * With n fingers the scene calls sense for each, permit once, law and force for each,
+ * exh_gate_step() once and exh_axis_update() for each: exh_axis_out() is these two for one finger.
  */
 #ifndef EXHAND_AXIS_H
 #define EXHAND_AXIS_H
@@ -23,9 +23,9 @@
 #include "exhand/frame.h"
 #include "exhand/quad.h"
 #include "exhand/safety.h"
-#include "exhand/track.h"
+#include "exhand/tracking.h"
 #include "exhand/velocity.h"
-#include "exhand/watch.h"
+#include "exhand/motion.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -40,13 +40,13 @@ struct exh_axis {
     const struct exh_quad_cfg *quad_cfg;                /* its set-up */
     struct exh_velocity_window *velocity;               /* NULL: no velocity, 0 m/s */
     const struct exh_velocity_window_cfg *velocity_cfg; /* its set-up */
-    struct exh_watch *watch;               /* NULL: no speed limit, no stuck detector */
-    const struct exh_watch_cfg *watch_cfg; /* its set-up */
-    struct exh_track *track; /* NULL: nothing compares monitor and code (EXH_UNTRACKED) */
-    const struct exh_track_cfg *track_cfg; /* its set-up */
-    struct exh_drive *drive;               /* force and current limits */
+    struct exh_motion *watch;               /* NULL: no speed limit, no stuck detector */
+    const struct exh_motion_cfg *watch_cfg; /* its set-up */
+    struct exh_tracking *track; /* NULL: nothing compares monitor and code (EXH_UNTRACKED) */
+    const struct exh_tracking_cfg *track_cfg; /* its set-up */
+    struct exh_drive *drive;                  /* force and current limits */
     const struct exh_drive_cfg
-        *drive_cfg; /* its set-up; for exh_gate() one of an array by finger */
+        *drive_cfg; /* its set-up; for exh_gate_step() one of an array by finger */
 };
 
 /* What one finger measured in this tick. */
@@ -67,10 +67,10 @@ struct exh_axis_setup {
     const struct exh_quad_par *quad_par; /* kept */
     struct exh_velocity_window_cfg *velocity;
     const struct exh_velocity_par *velocity_par;
-    struct exh_watch_cfg *watch;
-    const struct exh_watch_par *watch_par; /* kept */
-    struct exh_track_cfg *track;
-    const struct exh_track_par *track_par;
+    struct exh_motion_cfg *watch;
+    const struct exh_motion_par *watch_par; /* kept */
+    struct exh_tracking_cfg *track;
+    const struct exh_tracking_par *track_par;
     struct exh_drive_cfg *drive;
     const struct exh_drive_par *drive_par; /* kept */
 };
@@ -90,8 +90,8 @@ static inline int exh_axis_setup(const struct exh_axis_setup *of, struct exh_per
     if (err == 0) {
         err = exh_drive_setup(of->drive, of->drive_par, T, force_to_cur, cur_to_force);
     }
-    if (err == 0 && of->track) { err = exh_track_setup(of->track, of->track_par, T); }
-    if (err == 0 && of->watch) { err = exh_watch_setup(of->watch, of->watch_par, T); }
+    if (err == 0 && of->track) { err = exh_tracking_setup(of->track, of->track_par, T); }
+    if (err == 0 && of->watch) { err = exh_motion_setup(of->watch, of->watch_par, T); }
     return err;
 }
 
@@ -101,19 +101,17 @@ static inline int exh_axis_setup(const struct exh_axis_setup *of, struct exh_per
 static inline struct exh_axis_now exh_axis_sense(const struct exh_axis *a,
                                                  const struct exh_drive_in *in, unsigned f)
 {
-    const int32_t cnt = exh_quad_extend(a->quad, a->quad_cfg, in->enc_raw[f]);
+    const int32_t cnt = exh_quad_step(a->quad, a->quad_cfg, in->enc_raw[f]);
     const int32_t pos_m_q30 = exh_quad_pos_m_q30(a->quad_cfg->par, cnt);
     int32_t vel_mps_q27 = 0, mon_A_q26 = 0;
     uint32_t raised = 0, limits = 0;
 
-    if (a->velocity) {
-        vel_mps_q27 = exh_velocity_window_mps_q27(a->velocity, a->velocity_cfg, cnt);
-    }
-    if (a->watch) { raised = exh_watch_step(a->watch, a->watch_cfg, &vel_mps_q27, &limits); }
+    if (a->velocity) { vel_mps_q27 = exh_velocity_window_step(a->velocity, a->velocity_cfg, cnt); }
+    if (a->watch) { raised = exh_motion_step(a->watch, a->watch_cfg, &vel_mps_q27, &limits); }
     if (a->quad->lost) { raised |= EXH_FAULT_ENCODER; }
     if (a->track) {
         mon_A_q26 = exh_drive_monitor_A_q26(a->drive_cfg, in->mon_raw[f]);
-        if (exh_track_step(a->track, a->track_cfg, mon_A_q26)) { raised |= EXH_FAULT_TRACKING; }
+        if (exh_tracking_step(a->track, a->track_cfg, mon_A_q26)) { raised |= EXH_FAULT_TRACKING; }
     }
     return (struct exh_axis_now){cnt, pos_m_q30, vel_mps_q27, mon_A_q26, raised, limits};
 }
@@ -143,15 +141,15 @@ static inline struct exh_permit exh_axis_permit(struct exh_safety *s,
 static inline uint32_t exh_axis_force(const struct exh_axis *a, const struct exh_permit *permit,
                                       struct exh_force_ledger *f, struct exh_current_ledger *i)
 {
-    const uint32_t limits = exh_drive_force(a->drive, a->drive_cfg, permit, f);
-    return limits | exh_drive_current(a->drive, a->drive_cfg, f, i);
+    const uint32_t limits = exh_drive_force_step(a->drive, a->drive_cfg, permit, f);
+    return limits | exh_drive_current_step(a->drive, a->drive_cfg, f, i);
 }
 
-/* After exh_gate(): what was coded, for the checks of the next tick. */
-static inline void exh_axis_coded(const struct exh_axis *a, int32_t cnt, int32_t coded_A_q26)
+/* After exh_gate_step(): what was coded, for the checks of the next tick. */
+static inline void exh_axis_update(const struct exh_axis *a, int32_t cnt, int32_t coded_A_q26)
 {
-    if (a->track) { exh_track_coded(a->track, coded_A_q26); }
-    if (a->watch) { exh_watch_coded(a->watch, a->watch_cfg, cnt, coded_A_q26); }
+    if (a->track) { exh_tracking_update(a->track, coded_A_q26); }
+    if (a->watch) { exh_motion_update(a->watch, a->watch_cfg, cnt, coded_A_q26); }
 }
 
 /* Last, of a scene with one finger: the gate, and what was coded. cnt and *limits: of sense, the
@@ -160,8 +158,8 @@ static inline void exh_axis_out(const struct exh_axis *a, struct exh_safety *s, 
                                 struct exh_current_ledger *i, uint32_t *limits,
                                 struct exh_drive_out *out)
 {
-    exh_gate(s, a->drive_cfg, 1, i, limits, out);
-    exh_axis_coded(a, cnt, i->coded_A_q26);
+    exh_gate_step(s, a->drive_cfg, 1, i, limits, out);
+    exh_axis_update(a, cnt, i->coded_A_q26);
 }
 
 #ifdef __cplusplus

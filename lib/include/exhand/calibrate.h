@@ -48,7 +48,7 @@ struct exh_calib_point {
 };
 
 /* Which of a point's two currents. */
-enum exh_calib_which {
+enum exh_calib_column {
     EXH_CALIB_CURRENT, /* cur_A_q26, coded */
     EXH_CALIB_MONITOR  /* mon_A_q26, monitored */
 };
@@ -63,11 +63,11 @@ struct exh_calib_fit {
 /* -EXH_E_RANGE: n not 1 .. EXH_CALIB_POINTS_MAX, a value outside its range above, as is
  * its force over current. Set-up only (divides). */
 int exh_calib_fit(struct exh_calib_fit *fit, const struct exh_calib_point *p, unsigned n,
-                  enum exh_calib_which which);
+                  enum exh_calib_column which);
 
 /* F - kf I of one point, N q20, error <= 1 LSB + 2^-31 of F; saturates at +-2048 N. */
 int32_t exh_calib_residual_N_q20(const struct exh_calib_fit *fit, const struct exh_calib_point *p,
-                                 enum exh_calib_which which);
+                                 enum exh_calib_column which);
 
 /* --- a calibration of one finger --- */
 
@@ -93,7 +93,7 @@ struct exh_calib {
 };
 
 /* What an error is about. */
-enum exh_calib_what {
+enum exh_calib_error_kind {
     EXH_CALIB_IMAGE,       /* the bytes */
     EXH_CALIB_DEVICE,      /* it was made for another one */
     EXH_CALIB_FINGER,      /* or for another finger of it */
@@ -102,16 +102,16 @@ enum exh_calib_what {
     EXH_CALIB_VALUE,       /* zero, F0, end or number of points */
     EXH_CALIB_FORCE_TABLE, /* force -> current; at: the point */
     EXH_CALIB_MONITOR_TABLE, /* monitor -> force; at: the point */
-    EXH_CALIB_WHATS          /* how many there are */
+    EXH_CALIB_ERRORS         /* how many there are */
 };
 /* The culprit: why a calibration was refused. */
-struct exh_calib_bad {
-    uint8_t what; /* enum exh_calib_what */
+struct exh_calib_error {
+    uint8_t what; /* enum exh_calib_error_kind */
     uint8_t at;   /* point, from 0, for the tables */
 };
 
 /* "force-to-current table", ...; never NULL. */
-const char *exh_calib_what_text(unsigned what);
+const char *exh_calib_error_text(unsigned what);
 
 /* Knots for exh_drive_setup(): through the origin and all points, and straight on to
  * end_A (along the fitted line's slope) where that lies beyond them; the monitor's to the
@@ -120,15 +120,15 @@ const char *exh_calib_what_text(unsigned what);
  * -EXH_E_RANGE (with *bad, may be NULL, the culprit), -EXH_E_SHORT (cap too small;
  * points + 2 and 2 points + 3 always do). Exact at every point. Set-up only (divides). */
 int exh_calib_force_table(const struct exh_calib *c, struct exh_knot *knot, unsigned cap,
-                          struct exh_calib_bad *bad);
+                          struct exh_calib_error *bad);
 int exh_calib_monitor_table(const struct exh_calib *c, struct exh_knot *knot, unsigned cap,
-                            struct exh_calib_bad *bad);
+                            struct exh_calib_error *bad);
 
 /* All of it: values in range and both tables as above. 0 or the error. */
-int exh_calib_valid(const struct exh_calib *c, struct exh_calib_bad *bad);
+int exh_calib_validate(const struct exh_calib *c, struct exh_calib_error *bad);
 
 /* Where and when it is to be used. */
-struct exh_calib_here {
+struct exh_calib_target {
     uint32_t device_id, finger, day; /* this box, this finger of it, today; as in exh_calib */
     int32_t dac_rawpA_q16, dac_zero_raw, mon_A_q40; /* of the drive parameters in use */
     int32_t mon_zero_raw; /* likewise, after copying the calibration's: without, it's stale */
@@ -137,8 +137,8 @@ struct exh_calib_here {
 /* May it be used here and today? -EXH_E_RANGE (no points: nothing was loaded, or it was
  * refused), -EXH_E_VERSION (another device, another finger) or -EXH_E_STALE (age, scales,
  * zeros); *bad tells which. It does not look at the points: exh_calib_load() has. */
-int exh_calib_check(const struct exh_calib *c, const struct exh_calib_here *here,
-                    struct exh_calib_bad *bad);
+int exh_calib_check(const struct exh_calib *c, const struct exh_calib_target *here,
+                    struct exh_calib_error *bad);
 
 /* --- image ---
  *
@@ -148,15 +148,15 @@ int exh_calib_check(const struct exh_calib *c, const struct exh_calib_here *here
 #define EXH_CALIB_VERSION 2                                            /* 1 had no dac_zero_raw */
 #define EXH_CALIB_IMAGE_B (8u + 40u + 16u * EXH_CALIB_POINTS_MAX + 4u) /* the largest */
 
-/* Bytes written, or -EXH_E_SHORT; or what exh_calib_valid() refuses: nothing that
+/* Bytes written, or -EXH_E_SHORT; or what exh_calib_validate() refuses: nothing that
  * could not be read again is written. */
 int32_t exh_calib_save(const struct exh_calib *c, void *buf, size_t cap_B,
-                       struct exh_calib_bad *bad);
+                       struct exh_calib_error *bad);
 
 /* Reads and checks a whole image; bytes behind it are ignored. c->point and c->cap
  * are the caller's. -EXH_E_SHORT (also: more points than cap), -EXH_E_VERSION,
- * -EXH_E_CRC, or what exh_calib_valid() refuses; then c->points is 0. */
-int exh_calib_load(struct exh_calib *c, const void *buf, size_t len_B, struct exh_calib_bad *bad);
+ * -EXH_E_CRC, or what exh_calib_validate() refuses; then c->points is 0. */
+int exh_calib_load(struct exh_calib *c, const void *buf, size_t len_B, struct exh_calib_error *bad);
 
 #ifdef __cplusplus
 }

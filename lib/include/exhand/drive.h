@@ -3,7 +3,7 @@
  *
  * Order, fixed: permit, force limit, slew, force-to-current table, peak
  * current, I2t.
- * The code for the D/A is made by exh_gate() alone (safety.h).
+ * The code for the D/A is made by exh_gate_step() alone (safety.h).
  */
 #ifndef EXHAND_DRIVE_H
 #define EXHAND_DRIVE_H
@@ -35,14 +35,14 @@ enum exh_limit {
     EXH_LIMIT_GATE = 1u << 6,    /* closed: force and current held at zero */
     EXH_LIMIT_RAMP = 1u << 7,    /* above the share of f_max that arming allows yet */
     EXH_LIMIT_RELEASE = 1u << 8, /* the release law has the force */
-    EXH_LIMIT_SPEED = 1u << 9,   /* velocity into the law (watch.h) */
+    EXH_LIMIT_SPEED = 1u << 9,   /* velocity into the law (motion.h) */
     EXH_LIMIT_PASSIVITY = 1u << 10 /* contact gave out more than it took (passivity.h) */
 };
 #define EXH_LIMITS 11 /* bits of enum exh_limit, from 0 on */
 
 /* --- permit: what the state of the box (safety.h) lets the force do in this tick --- */
 
-/* Which of the three rules of exh_drive_force() holds. */
+/* Which of the three rules of exh_drive_force_step() holds. */
 enum exh_permit_mode {
     EXH_PERMIT_CLOSED, /* no force */
     EXH_PERMIT_OPEN,   /* what the law asks for, within limits */
@@ -107,7 +107,7 @@ struct exh_current_ledger {
     int32_t coded_A_q26; /* what the code stands for */
 };
 
-/* Set-up (divides). Tables must have passed exh_table_set() and outlive cfg, as
+/* Set-up (divides). Tables must have passed exh_table_setup() and outlive cfg, as
  * must par; force_to_cur must reach above 0 N and give 0 A there; cur_to_force may be {NULL, 0}
  * where no monitor is read. -EXH_E_RATE: T. -EXH_E_RANGE when a table is not so, a parameter lies
  * outside its range above (parameters in ROM have passed no other check), or i_peak < i_cont. */
@@ -121,14 +121,14 @@ int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par, 
  * RELEASE: whatever the ledger asks for, the force held in the last tick goes in equal steps,
  * fall of it and at most 1 LSB more, one for each of `ticks`: with fall = 1/n it is zero after n.
  * CLOSED: the force is zero and rises from there when it opens again. Returns limit bits. */
-uint32_t exh_drive_force(struct exh_drive *s, const struct exh_drive_cfg *cfg,
-                         const struct exh_permit *permit, struct exh_force_ledger *f);
+uint32_t exh_drive_force_step(struct exh_drive *s, const struct exh_drive_cfg *cfg,
+                              const struct exh_permit *permit, struct exh_force_ledger *f);
 
 /* Fills table, peak and i2t for the force commanded; zeroes the rest. The I2t
  * limit leaves the peak untouched while less than 3/4 of the budget is used,
  * then folds back to i_cont without a step. Returns limit bits. */
-uint32_t exh_drive_current(struct exh_drive *s, const struct exh_drive_cfg *cfg,
-                           const struct exh_force_ledger *f, struct exh_current_ledger *i);
+uint32_t exh_drive_current_step(struct exh_drive *s, const struct exh_drive_cfg *cfg,
+                                const struct exh_force_ledger *f, struct exh_current_ledger *i);
 
 /* Monitored current of a code, A q26 (saturating, error <= 1/2 LSB = 7.5 nA). */
 int32_t exh_drive_monitor_A_q26(const struct exh_drive_cfg *cfg, int16_t mon_raw);
@@ -136,7 +136,7 @@ int32_t exh_drive_monitor_A_q26(const struct exh_drive_cfg *cfg, int16_t mon_raw
 int32_t exh_drive_monitor_N_q20(const struct exh_drive_cfg *cfg, int32_t mon_A_q26);
 
 /* State through a cursor. A state of zeros is an axis at rest and cold. */
-void exh_drive_bytes(struct exh_bytes *c, struct exh_drive *s);
+void exh_drive_serialize(struct exh_bytes *c, struct exh_drive *s);
 
 #ifdef __cplusplus
 }

@@ -62,12 +62,12 @@
 #include "exhand/drive.h"
 #include "exhand/supply.h"
 #include "exhand/table.h"
-#include "exhand/track.h"
+#include "exhand/tracking.h"
 
 /* safety */
-#include "exhand/guard.h"
+#include "exhand/integrity.h"
 #include "exhand/safety.h"
-#include "exhand/watch.h"
+#include "exhand/motion.h"
 
 /* the tick of one finger */
 #include "exhand/axis.h"

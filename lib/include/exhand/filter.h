@@ -75,11 +75,11 @@ void exh_filter_step(struct exh_filter *s, const struct exh_filter_cfg *cfg, con
  * speed if both are of order 2. So the next output is at most from->c + to->c LSB away from
  * the last, LOW2 both: 23/16 tan(pi fc T) of full scale each; any tick may add two thirds of that.
  */
-void exh_filter_retune(struct exh_filter *s, unsigned n, const struct exh_filter_cfg *from,
-                       const struct exh_filter_cfg *to);
+void exh_filter_retune(struct exh_filter *s, const struct exh_filter_cfg *from,
+                       const struct exh_filter_cfg *to, unsigned n);
 
 /* State through a cursor (bytes.h). */
-void exh_filter_bytes(struct exh_bytes *c, struct exh_filter *s);
+void exh_filter_serialize(struct exh_bytes *c, struct exh_filter *s);
 
 #ifdef __cplusplus
 }

@@ -28,7 +28,7 @@ struct exh_drive_in {
     uint32_t din;                  /* enum exh_din */
 };
 
-/* What it writes in a tick; made by exh_gate() alone. */
+/* What it writes in a tick; made by exh_gate_step() alone. */
 struct exh_drive_out {
     uint16_t dac_raw[EXH_FINGERS]; /* offset binary */
     uint8_t enable;                /* bit i: drive of finger i enabled */
@@ -36,8 +36,8 @@ struct exh_drive_out {
 };
 
 /* The first n fingers of a frame through a cursor. */
-void exh_drive_in_bytes(struct exh_bytes *c, struct exh_drive_in *in, unsigned n);
-void exh_drive_out_bytes(struct exh_bytes *c, struct exh_drive_out *out, unsigned n);
+void exh_drive_in_serialize(struct exh_bytes *c, struct exh_drive_in *in, unsigned n);
+void exh_drive_out_serialize(struct exh_bytes *c, struct exh_drive_out *out, unsigned n);
 
 #ifdef __cplusplus
 }

@@ -55,27 +55,27 @@ int exh_gains_stage(struct exh_params *p, const struct exh_gains_par *rule, uint
 
 /* Of a whole image, behind exh_params_load() and before exh_params_apply(): 0, or -EXH_E_GAINS with
  * *instance (may be NULL) the first whose staged k and b are outside. Then what is staged must not
- * be applied: exh_params_drop() puts the active values back in its place. They are inside, in
+ * be applied: exh_params_discard() puts the active values back in its place. They are inside, in
  * mid-way too, where exh_gains_step() moves them. */
-int exh_gains_staged(const struct exh_params *p, const struct exh_gains_par *rule,
-                     uint16_t *instance);
+int exh_gains_validate(const struct exh_params *p, const struct exh_gains_par *rule,
+                       uint16_t *instance);
 
 /* At set-up of a scene with a rule: on 1, k and b stand still in exh_params_apply() while locked
  * and are moved by exh_gains_step() alone; 0: as all slewed values. Who forgets the step stays
  * where it is. */
-void exh_gains_lead(struct exh_params *p, int on);
+void exh_gains_enable(struct exh_params *p, int on);
 
 /* Behind exh_params_apply(), before the tick: k and b of every instance go one step of 2^-shift
  * towards what is staged, so that the active pair is inside in every tick, whatever rule set-up
  * took and whenever something else is staged. Straight there where the rule allows all of the line
  * between; else k falls first, to the lowest knot between the two b, b follows as soon as it may,
  * and k rises behind that knot: it never goes up and down by turns. Each takes at most the ticks of
- * exh_params_toward() for falling, for b and for rising, one behind the other. To and from k = b =
- * 0 where that lies apart from the rest of the rule (k_min > 0, or the first knot's b > 0): one
+ * exh_params_slew_step() for falling, for b and for rising, one behind the other. To and from k = b
+ * = 0 where that lies apart from the rest of the rule (k_min > 0, or the first knot's b > 0): one
  * jump between it and k_min. shift 0: at once. Staged pairs outside, which exh_gains_stage()
  * refuses, are not gone to; an active pair outside, from a damaged keyframe, becomes 0 at once.
  * Where apply left nothing on its way, nothing is gone to: what differs then is damaged, and
- * exh_params_look() tells. */
+ * exh_params_verify() tells. */
 void exh_gains_step(struct exh_params *p, const struct exh_gains_par *rule);
 
 #ifdef __cplusplus

@@ -112,7 +112,7 @@ struct exh_glove_cal {
 extern const struct exh_glove_cal exh_glove_cal_default;
 
 /* What an error is about. */
-enum exh_glove_what {
+enum exh_glove_error_kind {
     EXH_GLOVE_IMAGE,    /* the bytes */
     EXH_GLOVE_USER,     /* made for another user */
     EXH_GLOVE_GLOVE,    /* or another glove */
@@ -127,29 +127,29 @@ enum exh_glove_what {
     EXH_GLOVE_MOVE,     /* the hand did not move enough */
     EXH_GLOVE_NOISE,    /* codes varied too much while a pose was held */
     EXH_GLOVE_RESIDUAL, /* a pose lies too far off the line through all */
-    EXH_GLOVE_WHATS     /* how many there are; of a sensor: nothing is wrong */
+    EXH_GLOVE_ERRORS    /* how many there are; of a sensor: nothing is wrong */
 };
 /* The culprit: why a calibration was refused. */
-struct exh_glove_bad {
-    uint8_t what; /* enum exh_glove_what */
+struct exh_glove_error {
+    uint8_t what; /* enum exh_glove_error_kind */
     uint8_t at;   /* sensor, where it is about one */
 };
 
 /* "gain", ...; never NULL. */
-const char *exh_glove_what_text(unsigned what);
+const char *exh_glove_error_text(unsigned what);
 
 #define EXH_GLOVE_SPAN_MIN_RAW 64 /* 20 mV: three times the paper's noise */
 
-/* What is wrong with one sensor, 0 .. 21, of it; EXH_GLOVE_WHATS: nothing. */
-unsigned exh_glove_sensor_valid(const struct exh_glove_cal *cal, unsigned sensor);
+/* What is wrong with one sensor, 0 .. 21, of it; EXH_GLOVE_ERRORS: nothing. */
+unsigned exh_glove_sensor_validate(const struct exh_glove_cal *cal, unsigned sensor);
 
 /* Values in range? 0, or -EXH_E_RANGE with *bad (may be NULL) the culprit. */
-int exh_glove_cal_valid(const struct exh_glove_cal *cal, struct exh_glove_bad *bad);
+int exh_glove_cal_validate(const struct exh_glove_cal *cal, struct exh_glove_error *bad);
 
 /* May it be used for this user, glove and day? -EXH_E_RANGE (nothing loaded, or refused),
  * -EXH_E_VERSION (another user, another glove), -EXH_E_STALE (age); *bad tells which. */
 int exh_glove_cal_check(const struct exh_glove_cal *cal, uint32_t user_id, uint32_t glove_id,
-                        uint32_t day, struct exh_glove_bad *bad);
+                        uint32_t day, struct exh_glove_error *bad);
 
 /* Image: "EXHG", version u16, sensors u16, five u32 in the order above, then of each
  * sensor zero, gain, cross 0, cross 1 (i32), low, high (i16), of 0, of 1 (u8), CRC-32 of
@@ -157,15 +157,15 @@ int exh_glove_cal_check(const struct exh_glove_cal *cal, uint32_t user_id, uint3
 #define EXH_GLOVE_CAL_VERSION 1
 #define EXH_GLOVE_CAL_IMAGE_B (8u + 20u + 22u * EXH_GLOVE_SENSORS + 4u)
 
-/* Bytes written, or -EXH_E_SHORT; or what exh_glove_cal_valid() refuses: nothing that
+/* Bytes written, or -EXH_E_SHORT; or what exh_glove_cal_validate() refuses: nothing that
  * could not be read again is written. */
 int32_t exh_glove_cal_save(const struct exh_glove_cal *cal, void *buf, size_t cap_B,
-                           struct exh_glove_bad *bad);
+                           struct exh_glove_error *bad);
 
 /* Reads and checks a whole image; bytes behind it are ignored. -EXH_E_SHORT,
- * -EXH_E_VERSION, -EXH_E_CRC, or what exh_glove_cal_valid() refuses; then present is 0. */
+ * -EXH_E_VERSION, -EXH_E_CRC, or what exh_glove_cal_validate() refuses; then present is 0. */
 int exh_glove_cal_load(struct exh_glove_cal *cal, const void *buf, size_t len_B,
-                       struct exh_glove_bad *bad);
+                       struct exh_glove_error *bad);
 
 /* --- the tick --- */
 
@@ -207,8 +207,8 @@ struct exh_glove {
 /* Set-up (divides); cal must outlive cfg. T is the time between frames, which is the
  * glove's own and may be several ticks of the loop. -EXH_E_CUTOFF: fc at or above half its
  * rate. -EXH_E_RATE: no period. -EXH_E_RANGE: a parameter outside its row, more hysteresis than a
- * step, low_raw not below high_raw, what exh_glove_cal_valid() refuses, or a calibrated span that
- * touches a rail. */
+ * step, low_raw not below high_raw, what exh_glove_cal_validate() refuses, or a calibrated span
+ * that touches a rail. */
 int exh_glove_setup(struct exh_glove_cfg *cfg, const struct exh_glove_par *par,
                     const struct exh_glove_cal *cal, struct exh_period T);
 
@@ -233,7 +233,7 @@ uint32_t exh_glove_step(struct exh_glove *s, const struct exh_glove_cfg *cfg,
                         const struct exh_glove_in *in, int32_t *angle_turn_q32);
 
 /* State through a cursor (bytes.h). */
-void exh_glove_bytes(struct exh_bytes *c, struct exh_glove *s);
+void exh_glove_serialize(struct exh_bytes *c, struct exh_glove *s);
 
 /* --- a calibration from poses --- */
 
@@ -260,7 +260,7 @@ struct exh_glove_fit {
     int32_t residual_turn_q32; /* the worst: known less fitted angle */
     uint8_t pose;              /* of that pose */
     uint8_t poses;             /* how many say its angle */
-    uint8_t what;              /* enum exh_glove_what, or EXH_GLOVE_WHATS: fine */
+    uint8_t what;              /* enum exh_glove_error_kind, or EXH_GLOVE_ERRORS: fine */
 };
 
 /* Least squares over the poses that know a sensor's angle: gain and zero of each sensor
@@ -275,7 +275,7 @@ struct exh_glove_fit {
  * tell apart. Set-up only (divides). */
 int exh_glove_cal_fit(struct exh_glove_cal *cal, struct exh_glove_fit *fit,
                       const struct exh_glove_pose *pose, unsigned n,
-                      const struct exh_glove_fit_par *par, struct exh_glove_bad *bad);
+                      const struct exh_glove_fit_par *par, struct exh_glove_error *bad);
 
 #ifdef __cplusplus
 }

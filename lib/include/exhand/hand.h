@@ -47,7 +47,7 @@ extern const struct exh_hand_map exh_hit2_map; /* of the DLR/HIT Hand II, right 
 
 /* 0 if every sensor, also those bent, gain and pair of limits is as said above, -EXH_E_RANGE
  * otherwise: for maps that come from outside. Set-up. */
-int exh_hand_map_check(const struct exh_hand_map *map);
+int exh_hand_map_validate(const struct exh_hand_map *map);
 
 /* The three driven joints of one finger (0 .. 4) from all 22 sensors: bias + sum of gain times
  * sensor, exact, rounded once, limited to lo .. hi. Nothing wraps. Error <= 1/2 LSB.
@@ -93,7 +93,7 @@ int exh_hand_setup(struct exh_hand_finger *f, const struct exh_hand_bones *bones
  * has it, each by gain times as much. A joint at its limit does not turn: the caller makes its pull
  * 0. Error
  * <= 1/2 LSB more, and that of the gains. -EXH_E_RANGE: above 250 rad/m; f is as it was. */
-int exh_hand_follow(struct exh_hand_finger *f, const struct exh_hand_map *map, unsigned finger);
+int exh_hand_couple(struct exh_hand_finger *f, const struct exh_hand_map *map, unsigned finger);
 
 /* The middle of the pad, P_F, in the palm's frame, m, q30, of the joints q0, q1, q2 (q3 = q2),
  * which may be any angles. Error against exact kinematics of these angles and bones <= 2.15 LSB

@@ -32,14 +32,14 @@ struct exh_modbus_rtu {
 int exh_modbus_rtu_setup(struct exh_modbus_rtu *u, uint32_t address, uint32_t baud);
 
 /* A byte has come. While a request waits for its answer, bytes are lost. */
-void exh_modbus_rtu_byte(struct exh_modbus_rtu *u, uint8_t byte);
+void exh_modbus_rtu_receive(struct exh_modbus_rtu *u, uint8_t byte);
 
 /* A byte came damaged (parity, frame, overrun): the frame it is in is dropped. */
-void exh_modbus_rtu_bad(struct exh_modbus_rtu *u);
+void exh_modbus_rtu_discard(struct exh_modbus_rtu *u);
 
 /* us have passed without a byte. 1: a request for us, or for all, is whole:
  * exh_modbus_rtu_answer(). */
-int exh_modbus_rtu_pass(struct exh_modbus_rtu *u, uint32_t us);
+int exh_modbus_rtu_poll(struct exh_modbus_rtu *u, uint32_t us);
 
 /* Carries it out. Bytes of the answer, address and CRC included; 0: it gets none, as it was for all
  * (of those, writes alone are carried out), or there is no request; -EXH_E_SHORT: cap_B below

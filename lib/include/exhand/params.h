@@ -19,8 +19,8 @@ extern "C" {
 #endif
 
 /* A scene's parameters. The caller owns both arrays, exh_signal_count() long; the active one is the
- * scene's parameter struct, the staged one what is wanted. Zero, or as exh_params_init() leaves it;
- * both arrays are written by the functions below only, or before exh_params_seal(). */
+ * scene's parameter struct, the staged one what is wanted. Zero, or as exh_params_setup() leaves
+ * it; both arrays are written by the functions below only, or before exh_params_seal(). */
 struct exh_params {
     const struct exh_signal_table *table; /* of what the values are */
     int32_t *active;                      /* raw values in effect */
@@ -32,7 +32,7 @@ struct exh_params {
     uint16_t
         led[2]; /* ids of slewed rows that somebody else moves while locked (gains.h); 0: none */
     uint32_t count;           /* exh_signal_count() */
-    uint32_t sum, passed, at; /* exh_params_look(): of all, of those looked at, the next */
+    uint32_t sum, passed, at; /* exh_params_verify(): of all, of those looked at, the next */
 };
 
 #define EXH_PARAMS_VERSION 1 /* of the image */
@@ -46,14 +46,15 @@ extern const struct exh_signal exh_tune_rows[EXH_TUNE_ROWS];
 #define EXH_TUNE_SHIFT_MAX 15 /* 2^15 ticks are more than 1 s at 20 kHz */
 
 /* Defaults into both arrays, unlocked, shift 0. */
-void exh_params_init(struct exh_params *p, const struct exh_signal_table *table, int32_t *active,
-                     int32_t *staged);
+void exh_params_setup(struct exh_params *p, const struct exh_signal_table *table, int32_t *active,
+                      int32_t *staged);
 
 /* At the end of set-up, in scenes that want it: the least shift with 2^shift * T >= par->time_ms,
  * at most EXH_TUNE_SHIFT_MAX. So in a tick a value goes by no more than T/time of what is left (and
  * 1 LSB), and 63 % of the way takes time to 2 * time. A scene that never calls it changes at once.
  */
-void exh_params_slew(struct exh_params *p, const struct exh_tune_par *par, struct exh_period T);
+void exh_params_slew_setup(struct exh_params *p, const struct exh_tune_par *par,
+                           struct exh_period T);
 
 /* Stages one raw value. -EXH_E_UNKNOWN, -EXH_E_RANGE (outside min..max), or
  * -EXH_E_STATE (an output; another set-up value while locked, the same is
@@ -62,12 +63,12 @@ int exh_params_stage(struct exh_params *p, uint16_t id, uint16_t instance, int32
 
 /* The same by index of the value, for whoever walks the table; and whether it would be staged. */
 int exh_params_stage_at(struct exh_params *p, uint32_t i, int32_t raw);
-int exh_params_may(const struct exh_params *p, uint32_t i, int32_t raw);
+int exh_params_validate(const struct exh_params *p, uint32_t i, int32_t raw);
 
 /* One step from `now` towards `goal`: by 2^-shift of what is left, rounded up to whole LSB. shift
  * 0..31. Never beyond; at the goal after at most 2^shift * (1 + 0.7 * (32 - shift)) + 1 steps, from
  * anywhere; from d LSB away, d > 2^shift, after at most 2^shift * (1 + ln(d / 2^shift)) + 1. */
-int32_t exh_params_toward(int32_t now, int32_t goal, unsigned shift);
+int32_t exh_params_slew_step(int32_t now, int32_t goal, unsigned shift);
 
 /* Makes active what is staged; call between ticks only, once. Slewed values go one step while
  * locked, and at once before. 1 if there was anything to do: while 1 comes back its cost is one of
@@ -77,27 +78,27 @@ int exh_params_apply(struct exh_params *p);
 
 /* Between apply and tick, for who moves rows in `led`: value i is active as raw, and on its way if
  * that is not what is wanted. i below count. */
-void exh_params_put(struct exh_params *p, uint32_t i, int32_t raw);
+void exh_params_set_active(struct exh_params *p, uint32_t i, int32_t raw);
 
 /* Wanted becomes what is active now: what was staged, or is on its way, stops here. */
-void exh_params_drop(struct exh_params *p);
+void exh_params_discard(struct exh_params *p);
 
 /* Takes back what was staged since the caller copied all of `staged` and `pending`: what is on its
  * way goes on. In the place of a copy back, which the guard would tell as damage. */
-void exh_params_unstage(struct exh_params *p, const int32_t *was, uint8_t pending);
+void exh_params_rollback(struct exh_params *p, const int32_t *was, uint8_t pending);
 
 /* Both arrays through a cursor, as a keyframe has them: every value as it is active, a slewed one
  * followed by what is wanted. Read: all of them are checked as exh_params_stage() does, and taken
  * whole; else the cursor is not ok and nothing is. */
-void exh_params_bytes(struct exh_bytes *c, struct exh_params *p);
+void exh_params_serialize(struct exh_bytes *c, struct exh_params *p);
 
-/* Redundancy, for a guard (exhand/guard.h): seal takes both arrays as they are now; look then looks
- * at the next value, in turn. 1: it is another one than was staged or applied (while nothing is on
- * its way), or at the end of a round, the sum over both arrays is not what the changes made of it.
- * A change of one bit in either array is told within two rounds, in mid-slew too; no change through
- * these functions is. */
+/* Redundancy, for a guard (exhand/integrity.h): seal takes both arrays as they are now; look then
+ * looks at the next value, in turn. 1: it is another one than was staged or applied (while nothing
+ * is on its way), or at the end of a round, the sum over both arrays is not what the changes made
+ * of it. A change of one bit in either array is told within two rounds, in mid-slew too; no change
+ * through these functions is. */
 void exh_params_seal(struct exh_params *p);
-int exh_params_look(struct exh_params *p);
+int exh_params_verify(struct exh_params *p);
 
 /* Image: "EXHP", version u16, count u16, table CRC u32, values i32…, CRC u32,
  * little-endian. Saves what is wanted: the staged values. Bytes written, or -EXH_E_SHORT. */

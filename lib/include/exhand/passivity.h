@@ -26,8 +26,8 @@
  * what the finger does within one count: in true position up to half a count times the
  * sum of all changes of force may be added.
  *
- * Order: law, exh_passivity_step(), exh_drive_force(), exh_drive_current(), exh_gate(),
- * exh_passivity_held().
+ * Order: law, exh_passivity_step(), exh_drive_force_step(), exh_drive_current_step(),
+ * exh_gate_step(), exh_passivity_update().
  */
 #ifndef EXHAND_PASSIVITY_H
 #define EXHAND_PASSIVITY_H
@@ -91,14 +91,14 @@ uint32_t exh_passivity_step(struct exh_passivity *s, const struct exh_passivity_
 
 /* Behind the gate, with the same ledger and the current that the code stands for (coded of the
  * current ledger). */
-void exh_passivity_held(struct exh_passivity *s, const struct exh_passivity_cfg *cfg,
-                        const struct exh_force_ledger *f, int32_t coded_A_q26);
+void exh_passivity_update(struct exh_passivity *s, const struct exh_passivity_cfg *cfg,
+                          const struct exh_force_ledger *f, int32_t coded_A_q26);
 
 /* Energy taken up by the present contact, J, q24 (60 nJ, within 1/2 LSB, saturates at +-128 J). */
 int32_t exh_passivity_J_q24(const struct exh_passivity *s, const struct exh_passivity_cfg *cfg);
 
 /* State through a cursor. A state of zeros is a string out of contact. */
-void exh_passivity_bytes(struct exh_bytes *c, struct exh_passivity *s);
+void exh_passivity_serialize(struct exh_bytes *c, struct exh_passivity *s);
 
 #ifdef __cplusplus
 }

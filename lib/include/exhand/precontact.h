@@ -15,8 +15,8 @@
  * there is no contact, and the force falls as fast as the drive lets it. d is that of the plane
  * taken at the freeze, so that nothing of this hangs on the link.
  *
- * exh_precontact_none() says that no contact can be; then exh_contact_free() has the place of the
- * law. That is so when
+ * exh_precontact_none() says that no contact can be; then exh_contact_step_free() has the place of
+ * the law. That is so when
  *   - no plane has come yet, or the world said that there is none (no hit);
  *   - the plane is older than age_max (only while q_lim moves along; a frozen one does
  *     not age);
@@ -177,10 +177,10 @@ int exh_precontact_setup(struct exh_precontact_cfg *cfg, const struct exh_precon
 /* What a message tells about this finger, age_ticks old; before the step of the tick. A frozen
  * finger's q_lim, material, distance and release do not depend on it. 0, or -EXH_E_RANGE for a
  * plane refused. */
-int exh_precontact_tell(struct exh_precontact *s, const struct exh_precontact_cfg *cfg,
-                        const struct exh_plane *plane, uint32_t age_ticks);
+int exh_precontact_update(struct exh_precontact *s, const struct exh_precontact_cfg *cfg,
+                          const struct exh_plane *plane, uint32_t age_ticks);
 
-/* 1: no contact can be, exh_contact_free() is due; 0: one can be at lim_m_q30. */
+/* 1: no contact can be, exh_contact_step_free() is due; 0: one can be at lim_m_q30. */
 static inline int exh_precontact_none(const struct exh_precontact *s)
 {
     return s->phase < EXH_PRECONTACT_TRACK;
@@ -188,7 +188,7 @@ static inline int exh_precontact_none(const struct exh_precontact *s)
 
 /* Ticks that were missed, before tell() and step() of the next: the plane told last is so much
  * older, and a doubt has lasted so much longer. */
-void exh_precontact_skip(struct exh_precontact *s, uint32_t missed);
+void exh_precontact_advance(struct exh_precontact *s, uint32_t missed);
 
 /* One tick; call before the contact law and give it lim_m_q30. d is exact but for its one
  * rounding (1/2 LSB) and saturates at +-2 m; q_lim is within 1/2 LSB of q - s*d, and s of the
@@ -199,7 +199,7 @@ uint32_t exh_precontact_step(struct exh_precontact *s, const struct exh_preconta
 
 /* State through a cursor; what was read is brought back into range. A q_lim that was to be frozen
  * in the first tick after it is not if it touches at once: the plane counts as born there. */
-void exh_precontact_bytes(struct exh_bytes *c, struct exh_precontact *s);
+void exh_precontact_serialize(struct exh_bytes *c, struct exh_precontact *s);
 
 /* --- how far off to freeze, how far to look --- */
 

@@ -41,7 +41,7 @@ enum exh_probe_result {
 };
 
 /* "went the wrong way", ...; never NULL. */
-const char *exh_probe_text(unsigned result);
+const char *exh_probe_result_text(unsigned result);
 
 /* What a count and a millisecond are. */
 struct exh_probe_scale {

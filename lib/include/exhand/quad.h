@@ -93,16 +93,16 @@ int exh_quad_setup(struct exh_quad_cfg *cfg, const struct exh_quad_par *par, str
 /* The extended count. Right as long as the counter moves less than half its
  * width between two calls; bits of raw above the width are ignored. A movement
  * of more than jump_cnt is not counted and sets `lost`. */
-int32_t exh_quad_extend(struct exh_quad *s, const struct exh_quad_cfg *cfg, uint32_t raw);
+int32_t exh_quad_step(struct exh_quad *s, const struct exh_quad_cfg *cfg, uint32_t raw);
 
 /* Position of a count, m, q30; rounded half up, saturates at +-2 m with the
  * right sign. Error <= 1/2 LSB = 0.47 nm. */
 int32_t exh_quad_pos_m_q30(const struct exh_quad_par *par, int32_t cnt);
 
 /* State through a cursor (bytes.h). */
-void exh_quad_ab_bytes(struct exh_bytes *c, struct exh_quad_ab *s);
-void exh_quad_index_bytes(struct exh_bytes *c, struct exh_quad_index *s);
-void exh_quad_bytes(struct exh_bytes *c, struct exh_quad *s);
+void exh_quad_ab_serialize(struct exh_bytes *c, struct exh_quad_ab *s);
+void exh_quad_index_serialize(struct exh_bytes *c, struct exh_quad_index *s);
+void exh_quad_serialize(struct exh_bytes *c, struct exh_quad *s);
 
 #ifdef __cplusplus
 }

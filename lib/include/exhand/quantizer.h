@@ -45,7 +45,7 @@ int32_t exh_quantizer_step(struct exh_quantizer *s, const struct exh_quantizer_c
 
 /* State through a cursor (bytes.h). A value read that is no multiple of Q (damaged, or of other
  * parameters) is kept as any other, within the same error, until the input leaves it. */
-void exh_quantizer_bytes(struct exh_bytes *c, struct exh_quantizer *s);
+void exh_quantizer_serialize(struct exh_bytes *c, struct exh_quantizer *s);
 
 #ifdef __cplusplus
 }

@@ -86,11 +86,11 @@ uint32_t exh_record_end(struct exh_bytes *c);
 /* The record at the start of buf. Bytes it takes, or -EXH_E_SHORT (more needed),
  * -EXH_E_UNKNOWN (no sync here), -EXH_E_CRC, -EXH_E_VERSION. To go on after
  * damage, retry one byte on. Reads len_B bytes at most, whatever they say. */
-int32_t exh_record_read(const void *buf, uint32_t len_B, struct exh_record *r);
+int32_t exh_record_decode(const void *buf, uint32_t len_B, struct exh_record *r);
 
 /* Payloads through a cursor. Texts of the header need not end in a zero. */
-void exh_record_header_bytes(struct exh_bytes *c, struct exh_record_header *h);
-void exh_event_bytes(struct exh_bytes *c, struct exh_event *e);
+void exh_record_header_serialize(struct exh_bytes *c, struct exh_record_header *h);
+void exh_event_serialize(struct exh_bytes *c, struct exh_event *e);
 
 /* --- a record a few bytes at a time, as bytes go out of a box that has a loop to keep --- */
 

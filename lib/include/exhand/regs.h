@@ -53,7 +53,7 @@ enum exh_regs_head {
     EXH_HEAD_VERSION,     /* EXH_REGS_VERSION */
     EXH_HEAD_TEST_INT,    /* 0x12345678 */
     EXH_HEAD_TEST_FLOAT,  /* binary32 1.0 */
-    EXH_HEAD_TICK,        /* of exh_regs_box, as all up to MISSED */
+    EXH_HEAD_TICK,        /* of exh_regs_status, as all up to MISSED */
     EXH_HEAD_STATE,       /* enum exh_state */
     EXH_HEAD_FAULTS,      /* enum exh_fault, latched */
     EXH_HEAD_FIRST,       /* the first of them; stays after CLEAR */
@@ -158,12 +158,12 @@ enum exh_modbus_exception {
 /* --- registers --- */
 
 /* What changes from tick to tick aside from the tables. */
-struct exh_regs_box {
+struct exh_regs_status {
     uint32_t tick, missed; /* since set-up: modulo 2^32; saturating */
     uint32_t faults, first, first_tick,
         present; /* enum exh_fault: latched; the first of them, and when; in the last tick */
     uint32_t limits, din;    /* enum exh_limit, in the last tick; enum exh_din */
-    uint8_t state, arm_step; /* enum exh_state; what exh_safety_arm() says */
+    uint8_t state, arm_step; /* enum exh_state; what exh_safety_arm_step() says */
 };
 
 /* The words of `touched` for n parameters. */
@@ -178,19 +178,19 @@ struct exh_regs {
     const int32_t *signal;                           /* exh_signal_count(signals) values */
     const int32_t *active;                           /* of params: in effect, exh_params.active */
     const int32_t *wanted;                           /* of params: exh_params.staged */
-    int32_t *staged;         /* the map's own, exh_signal_count(params) of them */
-    uint32_t *touched;       /* bit i: staged[i] counts; EXH_REGS_WORDS() of them */
-    struct exh_period T;     /* of the loop */
-    uint32_t may;            /* bit k: coil k can be commanded here */
-    uint8_t locked;          /* exh_params.locked: set-up values are refused */
-    uint8_t fingers;         /* drives in use */
-    struct exh_trace *trace; /* set up; its frames are read and it is started here; or NULL */
-    struct exh_regs_box box; /* by exh_regs_see() */
+    int32_t *staged;            /* the map's own, exh_signal_count(params) of them */
+    uint32_t *touched;          /* bit i: staged[i] counts; EXH_REGS_WORDS() of them */
+    struct exh_period T;        /* of the loop */
+    uint32_t may;               /* bit k: coil k can be commanded here */
+    uint8_t locked;             /* exh_params.locked: set-up values are refused */
+    uint8_t fingers;            /* drives in use */
+    struct exh_trace *trace;    /* set up; its frames are read and it is started here; or NULL */
+    struct exh_regs_status box; /* by exh_regs_update() */
 
     /* Filled by exh_regs_setup() and what follows. */
     uint32_t signals_n, params_n, signals_crc,
         params_crc; /* values in the tables; exh_signal_crc() of them; 0: no table */
-    uint32_t asked; /* bit k: coil k was commanded, and exh_regs_take() has not been called */
+    uint32_t asked; /* bit k: coil k was commanded, and exh_regs_poll() has not been called */
     uint32_t done;  /* commands carried out */
     int32_t result; /* of the last of them */
 };
@@ -205,7 +205,7 @@ struct exh_regs {
 int exh_regs_setup(struct exh_regs *r);
 
 /* The box as it is after a tick. */
-void exh_regs_see(struct exh_regs *r, const struct exh_safety *s, uint32_t din);
+void exh_regs_update(struct exh_regs *r, const struct exh_safety *s, uint32_t din);
 
 /* n registers from `at`, each two bytes, high byte first: 2 n bytes. 0, or an exception (enum
  * exh_modbus_exception). kind: HOLDING or INPUT. All of a request lies in one block. */
@@ -222,7 +222,7 @@ int exh_regs_read(const struct exh_regs *r, enum exh_regs_kind kind, uint16_t at
 int exh_regs_write(struct exh_regs *r, uint16_t at, uint16_t n, const uint8_t *from);
 
 /* Whether exh_regs_write() would take it; 0 or its exception. Nothing is staged. */
-int exh_regs_judge(const struct exh_regs *r, uint16_t at, uint16_t n, const uint8_t *from);
+int exh_regs_validate(const struct exh_regs *r, uint16_t at, uint16_t n, const uint8_t *from);
 
 /* n bits from `at`, the first the lowest of to[0], unused ones of the last byte 0: (n + 7) / 8
  * bytes. 0 or exception 2. kind: COIL or DISCRETE. */
@@ -234,8 +234,8 @@ int exh_regs_read_bits(const struct exh_regs *r, enum exh_regs_kind kind, uint16
 int exh_regs_write_bits(struct exh_regs *r, uint16_t at, uint16_t n, const uint8_t *from);
 
 /* What was asked for since the last call, bit k: coil k, for whoever carries it out, in the order
- * APPLY, SAVE, command; then exh_regs_did(). */
-uint32_t exh_regs_take(struct exh_regs *r);
+ * APPLY, SAVE, command; then exh_regs_complete(). */
+uint32_t exh_regs_poll(struct exh_regs *r);
 
 /* Between two ticks: hands what is staged to p, whose table is r->params, all or none. 0,
  * -EXH_E_STATE (a set-up value, and p is locked by now) or -EXH_E_RANGE. Nothing is staged then any
@@ -246,15 +246,15 @@ int exh_regs_apply(struct exh_regs *r, struct exh_params *p);
 uint8_t exh_regs_command(uint32_t asked);
 
 /* One command is carried out, with this result. */
-void exh_regs_did(struct exh_regs *r, int result);
+void exh_regs_complete(struct exh_regs *r, int result);
 
 /* raw * 2^-frac as the bits of a binary32, rounded to nearest, of two as near to the even one. frac
  * 0 .. 126. */
-uint32_t exh_float_of(int32_t raw, unsigned frac);
+uint32_t exh_float_from_raw(int32_t raw, unsigned frac);
 
 /* The nearest raw to a binary32, of two as near the even one. -EXH_E_RANGE: no number, infinite or
  * beyond int32_t; *raw is untouched then. frac 0 .. 126. */
-int exh_float_raw(uint32_t bits, unsigned frac, int32_t *raw);
+int exh_float_to_raw(uint32_t bits, unsigned frac, int32_t *raw);
 
 #ifdef __cplusplus
 }

@@ -65,7 +65,7 @@ enum exh_fault {
     ((uint32_t)(EXH_FAULT_ESTOP | EXH_FAULT_DRIVE | EXH_FAULT_TRACKING | EXH_FAULT_CARD | \
                 EXH_FAULT_WATCHDOG | EXH_FAULT_CONFIG | EXH_FAULT_LOGIC))
 
-/* For `raised`, in the place of exh_track_step(): the port has no current monitors, or the scene
+/* For `raised`, in the place of exh_tracking_step(): the port has no current monitors, or the scene
  * compares them itself. A D/A that stands still is then not seen. It is a name in the scene's
  * source and no parameter, which could be set by mistake, over a link, or for a port that does have
  * them. */
@@ -73,7 +73,7 @@ enum exh_fault {
 
 /* steps of arming, in their order */
 enum exh_arm {
-    EXH_ARM_SELFTEST = 1u << 0,    /* known answers came out (guard.h) */
+    EXH_ARM_SELFTEST = 1u << 0,    /* known answers came out (integrity.h) */
     EXH_ARM_CALIBRATION = 1u << 1, /* valid: of this device, hand and time */
     EXH_ARM_POLARITY = 1u << 2,    /* of motor and encoder: was seen to be right */
     EXH_ARM_ENCODER = 1u << 3,     /* plausible */
@@ -172,22 +172,22 @@ struct exh_safety_in {
     uint8_t ready;   /* enum exh_arm: steps the scene vouches for */
 };
 
-/* One tick, first thing. Returns what the force may do, for exh_drive_force(). A state that cannot
- * be is FAULT, LOGIC. */
+/* One tick, first thing. Returns what the force may do, for exh_drive_force_step(). A state that
+ * cannot be is FAULT, LOGIC. */
 struct exh_permit exh_safety_step(struct exh_safety *s, const struct exh_safety_cfg *cfg,
                                   struct exh_safety_in in);
 
 /* enum exh_arm: on which step arming is, or else was refused at last; 0: none. */
-uint8_t exh_safety_arm(const struct exh_safety *s);
+uint8_t exh_safety_arm_step(const struct exh_safety *s);
 
 /* 1 in RUN and LIMIT. */
-static inline int exh_safety_runs(const struct exh_safety *s)
+static inline int exh_safety_is_running(const struct exh_safety *s)
 {
     return s->state == EXH_STATE_RUN || s->state == EXH_STATE_LIMIT;
 }
 
 /* 1 if the gate is open in this state of the box, else 0. */
-int exh_safety_open(const struct exh_safety *s);
+int exh_safety_is_open(const struct exh_safety *s);
 
 /* Last thing of a tick (gate.c): the currents of fingers 0..n-1 into codes. Completes
  * each ledger (gate, dac, coded); fingers not in use, and all of them while it is closed,
@@ -196,11 +196,11 @@ int exh_safety_open(const struct exh_safety *s);
  * the fingers of exh_safety_step(); cfg, i and limits are arrays of n. Adds EXH_LIMIT_DAC and
  * EXH_LIMIT_GATE (current held back) to limits, and keeps all of them for the next
  * exh_safety_step(), which counts them. */
-void exh_gate(struct exh_safety *s, const struct exh_drive_cfg *cfg, unsigned n,
-              struct exh_current_ledger *i, uint32_t *limits, struct exh_drive_out *out);
+void exh_gate_step(struct exh_safety *s, const struct exh_drive_cfg *cfg, unsigned n,
+                   struct exh_current_ledger *i, uint32_t *limits, struct exh_drive_out *out);
 
 /* State through a cursor, with a CRC of it: bytes that do not agree are read as FAULT, LOGIC. */
-void exh_safety_bytes(struct exh_bytes *c, struct exh_safety *s);
+void exh_safety_serialize(struct exh_bytes *c, struct exh_safety *s);
 
 /* Names for people and files (safety_names.c), [a-z0-9_]+; "" beyond the last. k counts from 0:
  * fault and limit 1u << k, step of arming 1u << k. */

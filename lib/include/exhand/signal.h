@@ -35,7 +35,7 @@ struct exh_signal {
     uint8_t frac;     /* fraction bits: value = raw * 2^-frac */
     uint8_t when;     /* enum exh_signal_when */
     int32_t min, max; /* allowed raw values, both included */
-    int32_t dflt;     /* raw value after exh_params_init */
+    int32_t dflt;     /* raw value after exh_params_setup */
     const char *name; /* "k", [a-z0-9_]+, unique in a scene */
     const char *unit; /* SI in ASCII as in CSV headers: "n_per_m"; "" for none */
     const char *help; /* one line */
@@ -71,7 +71,7 @@ uint32_t exh_signal_crc(const struct exh_signal_table *t);
 
 /* 1 if n values in a row, a struct of int32_t as a module's parameters are, are each within their
  * row: for parameters that have passed no other check, as those in ROM. */
-int exh_rows_hold(const struct exh_signal *row, unsigned n, const void *values);
+int exh_rows_validate(const struct exh_signal *row, unsigned n, const void *values);
 
 #ifdef __cplusplus
 }

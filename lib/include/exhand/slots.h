@@ -21,15 +21,13 @@
  *     static uint8_t buf[EXH_SLOT_B(2048)];
  *     unsigned to;
  *     int32_t n = exh_params_save(&params, buf + EXH_SLOT_HEAD_B, sizeof buf - EXH_SLOT_B(0));
- *     if (n > 0) { n = exh_slots_next(&to, slot[0], slot[1], SLOT_B, buf, sizeof buf, (size_t)n); }
- *     if (n > 0) {
- *         board_erase(slot[to], SLOT_B);
- *         board_program(slot[to], buf, n);
- *         if (exh_slots_pick(&is, slot[0], slot[1], SLOT_B) != (int)to) { ... worn or protected:
- * tell; the old one counts ... }
+ *     if (n > 0) { n = exh_slots_encode(&to, slot[0], slot[1], SLOT_B, buf, sizeof buf, (size_t)n);
+ * } if (n > 0) { board_erase(slot[to], SLOT_B); board_program(slot[to], buf, n); if
+ * (exh_slots_find(&is, slot[0], slot[1], SLOT_B) != (int)to) { ... worn or protected: tell; the old
+ * one counts ... }
  *     }
  *
- *     at start: if (exh_slots_pick(&is, slot[0], slot[1], SLOT_B) >= 0) { exh_params_load(&params,
+ *     at start: if (exh_slots_find(&is, slot[0], slot[1], SLOT_B) >= 0) { exh_params_load(&params,
  * is.image, is.len_B, NULL); }
  *
  * An image that is whole may be of another version of the program: whoever wants what was before
@@ -62,12 +60,12 @@ struct exh_slot {
  * ever saved there
  * ("EXHS" is missing: as when it is blank); -EXH_E_SHORT: the slot is shorter than what it should
  * hold; -EXH_E_CRC: cut off or damaged; *is is untouched then. Reads no byte beyond. */
-int exh_slot_read(struct exh_slot *is, const void *slot, size_t slot_B);
+int exh_slot_decode(struct exh_slot *is, const void *slot, size_t slot_B);
 
 /* 0 or 1, the slot that counts, and what is in it; -EXH_E_ABSENT: none of both is whole, *newest is
  * untouched. Of two the one whose sequence is 1 .. 2^31 - 1 ahead of the other's, mod 2^32; slot 0
  * if neither is. */
-int exh_slots_pick(struct exh_slot *newest, const void *slot0, const void *slot1, size_t slot_B);
+int exh_slots_find(struct exh_slot *newest, const void *slot0, const void *slot1, size_t slot_B);
 
 /* What is to be saved next: the caller has put an image of image_B bytes into buf +
  * EXH_SLOT_HEAD_B; this writes head and tail around it. Returns how many bytes of buf are to be
@@ -75,8 +73,8 @@ int exh_slots_pick(struct exh_slot *newest, const void *slot0, const void *slot1
  * counts, *to, holds this image, and nothing is to be done (it wears); -EXH_E_SHORT: more than
  * cap_B or slot_B, or those above 2^31 - 1: nothing is written, *to is untouched. The sequence is
  * the one behind that of the slot that counts, 1 behind 2^32 - 2; of none, slot 0 and 1. */
-int32_t exh_slots_next(unsigned *to, const void *slot0, const void *slot1, size_t slot_B, void *buf,
-                       size_t cap_B, size_t image_B);
+int32_t exh_slots_encode(unsigned *to, const void *slot0, const void *slot1, size_t slot_B,
+                         void *buf, size_t cap_B, size_t image_B);
 
 #ifdef __cplusplus
 }

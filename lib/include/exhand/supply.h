@@ -46,7 +46,7 @@ int exh_supply_step(struct exh_supply *s, const struct exh_supply_cfg *cfg, int1
 
 /* State through a cursor. A state of zeros is a supply that was never outside. Damaged bytes at
  * worst raise the fault until a voltage within the limits is seen. */
-void exh_supply_bytes(struct exh_bytes *c, struct exh_supply *s);
+void exh_supply_serialize(struct exh_bytes *c, struct exh_supply *s);
 
 #ifdef __cplusplus
 }

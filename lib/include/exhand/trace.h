@@ -23,12 +23,12 @@ extern "C" {
 /* What is kept of one tick. */
 struct exh_trace_frame {
     uint32_t number;                /* modulo 2^32 */
-    uint32_t tick;                  /* of the loop, as exh_trace_tick() was told it */
+    uint32_t tick;                  /* of the loop, as exh_trace_step() was told it */
     int32_t raw[EXH_TRACE_SIGNALS]; /* the signals asked for, in their order and rows' formats */
 };
 
 /* What is to be traced. */
-struct exh_trace_what {
+struct exh_trace_request {
     uint32_t every;                    /* ticks from frame to frame; 0: none */
     uint32_t index[EXH_TRACE_SIGNALS]; /* of values in the scene's table of outputs */
 };
@@ -38,7 +38,7 @@ struct exh_trace {
     struct exh_trace_frame *frame; /* the caller's; number k is in frame[k & mask] */
     uint32_t mask;                 /* frames - 1 */
     uint32_t signals;              /* values in the table */
-    struct exh_trace_what what;    /* what is traced now */
+    struct exh_trace_request what; /* what is traced now */
     uint32_t first;                /* number of this trace's first frame */
     uint32_t head;                 /* number of the next frame, modulo 2^32 */
     uint32_t run;                  /* traces started, modulo 2^32 */
@@ -52,10 +52,10 @@ int exh_trace_setup(struct exh_trace *t, struct exh_trace_frame *frame, uint32_t
 
 /* Another trace, from the next tick on; frames of the one before are not held any more.
  * -EXH_E_RANGE: an index of none of the signals; nothing changes. */
-int exh_trace_start(struct exh_trace *t, const struct exh_trace_what *what);
+int exh_trace_start(struct exh_trace *t, const struct exh_trace_request *what);
 
 /* Behind each tick, with the values of the table. */
-void exh_trace_tick(struct exh_trace *t, uint32_t tick, const int32_t *signal);
+void exh_trace_step(struct exh_trace *t, uint32_t tick, const int32_t *signal);
 
 /* Number of the oldest frame held; `head` if there is none. */
 static inline uint32_t exh_trace_oldest(const struct exh_trace *t)
@@ -66,12 +66,12 @@ static inline uint32_t exh_trace_oldest(const struct exh_trace *t)
 /* Where who reads must not touch what the loop writes: `shown` is his, of as many frames, and this
  * is called while he does not use it. A trace that was started on `shown` is started on `own`; else
  * the frames that `shown` has not yet are copied, at most all that `own` holds. */
-void exh_trace_pass(struct exh_trace *own, struct exh_trace *shown);
+void exh_trace_copy(struct exh_trace *own, struct exh_trace *shown);
 
 /* State through a cursor, the frames in memory with it; t is set up, for as many frames and
  * signals. What is read is brought back into range: an index of none of the signals is 0, no wait
  * is longer than the trace has. 36 bytes and 24 more a frame. */
-void exh_trace_bytes(struct exh_bytes *c, struct exh_trace *t);
+void exh_trace_serialize(struct exh_bytes *c, struct exh_trace *t);
 
 #ifdef __cplusplus
 }

@@ -62,9 +62,9 @@ struct exh_velocity_window {
  * -EXH_E_RATE: T; -EXH_E_RANGE when p > 4 or the step is not above 0. */
 int exh_velocity_window_setup(struct exh_velocity_window_cfg *cfg, struct exh_velocity_scale s,
                               const struct exh_velocity_par *par);
-int32_t exh_velocity_window_mps_q27(struct exh_velocity_window *s,
-                                    const struct exh_velocity_window_cfg *cfg, int32_t cnt);
-void exh_velocity_window_bytes(struct exh_bytes *c, struct exh_velocity_window *s);
+int32_t exh_velocity_window_step(struct exh_velocity_window *s,
+                                 const struct exh_velocity_window_cfg *cfg, int32_t cnt);
+void exh_velocity_window_serialize(struct exh_bytes *c, struct exh_velocity_window *s);
 
 /* --- pole: v += (diff - v) * T/(T + tau) --- */
 /* The pole as it is set up, likewise. */
@@ -83,9 +83,9 @@ struct exh_velocity_pole {
 /* As those of the window; tau_us: 0 .. 10^6, else -EXH_E_RANGE too. */
 int exh_velocity_pole_setup(struct exh_velocity_pole_cfg *cfg, struct exh_velocity_scale s,
                             uint32_t tau_us);
-int32_t exh_velocity_pole_mps_q27(struct exh_velocity_pole *s,
-                                  const struct exh_velocity_pole_cfg *cfg, int32_t cnt);
-void exh_velocity_pole_bytes(struct exh_bytes *c, struct exh_velocity_pole *s);
+int32_t exh_velocity_pole_step(struct exh_velocity_pole *s, const struct exh_velocity_pole_cfg *cfg,
+                               int32_t cnt);
+void exh_velocity_pole_serialize(struct exh_bytes *c, struct exh_velocity_pole *s);
 
 /* --- foaw: best fit (least squares) over the longest window whose samples all
  * stay within tol counts of the line of that slope through the newest one; at
@@ -108,9 +108,9 @@ struct exh_velocity_foaw {
 /* As those of the window; n: 1 .. 16, tol_cnt: 1 .. 255, else -EXH_E_RANGE too. */
 int exh_velocity_foaw_setup(struct exh_velocity_foaw_cfg *cfg, struct exh_velocity_scale s,
                             unsigned n, unsigned tol_cnt);
-int32_t exh_velocity_foaw_mps_q27(struct exh_velocity_foaw *s,
-                                  const struct exh_velocity_foaw_cfg *cfg, int32_t cnt);
-void exh_velocity_foaw_bytes(struct exh_bytes *c, struct exh_velocity_foaw *s);
+int32_t exh_velocity_foaw_step(struct exh_velocity_foaw *s, const struct exh_velocity_foaw_cfg *cfg,
+                               int32_t cnt);
+void exh_velocity_foaw_serialize(struct exh_bytes *c, struct exh_velocity_foaw *s);
 
 /* --- track: alpha-beta observer with a double pole theta = T_f/(T_f + T):
  * alpha = 1-theta^2, beta = (1-theta)^2. At rest it ends within (T_f/T + 1) * 2^-32
@@ -134,9 +134,9 @@ struct exh_velocity_track {
  */
 int exh_velocity_track_setup(struct exh_velocity_track_cfg *cfg, struct exh_velocity_scale s,
                              uint32_t tf_us);
-int32_t exh_velocity_track_mps_q27(struct exh_velocity_track *s,
-                                   const struct exh_velocity_track_cfg *cfg, int32_t cnt);
-void exh_velocity_track_bytes(struct exh_bytes *c, struct exh_velocity_track *s);
+int32_t exh_velocity_track_step(struct exh_velocity_track *s,
+                                const struct exh_velocity_track_cfg *cfg, int32_t cnt);
+void exh_velocity_track_serialize(struct exh_bytes *c, struct exh_velocity_track *s);
 
 #ifdef __cplusplus
 }

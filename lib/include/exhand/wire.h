@@ -60,14 +60,14 @@ struct exh_wire_hello {
 };
 
 /* What is not as it should be about a peer that has said HELLO: it is heard, and told of. */
-enum exh_wire_differs {
+enum exh_wire_difference {
     EXH_WIRE_ROLE = 1u << 0, /* the same as ours: two controllers, two worlds, an echo */
     EXH_WIRE_LIB = 1u << 1,  /* another version of the library */
     EXH_WIRE_TABLE = 1u << 2 /* another table of parameters; not if either has none */
 };
 
-/* enum exh_wire_differs of theirs, bits; 0: nothing. */
-uint32_t exh_wire_differs(const struct exh_wire_hello *ours, const struct exh_wire_hello *theirs);
+/* enum exh_wire_difference of theirs, bits; 0: nothing. */
+uint32_t exh_wire_compare(const struct exh_wire_hello *ours, const struct exh_wire_hello *theirs);
 
 /* STATE: where fingers and box are. */
 struct exh_wire_state {
@@ -118,7 +118,7 @@ struct exh_wire_ack {
 };
 
 /* TRACE_ASK: another trace, as exh_trace_start() takes it. */
-struct exh_wire_trace_ask {
+struct exh_wire_trace_request {
     uint32_t every;                    /* ticks from frame to frame; 0: none */
     uint16_t index[EXH_TRACE_SIGNALS]; /* of values in the table of outputs */
 };
@@ -143,14 +143,14 @@ struct exh_wire_packet {
     uint8_t type;           /* enum exh_wire_type */
     uint32_t seq, stamp_us; /* of the sender: number; clock, both modulo 2^32 */
     union {
-        struct exh_wire_hello hello;         /* HELLO */
-        struct exh_wire_state state;         /* STATE */
-        struct exh_wire_planes planes;       /* PLANES */
-        struct exh_wire_param param;         /* PARAM */
-        struct exh_wire_ack ack;             /* ACK */
-        struct exh_wire_trace_ask trace_ask; /* TRACE_ASK */
-        struct exh_wire_trace trace;         /* TRACE */
-    } u;                                     /* the payload, by type */
+        struct exh_wire_hello hello;             /* HELLO */
+        struct exh_wire_state state;             /* STATE */
+        struct exh_wire_planes planes;           /* PLANES */
+        struct exh_wire_param param;             /* PARAM */
+        struct exh_wire_ack ack;                 /* ACK */
+        struct exh_wire_trace_request trace_ask; /* TRACE_ASK */
+        struct exh_wire_trace trace;             /* TRACE */
+    } u;                                         /* the payload, by type */
 };
 
 /* --- sending --- */
@@ -166,8 +166,8 @@ struct exh_wire_tx {
  * this order, -EXH_E_UNKNOWN (no such type), -EXH_E_RANGE (session 0, or a role, kind, mask,
  * result or number of frames that no receiver would take), -EXH_E_SHORT (cap_B too small;
  * EXH_WIRE_MAX_B never is); then nothing is used up but what buf held. */
-int32_t exh_wire_write(struct exh_wire_tx *tx, struct exh_wire_packet *p, uint32_t stamp_us,
-                       void *buf, size_t cap_B);
+int32_t exh_wire_encode(struct exh_wire_tx *tx, struct exh_wire_packet *p, uint32_t stamp_us,
+                        void *buf, size_t cap_B);
 
 /* --- receiving --- */
 
@@ -197,7 +197,7 @@ struct exh_wire_rx {
  * whatever session and number, begins anew, be it that of the session before. So no packet makes
  * it deaf for longer than limit_us and a HELLO's time, not one of a session long gone, not a
  * forged one far ahead. 1 if it has become open now. */
-int exh_wire_pass(struct exh_wire_rx *rx, uint32_t passed_us, uint32_t limit_us);
+int exh_wire_poll(struct exh_wire_rx *rx, uint32_t passed_us, uint32_t limit_us);
 
 /* One datagram. Its type, > 0, when it was accepted: only then *p is written, and more changes
  * than a counter (and, of a reordered one, that it came). Else -EXH_E_SHORT, -EXH_E_CRC (also
@@ -205,7 +205,8 @@ int exh_wire_pass(struct exh_wire_rx *rx, uint32_t passed_us, uint32_t limit_us)
  * -EXH_E_STALE (duplicate, reordered, old), -EXH_E_RANGE (far). A HELLO of a new session is taken
  * whatever its sequence number: the peer has started anew. So is, of an open receiver, any HELLO
  * but the newest packet itself once more. Reads len_B bytes at most. */
-int exh_wire_take(struct exh_wire_rx *rx, struct exh_wire_packet *p, const void *buf, size_t len_B);
+int exh_wire_decode(struct exh_wire_rx *rx, struct exh_wire_packet *p, const void *buf,
+                    size_t len_B);
 
 /* The plane of one finger as precontact wants it. */
 struct exh_plane exh_wire_plane_of(const struct exh_wire_planes *planes, unsigned finger);
@@ -214,7 +215,7 @@ struct exh_plane exh_wire_plane_of(const struct exh_wire_planes *planes, unsigne
 struct exh_wire_ack exh_wire_stage(struct exh_params *params, const struct exh_wire_packet *p);
 
 /* Newest time of an exchange, us: now less the stamp that came back. */
-static inline uint32_t exh_wire_trip_us(uint32_t now_us, const struct exh_wire_planes *planes)
+static inline uint32_t exh_wire_round_trip_us(uint32_t now_us, const struct exh_wire_planes *planes)
 {
     return now_us - planes->echo_stamp_us;
 }
@@ -227,8 +228,8 @@ static inline uint32_t exh_wire_trace_missed(uint32_t next, const struct exh_wir
 }
 
 /* State through a cursor: what a controller keeps of its link. */
-void exh_wire_tx_bytes(struct exh_bytes *c, struct exh_wire_tx *s);
-void exh_wire_rx_bytes(struct exh_bytes *c, struct exh_wire_rx *s);
+void exh_wire_tx_serialize(struct exh_bytes *c, struct exh_wire_tx *s);
+void exh_wire_rx_serialize(struct exh_bytes *c, struct exh_wire_rx *s);
 
 #ifdef __cplusplus
 }

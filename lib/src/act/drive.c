@@ -69,7 +69,7 @@ static int setup_i2t(struct exh_drive_cfg *cfg, const struct exh_drive_par *par,
     return exh_gain_set(&cfg->i2t_fold, (uint64_t)(par->i_peak_A_q26 - par->i_cont_A_q26), knee);
 }
 
-/* exh_table_set() was here: slopes are filled, so knots rise. */
+/* exh_table_setup() was here: slopes are filled, so knots rise. */
 static int table_ok(struct exh_table t)
 {
     for (unsigned i = 0; i + 1 < t.n; i++) {
@@ -150,8 +150,8 @@ static uint32_t release(struct exh_drive *s, int64_t asked_N_q20, const struct e
     return EXH_LIMIT_RELEASE;
 }
 
-uint32_t exh_drive_force(struct exh_drive *s, const struct exh_drive_cfg *cfg,
-                         const struct exh_permit *permit, struct exh_force_ledger *f)
+uint32_t exh_drive_force_step(struct exh_drive *s, const struct exh_drive_cfg *cfg,
+                              const struct exh_permit *permit, struct exh_force_ledger *f)
 {
     const struct exh_drive_par *par = cfg->par;
     const int64_t asked = exh_wrap_add64(exh_wrap_add64(f->spring_N_q20, f->damper_N_q20),
@@ -192,8 +192,8 @@ static int32_t i2t_limit(const struct exh_drive *s, const struct exh_drive_cfg *
     return cfg->par->i_cont_A_q26 + exh_clamp(extra, 0, span);
 }
 
-uint32_t exh_drive_current(struct exh_drive *s, const struct exh_drive_cfg *cfg,
-                           const struct exh_force_ledger *f, struct exh_current_ledger *i)
+uint32_t exh_drive_current_step(struct exh_drive *s, const struct exh_drive_cfg *cfg,
+                                const struct exh_force_ledger *f, struct exh_current_ledger *i)
 {
     const int32_t table = exh_table_at(cfg->force_to_cur, f->force_N_q20);
     const int32_t peak = exh_clamp32(table, -cfg->par->i_peak_A_q26, cfg->par->i_peak_A_q26);
@@ -227,7 +227,7 @@ int32_t exh_drive_monitor_N_q20(const struct exh_drive_cfg *cfg, int32_t mon_A_q
     return cfg->cur_to_force.n > 0 ? exh_table_at(cfg->cur_to_force, mon_A_q26) : 0;
 }
 
-void exh_drive_bytes(struct exh_bytes *c, struct exh_drive *s)
+void exh_drive_serialize(struct exh_bytes *c, struct exh_drive *s)
 {
     exh_bytes_i32(c, &s->force_N_q20);
     exh_bytes_i32(c, &s->fall_N_q20);

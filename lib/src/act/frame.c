@@ -2,7 +2,7 @@
 /* Frames through a cursor. */
 #include "exhand/frame.h"
 
-void exh_drive_in_bytes(struct exh_bytes *c, struct exh_drive_in *in, unsigned n)
+void exh_drive_in_serialize(struct exh_bytes *c, struct exh_drive_in *in, unsigned n)
 {
     for (unsigned i = 0; i < n; i++) { exh_bytes_u32(c, &in->enc_raw[i]); }
     for (unsigned i = 0; i < n; i++) { exh_bytes_i16(c, &in->mon_raw[i]); }
@@ -10,7 +10,7 @@ void exh_drive_in_bytes(struct exh_bytes *c, struct exh_drive_in *in, unsigned n
     exh_bytes_u32(c, &in->din);
 }
 
-void exh_drive_out_bytes(struct exh_bytes *c, struct exh_drive_out *out, unsigned n)
+void exh_drive_out_serialize(struct exh_bytes *c, struct exh_drive_out *out, unsigned n)
 {
     for (unsigned i = 0; i < n; i++) { exh_bytes_u16(c, &out->dac_raw[i]); }
     exh_bytes_u8(c, &out->enable);

@@ -18,10 +18,10 @@ static uint16_t code_of(const struct exh_drive_par *par, int32_t cur_A_q26, uint
     return (uint16_t)code;
 }
 
-void exh_gate(struct exh_safety *s, const struct exh_drive_cfg *cfg, unsigned n,
-              struct exh_current_ledger *i, uint32_t *limits, struct exh_drive_out *out)
+void exh_gate_step(struct exh_safety *s, const struct exh_drive_cfg *cfg, unsigned n,
+                   struct exh_current_ledger *i, uint32_t *limits, struct exh_drive_out *out)
 {
-    const int open = exh_safety_open(s), falls = s->state == EXH_STATE_RELEASE;
+    const int open = exh_safety_is_open(s), falls = s->state == EXH_STATE_RELEASE;
 
     EXH_ASSERT(n >= 1);
     EXH_ASSERT(n <= s->fingers);

@@ -56,7 +56,7 @@ int exh_supply_step(struct exh_supply *s, const struct exh_supply_cfg *cfg, int1
     return s->off_ticks >= cfg->ticks;
 }
 
-void exh_supply_bytes(struct exh_bytes *c, struct exh_supply *s)
+void exh_supply_serialize(struct exh_bytes *c, struct exh_supply *s)
 {
     exh_bytes_u32(c, &s->off_ticks);
 }

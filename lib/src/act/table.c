@@ -4,7 +4,7 @@
 
 #include "exhand/error.h"
 
-int exh_table_set(struct exh_knot *knot, unsigned n)
+int exh_table_setup(struct exh_knot *knot, unsigned n)
 {
     if (n < 2 || n > 255) { return -EXH_E_RANGE; }
     for (unsigned i = 0; i + 1 < n; i++) {
@@ -28,7 +28,7 @@ int exh_table_invert(struct exh_knot *dst, const struct exh_knot *src, unsigned 
         dst[i].x = src[i].y;
         dst[i].y = x;
     }
-    return exh_table_set(dst, n);
+    return exh_table_setup(dst, n);
 }
 
 int32_t exh_table_at(struct exh_table t, int32_t x)

@@ -33,7 +33,7 @@ int32_t exh_mean_value(const struct exh_mean *m)
 
 /* --- the line through the origin --- */
 
-static int32_t current_of(const struct exh_calib_point *p, enum exh_calib_which which)
+static int32_t current_of(const struct exh_calib_point *p, enum exh_calib_column which)
 {
     return which == EXH_CALIB_MONITOR ? p->mon_A_q26 : p->cur_A_q26;
 }
@@ -46,7 +46,7 @@ static int ratio_ok(int64_t force, int64_t cur)
     return force_q26 * 10 >= cur && force_q26 <= RATIO_MAX_NPA * cur;
 }
 
-static int point_ok(const struct exh_calib_point *p, enum exh_calib_which which)
+static int point_ok(const struct exh_calib_point *p, enum exh_calib_column which)
 {
     const int32_t cur = current_of(p, which);
     return ratio_ok(p->force_N_q20, cur) && p->force_N_q20 > 0 &&
@@ -56,7 +56,7 @@ static int point_ok(const struct exh_calib_point *p, enum exh_calib_which which)
 }
 
 int exh_calib_fit(struct exh_calib_fit *fit, const struct exh_calib_point *p, unsigned n,
-                  enum exh_calib_which which)
+                  enum exh_calib_column which)
 {
     uint64_t fi = 0, ii = 0; /* terms < 2^57 and < 2^59, 16 of them */
     fit->gain = (struct exh_gain){0, 1};
@@ -75,16 +75,16 @@ int exh_calib_fit(struct exh_calib_fit *fit, const struct exh_calib_point *p, un
 }
 
 int32_t exh_calib_residual_N_q20(const struct exh_calib_fit *fit, const struct exh_calib_point *p,
-                                 enum exh_calib_which which)
+                                 enum exh_calib_column which)
 {
     return exh_sat32(p->force_N_q20 - exh_gain_mul(fit->gain, current_of(p, which)));
 }
 
 /* --- what may be wrong --- */
 
-const char *exh_calib_what_text(unsigned what)
+const char *exh_calib_error_text(unsigned what)
 {
-    static const char *const text[EXH_CALIB_WHATS] = {
+    static const char *const text[EXH_CALIB_ERRORS] = {
         "image",
         "device",
         "finger",
@@ -94,12 +94,12 @@ const char *exh_calib_what_text(unsigned what)
         "force-to-current table",
         "monitor-to-force table",
     };
-    return what < EXH_CALIB_WHATS ? text[what] : "unknown";
+    return what < EXH_CALIB_ERRORS ? text[what] : "unknown";
 }
 
-static int refuse(struct exh_calib_bad *bad, enum exh_calib_what what, unsigned at, int err)
+static int refuse(struct exh_calib_error *bad, enum exh_calib_error_kind what, unsigned at, int err)
 {
-    if (bad != NULL) { *bad = (struct exh_calib_bad){(uint8_t)what, (uint8_t)at}; }
+    if (bad != NULL) { *bad = (struct exh_calib_error){(uint8_t)what, (uint8_t)at}; }
     return err;
 }
 
@@ -115,8 +115,8 @@ static int values_ok(const struct exh_calib *c)
 
 /* All points, each in its range and above the one before it: on the bench, a mass hung
  * on twice or in another order, or a monitor that is not connected. */
-static int rises(const struct exh_calib *c, enum exh_calib_which which, enum exh_calib_what what,
-                 struct exh_calib_bad *bad)
+static int rises(const struct exh_calib *c, enum exh_calib_column which,
+                 enum exh_calib_error_kind what, struct exh_calib_error *bad)
 {
     int32_t force = 0, cur = 0;
     if (!values_ok(c)) { return refuse(bad, EXH_CALIB_VALUE, 0, -EXH_E_RANGE); }
@@ -134,7 +134,8 @@ static int rises(const struct exh_calib *c, enum exh_calib_which which, enum exh
 
 /* The point at which the tables end when they go on straight; 0 where they don't. A
  * slope below the monitor's or the table's own resolution is no table either. */
-static int straight_on(const struct exh_calib *c, enum exh_calib_which which, struct exh_knot *knot)
+static int straight_on(const struct exh_calib *c, enum exh_calib_column which,
+                       struct exh_knot *knot)
 {
     const struct exh_calib_point *last = &c->point[c->points - 1];
     const int64_t more = (int64_t)c->end_A_q26 - last->cur_A_q26;
@@ -150,7 +151,7 @@ static int straight_on(const struct exh_calib *c, enum exh_calib_which which, st
 }
 
 int exh_calib_force_table(const struct exh_calib *c, struct exh_knot *knot, unsigned cap,
-                          struct exh_calib_bad *bad)
+                          struct exh_calib_error *bad)
 {
     const unsigned last = c->points;
     int err = rises(c, EXH_CALIB_CURRENT, EXH_CALIB_FORCE_TABLE, bad);
@@ -164,14 +165,14 @@ int exh_calib_force_table(const struct exh_calib *c, struct exh_knot *knot, unsi
     err = straight_on(c, EXH_CALIB_CURRENT, &knot[last + 1]);
     if (err >= 0) {
         const unsigned n = last + 1u + (unsigned)err;
-        err = exh_table_set(knot, n);
+        err = exh_table_setup(knot, n);
         if (err == 0) { return (int)n; }
     }
     return refuse(bad, EXH_CALIB_FORCE_TABLE, last - 1u, err);
 }
 
 int exh_calib_monitor_table(const struct exh_calib *c, struct exh_knot *knot, unsigned cap,
-                            struct exh_calib_bad *bad)
+                            struct exh_calib_error *bad)
 {
     const unsigned last = c->points;
     struct exh_knot end = {0, 0, {0, 1}};
@@ -191,11 +192,11 @@ int exh_calib_monitor_table(const struct exh_calib *c, struct exh_knot *knot, un
         knot[half - 1 - i].x = -x;
         knot[half - 1 - i].y = -y;
     }
-    err = exh_table_set(knot, 2 * half + 1);
+    err = exh_table_setup(knot, 2 * half + 1);
     return err < 0 ? refuse(bad, EXH_CALIB_MONITOR_TABLE, last - 1u, err) : (int)(2 * half + 1);
 }
 
-int exh_calib_valid(const struct exh_calib *c, struct exh_calib_bad *bad)
+int exh_calib_validate(const struct exh_calib *c, struct exh_calib_error *bad)
 {
     struct exh_knot knot[2 * EXH_CALIB_POINTS_MAX + 3];
     const unsigned cap = sizeof knot / sizeof knot[0];
@@ -204,8 +205,8 @@ int exh_calib_valid(const struct exh_calib *c, struct exh_calib_bad *bad)
     return n < 0 ? n : 0;
 }
 
-int exh_calib_check(const struct exh_calib *c, const struct exh_calib_here *here,
-                    struct exh_calib_bad *bad)
+int exh_calib_check(const struct exh_calib *c, const struct exh_calib_target *here,
+                    struct exh_calib_error *bad)
 {
     if (c->points == 0) { return refuse(bad, EXH_CALIB_VALUE, 0, -EXH_E_RANGE); }
     if (c->device_id != here->device_id) {
@@ -253,13 +254,13 @@ static void body_bytes(struct exh_bytes *b, struct exh_calib *c)
 }
 
 int32_t exh_calib_save(const struct exh_calib *c, void *buf, size_t cap_B,
-                       struct exh_calib_bad *bad)
+                       struct exh_calib_error *bad)
 {
     struct head h = {IMAGE_MAGIC, EXH_CALIB_VERSION, c->points};
     struct exh_bytes b = exh_bytes_writer(buf, cap_B);
     struct exh_calib copy = *c; /* the cursor's functions go both ways */
     uint32_t crc;
-    const int err = exh_calib_valid(c, bad);
+    const int err = exh_calib_validate(c, bad);
     if (err < 0) { return err; }
     head_bytes(&b, &h);
     body_bytes(&b, &copy);
@@ -285,7 +286,7 @@ static int load(struct exh_calib *c, const void *buf, size_t len_B)
     return crc == exh_crc32(0, buf, at) ? 0 : -EXH_E_CRC;
 }
 
-int exh_calib_load(struct exh_calib *c, const void *buf, size_t len_B, struct exh_calib_bad *bad)
+int exh_calib_load(struct exh_calib *c, const void *buf, size_t len_B, struct exh_calib_error *bad)
 {
     int err;
     c->points = 0;
@@ -293,7 +294,7 @@ int exh_calib_load(struct exh_calib *c, const void *buf, size_t len_B, struct ex
     if (err < 0) {
         (void)refuse(bad, EXH_CALIB_IMAGE, 0, err);
     } else {
-        err = exh_calib_valid(c, bad);
+        err = exh_calib_validate(c, bad);
     }
     if (err < 0) { c->points = 0; }
     return err;

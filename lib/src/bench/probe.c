@@ -13,7 +13,7 @@
 #define FAR_CNT        (INT32_C(1) << 30) /* a limit beyond it would wrap */
 #define MAX_M_Q30      EXH_Q(1, 1, EXH_Q_POS)
 
-const char *exh_probe_text(unsigned result)
+const char *exh_probe_result_text(unsigned result)
 {
     static const char *const text[EXH_PROBE_RESULTS] = {
         "busy",          "done",   "went the wrong way", "did not move", "moved too far",

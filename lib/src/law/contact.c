@@ -62,19 +62,19 @@ static inline int law(struct exh_contact *s, const struct exh_contact_par *par,
     return touching;
 }
 
-int exh_contact_law(struct exh_contact *s, const struct exh_contact_par *par,
-                    struct exh_contact_in in, struct exh_force_ledger *out)
+int exh_contact_step(struct exh_contact *s, const struct exh_contact_par *par,
+                     struct exh_contact_in in, struct exh_force_ledger *out)
 {
     return law(s, par, in, -1, out);
 }
 
-void exh_contact_free(struct exh_contact *s, const struct exh_contact_par *par, int32_t pos_m_q30,
-                      struct exh_force_ledger *out)
+void exh_contact_step_free(struct exh_contact *s, const struct exh_contact_par *par,
+                           int32_t pos_m_q30, struct exh_force_ledger *out)
 {
     (void)law(s, par, (struct exh_contact_in){pos_m_q30, 0, pos_m_q30}, 0, out);
 }
 
-void exh_contact_bytes(struct exh_bytes *c, struct exh_contact *s)
+void exh_contact_serialize(struct exh_bytes *c, struct exh_contact *s)
 {
     exh_bytes_i32(c, &s->turn_m_q30);
     exh_bytes_u8(c, &s->inward);

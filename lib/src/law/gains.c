@@ -143,8 +143,8 @@ int exh_gains_stage(struct exh_params *p, const struct exh_gains_par *rule, uint
     return -EXH_E_GAINS;
 }
 
-int exh_gains_staged(const struct exh_params *p, const struct exh_gains_par *rule,
-                     uint16_t *instance)
+int exh_gains_validate(const struct exh_params *p, const struct exh_gains_par *rule,
+                       uint16_t *instance)
 {
     for (uint16_t n = 0; exh_signal_find(p->table, EXH_CONTACT_K_ID, n) >= 0; n++) {
         if (!pair_ok(p, rule, n)) {
@@ -157,7 +157,7 @@ int exh_gains_staged(const struct exh_params *p, const struct exh_gains_par *rul
 
 /* --- one step of the way --- */
 
-void exh_gains_lead(struct exh_params *p, int on)
+void exh_gains_enable(struct exh_params *p, int on)
 {
     p->led[0] = on ? EXH_CONTACT_K_ID : 0;
     p->led[1] = on ? EXH_CONTACT_B_ID : 0;
@@ -187,8 +187,8 @@ static struct pair slewed(const struct exh_gains_par *rule, struct pair at, stru
                           unsigned shift)
 {
     struct pair next;
-    next.k = exh_params_toward(at.k, aim(rule, at, goal), shift);
-    next.b = exh_params_toward(at.b, goal.b, shift);
+    next.k = exh_params_slew_step(at.k, aim(rule, at, goal), shift);
+    next.b = exh_params_slew_step(at.b, goal.b, shift);
     if (is_under(rule, next)) { return next; }
     if (next.k < at.k) {
         next.b = at.b;
@@ -208,7 +208,7 @@ static struct pair stepped(const struct exh_gains_par *rule, struct pair at, str
     if (under && goal_under) { return slewed(rule, at, goal, shift); }
     if (under) { /* no wall lies apart */
         if (at.k <= rule->k_min_Npm_q10) { return none; }
-        at.k = exh_params_toward(at.k, rule->k_min_Npm_q10, shift);
+        at.k = exh_params_slew_step(at.k, rule->k_min_Npm_q10, shift);
         return at;
     }
     if (!goal_under || !is_none(at)) { return none; }
@@ -235,7 +235,7 @@ void exh_gains_step(struct exh_params *p, const struct exh_gains_par *rule)
         } else {
             next = none;
         }
-        exh_params_put(p, (uint32_t)k, next.k);
-        exh_params_put(p, (uint32_t)b, next.b);
+        exh_params_set_active(p, (uint32_t)k, next.k);
+        exh_params_set_active(p, (uint32_t)b, next.b);
     }
 }

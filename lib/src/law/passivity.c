@@ -92,8 +92,8 @@ uint32_t exh_passivity_step(struct exh_passivity *s, const struct exh_passivity_
     return EXH_LIMIT_PASSIVITY;
 }
 
-void exh_passivity_held(struct exh_passivity *s, const struct exh_passivity_cfg *cfg,
-                        const struct exh_force_ledger *f, int32_t coded_A_q26)
+void exh_passivity_update(struct exh_passivity *s, const struct exh_passivity_cfg *cfg,
+                          const struct exh_force_ledger *f, int32_t coded_A_q26)
 {
     const int64_t held = exh_table_at(cfg->held, coded_A_q26) - f->pullback_N_q20;
     const int any = f->force_N_q20 > f->pullback_N_q20; /* else it is all the pull-back's */
@@ -108,7 +108,7 @@ int32_t exh_passivity_J_q24(const struct exh_passivity *s, const struct exh_pass
                                    EXH_Q_FORCE + EXH_Q_STEP - 31 - 24));
 }
 
-void exh_passivity_bytes(struct exh_bytes *c, struct exh_passivity *s)
+void exh_passivity_serialize(struct exh_bytes *c, struct exh_passivity *s)
 {
     exh_bytes_i64(c, &s->energy_Ncnt_q20);
     exh_bytes_i32(c, &s->held_N_q20);

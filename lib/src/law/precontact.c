@@ -49,11 +49,11 @@ int exh_precontact_setup(struct exh_precontact_cfg *cfg, const struct exh_precon
     if (!exh_period_ok(T)) { return -EXH_E_RATE; }
     if (materials < 1 || materials > MATERIALS_MAX || pad_m_q30 < 0 ||
         pad_m_q30 > EXH_PAD_MAX_M_Q30 ||
-        !exh_rows_hold(exh_precontact_rows, EXH_PRECONTACT_ROWS, par)) {
+        !exh_rows_validate(exh_precontact_rows, EXH_PRECONTACT_ROWS, par)) {
         return -EXH_E_RANGE;
     }
     for (unsigned i = 0; i < materials; i++) {
-        if (!exh_rows_hold(exh_material_rows, EXH_MATERIAL_ROWS, &material[i])) {
+        if (!exh_rows_validate(exh_material_rows, EXH_MATERIAL_ROWS, &material[i])) {
             return -EXH_E_RANGE;
         }
     }
@@ -93,8 +93,8 @@ static int is_same(const struct exh_precontact_plane *a, const struct exh_precon
            a->object == b->object && a->material == b->material;
 }
 
-int exh_precontact_tell(struct exh_precontact *s, const struct exh_precontact_cfg *cfg,
-                        const struct exh_plane *plane, uint32_t age_ticks)
+int exh_precontact_update(struct exh_precontact *s, const struct exh_precontact_cfg *cfg,
+                          const struct exh_plane *plane, uint32_t age_ticks)
 {
     struct exh_precontact_plane now = {0, {0, 0, 0}, 0, 0};
     uint32_t left = 0;
@@ -205,7 +205,7 @@ static uint32_t stand(struct exh_precontact *s, const struct exh_precontact_cfg 
     return EXH_PRECONTACT_RELEASE;
 }
 
-void exh_precontact_skip(struct exh_precontact *s, uint32_t missed)
+void exh_precontact_advance(struct exh_precontact *s, uint32_t missed)
 {
     s->left_ticks -= missed < s->left_ticks ? missed : s->left_ticks;
     if (s->doubt_ticks > 0) {
@@ -266,7 +266,7 @@ static void taken_bytes(struct exh_bytes *c, struct exh_material_par *m)
     }
 }
 
-void exh_precontact_bytes(struct exh_bytes *c, struct exh_precontact *s)
+void exh_precontact_serialize(struct exh_bytes *c, struct exh_precontact *s)
 {
     int told, held;
     exh_bytes_i32(c, &s->d_m_q30);

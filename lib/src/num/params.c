@@ -43,7 +43,7 @@ void exh_params_seal(struct exh_params *p)
     for (uint32_t i = 0; i < p->count; i++) { p->sum += both(p, i); }
 }
 
-int exh_params_look(struct exh_params *p)
+int exh_params_verify(struct exh_params *p)
 {
     const uint32_t i = p->at < p->count ? p->at : 0;
     int bad;
@@ -58,8 +58,8 @@ int exh_params_look(struct exh_params *p)
     return bad;
 }
 
-void exh_params_init(struct exh_params *p, const struct exh_signal_table *table, int32_t *active,
-                     int32_t *staged)
+void exh_params_setup(struct exh_params *p, const struct exh_signal_table *table, int32_t *active,
+                      int32_t *staged)
 {
     const struct exh_params none = {0};
     *p = none;
@@ -76,7 +76,8 @@ void exh_params_init(struct exh_params *p, const struct exh_signal_table *table,
 
 /* --- staged and applied --- */
 
-void exh_params_slew(struct exh_params *p, const struct exh_tune_par *par, struct exh_period T)
+void exh_params_slew_setup(struct exh_params *p, const struct exh_tune_par *par,
+                           struct exh_period T)
 {
     const int64_t time = (int64_t)exh_clamp(par->time_ms, 0, TIME_MAX_MS) * T.den;
     int64_t taken = (int64_t)T.num * 1000; /* ms, times den: below 2^42 */
@@ -84,7 +85,7 @@ void exh_params_slew(struct exh_params *p, const struct exh_tune_par *par, struc
     for (; taken < time && p->shift < EXH_TUNE_SHIFT_MAX; taken *= 2) { p->shift++; }
 }
 
-int exh_params_may(const struct exh_params *p, uint32_t i, int32_t raw)
+int exh_params_validate(const struct exh_params *p, uint32_t i, int32_t raw)
 {
     const struct exh_signal *row = exh_signal_at(p->table, i, NULL);
     if (row == NULL) { return -EXH_E_UNKNOWN; }
@@ -102,14 +103,14 @@ int exh_params_stage(struct exh_params *p, uint16_t id, uint16_t instance, int32
 
 int exh_params_stage_at(struct exh_params *p, uint32_t i, int32_t raw)
 {
-    const int err = exh_params_may(p, i, raw);
+    const int err = exh_params_validate(p, i, raw);
     if (err < 0) { return err; }
     put(p, p->staged, i, raw);
     p->pending = 1;
     return 0;
 }
 
-int32_t exh_params_toward(int32_t now, int32_t goal, unsigned shift)
+int32_t exh_params_slew_step(int32_t now, int32_t goal, unsigned shift)
 {
     const uint32_t up = (uint32_t)goal - (uint32_t)now;
     const uint32_t left = goal < now ? 0u - up : up;
@@ -128,7 +129,7 @@ static void slew(struct exh_params *p, const struct exh_signal *row, uint32_t i)
     const int falls = row->when == EXH_WHEN_LIMIT && p->staged[i] < p->active[i];
     const unsigned shift = falls ? 0 : p->shift & 31u;
     if (row->id != p->led[0] && row->id != p->led[1]) {
-        put(p, p->active, i, exh_params_toward(p->active[i], p->staged[i], shift));
+        put(p, p->active, i, exh_params_slew_step(p->active[i], p->staged[i], shift));
     }
     p->moving |= p->active[i] != p->staged[i];
 }
@@ -143,7 +144,7 @@ static void apply_value(struct exh_params *p, const struct exh_signal *row, uint
     }
 }
 
-void exh_params_put(struct exh_params *p, uint32_t i, int32_t raw)
+void exh_params_set_active(struct exh_params *p, uint32_t i, int32_t raw)
 {
     put(p, p->active, i, raw);
     p->moving |= raw != p->staged[i];
@@ -182,13 +183,13 @@ int exh_params_apply(struct exh_params *p)
     return 1;
 }
 
-void exh_params_drop(struct exh_params *p)
+void exh_params_discard(struct exh_params *p)
 {
     for (uint32_t i = 0; i < p->count; i++) { put(p, p->staged, i, p->active[i]); }
     p->pending = p->moving = 0;
 }
 
-void exh_params_unstage(struct exh_params *p, const int32_t *was, uint8_t pending)
+void exh_params_rollback(struct exh_params *p, const int32_t *was, uint8_t pending)
 {
     for (uint32_t i = 0; i < p->count; i++) { put(p, p->staged, i, was[i]); }
     p->pending = pending;
@@ -211,7 +212,7 @@ static int value_bytes(struct exh_bytes *c, struct exh_params *p, const struct e
         put(p, p->staged, i, wanted);
         p->moving |= is != wanted;
     }
-    return exh_params_may(p, i, is) == 0 && exh_params_may(p, i, wanted) == 0;
+    return exh_params_validate(p, i, is) == 0 && exh_params_validate(p, i, wanted) == 0;
 }
 
 /* Row by row as the table has them: finding each value's row anew was nine tenths of a keyframe's
@@ -231,7 +232,7 @@ static int values_bytes(struct exh_bytes *c, struct exh_params *p, int take)
     return ok;
 }
 
-void exh_params_bytes(struct exh_bytes *c, struct exh_params *p)
+void exh_params_serialize(struct exh_bytes *c, struct exh_params *p)
 {
     struct exh_bytes ahead = *c;
     const int ok = values_bytes(&ahead, p, 0);
@@ -306,7 +307,7 @@ int exh_params_load(struct exh_params *p, const void *buf, size_t len_B, uint32_
             int32_t v = 0;
             exh_bytes_i32(&c, &v);
             if (pass == 0) {
-                const int err = exh_params_may(p, i, v);
+                const int err = exh_params_validate(p, i, v);
                 if (err < 0) {
                     if (bad != NULL) { *bad = i; }
                     return err;

@@ -48,7 +48,7 @@ int32_t exh_signal_find(const struct exh_signal_table *t, uint16_t id, uint16_t 
     return -EXH_E_UNKNOWN;
 }
 
-int exh_rows_hold(const struct exh_signal *row, unsigned n, const void *values)
+int exh_rows_validate(const struct exh_signal *row, unsigned n, const void *values)
 {
     for (unsigned i = 0; i < n; i++) {
         /* By bytes of the whole: no pointer to one member of a struct may go on to the next. */

@@ -121,8 +121,8 @@ static int fits(const struct exh_scene *sc)
     struct exh_drive_out out = {.enable = 0};
     uint64_t need;
     if (memory_B < 2 * EXH_LOG_RECORD_B || sc->state == NULL) { return 0; }
-    exh_log_keyframe_bytes(&key, sc);
-    exh_log_frame_bytes(&frame, sc, &in, &out, sc->signal);
+    exh_log_keyframe_serialize(&key, sc);
+    exh_log_frame_serialize(&frame, sc, &in, &out, sc->signal);
     need = KEYFRAMES_MIN * (key.at + EXH_RING_HEAD_B) +
            UINT64_C(2) * after_ticks * (frame.at + EXH_RING_HEAD_B);
     return memory_B - EXH_LOG_RECORD_B >= need + need / (EXH_RING_PARTS - 1);
@@ -131,7 +131,7 @@ static int fits(const struct exh_scene *sc)
 static void first_image(void)
 {
     struct exh_bytes c = exh_bytes_writer(memory, header_B);
-    exh_log_header_bytes(&c);
+    exh_log_header_serialize(&c);
     image.header_B = c.at;
     image.end_B = c.at - exh_log_images_B();
     image.n = scene->params ? exh_signal_count(scene->params->table) : 0;
@@ -276,7 +276,7 @@ static void begin_froze(void)
     struct exh_event e = {EXH_EVENT_FROZE, at_most(is.later), at_most(last_tick - is.tick),
                           exh_from_u32(is.cause)};
     struct exh_bytes c = exh_bytes_writer(dump.small, sizeof dump.small);
-    exh_event_bytes(&c, &e);
+    exh_event_serialize(&c, &e);
     begin_small(EXH_RECORD_EVENT, &c);
 }
 

@@ -21,18 +21,18 @@ struct loaded {
     struct exh_calib_point point[EXH_CALIB_POINTS_MAX];
 };
 
-static int refuse(struct exh_scene_calib *k, unsigned i, struct exh_calib_bad bad, int err)
+static int refuse(struct exh_scene_calib *k, unsigned i, struct exh_calib_error bad, int err)
 {
     k->refused = err;
     k->image_at = (uint8_t)i;
     k->point_at = bad.at;
-    k->what = exh_calib_what_text(bad.what);
+    k->what = exh_calib_error_text(bad.what);
     return err;
 }
 
 static int load(struct loaded *to, struct exh_scene_calib *k, unsigned i)
 {
-    struct exh_calib_bad bad = {0, 0};
+    struct exh_calib_error bad = {0, 0};
     int err;
     to->c.point = to->point;
     to->c.cap = EXH_CALIB_POINTS_MAX;
@@ -46,12 +46,12 @@ static int load(struct loaded *to, struct exh_scene_calib *k, unsigned i)
 }
 
 /* With the image's own scales where `drive` is NULL. */
-static struct exh_calib_here here(const struct exh_calib *c, const struct exh_calib_set_par *par,
-                                  const struct exh_drive_par *drive)
+static struct exh_calib_target here(const struct exh_calib *c, const struct exh_calib_set_par *par,
+                                    const struct exh_drive_par *drive)
 {
-    struct exh_calib_here h = {(uint32_t)par->device_id, c->finger,       (uint32_t)par->day,
-                               c->dac_rawpA_q16,         c->dac_zero_raw, c->mon_A_q40,
-                               c->mon_zero_raw};
+    struct exh_calib_target h = {(uint32_t)par->device_id, c->finger,       (uint32_t)par->day,
+                                 c->dac_rawpA_q16,         c->dac_zero_raw, c->mon_A_q40,
+                                 c->mon_zero_raw};
     if (drive) {
         h.dac_rawpA_q16 = drive->dac_rawpA_q16;
         h.dac_zero_raw = drive->dac_zero_raw;
@@ -64,11 +64,11 @@ static struct exh_calib_here here(const struct exh_calib *c, const struct exh_ca
 /* All images; *fingers: those that have none yet. */
 static int check(struct exh_scene_calib *k, const struct exh_calib_set_par *par, uint32_t fingers)
 {
-    static const struct exh_calib_bad wrong_finger = {EXH_CALIB_FINGER, 0};
+    static const struct exh_calib_error wrong_finger = {EXH_CALIB_FINGER, 0};
     struct loaded now;
     for (unsigned i = 0; i < k->images; i++) {
-        struct exh_calib_here h;
-        struct exh_calib_bad bad = {0, 0};
+        struct exh_calib_target h;
+        struct exh_calib_error bad = {0, 0};
         int err = load(&now, k, i);
         if (err < 0) { return err; }
         if (!(fingers >> now.c.finger & 1u)) { return refuse(k, i, wrong_finger, -EXH_E_VERSION); }
@@ -83,7 +83,7 @@ static int check(struct exh_scene_calib *k, const struct exh_calib_set_par *par,
 int exh_calib_set_load(struct exh_scene_calib *k, struct exh_params *params,
                        const struct exh_calib_set_par *par, uint32_t fingers)
 {
-    static const struct exh_calib_bad scale = {EXH_CALIB_SCALE, 0};
+    static const struct exh_calib_error scale = {EXH_CALIB_SCALE, 0};
     struct loaded now;
     int err;
     k->refused = 0;
@@ -111,14 +111,14 @@ static int lines(struct exh_calib_tables *t, const struct exh_calib_finger *of)
     t->force_to_cur[1] = (struct exh_knot){peak_N_q20, peak_A_q26, {0, 0}};
     t->cur_to_force[0] = (struct exh_knot){-peak_A_q26, -peak_N_q20, {0, 0}};
     t->cur_to_force[1] = (struct exh_knot){peak_A_q26, peak_N_q20, {0, 0}};
-    err = exh_table_set(t->force_to_cur, 2);
-    return err == 0 ? exh_table_set(t->cur_to_force, 2) : err;
+    err = exh_table_setup(t->force_to_cur, 2);
+    return err == 0 ? exh_table_setup(t->cur_to_force, 2) : err;
 }
 
 static int measured(struct exh_calib_tables *t, struct exh_scene_calib *k, unsigned i,
                     const struct loaded *now)
 {
-    struct exh_calib_bad bad = {0, 0};
+    struct exh_calib_error bad = {0, 0};
     int m, n = exh_calib_force_table(&now->c, t->force_to_cur, EXH_CALIB_POINTS_MAX + 2, &bad);
     if (n < 0) { return refuse(k, i, bad, n); }
     m = exh_calib_monitor_table(&now->c, t->cur_to_force, 2 * EXH_CALIB_POINTS_MAX + 3, &bad);
@@ -135,8 +135,8 @@ int exh_calib_set_tables(struct exh_calib_tables *t, struct exh_scene_calib *k,
     struct loaded now;
     t->vouches = par->uncalibrated ? EXH_UNCALIBRATED | EXH_UNPOLARISED : 0;
     for (unsigned i = 0; k && i < k->images; i++) {
-        struct exh_calib_here h;
-        struct exh_calib_bad bad = {0, 0};
+        struct exh_calib_target h;
+        struct exh_calib_error bad = {0, 0};
         int err = load(&now, k, i);
         if (err < 0) { return err; }
         if (now.c.finger != of->f) { continue; }

@@ -68,7 +68,7 @@ static void end(struct exh_bytes *c)
 static void event(uint32_t tick, struct exh_event e)
 {
     struct exh_bytes c = begin(EXH_RECORD_EVENT, tick);
-    exh_event_bytes(&c, &e);
+    exh_event_serialize(&c, &e);
     end(&c);
 }
 
@@ -78,7 +78,7 @@ static void keyframe(uint32_t tick)
     struct exh_bytes c;
     if (scene->state == NULL) { return; }
     c = begin(EXH_RECORD_KEYFRAME, tick);
-    exh_log_keyframe_bytes(&c, scene);
+    exh_log_keyframe_serialize(&c, scene);
     end(&c);
 }
 
@@ -92,10 +92,10 @@ static void copy_name(char to[16], const char *from)
     for (unsigned i = 0; i < 15 && from[i] != '\0'; i++) { to[i] = from[i]; }
 }
 
-void exh_log_header_bytes(struct exh_bytes *c)
+void exh_log_header_serialize(struct exh_bytes *c)
 {
     struct exh_record_header h = header;
-    exh_record_header_bytes(c, &h);
+    exh_record_header_serialize(c, &h);
     if (scene->params) {
         const uint32_t room = c->at < c->cap ? c->cap - c->at : 0;
         const int32_t n = exh_params_save(scene->params, c->p + c->at, room);
@@ -136,7 +136,7 @@ void exh_log_start(const struct exh_scene *sc, struct exh_scene_board board)
     copy_name(header.scene, sc->name);
     copy_name(header.board, exh_board_info.name);
     c = begin(EXH_RECORD_HEADER, 0);
-    exh_log_header_bytes(&c);
+    exh_log_header_serialize(&c);
     end(&c);
     keyframe(0);
 }
@@ -148,19 +148,19 @@ static void glove_bytes(struct exh_bytes *c, struct exh_scene_in *in)
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) { exh_bytes_i16(c, &in->glove.raw[i]); }
 }
 
-void exh_log_frame_bytes(struct exh_bytes *c, const struct exh_scene *sc, struct exh_scene_in *in,
-                         struct exh_drive_out *out, int32_t *signal)
+void exh_log_frame_serialize(struct exh_bytes *c, const struct exh_scene *sc,
+                             struct exh_scene_in *in, struct exh_drive_out *out, int32_t *signal)
 {
     const uint32_t n = signals(sc);
-    exh_drive_in_bytes(c, &in->drive, sc->fingers);
+    exh_drive_in_serialize(c, &in->drive, sc->fingers);
     if (sc->read_glove) { glove_bytes(c, in); }
-    exh_drive_out_bytes(c, out, sc->fingers);
+    exh_drive_out_serialize(c, out, sc->fingers);
     for (uint32_t i = 0; i < n; i++) { exh_bytes_i32(c, &signal[i]); }
 }
 
-void exh_log_keyframe_bytes(struct exh_bytes *c, const struct exh_scene *sc)
+void exh_log_keyframe_serialize(struct exh_bytes *c, const struct exh_scene *sc)
 {
-    if (sc->params) { exh_params_bytes(c, sc->params); }
+    if (sc->params) { exh_params_serialize(c, sc->params); }
     if (c->mode != EXH_BYTES_READ || exh_bytes_ok(c)) { sc->state(c); }
 }
 
@@ -214,7 +214,7 @@ void exh_log_after(uint32_t tick, const struct exh_scene_in *in, const struct ex
     struct exh_bytes c;
     if (scene->link) { packets(tick, scene->link->in); }
     c = begin(EXH_RECORD_FRAME, tick);
-    exh_log_frame_bytes(&c, scene, &i, &o, scene->signal);
+    exh_log_frame_serialize(&c, scene, &i, &o, scene->signal);
     end(&c);
     /* Here and not in exh_log_before(), where it would delay the output. */
     silent = alone || (tick + 1) % EXH_LOG_KEYFRAME_TICKS != 0;

@@ -168,7 +168,7 @@ static uint32_t triggers(const struct exh_safety *s, const struct exh_safety_cfg
     const int off = in->command == EXH_CMD_OFF, run = in->command == EXH_CMD_RUN;
     const int asked = s->state == EXH_STATE_OFF && run;
     const int ended = s->state == EXH_STATE_RELEASE && s->steps >= cfg->release_ticks;
-    const int runs = exh_safety_runs(s);
+    const int runs = exh_safety_is_running(s);
     return ON(REFUSED, (asked && lacks) || (early && (lacks || off))) |
            ON(CUT, s->present & EXH_FAULT_CUT) | ON(LATCHED, ended && s->faults) |
            ON(RELEASED, ended && !s->faults) | ON(CAUSE, s->present) |
@@ -207,7 +207,7 @@ static struct exh_permit permit_of(const struct exh_safety *s, const struct exh_
                                    uint32_t missed)
 {
     struct exh_permit p;
-    p.mode = !exh_safety_open(s)             ? EXH_PERMIT_CLOSED
+    p.mode = !exh_safety_is_open(s)          ? EXH_PERMIT_CLOSED
              : s->state == EXH_STATE_RELEASE ? EXH_PERMIT_RELEASE
                                              : EXH_PERMIT_OPEN;
     p.share_q30 = s->state == EXH_STATE_ARM ? s->share_q30 : FULL_Q30;
@@ -230,7 +230,7 @@ struct exh_permit exh_safety_step(struct exh_safety *s, const struct exh_safety_
     count_limits(s);
     s->present = causes(s, cfg, &in);
     lacks = lacking(s, in.ready, s->present);
-    if (exh_safety_open(s) || s->state == EXH_STATE_FAULT) { latch(s, s->present); }
+    if (exh_safety_is_open(s) || s->state == EXH_STATE_FAULT) { latch(s, s->present); }
     see_hand(s, in.din);
     s->trigger = first_of(triggers(s, cfg, &in, lacks));
     if (s->trigger == EXH_ON_REFUSED && lacks) {
@@ -246,7 +246,7 @@ struct exh_permit exh_safety_step(struct exh_safety *s, const struct exh_safety_
     return permit_of(s, cfg, in.missed);
 }
 
-uint8_t exh_safety_arm(const struct exh_safety *s)
+uint8_t exh_safety_arm_step(const struct exh_safety *s)
 {
     if (s->state != EXH_STATE_ARM) { return s->refused; }
     return s->share_q30 > 0 ? EXH_ARM_RAMP : EXH_ARM_SMALL_FORCE;
@@ -266,7 +266,7 @@ static int sealed(struct exh_bytes *c, uint32_t from)
     return seal == is && exh_bytes_ok(c);
 }
 
-void exh_safety_bytes(struct exh_bytes *c, struct exh_safety *s)
+void exh_safety_serialize(struct exh_bytes *c, struct exh_safety *s)
 {
     const uint32_t from = c->at;
     exh_bytes_u32(c, &s->present);

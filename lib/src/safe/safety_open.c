@@ -3,8 +3,8 @@
  * larger. */
 #include "exhand/safety.h"
 
-int exh_safety_open(const struct exh_safety *s)
+int exh_safety_is_open(const struct exh_safety *s)
 {
-    return exh_safety_runs(s) || s->state == EXH_STATE_RELEASE ||
+    return exh_safety_is_running(s) || s->state == EXH_STATE_RELEASE ||
            (s->state == EXH_STATE_ARM && s->share_q30 > 0);
 }

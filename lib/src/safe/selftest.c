@@ -3,7 +3,7 @@
 #include "exhand/bytes.h"
 #include "exhand/filter.h"
 #include "exhand/fix.h"
-#include "exhand/guard.h"
+#include "exhand/integrity.h"
 
 /* What goes in is volatile, or the compiler would test itself; constant, so it lies in ROM. A test
  * that damages it says so. */

@@ -142,8 +142,8 @@ static int64_t narrowed(int64_t v, unsigned n)
 
 /* Both states keep what they mean: the output does not jump, it goes on from there. The
  * high kinds see by themselves what they are given. */
-void exh_filter_retune(struct exh_filter *s, unsigned n, const struct exh_filter_cfg *from,
-                       const struct exh_filter_cfg *to)
+void exh_filter_retune(struct exh_filter *s, const struct exh_filter_cfg *from,
+                       const struct exh_filter_cfg *to, unsigned n)
 {
     const int to_low = to->kind == EXH_FILTER_LOW2 || to->kind == EXH_FILTER_LOW1;
     for (unsigned i = 0; i < n; i++) {
@@ -156,7 +156,7 @@ void exh_filter_retune(struct exh_filter *s, unsigned n, const struct exh_filter
     }
 }
 
-void exh_filter_bytes(struct exh_bytes *c, struct exh_filter *s)
+void exh_filter_serialize(struct exh_bytes *c, struct exh_filter *s)
 {
     exh_bytes_i64(c, &s->pos);
     exh_bytes_i64(c, &s->vel);

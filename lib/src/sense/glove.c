@@ -71,8 +71,9 @@ int exh_glove_setup(struct exh_glove_cfg *cfg, const struct exh_glove_par *par,
 {
     const struct exh_quantizer_par quantizer = {par->bits, par->hyst_raw_q16};
     const struct exh_filter_par filter = {par->order, par->fc_Hz_q16};
-    int err = exh_rows_hold(exh_glove_rows, EXH_GLOVE_ROWS, par) ? exh_glove_cal_valid(cal, NULL)
-                                                                 : -EXH_E_RANGE;
+    int err = exh_rows_validate(exh_glove_rows, EXH_GLOVE_ROWS, par)
+                  ? exh_glove_cal_validate(cal, NULL)
+                  : -EXH_E_RANGE;
     if (err == 0 && par->order > 0) { err = exh_filter_setup(&cfg->filter, &filter, T); }
     if (err == 0) { err = exh_quantizer_setup(&cfg->quantizer, &quantizer); }
     if (err < 0) { return err; }
@@ -188,11 +189,11 @@ uint32_t exh_glove_step(struct exh_glove *s, const struct exh_glove_cfg *cfg,
     return faulty;
 }
 
-void exh_glove_bytes(struct exh_bytes *c, struct exh_glove *s)
+void exh_glove_serialize(struct exh_bytes *c, struct exh_glove *s)
 {
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
-        exh_filter_bytes(c, &s->filter[i]);
-        exh_quantizer_bytes(c, &s->quantizer[i]);
+        exh_filter_serialize(c, &s->filter[i]);
+        exh_quantizer_serialize(c, &s->quantizer[i]);
         exh_bytes_i16(c, &s->good_raw[i]);
         exh_bytes_u16(c, &s->faults[i]);
         exh_bytes_u8(c, &s->run[i]);

@@ -57,9 +57,9 @@ const char *exh_glove_sensor_text(unsigned sensor)
     return sensor < EXH_GLOVE_SENSORS ? text[sensor] : "unknown";
 }
 
-const char *exh_glove_what_text(unsigned what)
+const char *exh_glove_error_text(unsigned what)
 {
-    static const char *const text[EXH_GLOVE_WHATS] = {
+    static const char *const text[EXH_GLOVE_ERRORS] = {
         "image",
         "user",
         "glove",
@@ -74,12 +74,12 @@ const char *exh_glove_what_text(unsigned what)
         "noise in a pose",
         "residual",
     };
-    return what < EXH_GLOVE_WHATS ? text[what] : "unknown";
+    return what < EXH_GLOVE_ERRORS ? text[what] : "unknown";
 }
 
-static int refuse(struct exh_glove_bad *bad, unsigned what, unsigned at, int err)
+static int refuse(struct exh_glove_error *bad, unsigned what, unsigned at, int err)
 {
-    if (bad != NULL) { *bad = (struct exh_glove_bad){(uint8_t)what, (uint8_t)at}; }
+    if (bad != NULL) { *bad = (struct exh_glove_error){(uint8_t)what, (uint8_t)at}; }
     return err;
 }
 
@@ -102,7 +102,7 @@ static int cross_ok(const struct exh_glove_cal *cal, unsigned at)
     return 1;
 }
 
-unsigned exh_glove_sensor_valid(const struct exh_glove_cal *cal, unsigned at)
+unsigned exh_glove_sensor_validate(const struct exh_glove_cal *cal, unsigned at)
 {
     const struct exh_glove_sensor *s = &cal->sensor[at];
     const int present = (int)(cal->present >> at & 1);
@@ -117,23 +117,23 @@ unsigned exh_glove_sensor_valid(const struct exh_glove_cal *cal, unsigned at)
     if (present && (int32_t)s->high_raw - s->low_raw < EXH_GLOVE_SPAN_MIN_RAW) {
         return EXH_GLOVE_SPAN;
     }
-    return cross_ok(cal, at) ? EXH_GLOVE_WHATS : EXH_GLOVE_CROSS;
+    return cross_ok(cal, at) ? EXH_GLOVE_ERRORS : EXH_GLOVE_CROSS;
 }
 
-int exh_glove_cal_valid(const struct exh_glove_cal *cal, struct exh_glove_bad *bad)
+int exh_glove_cal_validate(const struct exh_glove_cal *cal, struct exh_glove_error *bad)
 {
     if (cal->present == 0 || cal->present >= UINT32_C(1) << EXH_GLOVE_SENSORS) {
         return refuse(bad, EXH_GLOVE_PRESENT, 0, -EXH_E_RANGE);
     }
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
-        const unsigned what = exh_glove_sensor_valid(cal, i);
-        if (what != EXH_GLOVE_WHATS) { return refuse(bad, what, i, -EXH_E_RANGE); }
+        const unsigned what = exh_glove_sensor_validate(cal, i);
+        if (what != EXH_GLOVE_ERRORS) { return refuse(bad, what, i, -EXH_E_RANGE); }
     }
     return 0;
 }
 
 int exh_glove_cal_check(const struct exh_glove_cal *cal, uint32_t user_id, uint32_t glove_id,
-                        uint32_t day, struct exh_glove_bad *bad)
+                        uint32_t day, struct exh_glove_error *bad)
 {
     if (cal->present == 0) { return refuse(bad, EXH_GLOVE_PRESENT, 0, -EXH_E_RANGE); }
     if (cal->user_id != user_id) { return refuse(bad, EXH_GLOVE_USER, 0, -EXH_E_VERSION); }
@@ -180,13 +180,13 @@ static void body_bytes(struct exh_bytes *b, struct exh_glove_cal *cal)
 }
 
 int32_t exh_glove_cal_save(const struct exh_glove_cal *cal, void *buf, size_t cap_B,
-                           struct exh_glove_bad *bad)
+                           struct exh_glove_error *bad)
 {
     struct head h = {IMAGE_MAGIC, EXH_GLOVE_CAL_VERSION, EXH_GLOVE_SENSORS};
     struct exh_bytes b = exh_bytes_writer(buf, cap_B);
     struct exh_glove_cal copy = *cal; /* the cursor's functions go both ways */
     uint32_t crc;
-    const int err = exh_glove_cal_valid(cal, bad);
+    const int err = exh_glove_cal_validate(cal, bad);
     if (err < 0) { return err; }
     head_bytes(&b, &h);
     body_bytes(&b, &copy);
@@ -214,13 +214,13 @@ static int load(struct exh_glove_cal *cal, const void *buf, size_t len_B)
 }
 
 int exh_glove_cal_load(struct exh_glove_cal *cal, const void *buf, size_t len_B,
-                       struct exh_glove_bad *bad)
+                       struct exh_glove_error *bad)
 {
     int err = load(cal, buf, len_B);
     if (err < 0) {
         (void)refuse(bad, EXH_GLOVE_IMAGE, 0, err);
     } else {
-        err = exh_glove_cal_valid(cal, bad);
+        err = exh_glove_cal_validate(cal, bad);
     }
     if (err < 0) { cal->present = 0; }
     return err;

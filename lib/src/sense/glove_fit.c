@@ -101,7 +101,7 @@ static int last_factor(struct known *k, struct factor *f, struct factor *inverse
     return factor_set(f, sum[last][y], sum[last][last]);
 }
 
-/* The poses of sensor `at`, and whether they will do. EXH_GLOVE_WHATS: they will. */
+/* The poses of sensor `at`, and whether they will do. EXH_GLOVE_ERRORS: they will. */
 static unsigned gather(struct known *k, const struct exh_glove_cal *cal, struct exh_glove_fit *fit,
                        unsigned at, const struct exh_glove_pose *pose, unsigned n,
                        const struct exh_glove_fit_par *par)
@@ -139,7 +139,7 @@ static unsigned gather(struct known *k, const struct exh_glove_cal *cal, struct 
         return EXH_GLOVE_POSES;
     }
     return (int64_t)code[1] - code[0] < (int64_t)par->move_min_raw * 65536 ? EXH_GLOVE_MOVE
-                                                                           : EXH_GLOVE_WHATS;
+                                                                           : EXH_GLOVE_ERRORS;
 }
 
 /* Cross terms from the last to the first, each taken from the angles. */
@@ -161,7 +161,7 @@ static unsigned fit_cross(struct known *k, struct exh_glove_sensor *s)
             k->angle_turn_q32[p] = (int32_t)left;
         }
     }
-    return EXH_GLOVE_WHATS;
+    return EXH_GLOVE_ERRORS;
 }
 
 static int64_t mean(const int32_t *v, unsigned n)
@@ -183,7 +183,7 @@ static unsigned fit_line(struct known *k, struct exh_glove_sensor *s)
     if (zero_q16 > INT32_MAX || zero_q16 < INT32_MIN) { return EXH_GLOVE_ZERO; }
     s->gain_turnpraw_q38 = (int32_t)gain;
     s->zero_raw_q15 = (int32_t)(zero_q16 >> 1);
-    return EXH_GLOVE_WHATS;
+    return EXH_GLOVE_ERRORS;
 }
 
 static unsigned residuals(const struct known *k, const struct exh_glove_sensor *s,
@@ -199,7 +199,7 @@ static unsigned residuals(const struct known *k, const struct exh_glove_sensor *
         fit->residual_turn_q32 = left;
         fit->pose = k->pose[p];
     }
-    return worst > max_turn_q32 ? EXH_GLOVE_RESIDUAL : EXH_GLOVE_WHATS;
+    return worst > max_turn_q32 ? EXH_GLOVE_RESIDUAL : EXH_GLOVE_ERRORS;
 }
 
 /* The span over all poses: also those that do not say the angle. */
@@ -229,9 +229,9 @@ static unsigned fit_sensor(struct exh_glove_cal *cal, struct exh_glove_fit *fit,
     unsigned what;
     span(s, at, pose, n);
     what = gather(&k, cal, fit, at, pose, n, par);
-    if (what == EXH_GLOVE_WHATS) { what = fit_cross(&k, s); }
-    if (what == EXH_GLOVE_WHATS) { what = fit_line(&k, s); }
-    return what == EXH_GLOVE_WHATS ? residuals(&k, s, fit, par->residual_max_turn_q32) : what;
+    if (what == EXH_GLOVE_ERRORS) { what = fit_cross(&k, s); }
+    if (what == EXH_GLOVE_ERRORS) { what = fit_line(&k, s); }
+    return what == EXH_GLOVE_ERRORS ? residuals(&k, s, fit, par->residual_max_turn_q32) : what;
 }
 
 /* The other sensors it needs are there, have no cross terms, and came out fine. */
@@ -242,7 +242,7 @@ static int cross_known(const struct exh_glove_cal *cal, const struct exh_glove_f
         const unsigned of = cal->sensor[at].of[j];
         if (of == EXH_GLOVE_NONE) { continue; }
         if (of >= EXH_GLOVE_SENSORS || has_cross(&cal->sensor[of]) || !(cal->present >> of & 1) ||
-            fit[of].what != EXH_GLOVE_WHATS) {
+            fit[of].what != EXH_GLOVE_ERRORS) {
             return 0;
         }
     }
@@ -259,19 +259,19 @@ static void fit_all(struct exh_glove_cal *cal, struct exh_glove_fit *fit,
         if (!(cal->present >> i & 1) || has_cross(&cal->sensor[i]) != cross) { continue; }
         cal->sensor[i].cross_q30[0] = cal->sensor[i].cross_q30[1] = 0;
         if (cross_known(cal, fit, i)) { what = fit_sensor(cal, &fit[i], i, pose, n, par); }
-        if (what == EXH_GLOVE_WHATS) { what = exh_glove_sensor_valid(cal, i); }
+        if (what == EXH_GLOVE_ERRORS) { what = exh_glove_sensor_validate(cal, i); }
         fit[i].what = (uint8_t)what;
     }
 }
 
 int exh_glove_cal_fit(struct exh_glove_cal *cal, struct exh_glove_fit *fit,
                       const struct exh_glove_pose *pose, unsigned n,
-                      const struct exh_glove_fit_par *par, struct exh_glove_bad *bad)
+                      const struct exh_glove_fit_par *par, struct exh_glove_error *bad)
 {
-    struct exh_glove_bad first = {EXH_GLOVE_POSES, 0};
+    struct exh_glove_error first = {EXH_GLOVE_POSES, 0};
     int err = n < 2 || n > EXH_GLOVE_POSES_MAX ? -EXH_E_RANGE : 0;
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
-        fit[i] = (struct exh_glove_fit){0, 0, 0, EXH_GLOVE_WHATS};
+        fit[i] = (struct exh_glove_fit){0, 0, 0, EXH_GLOVE_ERRORS};
         cal->sensor[i].gain_turnpraw_q38 = cal->sensor[i].zero_raw_q15 = 0;
         cal->sensor[i].low_raw = cal->sensor[i].high_raw = 0;
     }
@@ -279,12 +279,12 @@ int exh_glove_cal_fit(struct exh_glove_cal *cal, struct exh_glove_fit *fit,
         fit_all(cal, fit, pose, n, par, 0);
         fit_all(cal, fit, pose, n, par, 1);
         for (unsigned i = EXH_GLOVE_SENSORS; i-- > 0;) {
-            if (fit[i].what == EXH_GLOVE_WHATS) { continue; }
-            first = (struct exh_glove_bad){fit[i].what, (uint8_t)i};
+            if (fit[i].what == EXH_GLOVE_ERRORS) { continue; }
+            first = (struct exh_glove_error){fit[i].what, (uint8_t)i};
             err = -EXH_E_RANGE;
         }
     }
-    if (err == 0) { err = exh_glove_cal_valid(cal, &first); }
+    if (err == 0) { err = exh_glove_cal_validate(cal, &first); }
     if (err < 0) { cal->present = 0; }
     if (err < 0 && bad != NULL) { *bad = first; }
     return err;

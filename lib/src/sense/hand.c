@@ -41,7 +41,7 @@ static int joint_ok(const struct exh_hand_joint *j)
     return j->lo_turn_q32 <= j->hi_turn_q32;
 }
 
-int exh_hand_map_check(const struct exh_hand_map *map)
+int exh_hand_map_validate(const struct exh_hand_map *map)
 {
     for (unsigned f = 0; f < EXH_FINGERS; f++) {
         for (unsigned j = 0; j < EXH_HAND_JOINTS; j++) {
@@ -147,7 +147,7 @@ static int64_t rate_radpm_q20(const struct exh_hand_finger *f, const uint8_t *be
     return sensor == bent[1] || sensor == bent[2] ? f->pull_radpm_q20[1] : 0;
 }
 
-int exh_hand_follow(struct exh_hand_finger *f, const struct exh_hand_map *map, unsigned finger)
+int exh_hand_couple(struct exh_hand_finger *f, const struct exh_hand_map *map, unsigned finger)
 {
     int32_t pull_radpm_q20[2];
     for (unsigned i = 0; i < 2; i++) {

@@ -125,7 +125,7 @@ int exh_quad_setup(struct exh_quad_cfg *cfg, const struct exh_quad_par *par, str
     return 0;
 }
 
-int32_t exh_quad_extend(struct exh_quad *s, const struct exh_quad_cfg *cfg, uint32_t raw)
+int32_t exh_quad_step(struct exh_quad *s, const struct exh_quad_cfg *cfg, uint32_t raw)
 {
     /* At the top of the word the counter's own wrap is the word's. */
     const int32_t moved = exh_from_u32((raw - s->raw) << (cfg->unused & 31)) >> (cfg->unused & 31);
@@ -145,7 +145,7 @@ int32_t exh_quad_pos_m_q30(const struct exh_quad_par *par, int32_t cnt)
     return exh_sat32(exh_mul_shr(cnt, par->step_m_q42, EXH_Q_STEP - EXH_Q_POS));
 }
 
-void exh_quad_bytes(struct exh_bytes *c, struct exh_quad *s)
+void exh_quad_serialize(struct exh_bytes *c, struct exh_quad *s)
 {
     exh_bytes_u32(c, &s->raw);
     exh_bytes_i32(c, &s->cnt);
@@ -153,7 +153,7 @@ void exh_quad_bytes(struct exh_bytes *c, struct exh_quad *s)
     exh_bytes_u8(c, &s->lost);
 }
 
-void exh_quad_ab_bytes(struct exh_bytes *c, struct exh_quad_ab *s)
+void exh_quad_ab_serialize(struct exh_bytes *c, struct exh_quad_ab *s)
 {
     exh_bytes_i32(c, &s->cnt);
     exh_bytes_u32(c, &s->edges);
@@ -163,7 +163,7 @@ void exh_quad_ab_bytes(struct exh_bytes *c, struct exh_quad_ab *s)
     s->ab &= 3; /* an index into a table, from bytes */
 }
 
-void exh_quad_index_bytes(struct exh_bytes *c, struct exh_quad_index *s)
+void exh_quad_index_serialize(struct exh_bytes *c, struct exh_quad_index *s)
 {
     exh_bytes_i32(c, &s->cnt);
     exh_bytes_u32(c, &s->seen);

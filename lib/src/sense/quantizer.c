@@ -29,7 +29,7 @@ int32_t exh_quantizer_step(struct exh_quantizer *s, const struct exh_quantizer_c
     return quantizer_in_place(s, cfg, x);
 }
 
-void exh_quantizer_bytes(struct exh_bytes *c, struct exh_quantizer *s)
+void exh_quantizer_serialize(struct exh_bytes *c, struct exh_quantizer *s)
 {
     exh_bytes_i32(c, &s->value);
     exh_bytes_u8(c, &s->started);

@@ -34,8 +34,8 @@ int exh_velocity_window_setup(struct exh_velocity_window_cfg *cfg, struct exh_ve
     return scale(&cfg->gain, s, cfg->n);
 }
 
-int32_t exh_velocity_window_mps_q27(struct exh_velocity_window *s,
-                                    const struct exh_velocity_window_cfg *cfg, int32_t cnt)
+int32_t exh_velocity_window_step(struct exh_velocity_window *s,
+                                 const struct exh_velocity_window_cfg *cfg, int32_t cnt)
 {
     int32_t moved;
     if (!s->started) {
@@ -49,7 +49,7 @@ int32_t exh_velocity_window_mps_q27(struct exh_velocity_window *s,
     return exh_sat32(exh_gain_mul(cfg->gain, moved));
 }
 
-void exh_velocity_window_bytes(struct exh_bytes *c, struct exh_velocity_window *s)
+void exh_velocity_window_serialize(struct exh_bytes *c, struct exh_velocity_window *s)
 {
     for (unsigned i = 0; i < EXH_VELOCITY_N; i++) { exh_bytes_i32(c, &s->cnt[i]); }
     exh_bytes_u8(c, &s->at);
@@ -67,8 +67,8 @@ int exh_velocity_pole_setup(struct exh_velocity_pole_cfg *cfg, struct exh_veloci
     return scale(&cfg->gain, s, 1);
 }
 
-int32_t exh_velocity_pole_mps_q27(struct exh_velocity_pole *s,
-                                  const struct exh_velocity_pole_cfg *cfg, int32_t cnt)
+int32_t exh_velocity_pole_step(struct exh_velocity_pole *s, const struct exh_velocity_pole_cfg *cfg,
+                               int32_t cnt)
 {
     const int32_t moved = s->started ? exh_wrap_diff(cnt, s->cnt) : 0;
     const int64_t diff_q55 =
@@ -81,7 +81,7 @@ int32_t exh_velocity_pole_mps_q27(struct exh_velocity_pole *s,
     return exh_sat32(exh_shr_round(s->v_mps_q55, 28));
 }
 
-void exh_velocity_pole_bytes(struct exh_bytes *c, struct exh_velocity_pole *s)
+void exh_velocity_pole_serialize(struct exh_bytes *c, struct exh_velocity_pole *s)
 {
     exh_bytes_i64(c, &s->v_mps_q55);
     s->v_mps_q55 = exh_clamp64(s->v_mps_q55, POLE_MAX_MPS_Q55);
@@ -129,8 +129,8 @@ static int32_t wide_gain(struct exh_gain g, int64_t m)
                                    ((g.shift - 32u) & 31u) + 1u));
 }
 
-int32_t exh_velocity_foaw_mps_q27(struct exh_velocity_foaw *s,
-                                  const struct exh_velocity_foaw_cfg *cfg, int32_t cnt)
+int32_t exh_velocity_foaw_step(struct exh_velocity_foaw *s, const struct exh_velocity_foaw_cfg *cfg,
+                               int32_t cnt)
 {
     int32_t d[EXH_VELOCITY_N + 1] = {0};
     const int32_t most = cfg->n < EXH_VELOCITY_N ? cfg->n : EXH_VELOCITY_N;
@@ -161,7 +161,7 @@ int32_t exh_velocity_foaw_mps_q27(struct exh_velocity_foaw *s,
     return wide_gain(cfg->gain[best_n - 1], best);
 }
 
-void exh_velocity_foaw_bytes(struct exh_bytes *c, struct exh_velocity_foaw *s)
+void exh_velocity_foaw_serialize(struct exh_bytes *c, struct exh_velocity_foaw *s)
 {
     for (unsigned i = 0; i <= EXH_VELOCITY_N; i++) { exh_bytes_i32(c, &s->cnt[i]); }
     exh_bytes_u8(c, &s->at);
@@ -181,8 +181,8 @@ int exh_velocity_track_setup(struct exh_velocity_track_cfg *cfg, struct exh_velo
 
 #define TRACK_MAX_CNT_Q32 (INT64_C(1) << 60)
 
-int32_t exh_velocity_track_mps_q27(struct exh_velocity_track *s,
-                                   const struct exh_velocity_track_cfg *cfg, int32_t cnt)
+int32_t exh_velocity_track_step(struct exh_velocity_track *s,
+                                const struct exh_velocity_track_cfg *cfg, int32_t cnt)
 {
     const int32_t moved = s->started ? exh_wrap_diff(cnt, s->cnt) : 0;
     const int64_t moved_q32 =
@@ -198,7 +198,7 @@ int32_t exh_velocity_track_mps_q27(struct exh_velocity_track *s,
                                    (cfg->gain.shift < 62u ? cfg->gain.shift : 62u) + 1u));
 }
 
-void exh_velocity_track_bytes(struct exh_bytes *c, struct exh_velocity_track *s)
+void exh_velocity_track_serialize(struct exh_bytes *c, struct exh_velocity_track *s)
 {
     exh_bytes_i64(c, &s->err_cnt_q32);
     exh_bytes_i64(c, &s->vel_cnt_q32);

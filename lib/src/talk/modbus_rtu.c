@@ -33,7 +33,7 @@ int exh_modbus_rtu_setup(struct exh_modbus_rtu *u, uint32_t address, uint32_t ba
     return 0;
 }
 
-void exh_modbus_rtu_byte(struct exh_modbus_rtu *u, uint8_t byte)
+void exh_modbus_rtu_receive(struct exh_modbus_rtu *u, uint8_t byte)
 {
     u->quiet_us = 0;
     if (u->ready) { return; }
@@ -41,7 +41,7 @@ void exh_modbus_rtu_byte(struct exh_modbus_rtu *u, uint8_t byte)
     if (u->len_B <= EXH_MODBUS_ADU_B) { u->len_B++; }
 }
 
-void exh_modbus_rtu_bad(struct exh_modbus_rtu *u)
+void exh_modbus_rtu_discard(struct exh_modbus_rtu *u)
 {
     u->quiet_us = 0;
     if (!u->ready) { u->len_B = EXH_MODBUS_ADU_B + 1; }
@@ -66,7 +66,7 @@ static void ended(struct exh_modbus_rtu *u)
     u->len_B = 0;
 }
 
-int exh_modbus_rtu_pass(struct exh_modbus_rtu *u, uint32_t us)
+int exh_modbus_rtu_poll(struct exh_modbus_rtu *u, uint32_t us)
 {
     if (u->ready) { return 1; }
     u->quiet_us = us < UINT32_MAX - u->quiet_us ? u->quiet_us + us : UINT32_MAX;

@@ -35,7 +35,7 @@ uint32_t exh_record_end(struct exh_bytes *c)
     return exh_bytes_ok(c) ? c->at : 0;
 }
 
-int32_t exh_record_read(const void *buf, uint32_t len_B, struct exh_record *r)
+int32_t exh_record_decode(const void *buf, uint32_t len_B, struct exh_record *r)
 {
     const uint8_t *p = buf;
     struct exh_bytes c = exh_bytes_reader(buf, len_B);
@@ -73,7 +73,7 @@ static void text_bytes(struct exh_bytes *c, char text[16])
     }
 }
 
-void exh_record_header_bytes(struct exh_bytes *c, struct exh_record_header *h)
+void exh_record_header_serialize(struct exh_bytes *c, struct exh_record_header *h)
 {
     text_bytes(c, h->scene);
     text_bytes(c, h->board);
@@ -86,7 +86,7 @@ void exh_record_header_bytes(struct exh_bytes *c, struct exh_record_header *h)
     exh_bytes_u16(c, &h->signals);
 }
 
-void exh_event_bytes(struct exh_bytes *c, struct exh_event *e)
+void exh_event_serialize(struct exh_bytes *c, struct exh_event *e)
 {
     exh_bytes_u16(c, &e->type);
     exh_bytes_u16(c, &e->id);

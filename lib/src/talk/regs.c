@@ -23,7 +23,7 @@ static int table_setup(const struct exh_signal_table *t, uint32_t *n, uint32_t *
     return *n > EXH_REGS_VALUES ? -EXH_E_RANGE : 0;
 }
 
-void exh_regs_forget(struct exh_regs *r)
+void exh_regs_discard(struct exh_regs *r)
 {
     for (uint32_t w = 0; w < EXH_REGS_WORDS(r->params_n); w++) { r->touched[w] = 0; }
 }
@@ -38,16 +38,16 @@ int exh_regs_setup(struct exh_regs *r)
         err = -EXH_E_ABSENT;
     }
     if (err < 0) { return err; }
-    exh_regs_forget(r);
+    exh_regs_discard(r);
     r->asked = 0;
     r->done = 0;
     r->result = 0;
     return 0;
 }
 
-void exh_regs_see(struct exh_regs *r, const struct exh_safety *s, uint32_t din)
+void exh_regs_update(struct exh_regs *r, const struct exh_safety *s, uint32_t din)
 {
-    struct exh_regs_box *b = &r->box;
+    struct exh_regs_status *b = &r->box;
     b->tick = s->tick;
     b->missed = s->missed;
     b->faults = s->faults;
@@ -57,7 +57,7 @@ void exh_regs_see(struct exh_regs *r, const struct exh_safety *s, uint32_t din)
     b->limits = s->limits;
     b->din = din;
     b->state = s->state;
-    b->arm_step = exh_safety_arm(s);
+    b->arm_step = exh_safety_arm_step(s);
 }
 
 /* --- values --- */
@@ -90,7 +90,7 @@ static uint32_t name_of(const struct exh_regs *r, uint32_t part)
 
 static uint32_t head_of(const struct exh_regs *r, enum exh_regs_head h)
 {
-    const struct exh_regs_box *b = &r->box;
+    const struct exh_regs_status *b = &r->box;
     switch (h) {
     case EXH_HEAD_MAGIC: return EXH_REGS_MAGIC;
     case EXH_HEAD_VERSION: return EXH_REGS_VERSION;
@@ -191,7 +191,7 @@ static void read_floats(const struct exh_regs *r, const struct exh_regs_span *s,
     struct exh_regs_walk w =
         exh_regs_walk_to(s->source == EXH_REGS_SIGNAL ? r->signals : r->params, s->from >> 1);
     for (uint32_t i = s->from >> 1; 2 * i < s->end; i++) {
-        to = put(to, s, i, exh_float_of(raw_of(r, s->source, i), exh_regs_row_of(&w)->frac));
+        to = put(to, s, i, exh_float_from_raw(raw_of(r, s->source, i), exh_regs_row_of(&w)->frac));
         exh_regs_walk_on(&w);
     }
 }

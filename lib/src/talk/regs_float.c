@@ -9,7 +9,7 @@
 #define HIDDEN   (UINT32_C(1) << FRACTION)
 #define SIGN     (UINT32_C(1) << 31)
 
-uint32_t exh_float_of(int32_t raw, unsigned frac)
+uint32_t exh_float_from_raw(int32_t raw, unsigned frac)
 {
     const uint32_t sign = raw < 0 ? SIGN : 0u;
     const uint32_t mag = raw < 0 ? UINT32_C(0) - (uint32_t)raw : (uint32_t)raw;
@@ -27,7 +27,7 @@ uint32_t exh_float_of(int32_t raw, unsigned frac)
     return sign | (((BIAS - 1u + top - frac) << FRACTION) + keep);
 }
 
-int exh_float_raw(uint32_t bits, unsigned frac, int32_t *raw)
+int exh_float_to_raw(uint32_t bits, unsigned frac, int32_t *raw)
 {
     const uint32_t field = bits >> FRACTION & 0xFFu;
     const uint32_t mant = (bits & (HIDDEN - 1)) | (field ? HIDDEN : 0u);

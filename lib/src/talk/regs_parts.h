@@ -87,6 +87,6 @@ int exh_regs_trace_write(const struct exh_regs *r, const struct exh_regs_span *s
                          const uint8_t *from, int carry_out);
 
 /* Nothing is staged any more. */
-void exh_regs_forget(struct exh_regs *r);
+void exh_regs_discard(struct exh_regs *r);
 
 #endif

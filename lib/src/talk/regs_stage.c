@@ -20,13 +20,13 @@ static int from_float(const struct exh_regs *r, const struct exh_signal *row, ui
                       uint32_t bits, int32_t *raw)
 {
     const int32_t now = exh_regs_held(r, i);
-    if (bits == exh_float_of(now, row->frac)) {
+    if (bits == exh_float_from_raw(now, row->frac)) {
         *raw = now;
-    } else if (bits == exh_float_of(row->min, row->frac)) {
+    } else if (bits == exh_float_from_raw(row->min, row->frac)) {
         *raw = row->min;
-    } else if (bits == exh_float_of(row->max, row->frac)) {
+    } else if (bits == exh_float_from_raw(row->max, row->frac)) {
         *raw = row->max;
-    } else if (exh_float_raw(bits, row->frac, raw) < 0) {
+    } else if (exh_float_to_raw(bits, row->frac, raw) < 0) {
         return EXH_MODBUS_VALUE;
     }
     return 0;
@@ -64,7 +64,7 @@ static int written(const struct exh_regs *r, const struct exh_regs_span *s,
     return judge(r, row, i, *raw);
 }
 
-int exh_regs_judge(const struct exh_regs *r, uint16_t at, uint16_t n, const uint8_t *from)
+int exh_regs_validate(const struct exh_regs *r, uint16_t at, uint16_t n, const uint8_t *from)
 {
     struct exh_regs_span s;
     struct exh_regs_walk w;
@@ -85,7 +85,7 @@ int exh_regs_write(struct exh_regs *r, uint16_t at, uint16_t n, const uint8_t *f
 {
     struct exh_regs_span s;
     struct exh_regs_walk w;
-    int err = exh_regs_judge(r, at, n, from);
+    int err = exh_regs_validate(r, at, n, from);
     if (err == 0) { err = exh_regs_locate(r, EXH_REGS_HOLDING, at, n, &s); }
     if (err != 0 || n == 0) { return err; }
     if (s.source == EXH_REGS_SET) { return exh_regs_trace_write(r, &s, from, 1); }
@@ -111,8 +111,8 @@ int exh_regs_write_bits(struct exh_regs *r, uint16_t at, uint16_t n, const uint8
     if ((on & ~r->may) != 0 || ((on & apply) && (on & discard))) { return EXH_MODBUS_VALUE; }
     if ((on & discard) && (r->asked & apply)) { return EXH_MODBUS_BUSY; }
     if (on & discard) {
-        exh_regs_forget(r);
-        exh_regs_did(r, 0);
+        exh_regs_discard(r);
+        exh_regs_complete(r, 0);
     }
     r->asked |= on & ~discard;
     return 0;
@@ -120,7 +120,7 @@ int exh_regs_write_bits(struct exh_regs *r, uint16_t at, uint16_t n, const uint8
 
 /* --- carrying out --- */
 
-uint32_t exh_regs_take(struct exh_regs *r)
+uint32_t exh_regs_poll(struct exh_regs *r)
 {
     const uint32_t asked = r->asked;
     r->asked = 0;
@@ -131,12 +131,12 @@ int exh_regs_apply(struct exh_regs *r, struct exh_params *p)
 {
     int err = 0;
     for (uint32_t i = 0; err == 0 && i < r->params_n; i++) {
-        if (exh_regs_is_staged(r, i)) { err = exh_params_may(p, i, r->staged[i]); }
+        if (exh_regs_is_staged(r, i)) { err = exh_params_validate(p, i, r->staged[i]); }
     }
     for (uint32_t i = 0; err == 0 && i < r->params_n; i++) {
         if (exh_regs_is_staged(r, i)) { err = exh_params_stage_at(p, i, r->staged[i]); }
     }
-    exh_regs_forget(r);
+    exh_regs_discard(r);
     return err;
 }
 
@@ -147,7 +147,7 @@ uint8_t exh_regs_command(uint32_t asked)
     return asked >> EXH_COIL_RUN & 1u ? EXH_CMD_RUN : EXH_CMD_NONE;
 }
 
-void exh_regs_did(struct exh_regs *r, int result)
+void exh_regs_complete(struct exh_regs *r, int result)
 {
     r->done++;
     r->result = result;

@@ -55,7 +55,7 @@ uint32_t exh_regs_trace_value(const struct exh_regs *r, enum exh_regs_source sou
 int exh_regs_trace_write(const struct exh_regs *r, const struct exh_regs_span *s,
                          const uint8_t *from, int carry_out)
 {
-    struct exh_trace_what what = r->trace->what;
+    struct exh_trace_request what = r->trace->what;
     for (uint32_t at = s->from; at < s->end; at++, from += 2) {
         uint32_t *v = at < 2 ? &what.every : &what.index[(at >> 1) - 1u];
         const uint32_t word = (uint32_t)from[0] << 8 | from[1];

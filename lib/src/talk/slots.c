@@ -15,7 +15,7 @@ static uint32_t u32_at(const uint8_t *p, size_t at)
     return v;
 }
 
-int exh_slot_read(struct exh_slot *is, const void *slot, size_t slot_B)
+int exh_slot_decode(struct exh_slot *is, const void *slot, size_t slot_B)
 {
     const uint8_t *p = slot;
     uint32_t sequence, len_B;
@@ -43,11 +43,11 @@ static int same(const uint8_t *a, const uint8_t *b, size_t n)
     return i == n;
 }
 
-int exh_slots_pick(struct exh_slot *newest, const void *slot0, const void *slot1, size_t slot_B)
+int exh_slots_find(struct exh_slot *newest, const void *slot0, const void *slot1, size_t slot_B)
 {
     struct exh_slot a, b;
-    const int has_a = exh_slot_read(&a, slot0, slot_B) == 0;
-    const int has_b = exh_slot_read(&b, slot1, slot_B) == 0;
+    const int has_a = exh_slot_decode(&a, slot0, slot_B) == 0;
+    const int has_b = exh_slot_decode(&b, slot1, slot_B) == 0;
     int at = has_b;
     if (!has_a && !has_b) { return -EXH_E_ABSENT; }
     if (has_a && has_b) { at = b.sequence - a.sequence - 1 < 0x7FFFFFFFu; }
@@ -55,8 +55,8 @@ int exh_slots_pick(struct exh_slot *newest, const void *slot0, const void *slot1
     return at;
 }
 
-int32_t exh_slots_next(unsigned *to, const void *slot0, const void *slot1, size_t slot_B, void *buf,
-                       size_t cap_B, size_t image_B)
+int32_t exh_slots_encode(unsigned *to, const void *slot0, const void *slot1, size_t slot_B,
+                         void *buf, size_t cap_B, size_t image_B)
 {
     const size_t room_B = cap_B < slot_B ? cap_B : slot_B;
     struct exh_slot newest = {NULL, 0, 0};
@@ -67,7 +67,7 @@ int32_t exh_slots_next(unsigned *to, const void *slot0, const void *slot1, size_
     if (room_B > INT32_MAX || room_B < EXH_SLOT_B(0) || image_B > room_B - EXH_SLOT_B(0)) {
         return -EXH_E_SHORT;
     }
-    at = exh_slots_pick(&newest, slot0, slot1, slot_B);
+    at = exh_slots_find(&newest, slot0, slot1, slot_B);
     if (at >= 0 && newest.len_B == len_B && same(newest.image, image, image_B)) {
         *to = (unsigned)at;
         return 0;

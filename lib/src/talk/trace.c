@@ -22,14 +22,14 @@ int exh_trace_setup(struct exh_trace *t, struct exh_trace_frame *frame, uint32_t
     return 0;
 }
 
-static void begin(struct exh_trace *t, const struct exh_trace_what *what)
+static void begin(struct exh_trace *t, const struct exh_trace_request *what)
 {
     t->what = *what;
     t->first = t->head;
     t->left = 0;
 }
 
-int exh_trace_start(struct exh_trace *t, const struct exh_trace_what *what)
+int exh_trace_start(struct exh_trace *t, const struct exh_trace_request *what)
 {
     for (unsigned i = 0; i < EXH_TRACE_SIGNALS; i++) {
         if (what->index[i] >= t->signals) { return -EXH_E_RANGE; }
@@ -39,7 +39,7 @@ int exh_trace_start(struct exh_trace *t, const struct exh_trace_what *what)
     return 0;
 }
 
-void exh_trace_tick(struct exh_trace *t, uint32_t tick, const int32_t *signal)
+void exh_trace_step(struct exh_trace *t, uint32_t tick, const int32_t *signal)
 {
     struct exh_trace_frame *f = &t->frame[t->head & t->mask];
     if (t->what.every == 0) { return; }
@@ -53,7 +53,7 @@ void exh_trace_tick(struct exh_trace *t, uint32_t tick, const int32_t *signal)
     for (unsigned i = 0; i < EXH_TRACE_SIGNALS; i++) { f->raw[i] = signal[t->what.index[i]]; }
 }
 
-void exh_trace_pass(struct exh_trace *own, struct exh_trace *shown)
+void exh_trace_copy(struct exh_trace *own, struct exh_trace *shown)
 {
     uint32_t n = exh_trace_oldest(own);
     if (own->run != shown->run) {
@@ -76,7 +76,7 @@ static void frame_bytes(struct exh_bytes *c, struct exh_trace_frame *f)
     for (unsigned i = 0; i < EXH_TRACE_SIGNALS; i++) { exh_bytes_i32(c, &f->raw[i]); }
 }
 
-void exh_trace_bytes(struct exh_bytes *c, struct exh_trace *t)
+void exh_trace_serialize(struct exh_bytes *c, struct exh_trace *t)
 {
     exh_bytes_u32(c, &t->what.every);
     for (unsigned i = 0; i < EXH_TRACE_SIGNALS; i++) {

@@ -99,7 +99,7 @@ static void param_bytes(struct exh_bytes *c, struct exh_wire_param *p)
     exh_bytes_i32(c, &p->value);
 }
 
-static void trace_ask_bytes(struct exh_bytes *c, struct exh_wire_trace_ask *a)
+static void trace_ask_bytes(struct exh_bytes *c, struct exh_wire_trace_request *a)
 {
     exh_bytes_u32(c, &a->every);
     for (unsigned i = 0; i < EXH_TRACE_SIGNALS; i++) { exh_bytes_u16(c, &a->index[i]); }
@@ -139,8 +139,8 @@ static int payload_bytes(struct exh_bytes *c, struct exh_wire_packet *p)
 
 /* --- sending --- */
 
-int32_t exh_wire_write(struct exh_wire_tx *tx, struct exh_wire_packet *p, uint32_t stamp_us,
-                       void *buf, size_t cap_B)
+int32_t exh_wire_encode(struct exh_wire_tx *tx, struct exh_wire_packet *p, uint32_t stamp_us,
+                        void *buf, size_t cap_B)
 {
     struct head h = {EXH_WIRE_MAGIC, EXH_WIRE_VERSION, p->type, 0, tx->session, tx->seq, stamp_us};
     struct exh_bytes c = exh_bytes_writer(buf, cap_B);
@@ -261,7 +261,7 @@ static void advance(struct exh_wire_rx *rx, const struct head *h)
     rx->seq = h->seq;
 }
 
-int exh_wire_pass(struct exh_wire_rx *rx, uint32_t passed_us, uint32_t limit_us)
+int exh_wire_poll(struct exh_wire_rx *rx, uint32_t passed_us, uint32_t limit_us)
 {
     const uint32_t was = rx->open;
     if (rx->session == 0) { return 0; } /* any HELLO begins */
@@ -272,7 +272,8 @@ int exh_wire_pass(struct exh_wire_rx *rx, uint32_t passed_us, uint32_t limit_us)
     return 1;
 }
 
-int exh_wire_take(struct exh_wire_rx *rx, struct exh_wire_packet *p, const void *buf, size_t len_B)
+int exh_wire_decode(struct exh_wire_rx *rx, struct exh_wire_packet *p, const void *buf,
+                    size_t len_B)
 {
     struct exh_wire_packet now = {0};
     struct head h = {0, 0, 0, 0, 0, 0, 0};
@@ -294,7 +295,7 @@ int exh_wire_take(struct exh_wire_rx *rx, struct exh_wire_packet *p, const void 
 
 /* --- what is done with them --- */
 
-uint32_t exh_wire_differs(const struct exh_wire_hello *ours, const struct exh_wire_hello *theirs)
+uint32_t exh_wire_compare(const struct exh_wire_hello *ours, const struct exh_wire_hello *theirs)
 {
     const int tables = ours->table_crc != 0 && theirs->table_crc != 0;
     return (ours->role == theirs->role ? EXH_WIRE_ROLE : 0u) |
@@ -325,13 +326,13 @@ struct exh_wire_ack exh_wire_stage(struct exh_params *params, const struct exh_w
 
 /* --- state --- */
 
-void exh_wire_tx_bytes(struct exh_bytes *c, struct exh_wire_tx *s)
+void exh_wire_tx_serialize(struct exh_bytes *c, struct exh_wire_tx *s)
 {
     exh_bytes_u32(c, &s->session);
     exh_bytes_u32(c, &s->seq);
 }
 
-void exh_wire_rx_bytes(struct exh_bytes *c, struct exh_wire_rx *s)
+void exh_wire_rx_serialize(struct exh_bytes *c, struct exh_wire_rx *s)
 {
     uint32_t lo = (uint32_t)(s->seen & UINT32_MAX), hi = (uint32_t)(s->seen >> 32);
     exh_bytes_u32(c, &lo);

@@ -110,7 +110,7 @@ static void take_hello(struct link *l, const struct exh_wire_hello *theirs)
 {
     const struct exh_wire_hello ours = hello_of_ours(l);
     l->theirs = *theirs;
-    l->differs = exh_wire_differs(&ours, theirs);
+    l->differs = exh_wire_compare(&ours, theirs);
     l->odd += l->differs != 0;
     l->hello_us = -HELLO_EVERY_US; /* it is new here: answer */
 }
@@ -144,7 +144,7 @@ static void let_pass(struct link *l, int64_t now_us)
 {
     const int64_t us = now_us - l->heard_us;
     const uint32_t passed_us = us < 0 ? 0 : us < UINT32_MAX ? (uint32_t)us : UINT32_MAX;
-    (void)exh_wire_pass(&l->rx, passed_us, QUIET_US);
+    (void)exh_wire_poll(&l->rx, passed_us, QUIET_US);
     l->heard_us = now_us;
 }
 
@@ -164,7 +164,7 @@ int link_receive(struct link *l, struct exh_wire_state *state, int64_t now_us)
             l->strangers++;
             continue;
         }
-        if (exh_wire_take(&l->rx, &p, buf, (size_t)n) <= 0) { continue; }
+        if (exh_wire_decode(&l->rx, &p, buf, (size_t)n) <= 0) { continue; }
         l->peer = from;
         l->peer_B = from_B;
         if (p.type == EXH_WIRE_HELLO) { take_hello(l, &p.u.hello); }

@@ -37,11 +37,11 @@ struct link_trace_want {
 struct link_trace {
     const struct exh_signal_table *table;
     const char *path;
-    FILE *file;                    /* NULL: none */
-    struct exh_wire_trace_ask ask; /* every 0: none */
-    unsigned signals;              /* of the four that it asks for */
-    int asked, answered;           /* of this controller; by it */
-    uint32_t first_seq, last_seq;  /* of the packets that asked */
+    FILE *file;                        /* NULL: none */
+    struct exh_wire_trace_request ask; /* every 0: none */
+    unsigned signals;                  /* of the four that it asks for */
+    int asked, answered;               /* of this controller; by it */
+    uint32_t first_seq, last_seq;      /* of the packets that asked */
     int64_t asked_us;
     uint32_t next; /* number of the frame that comes next */
     unsigned long frames, missed;
@@ -58,7 +58,7 @@ struct link {
     int64_t hello_us; /* when the last HELLO went out */
     int64_t heard_us; /* when it was last looked what came */
     struct exh_wire_hello theirs;
-    unsigned differs;        /* enum exh_wire_differs, of the newest HELLO */
+    unsigned differs;        /* enum exh_wire_difference, of the newest HELLO */
     unsigned long odd;       /* HELLOs that differed */
     unsigned long strangers; /* from elsewhere than the peer that was given */
     unsigned long sent, unsent;

@@ -97,7 +97,7 @@ TEST(a_log_without_a_packet_does_not_replay)
     fclose(f);
     for (uint32_t at = 0; at < (uint32_t)len;) {
         struct exh_record r;
-        const int32_t n = exh_record_read(bytes + at, (uint32_t)len - at, &r);
+        const int32_t n = exh_record_decode(bytes + at, (uint32_t)len - at, &r);
         CHECK(n > 0, "at %u", at);
         if (n <= 0) { break; }
         seen += r.type == EXH_RECORD_PACKET;

@@ -43,7 +43,7 @@ static void start(void)
 
 static void post(struct exh_wire_packet *p)
 {
-    const int32_t n = exh_wire_write(&world, p, 0, in.byte[in.packets], EXH_SCENE_PACKET_B);
+    const int32_t n = exh_wire_encode(&world, p, 0, in.byte[in.packets], EXH_SCENE_PACKET_B);
     CHECK(n > 0, "%d", (int)n);
     in.len_B[in.packets++] = (uint16_t)n;
 }
@@ -361,11 +361,11 @@ static int asked(uint16_t id, uint16_t instance, int32_t value)
         struct exh_wire_tx tx = {(uint32_t)par.own.session, 0};
         struct exh_wire_packet hello_to = {.type = EXH_WIRE_HELLO};
         tx.seq = box.wire.tx.seq - 20;
-        n = exh_wire_write(&tx, &hello_to, 0, buf, sizeof buf);
+        n = exh_wire_encode(&tx, &hello_to, 0, buf, sizeof buf);
         rx = (struct exh_wire_rx){0};
-        (void)exh_wire_take(&rx, &answer, buf, (size_t)n);
+        (void)exh_wire_decode(&rx, &answer, buf, (size_t)n);
         if (out.byte[i][3] == EXH_WIRE_ACK) {
-            CHECK_EQ_I64(exh_wire_take(&rx, &answer, out.byte[i], out.len_B[i]), EXH_WIRE_ACK);
+            CHECK_EQ_I64(exh_wire_decode(&rx, &answer, out.byte[i], out.len_B[i]), EXH_WIRE_ACK);
         }
     }
     CHECK(answer.u.ack.param.id == id && answer.u.ack.param.value == value, "another answer");
@@ -425,7 +425,7 @@ static struct exh_wire_rx far_end;
 static void ask_trace(uint32_t every, uint16_t last)
 {
     struct exh_wire_packet p = {.type = EXH_WIRE_TRACE_ASK};
-    p.u.trace_ask = (struct exh_wire_trace_ask){every, {TICK_SIGNAL, 8, 16, last}};
+    p.u.trace_ask = (struct exh_wire_trace_request){every, {TICK_SIGNAL, 8, 16, last}};
     post(&p);
 }
 
@@ -441,7 +441,7 @@ static int traced(struct exh_wire_trace *t)
     int n = 0;
     (void)tick(1, 0);
     for (unsigned i = 0; i < out.packets; i++) {
-        const int type = exh_wire_take(&far_end, &p, out.byte[i], out.len_B[i]);
+        const int type = exh_wire_decode(&far_end, &p, out.byte[i], out.len_B[i]);
         CHECK(type > 0, "%d", type);
         if (type != EXH_WIRE_TRACE) { continue; }
         CHECK(++n == 1 && i == out.packets - 1u, "not one, or not behind all else");
@@ -458,7 +458,7 @@ static void meet_world(void)
     (void)tick(1, 0);
     for (unsigned i = 0; i < out.packets; i++) {
         struct exh_wire_packet p;
-        (void)exh_wire_take(&far_end, &p, out.byte[i], out.len_B[i]);
+        (void)exh_wire_decode(&far_end, &p, out.byte[i], out.len_B[i]);
     }
 }
 

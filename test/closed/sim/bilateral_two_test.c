@@ -30,11 +30,11 @@ static void confuse(struct udp *udp, const struct peer *peer)
     struct exh_wire_tx gone = {3, 77}, far = {peer->tx.session, peer->tx.seq + 60000};
     struct exh_wire_packet p = {.type = EXH_WIRE_PLANES};
     uint8_t buf[EXH_WIRE_MAX_B];
-    int32_t n = exh_wire_write(&far, &p, 0, buf, sizeof buf);
+    int32_t n = exh_wire_encode(&far, &p, 0, buf, sizeof buf);
     (void)udp_send(udp, buf, (size_t)n);
     p.type = EXH_WIRE_HELLO;
     p.u.hello = (struct exh_wire_hello){EXH_WIRE_WORLD, EXH_VERSION_NUMBER, 0};
-    n = exh_wire_write(&gone, &p, 0, buf, sizeof buf);
+    n = exh_wire_encode(&gone, &p, 0, buf, sizeof buf);
     (void)udp_send(udp, buf, (size_t)n);
 }
 
@@ -46,7 +46,7 @@ static void one_frame(struct udp *udp, struct peer *peer, struct sim_link *link,
     int n;
     while ((n = udp_recv(udp, buf, sizeof buf)) > 0) {
         struct exh_wire_packet p;
-        if (exh_wire_take(&rx, &p, buf, (size_t)n) > 0) { udp_learn(udp); }
+        if (exh_wire_decode(&rx, &p, buf, (size_t)n) > 0) { udp_learn(udp); }
         (void)sim_link_send(&link->way[SIM_LINK_OUT], t_s, buf, (size_t)n);
     }
     peer_frame(peer, link, t_s);

@@ -40,7 +40,7 @@ static struct held read_dump(const char *path)
         if (r.type == EXH_RECORD_EVENT) {
             struct exh_bytes c = exh_bytes_reader(r.payload, r.len_B);
             struct exh_event e;
-            exh_event_bytes(&c, &e);
+            exh_event_serialize(&c, &e);
             if (e.type == EXH_EVENT_FROZE) { h.froze = e; }
         }
         if (r.type == EXH_RECORD_FRAME) {
@@ -48,7 +48,7 @@ static struct held read_dump(const char *path)
             struct drop_signals sig;
             struct exh_scene_in in;
             struct exh_drive_out out;
-            exh_log_frame_bytes(&c, l.scene, &in, &out, (int32_t *)&sig);
+            exh_log_frame_serialize(&c, l.scene, &in, &out, (int32_t *)&sig);
             if (h.frames++ == 0) { h.c = sig.c; }
             CHECK(h.frames == 1 || (int64_t)l.tick == h.last + 1, "a frame is missing");
             h.last = (int64_t)l.tick;
@@ -229,7 +229,7 @@ TEST(forged_records_are_harmless)
         memcpy(damaged, dump, n);
         while (at < n) {
             struct exh_record r;
-            const int32_t len = exh_record_read(damaged + at, (uint32_t)(n - at), &r);
+            const int32_t len = exh_record_decode(damaged + at, (uint32_t)(n - at), &r);
             CHECK(len > 0, "record at %zu", at);
             z = z * 6364136223846793005u + 1442695040888963407u;
             if (r.len_B && (z >> 33) % 12 == 0) {
@@ -283,9 +283,9 @@ TEST(another_fault_than_told_is_told)
     uint8_t *event = dump + n - (EXH_RECORD_OVERHEAD + 4) - (EXH_RECORD_OVERHEAD + 10);
     struct exh_record r;
     struct exh_event e;
-    CHECK_EQ_I64(exh_record_read(event, EXH_RECORD_OVERHEAD + 10, &r), EXH_RECORD_OVERHEAD + 10);
+    CHECK_EQ_I64(exh_record_decode(event, EXH_RECORD_OVERHEAD + 10, &r), EXH_RECORD_OVERHEAD + 10);
     c = exh_bytes_reader(r.payload, r.len_B);
-    exh_event_bytes(&c, &e);
+    exh_event_serialize(&c, &e);
     CHECK_EQ_I64(e.type, EXH_EVENT_FROZE);
     for (int what = 0; what < 3; what++) {
         struct exh_event other = e;
@@ -293,7 +293,7 @@ TEST(another_fault_than_told_is_told)
         other.instance = (uint16_t)(e.instance + (what == 2));
         c = exh_bytes_writer(event, EXH_RECORD_OVERHEAD + 10);
         exh_record_begin(&c, EXH_RECORD_EVENT, r.seq, r.tick);
-        exh_event_bytes(&c, &other);
+        exh_event_serialize(&c, &other);
         CHECK_EQ_I64(exh_record_end(&c), EXH_RECORD_OVERHEAD + 10);
         spill(path, dump, n);
         said(&s, dir, cli_replay, WORDS("replay", path));

@@ -140,8 +140,9 @@ TEST(a_good_one_arms_and_forces_go_by_its_points)
         CHECK_EQ_I64(set_up(one[i]), 0);
         CHECK_EQ_I64(one[i]->params->active[zero], MON_ZERO);
         ticks(one[i], 1300);
-        CHECK(exh_safety_runs(one[i]->safety), "%s: state %d, refused %d, faults %x", one[i]->name,
-              one[i]->safety->state, one[i]->safety->refused, (unsigned)one[i]->safety->faults);
+        CHECK(exh_safety_is_running(one[i]->safety), "%s: state %d, refused %d, faults %x",
+              one[i]->name, one[i]->safety->state, one[i]->safety->refused,
+              (unsigned)one[i]->safety->faults);
     }
     give(&exh_scene_drop, 0, 1);
     CHECK_EQ_I64(set_up(&exh_scene_drop), 0);

@@ -44,10 +44,11 @@ static const struct calibration *calibrated(const struct calibration_cfg *c,
                                             struct calibration_lines *l)
 {
     const struct calibration *r = calibrate(c);
-    struct exh_calib_bad bad = {99, 0};
+    struct exh_calib_error bad = {99, 0};
     CHECK(r->result == EXH_PROBE_DONE, "%s: %s", calibrate_step_text(r->step),
           calibrate_result_text(r->result));
-    CHECK(exh_calib_valid(&r->c, &bad) == 0, "%s, point %d", exh_calib_what_text(bad.what), bad.at);
+    CHECK(exh_calib_validate(&r->c, &bad) == 0, "%s, point %d", exh_calib_error_text(bad.what),
+          bad.at);
     CHECK_EQ_I64(r->c.points, c->masses);
     CHECK_EQ_I64(calibration_lines(&r->c, l), 0);
     return r;
@@ -259,13 +260,13 @@ TEST(exchanged_masses_are_refused_by_table_and_point)
 {
     static const double said_kg[] = {0.1, 0.2, 0.22, 0.5}, hung_kg[] = {0.1, 0.22, 0.2, 0.5};
     struct calibration_cfg c = config(1);
-    struct exh_calib_bad bad = {99, 99};
+    struct exh_calib_error bad = {99, 99};
     c.mass_kg = said_kg;
     c.hung_kg = hung_kg;
     c.masses = LEN(said_kg);
-    CHECK_EQ_I64(exh_calib_valid(&calibrate(&c)->c, &bad), -EXH_E_MONOTONE);
+    CHECK_EQ_I64(exh_calib_validate(&calibrate(&c)->c, &bad), -EXH_E_MONOTONE);
     CHECK(bad.what == EXH_CALIB_FORCE_TABLE && bad.at == 2, "%s, point %d",
-          exh_calib_what_text(bad.what), bad.at);
+          exh_calib_error_text(bad.what), bad.at);
 }
 
 TEST(set_up_refuses)

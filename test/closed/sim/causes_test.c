@@ -209,7 +209,7 @@ TEST(memory_of_guarded_that_changes_is_told)
 {
     struct guarded_cfg *cfg;
     const struct guarded *s = guarded_memory(&cfg);
-    const uint32_t round = (sizeof *cfg + EXH_GUARD_B - 1) / EXH_GUARD_B;
+    const uint32_t round = (sizeof *cfg + EXH_INTEGRITY_B - 1) / EXH_INTEGRITY_B;
     uint8_t *byte = (uint8_t *)cfg->held;
     for (size_t at = 0; at < sizeof cfg->held; at++) {
         power_on(&exh_scene_guarded, 0);

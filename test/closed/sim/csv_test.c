@@ -132,7 +132,7 @@ static void rewrite(const char *from, const char *to, change_fn change, int64_t 
     for (uint32_t at = 0; at < len;) {
         struct exh_record r;
         struct exh_bytes c = exh_bytes_writer(out, sizeof out);
-        const int32_t n = exh_record_read(in + at, len - at, &r);
+        const int32_t n = exh_record_decode(in + at, len - at, &r);
         CHECK(n > 0, "record at %lu", (unsigned long)at);
         at += (uint32_t)n;
         memset(payload, 0, sizeof payload);

@@ -52,14 +52,14 @@ MUTANTS = (
     ("drive", "(int32_t)exh_gain_floor(permit->fall, s->force_N_q20) + 1;", "(int32_t)exh_gain_floor(permit->fall, s->force_N_q20) / 2 + 1;",
      TABLE, "zero in R ticks"),
     ("drive", "if (permit->mode == EXH_PERMIT_RELEASE) {", "if (0) {", TABLE, "a law that lost its inputs does not speak"),
-    ("watch", "return (s->fast_ticks >= cfg->speed_ticks ?", "return (s->fast_ticks > cfg->speed_ticks ?", TABLE,
+    ("motion", "return (s->fast_ticks >= cfg->speed_ticks ?", "return (s->fast_ticks > cfg->speed_ticks ?", TABLE,
      "a string that runs is told"),
-    ("watch", "s->stuck_ticks >= cfg->stuck_ticks ?", "s->stuck_ticks > cfg->stuck_ticks ?", TABLE, "an encoder that stands is told"),
-    ("guard", "if (exh_params_look(g->params)) { g->broken = 1; }", "", TABLE, "a parameter that changed is told"),
-    ("guard", "if (g->crc != g->want) { g->broken = 1; }", "", TABLE, "a table that changed is told"),
+    ("motion", "s->stuck_ticks >= cfg->stuck_ticks ?", "s->stuck_ticks > cfg->stuck_ticks ?", TABLE, "an encoder that stands is told"),
+    ("integrity", "if (exh_params_verify(g->params)) { g->broken = 1; }", "", TABLE, "a parameter that changed is told"),
+    ("integrity", "if (g->crc != g->want) { g->broken = 1; }", "", TABLE, "a table that changed is told"),
     ("supply", "return s->off_ticks >= cfg->ticks;", "return 0;", TABLE, "a supply outside its limits is told"),
     ("supply", "raw <= cfg->max_raw", "1", TABLE, "above them, too"),
-    ("track", "return s->off_ticks >= cfg->ticks;", "return s->off_ticks >= 40 * cfg->ticks;", TABLE, "a monitor that does not follow is told in time"),
+    ("tracking", "return s->off_ticks >= cfg->ticks;", "return s->off_ticks >= 40 * cfg->ticks;", TABLE, "a monitor that does not follow is told in time"),
 )
 
 

@@ -199,15 +199,16 @@ TEST(over_the_wire_too)
     memset(&p, 0, sizeof p);
     CHECK_EQ_I64(scene_with(4000, 0, 1, 500), 0);
     p.type = EXH_WIRE_HELLO;
-    n = exh_wire_write(&tx, &p, 0, buf, sizeof buf);
-    CHECK(n > 0 && exh_wire_take(&rx, &got, buf, (size_t)n) == EXH_WIRE_HELLO, "no hello");
+    n = exh_wire_encode(&tx, &p, 0, buf, sizeof buf);
+    CHECK(n > 0 && exh_wire_decode(&rx, &got, buf, (size_t)n) == EXH_WIRE_HELLO, "no hello");
     for (size_t i = 0; i < sizeof ask / sizeof ask[0]; i++) {
         const struct exh_wire_param param = {ask[i].id, 0, ask[i].raw};
         const int result = guarded_stage(param.id, param.instance, param.value);
         p.type = EXH_WIRE_ACK;
         p.u.ack = (struct exh_wire_ack){param, (int16_t)result, 1};
-        n = exh_wire_write(&tx, &p, 0, buf, sizeof buf);
-        CHECK(n > 0 && exh_wire_take(&rx, &got, buf, (size_t)n) == EXH_WIRE_ACK, "ask %d", (int)i);
+        n = exh_wire_encode(&tx, &p, 0, buf, sizeof buf);
+        CHECK(n > 0 && exh_wire_decode(&rx, &got, buf, (size_t)n) == EXH_WIRE_ACK, "ask %d",
+              (int)i);
         CHECK(got.u.ack.result == ask[i].result, "ask %d: %d", (int)i, got.u.ack.result);
     }
     exh_params_apply(exh_scene_guarded.params);

@@ -270,16 +270,16 @@ TEST(only_frames_with_a_glove_hold_one)
     in.glove_new = 1;
     in.glove.age_ticks = 0xABCD;
     for (int i = 0; i < SENSORS; i++) { in.glove.raw[i] = (int16_t)(i * 1489 - 15000); }
-    exh_log_frame_bytes(&c, &s, &in, &out, NULL);
+    exh_log_frame_serialize(&c, &s, &in, &out, NULL);
     with = c.at;
     c = exh_bytes_reader(buf, with);
-    exh_log_frame_bytes(&c, &s, &back, &out_back, NULL);
+    exh_log_frame_serialize(&c, &s, &back, &out_back, NULL);
     CHECK(exh_bytes_ok(&c) && c.at == with, "%u bytes", (unsigned)c.at);
     CHECK(memcmp(&back.glove, &in.glove, sizeof in.glove) == 0 && back.glove_new == 1, "the frame");
     CHECK(back.drive.din == in.drive.din, "the drive's");
     s.read_glove = NULL;
     c = exh_bytes_measure();
-    exh_log_frame_bytes(&c, &s, &in, &out, NULL);
+    exh_log_frame_serialize(&c, &s, &in, &out, NULL);
     CHECK_EQ_I64(with - c.at, 1 + 2 + 2 * SENSORS);
 }
 

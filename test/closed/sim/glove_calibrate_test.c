@@ -21,7 +21,7 @@ static struct exh_glove_cal made_by(const char *dir, const char *miss_deg, const
     static struct said s;
     static uint8_t image[EXH_GLOVE_CAL_IMAGE_B];
     struct exh_glove_cal cal;
-    struct exh_glove_bad bad;
+    struct exh_glove_error bad;
     FILE *f;
     said(&s, dir, cli_calibrate,
          WORDS("calibrate", "--glove", "--out", dir, "--miss", miss_deg, "--device", couple,
@@ -306,7 +306,7 @@ TEST(recorded_poses_give_the_same)
     static uint8_t image[2][EXH_GLOVE_CAL_IMAGE_B];
     struct exh_glove_cal cal[2];
     char *dir = said_dir(), again[100];
-    struct exh_glove_bad bad;
+    struct exh_glove_error bad;
     snprintf(again, sizeof again, "%s/again", dir);
     said(&s, dir, cli_calibrate, WORDS("calibrate", "--glove", "--out", dir, "--day", "20000"));
     CHECK_EQ_I64(s.status, 0);

@@ -132,16 +132,16 @@ TEST(no_run_in_a_wall_that_owes)
     struct exh_params p;
     int32_t cnt = 0;
     exh_scene_guarded.defaults();
-    exh_params_init(&p, exh_scene_guarded.params->table, (int32_t *)&par, (int32_t *)&staged);
+    exh_params_setup(&p, exh_scene_guarded.params->table, (int32_t *)&par, (int32_t *)&staged);
     par.drop.calib.uncalibrated = 1;
     CHECK_EQ_I64(guarded_setup(&box_cfg, &par, board, NULL), 0);
     at(cnt, EXH_CMD_RUN);
     for (int n = 0; n < 1300; n++) { at(cnt, EXH_CMD_NONE); }
-    CHECK(exh_safety_runs(&box.drop.safety), "state %d", told.drop.state);
+    CHECK(exh_safety_is_running(&box.drop.safety), "state %d", told.drop.state);
     /* A wall out of nowhere, which gives without having been given. */
     par.drop.own.q_lim_m_q30 = -EXH_Q(15, 1000, EXH_Q_POS);
     for (int n = 0; n < 20; n++) { at(cnt -= 4, EXH_CMD_NONE); }
-    CHECK(exh_safety_runs(&box.drop.safety) && box.passivity.energy_Ncnt_q20 < 0, "state %d",
+    CHECK(exh_safety_is_running(&box.drop.safety) && box.passivity.energy_Ncnt_q20 < 0, "state %d",
           told.drop.state);
     at(cnt, EXH_CMD_OFF);
     for (int n = 0; n < 100; n++) { at(cnt, EXH_CMD_NONE); }

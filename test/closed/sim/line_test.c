@@ -282,7 +282,7 @@ static void post(struct udp *u, struct exh_wire_tx *tx, uint8_t type, int spoil)
     int32_t n;
     memset(&p, 0, sizeof p);
     p.type = type;
-    n = exh_wire_write(tx, &p, 0, buf, sizeof buf);
+    n = exh_wire_encode(tx, &p, 0, buf, sizeof buf);
     if (spoil) { buf[n - 1] ^= 1; }
     CHECK_EQ_I64(udp_send(u, buf, (size_t)n), n);
 }

@@ -111,7 +111,7 @@ static uint32_t record_from(const struct text *t, uint32_t at, uint32_t *len_B)
     struct exh_record r;
     int32_t n = 0;
     for (; at < t->len; at++) {
-        n = exh_record_read(t->p + at, (uint32_t)t->len - at, &r);
+        n = exh_record_decode(t->p + at, (uint32_t)t->len - at, &r);
         if (n > 0 && r.type == EXH_RECORD_FRAME) { break; }
     }
     *len_B = (uint32_t)n;
@@ -182,7 +182,7 @@ static void forge_keyframe(size_t sound_B)
     run_three_falls(path);
     t = slurp(path);
     for (; at < t.len; at++) {
-        const int32_t n = exh_record_read(t.p + at, (uint32_t)t.len - at, &r);
+        const int32_t n = exh_record_decode(t.p + at, (uint32_t)t.len - at, &r);
         if (n > 0 && r.type == EXH_RECORD_KEYFRAME && r.tick == 1024) { break; }
     }
     CHECK(at < t.len, "no keyframe at tick 1024");
@@ -219,15 +219,15 @@ TEST(a_refused_keyframe_changes_nothing)
     sc->defaults();
     CHECK_EQ_I64(sc->setup((struct exh_scene_board){{1, 1000}, 24}), 0);
     c = exh_bytes_writer(before, sizeof before);
-    exh_log_keyframe_bytes(&c, sc);
+    exh_log_keyframe_serialize(&c, sc);
     memcpy(forged, before, sizeof forged);
     forged[4 * (exh_signal_count(sc->params->table) - 1)] ^= 1; /* kf: sound, and another */
     forged[3] = 0x80;                                           /* step: out of its range */
     c = exh_bytes_reader(forged, c.at);
-    exh_log_keyframe_bytes(&c, sc);
+    exh_log_keyframe_serialize(&c, sc);
     CHECK(!exh_bytes_ok(&c), "accepted");
     c = exh_bytes_writer(after, sizeof after);
-    exh_log_keyframe_bytes(&c, sc);
+    exh_log_keyframe_serialize(&c, sc);
     CHECK(memcmp(before, after, c.at) == 0, "a refused keyframe acted");
     CHECK(!sc->params->pending, "something is staged");
 }

@@ -199,7 +199,7 @@ static void check_events(const char *path, const struct exh_event *want, const u
         struct exh_bytes c = exh_bytes_reader(r.payload, r.len_B);
         struct exh_event e;
         if (r.type != EXH_RECORD_EVENT) { continue; }
-        exh_event_bytes(&c, &e);
+        exh_event_serialize(&c, &e);
         CHECK(i < n, "event %zu too many: type %u at tick %lu", i, e.type, (unsigned long)r.tick);
         CHECK(r.tick == tick[i] && e.type == want[i].type && e.id == want[i].id &&
                   e.instance == want[i].instance && e.value == want[i].value,
@@ -434,7 +434,7 @@ static void last_frames(const char *path, struct exh_drive_in in[2])
         int32_t signal[sizeof(struct drop_signals) / sizeof(int32_t)];
         if (r.type != EXH_RECORD_FRAME) { continue; }
         memset(&got, 0, sizeof got);
-        exh_log_frame_bytes(&c, &exh_scene_drop, &got, &out, signal);
+        exh_log_frame_serialize(&c, &exh_scene_drop, &got, &out, signal);
         CHECK(exh_bytes_ok(&c), "a frame that is none at tick %lu", (unsigned long)r.tick);
         in[0] = in[1];
         in[1] = got.drive;

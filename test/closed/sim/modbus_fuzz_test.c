@@ -74,7 +74,7 @@ static void begin(void)
     const uint32_t n = (sc->defaults(), exh_signal_count(sc->params->table));
     CHECK(n <= VALUES, "more values");
     sc->params->locked = 1;
-    exh_params_init(&ours.p, sc->params->table, ours.active, ours.wanted);
+    exh_params_setup(&ours.p, sc->params->table, ours.active, ours.wanted);
     ours.p.locked = 1;
     for (uint32_t i = 0; i < exh_signal_count(sc->signals); i++) {
         sc->signal[i] = (int32_t)check_u64();
@@ -220,18 +220,20 @@ static uint32_t from_server(const uint8_t *pdu, uint32_t len, uint8_t *answer)
 static void tick(void)
 {
     struct exh_scene_in in = {.command = EXH_CMD_NONE};
-    const uint32_t asked = exh_regs_take(&ours.r);
+    const uint32_t asked = exh_regs_poll(&ours.r);
     const uint8_t command = exh_regs_command(asked);
     mail_before(&in);
-    if (asked & 1u << EXH_COIL_APPLY) { exh_regs_did(&ours.r, exh_regs_apply(&ours.r, &ours.p)); }
-    if (command != EXH_CMD_NONE) { exh_regs_did(&ours.r, 0); }
+    if (asked & 1u << EXH_COIL_APPLY) {
+        exh_regs_complete(&ours.r, exh_regs_apply(&ours.r, &ours.p));
+    }
+    if (command != EXH_CMD_NONE) { exh_regs_complete(&ours.r, 0); }
     CHECK_EQ_I64(in.command, command);
     exh_params_apply(&ours.p);
     exh_params_apply(sc->params);
     /* the copy, as behind a tick: nothing has moved but the parameters */
     CHECK(memcmp(sc->params->active, ours.active, 4 * ours.r.params_n) == 0, "other parameters");
     mail_after(&in);
-    exh_regs_see(&ours.r, sc->safety, in.drive.din);
+    exh_regs_update(&ours.r, sc->safety, in.drive.din);
 }
 
 TEST(the_same_bytes_come_back)

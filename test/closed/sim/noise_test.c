@@ -95,12 +95,12 @@ static void noise_drop(void)
 {
     struct exh_bytes c = exh_bytes_reader(bytes, STATE_B);
     noise(bytes, 4096);
-    exh_quad_bytes(&c, &drop.quad);
-    exh_velocity_window_bytes(&c, &drop.velocity);
-    exh_contact_bytes(&c, &drop.contact);
-    exh_drive_bytes(&c, &drop.drive);
-    exh_track_bytes(&c, &drop.track);
-    exh_watch_bytes(&c, &drop.watch);
+    exh_quad_serialize(&c, &drop.quad);
+    exh_velocity_window_serialize(&c, &drop.velocity);
+    exh_contact_serialize(&c, &drop.contact);
+    exh_drive_serialize(&c, &drop.drive);
+    exh_tracking_serialize(&c, &drop.track);
+    exh_motion_serialize(&c, &drop.watch);
     if (check_u64() % 2) { /* what would be a fault at once, and hide the rest */
         memset(&drop.quad, 0, sizeof drop.quad);
         memset(&drop.track, 0, sizeof drop.track);
@@ -126,7 +126,7 @@ TEST(drop_within_noise)
         }
         noise_in();
         drop_tick(&drop, &drop_cfg, &in, &out, &drop_sig);
-        open = exh_safety_open(&drop.safety);
+        open = exh_safety_is_open(&drop.safety);
         check_code(0, &drop_par.drive, open);
         for (unsigned f = 1; f < EXH_FINGERS; f++) { check_code(f, &drop_par.drive, 0); }
         CHECK(out.enable == (open ? 1 : 0), "enable %x", out.enable);
@@ -188,7 +188,7 @@ TEST(full_box_within_noise)
         noise_mail();
         bilateral_tick(&box, &cfg, &in, &mail, exh_scene_bilateral.params, &out, &sig);
         bilateral_write(&box, &cfg, &sig, &sent);
-        open = exh_safety_open(&box.safety);
+        open = exh_safety_is_open(&box.safety);
         CHECK(out.enable == (open ? (1 << BILATERAL_FINGERS) - 1 : 0), "enable %x", out.enable);
         for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
             check_code(f, &par.drive[f], open);

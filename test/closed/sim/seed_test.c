@@ -69,13 +69,13 @@ static int next_frame(const struct bytes *b, uint32_t *at, struct exh_scene_in *
 {
     struct exh_record r;
     while (*at < b->len) {
-        const int32_t n = exh_record_read(b->p + *at, (uint32_t)b->len - *at, &r);
+        const int32_t n = exh_record_decode(b->p + *at, (uint32_t)b->len - *at, &r);
         struct exh_bytes c;
         CHECK(n > 0, "record at %lu: %ld", (unsigned long)*at, (long)n);
         *at += (uint32_t)n;
         if (r.type != EXH_RECORD_FRAME) { continue; }
         c = exh_bytes_reader(r.payload, r.len_B);
-        exh_log_frame_bytes(&c, &exh_scene_drop, in, out, (int32_t *)s);
+        exh_log_frame_serialize(&c, &exh_scene_drop, in, out, (int32_t *)s);
         CHECK(exh_bytes_ok(&c) && c.at == r.len_B, "frame of %u bytes", (unsigned)r.len_B);
         return 1;
     }

@@ -36,11 +36,11 @@ static int save(const struct exh_scene *sc)
     struct exh_slot is;
     unsigned to = 0;
     int32_t n = exh_params_save(sc->params, buf + EXH_SLOT_HEAD_B, sizeof buf - EXH_SLOT_B(0));
-    if (n > 0) { n = exh_slots_next(&to, page[0], page[1], PAGE_B, buf, sizeof buf, (size_t)n); }
+    if (n > 0) { n = exh_slots_encode(&to, page[0], page[1], PAGE_B, buf, sizeof buf, (size_t)n); }
     if (n <= 0) { return (int)n; }
     board_erase(to);
     board_program(to, buf, (uint32_t)n);
-    return exh_slots_pick(&is, page[0], page[1], PAGE_B) == (int)to ? 0 : -EXH_E_IO;
+    return exh_slots_find(&is, page[0], page[1], PAGE_B) == (int)to ? 0 : -EXH_E_IO;
 }
 
 /* Its parameters as they were saved last, or as they are by default. */
@@ -48,7 +48,7 @@ static void start(const struct exh_scene *sc)
 {
     struct exh_slot is;
     sc->defaults();
-    if (exh_slots_pick(&is, page[0], page[1], PAGE_B) >= 0) {
+    if (exh_slots_find(&is, page[0], page[1], PAGE_B) >= 0) {
         CHECK_EQ_I64(exh_params_load(sc->params, is.image, is.len_B, NULL), 0);
     }
     (void)exh_params_apply(sc->params);

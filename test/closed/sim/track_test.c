@@ -47,9 +47,9 @@ static int next_code(int last)
 
 /* Codes of any kind to the device; ticks until they were all held to have followed, or when not. */
 static uint32_t told_at(const struct posix_config *c, uint32_t rate_Hz,
-                        const struct exh_track_cfg *cfg, uint32_t ticks)
+                        const struct exh_tracking_cfg *cfg, uint32_t ticks)
 {
-    struct exh_track s = {0, 0, 0};
+    struct exh_tracking s = {0, 0, 0};
     struct exh_period T;
     int code = 0, toggle = 0;
     posix_configure(c);
@@ -58,7 +58,7 @@ static uint32_t told_at(const struct posix_config *c, uint32_t rate_Hz,
         struct exh_drive_in in;
         struct exh_drive_out out = {{0}, 1, 0};
         CHECK_EQ_I64(exh_board_read_drive(&in), 0);
-        if (exh_track_step(
+        if (exh_tracking_step(
                 &s, cfg,
                 exh_sat32((int64_t)(in.mon_raw[0] * c->device.mon_apc * (1 << EXH_Q_CUR))))) {
             return n;
@@ -67,7 +67,7 @@ static uint32_t told_at(const struct posix_config *c, uint32_t rate_Hz,
         code = toggle ? next_code(code) : n % 2 ? 12184 : -12184;
         out.dac_raw[0] = (uint16_t)(32768 + code);
         CHECK_EQ_I64(exh_board_write_drive(&out), 0);
-        exh_track_coded(&s, (int32_t)(code / CODES_A * (1 << EXH_Q_CUR)));
+        exh_tracking_update(&s, (int32_t)(code / CODES_A * (1 << EXH_Q_CUR)));
     }
     return UINT32_MAX;
 }
@@ -82,10 +82,10 @@ TEST(what_follows_is_never_told)
     late.device.delay_tick = 3;
     late.device.delay_s = 0.01;
     for (uint32_t rate = 1; rate <= 20000; rate += rate < 40 ? 1 : step) {
-        const struct exh_track_par par = {exh_track_rows[0].dflt, exh_track_rows[1].dflt};
-        struct exh_track_cfg cfg;
+        const struct exh_tracking_par par = {exh_tracking_rows[0].dflt, exh_tracking_rows[1].dflt};
+        struct exh_tracking_cfg cfg;
         uint32_t at;
-        CHECK_EQ_I64(exh_track_setup(&cfg, &par, (struct exh_period){1, rate}), 0);
+        CHECK_EQ_I64(exh_tracking_setup(&cfg, &par, (struct exh_period){1, rate}), 0);
         at = told_at(&late, rate, &cfg, 4 * cfg.ticks + 100);
         CHECK(at == UINT32_MAX, "%lu Hz: told at tick %lu of a current that follows",
               (unsigned long)rate, (unsigned long)at);
@@ -97,7 +97,7 @@ TEST(what_follows_is_never_told)
 /* The test can fail: half as long is too short. */
 TEST(with_too_short_a_time_it_would_be_told)
 {
-    const struct exh_track_cfg cfg = {EXH_Q(1, 4, EXH_Q_CUR), 20};
+    const struct exh_tracking_cfg cfg = {EXH_Q(1, 4, EXH_Q_CUR), 20};
     struct posix_config late = posix_config_default();
     late.device.delay_tick = 3;
     late.device.delay_s = 0.01;
@@ -151,7 +151,7 @@ static uint32_t ticks_to_safe(uint32_t rate_Hz, uint32_t *limit, double *stood_A
         }
         drop_tick(&b.s, &b.cfg, &in, &out, &b.sig);
         if (b.sig.state == EXH_STATE_FAULT) { break; }
-        CHECK(n < 5 + rate_Hz || exh_safety_runs(&b.s.safety), "tick %lu: state %ld",
+        CHECK(n < 5 + rate_Hz || exh_safety_is_running(&b.s.safety), "tick %lu: state %ld",
               (unsigned long)n, (long)b.sig.state);
         if (n == still) {
             stood = out;
@@ -205,9 +205,9 @@ static int has(const char *path, const char *word)
 /* The order of a tick stands in exhand/axis.h alone; a scene that has no tracking names that. */
 TEST(every_scene_ticks_by_the_axis_and_tracks_or_says_that_it_does_not)
 {
-    static const char *const by_hand[] = {"exh_quad_extend(",   "exh_watch_step(",
-                                          "exh_track_step(",    "exh_drive_force(",
-                                          "exh_drive_current(", "exh_track_coded("};
+    static const char *const by_hand[] = {"exh_quad_step(",          "exh_motion_step(",
+                                          "exh_tracking_step(",      "exh_drive_force_step(",
+                                          "exh_drive_current_step(", "exh_tracking_update("};
     glob_t g;
     int axes = 0;
     CHECK_EQ_I64(glob("examples/*/*.[ch]", 0, NULL, &g), 0);

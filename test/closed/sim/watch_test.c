@@ -264,7 +264,7 @@ TEST(another_table_is_refused_by_name)
     dir = said_dir();
     start("--hz", "10");
     exh_record_begin(&c, EXH_RECORD_HEADER, 0, 0);
-    exh_record_header_bytes(&c, &h);
+    exh_record_header_serialize(&c, &h);
     piece(byte, exh_record_end(&c), 0, 0);
     end();
     CHECK(s.status == 1 &&

@@ -14,7 +14,7 @@ static uint64_t at_least(uint64_t n, uint64_t least)
     return n < least ? least : n;
 }
 
-struct box_times box_times(const struct exh_safety_par *par, const struct exh_watch_par *watch,
+struct box_times box_times(const struct exh_safety_par *par, const struct exh_motion_par *watch,
                            struct exh_period T)
 {
     struct box_times t;

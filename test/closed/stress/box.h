@@ -5,7 +5,7 @@
 #define STRESS_BOX_H
 
 #include "exhand/safety.h"
-#include "exhand/watch.h"
+#include "exhand/motion.h"
 
 enum box_gate { BOX_SHUT, BOX_OPEN, BOX_FALLS };
 
@@ -30,7 +30,7 @@ struct box_times {
     int32_t small_N_q20;
 };
 
-struct box_times box_times(const struct exh_safety_par *par, const struct exh_watch_par *watch,
+struct box_times box_times(const struct exh_safety_par *par, const struct exh_motion_par *watch,
                            struct exh_period T);
 
 /* One tick; raised: causes that the box is told, `ready` as in struct exh_safety_in. */

@@ -86,7 +86,7 @@ static void run_closed(const struct closed *c)
         in.drive.enc_raw[0] = (in.drive.enc_raw[0] + jump_at(c, ran)) & 0xFFFFFF;
         tick(&in, &out);
         exh_board_write_drive(&out);
-        if (exh_safety_runs(&rig.state.safety) || ran > 0) { ran++; }
+        if (exh_safety_is_running(&rig.state.safety) || ran > 0) { ran++; }
         if (ran == 1) { posix_ready(); }
         must(c->hi_mm <= c->lo_mm || rig.sig.faults == 0, "fault", "%#lx",
              (unsigned long)rig.sig.faults);

@@ -193,7 +193,7 @@ static void signs_of_laws(void)
     const struct exh_quad_par quad = {any_end() & INT32_MAX, 0};
     const int32_t cnt = any_end();
     struct exh_force_ledger f;
-    const int touching = exh_contact_law(&s, &par, in, &f);
+    const int touching = exh_contact_step(&s, &par, in, &f);
     const double past = (double)in.pos_m_q30 - in.lim_m_q30;
     same_sign("spring", f.spring_N_q20,
               touching ? par.k_Npm_q10 * fmin(fmax(past, -2147483648.0), 2147483647.0) / 1048576
@@ -232,14 +232,14 @@ static void signs_of_speeds(void)
     memset(&pole, 0, sizeof pole);
     memset(&track, 0, sizeof track);
     memset(&foaw, 0, sizeof foaw);
-    exh_velocity_window_mps_q27(&window, &wc, from);
-    exh_velocity_pole_mps_q27(&pole, &pc, from);
-    exh_velocity_track_mps_q27(&track, &tc, from);
-    exh_velocity_foaw_mps_q27(&foaw, &fc, from);
-    same_sign("window", exh_velocity_window_mps_q27(&window, &wc, to), jump);
-    same_sign("pole", exh_velocity_pole_mps_q27(&pole, &pc, to), jump);
-    same_sign("observer", exh_velocity_track_mps_q27(&track, &tc, to), jump);
-    same_sign("adaptive window", exh_velocity_foaw_mps_q27(&foaw, &fc, to), jump);
+    exh_velocity_window_step(&window, &wc, from);
+    exh_velocity_pole_step(&pole, &pc, from);
+    exh_velocity_track_step(&track, &tc, from);
+    exh_velocity_foaw_step(&foaw, &fc, from);
+    same_sign("window", exh_velocity_window_step(&window, &wc, to), jump);
+    same_sign("pole", exh_velocity_pole_step(&pole, &pc, to), jump);
+    same_sign("observer", exh_velocity_track_step(&track, &tc, to), jump);
+    same_sign("adaptive window", exh_velocity_foaw_step(&foaw, &fc, to), jump);
 }
 
 static void signs_of_drive(void)
@@ -254,8 +254,8 @@ static void signs_of_drive(void)
     f.spring_N_q20 = (int64_t)any_end() * 2097152;
     f.damper_N_q20 = (int64_t)any_end() * 2097152;
     f.pullback_N_q20 = any_end() & INT32_MAX;
-    exh_drive_force(&rig.state.drive, &rig.cfg.drive, &permit, &f);
-    exh_drive_current(&rig.state.drive, &rig.cfg.drive, &f, &i);
+    exh_drive_force_step(&rig.state.drive, &rig.cfg.drive, &permit, &f);
+    exh_drive_current_step(&rig.state.drive, &rig.cfg.drive, &f, &i);
     must(f.force_N_q20 >= 0 && f.force_N_q20 <= rig.cfg.drive.f_top_N_q20, "sign", "force %ld",
          (long)f.force_N_q20);
     must(i.table_A_q26 >= 0 && i.table_A_q26 + i.peak_A_q26 + i.i2t_A_q26 >= 0, "sign",

@@ -116,7 +116,7 @@ static void steepened(unsigned at)
              (long)rig.box.held);
         if (n == 10 + at) {
             for (unsigned k = 0; k < rig.cfg.calib.to_cur_n; k++) { knot[k].y *= 2; }
-            must(exh_table_set(knot, rig.cfg.calib.to_cur_n) == 0, "set-up", "table refused");
+            must(exh_table_setup(knot, rig.cfg.calib.to_cur_n) == 0, "set-up", "table refused");
         }
         tick(&in, &out);
     }

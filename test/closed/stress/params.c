@@ -51,7 +51,7 @@ static void parameters_every_tick(int32_t tune_ms)
         stage_all(EXH_WHEN_ANY);
         /* Held for a while, too, or none would ever come near its ends. */
         if (any(n / 4096 % 2 ? 1 : 256) == 0) { stage_force(); }
-        if (!exh_safety_runs(&rig.state.safety)) {
+        if (!exh_safety_is_running(&rig.state.safety)) {
             set(ID_F0, 0);
         } /* more than arm_force: it would not arm */
         apply();

@@ -51,8 +51,8 @@ void fresh(void)
     rig.enc_bits = 24;
     rig.w.q_min = INT32_MAX;
     rig.w.q_max = INT32_MIN;
-    exh_params_init(&rig.params, exh_scene_drop.params->table, (int32_t *)&rig.active,
-                    (int32_t *)&rig.staged);
+    exh_params_setup(&rig.params, exh_scene_drop.params->table, (int32_t *)&rig.active,
+                     (int32_t *)&rig.staged);
     rig.active.calib.uncalibrated = rig.staged.calib.uncalibrated = 1; /* there is no image here */
 }
 
@@ -75,7 +75,7 @@ int ready(struct exh_period T)
     rig.params.locked = 1;
     rig.T = T;
     err = drop_setup(&rig.cfg, &rig.active, (struct exh_scene_board){T, rig.enc_bits}, NULL);
-    exh_params_slew(&rig.params, &rig.active.tune, T);
+    exh_params_slew_setup(&rig.params, &rig.active.tune, T);
     if (err != 0) { return err; }
     rig.times = box_times(&rig.active.safety, &rig.active.watch, T);
     rig.box.calm = 1; /* before the first tick no law has asked for anything */

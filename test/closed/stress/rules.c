@@ -40,17 +40,16 @@ static void box_tick(struct exh_safety_in in, struct hidden *h)
 static void shadow_tick(struct drop *s, const struct exh_scene_in *in, struct hidden *h)
 {
     const struct drop_par *par = &rig.active;
-    const int32_t cnt = exh_quad_extend(&s->quad, &rig.cfg.quad, in->drive.enc_raw[0]);
+    const int32_t cnt = exh_quad_step(&s->quad, &rig.cfg.quad, in->drive.enc_raw[0]);
     const int32_t pos = exh_quad_pos_m_q30(&par->quad, cnt);
-    struct exh_contact_in q = {pos,
-                               exh_velocity_window_mps_q27(&s->velocity, &rig.cfg.velocity, cnt),
+    struct exh_contact_in q = {pos, exh_velocity_window_step(&s->velocity, &rig.cfg.velocity, cnt),
                                par->own.q_lim_m_q30};
     const int32_t mon = exh_drive_monitor_A_q26(&rig.cfg.drive, in->drive.mon_raw[0]);
     struct exh_safety_in box = {in->drive.din, 0, in->missed, in->command, 1, 15};
     struct exh_permit permit;
     h->vel = q.vel_mps_q27;
     h->cnt = cnt;
-    if (exh_track_step(&s->track, &rig.cfg.track, mon)) { box.raised |= EXH_FAULT_TRACKING; }
+    if (exh_tracking_step(&s->track, &rig.cfg.track, mon)) { box.raised |= EXH_FAULT_TRACKING; }
     if (exh_supply_step(&s->supply, &rig.cfg.supply, in->drive.supply_raw, in->missed)) {
         box.raised |= EXH_FAULT_SUPPLY;
     }
@@ -58,15 +57,15 @@ static void shadow_tick(struct drop *s, const struct exh_scene_in *in, struct hi
         box.raised |= EXH_FAULT_ENCODER;
         box.ready &= (uint8_t)~EXH_ARM_ENCODER;
     }
-    box.raised |= exh_watch_step(&s->watch, &rig.cfg.watch, &q.vel_mps_q27, &h->limits);
+    box.raised |= exh_motion_step(&s->watch, &rig.cfg.watch, &q.vel_mps_q27, &h->limits);
     box_tick(box, h);
     permit = exh_safety_step(&s->safety, &rig.cfg.safety, box);
-    h->touching = exh_contact_law(&s->contact, &par->contact, q, &h->f);
-    h->limits |= exh_drive_force(&s->drive, &rig.cfg.drive, &permit, &h->f);
-    h->limits |= exh_drive_current(&s->drive, &rig.cfg.drive, &h->f, &h->i);
-    exh_gate(&s->safety, &rig.cfg.drive, 1, &h->i, &h->limits, &h->out);
-    exh_track_coded(&s->track, h->i.coded_A_q26);
-    exh_watch_coded(&s->watch, &rig.cfg.watch, cnt, h->i.coded_A_q26);
+    h->touching = exh_contact_step(&s->contact, &par->contact, q, &h->f);
+    h->limits |= exh_drive_force_step(&s->drive, &rig.cfg.drive, &permit, &h->f);
+    h->limits |= exh_drive_current_step(&s->drive, &rig.cfg.drive, &h->f, &h->i);
+    exh_gate_step(&s->safety, &rig.cfg.drive, 1, &h->i, &h->limits, &h->out);
+    exh_tracking_update(&s->track, h->i.coded_A_q26);
+    exh_motion_update(&s->watch, &rig.cfg.watch, cnt, h->i.coded_A_q26);
 }
 
 static int64_t asked_of(const struct exh_force_ledger *f)

@@ -79,7 +79,7 @@ static void read_back(const struct exh_record *r, uint32_t *next, int *running)
     struct exh_drive_out rec, out;
     struct drop_signals sig;
     if (r->type == EXH_RECORD_KEYFRAME && r->tick == 0 && *next == 0) {
-        exh_log_keyframe_bytes(&c, sc);
+        exh_log_keyframe_serialize(&c, sc);
         *running = 1;
     }
     if (r->type != EXH_RECORD_FRAME) { return; }
@@ -87,7 +87,7 @@ static void read_back(const struct exh_record *r, uint32_t *next, int *running)
     *next = r->tick + 1;
     if (!*running) { return; }
     memset(&rec, 0, sizeof rec);
-    exh_log_frame_bytes(&c, sc, &in, &rec, (int32_t *)&sig);
+    exh_log_frame_serialize(&c, sc, &in, &rec, (int32_t *)&sig);
     sc->tick(&in, &out);
     must(out.dac_raw[0] == rec.dac_raw[0] && memcmp(&sig, sc->signal, sizeof sig) == 0, "replay",
          "tick %lu differs", (unsigned long)r->tick);
@@ -105,7 +105,7 @@ static void log_wraps(void)
     log = write_wrapping_log(first, 5000, &len_B);
     while (at < len_B && rig.w.broken == 0) {
         struct exh_record r;
-        const int32_t n = exh_record_read(log + at, (uint32_t)(len_B - at), &r);
+        const int32_t n = exh_record_decode(log + at, (uint32_t)(len_B - at), &r);
         must(n > 0, "record", "%ld at %zu", (long)n, at);
         if (n <= 0) { break; }
         must(r.seq == seq++, "sequence", "%lu", (unsigned long)r.seq);

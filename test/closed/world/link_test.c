@@ -52,7 +52,7 @@ static void say(struct controller *c, int type, int32_t joint)
     p.type = (uint8_t)type;
     if (type == EXH_WIRE_HELLO) { p.u.hello = said_hello; }
     if (type == EXH_WIRE_STATE) { p.u.state.joint_turn_q32[0][0] = joint; }
-    n = exh_wire_write(&c->tx, &p, 1234, buf, sizeof buf);
+    n = exh_wire_encode(&c->tx, &p, 1234, buf, sizeof buf);
     CHECK(n > 0 && sendto(c->fd, buf, (size_t)n, 0, (struct sockaddr *)&c->to, sizeof c->to) == n,
           "%d", (int)n);
 }
@@ -63,7 +63,7 @@ static void hear(struct controller *c)
     struct exh_wire_packet p;
     ssize_t n;
     while ((n = recv(c->fd, buf, sizeof buf, MSG_DONTWAIT)) > 0) {
-        const int type = exh_wire_take(&c->rx, &p, buf, (size_t)n);
+        const int type = exh_wire_decode(&c->rx, &p, buf, (size_t)n);
         c->hellos += type == EXH_WIRE_HELLO;
         c->answers += type == EXH_WIRE_PLANES;
         if (type == EXH_WIRE_PLANES) { c->planes = p.u.planes; }
@@ -179,7 +179,7 @@ static int params(struct controller *c, struct exh_wire_param asked[200], unsign
     ssize_t n;
     int k = 0;
     while ((n = recv(c->fd, buf, sizeof buf, MSG_DONTWAIT)) > 0) {
-        const int type = exh_wire_take(&c->rx, &p, buf, (size_t)n);
+        const int type = exh_wire_decode(&c->rx, &p, buf, (size_t)n);
         struct exh_wire_packet ack;
         int32_t len;
         c->answers += type == EXH_WIRE_PLANES;
@@ -190,7 +190,7 @@ static int params(struct controller *c, struct exh_wire_param asked[200], unsign
         ack.type = EXH_WIRE_ACK;
         ack.u.ack.param = p.u.param;
         ack.u.ack.result = p.u.param.instance == 2 ? -EXH_E_UNKNOWN : 0; /* has no third material */
-        len = exh_wire_write(&c->tx, &ack, 0, buf, sizeof buf);
+        len = exh_wire_encode(&c->tx, &ack, 0, buf, sizeof buf);
         (void)!sendto(c->fd, buf, (size_t)len, 0, (struct sockaddr *)&c->to, sizeof c->to);
     }
     return k;
@@ -336,7 +336,7 @@ TEST(noise_changes_nothing)
 
 /* --- traces --- */
 
-static struct exh_wire_trace_ask asked;
+static struct exh_wire_trace_request asked;
 static uint32_t ask_seq;
 static int asks;
 
@@ -346,7 +346,7 @@ static void hear_asks(struct controller *c)
     struct exh_wire_packet p;
     ssize_t n;
     while ((n = recv(c->fd, buf, sizeof buf, MSG_DONTWAIT)) > 0) {
-        if (exh_wire_take(&c->rx, &p, buf, (size_t)n) != EXH_WIRE_TRACE_ASK) { continue; }
+        if (exh_wire_decode(&c->rx, &p, buf, (size_t)n) != EXH_WIRE_TRACE_ASK) { continue; }
         asked = p.u.trace_ask;
         ask_seq = p.seq;
         asks++;
@@ -370,7 +370,7 @@ static void send_trace(struct controller *c, uint32_t request_seq, uint32_t firs
         p.u.trace.frame[i].raw[0] = -3 * (1 << 8);
         p.u.trace.frame[i].raw[1] = 5;
     }
-    n = exh_wire_write(&c->tx, &p, 1234, buf, sizeof buf);
+    n = exh_wire_encode(&c->tx, &p, 1234, buf, sizeof buf);
     CHECK(n > 0 && sendto(c->fd, buf, (size_t)n, 0, (struct sockaddr *)&c->to, sizeof c->to) == n,
           "%d", (int)n);
 }

@@ -110,11 +110,11 @@ static void write_packets(const struct exh_wire_planes *planes)
     struct exh_wire_packet hello = {.type = EXH_WIRE_HELLO}, p = {.type = EXH_WIRE_PLANES};
     hello.u.hello.role = EXH_WIRE_WORLD;
     world = (struct exh_wire_tx){7, 0};
-    packet_B[0] = exh_wire_write(&world, &hello, 0, packet[0], sizeof packet[0]);
+    packet_B[0] = exh_wire_encode(&world, &hello, 0, packet[0], sizeof packet[0]);
     for (uint32_t i = 1; i < PLANES; i++) {
         p.u.planes = *planes;
         p.u.planes.echo_stamp_us = (ticks + EVERY * i) * (1000000u / RATE_HZ);
-        packet_B[i] = exh_wire_write(&world, &p, 0, packet[i], sizeof packet[i]);
+        packet_B[i] = exh_wire_encode(&world, &p, 0, packet[i], sizeof packet[i]);
     }
 }
 
@@ -130,12 +130,12 @@ static void deliver(void)
 static void arm(void)
 {
     for (unsigned f = 0; f < EXH_FINGERS; f++) { out.dac_raw[f] = CODE_ZERO; }
-    for (uint32_t i = 0; i < ARM_TICKS && !exh_safety_runs(box->safety); i++) {
+    for (uint32_t i = 0; i < ARM_TICKS && !exh_safety_is_running(box->safety); i++) {
         in.command = (uint8_t)(i == 0 ? EXH_CMD_RUN : EXH_CMD_NONE);
         inputs(0);
         box_tick();
     }
-    EXH_ASSERT(exh_safety_runs(box->safety));
+    EXH_ASSERT(exh_safety_is_running(box->safety));
 }
 
 static void box_setup(void)

@@ -24,7 +24,7 @@ static inline int window_start(struct exh_velocity_scale s, int arg)
 
 static inline int32_t window_step(int32_t cnt)
 {
-    return exh_velocity_window_mps_q27(&window, &window_cfg, cnt);
+    return exh_velocity_window_step(&window, &window_cfg, cnt);
 }
 
 static inline int pole_start(struct exh_velocity_scale s, int arg)
@@ -35,7 +35,7 @@ static inline int pole_start(struct exh_velocity_scale s, int arg)
 
 static inline int32_t pole_step(int32_t cnt)
 {
-    return exh_velocity_pole_mps_q27(&pole, &pole_cfg, cnt);
+    return exh_velocity_pole_step(&pole, &pole_cfg, cnt);
 }
 
 static inline int foaw_start(struct exh_velocity_scale s, int arg)
@@ -46,7 +46,7 @@ static inline int foaw_start(struct exh_velocity_scale s, int arg)
 
 static inline int32_t foaw_step(int32_t cnt)
 {
-    return exh_velocity_foaw_mps_q27(&foaw, &foaw_cfg, cnt);
+    return exh_velocity_foaw_step(&foaw, &foaw_cfg, cnt);
 }
 
 static inline int track_start(struct exh_velocity_scale s, int arg)
@@ -57,7 +57,7 @@ static inline int track_start(struct exh_velocity_scale s, int arg)
 
 static inline int32_t track_step(int32_t cnt)
 {
-    return exh_velocity_track_mps_q27(&track, &track_cfg, cnt);
+    return exh_velocity_track_step(&track, &track_cfg, cnt);
 }
 
 #endif

@@ -59,15 +59,15 @@ static void start(void)
 static void law_op(uint32_t i)
 {
     for (uint32_t f = 0; f < FINGERS; f++) {
-        exh_contact_law(&contact[f], &path_par.contact, at[f][i], &ledger[f]);
+        exh_contact_step(&contact[f], &path_par.contact, at[f][i], &ledger[f]);
     }
 }
 
 static void law_force_op(uint32_t i)
 {
     for (uint32_t f = 0; f < FINGERS; f++) {
-        exh_contact_law(&contact[f], &path_par.contact, at[f][i], &ledger[f]);
-        bench_sink = exh_drive_force(&drive[f], &path_cfg.drive, &open, &ledger[f]);
+        exh_contact_step(&contact[f], &path_par.contact, at[f][i], &ledger[f]);
+        bench_sink = exh_drive_force_step(&drive[f], &path_cfg.drive, &open, &ledger[f]);
     }
 }
 
@@ -106,7 +106,7 @@ static long double law_off(struct exh_contact *s, const struct exh_contact_par *
                            struct exh_contact_in in)
 {
     struct exh_force_ledger l;
-    exh_contact_law(s, p, in, &l);
+    exh_contact_step(s, p, in, &l);
     return (long double)(l.spring_N_q20 + l.damper_N_q20 + l.pullback_N_q20) -
            exact_law(p, in, s->inward);
 }
@@ -192,8 +192,8 @@ static void law_force_error(struct error *e)
     for (uint32_t i = 0; i < HOUR; i++) {
         const struct exh_contact_in in = hour_in(i);
         struct exh_force_ledger l;
-        exh_contact_law(&contact[0], &path_par.contact, in, &l);
-        exh_drive_force(&drive[0], &path_cfg.drive, &open, &l);
+        exh_contact_step(&contact[0], &path_par.contact, in, &l);
+        exh_drive_force_step(&drive[0], &path_cfg.drive, &open, &l);
         error_add(e,
                   l.force_N_q20 - bench_clamp(exact_law(&path_par.contact, in, contact[0].inward),
                                               0, most_q20()));
@@ -213,14 +213,14 @@ static void force_setup(void)
     for (uint32_t i = 0; i < BENCH_OPS; i++) { mon[i] = (int16_t)bench_in(INT16_MIN, INT16_MAX); }
     law_op(0);
     for (uint32_t f = 0; f < FINGERS; f++) { ledger[f].spring_N_q20 = 20 << EXH_Q_FORCE; }
-    exh_drive_force(&drive[0], &path_cfg.drive, &open, &ledger[0]);
-    exh_drive_current(&drive[0], &path_cfg.drive, &ledger[0], &current);
+    exh_drive_force_step(&drive[0], &path_cfg.drive, &open, &ledger[0]);
+    exh_drive_current_step(&drive[0], &path_cfg.drive, &ledger[0], &current);
 }
 
 static void force_op(uint32_t i)
 {
     ledger[0].spring_N_q20 = at[0][i].pos_m_q30;
-    bench_sink = exh_drive_force(&drive[0], &path_cfg.drive, &open, &ledger[0]);
+    bench_sink = exh_drive_force_step(&drive[0], &path_cfg.drive, &open, &ledger[0]);
 }
 
 /* asked limited to 0..most, then to the last force +- slew * T. */
@@ -236,7 +236,7 @@ static void force_error(struct error *e)
         const long double up = (long double)p->slew_up_Nps * (1 << EXH_Q_FORCE) / 2000;
         const long double down = (long double)p->slew_down_Nps * (1 << EXH_Q_FORCE) / 2000;
         long double want = bench_clamp(asked, 0, most_q20());
-        exh_drive_force(&drive[0], &path_cfg.drive, &open, &l);
+        exh_drive_force_step(&drive[0], &path_cfg.drive, &open, &l);
         want = bench_clamp(want, last - down, last + up);
         error_add(e, l.force_N_q20 - want);
         path_par.drive.slew_up_Nps = bench_in(1, 100000);
@@ -247,7 +247,7 @@ static void force_error(struct error *e)
 static void current_op(uint32_t i)
 {
     ledger[0].force_N_q20 = at[0][i].pos_m_q30 >> 2;
-    bench_sink = exh_drive_current(&drive[0], &path_cfg.drive, &ledger[0], &current);
+    bench_sink = exh_drive_current_step(&drive[0], &path_cfg.drive, &ledger[0], &current);
 }
 
 /* N q20 at the peak current, which the straight table of the scene ends at. */
@@ -269,7 +269,7 @@ static void current_error(struct error *e)
         struct exh_force_ledger l = {.force_N_q20 = bench_in(0, (hot ? 40 : 8) << EXH_Q_FORCE)};
         struct exh_current_ledger c;
         long double want = p->i_peak_A_q26 * bench_clamp(l.force_N_q20 / peak_N_q20(), 0, 1);
-        exh_drive_current(&drive[0], &path_cfg.drive, &l, &c);
+        exh_drive_current_step(&drive[0], &path_cfg.drive, &l, &c);
         want = bench_clamp(
             want, 0, p->i_cont_A_q26 + bench_clamp(extra, 0, p->i_peak_A_q26 - p->i_cont_A_q26));
         error_add(e, (long double)(c.table_A_q26 + c.peak_A_q26 + c.i2t_A_q26) - want);
@@ -303,7 +303,7 @@ static void gate_op(uint32_t i)
     struct exh_drive_out out;
     uint32_t limits = 0;
     current.table_A_q26 = at[0][i].pos_m_q30;
-    exh_gate(&safety, &path_cfg.drive, 1, &current, &limits, &out);
+    exh_gate_step(&safety, &path_cfg.drive, 1, &current, &limits, &out);
     bench_sink = out.dac_raw[0];
 }
 
@@ -317,7 +317,7 @@ static void gate_error(struct error *e)
         uint32_t limits = 0;
         const long double want =
             bench_q((long double)(c.table_A_q26 * p->dac_rawpA_q16), EXH_Q_CUR + EXH_Q_DAC);
-        exh_gate(&safety, &path_cfg.drive, 1, &c, &limits, &out);
+        exh_gate_step(&safety, &path_cfg.drive, 1, &c, &limits, &out);
         error_add(e, (long double)out.dac_raw[0] - p->dac_zero_raw -
                          bench_clamp(want, -p->dac_span_raw, p->dac_span_raw));
     }

@@ -38,7 +38,7 @@ static void start(uint8_t function, uint32_t at, uint32_t n)
     }
     for (uint32_t g = 0; g < 12; g++) { par_group[g] = (struct exh_signal_group){row, ROWS, 5}; }
     for (uint32_t g = 0; g < 4; g++) { out_group[g] = (struct exh_signal_group){row, ROWS, 5}; }
-    exh_params_init(&params, &par_table, active, wanted);
+    exh_params_setup(&params, &par_table, active, wanted);
     for (uint32_t i = 0; i < SIGNALS; i++) { signal[i] = bench_i32(); }
     for (uint32_t i = 0; i < PARAMS; i++) { wanted[i] = bench_i32(); }
     regs = (struct exh_regs){.signals = &out_table,
@@ -99,8 +99,8 @@ static void line_op(uint32_t i)
     crc = exh_crc16(frame, 6);
     frame[6] = (uint8_t)(crc & 0xFFu);
     frame[7] = (uint8_t)(crc >> 8);
-    for (uint32_t k = 0; k < 8; k++) { exh_modbus_rtu_byte(&line, frame[k]); }
-    (void)exh_modbus_rtu_pass(&line, 2000);
+    for (uint32_t k = 0; k < 8; k++) { exh_modbus_rtu_receive(&line, frame[k]); }
+    (void)exh_modbus_rtu_poll(&line, 2000);
     bench_sink = exh_modbus_rtu_answer(&line, &regs, out, sizeof out);
 }
 
@@ -112,18 +112,18 @@ static void start_numbers(void)
 {
     bench_seed();
     for (uint32_t i = 0; i < BENCH_OPS; i++) { signal[i % SIGNALS] = bench_i32(); }
-    for (uint32_t i = 0; i < BENCH_OPS; i++) { bits[i] = exh_float_of(bench_i32(), 30); }
+    for (uint32_t i = 0; i < BENCH_OPS; i++) { bits[i] = exh_float_from_raw(bench_i32(), 30); }
 }
 
 static void float_of_op(uint32_t i)
 {
-    bench_sink = exh_float_of(signal[i % SIGNALS], 30);
+    bench_sink = exh_float_from_raw(signal[i % SIGNALS], 30);
 }
 
 static void float_raw_op(uint32_t i)
 {
     int32_t raw = 0;
-    bench_sink = exh_float_raw(bits[i], 30, &raw);
+    bench_sink = exh_float_to_raw(bits[i], 30, &raw);
 }
 
 static float as_float(uint32_t b)
@@ -142,7 +142,7 @@ static void float_of_error(struct error *e)
         const int32_t raw = bench_i32();
         const int frac = bench_in(0, 126);
         const float want = (float)ldexpl((long double)raw, -frac);
-        error_add(e, as_float(exh_float_of(raw, (unsigned)frac)) == want ? 0 : 1);
+        error_add(e, as_float(exh_float_from_raw(raw, (unsigned)frac)) == want ? 0 : 1);
     }
 }
 
@@ -155,7 +155,7 @@ static void float_raw_error(struct error *e)
         const long double want = rintl(ldexpl((long double)as_float(b), frac));
         const int may = want >= -2147483648.0L && want <= 2147483647.0L; /* no number is neither */
         int32_t raw = 0;
-        const int err = exh_float_raw(b, (unsigned)frac, &raw);
+        const int err = exh_float_to_raw(b, (unsigned)frac, &raw);
         error_add(e, may ? (err == 0 ? (long double)raw - want : 1) : err == 0);
     }
 }

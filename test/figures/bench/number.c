@@ -123,8 +123,8 @@ static void crc_error(struct error *e)
 static void frame_fields(struct exh_bytes *c, struct exh_drive_in *in, struct exh_drive_out *out,
                          int32_t *signal)
 {
-    exh_drive_in_bytes(c, in, 1);
-    exh_drive_out_bytes(c, out, 1);
+    exh_drive_in_serialize(c, in, 1);
+    exh_drive_out_serialize(c, out, 1);
     for (uint32_t k = 0; k < FRAME_SIGNALS; k++) { exh_bytes_i32(c, &signal[k]); }
 }
 
@@ -155,7 +155,7 @@ static void frame_error(struct error *e)
         struct exh_record r;
         struct exh_bytes c;
         int32_t signal[FRAME_SIGNALS];
-        int wrong = exh_record_read(frame_buf, len, &r) != (int32_t)len || r.tick != i;
+        int wrong = exh_record_decode(frame_buf, len, &r) != (int32_t)len || r.tick != i;
         if (!wrong) {
             c = exh_bytes_reader(r.payload, r.len_B);
             frame_fields(&c, &in, &out, signal);
@@ -285,7 +285,7 @@ static void extend_setup(void)
 
 static void extend_op(uint32_t i)
 {
-    bench_sink = exh_quad_extend(&counter, &encoder_cfg, (uint32_t)i * 8191u & 0xFFFFFF);
+    bench_sink = exh_quad_step(&counter, &encoder_cfg, (uint32_t)i * 8191u & 0xFFFFFF);
 }
 
 /* Moves of up to half the counter's width, across its wrap and the wrap of 2^32. */
@@ -295,10 +295,10 @@ static void extend_error(struct error *e)
     extend_setup();
     counter = (struct exh_quad){0};
     bench_seed();
-    exh_quad_extend(&counter, &encoder_cfg, 0);
+    exh_quad_step(&counter, &encoder_cfg, 0);
     for (int i = 0; i < CASES; i++) {
         at += (uint32_t)bench_in(-(1 << 23) + 1, (1 << 23) - 1);
-        error_add(e, (long double)exh_quad_extend(&counter, &encoder_cfg, at & 0xFFFFFF) -
+        error_add(e, (long double)exh_quad_step(&counter, &encoder_cfg, at & 0xFFFFFF) -
                          exh_from_u32(at));
     }
 }
@@ -332,7 +332,7 @@ static void knots(unsigned n)
         at_x += bench_in(1 << 20, 1 << 26);
         at_y += bench_in(1 << 20, 1 << 26);
     }
-    if (exh_table_set(knot, n) < 0) { knot[0].slope.mant = -1; }
+    if (exh_table_setup(knot, n) < 0) { knot[0].slope.mant = -1; }
 }
 
 static void table2_setup(void)

@@ -23,8 +23,8 @@ static int32_t active[512], staged[512];
 static void start(void)
 {
     static const struct exh_tune_par par = {1000};
-    exh_params_init(&p, &table, active, staged);
-    exh_params_slew(&p, &par, (struct exh_period){1, 20000});
+    exh_params_setup(&p, &table, active, staged);
+    exh_params_slew_setup(&p, &par, (struct exh_period){1, 20000});
     p.locked = 1;
 }
 
@@ -65,12 +65,12 @@ static void start_led(void)
         rule.b_Nspm_q20[i] = (i + 1) * EXH_Q(10, 1, EXH_Q_B);
         rule.k_Npm_q10[i] = EXH_Q(5000, 1, EXH_Q_K) - (i & 1) * EXH_Q(2000, 1, EXH_Q_K);
     }
-    exh_gains_lead(&p, 1);
+    exh_gains_enable(&p, 1);
     for (uint16_t k = 0; k < 5; k++) {
         const int32_t at = exh_signal_find(&table, 0x0401, k),
                       b = exh_signal_find(&table, 0x0402, k);
-        exh_params_put(&p, (uint32_t)at, EXH_Q(5000, 1, EXH_Q_K));
-        exh_params_put(&p, (uint32_t)b, EXH_Q(10, 1, EXH_Q_B));
+        exh_params_set_active(&p, (uint32_t)at, EXH_Q(5000, 1, EXH_Q_K));
+        exh_params_set_active(&p, (uint32_t)b, EXH_Q(10, 1, EXH_Q_B));
         (void)exh_params_stage_at(&p, (uint32_t)at, EXH_Q(3000, 1, EXH_Q_K));
         (void)exh_params_stage_at(&p, (uint32_t)b, EXH_Q(80, 1, EXH_Q_B));
     }

@@ -31,7 +31,7 @@ static void op(uint32_t i)
     ledger.passivity_N_q20 = 0;
     bench_sink = exh_passivity_step(&state, &cfg, cnt, cnt > 528, &ledger);
     ledger.force_N_q20 = 5 << EXH_Q_FORCE;
-    exh_passivity_held(&state, &cfg, &ledger, 3 << (EXH_Q_CUR - 1));
+    exh_passivity_update(&state, &cfg, &ledger, 3 << (EXH_Q_CUR - 1));
 }
 
 /* The limit; of what is not limited, nothing. */

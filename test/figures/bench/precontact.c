@@ -70,7 +70,7 @@ static void start_with(int from_slope)
     par = (struct exh_precontact_par){-MM(5), MM(1), 1 << 24, from_slope, 0, 60000, MM(5), 100, 50};
     EXH_ASSERT(exh_precontact_setup(&cfg, &par, material, 1, MM(7), T) == 0);
     fill();
-    for (uint32_t f = 0; f < FINGERS; f++) { exh_precontact_tell(&finger[f], &cfg, &plane, 0); }
+    for (uint32_t f = 0; f < FINGERS; f++) { exh_precontact_update(&finger[f], &cfg, &plane, 0); }
 }
 
 static void start(void)
@@ -93,7 +93,7 @@ static void step_op(uint32_t i)
 static void tell_op(uint32_t i)
 {
     (void)i;
-    for (uint32_t f = 0; f < FINGERS; f++) { exh_precontact_tell(&finger[f], &cfg, &plane, 0); }
+    for (uint32_t f = 0; f < FINGERS; f++) { exh_precontact_update(&finger[f], &cfg, &plane, 0); }
 }
 
 static volatile double sink_double;
@@ -148,7 +148,7 @@ static void error_of(struct error *e, int from_slope)
         for (int k = 0; k < 3; k++) { /* some 0.8 m of fingertip a metre of string */
             (&in.slope_q24.x)[k] = -(&p.normal_q30.x)[k] / 80 + bench_in(-99999, 99999);
         }
-        EXH_ASSERT(exh_precontact_tell(&s, &cfg, &p, 0) == 0);
+        EXH_ASSERT(exh_precontact_update(&s, &cfg, &p, 0) == 0);
         exh_precontact_step(&s, &cfg, &in);
         d = (dot(&p.normal_q30, &p.point_m_q30) - dot(&p.normal_q30, &in.tip_m_q30)) / (1 << 30);
         d += pad;
@@ -191,21 +191,21 @@ static void start_wire(void)
     hello.type = EXH_WIRE_HELLO;
     tx = (struct exh_wire_tx){1, 0};
     memset(&rx, 0, sizeof rx);
-    buf_B = exh_wire_write(&tx, &hello, 0, buf, sizeof buf);
-    EXH_ASSERT(exh_wire_take(&rx, &hello, buf, (size_t)buf_B) == EXH_WIRE_HELLO);
-    buf_B = exh_wire_write(&tx, &planes, 0, buf, sizeof buf);
+    buf_B = exh_wire_encode(&tx, &hello, 0, buf, sizeof buf);
+    EXH_ASSERT(exh_wire_decode(&rx, &hello, buf, (size_t)buf_B) == EXH_WIRE_HELLO);
+    buf_B = exh_wire_encode(&tx, &planes, 0, buf, sizeof buf);
 }
 
 static void write_op(uint32_t i)
 {
-    bench_sink = exh_wire_write(&tx, &state, i, buf, sizeof buf);
+    bench_sink = exh_wire_encode(&tx, &state, i, buf, sizeof buf);
 }
 
 static void take_op(uint32_t i)
 {
     (void)i;
     rx.seq = tx.seq - 2; /* the same packet is new again */
-    bench_sink = exh_wire_take(&rx, &planes, buf, (size_t)buf_B);
+    bench_sink = exh_wire_decode(&rx, &planes, buf, (size_t)buf_B);
 }
 
 #define METRE (1.0 / (1 << EXH_Q_POS))

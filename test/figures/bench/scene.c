@@ -33,11 +33,11 @@ static void arm(const struct exh_safety *safety, void (*tick)(void))
     out.dac_raw[0] = 32768;
     input(0, 0);
     in.command = EXH_CMD_RUN;
-    for (uint32_t i = 0; i < ARM_TICKS && !exh_safety_runs(safety); i++) {
+    for (uint32_t i = 0; i < ARM_TICKS && !exh_safety_is_running(safety); i++) {
         tick();
         input(0, 0);
     }
-    EXH_ASSERT(exh_safety_runs(safety));
+    EXH_ASSERT(exh_safety_is_running(safety));
 }
 
 static void drop_once(void)

@@ -41,7 +41,7 @@ static int32_t cnt_now[PIPE_FINGERS];
 static void deliver(struct exh_wire_packet *p)
 {
     struct exh_scene_mail *mail = scene->link->in;
-    mail->len_B[0] = (uint16_t)exh_wire_write(&world, p, 0, mail->byte[0], EXH_SCENE_PACKET_B);
+    mail->len_B[0] = (uint16_t)exh_wire_encode(&world, p, 0, mail->byte[0], EXH_SCENE_PACKET_B);
     mail->packets = 1;
 }
 
@@ -237,12 +237,12 @@ static void begin(const char *name, uint32_t rate_Hz)
     hello.u.hello.role = EXH_WIRE_WORLD;
     world = (struct exh_wire_tx){7, 0};
     deliver(&hello);
-    for (uint32_t i = 0; i < 3 * rate + 100 && !exh_safety_runs(scene->safety); i++) {
+    for (uint32_t i = 0; i < 3 * rate + 100 && !exh_safety_is_running(scene->safety); i++) {
         in.command = (uint8_t)(i == 0 ? EXH_CMD_RUN : EXH_CMD_NONE);
         inputs(0);
         tick();
     }
-    EXH_ASSERT(exh_safety_runs(scene->safety));
+    EXH_ASSERT(exh_safety_is_running(scene->safety));
     {
         const struct bilateral_par *p = (const struct bilateral_par *)scene->params->active;
         struct bilateral_cfg *cfg;
@@ -365,7 +365,7 @@ void scenes_hand(const char *name, uint32_t rate_Hz, double seconds)
     scenes_print(name, rate, "joints", "rad", &angle);
     scenes_print(name, rate, "fingertips", "m", &tip);
     if (box) {
-        EXH_ASSERT(exh_safety_runs(scene->safety));
+        EXH_ASSERT(exh_safety_is_running(scene->safety));
         scenes_print(name, rate, "force", "N", &force);
     }
 }

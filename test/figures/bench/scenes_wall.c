@@ -94,8 +94,10 @@ static void begin(const char *name, uint32_t rate_Hz)
     if (scene->params != NULL) { scene->params->locked = 1; }
     out.dac_raw[0] = ZERO;
     in.command = EXH_CMD_RUN;
-    for (uint32_t i = 0; i < 3 * rate_Hz + 100 && !exh_safety_runs(scene->safety); i++) { tick(0); }
-    EXH_ASSERT(exh_safety_runs(scene->safety));
+    for (uint32_t i = 0; i < 3 * rate_Hz + 100 && !exh_safety_is_running(scene->safety); i++) {
+        tick(0);
+    }
+    EXH_ASSERT(exh_safety_is_running(scene->safety));
     if (scene == &exh_scene_minimal) {
         minimal_par(&par, &lim_m);
         minimal_now(&now);
@@ -159,7 +161,7 @@ void scenes_wall(const char *name, uint32_t rate_Hz, double seconds)
         tick(cnt);
         compare(&force, &way, &energy, cnt);
     }
-    EXH_ASSERT(exh_safety_runs(scene->safety));
+    EXH_ASSERT(exh_safety_is_running(scene->safety));
     scenes_print(name, rate_Hz, "force", "N", &force);
     if (scene->signal != NULL) { scenes_print(name, rate_Hz, "string", "m", &way); }
     if (scene == &exh_scene_guarded) { scenes_print(name, rate_Hz, "energy", "J", &energy); }

@@ -90,7 +90,7 @@ int tick_setup(struct tick_box *b)
         err = exh_hand_setup(&b->hand[f], &exh_hit2_bones[f], &hand);
         if (err == 0) {
             const struct exh_plane p = plane_of(&b->hand[f]);
-            err = exh_precontact_tell(&b->plane[f], &b->precontact, &p, 0);
+            err = exh_precontact_update(&b->plane[f], &b->precontact, &p, 0);
         }
     }
     tick_input(&at_rest, 0);
@@ -110,7 +110,7 @@ int32_t tick_once(struct tick_box *b, const struct tick_in *in)
         exh_hand_tip(&b->hand[f], &angle_turn_q32[3 * f], &at.tip_m_q30);
         (void)exh_precontact_step(&b->plane[f], &b->precontact, &at);
         q.lim_m_q30 = b->plane[f].lim_m_q30;
-        all += exh_contact_law(&b->contact[f], &b->wall, q, &b->force[f]);
+        all += exh_contact_step(&b->contact[f], &b->wall, q, &b->force[f]);
     }
     return all;
 }

@@ -72,7 +72,7 @@ static void ours_op(uint32_t i)
     bench_sink =
         exh_passivity_step(&state, &cfg, energy_cnt[i], 1, &ledger) + ledger.passivity_N_q20;
     ledger.force_N_q20 = 5 << EXH_Q_FORCE;
-    exh_passivity_held(&state, &cfg, &ledger, 3 << (EXH_Q_CUR - 1));
+    exh_passivity_update(&state, &cfg, &ledger, 3 << (EXH_Q_CUR - 1));
 }
 
 static long double ours_off(uint32_t i)

@@ -32,7 +32,7 @@ static void tell(uint32_t f, const struct exh_plane *p)
 {
     const double n[3] = {si(p->normal_q30.x), si(p->normal_q30.y), si(p->normal_q30.z)};
     finger[f] = (struct exh_precontact){0};
-    EXH_ASSERT(exh_precontact_tell(&finger[f], &cfg, p, 0) == 0);
+    EXH_ASSERT(exh_precontact_update(&finger[f], &cfg, p, 0) == 0);
     in_double[f] = (struct plain_freeze_double){{n[0], n[1], n[2]}, 0, -0.005, 0.001, 0, 1, 0};
     in_double[f].offset = n[0] * si(p->point_m_q30.x) + n[1] * si(p->point_m_q30.y) +
                           n[2] * si(p->point_m_q30.z) + si(MM(7));

@@ -63,8 +63,8 @@ static void setup(void)
 static void ours_op(uint32_t i)
 {
     for (uint32_t f = 0; f < WORK_FINGERS; f++) {
-        exh_contact_law(&contact[f], &par, (struct exh_contact_in){op_pos[i][f], op_vel[i][f], 0},
-                        &ledger);
+        exh_contact_step(&contact[f], &par, (struct exh_contact_in){op_pos[i][f], op_vel[i][f], 0},
+                         &ledger);
         bench_sink = ledger.spring_N_q20 + ledger.damper_N_q20;
     }
 }
@@ -76,7 +76,7 @@ static long double ours_off(uint32_t i)
     const long double want = wall_N(pos, last_m);
     const int32_t vel = (n - (int32_t)(last_m / WALL_STEP_M + 0.5)) * 71213 * 250;
     (void)i;
-    exh_contact_law(&contact[0], &par, (struct exh_contact_in){n * 71213, vel, 0}, &ledger);
+    exh_contact_step(&contact[0], &par, (struct exh_contact_in){n * 71213, vel, 0}, &ledger);
     last_m = pos;
     return bench_q((long double)(ledger.spring_N_q20 + ledger.damper_N_q20), EXH_Q_FORCE) - want;
 }

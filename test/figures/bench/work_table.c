@@ -47,7 +47,7 @@ static void setup(void)
             (in_double.y[k + 1] - in_double.y[k]) / (in_double.x[k + 1] - in_double.x[k]);
         in_float.slope[k] = (float)in_double.slope[k];
     }
-    EXH_ASSERT(exh_table_set(knot, CURVE_KNOTS) == 0);
+    EXH_ASSERT(exh_table_setup(knot, CURVE_KNOTS) == 0);
 }
 
 static void ours_op(uint32_t i)

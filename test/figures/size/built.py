@@ -25,9 +25,9 @@ FEATURES = (("glove: 22 angles", ("lib/glove", "lib/glove_cal", "lib/glove_fit",
             ("registers (Modbus)", ("lib/modbus", "lib/modbus_rtu", "pc104/modbus")),
             ("calibration of fingers", ("lib/calibrate", "lib/src/run/calib_set")),
             ("parameters at run time", ("lib/params", "lib/signal")),
-            ("self-test", ("lib/selftest",)), ("guard of memory", ("lib/guard",)), ("watch of speed and encoder", ("lib/watch",)),
+            ("self-test", ("lib/selftest",)), ("guard of memory", ("lib/integrity",)), ("watch of speed and encoder", ("lib/motion",)),
             ("supply", ("lib/supply",)), ("state machine and gate", ("lib/safety", "lib/gate")),
-            ("current follows what was asked", ("lib/track",)))
+            ("current follows what was asked", ("lib/tracking",)))
 
 
 def say(text):

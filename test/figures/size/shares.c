@@ -8,8 +8,8 @@ struct finger_par {
     struct exh_velocity_par velocity;
     struct exh_contact_par contact;
     struct exh_drive_par drive;
-    struct exh_track_par track;
-    struct exh_watch_par watch;
+    struct exh_tracking_par track;
+    struct exh_motion_par watch;
     int32_t kf_NpA_q20;
     struct exh_hand_par hand;
     struct exh_precontact_par precontact;

@@ -173,7 +173,7 @@ static void inputs(struct exh_scene_in *in, const struct exh_drive_out *out, uin
 
 static int runs(void)
 {
-    return EXH_SCENE.safety != NULL && exh_safety_runs(EXH_SCENE.safety);
+    return EXH_SCENE.safety != NULL && exh_safety_is_running(EXH_SCENE.safety);
 }
 
 /* Until the box runs, or cannot. */

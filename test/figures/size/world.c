@@ -35,7 +35,7 @@ void world_place(void)
 
 static void put(struct exh_scene_mail *to, struct exh_wire_packet *p)
 {
-    const int32_t n = exh_wire_write(&tx, p, 0, to->byte[to->packets], EXH_SCENE_PACKET_B);
+    const int32_t n = exh_wire_encode(&tx, p, 0, to->byte[to->packets], EXH_SCENE_PACKET_B);
     if (n > 0) { to->len_B[to->packets++] = (uint16_t)n; }
 }
 
@@ -55,7 +55,7 @@ void world_answer(const struct exh_scene_link *link)
     link->in->packets = 0;
     for (unsigned i = 0; i < link->out->packets; i++) {
         struct exh_wire_packet p;
-        const int type = exh_wire_take(&rx, &p, link->out->byte[i], link->out->len_B[i]);
+        const int type = exh_wire_decode(&rx, &p, link->out->byte[i], link->out->len_B[i]);
         if (type == EXH_WIRE_HELLO) {
             p.u.hello.role = EXH_WIRE_WORLD;
             put(link->in, &p);

@@ -63,7 +63,7 @@ static void law_start(int32_t k_Npm_q10)
     law.knot[1] = (struct exh_knot){EXH_Q(22, 1, EXH_Q_FORCE), EXH_Q(66, 10, EXH_Q_CUR), {0, 0}};
     if (exh_quad_setup(&law.quad_cfg, &law.quad_par, T, 16) != 0 ||
         exh_velocity_window_setup(&law.velocity_cfg, scale, &p) != 0 ||
-        exh_table_set(law.knot, 2) != 0 || exh_table_invert(law.held, law.knot, 2) != 0 ||
+        exh_table_setup(law.knot, 2) != 0 || exh_table_invert(law.held, law.knot, 2) != 0 ||
         exh_drive_setup(&law.drive_cfg, &law.drive_par, T, (struct exh_table){law.knot, 2},
                         (struct exh_table){NULL, 0}) != 0 ||
         exh_passivity_setup(&law.passivity_cfg, &law.passivity_par, &law.drive_cfg,
@@ -86,19 +86,19 @@ static void hot_start(void)
 static void law_tick(unsigned i, int32_t out[OUTS])
 {
     static const struct exh_permit open = {EXH_PERMIT_OPEN, INT32_C(1) << 30, 0, 1, {0, 0}};
-    const int32_t cnt = exh_quad_extend(&law.quad, &law.quad_cfg, (uint32_t)wave[i] + 65000u);
+    const int32_t cnt = exh_quad_step(&law.quad, &law.quad_cfg, (uint32_t)wave[i] + 65000u);
     const struct exh_contact_in in = {
         exh_quad_pos_m_q30(&law.quad_par, cnt),
-        exh_velocity_window_mps_q27(&law.velocity, &law.velocity_cfg, cnt),
+        exh_velocity_window_step(&law.velocity, &law.velocity_cfg, cnt),
         -EXH_Q(3, 1000, EXH_Q_POS)};
     struct exh_force_ledger f;
     struct exh_current_ledger c;
-    const int touching = exh_contact_law(&law.contact, &law.par, in, &f);
+    const int touching = exh_contact_step(&law.contact, &law.par, in, &f);
     exh_passivity_step(&law.passivity, &law.passivity_cfg, cnt, touching, &f);
-    exh_drive_force(&law.drive, &law.drive_cfg, &open, &f);
-    exh_drive_current(&law.drive, &law.drive_cfg, &f, &c);
+    exh_drive_force_step(&law.drive, &law.drive_cfg, &open, &f);
+    exh_drive_current_step(&law.drive, &law.drive_cfg, &f, &c);
     c.coded_A_q26 = (int32_t)(c.table_A_q26 + c.peak_A_q26 + c.i2t_A_q26);
-    exh_passivity_held(&law.passivity, &law.passivity_cfg, &f, c.coded_A_q26);
+    exh_passivity_update(&law.passivity, &law.passivity_cfg, &f, c.coded_A_q26);
     out[0] = f.force_N_q20;
     out[1] = c.coded_A_q26;
 }
@@ -132,9 +132,9 @@ static void speed_start(void)
 static void speed_tick(unsigned i, int32_t out[OUTS])
 {
     const int32_t cnt = exh_wrap_add(INT32_MAX - 600, wave[i]);
-    out[0] = exh_velocity_window_mps_q27(&speed.window, &speed.window_cfg, cnt);
-    out[1] = exh_velocity_pole_mps_q27(&speed.pole, &speed.pole_cfg, cnt);
-    out[2] = exh_velocity_track_mps_q27(&speed.track, &speed.track_cfg, cnt);
+    out[0] = exh_velocity_window_step(&speed.window, &speed.window_cfg, cnt);
+    out[1] = exh_velocity_pole_step(&speed.pole, &speed.pole_cfg, cnt);
+    out[2] = exh_velocity_track_step(&speed.track, &speed.track_cfg, cnt);
 }
 
 /* Low-passes of both orders, an input to the ends of the word. */

@@ -83,12 +83,12 @@ static void filter_start(union state *s, int32_t x)
 
 static int32_t pole_step(union state *s, const void *cfg, int32_t x)
 {
-    return exh_velocity_pole_mps_q27(&s->pole, cfg, x / 65536);
+    return exh_velocity_pole_step(&s->pole, cfg, x / 65536);
 }
 
 static int32_t track_step(union state *s, const void *cfg, int32_t x)
 {
-    return exh_velocity_track_mps_q27(&s->track, cfg, x / 65536);
+    return exh_velocity_track_step(&s->track, cfg, x / 65536);
 }
 
 static void count_start(union state *s, int32_t x)

@@ -68,7 +68,7 @@ static struct exh_contact_in measured(struct wall *w)
     if (w->step_m > 0) {
         const int32_t cnt = counts(w);
         in.pos_m_q30 = exh_quad_pos_m_q30(&w->quad, cnt);
-        in.vel_mps_q27 = exh_velocity_window_mps_q27(&w->velocity, &w->velocity_cfg, cnt);
+        in.vel_mps_q27 = exh_velocity_window_step(&w->velocity, &w->velocity_cfg, cnt);
     } else {
         in.pos_m_q30 = rounded(w->x_m / LSB_M);
         in.vel_mps_q27 = rounded(((double)in.pos_m_q30 - w->pos_m_q30) / (8 * w->T_s));
@@ -82,9 +82,9 @@ static double command(struct wall *w)
 {
     const struct exh_permit open = {EXH_PERMIT_OPEN, INT32_C(1) << 30, 0, 1, {0, 0}};
     struct exh_force_ledger f;
-    exh_contact_law(&w->contact, &w->par, measured(w), &f);
+    exh_contact_step(&w->contact, &w->par, measured(w), &f);
     if (w->f_max_N > 0) {
-        exh_drive_force(&w->drive, &w->drive_cfg, &open, &f);
+        exh_drive_force_step(&w->drive, &w->drive_cfg, &open, &f);
         return f.force_N_q20 / 1048576.0 - w->bias_N;
     }
     return (double)(f.spring_N_q20 + f.damper_N_q20) / 1048576.0 - w->bias_N;
@@ -99,7 +99,7 @@ static int set_drive(struct wall *w)
     w->knot[0].x = w->knot[0].y = 0;
     w->knot[1].x = EXH_Q(100, 1, EXH_Q_FORCE);
     w->knot[1].y = EXH_Q(6, 1, EXH_Q_CUR);
-    if (exh_table_set(w->knot, 2) != 0) { return -EXH_E_RANGE; }
+    if (exh_table_setup(w->knot, 2) != 0) { return -EXH_E_RANGE; }
     return exh_drive_setup(&w->drive_cfg, p, w->T, (struct exh_table){w->knot, 2},
                            (struct exh_table){NULL, 0});
 }
@@ -131,7 +131,7 @@ int wall_start(struct wall *w)
         w->drive.force_N_q20 = rounded(w->load_N * 1048576);
     }
     w->pos_m_q30 = rounded(w->x_m / LSB_M);
-    if (w->step_m > 0) { exh_velocity_window_mps_q27(&w->velocity, &w->velocity_cfg, counts(w)); }
+    if (w->step_m > 0) { exh_velocity_window_step(&w->velocity, &w->velocity_cfg, counts(w)); }
     return err;
 }
 

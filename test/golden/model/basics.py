@@ -73,7 +73,7 @@ BYTES = "cap | at ok crc u8 u16 i16 u32 i32 i64"
 
 
 def read_record(buf):
-    """What exh_record_read() says of the bytes: (result, type, version, length, seq, tick)."""
+    """What exh_record_decode() says of the bytes: (result, type, version, length, seq, tick)."""
     bad = lambda e: (-e, 0, 0, 0, 0, 0)
     if len(buf) < 2:
         return bad(SHORT)

@@ -69,7 +69,7 @@ static void take_params(void)
     int err = -EXH_E_UNKNOWN;
     if (next(&r, EXH_RECORD_HEADER)) {
         c = exh_bytes_reader(r.payload, r.len_B);
-        exh_record_header_bytes(&c, &h);
+        exh_record_header_serialize(&c, &h);
         err = exh_params_load(EXH_SCENE.params, r.payload + c.at, r.len_B - c.at, NULL);
     }
     if (err < 0) { pc104_halt(PC104_EXIT_ABSENT, "tape: not a log of this scene"); }
@@ -98,7 +98,7 @@ static void show(struct exh_bytes c)
     static struct exh_scene_in in;
     static int32_t signal[SIGNALS_MAX];
     struct exh_drive_out out;
-    exh_log_frame_bytes(&c, &EXH_SCENE, &in, &out, signal);
+    exh_log_frame_serialize(&c, &EXH_SCENE, &in, &out, signal);
     if (!exh_bytes_ok(&c)) { pc104_halt(PC104_EXIT_FAILED, "tape: a frame that is none"); }
     show_drive(&in.drive);
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {

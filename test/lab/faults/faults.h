@@ -11,7 +11,7 @@
 #include "exhand/run/scene.h"
 
 #include "exhand/frame.h"
-#include "exhand/guard.h"
+#include "exhand/integrity.h"
 #include "exhand/safety.h"
 
 #include <stdint.h>
@@ -148,7 +148,7 @@ struct faults_memory {
     const struct exh_signal_table *table; /* theirs */
     void *cal;                            /* tables and what else set-up made of the calibration */
     uint32_t cal_B;
-    struct exh_guard *guard;
+    struct exh_integrity *guard;
     const void *area; /* what the guard looks at: cal is part of it */
     uint32_t area_B;
 };

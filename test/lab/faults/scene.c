@@ -59,7 +59,7 @@ static void look_at(uint8_t scene, struct faults_view *v)
 {
     const struct exh_safety *s = faults_memory(scene).safety;
     memset(v, 0, sizeof *v);
-    v->open = exh_safety_open(s);
+    v->open = exh_safety_is_open(s);
     v->refused = s->refused;
     if (scene == FAULTS_DROP) {
         look_at_drop(v);
@@ -115,7 +115,7 @@ void faults_lose(uint8_t scene, uint32_t steps)
         cfg->vouches &= left;
         if (steps & EXH_ARM_SELFTEST) { cfg->tested = 0; }
     }
-    exh_guard_seal(m.guard, m.area, m.area_B, m.guard->params);
+    exh_integrity_seal(m.guard, m.area, m.area_B, m.guard->params);
 }
 
 void faults_through_bytes(uint8_t scene)

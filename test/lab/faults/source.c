@@ -213,23 +213,23 @@ uint32_t faults_source_ahead(unsigned scene, unsigned source, uint32_t how)
 {
     const struct faults_memory m = faults_memory((uint8_t)scene);
     if (source == FAULTS_PAR) { return AHEAD_TICKS; }
-    return (m.area_B + 7) / 8 - offset_in_area(&m, how) / EXH_GUARD_B - 1;
+    return (m.area_B + 7) / 8 - offset_in_area(&m, how) / EXH_INTEGRITY_B - 1;
 }
 
 /* As if it had been sealed so much earlier: it goes on until it is there. */
 static void place_guard(const struct faults_memory *m, const struct faults_what *w)
 {
     const int passed = w->place == FAULTS_PASSED;
-    const uint32_t part = offset_in_area(m, w->how) / EXH_GUARD_B + (passed ? 1 : 0);
-    const uint32_t pairs = m->pars / EXH_GUARD_WORDS, pair = bit_at(m->pars * 4u, w->how) / 8;
+    const uint32_t part = offset_in_area(m, w->how) / EXH_INTEGRITY_B + (passed ? 1 : 0);
+    const uint32_t pairs = m->pars / EXH_INTEGRITY_WORDS, pair = bit_at(m->pars * 4u, w->how) / 8;
     const uint32_t to = (passed ? pair + 1 : pair + pairs - AHEAD_TICKS) % pairs;
     if (w->place == FAULTS_ANYWHERE) { return; }
     for (uint32_t k = 0; k < 2 * (m->area_B + m->pars); k++) {
-        if (w->source == FAULTS_CAL ? m->guard->at == part * EXH_GUARD_B % m->area_B
-                                    : m->guard->params->at == to * EXH_GUARD_WORDS) {
+        if (w->source == FAULTS_CAL ? m->guard->at == part * EXH_INTEGRITY_B % m->area_B
+                                    : m->guard->params->at == to * EXH_INTEGRITY_WORDS) {
             return;
         }
-        (void)exh_guard_step(m->guard);
+        (void)exh_integrity_step(m->guard);
     }
 }
 

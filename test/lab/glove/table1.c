@@ -79,7 +79,7 @@ static int position_pp(const struct glove_rest *r, const struct sim_device *d, d
     }
     memset(&s, 0, sizeof s);
     for (long n = 0; n < r->ticks; n++) {
-        see(&seen, exh_quad_pos_m_q30(&par, exh_quad_extend(&s, &cfg, r->enc[n])));
+        see(&seen, exh_quad_pos_m_q30(&par, exh_quad_step(&s, &cfg, r->enc[n])));
     }
     *step_m = d->step_m / d->decode;
     *pp_m = width(&seen, *step_m * (1 << 30)) / (1 << 30);

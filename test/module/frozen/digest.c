@@ -16,7 +16,7 @@ static uint32_t crc_of(uint32_t crc, struct exh_drive_out *out)
 {
     uint8_t byte[2 * EXH_FINGERS + 2];
     struct exh_bytes c = exh_bytes_writer(byte, sizeof byte);
-    exh_drive_out_bytes(&c, out, EXH_FINGERS);
+    exh_drive_out_serialize(&c, out, EXH_FINGERS);
     return exh_crc32(crc, byte, sizeof byte);
 }
 

@@ -71,7 +71,7 @@ static inline int ride(struct ride *r, const struct exh_scene *sc, const struct 
         in->command = EXH_CMD_RUN;
     }
     r->at++;
-    if (r->ran > 0 || exh_safety_runs(sc->safety)) { r->ran++; }
+    if (r->ran > 0 || exh_safety_is_running(sc->safety)) { r->ran++; }
     if (r->ran > RIDE_TICKS) {
         if (r->after < RIDE_AFTER - 20) { ride_event(r, in); }
         if (r->after == RIDE_AFTER - 10) { in->drive.din &= ~(uint32_t)EXH_DIN_DEADMAN; }

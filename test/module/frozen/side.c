@@ -33,12 +33,12 @@ static int points(void)
 
 static void state(struct exh_bytes *c)
 {
-    exh_quad_bytes(c, &s.quad);
-    exh_velocity_window_bytes(c, &s.vel);
-    exh_contact_bytes(c, &s.contact);
-    exh_drive_bytes(c, &s.drive);
-    exh_track_bytes(c, &s.track);
-    exh_safety_bytes(c, &s.safety);
+    exh_quad_serialize(c, &s.quad);
+    exh_velocity_window_serialize(c, &s.vel);
+    exh_contact_serialize(c, &s.contact);
+    exh_drive_serialize(c, &s.drive);
+    exh_tracking_serialize(c, &s.track);
+    exh_safety_serialize(c, &s.safety);
 }
 
 const struct side SIDE = {&exh_scene_minimal, cfg, points, state};

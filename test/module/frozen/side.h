@@ -12,7 +12,7 @@ struct side_cfg {
     struct exh_quad_cfg quad;
     struct exh_velocity_window_cfg vel;
     struct exh_drive_cfg drive;
-    struct exh_track_cfg track;
+    struct exh_tracking_cfg track;
     struct exh_safety_cfg safety;
     struct exh_knot knot[2];
 };

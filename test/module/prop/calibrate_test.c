@@ -142,7 +142,7 @@ TEST(a_bent_table_is_recovered_to_the_lsb)
             x += check_i32_in(1 << 16, 20 << EXH_Q_FORCE);
             y += check_i32_in(1 << 16, EXH_Q(16, 10, EXH_Q_CUR));
         }
-        CHECK_EQ_I64(exh_table_set(known, 5), 0);
+        CHECK_EQ_I64(exh_table_setup(known, 5), 0);
         for (unsigned i = 0; i < 8; i++) { /* knots, and a place before each */
             const int32_t to = known[i / 2 + 1].x, from = known[i / 2].x;
             const int32_t f = i % 2 ? to : from + check_i32_in(1 << 12, to - from - (1 << 12));
@@ -195,7 +195,7 @@ TEST(anything_is_saved_and_loaded_or_refused)
         struct exh_calib_point p[EXH_CALIB_POINTS_MAX], q[EXH_CALIB_POINTS_MAX];
         struct exh_calib c = {.point = p, .points = (uint8_t)check_i32_in(0, 16), .cap = 16};
         struct exh_calib back = {.point = q, .cap = 16};
-        struct exh_calib_bad bad = {99, 99};
+        struct exh_calib_error bad = {99, 99};
         uint8_t buf[EXH_CALIB_IMAGE_B], again[EXH_CALIB_IMAGE_B];
         int32_t len;
         c.device_id = (uint32_t)check_u64();
@@ -213,8 +213,8 @@ TEST(anything_is_saved_and_loaded_or_refused)
             p[i].friction_A_q26 = check_i32_in(-1, 1 << 20);
         }
         len = exh_calib_save(&c, buf, sizeof buf, &bad);
-        CHECK((len < 0) == (exh_calib_valid(&c, NULL) < 0), "saved %" PRId32, len);
-        CHECK(len > 0 || bad.what < EXH_CALIB_WHATS, "refused without a name");
+        CHECK((len < 0) == (exh_calib_validate(&c, NULL) < 0), "saved %" PRId32, len);
+        CHECK(len > 0 || bad.what < EXH_CALIB_ERRORS, "refused without a name");
         cases++;
         if (len < 0) {
             CHECK(len == -EXH_E_RANGE ||

@@ -32,7 +32,7 @@ static void law_case(const struct exh_contact_par *par, struct exh_contact s,
     const int64_t past = (int64_t)in.pos_m_q30 - in.lim_m_q30;
     const uint32_t before = check_saturations;
     struct exh_force_ledger f = {1, 1, 1, 1, 1, 1, 1, 1};
-    const int touching = exh_contact_law(&s, par, in, &f);
+    const int touching = exh_contact_step(&s, par, in, &f);
     const int64_t sum = f.spring_N_q20 + f.damper_N_q20 + f.pullback_N_q20;
     const struct wide err =
         wide_sub(wide_shl(wide_of(sum), 27), exact_N_q47(par, in, touching, s.inward));
@@ -108,7 +108,7 @@ TEST(pullback_against_the_whole_history)
         int inward = 0;
         for (int k = 0; k < 50; k++) {
             struct exh_force_ledger f;
-            (void)exh_contact_law(&s, &par, (struct exh_contact_in){pos, 0, INT32_MAX}, &f);
+            (void)exh_contact_step(&s, &par, (struct exh_contact_in){pos, 0, INT32_MAX}, &f);
             if (inward ? pos > far + par.f0_band_m_q30 : pos < far - par.f0_band_m_q30) {
                 inward = !inward;
                 far = pos;

@@ -52,7 +52,7 @@ TEST(table_is_near_its_lines_and_monotone)
         const unsigned n = (unsigned)check_i32_in(2, 8);
         const struct exh_table t = {k, (uint8_t)n};
         int32_t x, y;
-        if (!any_table(k, n, 31) || exh_table_set(k, n) < 0) { continue; }
+        if (!any_table(k, n, 31) || exh_table_setup(k, n) < 0) { continue; }
         x = check_u64() % 2 ? check_i32() : check_i32_in(k[0].x, k[n - 1].x);
         y = exh_table_at(t, x);
         CHECK(on_table(k, n, x, y),
@@ -78,7 +78,7 @@ TEST(table_set_follows_its_contract)
             rises &= i == 0 || (k[i].x > k[i - 1].x && k[i].y > k[i - 1].y);
         }
         fits = (int64_t)k[2].x - k[0].x <= INT32_MAX && (int64_t)k[2].y - k[0].y <= INT32_MAX;
-        err = exh_table_set(k, 3);
+        err = exh_table_setup(k, 3);
         CHECK((err == 0) == (rises && fits),
               "error %d, rises %d, fits %d: y %" PRId32 " %" PRId32 " %" PRId32 " at x %" PRId32
               " %" PRId32 " %" PRId32,
@@ -96,7 +96,7 @@ TEST(inverse_round_trip)
         const struct exh_table there = {k, 2}, back = {inv, 2};
         int64_t err, dx, dy;
         int32_t x, most;
-        if (!any_table(k, 2, 31) || exh_table_set(k, 2) < 0) { continue; }
+        if (!any_table(k, 2, 31) || exh_table_setup(k, 2) < 0) { continue; }
         if (exh_table_invert(inv, k, 2) < 0) { continue; }
         dx = (int64_t)k[1].x - k[0].x;
         dy = (int64_t)k[1].y - k[0].y;
@@ -152,7 +152,7 @@ static int any_axis(struct axis *a)
         a->knot[i].x -= zero.x;
         a->knot[i].y -= zero.y;
     }
-    if (exh_table_set(a->knot, 4) < 0) { return 0; }
+    if (exh_table_setup(a->knot, 4) < 0) { return 0; }
     return exh_drive_setup(&a->cfg, &a->par, a->T, t, check_u64() % 2 ? t : none) == 0;
 }
 
@@ -186,7 +186,7 @@ TEST(force_ledger_sums_and_limits_hold)
         most = a.par.f_max_N_q20 < a.knot[3].x ? a.par.f_max_N_q20 : a.knot[3].x;
         last = s.force_N_q20 = check_i32_in(0, most);
         run = check_u64() % 8 != 0;
-        bits = exh_drive_force(&s, &a.cfg, run ? &open_permit : &closed, &f);
+        bits = exh_drive_force_step(&s, &a.cfg, run ? &open_permit : &closed, &f);
         CHECK(f.force_N_q20 == asked + f.clamp_N_q20 + f.slew_N_q20, "ledger: %" PRId32,
               f.force_N_q20);
         CHECK(s.force_N_q20 == f.force_N_q20, "state");
@@ -220,7 +220,7 @@ TEST(force_above_a_lowered_limit_comes_down)
         most = a.par.f_max_N_q20 < a.knot[3].x ? a.par.f_max_N_q20 : a.knot[3].x;
         last = s.force_N_q20 = check_i32_in(most, INT32_MAX);
         f.spring_N_q20 = check_i64() >> 2;
-        (void)exh_drive_force(&s, &a.cfg, &open_permit, &f);
+        (void)exh_drive_force_step(&s, &a.cfg, &open_permit, &f);
         CHECK(f.force_N_q20 <= most || f.force_N_q20 < last, "stays at %" PRId32, last);
         CHECK(within_slew(&a, (int64_t)f.force_N_q20 - last, a.par.slew_down_Nps), "snaps");
         CHECK(f.force_N_q20 == f.spring_N_q20 + f.clamp_N_q20 + f.slew_N_q20, "ledger");
@@ -242,7 +242,7 @@ TEST(current_ledger_sums_and_limits_hold)
         s.force_N_q20 = 0;
         s.i2t_q32 = heat = a.cfg.i2t_budget_q32 / 4096 * check_i32_in(0, 4096);
         f.force_N_q20 = check_u64() % 2 ? check_i32() : check_i32_in(a.knot[0].x, a.knot[3].x);
-        bits = exh_drive_current(&s, &a.cfg, &f, &i);
+        bits = exh_drive_current_step(&s, &a.cfg, &f, &i);
         sum = i.table_A_q26 + i.peak_A_q26 + i.i2t_A_q26;
         peaked = i.table_A_q26 + i.peak_A_q26;
         CHECK(on_table(a.knot, 4, f.force_N_q20, (int32_t)i.table_A_q26), "table");
@@ -261,7 +261,7 @@ TEST(current_ledger_sums_and_limits_hold)
         CHECK(s.i2t_q32 >= 0 && s.i2t_q32 <= a.cfg.i2t_budget_q32 + 44 * (INT64_C(1) << 32),
               "heat %" PRId64, s.i2t_q32);
         s.i2t_q32 = a.cfg.i2t_budget_q32 - (a.cfg.i2t_budget_q32 - heat) / 2;
-        (void)exh_drive_current(&s, &a.cfg, &f, &hotter);
+        (void)exh_drive_current_step(&s, &a.cfg, &f, &hotter);
         CHECK(hotter.i2t_A_q26 <= 0 ? hotter.i2t_A_q26 <= i.i2t_A_q26 || i.i2t_A_q26 > 0
                                     : hotter.i2t_A_q26 >= i.i2t_A_q26,
               "hotter allows more");
@@ -282,7 +282,7 @@ TEST(heat_is_what_was_spent)
         s.force_N_q20 = 0;
         s.i2t_q32 = a.cfg.i2t_budget_q32 / 2;
         f.force_N_q20 = check_i32();
-        (void)exh_drive_current(&s, &a.cfg, &f, &i);
+        (void)exh_drive_current_step(&s, &a.cfg, &f, &i);
         spent = i.table_A_q26 + i.peak_A_q26 + i.i2t_A_q26;
         cont2 = wide_mul(a.par.i_cont_A_q26, a.par.i_cont_A_q26);
         spent = wide_sat64(wide_shr_floor(wide_sub(wide_mul(spent, spent), cont2), 20));

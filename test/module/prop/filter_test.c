@@ -202,7 +202,7 @@ TEST(a_change_of_cut_off_does_not_bump)
             if (check_i32_in(0, 9) == 0) {
                 now = any(2, 1);
                 if (now.kind != EXH_FILTER_LOW2) { now = was; }
-                exh_filter_retune(&s, 1, &was, &now);
+                exh_filter_retune(&s, &was, &now, 1);
             }
             exh_filter_step(&s, &now, &x, &y, 1);
             moved = (int64_t)y - before;

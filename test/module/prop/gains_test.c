@@ -147,8 +147,8 @@ static void inside_gains(const struct exh_gains_par *r, int32_t *k, int32_t *b)
 
 static void start_at(unsigned shift)
 {
-    exh_params_init(&params, &table, (int32_t *)active, (int32_t *)staged);
-    exh_gains_lead(&params, 1);
+    exh_params_setup(&params, &table, (int32_t *)active, (int32_t *)staged);
+    exh_gains_enable(&params, 1);
     params.locked = 1;
     params.shift = (uint8_t)shift;
     for (int w = 0; w < WALLS; w++) { /* of another wall than those a test is about: none */
@@ -177,10 +177,10 @@ TEST(inside_in_every_tick)
                 CHECK_EQ_I64(exh_params_stage(&params, 0x0401, w, k), 0);
                 CHECK_EQ_I64(exh_params_stage(&params, 0x0402, w, b), 0);
             }
-            if (check_i32_in(0, 99) == 0) { exh_params_drop(&params); }
+            if (check_i32_in(0, 99) == 0) { exh_params_discard(&params); }
             (void)exh_params_apply(&params);
             exh_gains_step(&params, &r);
-            CHECK(!exh_params_look(&params), "told in tick %d", t);
+            CHECK(!exh_params_verify(&params), "told in tick %d", t);
             for (int w = 0; w < WALLS; w++) {
                 CHECK(want(&r, active[w].k_Npm_q10, active[w].b_Nspm_q20),
                       "tick %d k %" PRId32 " b %" PRId32, t, active[w].k_Npm_q10,

@@ -158,7 +158,7 @@ TEST(the_fit_finds_the_truth)
         struct exh_glove_cal cal = {1, 1, 0, 1, 1u << 4 | 1u << 7 | 1u << 10, {{0}}};
         struct exh_glove_fit fit[SENSORS];
         struct exh_glove_pose pose[8];
-        struct exh_glove_bad bad = {99, 99};
+        struct exh_glove_error bad = {99, 99};
         struct truth t[3];
         memset(pose, 0, sizeof pose);
         for (unsigned k = 0; k < 3; k++) {
@@ -189,7 +189,7 @@ TEST(the_fit_finds_the_truth)
             }
         }
         CHECK(exh_glove_cal_fit(&cal, fit, pose, 8, &exh_glove_fit_default, &bad) == 0, "%s of %s",
-              exh_glove_what_text(bad.what), exh_glove_sensor_text(bad.at));
+              exh_glove_error_text(bad.what), exh_glove_sensor_text(bad.at));
         for (unsigned k = 0; k < 3; k++) {
             const struct exh_glove_sensor *s = &cal.sensor[id[k]];
             const int64_t gain = (INT64_C(1) << 54) / ((int64_t)360 * t[k].deg_raw_q16);
@@ -215,7 +215,7 @@ TEST(any_poses_end_in_a_word)
         struct exh_glove_cal cal = any_cal();
         struct exh_glove_fit fit[SENSORS];
         static struct exh_glove_pose pose[EXH_GLOVE_POSES_MAX];
-        struct exh_glove_bad bad = {99, 99};
+        struct exh_glove_error bad = {99, 99};
         const struct exh_glove_fit_par par = {check_i32(), check_i32(), check_i32()};
         const unsigned n = (unsigned)check_i32_in(0, EXH_GLOVE_POSES_MAX);
         int err;
@@ -230,8 +230,8 @@ TEST(any_poses_end_in_a_word)
         }
         err = exh_glove_cal_fit(&cal, fit, pose, n, &par, &bad);
         CHECK(err == 0 || err == -EXH_E_RANGE, "%d", err);
-        CHECK(err == 0 ? exh_glove_cal_valid(&cal, NULL) == 0
-                       : cal.present == 0 && bad.what < EXH_GLOVE_WHATS,
+        CHECK(err == 0 ? exh_glove_cal_validate(&cal, NULL) == 0
+                       : cal.present == 0 && bad.what < EXH_GLOVE_ERRORS,
               "%d", bad.what);
     }
 }
@@ -265,10 +265,10 @@ TEST(what_moves_together_is_refused)
         }
         CHECK_EQ_I64(exh_glove_cal_fit(&cal, fit, pose, EXH_GLOVE_POSES_MAX, &par, NULL),
                      -EXH_E_RANGE);
-        CHECK(fit[0].what == EXH_GLOVE_WHATS && fit[1].what == EXH_GLOVE_WHATS &&
+        CHECK(fit[0].what == EXH_GLOVE_ERRORS && fit[1].what == EXH_GLOVE_ERRORS &&
                   fit[10].what == EXH_GLOVE_POSES,
-              "%s, %s, %s", exh_glove_what_text(fit[0].what), exh_glove_what_text(fit[1].what),
-              exh_glove_what_text(fit[10].what));
+              "%s, %s, %s", exh_glove_error_text(fit[0].what), exh_glove_error_text(fit[1].what),
+              exh_glove_error_text(fit[10].what));
     }
 }
 

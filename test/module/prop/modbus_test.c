@@ -63,21 +63,21 @@ TEST(raw_to_float_is_the_nearest)
 {
     for (unsigned frac = 0; frac <= 126; frac++) {
         for (unsigned i = 0; i < CHECK_CORNERS; i++) {
-            nearest(exh_float_of(check_corner[i], frac), check_corner[i], frac);
+            nearest(exh_float_from_raw(check_corner[i], frac), check_corner[i], frac);
         }
         for (int32_t k = 0; k < 31; k++) { /* ties, and one beside, at every size */
             for (int32_t d = -1; d <= 1; d++) {
                 const int32_t raw =
                     (int32_t)((INT64_C(1) << k) + (k > 24 ? INT64_C(1) << (k - 24) : 0) + d);
-                nearest(exh_float_of(raw, frac), raw, frac);
-                nearest(exh_float_of(-raw, frac), -raw, frac);
+                nearest(exh_float_from_raw(raw, frac), raw, frac);
+                nearest(exh_float_from_raw(-raw, frac), -raw, frac);
             }
         }
     }
     while (check_case(1)) {
         const int32_t raw = check_i32();
         const unsigned frac = (unsigned)check_i32_in(0, 126);
-        nearest(exh_float_of(raw, frac), raw, frac);
+        nearest(exh_float_from_raw(raw, frac), raw, frac);
     }
 }
 
@@ -113,7 +113,7 @@ static void agrees(uint32_t bits, unsigned frac)
     int64_t want = 0;
     int32_t got = 0x5A5A5A5A;
     const int good = oracle(bits, frac, &want) == 0;
-    const int err = exh_float_raw(bits, frac, &got);
+    const int err = exh_float_to_raw(bits, frac, &got);
     if (good) {
         CHECK(err == 0 && got == want, "%" PRIx32 " of %u: %d, %" PRId32 ", want %" PRId64, bits,
               frac, err, got, want);
@@ -150,7 +150,7 @@ TEST(short_values_come_back)
         const unsigned frac = (unsigned)check_i32_in(0, 126);
         const int32_t raw = check_i32_in(-(1 << 24), 1 << 24);
         int32_t back = 1;
-        CHECK(exh_float_raw(exh_float_of(raw, frac), frac, &back) == 0 && back == raw,
+        CHECK(exh_float_to_raw(exh_float_from_raw(raw, frac), frac, &back) == 0 && back == raw,
               "%" PRId32 " of %u: %" PRId32, raw, frac, back);
     }
 }
@@ -184,7 +184,7 @@ static void make(void)
         row[i].max = a < b ? b : a;
         row[i].dflt = check_i32_in(row[i].min, row[i].max);
     }
-    exh_params_init(&g.p, &table, g.active, g.wanted);
+    exh_params_setup(&g.p, &table, g.active, g.wanted);
     g.r.params = &table;
     g.r.active = g.active;
     g.r.wanted = g.wanted;
@@ -269,7 +269,7 @@ TEST(the_mirror_written_back_changes_nothing)
             }
             for (uint32_t i = 0; m == 1 && i < VALUES; i++) {
                 CHECK_EQ_I64(word32(&all[4 * i]),
-                             exh_float_of(g.wanted[i], exh_signal_at(&table, i, NULL)->frac));
+                             exh_float_from_raw(g.wanted[i], exh_signal_at(&table, i, NULL)->frac));
             }
         }
     }

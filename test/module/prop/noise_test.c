@@ -41,7 +41,7 @@ static int any_drives(void)
     knot[1] = (struct exh_knot){0, 0, {0, 0}};
     knot[2] =
         (struct exh_knot){check_i32_in(1 << 20, 1 << 28), check_i32_in(1 << 20, 1 << 29), {0, 0}};
-    err = exh_table_set(knot, 3);
+    err = exh_table_setup(knot, 3);
     for (unsigned k = 0; k < N; k++) {
         int32_t *field = &par[k].f_max_N_q20;
         for (unsigned r = 0; r < EXH_DRIVE_ROWS; r++) {
@@ -104,7 +104,7 @@ TEST(gate_before_noise)
             i[k].coded_A_q26 = check_i32();
         }
         open = is_open(&box);
-        exh_gate(&box, cfg, n, i, limits, &out);
+        exh_gate_step(&box, cfg, n, i, limits, &out);
         check_codes(n, open);
         shut += !open;
         cases++;
@@ -119,7 +119,7 @@ static void any_drive(struct exh_drive *s)
     uint8_t bytes[32] = {0};
     struct exh_bytes c = exh_bytes_reader(bytes, sizeof bytes);
     noise(bytes, sizeof bytes);
-    exh_drive_bytes(&c, s);
+    exh_drive_serialize(&c, s);
 }
 
 static void any_law(struct exh_force_ledger *l)
@@ -170,9 +170,9 @@ static void feel(unsigned k, const struct exh_permit *permit)
     any_law(&f[k]);
     before = s.force_N_q20;
     fall = s.fall_N_q20;
-    limits[k] = exh_drive_force(&s, &cfg[k], permit, &f[k]);
+    limits[k] = exh_drive_force_step(&s, &cfg[k], permit, &f[k]);
     check_force(k, permit, before, fall, &s);
-    limits[k] |= exh_drive_current(&s, &cfg[k], &f[k], &i[k]);
+    limits[k] |= exh_drive_current_step(&s, &cfg[k], &f[k], &i[k]);
     asked = i[k].table_A_q26 + i[k].peak_A_q26 + i[k].i2t_A_q26;
     CHECK(asked <= par[k].i_peak_A_q26 && asked >= -par[k].i_peak_A_q26, "%" PRId64 " A q26",
           asked);
@@ -203,7 +203,7 @@ TEST(state_force_current_and_gate_before_noise)
         CHECK(permit.mode == EXH_PERMIT_CLOSED || !(box.present & EXH_FAULT_CUT),
               "open with %" PRIx32, box.present);
         for (unsigned k = 0; k < n; k++) { feel(k, &permit); }
-        exh_gate(&box, cfg, n, i, limits, &out);
+        exh_gate_step(&box, cfg, n, i, limits, &out);
         check_codes(n, permit.mode != EXH_PERMIT_CLOSED);
         modes[permit.mode]++;
     }

@@ -18,7 +18,7 @@ static void check_step(int32_t now, int32_t goal, unsigned shift)
 {
     const int64_t d = distance(now, goal), whole = INT64_C(1) << shift;
     const int64_t part = (d + whole - 1) / whole;
-    const int32_t next = exh_params_toward(now, goal, shift);
+    const int32_t next = exh_params_slew_step(now, goal, shift);
     const int64_t want = goal < now ? now - part : now + part;
     CHECK(next == want, "%" PRId32 " to %" PRId32 " by 2^-%u: %" PRId32 ", want %" PRId64, now,
           goal, shift, next, want);
@@ -49,7 +49,7 @@ TEST(it_ends_in_time)
         const int32_t goal = check_i32();
         int32_t now = check_i32();
         int64_t n = 0;
-        for (; now != goal && n <= most; n++) { now = exh_params_toward(now, goal, shift); }
+        for (; now != goal && n <= most; n++) { now = exh_params_slew_step(now, goal, shift); }
         CHECK(now == goal && n <= most, "shift %u: %" PRId64 " ticks, at most %" PRId64, shift, n,
               most);
     }
@@ -58,7 +58,7 @@ TEST(it_ends_in_time)
         int32_t now = INT32_MIN;
         int64_t n = 0;
         for (; now != INT32_MAX && n <= most; n++) {
-            now = exh_params_toward(now, INT32_MAX, shift);
+            now = exh_params_slew_step(now, INT32_MAX, shift);
         }
         CHECK(n <= most, "shift %u: %" PRId64 " ticks, at most %" PRId64, shift, n, most);
         if (shift == 6 || shift == EXH_TUNE_SHIFT_MAX) {
@@ -82,7 +82,7 @@ TEST(legal_changes_are_never_told)
     while (check_case(1000)) {
         int32_t active[9], staged[9];
         struct exh_params p;
-        exh_params_init(&p, &table, active, staged);
+        exh_params_setup(&p, &table, active, staged);
         p.locked = 1;
         p.shift = (uint8_t)check_i32_in(0, 15);
         for (int k = 0; k < 200; k++) {
@@ -91,9 +91,9 @@ TEST(legal_changes_are_never_told)
                 CHECK_EQ_I64(exh_params_stage_at(&p, (uint32_t)check_i32_in(0, 8), check_i32()), 0);
             }
             if (how < 8) { (void)exh_params_apply(&p); }
-            if (how == 9 && k % 16 == 0) { exh_params_drop(&p); }
+            if (how == 9 && k % 16 == 0) { exh_params_discard(&p); }
             for (int32_t n = check_i32_in(0, 4); n > 0; n--) {
-                CHECK(!exh_params_look(&p), "told in tick %d", k);
+                CHECK(!exh_params_verify(&p), "told in tick %d", k);
             }
         }
     }

@@ -75,7 +75,7 @@ static int any_rig(int32_t on)
     }
     scale.step_m_q42 = check_i32_in(EXH_Q(1, 1000000, EXH_Q_STEP), INT32_MAX);
     scale.T = (struct exh_period){1, 1u + (uint32_t)check_i32_in(0, 19999)};
-    if (exh_table_set(rig.to_cur, 4) < 0 || exh_table_invert(rig.held, rig.to_cur, 4) < 0 ||
+    if (exh_table_setup(rig.to_cur, 4) < 0 || exh_table_invert(rig.held, rig.to_cur, 4) < 0 ||
         exh_drive_setup(&rig.drive, &rig.drive_par, scale.T, (struct exh_table){rig.to_cur, 4},
                         (struct exh_table){NULL, 0}) < 0 ||
         exh_passivity_setup(&rig.cfg, &rig.par, &rig.drive, (struct exh_table){rig.held, 4}, scale,
@@ -95,7 +95,7 @@ static int32_t tick(int32_t cnt, int touching, int64_t spring, int64_t damper, i
     CHECK((bit == EXH_LIMIT_PASSIVITY) == (f.passivity_N_q20 < 0) && f.passivity_N_q20 <= 0,
           "%" PRId64, f.passivity_N_q20);
     f.force_N_q20 = exh_clamp(spring + damper + pull + f.passivity_N_q20, 0, most());
-    exh_passivity_held(&rig.s, &rig.cfg, &f, coded(f.force_N_q20));
+    exh_passivity_update(&rig.s, &rig.cfg, &f, coded(f.force_N_q20));
     return rig.s.held_N_q20;
 }
 
@@ -294,7 +294,7 @@ static void small_rig(int on)
     defaults(on);
     rig.drive_par.f_max_N_q20 = SMALL;
     for (int i = 0; i < 4; i++) { rig.to_cur[i].x = rig.to_cur[i].y = i << 24; } /* 1 to 1 */
-    CHECK_EQ_I64(exh_table_set(rig.to_cur, 4), 0);
+    CHECK_EQ_I64(exh_table_setup(rig.to_cur, 4), 0);
     CHECK_EQ_I64(exh_table_invert(rig.held, rig.to_cur, 4), 0);
     CHECK_EQ_I64(exh_drive_setup(&rig.drive, &rig.drive_par, scale.T,
                                  (struct exh_table){rig.to_cur, 4}, (struct exh_table){NULL, 0}),
@@ -313,7 +313,7 @@ static int small_step(const struct exh_passivity *s, int moved, int touching, in
     rig.s = *s;
     (void)exh_passivity_step(&rig.s, &rig.cfg, moved, touching, &f);
     f.force_N_q20 = exh_clamp(asked + f.passivity_N_q20, 0, SMALL);
-    exh_passivity_held(&rig.s, &rig.cfg, &f, f.force_N_q20);
+    exh_passivity_update(&rig.s, &rig.cfg, &f, f.force_N_q20);
     if (!may_be(&rig.s, rig.par.on)) {
         CHECK(0,
               "on %d: e %" PRId64 ", held %" PRId32 ", late %" PRId32 ", moved %d, asked %" PRId32,

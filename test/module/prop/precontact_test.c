@@ -104,7 +104,7 @@ TEST(distance_and_limit_are_exact)
         int32_t want;
         d = wide_add(d, wide_shl(wide_of(par.printed_sign ? -pad : pad), 30));
         want = wide_sat32(wide_shr_half_up(d, 30));
-        CHECK(exh_precontact_tell(&s, &cfg, &p, 0) == 0, "told");
+        CHECK(exh_precontact_update(&s, &cfg, &p, 0) == 0, "told");
         (void)exh_precontact_step(&s, &cfg, &in);
         CHECK(s.d_m_q30 == want, "d %" PRId32 ", exact %" PRId32, s.d_m_q30, want);
         if (want < par.d_lim_m_q30) {
@@ -140,7 +140,7 @@ TEST(scale_of_the_slope)
         g = wide_neg(dot(p.normal_q30, in.slope_q24));
         g_q24 = wide_sat64(wide_shr_half_up(g, 30));
         kept = g_q24 < 1 << 21 ? 1 << 21 : g_q24 > 1 << 27 ? 1 << 27 : g_q24;
-        CHECK(exh_precontact_tell(&s, &one, &p, 0) == 0, "told");
+        CHECK(exh_precontact_update(&s, &one, &p, 0) == 0, "told");
         bits = exh_precontact_step(&s, &one, &in); /* d = -1 m: q_lim is s, q30 */
         CHECK((bits & EXH_PRECONTACT_BENT) == (kept == g_q24 ? 0u : EXH_PRECONTACT_BENT), "bent");
         if (kept > 1 << 24) { /* else beyond 2 m, or 1 */
@@ -301,7 +301,7 @@ TEST(states_against_a_second_account)
             if (check_u64() % rare == 0) {
                 const uint32_t age = check_u64() % 8 ? 0 : (uint32_t)(check_u64() % 110);
                 p = any_plane(&p);
-                (void)exh_precontact_tell(&s, &cfg, &p, age);
+                (void)exh_precontact_update(&s, &cfg, &p, age);
                 account_tell(&a, &p, age);
             }
             in.tip_m_q30.z += check_i32_in(-MM(4), MM(4)) - in.tip_m_q30.z / 16;
@@ -312,7 +312,7 @@ TEST(states_against_a_second_account)
             }
             if (check_u64() % 64 == 0) {
                 const uint32_t missed = (uint32_t)(check_u64() % 4);
-                exh_precontact_skip(&s, missed);
+                exh_precontact_advance(&s, missed);
                 a.age += missed;
                 a.doubts += a.doubts > 0 ? missed : 0;
             }
@@ -346,7 +346,7 @@ TEST(no_message_after_the_freeze_is_felt)
         struct exh_plane q = p;
         struct exh_precontact_in in = {{0, 0, 0}, {0, 0, 0}, 0, 0, 0};
         struct exh_precontact quiet = {0}, busy;
-        (void)exh_precontact_tell(&quiet, &cfg, &p, 0);
+        (void)exh_precontact_update(&quiet, &cfg, &p, 0);
         for (int t = 60; t >= 0; t--) { /* along the normal, 1 mm a tick, to 7 mm off */
             const int32_t off = MM(1) * t;
             in.tip_m_q30 = along(p.normal_q30, off);
@@ -359,7 +359,7 @@ TEST(no_message_after_the_freeze_is_felt)
         for (int t = 0; t < 50 && is_frozen(&quiet); t++) {
             uint32_t a, b;
             q = any_plane(&q);
-            (void)exh_precontact_tell(&busy, &cfg, &q, (uint32_t)(check_u64() % 200));
+            (void)exh_precontact_update(&busy, &cfg, &q, (uint32_t)(check_u64() % 200));
             in.tip_m_q30.x += check_i32_in(-MM(1), MM(1));
             in.pos_m_q30 += check_i32_in(-MM(1), MM(1));
             a = exh_precontact_step(&quiet, &cfg, &in);
@@ -391,15 +391,15 @@ TEST(no_touch_before_the_freeze_whatever_comes)
         in.pos_m_q30 = check_i32_in(INT32_MIN, INT32_MAX - 1);
         in.touching = 0;
         in.tip_age_ticks = check_u64() % 4 ? 0 : (uint32_t)(check_u64() % 110);
-        (void)exh_precontact_tell(&s, &cfg, &p, 0);
+        (void)exh_precontact_update(&s, &cfg, &p, 0);
         s.held = s.newest;
         s.phase = check_u64() & 3; /* also one that is released in this very tick, or let go */
         s.doubt_ticks = (uint32_t)(check_u64() % 10);
         s.lim_m_q30 = check_i32();
         (void)exh_precontact_step(&s, &cfg, &in);
         CHECK(is_frozen(&s) ||
-                  !exh_contact_law(&c, &law, (struct exh_contact_in){in.pos_m_q30, 1, s.lim_m_q30},
-                                   &f),
+                  !exh_contact_step(&c, &law, (struct exh_contact_in){in.pos_m_q30, 1, s.lim_m_q30},
+                                    &f),
               "q %" PRId32 " q_lim %" PRId32, in.pos_m_q30, s.lim_m_q30);
     }
 }
@@ -449,7 +449,7 @@ static struct outcome run(const struct approach *a)
         struct exh_force_ledger f;
         in.tip_m_q30 = along(a->plane.normal_q30, -felt); /* the plane goes through 0 */
         if (t == (a->first_tick > near ? a->first_tick : near)) {
-            (void)exh_precontact_tell(&s, &cfg, &a->plane, 0);
+            (void)exh_precontact_update(&s, &cfg, &a->plane, 0);
         }
         (void)exh_precontact_step(&s, &cfg, &in);
         if (is_frozen(&s) && o.freeze_tick < 0) {
@@ -457,7 +457,7 @@ static struct outcome run(const struct approach *a)
             o.true_d_m_q30 = d;
             o.lim_m_q30 = s.lim_m_q30;
         }
-        if (exh_contact_law(&c, &law, (struct exh_contact_in){(int32_t)d, 1, s.lim_m_q30}, &f)) {
+        if (exh_contact_step(&c, &law, (struct exh_contact_in){(int32_t)d, 1, s.lim_m_q30}, &f)) {
             o.touch_tick = t;
             o.early = !is_frozen(&s);
         }
@@ -634,7 +634,7 @@ TEST(curved_and_moving_objects_within_the_bound)
             if ((t - age) % frame == 0) {
                 const struct exh_plane p = tangent(&m, t - age, &n);
                 taken = t - age;
-                (void)exh_precontact_tell(&s, &cfg, &p, 0);
+                (void)exh_precontact_update(&s, &cfg, &p, 0);
             }
             bits |= exh_precontact_step(&s, &cfg, &in);
         }

@@ -45,7 +45,7 @@ TEST(extension_is_congruent_and_shortest)
         struct exh_quad s = {(uint32_t)check_i32(), check_i32(), 1, 0};
         const struct exh_quad old = s;
         const uint32_t raw = (uint32_t)check_i32();
-        const int32_t cnt = exh_quad_extend(&s, &cfg, raw);
+        const int32_t cnt = exh_quad_step(&s, &cfg, raw);
         const int32_t step = exh_from_u32((raw - old.raw) << (32 - bits)) >> (32 - bits);
         const int jump = step > cfg.jump_cnt || step < -cfg.jump_cnt;
         const uint32_t moved = (uint32_t)cnt - (uint32_t)old.cnt;

@@ -55,7 +55,7 @@ static void compare(uint32_t tick_B)
         uint8_t buf[LONGEST + EXH_RECORD_OVERHEAD];
         struct exh_record r = {0, 0, 0, 0, 0, NULL};
         const uint32_t n = exh_record_out(&o, buf, sizeof buf);
-        CHECK_EQ_I64(exh_record_read(buf, n, &r), n);
+        CHECK_EQ_I64(exh_record_decode(buf, n, &r), n);
         CHECK(r.type == every[i].type && r.tick == every[i].tick && r.len_B == every[i].len_B &&
                   r.seq == i - from && memcmp(r.payload, every[i].payload, r.len_B) == 0,
               "record %" PRIu32 " of %" PRIu32, i, listed);
@@ -113,7 +113,7 @@ TEST(who_breaks_the_rule_loses_records_and_no_more)
                 uint8_t buf[sizeof payload + EXH_RECORD_OVERHEAD];
                 struct exh_record r = {0, 0, 0, 0, 0, NULL};
                 const uint32_t n = exh_record_out(&o, buf, sizeof buf);
-                CHECK_EQ_I64(exh_record_read(buf, n, &r), n);
+                CHECK_EQ_I64(exh_record_decode(buf, n, &r), n);
                 CHECK(next != UINT32_MAX || r.type == EXH_RECORD_KEYFRAME, "begins with type %d",
                       r.type);
                 CHECK(next == UINT32_MAX || r.tick > next, "tick %" PRIu32 " after %" PRIu32,

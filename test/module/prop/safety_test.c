@@ -114,7 +114,7 @@ TEST(gate_holds_with_any_input)
         open = (s.state > EXH_STATE_ARM && s.state < EXH_STATE_FAULT) ||
                (s.state == EXH_STATE_ARM && s.share_q30 == 1);
         b.out.alive = before = s.alive;
-        exh_gate(&s, b.cfg, n, b.i, b.limits, &b.out);
+        exh_gate_step(&s, b.cfg, n, b.i, b.limits, &b.out);
         CHECK(b.out.alive != before && s.alive == b.out.alive, "alive stands at %d", before);
         CHECK(b.out.enable == (open ? (1u << n) - 1u : 0), "enable %x", b.out.enable);
         for (unsigned k = 0; k < n; k++) { check_finger(&b, k, open, asked[k]); }
@@ -168,7 +168,7 @@ static uint32_t causes_of(const struct exh_safety_in *in, struct memory *m)
 static void check_step(const struct exh_safety *old, const struct exh_safety *s,
                        const struct exh_safety_in *in, uint32_t now, struct memory *m)
 {
-    const int was_open = exh_safety_open(old), open = exh_safety_open(s);
+    const int was_open = exh_safety_is_open(old), open = exh_safety_is_open(s);
     CHECK(s->present == now, "present %" PRIx32 " not %" PRIx32, s->present, now);
     CHECK(s->state < EXH_STATES, "state %d", s->state);
     CHECK(!open || was_open || (old->state == EXH_STATE_ARM && !now && in->ready == EXH_ARM_ALL),
@@ -211,7 +211,7 @@ TEST(state_machine_under_any_input)
         const uint32_t now = causes_of(&in, &m);
         const struct exh_permit p = exh_safety_step(&s, &cfg, in);
         check_step(&old, &s, &in, now, &m);
-        CHECK((p.mode != EXH_PERMIT_CLOSED) == exh_safety_open(&s), "mode %d", p.mode);
+        CHECK((p.mode != EXH_PERMIT_CLOSED) == exh_safety_is_open(&s), "mode %d", p.mode);
         CHECK(p.share_q30 >= 0 && p.share_q30 <= 1 << 30, "share %" PRId32, p.share_q30);
         s.limits = check_u64() % 64 ? 0 : 1u << check_u64() % EXH_LIMITS;
         seen |= 1u << s.state;

@@ -52,7 +52,7 @@ static int program(unsigned to, uint32_t n, uint32_t fails_at)
 static int32_t image(uint8_t *to, uint32_t *sequence)
 {
     struct exh_slot is;
-    const int at = exh_slots_pick(&is, flash[0], flash[1], slot_B);
+    const int at = exh_slots_find(&is, flash[0], flash[1], slot_B);
     if (at < 0) { return -1; }
     memcpy(to, is.image, is.len_B);
     *sequence = is.sequence;
@@ -80,7 +80,7 @@ TEST(old_or_new_whenever_the_supply_fails)
             for (uint32_t i = 0; i < len_B; i++) {
                 buf[EXH_SLOT_HEAD_B + i] = (uint8_t)(check_u64() & 0xFF);
             }
-            n = exh_slots_next(&to, flash[0], flash[1], slot_B, buf, sizeof buf, len_B);
+            n = exh_slots_encode(&to, flash[0], flash[1], slot_B, buf, sizeof buf, len_B);
             if (n == 0) { continue; } /* by chance it stands there */
             CHECK(n == (int32_t)EXH_SLOT_B(len_B) && to < 2, "%" PRId32 " to %u", n, to);
             if (erase(to & 1, how == 0)) {
@@ -121,10 +121,10 @@ TEST(what_is_damaged_does_not_count)
             int32_t n;
             len_B = up_to(MOST_B - EXH_SLOT_B(0));
             memset(buf + EXH_SLOT_HEAD_B, (int)(k + up_to(100)), MOST_B - EXH_SLOT_HEAD_B);
-            n = exh_slots_next(&to, flash[0], flash[1], slot_B, buf, MOST_B, len_B);
+            n = exh_slots_encode(&to, flash[0], flash[1], slot_B, buf, MOST_B, len_B);
             if (n > 0) { memcpy(flash[to], buf, (size_t)n); }
         }
-        if (exh_slot_read(&is, flash[1], slot_B) < 0) { continue; } /* twice the same */
+        if (exh_slot_decode(&is, flash[1], slot_B) < 0) { continue; } /* twice the same */
         at = up_to(8 * EXH_SLOT_B(is.len_B) - 1);
         for (uint32_t bit = at; bit < at + 32 && bit < 8 * EXH_SLOT_B(is.len_B); bit++) {
             if (bit == at || up_to(1)) {
@@ -132,7 +132,7 @@ TEST(what_is_damaged_does_not_count)
                 turned++;
             }
         }
-        CHECK(exh_slots_pick(&is, flash[0], flash[1], slot_B) == 0,
+        CHECK(exh_slots_find(&is, flash[0], flash[1], slot_B) == 0,
               "%" PRIu32 " bits from %" PRIu32 " on", turned, at);
     }
 }

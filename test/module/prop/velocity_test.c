@@ -54,7 +54,7 @@ TEST(window_step_is_exact)
         s.at = (uint8_t)(check_u64() % cfg.n);
         s.cnt[s.at] = check_i32();
         oldest = s.cnt[s.at];
-        got = exh_velocity_window_mps_q27(&s, &cfg, cnt);
+        got = exh_velocity_window_step(&s, &cfg, cnt);
         CHECK(close_to(got, scale, unwrapped(cnt, oldest), cfg.n),
               "step %" PRId32 " T %" PRIu32 "/%" PRIu32 " n %d moved %" PRId64 ": %" PRId32,
               scale.step_m_q42, scale.T.num, scale.T.den, cfg.n, unwrapped(cnt, oldest), got);
@@ -74,7 +74,7 @@ TEST(window_keeps_its_samples)
         for (int k = 0; k < 64; k++) {
             const int back = k - cfg.n < 0 ? 0 : k - cfg.n;
             hist[k] = check_i32();
-            CHECK(close_to(exh_velocity_window_mps_q27(&s, &cfg, hist[k]), scale,
+            CHECK(close_to(exh_velocity_window_step(&s, &cfg, hist[k]), scale,
                            unwrapped(hist[k], hist[back]), cfg.n),
                   "n %d tick %d", cfg.n, k);
         }
@@ -100,7 +100,7 @@ TEST(pole_step_is_exact)
         const uint32_t tau = (uint32_t)check_i32_in(0, 1000000);
         int32_t got;
         if (exh_velocity_pole_setup(&cfg, scale, tau) < 0) { continue; }
-        got = exh_velocity_pole_mps_q27(&s, &cfg, cnt);
+        got = exh_velocity_pole_step(&s, &cfg, cnt);
         diff = wide_shr_half_up(wide_mul(moved, cfg.gain.mant), cfg.gain.shift);
         if (wide_cmp(diff, wide_of(rail_hi)) > 0) { diff = wide_of(rail_hi); }
         if (wide_cmp(diff, wide_of(rail_lo)) < 0) { diff = wide_of(rail_lo); }
@@ -190,7 +190,7 @@ static void foaw_run(struct exh_velocity_scale scale, int64_t ramp_max)
             hist[j] = pos + (d > INT32_MAX ? d - (INT64_C(1) << 32) : d);
         }
         foaw_reference(hist, k + 1, n, tol, &num, &den);
-        got = exh_velocity_foaw_mps_q27(&s, &cfg, cnt);
+        got = exh_velocity_foaw_step(&s, &cfg, cnt);
         CHECK(close_to(got, scale, num, den),
               "step %" PRId32 " T %" PRIu32 "/%" PRIu32 " n %d tol %d tick %d: %" PRId32
               ", slope %" PRId64 "/%" PRId64,
@@ -247,7 +247,7 @@ TEST(track_step_is_exact)
         off = limited(wide_sub(off, wide_shl(wide_of(moved), 32)));
         err = wide_sub(off, share(off, cfg.alpha_q31));
         vel = limited(wide_sub(wide_of(s.vel_cnt_q32), share(off, cfg.beta_q31)));
-        got = exh_velocity_track_mps_q27(&s, &cfg, cnt);
+        got = exh_velocity_track_step(&s, &cfg, cnt);
         CHECK(wide_cmp(err, wide_of(s.err_cnt_q32)) == 0, "error state %" PRId64, s.err_cnt_q32);
         CHECK(wide_cmp(vel, wide_of(s.vel_cnt_q32)) == 0, "velocity state %" PRId64, s.vel_cnt_q32);
         out = wide_shr_floor(wide_mul(wide_sat64(vel), cfg.gain.mant), cfg.gain.shift);
@@ -295,8 +295,8 @@ TEST(any_counts_then_rest)
         (void)exh_velocity_track_setup(&track_cfg, scale, 2000);
         for (int k = 0; k < 700; k++) {
             if (k < 300) { cnt = check_i32(); }
-            p = exh_velocity_pole_mps_q27(&pole, &pole_cfg, cnt);
-            t = exh_velocity_track_mps_q27(&track, &track_cfg, cnt);
+            p = exh_velocity_pole_step(&pole, &pole_cfg, cnt);
+            t = exh_velocity_track_step(&track, &track_cfg, cnt);
         }
         CHECK(p == 0 && t == 0, "at rest: pole %" PRId32 " track %" PRId32, p, t);
     }

@@ -60,16 +60,16 @@ TEST(there_and_back)
         struct exh_wire_rx rx = {0};
         struct exh_wire_packet p = any_packet(EXH_WIRE_HELLO), back;
         uint8_t a[EXH_WIRE_MAX_B], b[EXH_WIRE_MAX_B];
-        const int32_t hello_B = exh_wire_write(&tx, &p, 0, a, sizeof a);
+        const int32_t hello_B = exh_wire_encode(&tx, &p, 0, a, sizeof a);
         const uint8_t type = (uint8_t)(1 + check_u64() % EXH_WIRE_TRACE);
         int32_t n, m;
-        CHECK(exh_wire_take(&rx, &back, a, (size_t)hello_B) == EXH_WIRE_HELLO, "hello");
+        CHECK(exh_wire_decode(&rx, &back, a, (size_t)hello_B) == EXH_WIRE_HELLO, "hello");
         p = any_packet(type);
-        n = exh_wire_write(&tx, &p, (uint32_t)check_u64(), a, sizeof a);
-        CHECK(exh_wire_take(&rx, &back, a, (size_t)n) == type, "type %d", type);
+        n = exh_wire_encode(&tx, &p, (uint32_t)check_u64(), a, sizeof a);
+        CHECK(exh_wire_decode(&rx, &back, a, (size_t)n) == type, "type %d", type);
         CHECK(back.seq == p.seq && back.stamp_us == p.stamp_us, "head");
         tx.seq = p.seq;
-        m = exh_wire_write(&tx, &back, p.stamp_us, b, sizeof b);
+        m = exh_wire_encode(&tx, &back, p.stamp_us, b, sizeof b);
         CHECK(m == n && memcmp(a, b, (size_t)n) == 0, "bytes of type %d", type);
     }
 }
@@ -91,7 +91,7 @@ TEST(noise_is_no_packet)
             exh_bytes_u8(&c, &type);
             exh_bytes_u16(&c, &len);
         }
-        CHECK(exh_wire_take(&rx, &p, noise, n) < 0 && rx.corrupt == 1, "%d bytes", (int)n);
+        CHECK(exh_wire_decode(&rx, &p, noise, n) < 0 && rx.corrupt == 1, "%d bytes", (int)n);
         was.corrupt = 1;
         CHECK(memcmp(&rx, &was, sizeof rx) == 0, "state");
     }
@@ -117,13 +117,13 @@ TEST(what_gets_through_is_in_order_and_each_once)
         uint32_t came = 1, last = first, damaged = 0;
         uint8_t there[PACKETS + 1] = {1}; /* undamaged, within the window or in order */
         int in_air = 0;
-        const int32_t n = exh_wire_write(&tx, &p, 0, air[0].byte, sizeof air[0].byte);
-        CHECK(exh_wire_take(&rx, &p, air[0].byte, (size_t)n) == EXH_WIRE_HELLO, "hello");
+        const int32_t n = exh_wire_encode(&tx, &p, 0, air[0].byte, sizeof air[0].byte);
+        CHECK(exh_wire_decode(&rx, &p, air[0].byte, (size_t)n) == EXH_WIRE_HELLO, "hello");
         for (int k = 1; k <= PACKETS || in_air > 0; k++) {
             if (k <= PACKETS) {
                 struct flight *f = &air[in_air];
                 p = any_packet((uint8_t)(2 + check_u64() % 4));
-                f->n = exh_wire_write(&tx, &p, 0, f->byte, sizeof f->byte);
+                f->n = exh_wire_encode(&tx, &p, 0, f->byte, sizeof f->byte);
                 f->seq = p.seq;
                 f->damaged = check_u64() % 20 == 0;
                 if (f->damaged) {
@@ -139,7 +139,7 @@ TEST(what_gets_through_is_in_order_and_each_once)
             while (in_air > 0 && (in_air >= FLIGHT - 2 || check_u64() & 1)) {
                 const int i = check_u64() % 4 ? 0 : (int)(check_u64() % (uint64_t)in_air);
                 const struct flight f = air[i];
-                const int r = exh_wire_take(&rx, &p, f.byte, (size_t)f.n);
+                const int r = exh_wire_decode(&rx, &p, f.byte, (size_t)f.n);
                 const int newer = f.seq - last - 1u < 0x7FFFFFFFu;
                 in_air--;
                 for (int j = i; j < in_air; j++) { air[j] = air[j + 1]; }
@@ -184,18 +184,18 @@ TEST(a_good_peer_is_heard_after_a_silence)
             struct exh_wire_tx any = {3 + (uint32_t)(check_u64() % 4), (uint32_t)check_u64()};
             if (check_u64() & 1) { any.seq = rx.seq + (uint32_t)check_i32_in(-70, 70000); }
             p = any_packet((uint8_t)(check_u64() % 3 ? 1 : 1 + check_u64() % EXH_WIRE_TRACE));
-            n = exh_wire_write(&any, &p, 0, b, sizeof b);
-            (void)exh_wire_take(&rx, &p, b, (size_t)n);
-            (void)exh_wire_pass(&rx, (uint32_t)(check_u64() % limit_us), limit_us);
+            n = exh_wire_encode(&any, &p, 0, b, sizeof b);
+            (void)exh_wire_decode(&rx, &p, b, (size_t)n);
+            (void)exh_wire_poll(&rx, (uint32_t)(check_u64() % limit_us), limit_us);
         }
         if (rx.session == good.session && rx.seq == good.seq) { good.seq++; }
-        (void)exh_wire_pass(&rx, limit_us, limit_us);
+        (void)exh_wire_poll(&rx, limit_us, limit_us);
         p = any_packet(EXH_WIRE_HELLO);
-        n = exh_wire_write(&good, &p, 0, b, sizeof b);
-        CHECK(exh_wire_take(&rx, &p, b, (size_t)n) == EXH_WIRE_HELLO, "deaf");
+        n = exh_wire_encode(&good, &p, 0, b, sizeof b);
+        CHECK(exh_wire_decode(&rx, &p, b, (size_t)n) == EXH_WIRE_HELLO, "deaf");
         p = any_packet(EXH_WIRE_PLANES);
-        n = exh_wire_write(&good, &p, 0, b, sizeof b);
-        CHECK(exh_wire_take(&rx, &p, b, (size_t)n) == EXH_WIRE_PLANES, "deaf");
+        n = exh_wire_encode(&good, &p, 0, b, sizeof b);
+        CHECK(exh_wire_decode(&rx, &p, b, (size_t)n) == EXH_WIRE_PLANES, "deaf");
     }
 }
 

@@ -31,7 +31,7 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
     (void)tick;
     (void)in;
     (void)out;
-    if (exh_contact_law(&law, &p->contact, q, &f)) {
+    if (exh_contact_step(&law, &p->contact, q, &f)) {
         const int64_t off = s->ask_N_q20 - (f.spring_N_q20 + f.damper_N_q20);
         contact++;
         if (llabs(off) > worst) { worst = llabs(off); }

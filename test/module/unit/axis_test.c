@@ -10,14 +10,14 @@
 struct finger {
     struct exh_quad_cfg quad_cfg;
     struct exh_velocity_window_cfg velocity_cfg;
-    struct exh_watch_cfg watch_cfg;
-    struct exh_track_cfg track_cfg;
+    struct exh_motion_cfg watch_cfg;
+    struct exh_tracking_cfg track_cfg;
     struct exh_drive_cfg drive_cfg;
     struct exh_safety_cfg safety_cfg;
     struct exh_quad quad;
     struct exh_velocity_window velocity;
-    struct exh_watch watch;
-    struct exh_track track;
+    struct exh_motion watch;
+    struct exh_tracking track;
     struct exh_drive drive;
     struct exh_safety safety;
 };
@@ -25,9 +25,9 @@ struct finger {
 static const struct exh_quad_par quad_par = {EXH_Q(5, 1000000, EXH_Q_STEP),
                                              EXH_Q(10, 1, EXH_Q_VEL)};
 static const struct exh_velocity_par velocity_par = {2};
-static const struct exh_watch_par watch_par = {EXH_Q(1, 10, EXH_Q_VEL), 2, 100,
-                                               EXH_Q(1, 4, EXH_Q_CUR)};
-static const struct exh_track_par track_par = {EXH_Q(1, 4, EXH_Q_CUR), 20};
+static const struct exh_motion_par watch_par = {EXH_Q(1, 10, EXH_Q_VEL), 2, 100,
+                                                EXH_Q(1, 4, EXH_Q_CUR)};
+static const struct exh_tracking_par track_par = {EXH_Q(1, 4, EXH_Q_CUR), 20};
 static const struct exh_drive_par drive_par = {.f_max_N_q20 = EXH_Q(10, 1, EXH_Q_FORCE),
                                                .slew_up_Nps = 1000,
                                                .slew_down_Nps = 1000,
@@ -48,7 +48,7 @@ enum { VELOCITY = 1, WATCH = 2, TRACK = 4, SUBSETS = 8 };
 
 static struct exh_table to_cur(void)
 {
-    CHECK_EQ_I64(exh_table_set(knot, 2), 0);
+    CHECK_EQ_I64(exh_table_setup(knot, 2), 0);
     return (struct exh_table){knot, 2};
 }
 
@@ -119,17 +119,17 @@ static struct exh_drive_out by_hand(struct finger *f, unsigned parts, uint32_t t
     struct exh_force_ledger force;
     struct exh_permit permit;
     memset(now, 0, sizeof *now);
-    now->cnt = exh_quad_extend(&f->quad, &f->quad_cfg, in.enc_raw[2]);
+    now->cnt = exh_quad_step(&f->quad, &f->quad_cfg, in.enc_raw[2]);
     now->pos_m_q30 = exh_quad_pos_m_q30(&quad_par, now->cnt);
     if (parts & VELOCITY) {
-        now->vel_mps_q27 = exh_velocity_window_mps_q27(&f->velocity, &f->velocity_cfg, now->cnt);
+        now->vel_mps_q27 = exh_velocity_window_step(&f->velocity, &f->velocity_cfg, now->cnt);
     }
     if (parts & WATCH) {
-        now->raised |= exh_watch_step(&f->watch, &f->watch_cfg, &now->vel_mps_q27, &now->limits);
+        now->raised |= exh_motion_step(&f->watch, &f->watch_cfg, &now->vel_mps_q27, &now->limits);
     }
     if (parts & TRACK) {
         now->mon_A_q26 = exh_drive_monitor_A_q26(&f->drive_cfg, in.mon_raw[2]);
-        if (exh_track_step(&f->track, &f->track_cfg, now->mon_A_q26)) {
+        if (exh_tracking_step(&f->track, &f->track_cfg, now->mon_A_q26)) {
             now->raised |= EXH_FAULT_TRACKING;
         }
     }
@@ -138,11 +138,11 @@ static struct exh_drive_out by_hand(struct finger *f, unsigned parts, uint32_t t
         &f->safety, &f->safety_cfg,
         box_of(t, now->raised, (uint8_t)(f->quad.lost ? 0x7u : (unsigned)EXH_ARM_ALL)));
     force = law(now->pos_m_q30);
-    now->limits |= exh_drive_force(&f->drive, &f->drive_cfg, &permit, &force);
-    now->limits |= exh_drive_current(&f->drive, &f->drive_cfg, &force, &i);
-    exh_gate(&f->safety, &f->drive_cfg, 1, &i, &now->limits, &out);
-    if (parts & TRACK) { exh_track_coded(&f->track, i.coded_A_q26); }
-    if (parts & WATCH) { exh_watch_coded(&f->watch, &f->watch_cfg, now->cnt, i.coded_A_q26); }
+    now->limits |= exh_drive_force_step(&f->drive, &f->drive_cfg, &permit, &force);
+    now->limits |= exh_drive_current_step(&f->drive, &f->drive_cfg, &force, &i);
+    exh_gate_step(&f->safety, &f->drive_cfg, 1, &i, &now->limits, &out);
+    if (parts & TRACK) { exh_tracking_update(&f->track, i.coded_A_q26); }
+    if (parts & WATCH) { exh_motion_update(&f->watch, &f->watch_cfg, now->cnt, i.coded_A_q26); }
     return out;
 }
 
@@ -207,8 +207,8 @@ TEST(setup_refuses_as_its_parts_do)
     static struct finger a;
     const struct exh_axis_setup good = parts_of(&a, VELOCITY | WATCH | TRACK);
     static const struct exh_velocity_par no_window = {5};
-    static const struct exh_watch_par no_speed = {0, 1, 0, EXH_Q(1, 4, EXH_Q_CUR)};
-    static const struct exh_track_par no_time = {EXH_Q(1, 4, EXH_Q_CUR), 0};
+    static const struct exh_motion_par no_speed = {0, 1, 0, EXH_Q(1, 4, EXH_Q_CUR)};
+    static const struct exh_tracking_par no_time = {EXH_Q(1, 4, EXH_Q_CUR), 0};
     static const struct exh_drive_par no_drive;
     static const struct exh_quad_par no_step = {0, EXH_Q(10, 1, EXH_Q_VEL)};
     struct exh_axis_setup bad[5] = {good, good, good, good, good};

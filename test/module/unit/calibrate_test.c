@@ -107,7 +107,7 @@ TEST(tables_need_room)
 {
     struct exh_knot k[2 * EXH_CALIB_POINTS_MAX + 3];
     struct fixture f;
-    struct exh_calib_bad bad = {99, 99};
+    struct exh_calib_error bad = {99, 99};
     set_up(&f);
     CHECK_EQ_I64(exh_calib_force_table(&f.c, k, POINTS + 1, &bad), -EXH_E_SHORT);
     CHECK_EQ_I64(bad.what, EXH_CALIB_FORCE_TABLE);
@@ -142,7 +142,7 @@ TEST(refusals_name_table_and_point)
         {0, 2, EXH_Q(990, 2047000, EXH_Q_CUR) - 2, -EXH_E_RANGE, EXH_CALIB_MONITOR_TABLE},
     };
     for (size_t i = 0; i < LEN(row); i++) {
-        struct exh_calib_bad bad = {99, 99};
+        struct exh_calib_error bad = {99, 99};
         struct fixture f;
         uint8_t buf[EXH_CALIB_IMAGE_B];
         int32_t *field[4];
@@ -153,11 +153,11 @@ TEST(refusals_name_table_and_point)
         field[2] = &f.point[row[i].at].mon_A_q26;
         field[3] = &f.point[row[i].at].friction_A_q26;
         *field[row[i].field] = row[i].v;
-        err = exh_calib_valid(&f.c, &bad);
+        err = exh_calib_validate(&f.c, &bad);
         CHECK(err == row[i].err, "row %zu: %d", i, err);
         CHECK(bad.what == row[i].what && bad.at == row[i].at, "row %zu: %s, point %d", i,
-              exh_calib_what_text(bad.what), bad.at);
-        CHECK_EQ_I64(exh_calib_valid(&f.c, NULL), row[i].err);
+              exh_calib_error_text(bad.what), bad.at);
+        CHECK_EQ_I64(exh_calib_validate(&f.c, NULL), row[i].err);
         CHECK_EQ_I64(exh_calib_save(&f.c, buf, sizeof buf, &bad), row[i].err);
     }
 }
@@ -165,7 +165,7 @@ TEST(refusals_name_table_and_point)
 TEST(values_out_of_range_are_refused)
 {
     for (unsigned i = 0; i < 14; i++) {
-        struct exh_calib_bad bad = {99, 99};
+        struct exh_calib_error bad = {99, 99};
         struct fixture f;
         set_up(&f);
         if (i == 0) { f.c.points = 0; }
@@ -181,7 +181,7 @@ TEST(values_out_of_range_are_refused)
         if (i == 10) { f.c.end_A_q26 = A(6601); }
         if (i == 11) { f.c.dac_zero_raw = -1; }
         if (i == 12) { f.c.dac_zero_raw = 65536; }
-        CHECK(exh_calib_valid(&f.c, &bad) == (i < 13 ? -EXH_E_RANGE : 0), "value %u", i);
+        CHECK(exh_calib_validate(&f.c, &bad) == (i < 13 ? -EXH_E_RANGE : 0), "value %u", i);
         CHECK(bad.what == (i < 13 ? EXH_CALIB_VALUE : 99), "value %u: %d", i, bad.what);
     }
 }
@@ -189,7 +189,7 @@ TEST(values_out_of_range_are_refused)
 TEST(another_device_and_stale_ones_are_refused)
 {
     static const struct {
-        struct exh_calib_here here; /* scales: difference from the fixture's */
+        struct exh_calib_target here; /* scales: difference from the fixture's */
         int err;
         unsigned what;
     } row[] = {
@@ -206,8 +206,8 @@ TEST(another_device_and_stale_ones_are_refused)
         {{7, 1, 20000, 0, 1, 0, 0}, -EXH_E_STALE, EXH_CALIB_SCALE}, /* D/A moved by a code */
         {{7, 1, 20000, 0, 0, 0, 3}, -EXH_E_STALE, EXH_CALIB_SCALE}, /* monitor's zero not copied */
     };
-    struct exh_calib_bad bad;
-    struct exh_calib_here here;
+    struct exh_calib_error bad;
+    struct exh_calib_target here;
     struct fixture f;
     set_up(&f);
     for (size_t i = 0; i < LEN(row); i++) {
@@ -219,11 +219,11 @@ TEST(another_device_and_stale_ones_are_refused)
         here.mon_zero_raw += f.c.mon_zero_raw;
         CHECK(exh_calib_check(&f.c, &here, &bad) == row[i].err, "row %zu", i);
         CHECK(bad.what == row[i].what && bad.at == (row[i].err == 0 ? 99 : 0), "row %zu: %s of %d",
-              i, exh_calib_what_text(bad.what), bad.at);
+              i, exh_calib_error_text(bad.what), bad.at);
         CHECK_EQ_I64(exh_calib_check(&f.c, &here, NULL), row[i].err);
     }
     f.c.valid_days = UINT32_MAX; /* for ever, but not before it was made */
-    here = (struct exh_calib_here){
+    here = (struct exh_calib_target){
         7, 1, UINT32_MAX, f.c.dac_rawpA_q16, f.c.dac_zero_raw, f.c.mon_A_q40, f.c.mon_zero_raw};
     CHECK_EQ_I64(exh_calib_check(&f.c, &here, NULL), 0);
     here.day = 19999;
@@ -247,7 +247,7 @@ static int32_t save(struct fixture *f, uint8_t *buf)
 TEST(image_round_trip)
 {
     struct fixture a, b;
-    struct exh_calib_bad bad = {99, 99};
+    struct exh_calib_error bad = {99, 99};
     uint8_t buf[EXH_CALIB_IMAGE_B], again[EXH_CALIB_IMAGE_B];
     int32_t len;
     set_up(&a);
@@ -270,7 +270,7 @@ TEST(image_round_trip)
 TEST(any_bit_flipped_any_byte_missing_is_refused)
 {
     struct fixture a, b;
-    struct exh_calib_bad bad;
+    struct exh_calib_error bad;
     uint8_t buf[EXH_CALIB_IMAGE_B], crc[4];
     int32_t len;
     set_up(&a);
@@ -306,7 +306,7 @@ TEST(any_bit_flipped_any_byte_missing_is_refused)
 TEST(a_sound_image_of_a_bad_table_is_refused)
 {
     struct fixture a, b;
-    struct exh_calib_bad bad = {99, 99};
+    struct exh_calib_error bad = {99, 99};
     uint8_t buf[EXH_CALIB_IMAGE_B];
     const int32_t equal = A(600);
     int32_t len;
@@ -322,16 +322,17 @@ TEST(a_sound_image_of_a_bad_table_is_refused)
     exh_bytes_u32(&c, &crc);
     CHECK_EQ_I64(exh_calib_load(&b.c, buf, (size_t)len, &bad), -EXH_E_MONOTONE);
     CHECK(bad.what == EXH_CALIB_FORCE_TABLE && bad.at == 2, "%s, point %d",
-          exh_calib_what_text(bad.what), bad.at);
+          exh_calib_error_text(bad.what), bad.at);
     CHECK_EQ_I64(b.c.points, 0);
 }
 
 TEST(every_name_has_its_text)
 {
-    for (unsigned i = 0; i <= EXH_CALIB_WHATS; i++) {
-        CHECK(exh_calib_what_text(i)[0] != '\0', "%u", i);
+    for (unsigned i = 0; i <= EXH_CALIB_ERRORS; i++) {
+        CHECK(exh_calib_error_text(i)[0] != '\0', "%u", i);
         for (unsigned k = 0; k < i; k++) {
-            CHECK(!check_same_text(exh_calib_what_text(i), exh_calib_what_text(k)), "%u %u", i, k);
+            CHECK(!check_same_text(exh_calib_error_text(i), exh_calib_error_text(k)), "%u %u", i,
+                  k);
         }
     }
 }
@@ -376,25 +377,25 @@ TEST(tables_that_cannot_go_on_are_refused)
          A(3000),
          EXH_CALIB_MONITOR_TABLE}, /* to 4 kN by the monitor */
         {{N(10000), A(1000), A(10), 0}, A(3000), EXH_CALIB_MONITOR_TABLE}, /* from -2 kN to 2 kN */
-        {{N(10000), A(1000), A(10000), 0}, A(6600), EXH_CALIB_WHATS}, /* from -15.6 A to 15.6 A */
+        {{N(10000), A(1000), A(10000), 0}, A(6600), EXH_CALIB_ERRORS}, /* from -15.6 A to 15.6 A */
         {{N(10000), A(100), A(10000), 0},
          A(6600),
          EXH_CALIB_MONITOR_TABLE}, /* from -16.5 A to 16.5 A */
     };
     for (size_t i = 0; i < LEN(row); i++) {
-        struct exh_calib_bad bad = {99, 99};
+        struct exh_calib_error bad = {99, 99};
         struct fixture f;
         int err;
         set_up(&f);
         f.point[0] = row[i].point;
         f.c.points = 1;
         f.c.end_A_q26 = row[i].end_A_q26;
-        err = exh_calib_valid(&f.c, &bad);
-        if (row[i].what == EXH_CALIB_WHATS) {
+        err = exh_calib_validate(&f.c, &bad);
+        if (row[i].what == EXH_CALIB_ERRORS) {
             CHECK(err == 0, "row %zu: %d", i, err);
         } else {
             CHECK(err == -EXH_E_RANGE && bad.what == row[i].what && bad.at == 0, "row %zu: %d, %s",
-                  i, err, exh_calib_what_text(bad.what));
+                  i, err, exh_calib_error_text(bad.what));
         }
     }
 }
@@ -416,7 +417,7 @@ TEST(points_that_are_none_are_not_fitted)
 TEST(an_image_needs_room)
 {
     struct fixture f;
-    struct exh_calib_bad bad = {99, 99};
+    struct exh_calib_error bad = {99, 99};
     uint8_t image[1024];
     int32_t len;
     set_up(&f);
@@ -440,7 +441,7 @@ TEST(values_at_the_ends_of_their_ranges)
                {-32768, 32767}, {0, A(6600)}, {0, A(6600)}};
     for (unsigned i = 0; i < LEN(row); i++) {
         for (unsigned end = 0; end < 4; end++) {
-            struct exh_calib_bad bad = {99, 99};
+            struct exh_calib_error bad = {99, 99};
             struct fixture f;
             int32_t *const of[] = {&f.c.dac_rawpA_q16, &f.c.dac_zero_raw, &f.c.mon_A_q40,
                                    &f.c.mon_zero_raw,  &f.c.f0_A_q26,     &f.c.end_A_q26};
@@ -451,7 +452,7 @@ TEST(values_at_the_ends_of_their_ranges)
                      : end == 1 ? row[i].hi
                      : end == 2 ? row[i].lo - 1
                                 : row[i].hi + 1;
-            CHECK(exh_calib_valid(&f.c, &bad) == (beyond ? -EXH_E_RANGE : 0), "value %u, %u", i,
+            CHECK(exh_calib_validate(&f.c, &bad) == (beyond ? -EXH_E_RANGE : 0), "value %u, %u", i,
                   end);
             CHECK(!beyond || (bad.what == EXH_CALIB_VALUE && bad.at == 0), "value %u, %u: %d of %d",
                   i, end, bad.what, bad.at);
@@ -520,11 +521,11 @@ TEST(most_and_least_points)
     set_up(&f);
     f.c.point = p;
     f.c.points = EXH_CALIB_POINTS_MAX;
-    CHECK_EQ_I64(exh_calib_valid(&f.c, NULL), 0);
+    CHECK_EQ_I64(exh_calib_validate(&f.c, NULL), 0);
     p[0] = (struct exh_calib_point){1, 1, 1, 0};
     f.c.points = 1;
     f.c.end_A_q26 = 1;
-    CHECK_EQ_I64(exh_calib_valid(&f.c, NULL), 0);
+    CHECK_EQ_I64(exh_calib_validate(&f.c, NULL), 0);
 }
 
 /* Of two points that cannot go on there is no shorter table either; up to the last force that fits
@@ -552,15 +553,15 @@ TEST(no_table_ends_early)
          EXH_CALIB_FORCE_TABLE},
     };
     for (size_t i = 0; i < LEN(row); i++) {
-        struct exh_calib_bad bad = {99, 99};
+        struct exh_calib_error bad = {99, 99};
         struct fixture f;
         set_up(&f);
         f.point[0] = row[i].point[0];
         f.point[1] = row[i].point[1];
         f.c.points = row[i].point[1].force_N_q20 > 0 ? 2 : 1;
         f.c.end_A_q26 = row[i].end_A_q26;
-        CHECK(exh_calib_valid(&f.c, &bad) == row[i].err && bad.what == row[i].what, "row %zu: %d",
-              i, bad.what);
+        CHECK(exh_calib_validate(&f.c, &bad) == row[i].err && bad.what == row[i].what,
+              "row %zu: %d", i, bad.what);
         CHECK(row[i].err == 0 || bad.at == f.c.points - 1, "row %zu: point %d", i, bad.at);
     }
 }
@@ -579,8 +580,8 @@ TEST(the_least_way_on)
         f.c.point = &p;
         f.c.points = 1;
         f.c.end_A_q26 = p.cur_A_q26 + row[i].more;
-        CHECK(exh_calib_valid(&f.c, NULL) == row[i].err, "row %zu: %d", i,
-              exh_calib_valid(&f.c, NULL));
+        CHECK(exh_calib_validate(&f.c, NULL) == row[i].err, "row %zu: %d", i,
+              exh_calib_validate(&f.c, NULL));
     }
 }
 

@@ -36,7 +36,7 @@ TEST(truth_table)
         struct exh_contact s = {lim + depth, (uint8_t)row[i].inward, 0, 1};
         struct exh_force_ledger f;
         const struct exh_contact_in in = {lim + depth, EXH_Q(1, 10, EXH_Q_VEL), lim};
-        CHECK_EQ_I64(exh_contact_law(&s, &par_20k, in, &f), row[i].touching);
+        CHECK_EQ_I64(exh_contact_step(&s, &par_20k, in, &f), row[i].touching);
         CHECK_EQ_I64(f.spring_N_q20, row[i].spring); /* 20 N and the rounding of 1 mm */
         CHECK_EQ_I64(f.damper_N_q20, row[i].damper); /* 6 N */
         CHECK_EQ_I64(f.pullback_N_q20, row[i].pullback);
@@ -47,7 +47,7 @@ TEST(the_rest_of_the_ledger_is_zeroed)
 {
     struct exh_contact s = {0};
     struct exh_force_ledger f = {1, 2, 3, 4, 5, 6, 7, 8};
-    (void)exh_contact_law(&s, &par_20k, (struct exh_contact_in){0, 0, 1}, &f);
+    (void)exh_contact_step(&s, &par_20k, (struct exh_contact_in){0, 0, 1}, &f);
     CHECK(f.spring_N_q20 == 0 && f.damper_N_q20 == 0, "terms without contact");
     CHECK(f.passivity_N_q20 == 0 && f.clamp_N_q20 == 0, "passivity, clamp");
     CHECK(f.slew_N_q20 == 0 && f.release_N_q20 == 0 && f.force_N_q20 == 0, "slew, release, force");
@@ -69,7 +69,7 @@ TEST(contact_boundary_and_hysteresis)
         struct exh_force_ledger f;
         for (size_t i = 0; i < LEN(row); i++) {
             const struct exh_contact_in in = {lims[l] + row[i].past, 0, lims[l]};
-            CHECK(exh_contact_law(&s, &par_20k, in, &f) == row[i].touching, "row %zu", i);
+            CHECK(exh_contact_step(&s, &par_20k, in, &f) == row[i].touching, "row %zu", i);
             CHECK(s.touching == row[i].touching, "row %zu: state", i);
         }
     }
@@ -82,7 +82,7 @@ TEST(no_hysteresis_by_default)
     struct exh_force_ledger f;
     for (int32_t k = 0; k < 20; k++) {
         const int32_t past = k & 1 ? 0 : -1;
-        CHECK_EQ_I64(exh_contact_law(&s, &par, (struct exh_contact_in){past, 0, 0}, &f), k & 1);
+        CHECK_EQ_I64(exh_contact_step(&s, &par, (struct exh_contact_in){past, 0, 0}, &f), k & 1);
     }
 }
 
@@ -94,10 +94,10 @@ TEST(far_ends_do_not_wrap)
     const uint32_t before = check_saturations;
     const struct exh_contact_in far_past = {INT32_MAX, 0, INT32_MIN};
     const struct exh_contact_in far_before = {INT32_MIN, 0, INT32_MAX};
-    CHECK_EQ_I64(exh_contact_law(&s, &par_20k, far_past, &f), 1);
+    CHECK_EQ_I64(exh_contact_step(&s, &par_20k, far_past, &f), 1);
     CHECK(f.spring_N_q20 > 0, "spring %" PRId64, f.spring_N_q20);
     CHECK(check_saturations > before, "clipped in silence");
-    CHECK_EQ_I64(exh_contact_law(&s, &par_20k, far_before, &f), 0);
+    CHECK_EQ_I64(exh_contact_step(&s, &par_20k, far_before, &f), 0);
     CHECK_EQ_I64(f.spring_N_q20, 0);
 }
 
@@ -112,7 +112,7 @@ struct walk {
 static void walk_to(struct walk *w, const struct exh_contact_par *par, int32_t pos)
 {
     struct exh_force_ledger f;
-    (void)exh_contact_law(&w->s, par, (struct exh_contact_in){pos, 0, INT32_MAX}, &f);
+    (void)exh_contact_step(&w->s, par, (struct exh_contact_in){pos, 0, INT32_MAX}, &f);
     w->switches += (f.pullback_N_q20 != 0) != w->inward;
     w->inward = f.pullback_N_q20 != 0;
     CHECK(f.pullback_N_q20 == (w->inward ? par->f0_N_q20 : 0), "neither 0 nor F0");
@@ -173,15 +173,15 @@ TEST(state_round_trip)
     struct exh_contact back = {0};
     uint8_t buf[16];
     struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
-    exh_contact_bytes(&c, &s);
+    exh_contact_serialize(&c, &s);
     CHECK_EQ_I64(c.at, 7);
     c = exh_bytes_reader(buf, c.at);
-    exh_contact_bytes(&c, &back);
+    exh_contact_serialize(&c, &back);
     CHECK(exh_bytes_ok(&c) && back.turn_m_q30 == s.turn_m_q30, "turn");
     CHECK(back.inward == 1 && back.touching == 0 && back.started == 1, "flags");
     memset(buf, 0xFE, sizeof buf); /* damaged: flags are factors of a force */
     c = exh_bytes_reader(buf, sizeof buf);
-    exh_contact_bytes(&c, &back);
+    exh_contact_serialize(&c, &back);
     CHECK(back.inward == 1 && back.touching == 1, "damaged flags");
 }
 
@@ -197,8 +197,9 @@ TEST(nothing_to_touch)
             struct exh_contact s = {at[i], (uint8_t)(was & 1), (uint8_t)(was >> 1), 1};
             struct exh_contact same = s;
             struct exh_force_ledger f, want;
-            exh_contact_free(&s, &par, at[i], &f);
-            (void)exh_contact_law(&same, &par, (struct exh_contact_in){at[i], 7, INT32_MAX}, &want);
+            exh_contact_step_free(&s, &par, at[i], &f);
+            (void)exh_contact_step(&same, &par, (struct exh_contact_in){at[i], 7, INT32_MAX},
+                                   &want);
             CHECK(s.touching == 0 && f.spring_N_q20 == 0 && f.damper_N_q20 == 0, "at %" PRId32,
                   at[i]);
             CHECK(f.pullback_N_q20 == want.pullback_N_q20 && s.inward == same.inward &&

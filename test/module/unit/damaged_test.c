@@ -69,11 +69,11 @@ TEST(velocity)
         damage(&track_cfg, sizeof track_cfg, r);
         for (uint32_t k = 0; k < TICKS; k++) {
             const int32_t cnt = any_i32() >> any() % 31;
-            (void)exh_velocity_window_mps_q27(&window, &window_cfg, cnt);
+            (void)exh_velocity_window_step(&window, &window_cfg, cnt);
             CHECK(window.at < EXH_VELOCITY_N, "%u", (unsigned)window.at);
-            (void)exh_velocity_foaw_mps_q27(&foaw, &foaw_cfg, cnt);
-            (void)exh_velocity_pole_mps_q27(&pole, &pole_cfg, cnt);
-            (void)exh_velocity_track_mps_q27(&track, &track_cfg, cnt);
+            (void)exh_velocity_foaw_step(&foaw, &foaw_cfg, cnt);
+            (void)exh_velocity_pole_step(&pole, &pole_cfg, cnt);
+            (void)exh_velocity_track_step(&track, &track_cfg, cnt);
         }
     }
 }
@@ -95,7 +95,7 @@ TEST(encoder_and_quantizer)
         damage(&cfg.unused, sizeof cfg.unused, r);
         damage(&quantizer_cfg, sizeof quantizer_cfg, r);
         for (uint32_t k = 0; k < TICKS; k++) {
-            (void)exh_quad_extend(&s, &cfg, any() & 0xFFFFFF);
+            (void)exh_quad_step(&s, &cfg, any() & 0xFFFFFF);
             (void)exh_quantizer_step(&quantizer, &quantizer_cfg, any_i32());
         }
     }
@@ -145,7 +145,7 @@ static void make_drive(struct exh_drive_cfg *cfg, uint32_t round)
     memset(knot, 0, sizeof knot);
     knot[1].x = EXH_Q(22, 1, EXH_Q_FORCE);
     knot[1].y = EXH_Q(66, 10, EXH_Q_CUR);
-    CHECK_EQ_I64(exh_table_set(knot, 2), 0);
+    CHECK_EQ_I64(exh_table_setup(knot, 2), 0);
     CHECK_EQ_I64(exh_drive_setup(cfg, &drive_par, T, to_cur, none), 0);
     damage(knot, 2 * sizeof knot[0], round);
     damage(&cfg->force_to_cur.n, 1, round);
@@ -178,9 +178,9 @@ TEST(drive)
             memset(&f, 0, sizeof f);
             f.spring_N_q20 = any_i32() / 16;
             if (k == TICKS - 6) { permit.mode = EXH_PERMIT_RELEASE; }
-            limits = exh_drive_force(&s, &cfg, &permit, &f);
-            limits |= exh_drive_current(&s, &cfg, &f, &i);
-            exh_gate(&box, &cfg, 1, &i, &limits, &out);
+            limits = exh_drive_force_step(&s, &cfg, &permit, &f);
+            limits |= exh_drive_current_step(&s, &cfg, &f, &i);
+            exh_gate_step(&box, &cfg, 1, &i, &limits, &out);
             /* Its own limit, of the parameters, holds all the same. */
             CHECK(out.dac_raw[0] >= 32768 - 12184 && out.dac_raw[0] <= 32768 + 12184, "%u",
                   (unsigned)out.dac_raw[0]);
@@ -251,7 +251,7 @@ TEST(planes)
         for (uint32_t k = 0; k < TICKS; k++) {
             plane.point_m_q30.z = any_i32() / 4;
             in.tip_m_q30.z = any_i32() / 4;
-            (void)exh_precontact_tell(&s, &cfg, &plane, 0);
+            (void)exh_precontact_update(&s, &cfg, &plane, 0);
             (void)exh_precontact_step(&s, &cfg, &in);
         }
     }

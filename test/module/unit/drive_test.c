@@ -33,7 +33,7 @@ static int axis_setup(struct axis *a, struct exh_period T)
     struct exh_table there, back;
     a->knot[0] = (struct exh_knot){0, 0, {0, 1}};
     a->knot[1] = (struct exh_knot){EXH_Q(100, 1, EXH_Q_FORCE), EXH_Q(10, 1, EXH_Q_CUR), {0, 1}};
-    if (exh_table_set(a->knot, 2) < 0 || exh_table_invert(a->inv, a->knot, 2) < 0) { return 1; }
+    if (exh_table_setup(a->knot, 2) < 0 || exh_table_invert(a->inv, a->knot, 2) < 0) { return 1; }
     there = (struct exh_table){a->knot, 2};
     back = (struct exh_table){a->inv, 2};
     a->s = (struct exh_drive){0, 0, 0};
@@ -101,7 +101,7 @@ TEST(setup_refuses_tables_that_pull_at_no_force)
     for (size_t i = 0; i < LEN(row); i++) {
         struct exh_knot k[2] = {row[i][0], row[i][1]};
         const struct exh_table t = {k, 2}, one = {k, 1};
-        CHECK_EQ_I64(exh_table_set(k, 2), 0);
+        CHECK_EQ_I64(exh_table_setup(k, 2), 0);
         CHECK(exh_drive_setup(&cfg, &par, (struct exh_period){1, 2000}, t, none) == -EXH_E_RANGE,
               "table %zu", i);
         CHECK_EQ_I64(exh_drive_setup(&cfg, &par, (struct exh_period){1, 2000}, one, none),
@@ -135,7 +135,7 @@ static uint32_t force(struct axis *a, int64_t spring, struct exh_force_ledger *f
     const struct exh_force_ledger zero = {0};
     *f = zero;
     f->spring_N_q20 = spring;
-    return exh_drive_force(&a->s, &a->cfg, &open_permit, f);
+    return exh_drive_force_step(&a->s, &a->cfg, &open_permit, f);
 }
 
 /* f_max 40 N; slew 200 kN/s at 2 kHz: 100 N a tick, so not in the way. */
@@ -176,9 +176,9 @@ TEST(no_force_beyond_the_table)
     struct axis a;
     axis_par(&a.par);
     a.s = (struct exh_drive){0, 0, 0};
-    CHECK_EQ_I64(exh_table_set(k, 2), 0);
+    CHECK_EQ_I64(exh_table_setup(k, 2), 0);
     CHECK_EQ_I64(exh_drive_setup(&a.cfg, &a.par, (struct exh_period){1, 2000}, t, none), 0);
-    CHECK_EQ_I64(exh_drive_force(&a.s, &a.cfg, &open_permit, &f), EXH_LIMIT_FORCE);
+    CHECK_EQ_I64(exh_drive_force_step(&a.s, &a.cfg, &open_permit, &f), EXH_LIMIT_FORCE);
     CHECK_EQ_I64(f.force_N_q20, 22 * NEWTON);
     CHECK_EQ_I64(f.clamp_N_q20, -8 * NEWTON);
     CHECK_EQ_I64(exh_drive_monitor_N_q20(&a.cfg, exh_drive_monitor_A_q26(&a.cfg, 1000)),
@@ -196,7 +196,7 @@ TEST(setup_refuses_a_table_that_was_not_set)
     struct exh_drive_par par;
     struct exh_drive_cfg cfg;
     axis_par(&par);
-    CHECK_EQ_I64(exh_table_set(good, 2), 0);
+    CHECK_EQ_I64(exh_table_setup(good, 2), 0);
     CHECK_EQ_I64(exh_drive_setup(&cfg, &par, T, set, none), 0);
     CHECK_EQ_I64(exh_drive_setup(&cfg, &par, T, set, set), 0);
     CHECK_EQ_I64(exh_drive_setup(&cfg, &par, T, raw, none), -EXH_E_RANGE);
@@ -217,7 +217,7 @@ TEST(not_running_is_no_force)
     CHECK_EQ_I64(f.force_N_q20, 5 * NEWTON);
     for (int sign = -1; sign <= 1; sign++) {
         f = (struct exh_force_ledger){sign * (INT64_C(1) << 40), 0, 0, 0, 7, 7, 7, 7};
-        CHECK_EQ_I64(exh_drive_force(&a.s, &a.cfg, &closed, &f),
+        CHECK_EQ_I64(exh_drive_force_step(&a.s, &a.cfg, &closed, &f),
                      sign > 0   ? EXH_LIMIT_GATE | EXH_LIMIT_FORCE
                      : sign < 0 ? EXH_LIMIT_PULL
                                 : 0);
@@ -251,7 +251,7 @@ TEST(release_is_bounded_and_ends)
             struct exh_force_ledger f = {check_i64() >> 24, check_i32(), 0, 0, 5, 5, 5, 5};
             const int64_t asked = f.spring_N_q20 + f.damper_N_q20;
             p.ticks = check_u64() % 8 ? 1 : 1 + (uint32_t)(check_u64() % 3);
-            CHECK_EQ_I64(exh_drive_force(&a.s, &a.cfg, &p, &f), EXH_LIMIT_RELEASE);
+            CHECK_EQ_I64(exh_drive_force_step(&a.s, &a.cfg, &p, &f), EXH_LIMIT_RELEASE);
             CHECK(last - f.force_N_q20 >= 0 && (int64_t)(last - f.force_N_q20) * ticks <=
                                                    ((int64_t)from + ticks) * (int64_t)p.ticks,
                   "%" PRId32 " of %" PRId32 " in %" PRId32, last - f.force_N_q20, from, ticks);
@@ -274,10 +274,10 @@ TEST(release_begins_anew)
     CHECK_EQ_I64(axis_setup(&a, (struct exh_period){1, 2000}), 0);
     CHECK_EQ_I64(exh_gain_set(&p.fall, 1, 4), 0);
     a.s.force_N_q20 = 8 * NEWTON;
-    (void)exh_drive_force(&a.s, &a.cfg, &p, &f);
+    (void)exh_drive_force_step(&a.s, &a.cfg, &p, &f);
     CHECK_EQ_I64(f.force_N_q20, 6 * NEWTON - 1);
     (void)force(&a, 20 * NEWTON, &f);
-    (void)exh_drive_force(&a.s, &a.cfg, &p, &f);
+    (void)exh_drive_force_step(&a.s, &a.cfg, &p, &f);
     CHECK_EQ_I64(f.force_N_q20, 15 * NEWTON - 1);
 }
 
@@ -299,7 +299,7 @@ TEST(ramp_limits_the_force)
     CHECK_EQ_I64(axis_setup(&a, (struct exh_period){1, 2000}), 0);
     for (size_t i = 0; i < LEN(row); i++) {
         struct exh_force_ledger f = {row[i].asked_N * NEWTON, 0, 0, 0, 0, 0, 0, 0};
-        CHECK_EQ_I64(exh_drive_force(&a.s, &a.cfg, &half, &f), row[i].limits);
+        CHECK_EQ_I64(exh_drive_force_step(&a.s, &a.cfg, &half, &f), row[i].limits);
         CHECK_EQ_I64(f.force_N_q20, row[i].want_N * NEWTON);
     }
 }
@@ -314,11 +314,11 @@ TEST(small_force_is_told)
     CHECK_EQ_I64(axis_setup(&a, (struct exh_period){1, 2000}), 0);
     for (size_t i = 0; i < LEN(off_N_q20); i++) {
         struct exh_force_ledger f = {NEWTON, 0, off_N_q20[i], 0, 0, 0, 0, 0};
-        const uint32_t bits = exh_drive_force(&a.s, &a.cfg, &p, &f);
+        const uint32_t bits = exh_drive_force_step(&a.s, &a.cfg, &p, &f);
         CHECK_EQ_I64(bits, (i > 0 ? EXH_LIMIT_GATE : 0u) | (i > 2 ? EXH_LIMIT_FORCE : 0u));
         /* Passivity takes it away for a while: the wall is there. */
         f = (struct exh_force_ledger){NEWTON, 0, off_N_q20[i], -2 * NEWTON, 0, 0, 0, 0};
-        CHECK_EQ_I64(exh_drive_force(&a.s, &a.cfg, &p, &f),
+        CHECK_EQ_I64(exh_drive_force_step(&a.s, &a.cfg, &p, &f),
                      i < 4 ? EXH_LIMIT_PULL | (i > 2 ? EXH_LIMIT_FORCE : 0u) : EXH_LIMIT_FORCE);
         CHECK_EQ_I64(f.force_N_q20, 0);
     }
@@ -360,7 +360,7 @@ static uint32_t current(struct axis *a, int32_t force_N_q20, struct exh_current_
 {
     struct exh_force_ledger f = {0};
     f.force_N_q20 = force_N_q20;
-    return exh_drive_current(&a->s, &a->cfg, &f, i);
+    return exh_drive_current_step(&a->s, &a->cfg, &f, i);
 }
 
 static int64_t allowed_A_q26(const struct exh_current_ledger *i)
@@ -489,13 +489,13 @@ TEST(frames_round_trip)
         struct exh_drive_out out2 = {{0}, 0, 0};
         uint8_t buf[64];
         struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
-        exh_drive_in_bytes(&c, &in, n);
+        exh_drive_in_serialize(&c, &in, n);
         CHECK_EQ_I64(c.at, 6 * n + 6);
-        exh_drive_out_bytes(&c, &out, n);
+        exh_drive_out_serialize(&c, &out, n);
         CHECK_EQ_I64(c.at, 8 * n + 8);
         c = exh_bytes_reader(buf, c.at);
-        exh_drive_in_bytes(&c, &in2, n);
-        exh_drive_out_bytes(&c, &out2, n);
+        exh_drive_in_serialize(&c, &in2, n);
+        exh_drive_out_serialize(&c, &out2, n);
         CHECK(exh_bytes_ok(&c), "n %u", n);
         CHECK(in2.supply_raw == in.supply_raw && in2.din == in.din, "n %u", n);
         CHECK(out2.enable == out.enable && out2.alive == out.alive, "n %u", n);
@@ -512,15 +512,15 @@ TEST(state_round_trip)
     struct exh_drive s = {7, 9, INT64_C(0x0123456789ABCDEF)}, back = {0, 0, 0};
     uint8_t buf[16];
     struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
-    exh_drive_bytes(&c, &s);
+    exh_drive_serialize(&c, &s);
     CHECK_EQ_I64(c.at, 16);
     c = exh_bytes_reader(buf, c.at);
-    exh_drive_bytes(&c, &back);
+    exh_drive_serialize(&c, &back);
     CHECK(back.force_N_q20 == s.force_N_q20 && back.fall_N_q20 == 9 && back.i2t_q32 == s.i2t_q32,
           "state differs");
     memset(buf, 0xFF, sizeof buf); /* damaged: no push, and as hot as can be */
     c = exh_bytes_reader(buf, sizeof buf);
-    exh_drive_bytes(&c, &back);
+    exh_drive_serialize(&c, &back);
     CHECK(back.force_N_q20 == 0 && back.fall_N_q20 == 0 && back.i2t_q32 == INT64_MAX / 2,
           "damaged state");
 }
@@ -543,14 +543,14 @@ TEST(hostile_bytes_come_into_range)
         int64_t cur_A_q26;
         int32_t last;
         for (size_t b = 0; b < sizeof buf; b++) { buf[b] = (uint8_t)(check_u64() & 255); }
-        exh_drive_bytes(&c, &s);
+        exh_drive_serialize(&c, &s);
         CHECK(s.force_N_q20 >= 0 && s.force_N_q20 <= 100 << 20, "force %" PRId32, s.force_N_q20);
         CHECK(s.fall_N_q20 >= 0 && s.fall_N_q20 <= (100 << 20) + 1, "fall %" PRId32, s.fall_N_q20);
         CHECK(s.i2t_q32 >= 0 && s.i2t_q32 <= INT64_MAX / 2, "heat %" PRId64, s.i2t_q32);
         last = s.force_N_q20;
         f.spring_N_q20 = (int32_t)check_i32_in(INT32_MIN, INT32_MAX);
-        (void)exh_drive_force(&s, &a.cfg, &let, &f);
-        (void)exh_drive_current(&s, &a.cfg, &f, &i);
+        (void)exh_drive_force_step(&s, &a.cfg, &let, &f);
+        (void)exh_drive_current_step(&s, &a.cfg, &f, &i);
         cur_A_q26 = i.table_A_q26 + i.peak_A_q26 + i.i2t_A_q26;
         CHECK(f.force_N_q20 >= 0 && f.force_N_q20 <= last, "released upwards");
         CHECK(cur_A_q26 >= 0 && cur_A_q26 <= a.par.i_peak_A_q26, "current %" PRId64, cur_A_q26);
@@ -565,7 +565,7 @@ TEST(the_greatest_budget)
     struct exh_drive_par par;
     struct exh_drive_cfg cfg;
     axis_par(&par);
-    CHECK_EQ_I64(exh_table_set(k, 2), 0);
+    CHECK_EQ_I64(exh_table_setup(k, 2), 0);
     par.i_peak_A_q26 = EXH_Q(66, 10, 26);
     par.i_cont_A_q26 = 0;
     par.peak_ms = 2700;
@@ -585,7 +585,7 @@ TEST(no_peak_no_budget)
     for (unsigned i = 0; i < EXH_DRIVE_ROWS; i++) {
         ((int32_t *)(void *)&par)[i] = exh_drive_rows[i].dflt;
     }
-    CHECK_EQ_I64(exh_table_set(k, 2), 0);
+    CHECK_EQ_I64(exh_table_setup(k, 2), 0);
     memset(&cfg, 0x55, sizeof cfg);
     par.i_peak_A_q26 = par.i_cont_A_q26;
     CHECK_EQ_I64(exh_drive_setup(&cfg, &par, (struct exh_period){1, 1000}, (struct exh_table){k, 2},

@@ -272,7 +272,7 @@ TEST(retune_keeps_what_is_settled)
             exh_filter_reset(&s, &x, 1);
             for (int t = 0; t < 20; t++) {
                 CHECK_EQ_I64(one(&s, t & 1 ? &b : &a, x), x);
-                exh_filter_retune(&s, 1, t & 1 ? &b : &a, t & 1 ? &a : &b);
+                exh_filter_retune(&s, t & 1 ? &b : &a, t & 1 ? &a : &b, 1);
             }
         }
     }
@@ -287,9 +287,9 @@ TEST(a_change_of_order_drops_the_speed)
     exh_filter_reset(&s, &zero, 1);
     for (int t = 0; t < 10; t++) { (void)one(&s, &second, INT32_MAX); }
     CHECK(s.vel > 0, "no speed to drop");
-    exh_filter_retune(&s, 1, &second, &second);
+    exh_filter_retune(&s, &second, &second, 1);
     CHECK(s.vel > 0, "dropped without need");
-    exh_filter_retune(&s, 1, &second, &first);
+    exh_filter_retune(&s, &second, &first, 1);
     CHECK_EQ_I64(s.vel, 0);
 }
 
@@ -320,7 +320,7 @@ TEST(retune_keeps_every_settled_state)
         s.vel += i & 2 ? UINT32_MAX : 0;
         for (int t = 0; t < 200; t++) {
             CHECK_EQ_I64(one(&s, t < 100 ? &low : &to, x), x);
-            if (t == 99) { exh_filter_retune(&s, 1, &low, &to); }
+            if (t == 99) { exh_filter_retune(&s, &low, &to, 1); }
         }
     }
 }
@@ -331,10 +331,10 @@ TEST(state_round_trip)
                       back = {0, 0, 0};
     uint8_t buf[32];
     struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
-    exh_filter_bytes(&c, &s);
+    exh_filter_serialize(&c, &s);
     CHECK_EQ_I64(c.at, 17);
     c = exh_bytes_reader(buf, c.at);
-    exh_filter_bytes(&c, &back);
+    exh_filter_serialize(&c, &back);
     CHECK(exh_bytes_ok(&c) && back.pos == s.pos && back.vel == s.vel && back.wide == s.wide,
           "state differs");
 }
@@ -426,7 +426,7 @@ TEST(retune_to_low_limits_both_states)
     for (size_t i = 0; i < 2 * LEN(more); i++) {
         const int64_t by = more[i / 2], sign = i & 1 ? -1 : 1;
         struct exh_filter s = {sign * (pos + by), sign * (vel + by), 1};
-        exh_filter_retune(&s, 1, &high, &low);
+        exh_filter_retune(&s, &high, &low, 1);
         CHECK_EQ_I64(s.pos, sign * (pos + (by < 0 ? by : 0)) * 32);
         CHECK_EQ_I64(s.vel, sign * (vel + (by < 0 ? by : 0)) * 64);
         CHECK_EQ_I64(s.wide, 0);

@@ -147,7 +147,7 @@ static struct exh_params params;
 
 static void start(void)
 {
-    exh_params_init(&params, &table, (int32_t *)&active, (int32_t *)&staged);
+    exh_params_setup(&params, &table, (int32_t *)&active, (int32_t *)&staged);
     active.rule = staged.rule = rule;
 }
 
@@ -181,15 +181,15 @@ TEST(a_whole_image_is_asked_and_dropped)
 {
     uint16_t instance = 7;
     start();
-    CHECK_EQ_I64(exh_gains_staged(&params, &rule, &instance), 0);
+    CHECK_EQ_I64(exh_gains_validate(&params, &rule, &instance), 0);
     CHECK_EQ_I64(exh_params_stage(&params, 0x0401, 1, K(20000)), 0);
-    CHECK_EQ_I64(exh_gains_staged(&params, &rule, &instance), -EXH_E_GAINS);
-    CHECK_EQ_I64(exh_gains_staged(&params, &rule, NULL), -EXH_E_GAINS);
+    CHECK_EQ_I64(exh_gains_validate(&params, &rule, &instance), -EXH_E_GAINS);
+    CHECK_EQ_I64(exh_gains_validate(&params, &rule, NULL), -EXH_E_GAINS);
     CHECK_EQ_I64(instance, 1);
-    exh_params_drop(&params);
+    exh_params_discard(&params);
     CHECK_EQ_I64(exh_params_apply(&params), 0);
     CHECK_EQ_I64(staged.contact[1].k_Npm_q10, K(1500));
-    CHECK_EQ_I64(exh_gains_staged(&params, &rule, &instance), 0);
+    CHECK_EQ_I64(exh_gains_validate(&params, &rule, &instance), 0);
 }
 
 /* From (10000, 0) over the valley to the same k at b = 40: k down to the valley's, through, up
@@ -201,7 +201,7 @@ TEST(through_a_valley)
     struct exh_contact_par *now = &active.contact[0];
     int32_t was = K(10000), low = was;
     start();
-    exh_gains_lead(&params, 1);
+    exh_gains_enable(&params, 1);
     CHECK_EQ_I64(exh_params_stage(&params, 0x0401, 0, K(10000)), 0);
     CHECK_EQ_I64(exh_params_apply(&params), 1); /* not locked: at once */
     CHECK_EQ_I64(now->k_Npm_q10, K(10000));
@@ -216,7 +216,7 @@ TEST(through_a_valley)
         was = now->k_Npm_q10;
         low = was < low ? was : low;
         if (n == 20) {
-            exh_params_drop(&params);
+            exh_params_discard(&params);
             CHECK(exh_gains_ok(&valley, now->k_Npm_q10, now->b_Nspm_q20), "dropped outside");
             CHECK_EQ_I64(exh_params_stage(&params, 0x0401, 0, K(10000)), 0);
             CHECK_EQ_I64(exh_params_stage(&params, 0x0402, 0, B(40)), 0);
@@ -233,17 +233,17 @@ TEST(a_damaged_goal_is_not_gone_to)
     const struct exh_contact_par *now = &active.contact[0];
     int told = 0;
     start();
-    exh_gains_lead(&params, 1);
+    exh_gains_enable(&params, 1);
     params.locked = 1;
     params.shift = 3;
     (void)exh_params_apply(&params);
     exh_params_seal(&params);
     staged.contact[0].k_Npm_q10 ^= 1 << 23; /* 9692 N/m: inside, too */
-    CHECK_EQ_I64(exh_gains_staged(&params, &rule, NULL), 0);
+    CHECK_EQ_I64(exh_gains_validate(&params, &rule, NULL), 0);
     for (uint32_t n = 0; n < params.count; n++) {
         (void)exh_params_apply(&params);
         exh_gains_step(&params, &rule);
-        told |= exh_params_look(&params);
+        told |= exh_params_verify(&params);
         CHECK_EQ_I64(now->k_Npm_q10, K(1500));
     }
     CHECK(told, "never told");
@@ -254,7 +254,7 @@ TEST(a_goal_that_became_none_is_waited_for)
 {
     int32_t at;
     start();
-    exh_gains_lead(&params, 1);
+    exh_gains_enable(&params, 1);
     params.locked = 1;
     params.shift = 3;
     CHECK_EQ_I64(exh_gains_stage(&params, &rule, 0x0401, 0, K(9000)), 0);
@@ -275,7 +275,7 @@ TEST(no_wall_is_a_jump_away)
 {
     struct exh_contact_par *now = &active.contact[0];
     start();
-    exh_gains_lead(&params, 1);
+    exh_gains_enable(&params, 1);
     params.locked = 1;
     params.shift = 3;
     CHECK_EQ_I64(exh_params_stage(&params, 0x0401, 0, 0), 0);
@@ -317,12 +317,12 @@ TEST(half_a_pair_is_none)
         const struct exh_signal_table t = {half, 1};
         const int32_t v = k == 0 ? K(50000) : B(60);
         int32_t now[1], want[1];
-        exh_params_init(&params, &t, now, want);
+        exh_params_setup(&params, &t, now, want);
         params.shift = 3;
         params.locked = 1;
-        exh_gains_lead(&params, 1);
+        exh_gains_enable(&params, 1);
         CHECK_EQ_I64(exh_gains_stage(&params, &rule, exh_contact_rows[k].id, 0, v), 0);
-        CHECK_EQ_I64(exh_gains_staged(&params, &rule, NULL), 0);
+        CHECK_EQ_I64(exh_gains_validate(&params, &rule, NULL), 0);
         (void)exh_params_apply(&params);
         exh_gains_step(&params, &rule);
         CHECK(now[0] == exh_contact_rows[k].dflt && want[0] == v, "half %u", k);
@@ -332,9 +332,9 @@ TEST(half_a_pair_is_none)
 TEST(without_the_lead_both_go_by_themselves)
 {
     start();
-    exh_gains_lead(&params, 1);
+    exh_gains_enable(&params, 1);
     CHECK(params.led[0] == 0x0401 && params.led[1] == 0x0402, "led");
-    exh_gains_lead(&params, 0);
+    exh_gains_enable(&params, 0);
     CHECK(params.led[0] == 0 && params.led[1] == 0, "led still");
     params.locked = 1;
     params.shift = 3;
@@ -347,7 +347,7 @@ TEST(without_the_lead_both_go_by_themselves)
 TEST(a_damaged_pair_becomes_none)
 {
     start();
-    exh_gains_lead(&params, 1);
+    exh_gains_enable(&params, 1);
     params.locked = 1;
     params.shift = 3;
     active.contact[0].k_Npm_q10 = 0;
@@ -364,8 +364,8 @@ TEST(rows_may_stand_in_any_order)
                                               {&exh_contact_rows[0], 1, 1}};
     const struct exh_signal_table t = {turned, 2};
     int32_t now[2], want[2];
-    exh_params_init(&params, &t, now, want);
-    exh_gains_lead(&params, 1);
+    exh_params_setup(&params, &t, now, want);
+    exh_gains_enable(&params, 1);
     params.shift = 3;
     params.locked = 1;
     CHECK_EQ_I64(exh_gains_stage(&params, &rule, 0x0401, 0, K(20000)), -EXH_E_GAINS);

@@ -23,7 +23,7 @@ static void box_setup(struct box *b)
     *b = zero;
     b->s.fingers = EXH_FINGERS; /* all drives seen ready */
     b->knot[1].x = b->knot[1].y = 1 << 20;
-    CHECK_EQ_I64(exh_table_set(b->knot, 2), 0);
+    CHECK_EQ_I64(exh_table_setup(b->knot, 2), 0);
     for (unsigned k = 0; k < EXH_FINGERS; k++) {
         const struct exh_table t = {b->knot, 2};
         int32_t *field = &b->par[k].f_max_N_q20;
@@ -50,8 +50,8 @@ TEST(gate_in_every_state)
         b.s.limits = 0xFFFF; /* of the tick before */
         b.limits[2] = EXH_LIMIT_SPEED;
         for (unsigned k = 0; k < 5; k++) { b.s.off_raw[k] = 5538; } /* and its code */
-        CHECK_EQ_I64(exh_safety_open(&b.s), open);
-        exh_gate(&b.s, b.cfg, 5, b.i, b.limits, &b.out);
+        CHECK_EQ_I64(exh_safety_is_open(&b.s), open);
+        exh_gate_step(&b.s, b.cfg, 5, b.i, b.limits, &b.out);
         CHECK_EQ_I64(b.out.enable, open ? 0x1F : 0);
         for (unsigned k = 0; k < 5; k++) {
             const int64_t codes = 5538 * ((int64_t)k % 3 - 1); /* 3 A, 1846.02 codes/A */
@@ -82,7 +82,7 @@ TEST(a_release_never_rises)
     for (size_t t = 0; t < LEN(amp); t++) {
         b.i[0].table_A_q26 = amp[t] * (1 << 26);
         b.limits[0] = 0;
-        exh_gate(&b.s, b.cfg, 1, b.i, b.limits, &b.out);
+        exh_gate_step(&b.s, b.cfg, 1, b.i, b.limits, &b.out);
         CHECK_EQ_I64(b.out.dac_raw[0], 32768 + most[t] * 1846);
         CHECK((b.limits[0] != 0) == (amp[t] != most[t]), "%zu: told", t);
         CHECK_EQ_I64(b.i[0].coded_A_q26, b.i[0].table_A_q26 + b.i[0].gate_A_q26 + b.i[0].dac_A_q26);
@@ -90,12 +90,12 @@ TEST(a_release_never_rises)
     }
     b.par[0].dac_rawpA_q16 *= 2; /* nor by the scale */
     b.s.off_raw[0] = 100;
-    exh_gate(&b.s, b.cfg, 1, b.i, b.limits, &b.out);
+    exh_gate_step(&b.s, b.cfg, 1, b.i, b.limits, &b.out);
     CHECK_EQ_I64(b.out.dac_raw[0], 32868);
     b.s.state = EXH_STATE_FAULT; /* and from the shut gate on there is nothing to fall */
-    exh_gate(&b.s, b.cfg, 1, b.i, b.limits, &b.out);
+    exh_gate_step(&b.s, b.cfg, 1, b.i, b.limits, &b.out);
     b.s.state = EXH_STATE_RELEASE;
-    exh_gate(&b.s, b.cfg, 1, b.i, b.limits, &b.out);
+    exh_gate_step(&b.s, b.cfg, 1, b.i, b.limits, &b.out);
     CHECK_EQ_I64(b.out.dac_raw[0], 32768);
 }
 
@@ -109,7 +109,7 @@ TEST(span_is_never_exceeded)
         b.par[0].dac_zero_raw = 32000;
         b.par[0].dac_span_raw = 12184; /* 6.6 A */
         b.i[0].table_A_q26 = amp[a] * (1 << 26);
-        exh_gate(&b.s, b.cfg, 1, b.i, b.limits, &b.out);
+        exh_gate_step(&b.s, b.cfg, 1, b.i, b.limits, &b.out);
         CHECK(b.out.dac_raw[0] >= 32000 - 12184 && b.out.dac_raw[0] <= 32000 + 12184,
               "%" PRId64 " A: code %d", amp[a], b.out.dac_raw[0]);
         CHECK(((b.limits[0] & EXH_LIMIT_DAC) != 0) == (amp[a] > 6 || amp[a] < -6), "%" PRId64 " A",
@@ -125,7 +125,7 @@ TEST(converter_end_is_reported)
     b.s.state = EXH_STATE_RUN;
     b.par[0].dac_zero_raw = 65000;
     b.i[0].table_A_q26 = EXH_Q(6, 1, EXH_Q_CUR);
-    exh_gate(&b.s, b.cfg, 1, b.i, b.limits, &b.out);
+    exh_gate_step(&b.s, b.cfg, 1, b.i, b.limits, &b.out);
     CHECK_EQ_I64(b.out.dac_raw[0], 65535);
     CHECK((b.limits[0] & EXH_LIMIT_DAC) != 0, "5.7 A taken away without a limit bit");
 }
@@ -140,7 +140,7 @@ TEST(fingers_not_in_use_get_zero)
             b.out.dac_raw[k] = 60000;
             b.i[k].table_A_q26 = EXH_Q(3, 1, EXH_Q_CUR);
         }
-        exh_gate(&b.s, b.cfg, n, b.i, b.limits, &b.out);
+        exh_gate_step(&b.s, b.cfg, n, b.i, b.limits, &b.out);
         CHECK_EQ_I64(b.out.enable, (1u << n) - 1u);
         for (unsigned k = 0; k < EXH_FINGERS; k++) {
             CHECK((b.out.dac_raw[k] == 32768) == (k >= n), "n %u finger %u: %d", n, k,
@@ -156,7 +156,7 @@ TEST(alive_changes_at_every_tick_in_every_state)
     for (int k = 0; k < 600; k++) {
         const uint8_t before = b.out.alive;
         b.s.state = (uint8_t)(k % 7);
-        exh_gate(&b.s, b.cfg, 5, b.i, b.limits, &b.out);
+        exh_gate_step(&b.s, b.cfg, 5, b.i, b.limits, &b.out);
         CHECK(b.out.alive != before, "tick %d", k);
     }
 }

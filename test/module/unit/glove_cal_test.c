@@ -36,71 +36,71 @@ TEST(valid_names_the_culprit)
         {21, {0, (1 << 17) - 1, {0, 0}, 0, 1000, {255, 255}}, EXH_GLOVE_GAIN},
         {21, {0, -(1 << 17) + 1, {0, 0}, 0, 1000, {255, 255}}, EXH_GLOVE_GAIN},
         {5, {0, INT32_MIN, {0, 0}, 0, 1000, {255, 255}}, EXH_GLOVE_GAIN},
-        {5, {0, INT32_MAX, {0, 0}, 0, 1000, {255, 255}}, EXH_GLOVE_WHATS},
-        {5, {0, -INT32_MAX, {0, 0}, 0, 1000, {255, 255}}, EXH_GLOVE_WHATS},
-        {5, {0, 1 << 17, {0, 0}, 0, 1000, {255, 255}}, EXH_GLOVE_WHATS},
+        {5, {0, INT32_MAX, {0, 0}, 0, 1000, {255, 255}}, EXH_GLOVE_ERRORS},
+        {5, {0, -INT32_MAX, {0, 0}, 0, 1000, {255, 255}}, EXH_GLOVE_ERRORS},
+        {5, {0, 1 << 17, {0, 0}, 0, 1000, {255, 255}}, EXH_GLOVE_ERRORS},
         {6, {1 << 30, 1 << 20, {0, 0}, 0, 1000, {255, 255}}, EXH_GLOVE_ZERO},
-        {6, {(1 << 30) - 1, 1 << 20, {0, 0}, 0, 1000, {255, 255}}, EXH_GLOVE_WHATS},
-        {6, {-(1 << 30), 1 << 20, {0, 0}, 0, 1000, {255, 255}}, EXH_GLOVE_WHATS},
+        {6, {(1 << 30) - 1, 1 << 20, {0, 0}, 0, 1000, {255, 255}}, EXH_GLOVE_ERRORS},
+        {6, {-(1 << 30), 1 << 20, {0, 0}, 0, 1000, {255, 255}}, EXH_GLOVE_ERRORS},
         {6, {-(1 << 30) - 1, 1 << 20, {0, 0}, 0, 1000, {255, 255}}, EXH_GLOVE_ZERO},
         {7, {0, 1 << 20, {0, 0}, 500, 563, {255, 255}}, EXH_GLOVE_SPAN},
-        {7, {0, 1 << 20, {0, 0}, 500, 564, {255, 255}}, EXH_GLOVE_WHATS},
-        {7, {0, 1 << 20, {0, 0}, INT16_MIN, INT16_MAX, {255, 255}}, EXH_GLOVE_WHATS},
+        {7, {0, 1 << 20, {0, 0}, 500, 564, {255, 255}}, EXH_GLOVE_ERRORS},
+        {7, {0, 1 << 20, {0, 0}, INT16_MIN, INT16_MAX, {255, 255}}, EXH_GLOVE_ERRORS},
         {7, {0, 1 << 20, {0, 0}, INT16_MAX, INT16_MIN, {255, 255}}, EXH_GLOVE_SPAN},
         {3, {0, 1 << 20, {1, 0}, 0, 1000, {22, 255}}, EXH_GLOVE_CROSS},
         {3, {0, 1 << 20, {0, 1}, 0, 1000, {255, 254}}, EXH_GLOVE_CROSS},
         {3, {0, 1 << 20, {1, 0}, 0, 1000, {3, 255}}, EXH_GLOVE_CROSS},   /* itself */
         {3, {0, 1 << 20, {1, 0}, 0, 1000, {10, 255}}, EXH_GLOVE_CROSS},  /* has some itself */
         {3, {0, 1 << 20, {1, 0}, 0, 1000, {255, 255}}, EXH_GLOVE_CROSS}, /* of none */
-        {3, {0, 1 << 20, {INT32_MIN, INT32_MAX}, 0, 1000, {0, 21}}, EXH_GLOVE_WHATS},
+        {3, {0, 1 << 20, {INT32_MIN, INT32_MAX}, 0, 1000, {0, 21}}, EXH_GLOVE_ERRORS},
     };
     for (size_t i = 0; i < LEN(row); i++) {
         struct exh_glove_cal cal = sound();
-        struct exh_glove_bad bad = {99, 99};
+        struct exh_glove_error bad = {99, 99};
         int err;
         cal.sensor[row[i].sensor] = row[i].s;
-        err = exh_glove_cal_valid(&cal, &bad);
-        CHECK(err == (row[i].what == EXH_GLOVE_WHATS ? 0 : -EXH_E_RANGE), "row %zu: %d", i, err);
+        err = exh_glove_cal_validate(&cal, &bad);
+        CHECK(err == (row[i].what == EXH_GLOVE_ERRORS ? 0 : -EXH_E_RANGE), "row %zu: %d", i, err);
         CHECK(err == 0 || (bad.what == row[i].what && bad.at == row[i].sensor), "row %zu: %s of %d",
-              i, exh_glove_what_text(bad.what), bad.at);
-        CHECK(exh_glove_cal_valid(&cal, NULL) == err, "row %zu", i);
+              i, exh_glove_error_text(bad.what), bad.at);
+        CHECK(exh_glove_cal_validate(&cal, NULL) == err, "row %zu", i);
     }
 }
 
 TEST(present_and_absent)
 {
     struct exh_glove_cal cal = sound();
-    struct exh_glove_bad bad = {99, 99};
+    struct exh_glove_error bad = {99, 99};
     cal.present = 0;
-    CHECK_EQ_I64(exh_glove_cal_valid(&cal, &bad), -EXH_E_RANGE);
+    CHECK_EQ_I64(exh_glove_cal_validate(&cal, &bad), -EXH_E_RANGE);
     CHECK_EQ_I64(bad.what, EXH_GLOVE_PRESENT);
     cal.present = ALL | 1u << 22;
-    CHECK_EQ_I64(exh_glove_cal_valid(&cal, &bad), -EXH_E_RANGE);
+    CHECK_EQ_I64(exh_glove_cal_validate(&cal, &bad), -EXH_E_RANGE);
     CHECK_EQ_I64(bad.what, EXH_GLOVE_PRESENT);
     cal = (struct exh_glove_cal){7,  3,        20000,
                                  30, 1u << 22, {{0}}}; /* that bit alone, of no sensor that is */
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
         cal.sensor[i].of[0] = cal.sensor[i].of[1] = EXH_GLOVE_NONE;
     }
-    CHECK_EQ_I64(exh_glove_cal_valid(&cal, &bad), -EXH_E_RANGE);
+    CHECK_EQ_I64(exh_glove_cal_validate(&cal, &bad), -EXH_E_RANGE);
     CHECK_EQ_I64(bad.what, EXH_GLOVE_PRESENT);
     cal = sound();
     cal.present = ALL & ~(1u << 6);
-    CHECK_EQ_I64(exh_glove_cal_valid(&cal, &bad), -EXH_E_RANGE); /* absent with a gain */
+    CHECK_EQ_I64(exh_glove_cal_validate(&cal, &bad), -EXH_E_RANGE); /* absent with a gain */
     CHECK(bad.what == EXH_GLOVE_GAIN && bad.at == 6, "%d of %d", bad.what, bad.at);
     cal.sensor[6] = (struct exh_glove_sensor){0, 0, {1 << 29, 0}, 0, 0, {5, 255}};
-    CHECK_EQ_I64(exh_glove_cal_valid(&cal, &bad), 0);
+    CHECK_EQ_I64(exh_glove_cal_validate(&cal, &bad), 0);
     for (unsigned k = 0; k < 2; k++) { /* of one that has a cross term itself */
         cal.sensor[9].of[k] = 0;
         cal.sensor[6].of[0] = 9;
-        CHECK_EQ_I64(exh_glove_cal_valid(&cal, &bad), -EXH_E_RANGE);
+        CHECK_EQ_I64(exh_glove_cal_validate(&cal, &bad), -EXH_E_RANGE);
         CHECK(bad.what == EXH_GLOVE_CROSS && bad.at == 6, "%d of %d", bad.what, bad.at);
         cal.sensor[9].of[k] = EXH_GLOVE_NONE;
     }
-    CHECK_EQ_I64(exh_glove_cal_valid(&cal, &bad), 0);
+    CHECK_EQ_I64(exh_glove_cal_validate(&cal, &bad), 0);
     cal.present &= ~(1u << 9);
     cal.sensor[9] = (struct exh_glove_sensor){0, 0, {0, 0}, 0, 0, {255, 255}};
-    CHECK_EQ_I64(exh_glove_cal_valid(&cal, &bad), -EXH_E_RANGE); /* of one that is not there */
+    CHECK_EQ_I64(exh_glove_cal_validate(&cal, &bad), -EXH_E_RANGE); /* of one that is not there */
     CHECK(bad.what == EXH_GLOVE_CROSS && bad.at == 6, "%d of %d", bad.what, bad.at);
 }
 
@@ -120,11 +120,11 @@ TEST(check_tells_whose_and_when)
         {8, 4, 0, -EXH_E_VERSION, EXH_GLOVE_USER},
     };
     struct exh_glove_cal cal = sound();
-    struct exh_glove_bad bad = {99, 99};
+    struct exh_glove_error bad = {99, 99};
     for (size_t i = 0; i < LEN(row); i++) {
         const int err = exh_glove_cal_check(&cal, row[i].user, row[i].glove, row[i].day, &bad);
         CHECK(err == row[i].err && (err == 0 || (bad.what == row[i].what && bad.at == 0)),
-              "row %zu: %d, %s", i, err, exh_glove_what_text(bad.what));
+              "row %zu: %d, %s", i, err, exh_glove_error_text(bad.what));
     }
     cal.valid_days = UINT32_MAX; /* for ever, but not before */
     CHECK_EQ_I64(exh_glove_cal_check(&cal, 7, 3, UINT32_MAX, &bad), 0);
@@ -136,8 +136,8 @@ TEST(check_tells_whose_and_when)
 
 TEST(every_word_is_there)
 {
-    for (unsigned i = 0; i <= EXH_GLOVE_WHATS; i++) {
-        CHECK(check_same_text(exh_glove_what_text(i), "unknown") == (i == EXH_GLOVE_WHATS), "%u",
+    for (unsigned i = 0; i <= EXH_GLOVE_ERRORS; i++) {
+        CHECK(check_same_text(exh_glove_error_text(i), "unknown") == (i == EXH_GLOVE_ERRORS), "%u",
               i);
     }
     for (unsigned i = 0; i <= EXH_GLOVE_SENSORS; i++) {
@@ -153,7 +153,7 @@ TEST(image_round_trip)
 {
     struct exh_glove_cal cal = sound(), back;
     uint8_t a[EXH_GLOVE_CAL_IMAGE_B + 1], b[EXH_GLOVE_CAL_IMAGE_B];
-    struct exh_glove_bad bad = {99, 99};
+    struct exh_glove_error bad = {99, 99};
     memset(&back, 0xA5, sizeof back);
     CHECK_EQ_I64(exh_glove_cal_save(&cal, a, sizeof a, &bad), EXH_GLOVE_CAL_IMAGE_B);
     CHECK(memcmp(a, "EXHG\x01\0\x16\0\x07\0\0\0\x03", 13) == 0, "head");
@@ -170,7 +170,7 @@ TEST(every_flipped_bit_is_seen)
 {
     struct exh_glove_cal cal = sound();
     uint8_t image[EXH_GLOVE_CAL_IMAGE_B];
-    struct exh_glove_bad bad;
+    struct exh_glove_error bad;
     CHECK(exh_glove_cal_save(&cal, image, sizeof image, &bad) > 0, "save");
     for (size_t bit = 0; bit < 8 * sizeof image; bit++) {
         int err;
@@ -188,7 +188,7 @@ TEST(every_cut_is_seen)
 {
     struct exh_glove_cal cal = sound();
     uint8_t image[EXH_GLOVE_CAL_IMAGE_B];
-    struct exh_glove_bad bad;
+    struct exh_glove_error bad;
     CHECK(exh_glove_cal_save(&cal, image, sizeof image, &bad) > 0, "save");
     for (size_t len = 0; len < sizeof image; len++) {
         CHECK(exh_glove_cal_load(&cal, image, len, &bad) == -EXH_E_SHORT && cal.present == 0,
@@ -206,7 +206,7 @@ TEST(an_image_of_nonsense_is_refused)
 {
     struct exh_glove_cal cal = sound();
     uint8_t image[EXH_GLOVE_CAL_IMAGE_B];
-    struct exh_glove_bad bad = {99, 99};
+    struct exh_glove_error bad = {99, 99};
     struct exh_bytes b;
     uint32_t crc;
     int32_t zero = 0;
@@ -222,7 +222,7 @@ TEST(an_image_of_nonsense_is_refused)
     exh_bytes_u32(&b, &crc);
     CHECK_EQ_I64(exh_glove_cal_load(&cal, image, sizeof image, &bad), -EXH_E_RANGE);
     CHECK(bad.what == EXH_GLOVE_GAIN && bad.at == 4 && cal.present == 0, "%s",
-          exh_glove_what_text(bad.what));
+          exh_glove_error_text(bad.what));
 }
 
 /* --- the glove that the library has by itself --- */
@@ -281,7 +281,7 @@ TEST(no_cross_term_of_what_is_no_sensor)
     of.cal.present = UINT32_MAX;
     of.cal.sensor[6].of[0] = EXH_GLOVE_SENSORS;
     of.cal.sensor[6].cross_q30[0] = 1;
-    CHECK_EQ_I64(exh_glove_sensor_valid(&of.cal, 6), EXH_GLOVE_CROSS);
+    CHECK_EQ_I64(exh_glove_sensor_validate(&of.cal, 6), EXH_GLOVE_CROSS);
 }
 
 TEST_MAIN("unit/glove_cal", valid_names_the_culprit, present_and_absent, check_tells_whose_and_when,

@@ -17,7 +17,7 @@ struct fixture {
     struct exh_glove_fit fit[EXH_GLOVE_SENSORS];
     struct exh_glove_pose pose[EXH_GLOVE_POSES_MAX];
     unsigned n;
-    struct exh_glove_bad bad;
+    struct exh_glove_error bad;
 };
 
 /* What sensor i reads, q16, when its own angle is so: 0 degrees at 1000 i - 9000, a degree is
@@ -68,7 +68,7 @@ TEST(poses_give_gain_zero_and_cross_terms)
 {
     struct fixture f;
     set_up(&f);
-    CHECK(fit(&f) == 0, "%s of %s", exh_glove_what_text(f.bad.what),
+    CHECK(fit(&f) == 0, "%s of %s", exh_glove_error_text(f.bad.what),
           exh_glove_sensor_text(f.bad.at));
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
         const struct exh_glove_sensor *s = &f.cal.sensor[i];
@@ -82,7 +82,7 @@ TEST(poses_give_gain_zero_and_cross_terms)
         CHECK(i == 10 || (s->low_raw == (flat < end ? flat : end) &&
                           s->high_raw == (flat < end ? end : flat)),
               "%u: %d .. %d", i, s->low_raw, s->high_raw);
-        CHECK(f.fit[i].what == EXH_GLOVE_WHATS &&
+        CHECK(f.fit[i].what == EXH_GLOVE_ERRORS &&
                   f.fit[i].poses == (i == 4 || i == 7 || i == 10 ? 7 : 2) &&
                   near(f.fit[i].residual_turn_q32, 0, 4096),
               "%u: %d poses, %" PRId32, i, f.fit[i].poses, f.fit[i].residual_turn_q32);
@@ -124,7 +124,7 @@ TEST(limits_of_poses_are_allowed)
         f.pose[p].angle_turn_q32[6] = DEG(p == 2 ? 40 : 0);
         f.pose[p].mean_raw_q16[6] = code_q16(6, p == 2 ? 37 : 0);
     }
-    CHECK(fit(&f) == 0, "%s of %s", exh_glove_what_text(f.bad.what),
+    CHECK(fit(&f) == 0, "%s of %s", exh_glove_error_text(f.bad.what),
           exh_glove_sensor_text(f.bad.at));
     CHECK_EQ_I64(f.fit[6].pose, 2);
 }
@@ -276,9 +276,9 @@ TEST(poses_are_refused_by_name)
         CHECK(exh_glove_cal_fit(&f.cal, f.fit, f.pose, f.n, &fit_par, &f.bad) == -EXH_E_RANGE,
               "case %d", k);
         CHECK(f.bad.what == what && f.bad.at == at, "case %d: %s of %s", k,
-              exh_glove_what_text(f.bad.what), exh_glove_sensor_text(f.bad.at));
+              exh_glove_error_text(f.bad.what), exh_glove_sensor_text(f.bad.at));
         CHECK(f.cal.present == 0, "case %d", k);
-        CHECK(k == 10 || k == 11 || (f.fit[at].what == what && f.fit[20].what == EXH_GLOVE_WHATS),
+        CHECK(k == 10 || k == 11 || (f.fit[at].what == what && f.fit[20].what == EXH_GLOVE_ERRORS),
               "case %d", k);
         CHECK(k != 9 || f.fit[10].what == EXH_GLOVE_CROSS, "case %d", k);
         CHECK(k != 1 || f.fit[5].pose == 1, "case %d", k);
@@ -312,7 +312,7 @@ TEST(a_line_as_good_as_level_is_refused)
     }
     CHECK_EQ_I64(fit(&f), -EXH_E_RANGE);
     CHECK(f.bad.what == EXH_GLOVE_GAIN && f.bad.at == 5, "%s of %d",
-          exh_glove_what_text(f.bad.what), f.bad.at);
+          exh_glove_error_text(f.bad.what), f.bad.at);
 }
 
 /* Nothing of an old calibration gets into a new one. */
@@ -353,10 +353,10 @@ TEST(two_poses_five_degrees_apart)
         f.n = 2;
         f.pose[1].angle_turn_q32[5] = EXH_Q(5, 360, 32) - less;
         CHECK(fit(&f) == (less ? -EXH_E_RANGE : 0), "%d: %s of %d", (int)less,
-              exh_glove_what_text(f.bad.what), f.bad.at);
+              exh_glove_error_text(f.bad.what), f.bad.at);
         CHECK(f.cal.present == (less ? 0u : ALL), "%d", (int)less);
         CHECK(!less || (f.bad.what == EXH_GLOVE_POSES && f.bad.at == 5), "%s of %d",
-              exh_glove_what_text(f.bad.what), f.bad.at);
+              exh_glove_error_text(f.bad.what), f.bad.at);
         f.n = 1;
         CHECK_EQ_I64(fit(&f), -EXH_E_RANGE);
     }
@@ -449,12 +449,12 @@ TEST(a_knuckle_that_just_moved_enough)
             } while (moved < 1 << 20);
             CHECK_EQ_I64(moved, 1 << 20);
         } else if (run == 1) {
-            CHECK(fit(&f) == 0, "%s of %d", exh_glove_what_text(f.bad.what), f.bad.at);
+            CHECK(fit(&f) == 0, "%s of %d", exh_glove_error_text(f.bad.what), f.bad.at);
             raw_q16--;
         } else {
             CHECK_EQ_I64(fit(&f), -EXH_E_RANGE);
             CHECK(f.bad.what == EXH_GLOVE_POSES && f.bad.at == 10, "%s of %d",
-                  exh_glove_what_text(f.bad.what), f.bad.at);
+                  exh_glove_error_text(f.bad.what), f.bad.at);
         }
     }
 }

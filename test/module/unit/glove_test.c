@@ -546,11 +546,11 @@ TEST(state_round_trip)
         }
         (void)frame(&f);
     }
-    exh_glove_bytes(&c, &f.s);
+    exh_glove_serialize(&c, &f.s);
     CHECK(exh_bytes_ok(&c), "%" PRIu32 " bytes", c.at);
     memset(&back, 0, sizeof back);
     c = exh_bytes_reader(buf, c.at);
-    exh_glove_bytes(&c, &back);
+    exh_glove_serialize(&c, &back);
     CHECK(exh_bytes_ok(&c), "reader");
     for (int n = 0; n < 60; n++) {
         int32_t angle[EXH_GLOVE_SENSORS];
@@ -577,7 +577,7 @@ TEST(damaged_state_finds_back)
         for (size_t i = 0; i < sizeof buf; i++) {
             buf[i] = k == 0 ? 0xFF : k == 1 ? 0x80 : (uint8_t)check_u64();
         }
-        exh_glove_bytes(&c, &f.s);
+        exh_glove_serialize(&c, &f.s);
         for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
             CHECK(f.s.cause[i] < EXH_GLOVE_CAUSES, "cause %d", f.s.cause[i]);
         }

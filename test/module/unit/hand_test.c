@@ -163,7 +163,7 @@ TEST(setup_refuses)
 TEST(map_of_the_hand_is_sound)
 {
     int32_t sensor[EXH_GLOVE_SENSORS] = {0};
-    CHECK_EQ_I64(exh_hand_map_check(&exh_hit2_map), 0);
+    CHECK_EQ_I64(exh_hand_map_validate(&exh_hit2_map), 0);
     for (unsigned f = 0; f < EXH_FINGERS; f++) {
         int32_t q[3];
         CHECK(exh_hand_joints(&exh_hit2_map, f, sensor, q) == 0, "finger %u at rest", f);
@@ -242,7 +242,7 @@ TEST(map_check_refuses)
         case 3: m.bent[EXH_LITTLE][2] = EXH_GLOVE_SENSORS; break;
         default: j->lo_turn_q32 = j->hi_turn_q32 + 1; break;
         }
-        CHECK(exh_hand_map_check(&m) == -EXH_E_RANGE, "map %u", i);
+        CHECK(exh_hand_map_validate(&m) == -EXH_E_RANGE, "map %u", i);
     }
 }
 
@@ -272,7 +272,7 @@ TEST(slope_is_that_of_the_string_through_the_map)
     for (unsigned i = 0; i < EXH_FINGERS; i++) {
         const struct exh_hand_finger own = finger(i);
         struct exh_hand_finger f = own;
-        CHECK_EQ_I64(exh_hand_follow(&f, &exh_hit2_map, i), 0);
+        CHECK_EQ_I64(exh_hand_couple(&f, &exh_hit2_map, i), 0);
         for (int64_t out_um = 2000; out_um <= 30000; out_um += 4000) {
             struct exh_vec3 before, after, tip, slope;
             int32_t q[EXH_HAND_JOINTS];
@@ -302,7 +302,7 @@ TEST(follow_by_hand)
     j[1].gain_q24[1] = -(1 << 24); /* and abduction, which no string moves */
     j[2].gain_q24[0] = 1 << 24;
     j[2].gain_q24[1] = -(1 << 25);
-    CHECK_EQ_I64(exh_hand_follow(&f, &m, EXH_THUMB), 0);
+    CHECK_EQ_I64(exh_hand_couple(&f, &m, EXH_THUMB), 0);
     CHECK_EQ_I64(f.pull_radpm_q20[0], (3 * (int64_t)w1 + 1) / 2);
     CHECK_EQ_I64(f.pull_radpm_q20[1], w1 - 2 * (int64_t)w2);
     for (int sign = -1; sign <= 1; sign += 2) { /* 24 rad/m, 8 times, and more */
@@ -312,10 +312,10 @@ TEST(follow_by_hand)
         CHECK_EQ_I64(exh_hand_setup(&f, &exh_hit2_bones[0], &par), 0); /* 125 rad/m */
         j[2].gain_q24[0] = 0;
         j[2].gain_q24[1] = sign * (5 << 23);
-        CHECK_EQ_I64(exh_hand_follow(&f, &m, EXH_THUMB), -EXH_E_RANGE);
+        CHECK_EQ_I64(exh_hand_couple(&f, &m, EXH_THUMB), -EXH_E_RANGE);
         CHECK(f.pull_radpm_q20[0] == 0 && f.pull_radpm_q20[1] > 0, "as it was");
         j[2].gain_q24[1] = sign * (3 << 23);
-        CHECK_EQ_I64(exh_hand_follow(&f, &m, EXH_THUMB), 0);
+        CHECK_EQ_I64(exh_hand_couple(&f, &m, EXH_THUMB), 0);
     }
 }
 
@@ -378,13 +378,13 @@ TEST(ends_to_the_bit)
         for (int sign = -1; sign <= 1; sign += 2) {
             m = exh_hit2_map;
             j->gain_q24[0] = sign * (EXH_HAND_GAIN_MAX_Q24 + more);
-            CHECK_EQ_I64(exh_hand_map_check(&m), more ? -EXH_E_RANGE : 0);
+            CHECK_EQ_I64(exh_hand_map_validate(&m), more ? -EXH_E_RANGE : 0);
             f = finger(EXH_THUMB);
             f.pull_radpm_q20[0] = EXH_Q(250, 1, 20) + more;
             for (unsigned t = 0; t < EXH_HAND_TERMS; t++) { j->gain_q24[t] = 0; }
             j->gain_q24[0] = sign * (1 << 24);
             j->sensor[0] = m.bent[EXH_THUMB][0];
-            CHECK_EQ_I64(exh_hand_follow(&f, &m, EXH_THUMB), more ? -EXH_E_RANGE : 0);
+            CHECK_EQ_I64(exh_hand_couple(&f, &m, EXH_THUMB), more ? -EXH_E_RANGE : 0);
             CHECK(more || f.pull_radpm_q20[0] == sign * EXH_Q(250, 1, 20), "sign %d", sign);
         }
     }

@@ -38,10 +38,10 @@ static void begin(uint32_t address, uint32_t baud)
 static int hear(const uint8_t *frame, size_t len_B)
 {
     const uint16_t crc = exh_crc16(frame, len_B);
-    for (size_t i = 0; i < len_B; i++) { exh_modbus_rtu_byte(&g.u, frame[i]); }
-    exh_modbus_rtu_byte(&g.u, (uint8_t)(crc & 0xFFu));
-    exh_modbus_rtu_byte(&g.u, (uint8_t)(crc >> 8));
-    return exh_modbus_rtu_pass(&g.u, g.u.silence_us);
+    for (size_t i = 0; i < len_B; i++) { exh_modbus_rtu_receive(&g.u, frame[i]); }
+    exh_modbus_rtu_receive(&g.u, (uint8_t)(crc & 0xFFu));
+    exh_modbus_rtu_receive(&g.u, (uint8_t)(crc >> 8));
+    return exh_modbus_rtu_poll(&g.u, g.u.silence_us);
 }
 
 TEST(crc_is_the_known_one)
@@ -76,15 +76,15 @@ TEST(a_request_is_answered_once)
     g.value[0] = 0x01020304;
     CHECK_EQ_I64(exh_modbus_rtu_answer(&g.u, &g.r, g.resp, sizeof g.resp), 0);
     CHECK_EQ_I64(hear(req, sizeof req), 1);
-    exh_modbus_rtu_byte(&g.u, 0x55); /* while it waits: lost */
-    CHECK_EQ_I64(exh_modbus_rtu_pass(&g.u, 1), 1);
+    exh_modbus_rtu_receive(&g.u, 0x55); /* while it waits: lost */
+    CHECK_EQ_I64(exh_modbus_rtu_poll(&g.u, 1), 1);
     CHECK_EQ_I64(exh_modbus_rtu_answer(&g.u, &g.r, g.resp, EXH_MODBUS_ADU_B - 1), -EXH_E_SHORT);
     CHECK_EQ_I64(exh_modbus_rtu_answer(&g.u, &g.r, g.resp, sizeof g.resp), 9);
     CHECK(g.resp[0] == 17 && g.resp[1] == 3 && g.resp[2] == 4 && g.resp[3] == 1 && g.resp[6] == 4,
           "answer");
     CHECK_EQ_I64(exh_crc16(g.resp, 9), 0); /* a frame with its CRC has CRC 0 */
     CHECK_EQ_I64(exh_modbus_rtu_answer(&g.u, &g.r, g.resp, sizeof g.resp), 0);
-    CHECK_EQ_I64(exh_modbus_rtu_pass(&g.u, 1000000), 0);
+    CHECK_EQ_I64(exh_modbus_rtu_poll(&g.u, 1000000), 0);
     CHECK_EQ_I64(g.u.taken, 1);
     CHECK_EQ_I64(g.u.damaged + g.u.others, 0);
 }
@@ -136,20 +136,20 @@ TEST(every_damaged_bit_is_dropped)
     frame[7] = (uint8_t)(exh_crc16(req, 6) >> 8);
     for (unsigned bit = 0; bit < 64; bit++) {
         for (unsigned i = 0; i < 8; i++) {
-            exh_modbus_rtu_byte(&g.u,
-                                (uint8_t)(frame[i] ^ (bit >> 3 == i ? 1u << (bit & 7u) : 0u)));
+            exh_modbus_rtu_receive(&g.u,
+                                   (uint8_t)(frame[i] ^ (bit >> 3 == i ? 1u << (bit & 7u) : 0u)));
         }
-        CHECK(exh_modbus_rtu_pass(&g.u, 1750) == 0, "bit %u", bit);
+        CHECK(exh_modbus_rtu_poll(&g.u, 1750) == 0, "bit %u", bit);
         CHECK_EQ_I64(g.u.damaged, ++damaged);
     }
     for (unsigned len_B = 1; len_B < 8; len_B++) { /* cut off anywhere */
-        for (unsigned i = 0; i < len_B; i++) { exh_modbus_rtu_byte(&g.u, frame[i]); }
-        CHECK(exh_modbus_rtu_pass(&g.u, 1750) == 0, "of %u bytes", len_B);
+        for (unsigned i = 0; i < len_B; i++) { exh_modbus_rtu_receive(&g.u, frame[i]); }
+        CHECK(exh_modbus_rtu_poll(&g.u, 1750) == 0, "of %u bytes", len_B);
         CHECK_EQ_I64(g.u.damaged, ++damaged);
     }
     CHECK_EQ_I64(g.touched[0], 0);
-    for (unsigned i = 0; i < 8; i++) { exh_modbus_rtu_byte(&g.u, frame[i]); }
-    CHECK_EQ_I64(exh_modbus_rtu_pass(&g.u, 1750), 1); /* and the next is whole */
+    for (unsigned i = 0; i < 8; i++) { exh_modbus_rtu_receive(&g.u, frame[i]); }
+    CHECK_EQ_I64(exh_modbus_rtu_poll(&g.u, 1750), 1); /* and the next is whole */
 }
 
 /* A frame of n bytes whose CRC is right, be it as long as it may or longer. */
@@ -182,17 +182,17 @@ TEST(silence_is_added_up_and_a_byte_ends_it)
     const uint16_t crc = exh_crc16(req, 6);
     begin(1, 115200);
     for (size_t i = 0; i < 6; i++) {
-        exh_modbus_rtu_byte(&g.u, req[i]);
-        CHECK_EQ_I64(exh_modbus_rtu_pass(&g.u, 1749), 0);
+        exh_modbus_rtu_receive(&g.u, req[i]);
+        CHECK_EQ_I64(exh_modbus_rtu_poll(&g.u, 1749), 0);
     }
-    exh_modbus_rtu_byte(&g.u, (uint8_t)(crc & 0xFFu));
-    exh_modbus_rtu_byte(&g.u, (uint8_t)(crc >> 8));
-    CHECK_EQ_I64(exh_modbus_rtu_pass(&g.u, 1000), 0);
-    CHECK_EQ_I64(exh_modbus_rtu_pass(&g.u, 749), 0);
-    CHECK_EQ_I64(exh_modbus_rtu_pass(&g.u, 1), 1);
+    exh_modbus_rtu_receive(&g.u, (uint8_t)(crc & 0xFFu));
+    exh_modbus_rtu_receive(&g.u, (uint8_t)(crc >> 8));
+    CHECK_EQ_I64(exh_modbus_rtu_poll(&g.u, 1000), 0);
+    CHECK_EQ_I64(exh_modbus_rtu_poll(&g.u, 749), 0);
+    CHECK_EQ_I64(exh_modbus_rtu_poll(&g.u, 1), 1);
     begin(1, 115200);
-    CHECK_EQ_I64(exh_modbus_rtu_pass(&g.u, UINT32_MAX), 0); /* a long silence does not wrap */
-    CHECK_EQ_I64(exh_modbus_rtu_pass(&g.u, UINT32_MAX), 0);
+    CHECK_EQ_I64(exh_modbus_rtu_poll(&g.u, UINT32_MAX), 0); /* a long silence does not wrap */
+    CHECK_EQ_I64(exh_modbus_rtu_poll(&g.u, UINT32_MAX), 0);
     CHECK_EQ_I64(g.u.quiet_us, UINT32_MAX);
     CHECK_EQ_I64(g.u.damaged, 0);
 }
@@ -201,7 +201,7 @@ TEST(a_byte_that_came_damaged_drops_its_frame)
 {
     static const uint8_t req[] = {1, 3, 0x50, 0, 0, 2};
     begin(1, 115200);
-    exh_modbus_rtu_bad(&g.u);
+    exh_modbus_rtu_discard(&g.u);
     CHECK_EQ_I64(hear(req, sizeof req), 0);
     CHECK_EQ_I64(g.u.damaged, 1);
     CHECK_EQ_I64(hear(req, sizeof req), 1);
@@ -212,7 +212,7 @@ TEST(a_frame_of_65536_bytes_is_none)
 {
     static const uint8_t req[] = {17, 3, 0x50, 0, 0, 2};
     begin(17, 9600);
-    for (uint32_t n = 0; n < 65536; n++) { exh_modbus_rtu_byte(&g.u, 17); }
+    for (uint32_t n = 0; n < 65536; n++) { exh_modbus_rtu_receive(&g.u, 17); }
     CHECK_EQ_I64(hear(req, sizeof req), 0);
     CHECK(g.u.damaged == 1 && g.u.taken == 0, "taken %" PRIu32, g.u.taken);
     CHECK_EQ_I64(hear(req, sizeof req), 1);
@@ -221,12 +221,12 @@ TEST(a_frame_of_65536_bytes_is_none)
 TEST(short_silences_are_added_up)
 {
     begin(17, 9600);
-    exh_modbus_rtu_byte(&g.u, 17);
+    exh_modbus_rtu_receive(&g.u, 17);
     for (uint32_t n = 1; n <= 4; n++) {
-        CHECK_EQ_I64(exh_modbus_rtu_pass(&g.u, 1000), 0);
+        CHECK_EQ_I64(exh_modbus_rtu_poll(&g.u, 1000), 0);
         CHECK(g.u.quiet_us == 1000 * n && g.u.len_B == 1, "%" PRIu32 " ms", n);
     }
-    CHECK_EQ_I64(exh_modbus_rtu_pass(&g.u, 11), 0);
+    CHECK_EQ_I64(exh_modbus_rtu_poll(&g.u, 11), 0);
     CHECK(g.u.len_B == 0 && g.u.damaged == 1, "4.011 ms are the end");
 }
 

@@ -46,7 +46,7 @@ static struct rig g;
 static void begin(void)
 {
     memset(&g, 0, sizeof g);
-    exh_params_init(&g.p, &par_table, g.active, g.wanted);
+    exh_params_setup(&g.p, &par_table, g.active, g.wanted);
     g.r.name = "unit_test";
     g.r.signals = &out_table;
     g.r.params = &par_table;
@@ -527,8 +527,8 @@ TEST(while_apply_is_pending_nothing_changes)
     GIVES(5, 0, 3, 0xFF, 0);
     ASK(3, 0x50, 5, 0, 1);
     GIVES(3, 2, 0, 7);
-    CHECK_EQ_I64(exh_regs_take(&g.r), 1u << EXH_COIL_APPLY | 1u << EXH_COIL_OFF);
-    CHECK_EQ_I64(exh_regs_take(&g.r), 0);
+    CHECK_EQ_I64(exh_regs_poll(&g.r), 1u << EXH_COIL_APPLY | 1u << EXH_COIL_OFF);
+    CHECK_EQ_I64(exh_regs_poll(&g.r), 0);
     ASK(6, 0x50, 5, 0, 8);
     GIVES(6, 0x50, 5, 0, 8);
 }
@@ -564,7 +564,7 @@ TEST(bits_are_the_box)
     s.first = EXH_FAULT_LOGIC;
     s.first_tick = 0x01020304;
     begin();
-    exh_regs_see(&g.r, &s, EXH_DIN_DEADMAN | (uint32_t)EXH_DIN_DRIVE0 << 4);
+    exh_regs_update(&g.r, &s, EXH_DIN_DEADMAN | (uint32_t)EXH_DIN_DRIVE0 << 4);
     ASK(2, 0, 0, 0, 192);
     GIVES(2, 24, 0x01, 0x40, 0, 0, 0, 0x04, 0, 0, 0x02, 0x10, 0, 0, 0x20, 0, 0, 0, 0, 0x04, 0, 0,
           0x10, 0, 0, 0);
@@ -664,8 +664,8 @@ TEST(requests_of_nothing)
     GIVES(0x97, 3);
     CHECK_EQ_I64(exh_regs_read(&g.r, EXH_REGS_INPUT, 0, 0, g.resp), 0);
     CHECK_EQ_I64(g.resp[0], 0x97); /* stands */
-    CHECK_EQ_I64(exh_regs_judge(&g.r, 0x5000, 0, bytes), 0);
-    CHECK_EQ_I64(exh_regs_judge(&g.r, 0x1000, 1, bytes), EXH_MODBUS_ADDRESS);
+    CHECK_EQ_I64(exh_regs_validate(&g.r, 0x5000, 0, bytes), 0);
+    CHECK_EQ_I64(exh_regs_validate(&g.r, 0x1000, 1, bytes), EXH_MODBUS_ADDRESS);
     CHECK_EQ_I64(exh_regs_write(&g.r, 0x5000, 0, bytes), 0);
     CHECK_EQ_I64(exh_regs_read(&g.r, EXH_REGS_INPUT, 0x4000, 0, g.resp), EXH_MODBUS_ADDRESS);
     ask(longest, 10);
@@ -684,7 +684,7 @@ TEST(a_word_full_of_values)
     static const struct exh_signal_group group[] = {{par_row, 1, 32}};
     static const struct exh_signal_table full = {group, 1};
     begin();
-    exh_params_init(&g.p, &full, g.active, g.wanted);
+    exh_params_setup(&g.p, &full, g.active, g.wanted);
     g.r.params = &full;
     CHECK_EQ_I64(exh_regs_setup(&g.r), 0);
     g.touched[1] = UINT32_MAX;

@@ -3,7 +3,7 @@
  * they are wanted, in mid-way saved, restored and guarded. */
 #include "exhand/error.h"
 #include "exhand/fix.h"
-#include "exhand/guard.h"
+#include "exhand/integrity.h"
 #include "exhand/params.h"
 #include "exhand/signal.h"
 
@@ -29,7 +29,7 @@ static int32_t active[VALUES], staged[VALUES];
 
 static void start(unsigned shift)
 {
-    exh_params_init(&p, &table, active, staged);
+    exh_params_setup(&p, &table, active, staged);
     p.shift = (uint8_t)shift;
     p.locked = 1;
 }
@@ -55,7 +55,7 @@ TEST(steps_worked_out)
         {31, INT32_MAX, INT32_MIN, INT32_MAX - 2},
     };
     for (size_t i = 0; i < LEN(row); i++) {
-        const int32_t next = exh_params_toward(row[i].now, row[i].goal, row[i].shift);
+        const int32_t next = exh_params_slew_step(row[i].now, row[i].goal, row[i].shift);
         CHECK(next == row[i].next, "row %zu: %" PRId32, i, next);
     }
 }
@@ -76,7 +76,7 @@ TEST(slewed_and_not)
     CHECK_EQ_I64(exh_params_apply(&p), 1);
     CHECK_EQ_I64(active[GAIN], 83);
     CHECK_EQ_I64(staged[GAIN], -100);
-    exh_params_drop(&p);
+    exh_params_discard(&p);
     CHECK_EQ_I64(staged[GAIN], 83);
     CHECK_EQ_I64(exh_params_apply(&p), 0);
 }
@@ -135,7 +135,7 @@ TEST(shift_of_a_time)
     };
     for (size_t i = 0; i < LEN(row); i++) {
         const struct exh_tune_par par = {row[i].ms};
-        exh_params_slew(&p, &par, row[i].T);
+        exh_params_slew_setup(&p, &par, row[i].T);
         CHECK(p.shift == row[i].shift, "row %zu: %u", i, p.shift);
     }
 }
@@ -167,7 +167,7 @@ TEST(keyframe_in_mid_way)
         CHECK_EQ_I64(exh_params_stage(&p, 0x7101, 1, -1000000), 0);
         CHECK_EQ_I64(exh_params_stage(&p, 0x7201, 0, 900), 0);
         for (k = 0; k < at; k++) { (void)exh_params_apply(&p); }
-        exh_params_bytes(&c, &p);
+        exh_params_serialize(&c, &p);
         CHECK(exh_bytes_ok(&c) && c.at == 4 * (VALUES + 3), "%u bytes", (unsigned)c.at);
         for (k = 0; k < 60; k++) {
             (void)exh_params_apply(&p);
@@ -175,7 +175,7 @@ TEST(keyframe_in_mid_way)
         }
         start(2);
         c = exh_bytes_reader(b, 4 * (VALUES + 3));
-        exh_params_bytes(&c, &p);
+        exh_params_serialize(&c, &p);
         CHECK(exh_bytes_ok(&c) && c.at == 4 * (VALUES + 3), "read");
         for (k = 0; k < 60; k++) {
             (void)exh_params_apply(&p);
@@ -196,7 +196,7 @@ TEST(bad_keyframes)
     const uint32_t len_B = 4 * (VALUES + 3);
     struct exh_bytes c = exh_bytes_writer(whole, sizeof whole);
     start(2);
-    exh_params_bytes(&c, &p);
+    exh_params_serialize(&c, &p);
     for (unsigned i = 0; i < LEN(bad) + len_B; i++) {
         const uint32_t n = i < len_B ? i : len_B;
         memcpy(b, whole, sizeof b);
@@ -209,7 +209,7 @@ TEST(bad_keyframes)
         start(2);
         active[0] = staged[0] = 4711;
         c = exh_bytes_reader(b, n);
-        exh_params_bytes(&c, &p);
+        exh_params_serialize(&c, &p);
         CHECK(!exh_bytes_ok(&c) && active[0] == 4711 && staged[0] == 4711 && !p.moving &&
                   !p.pending,
               "case %u", i);
@@ -222,10 +222,10 @@ TEST(guard_in_mid_way)
 {
     for (unsigned bit = 0; bit < 2 * 32 * VALUES; bit++) {
         int32_t *at = bit < 32 * VALUES ? &active[bit / 32] : &staged[bit / 32 - VALUES];
-        struct exh_guard g;
+        struct exh_integrity g;
         unsigned n = 0;
         start(bit % 9);
-        exh_guard_seal(&g, NULL, 0, &p);
+        exh_integrity_seal(&g, NULL, 0, &p);
         for (unsigned k = 0; k < 100 + bit; k++) {
             if (k % 3) {
                 CHECK_EQ_I64(exh_params_stage(&p, 0x7201, 0, (int32_t)(k * 7919 % 2001) - 1000), 0);
@@ -234,10 +234,10 @@ TEST(guard_in_mid_way)
                 CHECK_EQ_I64(exh_params_stage(&p, 0x7101, 1, exh_from_u32(k * 0x9E3779B9u)), 0);
             }
             if (k % 5) { (void)exh_params_apply(&p); }
-            CHECK(!exh_guard_step(&g), "bit %u: told in tick %u", bit, k);
+            CHECK(!exh_integrity_step(&g), "bit %u: told in tick %u", bit, k);
         }
         *at = exh_from_u32((uint32_t)*at ^ UINT32_C(1) << bit % 32);
-        while (!exh_guard_step(&g) && n < 100) {
+        while (!exh_integrity_step(&g) && n < 100) {
             CHECK_EQ_I64(exh_params_stage(&p, 0x7201, 0, (int32_t)(n * 71) % 1000), 0);
             (void)exh_params_apply(&p);
             n++;
@@ -251,19 +251,19 @@ TEST(guard_in_mid_way)
 TEST(taken_back)
 {
     int32_t was[VALUES];
-    struct exh_guard g;
+    struct exh_integrity g;
     start(3);
-    exh_guard_seal(&g, NULL, 0, &p);
+    exh_integrity_seal(&g, NULL, 0, &p);
     CHECK_EQ_I64(exh_params_stage(&p, 0x7201, 0, 900), 0);
     (void)exh_params_apply(&p);
     memcpy(was, staged, sizeof was);
     CHECK_EQ_I64(exh_params_stage(&p, 0x7101, 0, 4711), 0);
     CHECK_EQ_I64(exh_params_stage(&p, 0x7201, 0, -900), 0);
-    exh_params_unstage(&p, was, 0);
+    exh_params_rollback(&p, was, 0);
     CHECK(staged[0] == 0 && staged[GAIN] == 900 && !p.pending && p.moving, "%d", (int)staged[GAIN]);
     for (int k = 0; k < 100; k++) {
         (void)exh_params_apply(&p);
-        CHECK(!exh_guard_step(&g), "tick %d", k);
+        CHECK(!exh_integrity_step(&g), "tick %d", k);
     }
     CHECK(active[0] == 0 && active[GAIN] == 900 && !p.moving, "%d", (int)active[GAIN]);
 }
@@ -274,13 +274,13 @@ TEST(keyframe_at_rest)
     uint8_t b[8 * VALUES];
     struct exh_bytes c = exh_bytes_writer(b, sizeof b);
     start(2);
-    exh_params_bytes(&c, &p);
+    exh_params_serialize(&c, &p);
     CHECK_EQ_I64(exh_params_stage(&p, 0x7201, 0, 900), 0);
     (void)exh_params_apply(&p);
     CHECK_EQ_I64(exh_params_stage(&p, 0x7102, 0, 9), 0);
     CHECK(p.moving && p.pending, "nothing to take away");
     c = exh_bytes_reader(b, c.at);
-    exh_params_bytes(&c, &p);
+    exh_params_serialize(&c, &p);
     CHECK(exh_bytes_ok(&c) && !p.moving && !p.pending, "moving %d, pending %d", p.moving,
           p.pending);
     CHECK(active[GAIN] == 100 && staged[GAIN] == 100 && staged[1] == 3, "values");
@@ -304,10 +304,10 @@ TEST(images_of_a_head)
 TEST(a_table_of_none)
 {
     static const struct exh_signal_table none = {groups, 0};
-    struct exh_guard g;
-    exh_params_init(&p, &none, NULL, NULL);
-    exh_guard_seal(&g, NULL, 0, &p);
-    for (int k = 0; k < 5; k++) { CHECK_EQ_I64(exh_guard_step(&g), 0); }
+    struct exh_integrity g;
+    exh_params_setup(&p, &none, NULL, NULL);
+    exh_integrity_seal(&g, NULL, 0, &p);
+    for (int k = 0; k < 5; k++) { CHECK_EQ_I64(exh_integrity_step(&g), 0); }
 }
 
 /* A limit of force rises little by little and has fallen in the next tick, wherever it was on its
@@ -320,14 +320,14 @@ TEST(a_limit_falls_at_once)
     static const struct exh_signal_table limits = {group, 1};
     uint8_t b[16];
     struct exh_bytes c = exh_bytes_writer(b, sizeof b);
-    exh_params_init(&p, &limits, active, staged);
+    exh_params_setup(&p, &limits, active, staged);
     p.shift = 2;
     p.locked = 1;
     CHECK_EQ_I64(exh_params_stage(&p, 0x7301, 0, 80), 0);
     CHECK_EQ_I64(exh_params_stage(&p, 0x7301, 1, 1), 0);
     (void)exh_params_apply(&p);
     CHECK(active[0] == 50 && active[1] == 1 && p.moving, "%d, %d", (int)active[0], (int)active[1]);
-    exh_params_bytes(&c, &p);
+    exh_params_serialize(&c, &p);
     CHECK(exh_bytes_ok(&c) && c.at == 16, "%u bytes", (unsigned)c.at);
     CHECK_EQ_I64(exh_params_stage(&p, 0x7301, 0, 49), 0);
     (void)exh_params_apply(&p);
@@ -341,12 +341,12 @@ TEST(what_may_be_staged)
     static const struct exh_signal_group group[] = {{out, 1, 1}};
     static const struct exh_signal_table outputs = {group, 1};
     start(0);
-    CHECK_EQ_I64(exh_params_may(&p, VALUES - 1, 1000), 0);
-    CHECK_EQ_I64(exh_params_may(&p, VALUES - 1, 1001), -EXH_E_RANGE);
-    CHECK_EQ_I64(exh_params_may(&p, VALUES, 0), -EXH_E_UNKNOWN);
-    CHECK_EQ_I64(exh_params_may(&p, UINT32_MAX, 0), -EXH_E_UNKNOWN);
-    exh_params_init(&p, &outputs, active, staged);
-    CHECK_EQ_I64(exh_params_may(&p, 0, 4), -EXH_E_STATE);
+    CHECK_EQ_I64(exh_params_validate(&p, VALUES - 1, 1000), 0);
+    CHECK_EQ_I64(exh_params_validate(&p, VALUES - 1, 1001), -EXH_E_RANGE);
+    CHECK_EQ_I64(exh_params_validate(&p, VALUES, 0), -EXH_E_UNKNOWN);
+    CHECK_EQ_I64(exh_params_validate(&p, UINT32_MAX, 0), -EXH_E_UNKNOWN);
+    exh_params_setup(&p, &outputs, active, staged);
+    CHECK_EQ_I64(exh_params_validate(&p, 0, 4), -EXH_E_STATE);
     CHECK_EQ_I64(exh_params_stage(&p, 0x7401, 0, 5), -EXH_E_STATE);
     CHECK_EQ_I64(staged[0], 4);
 }

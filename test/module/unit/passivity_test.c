@@ -42,7 +42,7 @@ static void start(int32_t on)
     rig.drive_par.f_max_N_q20 = 20 * NEWTON;
     rig.par.on = on;
     rig.to_cur[1] = (struct exh_knot){24 * NEWTON, 6 * AMPERE, {0, 0}};
-    CHECK_EQ_I64(exh_table_set(rig.to_cur, 2), 0);
+    CHECK_EQ_I64(exh_table_setup(rig.to_cur, 2), 0);
     CHECK_EQ_I64(exh_table_invert(rig.held, rig.to_cur, 2), 0);
     CHECK_EQ_I64(exh_drive_setup(&rig.drive, &rig.drive_par, rig.T,
                                  (struct exh_table){rig.to_cur, 2}, (struct exh_table){NULL, 0}),
@@ -68,7 +68,7 @@ static int32_t tick(int32_t cnt, int touching, int32_t spring, int32_t pull)
     force = exh_clamp(rig.f.spring_N_q20 + rig.f.pullback_N_q20 + rig.f.passivity_N_q20, 0,
                       rig.drive_par.f_max_N_q20);
     rig.f.force_N_q20 = force;
-    exh_passivity_held(&rig.s, &rig.cfg, &rig.f, force * (AMPERE / NEWTON / 4));
+    exh_passivity_update(&rig.s, &rig.cfg, &rig.f, force * (AMPERE / NEWTON / 4));
     return force / (NEWTON / 8);
 }
 
@@ -159,13 +159,13 @@ TEST(the_pull_back_is_not_the_contacts)
     (void)tick(-10, 1, 0, 4);
     CHECK_EQ_I64(energy(), 80);
     /* Half a code more than was asked for is still the pull-back's. */
-    exh_passivity_held(&rig.s, &rig.cfg, &rig.f, AMPERE);
+    exh_passivity_update(&rig.s, &rig.cfg, &rig.f, AMPERE);
     CHECK_EQ_I64(rig.s.held_N_q20, 0);
     /* Less than commanded, by any later limit. */
     rig.f.force_N_q20 = 9 * NEWTON;
-    exh_passivity_held(&rig.s, &rig.cfg, &rig.f, AMPERE / 4);
+    exh_passivity_update(&rig.s, &rig.cfg, &rig.f, AMPERE / 4);
     CHECK_EQ_I64(rig.s.held_N_q20, NEWTON / 2);
-    exh_passivity_held(&rig.s, &rig.cfg, &rig.f, 0);
+    exh_passivity_update(&rig.s, &rig.cfg, &rig.f, 0);
     CHECK_EQ_I64(rig.s.held_N_q20, 0);
 }
 
@@ -261,7 +261,7 @@ TEST(what_cannot_be_proved_is_refused)
     CHECK_EQ_I64(SETUP(held(), ((struct exh_velocity_scale){1 << 15, {1, 1}}), 1 << 24),
                  -EXH_E_RANGE);
     rig.held[0].y = 1; /* a force without a current */
-    CHECK_EQ_I64(exh_table_set(rig.held, 2), 0);
+    CHECK_EQ_I64(exh_table_setup(rig.held, 2), 0);
     CHECK_EQ_I64(setup(), -EXH_E_RANGE);
 #undef SETUP
 }
@@ -281,10 +281,10 @@ TEST(bytes_come_back)
     uint8_t buf[64];
     struct exh_passivity s = {-123456789012345, 7, 8, -9, 1, 1}, t = {0, 0, 0, 0, 0, 0};
     struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
-    exh_passivity_bytes(&c, &s);
+    exh_passivity_serialize(&c, &s);
     CHECK_EQ_I64((int64_t)c.at, 22);
     c = exh_bytes_reader(buf, c.at);
-    exh_passivity_bytes(&c, &t);
+    exh_passivity_serialize(&c, &t);
     CHECK(s.energy_Ncnt_q20 == t.energy_Ncnt_q20 && t.held_N_q20 == 7 && t.late_N_q20 == 8 &&
               t.cnt == -9 && t.touching == 1 && t.started == 1,
           "%" PRId64, t.energy_Ncnt_q20);
@@ -302,7 +302,7 @@ TEST(damaged_bytes_do_no_harm)
             struct exh_bytes c = exh_bytes_reader(buf, sizeof buf);
             (void)memset(buf, fill[i], sizeof buf);
             buf[7] = buf[11] = buf[15] = fill[top];
-            exh_passivity_bytes(&c, &rig.s);
+            exh_passivity_serialize(&c, &rig.s);
             CHECK(rig.s.held_N_q20 >= 0 && rig.s.late_N_q20 >= 0 && rig.s.touching <= 1, "%zu", i);
             for (int32_t k = 0; k < 40; k++) {
                 (void)tick(k & 1 ? INT32_MIN : 0, (k & 4) != 0, INT32_MAX, 0);
@@ -317,7 +317,7 @@ TEST(what_has_to_fall_is_no_more_than_the_highest_limit)
 {
     start(1);
     rig.to_cur[1] = (struct exh_knot){200 * NEWTON, 6 * AMPERE, {0, 0}};
-    CHECK_EQ_I64(exh_table_set(rig.to_cur, 2), 0);
+    CHECK_EQ_I64(exh_table_setup(rig.to_cur, 2), 0);
     rig.drive_par.slew_down_Nps = 100001; /* of a tick of 1 ms, rounded: 100 N */
     CHECK_EQ_I64(exh_drive_setup(&rig.drive, &rig.drive_par, rig.T,
                                  (struct exh_table){rig.to_cur, 2}, (struct exh_table){NULL, 0}),
@@ -359,7 +359,7 @@ TEST(energies_and_ways_at_their_ends)
         exh_bytes_i64(&c, &s.energy_Ncnt_q20);
         memset(buf + 8, 0, sizeof buf - 8);
         c = exh_bytes_reader(buf, sizeof buf);
-        exh_passivity_bytes(&c, &s);
+        exh_passivity_serialize(&c, &s);
         CHECK(s.energy_Ncnt_q20 == row[i][1], "row %zu", i);
     }
     start(1);

@@ -43,7 +43,7 @@ static void at(int32_t z_m_q30)
 
 static void tell(struct exh_plane p)
 {
-    CHECK_EQ_I64(exh_precontact_tell(&s, &cfg, &p, 0), 0);
+    CHECK_EQ_I64(exh_precontact_update(&s, &cfg, &p, 0), 0);
 }
 
 static void frozen_at_116(void)
@@ -186,7 +186,8 @@ TEST(a_contact_that_the_glove_denies_is_let_go)
     for (n = 0; c && n < 100; n++) {
         at(MM(150));
         in.pos_m_q30 += MM(60);
-        c = exh_contact_law(&law, &wall, (struct exh_contact_in){in.pos_m_q30, 0, s.lim_m_q30}, &f);
+        c = exh_contact_step(&law, &wall, (struct exh_contact_in){in.pos_m_q30, 0, s.lim_m_q30},
+                             &f);
         in.touching = (uint8_t)c;
     }
     CHECK(n == 12 && f.spring_N_q20 == 0, "force in %d ticks", n);
@@ -251,23 +252,23 @@ TEST(missed_ticks_age_a_plane_and_a_doubt)
     start();
     tell(floor_plane);
     at(MM(150));
-    exh_precontact_skip(&s, 99);
+    exh_precontact_advance(&s, 99);
     at(MM(150));
     CHECK(bits == EXH_PRECONTACT_TRACKS, "its last tick");
     at(MM(150));
     CHECK(bits == EXH_PRECONTACT_STALE && s.stale_n == 1, "over");
-    exh_precontact_skip(&s, UINT32_MAX);
+    exh_precontact_advance(&s, UINT32_MAX);
     CHECK(s.left_ticks == 0 && s.doubt_ticks == 0, "no less than none");
     frozen_at_116();
     in.touching = 1;
     at(MM(150));
-    exh_precontact_skip(&s, 10);
+    exh_precontact_advance(&s, 10);
     at(MM(150));
     CHECK(bits & EXH_PRECONTACT_LETGO, "12 ticks");
     frozen_at_116();
     in.touching = 1;
     at(MM(150));
-    exh_precontact_skip(&s, UINT32_MAX);
+    exh_precontact_advance(&s, UINT32_MAX);
     at(MM(150));
     CHECK(bits & EXH_PRECONTACT_LETGO, "and no wrap");
 }
@@ -390,7 +391,7 @@ TEST(a_message_may_be_old_when_it_comes)
     start();
     tell(floor_plane);
     at(MM(150));
-    CHECK_EQ_I64(exh_precontact_tell(&s, &cfg, &floor_plane, 101), 0);
+    CHECK_EQ_I64(exh_precontact_update(&s, &cfg, &floor_plane, 101), 0);
     at(MM(150)); /* refreshed by nothing: it did not become old here */
     CHECK(bits == EXH_PRECONTACT_STALE && s.stale_n == 0, "too old from the start");
     tell(floor_plane);
@@ -400,12 +401,12 @@ TEST(a_message_may_be_old_when_it_comes)
     at(MM(112));
     CHECK(bits == EXH_PRECONTACT_AROUND, "new again");
     start();
-    CHECK_EQ_I64(exh_precontact_tell(&s, &cfg, &floor_plane, 100), 0);
+    CHECK_EQ_I64(exh_precontact_update(&s, &cfg, &floor_plane, 100), 0);
     at(MM(150));
     CHECK(bits & EXH_PRECONTACT_TRACKS, "its last tick");
     at(MM(150));
     CHECK(bits & EXH_PRECONTACT_STALE, "over");
-    CHECK_EQ_I64(exh_precontact_tell(&s, &cfg, &floor_plane, UINT32_MAX), 0);
+    CHECK_EQ_I64(exh_precontact_update(&s, &cfg, &floor_plane, UINT32_MAX), 0);
     at(MM(150));
     CHECK(bits & EXH_PRECONTACT_STALE, "never young");
 }
@@ -425,25 +426,25 @@ TEST(what_cannot_be_is_refused)
     struct exh_plane p = floor_plane;
     start();
     p.normal_q30.z = ONE - 1;
-    CHECK_EQ_I64(exh_precontact_tell(&s, &cfg, &p, 0), 0);
+    CHECK_EQ_I64(exh_precontact_update(&s, &cfg, &p, 0), 0);
     p.normal_q30.z = ONE - 8191; /* |n|^2 = 1 - 2^-16 + a little */
-    CHECK_EQ_I64(exh_precontact_tell(&s, &cfg, &p, 0), 0);
+    CHECK_EQ_I64(exh_precontact_update(&s, &cfg, &p, 0), 0);
     p.normal_q30.z = ONE - 8193;
-    CHECK_EQ_I64(exh_precontact_tell(&s, &cfg, &p, 0), -EXH_E_RANGE);
+    CHECK_EQ_I64(exh_precontact_update(&s, &cfg, &p, 0), -EXH_E_RANGE);
     p.normal_q30.z = ONE + 8191;
-    CHECK_EQ_I64(exh_precontact_tell(&s, &cfg, &p, 0), 0);
+    CHECK_EQ_I64(exh_precontact_update(&s, &cfg, &p, 0), 0);
     p.normal_q30.z = ONE + 8193;
-    CHECK_EQ_I64(exh_precontact_tell(&s, &cfg, &p, 0), -EXH_E_RANGE);
+    CHECK_EQ_I64(exh_precontact_update(&s, &cfg, &p, 0), -EXH_E_RANGE);
     p.normal_q30 = (struct exh_vec3){0, 0, 0};
-    CHECK_EQ_I64(exh_precontact_tell(&s, &cfg, &p, 0), -EXH_E_RANGE);
+    CHECK_EQ_I64(exh_precontact_update(&s, &cfg, &p, 0), -EXH_E_RANGE);
     p.normal_q30 = (struct exh_vec3){INT32_MIN, INT32_MIN, INT32_MIN};
-    CHECK_EQ_I64(exh_precontact_tell(&s, &cfg, &p, 0), -EXH_E_RANGE);
+    CHECK_EQ_I64(exh_precontact_update(&s, &cfg, &p, 0), -EXH_E_RANGE);
     p = floor_plane;
     p.material = 2;
-    CHECK_EQ_I64(exh_precontact_tell(&s, &cfg, &p, 0), -EXH_E_RANGE);
+    CHECK_EQ_I64(exh_precontact_update(&s, &cfg, &p, 0), -EXH_E_RANGE);
     p.material = 0;
     p.kind = 3;
-    CHECK_EQ_I64(exh_precontact_tell(&s, &cfg, &p, 0), -EXH_E_RANGE);
+    CHECK_EQ_I64(exh_precontact_update(&s, &cfg, &p, 0), -EXH_E_RANGE);
     CHECK_EQ_I64(s.refused_n, 6);
     at(MM(150));
     CHECK(bits & EXH_PRECONTACT_TRACKS, "the plane before goes on");
@@ -538,14 +539,14 @@ TEST(state_round_trip)
     uint32_t n;
     frozen_at_116();
     s.ignored_n = 7;
-    exh_precontact_bytes(&c, &s);
+    exh_precontact_serialize(&c, &s);
     n = c.at;
     CHECK_EQ_I64(n, 8 + 12 + 2 * 23 + 32 + 1);
     c = exh_bytes_reader(buf, n);
-    exh_precontact_bytes(&c, &back);
+    exh_precontact_serialize(&c, &back);
     CHECK(exh_bytes_ok(&c), "reads");
     c = exh_bytes_writer(again, sizeof again);
-    exh_precontact_bytes(&c, &back);
+    exh_precontact_serialize(&c, &back);
     CHECK(memcmp(buf, again, n) == 0 && back.phase == EXH_PRECONTACT_FROZEN && back.ignored_n == 7,
           "the same");
 }
@@ -558,7 +559,7 @@ TEST(damaged_state_comes_back_into_range)
     start();
     memset(buf, 0x7F, sizeof buf);
     c = exh_bytes_reader(buf, sizeof buf);
-    exh_precontact_bytes(&c, &back);
+    exh_precontact_serialize(&c, &back);
     CHECK(back.phase == EXH_PRECONTACT_IDLE && back.left_ticks == 0, "no plane");
     CHECK(back.taken.f_max_N_q20 == exh_material_rows[2].max, "material");
     CHECK(back.held.normal_q30.x == 0 && back.newest.offset_m_q60 == 0, "zeros");
@@ -568,18 +569,18 @@ TEST(damaged_state_comes_back_into_range)
         if (i == 0) { s.held.normal_q30.x = 1 << 24; } /* no unit vector */
         if (i > 0) { s.held.offset_m_q60 = i == 1 ? far : -far; }
         c = exh_bytes_writer(buf, sizeof buf);
-        exh_precontact_bytes(&c, &s);
+        exh_precontact_serialize(&c, &s);
         c = exh_bytes_reader(buf, sizeof buf);
-        exh_precontact_bytes(&c, &back);
+        exh_precontact_serialize(&c, &back);
         CHECK(back.phase == EXH_PRECONTACT_IDLE && back.held.normal_q30.z == 0, "held, %d", i);
     }
     for (int sign = -1; sign <= 1; sign += 2) { /* that far may be */
         frozen_at_116();
         s.held.offset_m_q60 = sign < 0 ? -(INT64_C(1) << 62) : INT64_C(1) << 62;
         c = exh_bytes_writer(buf, sizeof buf);
-        exh_precontact_bytes(&c, &s);
+        exh_precontact_serialize(&c, &s);
         c = exh_bytes_reader(buf, sizeof buf);
-        exh_precontact_bytes(&c, &back);
+        exh_precontact_serialize(&c, &back);
         CHECK(back.phase == EXH_PRECONTACT_FROZEN && back.held.offset_m_q60 == s.held.offset_m_q60,
               "sign %d", sign);
     }
@@ -589,9 +590,9 @@ TEST(damaged_state_comes_back_into_range)
     s.phase = 200;
     s.newest.material = 77; /* of a box with more materials */
     c = exh_bytes_writer(buf, sizeof buf);
-    exh_precontact_bytes(&c, &s);
+    exh_precontact_serialize(&c, &s);
     c = exh_bytes_reader(buf, sizeof buf);
-    exh_precontact_bytes(&c, &s);
+    exh_precontact_serialize(&c, &s);
     CHECK(s.phase == EXH_PRECONTACT_IDLE && s.left_ticks > 0, "phase");
     s.phase = EXH_PRECONTACT_TRACK;
     at(MM(114));
@@ -602,10 +603,10 @@ static void round_trip(void)
 {
     uint8_t buf[160];
     struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
-    exh_precontact_bytes(&c, &s);
+    exh_precontact_serialize(&c, &s);
     c = exh_bytes_reader(buf, c.at);
     s = (struct exh_precontact){0};
-    exh_precontact_bytes(&c, &s);
+    exh_precontact_serialize(&c, &s);
     CHECK(exh_bytes_ok(&c), "reads");
 }
 
@@ -658,9 +659,9 @@ TEST(the_longest_normal)
     struct exh_plane p = floor_plane;
     start();
     p.normal_q30 = (struct exh_vec3){0, ONE >> 8, ONE};
-    CHECK_EQ_I64(exh_precontact_tell(&s, &cfg, &p, 0), 0);
+    CHECK_EQ_I64(exh_precontact_update(&s, &cfg, &p, 0), 0);
     p.normal_q30.x = 1;
-    CHECK_EQ_I64(exh_precontact_tell(&s, &cfg, &p, 0), -EXH_E_RANGE);
+    CHECK_EQ_I64(exh_precontact_update(&s, &cfg, &p, 0), -EXH_E_RANGE);
 }
 
 TEST_MAIN("unit/precontact", distance_has_the_sign_of_the_text, rounds_once_and_half_up,

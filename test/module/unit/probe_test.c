@@ -75,7 +75,8 @@ TEST(finds_the_current_that_moves_within_a_step)
     for (int32_t mA = 0; mA < 990; mA += 7) {
         struct string w = slack(MA(mA));
         const struct found f = probe(&w, &par, 0);
-        CHECK(f.result == EXH_PROBE_DONE, "%" PRId32 " mA: %s", mA, exh_probe_text(f.result));
+        CHECK(f.result == EXH_PROBE_DONE, "%" PRId32 " mA: %s", mA,
+              exh_probe_result_text(f.result));
         CHECK(f.cur_A_q26 > MA(mA) && f.cur_A_q26 <= MA(mA) + MA(10) + 8,
               "%" PRId32 " mA: found %" PRId32, mA, f.cur_A_q26 / MA(1));
         CHECK(w.cnt <= -10 && w.cnt >= -20, "moved %" PRId32 " counts", w.cnt);
@@ -90,7 +91,8 @@ TEST(falling_finds_the_current_that_lets_go)
     for (int32_t mA = 10; mA < 800; mA += 7) {
         struct string w = {0, MA(850), MA(mA), INT32_MIN, INT32_MIN, 2, 1, INT32_MAX};
         const struct found f = probe(&w, &down, MA(900)); /* still rising at first */
-        CHECK(f.result == EXH_PROBE_DONE, "%" PRId32 " mA: %s", mA, exh_probe_text(f.result));
+        CHECK(f.result == EXH_PROBE_DONE, "%" PRId32 " mA: %s", mA,
+              exh_probe_result_text(f.result));
         CHECK(f.cur_A_q26 < MA(mA) && f.cur_A_q26 >= MA(mA) - MA(10) - 64,
               "%" PRId32 " mA: found %" PRId32, mA, f.cur_A_q26 / MA(1));
     }
@@ -103,7 +105,7 @@ TEST(slack_is_taken_up_first)
     struct found f;
     w.end_cnt = -200; /* 20 mm of slack, then something that does not move */
     f = probe(&w, &par, MA(50));
-    CHECK(f.result == EXH_PROBE_STILL, "%s", exh_probe_text(f.result));
+    CHECK(f.result == EXH_PROBE_STILL, "%s", exh_probe_result_text(f.result));
     CHECK(f.most_A_q26 <= MA(1000) && f.most_A_q26 > MA(989), "tried up to %" PRId32 " mA",
           f.most_A_q26 / MA(1));
     CHECK(f.cur_A_q26 == 0, "current stays on");
@@ -116,30 +118,31 @@ TEST(what_stops_a_probe)
     struct found f;
     w.way = -1; /* reversed: caught in the dwell in which it moves, at the least current */
     f = probe(&w, &par, 0);
-    CHECK(f.result == EXH_PROBE_WRONG_WAY, "%s", exh_probe_text(f.result));
+    CHECK(f.result == EXH_PROBE_WRONG_WAY, "%s", exh_probe_result_text(f.result));
     CHECK(f.most_A_q26 <= MA(110) + 8 && f.cur_A_q26 == 0, "%" PRId32, f.most_A_q26 / MA(1));
     CHECK(w.cnt <= 12, "went out %" PRId32, w.cnt);
 
     w = slack(MA(2000));
     f = probe(&w, &par, 0);
-    CHECK(f.result == EXH_PROBE_STILL && f.cur_A_q26 == 0, "%s", exh_probe_text(f.result));
+    CHECK(f.result == EXH_PROBE_STILL && f.cur_A_q26 == 0, "%s", exh_probe_result_text(f.result));
     CHECK(f.ticks == 10 * 101, "%u ticks", f.ticks);
 
     slow.time_ms = 100;
     w = slack(MA(2000));
     f = probe(&w, &slow, 0);
     CHECK(f.result == EXH_PROBE_TIME && f.cur_A_q26 == 0 && f.ticks == 100, "%s, %u ticks",
-          exh_probe_text(f.result), f.ticks);
+          exh_probe_result_text(f.result), f.ticks);
 
     w = slack(MA(10)); /* runs away at its first current */
     f = probe(&w, &par, MA(50));
-    CHECK(f.result == EXH_PROBE_TRAVEL && f.cur_A_q26 == 0, "%s", exh_probe_text(f.result));
+    CHECK(f.result == EXH_PROBE_TRAVEL && f.cur_A_q26 == 0, "%s", exh_probe_result_text(f.result));
     CHECK(w.cnt >= -502, "%" PRId32, w.cnt);
 
     w = slack(MA(100));
     w.out_A_q26 = MA(90); /* somebody pulls before there is current */
     f = probe(&w, &par, 0);
-    CHECK(f.result == EXH_PROBE_WRONG_WAY && f.most_A_q26 == 0, "%s", exh_probe_text(f.result));
+    CHECK(f.result == EXH_PROBE_WRONG_WAY && f.most_A_q26 == 0, "%s",
+          exh_probe_result_text(f.result));
 }
 
 TEST(set_up_refuses_what_is_out_of_range)
@@ -243,7 +246,7 @@ TEST(home_is_the_end_of_the_string)
         int32_t at;
         w.end_cnt = row[i].end_cnt;
         f = home(&w, &at);
-        CHECK(f.result == row[i].result, "row %zu: %s", i, exh_probe_text(f.result));
+        CHECK(f.result == row[i].result, "row %zu: %s", i, exh_probe_result_text(f.result));
         CHECK(f.result != EXH_PROBE_DONE || at == row[i].end_cnt, "row %zu: %" PRId32, i, at);
         CHECK(w.cnt >= -1004, "row %zu: ran to %" PRId32, i, w.cnt);
     }
@@ -256,15 +259,15 @@ TEST(what_stops_homing)
     w.way = -1;
     f = home(&w, NULL);
     CHECK(f.result == EXH_PROBE_WRONG_WAY && w.cnt <= 12 && f.ticks < 10, "%s, %" PRId32,
-          exh_probe_text(f.result), w.cnt);
+          exh_probe_result_text(f.result), w.cnt);
     w = slack(MA(20));
     w.stuck_cnt = -100; /* half way to where an end may be */
     f = home(&w, NULL);
-    CHECK(f.result == EXH_PROBE_JAM && f.ticks < 100, "%s", exh_probe_text(f.result));
+    CHECK(f.result == EXH_PROBE_JAM && f.ticks < 100, "%s", exh_probe_result_text(f.result));
     w = slack(MA(20));
     w.speed = 0;
     f = home(&w, NULL);
-    CHECK(f.result == EXH_PROBE_JAM && f.ticks == 10, "%s", exh_probe_text(f.result));
+    CHECK(f.result == EXH_PROBE_JAM && f.ticks == 10, "%s", exh_probe_result_text(f.result));
 }
 
 TEST(homing_takes_no_longer_than_allowed)
@@ -277,7 +280,8 @@ TEST(homing_takes_no_longer_than_allowed)
     CHECK_EQ_I64(exh_home_setup(&cfg, &p, scale), 0);
     exh_home_start(&s, 0);
     while (exh_home_step(&s, &cfg, -2 * (int32_t)n) == EXH_PROBE_BUSY && n < 1000) { n++; }
-    CHECK(s.result == EXH_PROBE_TIME && n == 99, "%s, %u ticks", exh_probe_text(s.result), n);
+    CHECK(s.result == EXH_PROBE_TIME && n == 99, "%s, %u ticks", exh_probe_result_text(s.result),
+          n);
 }
 
 /* With a least way of 0 an end at once is one; the whole way may be gone, and no more. */
@@ -291,7 +295,7 @@ TEST(homing_from_the_end_and_all_the_way)
     CHECK_EQ_I64(exh_home_setup(&cfg, &p, scale), 0);
     exh_home_start(&s, 500);
     while (exh_home_step(&s, &cfg, 500) == EXH_PROBE_BUSY && n < 1000) { n++; }
-    CHECK(s.result == EXH_PROBE_DONE && s.home_cnt == 500, "%s", exh_probe_text(s.result));
+    CHECK(s.result == EXH_PROBE_DONE && s.home_cnt == 500, "%s", exh_probe_result_text(s.result));
     exh_home_start(&s, 0);
     CHECK_EQ_I64(exh_home_step(&s, &cfg, -cfg.most_cnt), EXH_PROBE_BUSY);
     CHECK_EQ_I64(exh_home_step(&s, &cfg, -cfg.most_cnt - 1), EXH_PROBE_TRAVEL);
@@ -331,7 +335,7 @@ TEST(weighing_brackets_friction)
             w.stand_cnt = 0;
             f = weigh(&w, &p, MA(1));
             CHECK(f.result == EXH_PROBE_DONE, "%" PRId32 "+%" PRId32 " mA: %s", sink, band,
-                  exh_probe_text(f.result));
+                  exh_probe_result_text(f.result));
             off = p.cur_A_q26 - MA(2 * sink + band) / 2;
             half = p.friction_A_q26 - MA(band) / 2;
             CHECK(off <= MA(6) && off >= -MA(6),
@@ -350,18 +354,20 @@ TEST(what_stops_weighing)
     struct exh_calib_point p;
     struct string w = slack(MA(10)); /* no mass on it */
     struct found f = weigh(&w, &p, 0);
-    CHECK(f.result == EXH_PROBE_TRAVEL && w.cnt >= -504, "%s", exh_probe_text(f.result));
+    CHECK(f.result == EXH_PROBE_TRAVEL && w.cnt >= -504, "%s", exh_probe_result_text(f.result));
     w = slack(MA(2000)); /* too heavy */
     f = weigh(&w, &p, 0);
-    CHECK(f.result == EXH_PROBE_STILL && f.most_A_q26 <= MA(1000), "%s", exh_probe_text(f.result));
+    CHECK(f.result == EXH_PROBE_STILL && f.most_A_q26 <= MA(1000), "%s",
+          exh_probe_result_text(f.result));
     w = slack(MA(500)); /* lifted, and never comes down again */
     f = weigh(&w, &p, 0);
-    CHECK(f.result == EXH_PROBE_STILL && f.most_A_q26 <= MA(520), "%s", exh_probe_text(f.result));
+    CHECK(f.result == EXH_PROBE_STILL && f.most_A_q26 <= MA(520), "%s",
+          exh_probe_result_text(f.result));
     w = (struct string){0,         MA(500), MA(499), INT32_MIN,
                         INT32_MIN, 2,       1,       INT32_MAX}; /* pulls at once */
     f = weigh(&w, &p, 0);
     CHECK(f.result == EXH_PROBE_WRONG_WAY && f.most_A_q26 <= MA(20), "%s",
-          exh_probe_text(f.result));
+          exh_probe_result_text(f.result));
 }
 
 /* Counts by script: how far the string goes in each phase. The limits are of all phases
@@ -422,7 +428,7 @@ TEST(a_mass_that_swings_is_not_waited_for)
     CHECK_EQ_I64(move(&w, 2, 6), EXH_PROBE_BUSY);
     while (move(&w, n % 20 < 10 ? 2 : -2, 1) == EXH_PROBE_BUSY && n < 100000) { n++; }
     CHECK(w.s.result == EXH_PROBE_TIME && w.s.cur_A_q26 == 0 && n < 5000, "%s after %u ticks",
-          exh_probe_text(w.s.result), n);
+          exh_probe_result_text(w.s.result), n);
 }
 
 /* A movement while the means are taken: what was taken before it is not of this rest. */
@@ -443,7 +449,7 @@ TEST(means_begin_anew_after_a_movement)
         r = exh_weigh_step(&w.s, &w.cfg, w.cnt, moved ? MA(200) : MA(100),
                            moved ? MA(220) : MA(110));
     }
-    CHECK(r == EXH_PROBE_DONE && moved, "%s", exh_probe_text(r));
+    CHECK(r == EXH_PROBE_DONE && moved, "%s", exh_probe_result_text(r));
     p = exh_weigh_point(&w.s, 1);
     CHECK(p.cur_A_q26 == MA(200) && p.mon_A_q26 == MA(220), "%" PRId32 ", %" PRId32, p.cur_A_q26,
           p.mon_A_q26);
@@ -501,7 +507,8 @@ TEST(every_result_has_its_text)
 {
     for (unsigned i = 0; i <= EXH_PROBE_RESULTS; i++) {
         for (unsigned k = 0; k < i; k++) {
-            CHECK(!check_same_text(exh_probe_text(i), exh_probe_text(k)), "%u and %u", i, k);
+            CHECK(!check_same_text(exh_probe_result_text(i), exh_probe_result_text(k)), "%u and %u",
+                  i, k);
         }
     }
 }
@@ -520,8 +527,8 @@ TEST(creeping_out_ends_at_the_travel)
         cnt += k % 10 == 0; /* one a dwell */
         (void)exh_probe_step(&s, &cfg, cnt);
     }
-    CHECK(s.result == EXH_PROBE_TRAVEL && cnt == 21, "%s at %" PRId32, exh_probe_text(s.result),
-          cnt);
+    CHECK(s.result == EXH_PROBE_TRAVEL && cnt == 21, "%s at %" PRId32,
+          exh_probe_result_text(s.result), cnt);
     CHECK_EQ_I64(s.cur_A_q26, 0);
 }
 

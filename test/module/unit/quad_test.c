@@ -175,8 +175,8 @@ TEST(first_value_is_count_zero)
         const struct exh_quad_cfg cfg = counter(bits[i]);
         for (size_t k = 0; k < CHECK_CORNERS; k++) {
             struct exh_quad s = {0};
-            CHECK_EQ_I64(exh_quad_extend(&s, &cfg, (uint32_t)check_corner[k]), 0);
-            CHECK_EQ_I64(exh_quad_extend(&s, &cfg, (uint32_t)check_corner[k]), 0);
+            CHECK_EQ_I64(exh_quad_step(&s, &cfg, (uint32_t)check_corner[k]), 0);
+            CHECK_EQ_I64(exh_quad_step(&s, &cfg, (uint32_t)check_corner[k]), 0);
         }
     }
 }
@@ -195,9 +195,9 @@ TEST(wraps_at_both_ends)
             const int64_t m = move[k / LEN(start)];
             const uint32_t from = start[k % LEN(start)];
             struct exh_quad s = {0};
-            (void)exh_quad_extend(&s, &cfg, from);
-            CHECK_EQ_I64(exh_quad_extend(&s, &cfg, ((uint32_t)(from + m)) & top), m);
-            CHECK_EQ_I64(exh_quad_extend(&s, &cfg, from), 0);
+            (void)exh_quad_step(&s, &cfg, from);
+            CHECK_EQ_I64(exh_quad_step(&s, &cfg, ((uint32_t)(from + m)) & top), m);
+            CHECK_EQ_I64(exh_quad_step(&s, &cfg, from), 0);
         }
     }
 }
@@ -210,9 +210,9 @@ TEST(bits_above_the_counter_are_ignored)
         const struct exh_quad_cfg cfg = counter(bits[i]);
         const uint32_t junk = UINT32_MAX << bits[i];
         struct exh_quad s = {0};
-        (void)exh_quad_extend(&s, &cfg, 5 | junk);
-        CHECK_EQ_I64(exh_quad_extend(&s, &cfg, 9), 4);
-        CHECK_EQ_I64(exh_quad_extend(&s, &cfg, 7 | junk), 2);
+        (void)exh_quad_step(&s, &cfg, 5 | junk);
+        CHECK_EQ_I64(exh_quad_step(&s, &cfg, 9), 4);
+        CHECK_EQ_I64(exh_quad_step(&s, &cfg, 7 | junk), 2);
     }
 }
 
@@ -226,11 +226,11 @@ TEST(long_walks)
         const uint32_t mask = UINT32_MAX >> (32 - bits[i]);
         struct exh_quad s = {0};
         uint64_t pos = 12345; /* unsigned: the reference wraps by definition */
-        (void)exh_quad_extend(&s, &cfg, (uint32_t)pos & mask);
+        (void)exh_quad_step(&s, &cfg, (uint32_t)pos & mask);
         for (int k = 0; k < 20000; k++) {
             const uint64_t moved = pos += (uint64_t)(int64_t)check_i32_in(-half, half);
             const uint32_t want = (uint32_t)(moved - 12345);
-            const int32_t got = exh_quad_extend(&s, &cfg, (uint32_t)pos & mask);
+            const int32_t got = exh_quad_step(&s, &cfg, (uint32_t)pos & mask);
             CHECK((uint32_t)got == want, "bits %" PRId32 " step %d", bits[i], k);
         }
     }
@@ -267,10 +267,10 @@ TEST(state_round_trip)
     struct exh_quad back = {0};
     uint8_t buf[16];
     struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
-    exh_quad_bytes(&c, &s);
+    exh_quad_serialize(&c, &s);
     CHECK_EQ_I64(c.at, 10);
     c = exh_bytes_reader(buf, c.at);
-    exh_quad_bytes(&c, &back);
+    exh_quad_serialize(&c, &back);
     CHECK(exh_bytes_ok(&c), "reader");
     CHECK(back.raw == s.raw && back.cnt == s.cnt && back.started == s.started &&
               back.lost == s.lost,
@@ -282,16 +282,16 @@ TEST(lines_round_trip)
     struct exh_quad_ab s = {-5, 6, 7, 3, 1}, back = {0};
     uint8_t buf[32];
     struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
-    exh_quad_ab_bytes(&c, &s);
+    exh_quad_ab_serialize(&c, &s);
     CHECK_EQ_I64(c.at, 14);
     c = exh_bytes_reader(buf, c.at);
-    exh_quad_ab_bytes(&c, &back);
+    exh_quad_ab_serialize(&c, &back);
     CHECK(exh_bytes_ok(&c) && back.cnt == -5 && back.edges == 6 && back.illegal == 7 &&
               back.ab == 3 && back.started == 1,
           "state differs");
     memset(buf, 0xFF, sizeof buf); /* damaged: the lines are an index into a table */
     c = exh_bytes_reader(buf, sizeof buf);
-    exh_quad_ab_bytes(&c, &back);
+    exh_quad_ab_serialize(&c, &back);
     CHECK_EQ_I64(back.ab, 3);
     exh_quad_ab_step(&back, &exh_quad_x4, 1);
     CHECK_EQ_I64(back.ab, 1);
@@ -302,16 +302,16 @@ TEST(index_round_trip)
     struct exh_quad_index s = {-8, 9, 1, 1}, back = {0};
     uint8_t buf[16];
     struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
-    exh_quad_index_bytes(&c, &s);
+    exh_quad_index_serialize(&c, &s);
     CHECK_EQ_I64(c.at, 10);
     c = exh_bytes_reader(buf, c.at);
-    exh_quad_index_bytes(&c, &back);
+    exh_quad_index_serialize(&c, &back);
     CHECK(exh_bytes_ok(&c) && back.cnt == -8 && back.seen == 9 && back.level == 1 &&
               back.started == 1,
           "state differs");
     memset(buf, 0xFE, sizeof buf);
     c = exh_bytes_reader(buf, sizeof buf);
-    exh_quad_index_bytes(&c, &back);
+    exh_quad_index_serialize(&c, &back);
     CHECK_EQ_I64(back.level, 0);
 }
 
@@ -334,16 +334,16 @@ TEST(a_jump_is_told_at_every_rate)
             struct exh_quad s = {0};
             uint32_t raw = 0xFFFFF0; /* next to the wrap */
             const int32_t far = sign * cfg.jump_cnt;
-            (void)exh_quad_extend(&s, &cfg, raw);
+            (void)exh_quad_step(&s, &cfg, raw);
             CHECK(!s.lost, "the first sample");
             raw += (uint32_t)far;
-            CHECK_EQ_I64(exh_quad_extend(&s, &cfg, raw), far);
+            CHECK_EQ_I64(exh_quad_step(&s, &cfg, raw), far);
             CHECK(!s.lost, "row %zu: as fast as allowed", i);
             raw += (uint32_t)(far + sign);
-            CHECK_EQ_I64(exh_quad_extend(&s, &cfg, raw), far);
+            CHECK_EQ_I64(exh_quad_step(&s, &cfg, raw), far);
             CHECK(s.lost, "row %zu: faster", i);
             raw += (uint32_t)sign;
-            CHECK_EQ_I64(exh_quad_extend(&s, &cfg, raw), far + sign);
+            CHECK_EQ_I64(exh_quad_step(&s, &cfg, raw), far + sign);
             CHECK(s.lost, "row %zu: where it is now nobody knows", i);
         }
     }

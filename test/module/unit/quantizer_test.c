@@ -80,10 +80,10 @@ TEST(state_round_trip)
     struct exh_quantizer s = {-123456789, 1}, back = {0, 0};
     uint8_t buf[8];
     struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
-    exh_quantizer_bytes(&c, &s);
+    exh_quantizer_serialize(&c, &s);
     CHECK_EQ_I64(c.at, 5);
     c = exh_bytes_reader(buf, c.at);
-    exh_quantizer_bytes(&c, &back);
+    exh_quantizer_serialize(&c, &back);
     CHECK(exh_bytes_ok(&c) && back.value == s.value && back.started == s.started, "state differs");
 }
 

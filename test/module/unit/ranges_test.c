@@ -9,8 +9,8 @@
 #include "exhand/safety.h"
 #include "exhand/supply.h"
 #include "exhand/table.h"
-#include "exhand/track.h"
-#include "exhand/watch.h"
+#include "exhand/tracking.h"
+#include "exhand/motion.h"
 
 #include "check.h"
 
@@ -59,16 +59,16 @@ static void ends(const char *name, const struct range *of, uint32_t n,
 
 static int watch(const int32_t *p)
 {
-    const struct exh_watch_par par = {p[0], p[1], p[2], p[3]};
-    struct exh_watch_cfg cfg;
-    return exh_watch_setup(&cfg, &par, kHz);
+    const struct exh_motion_par par = {p[0], p[1], p[2], p[3]};
+    struct exh_motion_cfg cfg;
+    return exh_motion_setup(&cfg, &par, kHz);
 }
 
 static int track(const int32_t *p)
 {
-    const struct exh_track_par par = {p[0], p[1]};
-    struct exh_track_cfg cfg;
-    return exh_track_setup(&cfg, &par, kHz);
+    const struct exh_tracking_par par = {p[0], p[1]};
+    struct exh_tracking_cfg cfg;
+    return exh_tracking_setup(&cfg, &par, kHz);
 }
 
 static int supply(const int32_t *p)
@@ -120,7 +120,7 @@ static int drive(const int32_t *p)
     const struct exh_drive_par par = {p[0], p[1], p[2], p[3], p[4], p[5],
                                       p[6], p[7], p[8], p[9], p[10]};
     struct exh_drive_cfg cfg;
-    if (exh_table_set(knot, 2) < 0 || exh_table_invert(back, knot, 2) < 0) { return 1; }
+    if (exh_table_setup(knot, 2) < 0 || exh_table_invert(back, knot, 2) < 0) { return 1; }
     return exh_drive_setup(&cfg, &par, kHz, (struct exh_table){knot, 2},
                            (struct exh_table){back, 2});
 }

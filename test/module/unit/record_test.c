@@ -45,8 +45,8 @@ TEST(round_trip_of_every_type_and_size)
             struct exh_record r = {0, 0, 0, 0, 0, NULL};
             const uint32_t size = make(buf, sizeof buf, all_types[t], seq, n);
             CHECK_EQ_I64(size, n + EXH_RECORD_OVERHEAD);
-            CHECK_EQ_I64(exh_record_read(buf, size, &r), size);
-            CHECK_EQ_I64(exh_record_read(buf, sizeof buf, &r), size);
+            CHECK_EQ_I64(exh_record_decode(buf, size, &r), size);
+            CHECK_EQ_I64(exh_record_decode(buf, sizeof buf, &r), size);
             CHECK(r.type == all_types[t] && r.version == EXH_RECORD_VERSION, "type %zu", t);
             CHECK(r.len_B == n && r.seq == seq && r.tick == seq * 3, "size %" PRIu32, n);
             for (uint32_t i = 0; i < n; i++) {
@@ -61,7 +61,7 @@ TEST(largest_payload_and_one_more)
     static uint8_t buf[65535 + EXH_RECORD_OVERHEAD + 1];
     struct exh_record r;
     CHECK_EQ_I64(make(buf, sizeof buf, EXH_RECORD_KEYFRAME, 1, 65535), 65535 + EXH_RECORD_OVERHEAD);
-    CHECK_EQ_I64(exh_record_read(buf, sizeof buf, &r), 65535 + EXH_RECORD_OVERHEAD);
+    CHECK_EQ_I64(exh_record_decode(buf, sizeof buf, &r), 65535 + EXH_RECORD_OVERHEAD);
     CHECK_EQ_I64(r.len_B, 65535);
     CHECK_EQ_I64(make(buf, sizeof buf, EXH_RECORD_KEYFRAME, 1, 65536), 0);
 }
@@ -87,7 +87,7 @@ TEST(truncated_at_every_byte)
         uint8_t cut[64]; /* its own array, so that a sanitizer sees a read beyond */
         memset(cut, 0, sizeof cut);
         memcpy(cut, buf, len);
-        CHECK(exh_record_read(cut, len, &r) == -EXH_E_SHORT, "length %" PRIu32, len);
+        CHECK(exh_record_decode(cut, len, &r) == -EXH_E_SHORT, "length %" PRIu32, len);
     }
 }
 
@@ -101,7 +101,7 @@ TEST(every_flipped_bit_is_detected)
         struct exh_record r;
         int32_t got;
         buf[bit / 8] ^= (uint8_t)(1u << bit % 8);
-        got = exh_record_read(buf, sizeof buf, &r);
+        got = exh_record_decode(buf, sizeof buf, &r);
         buf[bit / 8] ^= (uint8_t)(1u << bit % 8);
         CHECK(got < 0, "bit %" PRIu32 " passed as %" PRId32 " bytes", bit, got);
         CHECK(got == (bit < 16 ? -EXH_E_UNKNOWN : -EXH_E_CRC), "bit %" PRIu32 ": %" PRId32, bit,
@@ -120,7 +120,7 @@ TEST(another_version_is_named)
     crc = exh_crc32(0, buf, size - 4);
     c.at = size - 4;
     exh_bytes_u32(&c, &crc);
-    CHECK_EQ_I64(exh_record_read(buf, size, &r), -EXH_E_VERSION);
+    CHECK_EQ_I64(exh_record_decode(buf, size, &r), -EXH_E_VERSION);
 }
 
 /* Rubbish, sync-like rubbish, a damaged record, then good ones: all good ones are
@@ -143,7 +143,7 @@ TEST(resync_after_damage)
         }
         for (uint32_t i = 0; i < sizeof buf;) {
             struct exh_record r;
-            const int32_t n = exh_record_read(buf + i, (uint32_t)sizeof buf - i, &r);
+            const int32_t n = exh_record_decode(buf + i, (uint32_t)sizeof buf - i, &r);
             CHECK(n <= (int32_t)(sizeof buf - i), "runs past the end");
             if (n > 0) { CHECK(r.seq != 3, "the damaged one passed"); }
             found += n > 0;
@@ -163,7 +163,7 @@ TEST(any_bytes_are_safe_to_read)
         for (size_t i = 0; i < sizeof buf; i++) { buf[i] = (uint8_t)(check_u64() & 0xFF); }
         buf[0] = 0x45;
         buf[1] = 0x58;
-        n = exh_record_read(buf, len, &r);
+        n = exh_record_decode(buf, len, &r);
         CHECK(n < 0, "random bytes passed: %" PRId32, n);
     }
 }
@@ -178,13 +178,13 @@ TEST(header_and_event_round_trip)
     struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
     memset(&h2, 0xFF, sizeof h2);
     memset(&e2, 0xFF, sizeof e2);
-    exh_record_header_bytes(&c, &h);
+    exh_record_header_serialize(&c, &h);
     CHECK_EQ_I64(c.at, 54);
-    exh_event_bytes(&c, &e);
+    exh_event_serialize(&c, &e);
     CHECK_EQ_I64(c.at, 64);
     c = exh_bytes_reader(buf, c.at);
-    exh_record_header_bytes(&c, &h2);
-    exh_event_bytes(&c, &e2);
+    exh_record_header_serialize(&c, &h2);
+    exh_event_serialize(&c, &e2);
     CHECK(exh_bytes_ok(&c), "reader");
     CHECK(memcmp(h.scene, h2.scene, 16) == 0 && memcmp(h.board, h2.board, 16) == 0, "names");
     CHECK(h2.lib_version == h.lib_version && h2.signal_crc == h.signal_crc, "versions");
@@ -207,12 +207,12 @@ TEST(every_byte_of_a_name)
             const uint8_t u = (uint8_t)(first + i);
             memcpy(&h.scene[i], &u, 1);
         }
-        exh_record_header_bytes(&c, &h);
+        exh_record_header_serialize(&c, &h);
         for (unsigned i = 0; i < 16; i++) {
             CHECK(buf[i] == first + i, "written %u: %u", first + i, buf[i]);
         }
         c = exh_bytes_reader(buf, sizeof buf);
-        exh_record_header_bytes(&c, &h2);
+        exh_record_header_serialize(&c, &h2);
         CHECK(memcmp(h.scene, h2.scene, 16) == 0, "read from %u", first);
     }
 }
@@ -246,7 +246,7 @@ TEST(begins_at_the_beginning)
     c.at = 17;
     exh_record_begin(&c, EXH_RECORD_END, 5, 6);
     CHECK_EQ_I64(exh_record_end(&c), EXH_RECORD_OVERHEAD);
-    CHECK_EQ_I64(exh_record_read(buf, EXH_RECORD_OVERHEAD, &r), EXH_RECORD_OVERHEAD);
+    CHECK_EQ_I64(exh_record_decode(buf, EXH_RECORD_OVERHEAD, &r), EXH_RECORD_OVERHEAD);
     CHECK(r.type == EXH_RECORD_END && r.seq == 5 && r.tick == 6 && r.len_B == 0, "another one");
 }
 

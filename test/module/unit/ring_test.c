@@ -33,7 +33,7 @@ static struct exh_record first(uint8_t *to, uint32_t cap)
     struct exh_record r = {0, 0, 0, 0, UINT32_MAX, NULL};
     if (exh_ring_next(&ring, &p, 7, &o) == 1) {
         const uint32_t n = exh_record_out(&o, to, cap);
-        CHECK_EQ_I64(exh_record_read(to, n, &r), n);
+        CHECK_EQ_I64(exh_record_decode(to, n, &r), n);
         CHECK_EQ_I64(r.seq, 7);
     }
     return r;

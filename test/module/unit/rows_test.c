@@ -17,9 +17,9 @@
 #include "exhand/safety.h"
 #include "exhand/signal.h"
 #include "exhand/supply.h"
-#include "exhand/track.h"
+#include "exhand/tracking.h"
 #include "exhand/velocity.h"
-#include "exhand/watch.h"
+#include "exhand/motion.h"
 
 #include "check.h"
 
@@ -35,9 +35,9 @@ static const struct exh_signal_group groups[] = {
     {exh_hand_rows, EXH_HAND_ROWS, 1},
     {exh_material_rows, EXH_MATERIAL_ROWS, 1},
     {exh_precontact_rows, EXH_PRECONTACT_ROWS, 1},
-    {exh_track_rows, EXH_TRACK_ROWS, 1},
+    {exh_tracking_rows, EXH_TRACKING_ROWS, 1},
     {exh_supply_rows, EXH_SUPPLY_ROWS, 1},
-    {exh_watch_rows, EXH_WATCH_ROWS, 1},
+    {exh_motion_rows, EXH_MOTION_ROWS, 1},
     {exh_passivity_rows, EXH_PASSIVITY_ROWS, 1},
     {exh_gains_rows, EXH_GAINS_ROWS, 1},
     {exh_tune_rows, EXH_TUNE_ROWS, 1},

@@ -102,8 +102,9 @@ TEST(every_state_is_reached)
         const struct exh_safety s = box_in(&cfg, state, 0), early = box_in(&cfg, state, 1);
         CHECK_EQ_I64(s.state, state);
         CHECK_EQ_I64(early.state, state);
-        CHECK_EQ_I64(exh_safety_open(&s), state >= EXH_STATE_ARM && state <= EXH_STATE_RELEASE);
-        CHECK_EQ_I64(exh_safety_open(&early), state >= EXH_STATE_RUN && state <= EXH_STATE_RELEASE);
+        CHECK_EQ_I64(exh_safety_is_open(&s), state >= EXH_STATE_ARM && state <= EXH_STATE_RELEASE);
+        CHECK_EQ_I64(exh_safety_is_open(&early),
+                     state >= EXH_STATE_RUN && state <= EXH_STATE_RELEASE);
     }
 }
 
@@ -117,7 +118,7 @@ TEST(every_fault_in_every_state)
         const uint8_t state = (uint8_t)(k / EXH_FAULTS % EXH_STATES);
         const int early = k / EXH_FAULTS / EXH_STATES % 2;
         struct exh_safety s = box_in(&cfg, state, early);
-        const int open = exh_safety_open(&s), cut = (fault & EXH_FAULT_CUT) != 0;
+        const int open = exh_safety_is_open(&s), cut = (fault & EXH_FAULT_CUT) != 0;
         const uint8_t want = state == EXH_STATE_FAULT ? EXH_STATE_FAULT
                              : !open                  ? EXH_STATE_OFF
                              : cut                    ? EXH_STATE_FAULT
@@ -132,7 +133,7 @@ TEST(every_fault_in_every_state)
         CHECK_EQ_I64(s.faults, latches ? before | fault : 0);
         if (open) { CHECK(s.first == fault && s.first_tick == tick, "first"); }
         CHECK_EQ_I64(p.mode, want == EXH_STATE_RELEASE ? EXH_PERMIT_RELEASE : EXH_PERMIT_CLOSED);
-        CHECK_EQ_I64(exh_safety_open(&s), want == EXH_STATE_RELEASE);
+        CHECK_EQ_I64(exh_safety_is_open(&s), want == EXH_STATE_RELEASE);
     }
 }
 
@@ -155,7 +156,7 @@ TEST(power_on_is_off)
 {
     static const struct exh_safety s;
     CHECK_EQ_I64(s.state, EXH_STATE_OFF);
-    CHECK_EQ_I64(exh_safety_open(&s), 0);
+    CHECK_EQ_I64(exh_safety_is_open(&s), 0);
 }
 
 /* --- arming --- */
@@ -173,7 +174,7 @@ TEST(each_step_is_named_where_it_does_not_hold)
             (void)exh_safety_step(&s, &cfg, in);
             CHECK(s.state == EXH_STATE_OFF && s.faults == 0, "%s: %s", exh_arm_name(k),
                   exh_state_name(s.state));
-            CHECK_EQ_I64(exh_safety_arm(&s), 1u << k);
+            CHECK_EQ_I64(exh_safety_arm_step(&s), 1u << k);
             CHECK_EQ_I64(s.refusals, 1);
             CHECK_EQ_I64(s.trigger, EXH_ON_REFUSED);
         }
@@ -196,12 +197,12 @@ TEST(a_refusal_is_forgotten_once_it_runs)
     const struct exh_safety_cfg cfg = cfg_of(par, 1000);
     struct exh_safety s = box_in(&cfg, EXH_STATE_OFF, 0);
     (void)exh_safety_step(&s, &cfg, with_cause(EXH_FAULT_ESTOP, EXH_CMD_RUN));
-    CHECK_EQ_I64(exh_safety_arm(&s), EXH_ARM_DEADMAN);
-    for (int i = 0; i < 5000 && !exh_safety_runs(&s); i++) {
+    CHECK_EQ_I64(exh_safety_arm_step(&s), EXH_ARM_DEADMAN);
+    for (int i = 0; i < 5000 && !exh_safety_is_running(&s); i++) {
         (void)exh_safety_step(&s, &cfg, healthy(i == 0 ? EXH_CMD_RUN : EXH_CMD_NONE));
     }
-    CHECK(exh_safety_runs(&s), "%s", exh_state_name(s.state));
-    CHECK_EQ_I64(exh_safety_arm(&s), 0);
+    CHECK(exh_safety_is_running(&s), "%s", exh_state_name(s.state));
+    CHECK_EQ_I64(exh_safety_arm_step(&s), 0);
     CHECK_EQ_I64(s.refusals, 1);
 }
 
@@ -211,7 +212,7 @@ TEST(a_step_lost_in_the_ramp_releases)
     const struct exh_safety_cfg cfg = cfg_of(par, 1000);
     struct exh_safety s = box_in(&cfg, EXH_STATE_ARM, 0);
     struct exh_safety_in in = healthy(EXH_CMD_NONE);
-    CHECK_EQ_I64(exh_safety_arm(&s), EXH_ARM_RAMP);
+    CHECK_EQ_I64(exh_safety_arm_step(&s), EXH_ARM_RAMP);
     s.limits = EXH_LIMIT_FORCE; /* nothing to arming any more */
     (void)exh_safety_step(&s, &cfg, in);
     CHECK_EQ_I64(s.state, EXH_STATE_ARM);
@@ -484,7 +485,7 @@ TEST(a_state_that_cannot_be_is_a_fault)
 static uint32_t bytes_of(struct exh_safety *s, uint8_t *buf, size_t cap)
 {
     struct exh_bytes c = exh_bytes_writer(buf, cap);
-    exh_safety_bytes(&c, s);
+    exh_safety_serialize(&c, s);
     CHECK(exh_bytes_ok(&c), "writer");
     return c.at;
 }
@@ -504,9 +505,9 @@ TEST(no_byte_of_a_state_opens_the_gate)
                 struct exh_bytes c = exh_bytes_reader(buf, len);
                 buf[at] = (uint8_t)v;
                 memset(&back, 0xA5, sizeof back);
-                exh_safety_bytes(&c, &back);
+                exh_safety_serialize(&c, &back);
                 CHECK(v == right || back.state == EXH_STATE_FAULT, "byte %" PRIu32 ": %u", at, v);
-                CHECK(!exh_safety_open(&back), "open");
+                CHECK(!exh_safety_is_open(&back), "open");
                 (void)exh_safety_step(&back, &cfg, healthy(EXH_CMD_CLEAR));
                 CHECK(v == right || back.state == EXH_STATE_FAULT, "stepped");
             }
@@ -514,7 +515,7 @@ TEST(no_byte_of_a_state_opens_the_gate)
         }
         for (uint32_t cut = 0; cut < len; cut++) {
             struct exh_bytes c = exh_bytes_reader(buf, cut);
-            exh_safety_bytes(&c, &back);
+            exh_safety_serialize(&c, &back);
             CHECK(back.state == EXH_STATE_FAULT && !exh_bytes_ok(&c), "cut at %" PRIu32, cut);
         }
     }
@@ -533,11 +534,11 @@ TEST(state_round_trip)
         CHECK_EQ_I64(len, 4 * 22 + 5 + 2 * EXH_FINGERS + 4);
         memset(&back, 0xA5, sizeof back);
         c = exh_bytes_reader(buf, len);
-        exh_safety_bytes(&c, &back);
+        exh_safety_serialize(&c, &back);
         CHECK(exh_bytes_ok(&c) && bytes_of(&back, again, sizeof again) == len, "read");
         CHECK(memcmp(buf, again, len) == 0 && back.state == state, "state %u", state);
         c = exh_bytes_measure();
-        exh_safety_bytes(&c, &back);
+        exh_safety_serialize(&c, &back);
         CHECK_EQ_I64(c.at, len);
     }
 }
@@ -580,7 +581,7 @@ TEST(a_buffer_too_short_changes_no_state)
         const uint8_t opened = s.opened;
         uint8_t buf[128];
         struct exh_bytes c = exh_bytes_writer(buf, cap);
-        exh_safety_bytes(&c, &s);
+        exh_safety_serialize(&c, &s);
         CHECK(s.state == EXH_STATE_RUN && s.faults == 0 && s.opened == opened, "%" PRIu32 " bytes",
               cap);
     }
@@ -592,10 +593,10 @@ TEST(damage_forgets_no_fault)
     struct exh_safety was = {.faults = EXH_FAULT_ENCODER, .state = EXH_STATE_FAULT}, now = {0};
     uint8_t image[256];
     struct exh_bytes c = exh_bytes_writer(image, sizeof image);
-    exh_safety_bytes(&c, &was);
+    exh_safety_serialize(&c, &was);
     image[c.at - 1] ^= 1;
     c = exh_bytes_reader(image, c.at);
-    exh_safety_bytes(&c, &now);
+    exh_safety_serialize(&c, &now);
     CHECK_EQ_I64(now.faults, EXH_FAULT_ENCODER | EXH_FAULT_LOGIC);
 }
 

@@ -6,7 +6,7 @@
 #include "exhand/bytes.h"
 #include "exhand/filter.h"
 #include "exhand/fix.h"
-#include "exhand/guard.h"
+#include "exhand/integrity.h"
 
 #include "check.h"
 

@@ -9,7 +9,7 @@
 #include "exhand/error.h"
 #include "exhand/quad.h"
 #include "exhand/safety.h"
-#include "exhand/track.h"
+#include "exhand/tracking.h"
 #include "exhand/velocity.h"
 
 #include "check.h"
@@ -40,7 +40,7 @@ static void setup(struct fixture *f)
 {
     f->active[VALUES] = 0x5A5A;
     f->staged[VALUES] = 0x5A5A;
-    exh_params_init(&f->p, &table, f->active, f->staged);
+    exh_params_setup(&f->p, &table, f->active, f->staged);
 }
 
 static void check_active(const struct fixture *f, const int32_t *want, const char *when)
@@ -329,7 +329,7 @@ TEST(locked_image_without_setup_changes)
 static const struct exh_signal_group lib_groups[] = {
     {exh_quad_rows, EXH_QUAD_ROWS, 1},       {exh_velocity_rows, EXH_VELOCITY_ROWS, 1},
     {exh_contact_rows, EXH_CONTACT_ROWS, 1}, {exh_drive_rows, EXH_DRIVE_ROWS, 1},
-    {exh_safety_rows, EXH_SAFETY_ROWS, 1},   {exh_track_rows, EXH_TRACK_ROWS, 1},
+    {exh_safety_rows, EXH_SAFETY_ROWS, 1},   {exh_tracking_rows, EXH_TRACKING_ROWS, 1},
     {exh_tune_rows, EXH_TUNE_ROWS, 1},
 };
 static const struct exh_signal_table lib_table = {lib_groups, 7};
@@ -377,7 +377,7 @@ TEST(library_rows_match_their_structs)
     CHECK_EQ_I64(sizeof(struct exh_contact_par), 4 * EXH_CONTACT_ROWS);
     CHECK_EQ_I64(sizeof(struct exh_drive_par), 4 * EXH_DRIVE_ROWS);
     CHECK_EQ_I64(sizeof(struct exh_safety_par), 4 * EXH_SAFETY_ROWS);
-    CHECK_EQ_I64(sizeof(struct exh_track_par), 4 * EXH_TRACK_ROWS);
+    CHECK_EQ_I64(sizeof(struct exh_tracking_par), 4 * EXH_TRACKING_ROWS);
     CHECK_EQ_I64(sizeof(struct exh_tune_par), 4 * EXH_TUNE_ROWS);
     CHECK_EQ_I64(exh_contact_rows[0].max, EXH_Q(1000000, 1, EXH_Q_K));
     CHECK_EQ_I64(exh_contact_rows[1].max, EXH_Q(1000, 1, EXH_Q_B));

@@ -34,7 +34,7 @@ static int32_t next(unsigned *to, unsigned value)
 {
     memset(buf, 0xAA, sizeof buf);
     memset(buf + EXH_SLOT_HEAD_B, (int)value, IMAGE_B);
-    return exh_slots_next(to, slot[0], slot[1], SLOT, buf, sizeof buf, IMAGE_B);
+    return exh_slots_encode(to, slot[0], slot[1], SLOT, buf, sizeof buf, IMAGE_B);
 }
 
 static unsigned save(unsigned value)
@@ -50,7 +50,7 @@ static unsigned save(unsigned value)
 static void counts(int at, unsigned value, uint32_t sequence)
 {
     struct exh_slot is = {NULL, 0, 0};
-    CHECK_EQ_I64(exh_slots_pick(&is, slot[0], slot[1], SLOT), at);
+    CHECK_EQ_I64(exh_slots_find(&is, slot[0], slot[1], SLOT), at);
     CHECK(is.len_B == IMAGE_B && is.image == slot[at] + EXH_SLOT_HEAD_B && is.image[0] == value &&
               is.image[IMAGE_B - 1] == value && is.sequence == sequence,
           "%lu bytes, sequence %lu", (unsigned long)is.len_B, (unsigned long)is.sequence);
@@ -87,7 +87,7 @@ TEST(a_worked_example)
     begin();
     memset(buf, 0xAA, sizeof buf);
     memcpy(buf + EXH_SLOT_HEAD_B, "123456789", 9);
-    CHECK_EQ_I64(exh_slots_next(&to, slot[0], slot[1], SLOT, buf, sizeof buf, 9), 29);
+    CHECK_EQ_I64(exh_slots_encode(&to, slot[0], slot[1], SLOT, buf, sizeof buf, 9), 29);
     CHECK(to == 0 && memcmp(buf, want, sizeof want) == 0, "to slot %u", to);
     for (unsigned i = 0; i < 4; i++) { CHECK_EQ_I64(buf[21 + i], crc >> (8 * i) & 255); }
     CHECK(buf[25] == 1 && buf[26] == 0 && buf[27] == 0 && buf[28] == 0, "no sequence at the end");
@@ -100,8 +100,8 @@ TEST(blank_slots_have_nothing)
     struct exh_slot is = {NULL, 7, 8};
     for (unsigned i = 0; i < sizeof blank; i++) {
         memset(slot, blank[i], sizeof slot);
-        CHECK_EQ_I64(exh_slot_read(&is, slot[0], SLOT), -EXH_E_UNKNOWN);
-        CHECK_EQ_I64(exh_slots_pick(&is, slot[0], slot[1], SLOT), -EXH_E_ABSENT);
+        CHECK_EQ_I64(exh_slot_decode(&is, slot[0], SLOT), -EXH_E_UNKNOWN);
+        CHECK_EQ_I64(exh_slots_find(&is, slot[0], slot[1], SLOT), -EXH_E_ABSENT);
         CHECK(is.image == NULL && is.len_B == 7 && is.sequence == 8, "it was touched");
         CHECK_EQ_I64(save(1), 0);
         counts(0, 1, 1);
@@ -131,12 +131,12 @@ TEST(what_stands_there_is_not_saved_again)
     CHECK_EQ_I64(to, 0);
     for (uint32_t n = IMAGE_B - 1; n <= IMAGE_B + 1; n += 2) { /* the same but for its length */
         memset(buf + EXH_SLOT_HEAD_B, 2, n);
-        CHECK_EQ_I64(exh_slots_next(&to, slot[0], slot[1], SLOT, buf, sizeof buf, n),
+        CHECK_EQ_I64(exh_slots_encode(&to, slot[0], slot[1], SLOT, buf, sizeof buf, n),
                      EXH_SLOT_B(n));
     }
     memset(buf + EXH_SLOT_HEAD_B, 2, IMAGE_B);
     buf[EXH_SLOT_HEAD_B + IMAGE_B - 1] = 3;
-    CHECK_EQ_I64(exh_slots_next(&to, slot[0], slot[1], SLOT, buf, sizeof buf, IMAGE_B), WHOLE);
+    CHECK_EQ_I64(exh_slots_encode(&to, slot[0], slot[1], SLOT, buf, sizeof buf, IMAGE_B), WHOLE);
 }
 
 TEST(the_sequence_goes_round)
@@ -180,11 +180,11 @@ TEST(two_sequences_are_none)
 {
     struct exh_slot is;
     forge(0, 0, 1);
-    CHECK_EQ_I64(exh_slot_read(&is, slot[0], SLOT), -EXH_E_CRC);
+    CHECK_EQ_I64(exh_slot_decode(&is, slot[0], SLOT), -EXH_E_CRC);
     forge(0, 0xFFFFFFFFu, 1);
-    CHECK_EQ_I64(exh_slot_read(&is, slot[0], SLOT), -EXH_E_CRC);
+    CHECK_EQ_I64(exh_slot_decode(&is, slot[0], SLOT), -EXH_E_CRC);
     forge(0, 0xFFFFFFFEu, 1);
-    CHECK_EQ_I64(exh_slot_read(&is, slot[0], SLOT), 0);
+    CHECK_EQ_I64(exh_slot_decode(&is, slot[0], SLOT), 0);
 }
 
 TEST(each_bit_of_one_slot)
@@ -255,29 +255,29 @@ TEST(what_does_not_fit_is_refused)
     unsigned to = 9;
     begin();
     memset(big, 0xAA, sizeof big);
-    CHECK_EQ_I64(exh_slots_next(&to, slot[0], slot[1], SLOT, big, sizeof big, SLOT - 19),
+    CHECK_EQ_I64(exh_slots_encode(&to, slot[0], slot[1], SLOT, big, sizeof big, SLOT - 19),
                  -EXH_E_SHORT);
-    CHECK_EQ_I64(exh_slots_next(&to, slot[0], slot[1], SLOT, big, 30, 11), -EXH_E_SHORT);
-    CHECK_EQ_I64(exh_slots_next(&to, slot[0], slot[1], SLOT, big, 19, 0), -EXH_E_SHORT);
-    CHECK_EQ_I64(exh_slots_next(&to, slot[0], slot[1], SLOT, big, sizeof big, SIZE_MAX),
+    CHECK_EQ_I64(exh_slots_encode(&to, slot[0], slot[1], SLOT, big, 30, 11), -EXH_E_SHORT);
+    CHECK_EQ_I64(exh_slots_encode(&to, slot[0], slot[1], SLOT, big, 19, 0), -EXH_E_SHORT);
+    CHECK_EQ_I64(exh_slots_encode(&to, slot[0], slot[1], SLOT, big, sizeof big, SIZE_MAX),
                  -EXH_E_SHORT);
-    CHECK_EQ_I64(exh_slots_next(&to, slot[0], slot[1], SIZE_MAX, big, SIZE_MAX, 1), -EXH_E_SHORT);
+    CHECK_EQ_I64(exh_slots_encode(&to, slot[0], slot[1], SIZE_MAX, big, SIZE_MAX, 1), -EXH_E_SHORT);
     for (uint32_t i = 0; i < sizeof big; i++) { CHECK_EQ_I64(big[i], 0xAA); }
     CHECK_EQ_I64(to, 9);
-    CHECK_EQ_I64(exh_slots_next(&to, slot[0], slot[1], SLOT, big, SLOT, SLOT - 20), SLOT);
+    CHECK_EQ_I64(exh_slots_encode(&to, slot[0], slot[1], SLOT, big, SLOT, SLOT - 20), SLOT);
     memcpy(slot[0], big, SLOT);
-    CHECK_EQ_I64(exh_slot_read(&is, slot[0], SLOT), 0);
+    CHECK_EQ_I64(exh_slot_decode(&is, slot[0], SLOT), 0);
     CHECK_EQ_I64(is.len_B, SLOT - 20);
     for (uint32_t n = 0; n < SLOT; n++) {
-        CHECK_EQ_I64(exh_slot_read(&is, slot[0], n), -EXH_E_SHORT);
+        CHECK_EQ_I64(exh_slot_decode(&is, slot[0], n), -EXH_E_SHORT);
     }
-    CHECK_EQ_I64(exh_slots_next(&to, slot[1], slot[1], SLOT, big, SLOT, 0), EXH_SLOT_B(0));
-    CHECK_EQ_I64(exh_slot_read(&is, big, EXH_SLOT_B(0)), 0); /* an image of nothing */
+    CHECK_EQ_I64(exh_slots_encode(&to, slot[1], slot[1], SLOT, big, SLOT, 0), EXH_SLOT_B(0));
+    CHECK_EQ_I64(exh_slot_decode(&is, big, EXH_SLOT_B(0)), 0); /* an image of nothing */
     for (uint32_t n = SLOT - 19; n != 0; n = n > 0xFFFFFFF0u ? n + 1
                                              : n * 2 > n     ? n * 2
                                                              : 0xFFFFFFF1u) {
         for (unsigned k = 0; k < 4; k++) { slot[0][8 + k] = (uint8_t)(n >> (8 * k) & 255); }
-        CHECK_EQ_I64(exh_slot_read(&is, slot[0], SLOT), -EXH_E_SHORT);
+        CHECK_EQ_I64(exh_slot_decode(&is, slot[0], SLOT), -EXH_E_SHORT);
     }
 }
 
@@ -296,23 +296,23 @@ TEST(parameters_come_back)
     struct exh_params p;
     struct exh_slot is;
     memset(flash, 0xFF, sizeof flash);
-    exh_params_init(&p, &table, active, staged);
+    exh_params_setup(&p, &table, active, staged);
     for (int32_t v = -3; v < 4; v++) {
         unsigned to;
         int32_t n;
         CHECK_EQ_I64(exh_params_stage(&p, 0x7101, 0, v), 0);
         n = exh_params_save(&p, out + EXH_SLOT_HEAD_B, sizeof out - EXH_SLOT_B(0));
-        n = exh_slots_next(&to, flash[0], flash[1], sizeof flash[0], out, sizeof out, (size_t)n);
+        n = exh_slots_encode(&to, flash[0], flash[1], sizeof flash[0], out, sizeof out, (size_t)n);
         CHECK(n > 0, "nothing to save: %ld", (long)n);
         memset(flash[to], 0xFF, sizeof flash[0]);
         memcpy(flash[to], out, (size_t)n / 2); /* cut off: the value before */
-        exh_params_init(&p, &table, active, staged);
-        if (exh_slots_pick(&is, flash[0], flash[1], sizeof flash[0]) >= 0) {
+        exh_params_setup(&p, &table, active, staged);
+        if (exh_slots_find(&is, flash[0], flash[1], sizeof flash[0]) >= 0) {
             CHECK_EQ_I64(exh_params_load(&p, is.image, is.len_B, NULL), 0);
         }
         CHECK_EQ_I64(staged[0], v == -3 ? 5 : v - 1);
         memcpy(flash[to], out, (size_t)n);
-        CHECK_EQ_I64(exh_slots_pick(&is, flash[0], flash[1], sizeof flash[0]), (int)to);
+        CHECK_EQ_I64(exh_slots_find(&is, flash[0], flash[1], sizeof flash[0]), (int)to);
         CHECK_EQ_I64(exh_params_load(&p, is.image, is.len_B, NULL), 0);
         CHECK_EQ_I64(staged[0], v);
     }
@@ -339,10 +339,10 @@ TEST(a_calibration_comes_back)
         c.day = day;
         n = exh_calib_save(&c, out + EXH_SLOT_HEAD_B, sizeof out - EXH_SLOT_B(0), NULL);
         CHECK(n > 0, "not saved: %ld", (long)n);
-        n = exh_slots_next(&to, flash[0], flash[1], sizeof flash[0], out, sizeof out, (size_t)n);
+        n = exh_slots_encode(&to, flash[0], flash[1], sizeof flash[0], out, sizeof out, (size_t)n);
         memcpy(flash[to], out, (size_t)n);
         c.day = 0;
-        CHECK(exh_slots_pick(&is, flash[0], flash[1], sizeof flash[0]) >= 0, "none");
+        CHECK(exh_slots_find(&is, flash[0], flash[1], sizeof flash[0]) >= 0, "none");
         CHECK_EQ_I64(exh_calib_load(&c, is.image, is.len_B, NULL), 0);
         CHECK_EQ_I64(c.day, day);
     }
@@ -358,7 +358,7 @@ TEST(the_byte_behind_the_image_says_nothing)
     memset(buf + EXH_SLOT_HEAD_B, 5, IMAGE_B);
     for (uint32_t more = 0; more < 2; more++) {
         buf[EXH_SLOT_HEAD_B + IMAGE_B] = (uint8_t)(slot[at][EXH_SLOT_HEAD_B + IMAGE_B] + more);
-        CHECK_EQ_I64(exh_slots_next(&to, slot[0], slot[1], SLOT, buf, sizeof buf, IMAGE_B), 0);
+        CHECK_EQ_I64(exh_slots_encode(&to, slot[0], slot[1], SLOT, buf, sizeof buf, IMAGE_B), 0);
         CHECK_EQ_I64(to, at);
     }
 }
@@ -369,9 +369,10 @@ TEST(the_longest_slot)
     unsigned to = 9;
     begin();
     memset(buf, 1, sizeof buf);
-    CHECK_EQ_I64(exh_slots_next(&to, slot[0], slot[1], INT32_MAX, buf, INT32_MAX, IMAGE_B), WHOLE);
-    CHECK_EQ_I64(exh_slots_next(&to, slot[0], slot[1], (size_t)INT32_MAX + 1, buf,
-                                (size_t)INT32_MAX + 1, IMAGE_B),
+    CHECK_EQ_I64(exh_slots_encode(&to, slot[0], slot[1], INT32_MAX, buf, INT32_MAX, IMAGE_B),
+                 WHOLE);
+    CHECK_EQ_I64(exh_slots_encode(&to, slot[0], slot[1], (size_t)INT32_MAX + 1, buf,
+                                  (size_t)INT32_MAX + 1, IMAGE_B),
                  -EXH_E_SHORT);
 }
 

@@ -157,10 +157,10 @@ TEST(its_state_goes_through_a_cursor)
     struct exh_supply s = {0x01020304}, back = {0};
     struct exh_supply_cfg cfg;
     struct exh_bytes c = exh_bytes_writer(byte, sizeof byte);
-    exh_supply_bytes(&c, &s);
+    exh_supply_serialize(&c, &s);
     CHECK(exh_bytes_ok(&c) && c.at == 4, "written");
     c = exh_bytes_reader(byte, sizeof byte);
-    exh_supply_bytes(&c, &back);
+    exh_supply_serialize(&c, &back);
     CHECK_EQ_I64(back.off_ticks, s.off_ticks);
     CHECK_EQ_I64(exh_supply_setup(&cfg, &par, kHz), 0);
     CHECK_EQ_I64(exh_supply_step(&back, &cfg, 0, 0), 1); /* more than there can be */

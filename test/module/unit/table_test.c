@@ -24,7 +24,7 @@ TEST(table_is_exact_at_knots_and_clamps_outside)
 {
     struct exh_knot k[KNOTS];
     some_table(k);
-    CHECK_EQ_I64(exh_table_set(k, KNOTS), 0);
+    CHECK_EQ_I64(exh_table_setup(k, KNOTS), 0);
     for (uint8_t n = 2; n <= KNOTS; n++) {
         const struct exh_table t = {k, n};
         for (size_t i = 0; i < n; i++) { CHECK_EQ_I64(exh_table_at(t, k[i].x), k[i].y); }
@@ -39,7 +39,7 @@ TEST(table_between_knots)
 {
     struct exh_knot k[3] = {{-10, -100, {0, 1}}, {10, 100, {0, 1}}, {30, 110, {0, 1}}};
     const struct exh_table t = {k, 3};
-    CHECK_EQ_I64(exh_table_set(k, 3), 0);
+    CHECK_EQ_I64(exh_table_setup(k, 3), 0);
     CHECK_EQ_I64(exh_table_at(t, 0), 0);
     CHECK_EQ_I64(exh_table_at(t, -9), -90);
     CHECK_EQ_I64(exh_table_at(t, 9), 90);
@@ -52,7 +52,7 @@ TEST(table_is_monotone_around_every_knot)
     struct exh_knot k[KNOTS];
     const struct exh_table t = {k, KNOTS};
     some_table(k);
-    (void)exh_table_set(k, KNOTS);
+    (void)exh_table_setup(k, KNOTS);
     for (size_t i = 0; i < KNOTS; i++) {
         int32_t before = exh_table_at(t, k[i].x - 2000);
         for (int32_t x = k[i].x - 1999; x <= k[i].x + 2000; x++) {
@@ -90,7 +90,7 @@ TEST(table_rejections)
         struct exh_knot k[3] = {{row[i].x0, row[i].y0, {0, 1}},
                                 {row[i].x1, row[i].y1, {0, 1}},
                                 {row[i].x2, row[i].y2, {0, 1}}};
-        const int err = exh_table_set(k, row[i].n);
+        const int err = exh_table_setup(k, row[i].n);
         CHECK(err == row[i].want, "row %zu: %d, want %d", i, err, row[i].want);
     }
 }
@@ -100,7 +100,7 @@ TEST(steepest_table_is_accepted)
 {
     struct exh_knot k[2] = {{0, 0, {0, 1}}, {1, INT32_MAX, {0, 1}}};
     const struct exh_table t = {k, 2};
-    const int err = exh_table_set(k, 2);
+    const int err = exh_table_setup(k, 2);
     CHECK(err == 0, "error %d", err);
     CHECK_EQ_I64(exh_table_at(t, 1), INT32_MAX);
 }
@@ -112,7 +112,7 @@ TEST(inverse_round_trip)
         {0, 0, {0, 1}}, {41943040, 442918502, {0, 1}}, {83886080, 469762048, {0, 1}}};
     struct exh_knot inv[3];
     const struct exh_table there = {k, 3}, back = {inv, 3};
-    CHECK_EQ_I64(exh_table_set(k, 3), 0);
+    CHECK_EQ_I64(exh_table_setup(k, 3), 0);
     CHECK_EQ_I64(exh_table_invert(inv, k, 3), 0);
     for (int32_t x = 0; x <= 41943040; x += 4099) {
         const int64_t err = (int64_t)exh_table_at(back, exh_table_at(there, x)) - x;

@@ -26,13 +26,13 @@ static void ticks(uint32_t from, uint32_t n)
 {
     for (uint32_t k = from; k < from + n; k++) {
         for (unsigned i = 0; i < SIGNALS; i++) { signal[i] = (int32_t)(10 * k + i); }
-        exh_trace_tick(&t, k, signal);
+        exh_trace_step(&t, k, signal);
     }
 }
 
 static void trace(struct exh_trace *of, uint32_t every, uint32_t first)
 {
-    const struct exh_trace_what what = {every, {first, 1, 5, 0}};
+    const struct exh_trace_request what = {every, {first, 1, 5, 0}};
     CHECK_EQ_I64(exh_trace_start(of, &what), 0);
 }
 
@@ -49,7 +49,7 @@ static void holds(const struct exh_trace *of, uint32_t number, uint32_t tick, in
 TEST(what_cannot_be_is_refused)
 {
     static const uint32_t bad[] = {0, 1, 3, 127, 129, 256, 0x80000000u};
-    struct exh_trace_what what = {1, {0, 0, 0, SIGNALS}};
+    struct exh_trace_request what = {1, {0, 0, 0, SIGNALS}};
     for (unsigned i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         CHECK_EQ_I64(exh_trace_setup(&t, frame, bad[i], 1), -EXH_E_RANGE);
     }
@@ -119,26 +119,26 @@ TEST(passed_on_whole)
 {
     begin(FRAMES);
     trace(&shown, 2, 2);
-    exh_trace_pass(&t, &shown);
+    exh_trace_copy(&t, &shown);
     ticks(0, 5);
     CHECK(shown.head == 0, "shown before it was passed");
-    exh_trace_pass(&t, &shown);
+    exh_trace_copy(&t, &shown);
     CHECK_EQ_I64(shown.head, 3);
     for (uint32_t k = 0; k < 3; k++) { holds(&shown, k, 2 * k, 2); }
     ticks(5, 100); /* nobody could be told for long */
-    exh_trace_pass(&t, &shown);
+    exh_trace_copy(&t, &shown);
     CHECK_EQ_I64(shown.head, 53);
     CHECK_EQ_I64(exh_trace_oldest(&shown), 53 - FRAMES);
     for (uint32_t k = 53 - FRAMES; k < 53; k++) { holds(&shown, k, 2 * k, 2); }
-    exh_trace_pass(&t, &shown);
+    exh_trace_copy(&t, &shown);
     CHECK_EQ_I64(shown.head, 53);
     ticks(105, 4);
     trace(&shown, 1, 4); /* two frames were not passed on */
-    exh_trace_pass(&t, &shown);
+    exh_trace_copy(&t, &shown);
     CHECK(shown.head == 53 && exh_trace_oldest(&shown) == 53 && t.head == 53,
           "of the trace before");
     ticks(200, 2);
-    exh_trace_pass(&t, &shown);
+    exh_trace_copy(&t, &shown);
     CHECK_EQ_I64(shown.head, 55);
     holds(&shown, 53, 200, 4);
     holds(&shown, 54, 201, 4);
@@ -243,24 +243,24 @@ TEST(state_there_and_back_and_brought_into_range)
     t.head = UINT32_MAX - 2;
     trace(&t, 3, 2);
     ticks(7, 20);
-    exh_trace_bytes(&c, &t);
+    exh_trace_serialize(&c, &t);
     CHECK(exh_bytes_ok(&c) && c.at == sizeof b, "%lu B", (unsigned long)c.at);
     c = exh_bytes_reader(b, sizeof b);
-    exh_trace_bytes(&c, &shown);
+    exh_trace_serialize(&c, &shown);
     CHECK(memcmp(frame, shown_frame, FRAMES * sizeof frame[0]) == 0 && shown.head == t.head &&
               shown.first == t.first && shown.left == t.left && shown.run == t.run &&
               memcmp(&shown.what, &t.what, sizeof t.what) == 0,
           "not what was written");
     memset(hostile, 0xFF, sizeof hostile);
     c = exh_bytes_reader(hostile, sizeof hostile);
-    exh_trace_bytes(&c, &t);
+    exh_trace_serialize(&c, &t);
     CHECK(t.mask == FRAMES - 1 && t.signals == SIGNALS && t.frame == frame,
           "what is set up is no state");
     for (unsigned i = 0; i < EXH_TRACE_SIGNALS; i++) { CHECK_EQ_I64(t.what.index[i], 0); }
     CHECK_EQ_I64(t.left, UINT32_MAX - 1);
     memset(hostile, 0, 4); /* none is traced */
     c = exh_bytes_reader(hostile, sizeof hostile);
-    exh_trace_bytes(&c, &t);
+    exh_trace_serialize(&c, &t);
     CHECK_EQ_I64(t.left, 0);
 }
 
@@ -280,13 +280,13 @@ TEST(a_frame_is_passed_on_once)
 {
     begin(FRAMES);
     trace(&shown, 1, 0);
-    exh_trace_pass(&t, &shown); /* takes what is asked */
+    exh_trace_copy(&t, &shown); /* takes what is asked */
     ticks(0, 3);
-    exh_trace_pass(&t, &shown);
+    exh_trace_copy(&t, &shown);
     CHECK_EQ_I64(shown.head, 3);
     for (uint32_t n = 0; n < 3; n++) { shown_frame[n].tick = 1000 + n; }
     ticks(3, 2);
-    exh_trace_pass(&t, &shown);
+    exh_trace_copy(&t, &shown);
     CHECK_EQ_I64(shown.head, 5);
     for (uint32_t n = 0; n < 3; n++) {
         CHECK(shown_frame[n].tick == 1000 + n, "frame %lu again", (unsigned long)n);
@@ -298,8 +298,8 @@ TEST(a_frame_is_passed_on_once)
 /* The number behind the last signal is none, wherever it comes from. */
 TEST(the_signal_behind_the_last)
 {
-    static const struct exh_trace_what end = {1, {SIGNALS - 1, 0, 0, 0}},
-                                       behind = {1, {SIGNALS, 0, 0, 0}};
+    static const struct exh_trace_request end = {1, {SIGNALS - 1, 0, 0, 0}},
+                                          behind = {1, {SIGNALS, 0, 0, 0}};
     uint8_t bytes[36 + 24 * 2];
     struct exh_bytes c = exh_bytes_writer(bytes, sizeof bytes);
     begin(2);
@@ -307,11 +307,11 @@ TEST(the_signal_behind_the_last)
     CHECK_EQ_I64(exh_trace_start(&t, &behind), -EXH_E_RANGE);
     t.signals++;
     CHECK_EQ_I64(exh_trace_start(&t, &behind), 0);
-    exh_trace_bytes(&c, &t);
+    exh_trace_serialize(&c, &t);
     CHECK(exh_bytes_ok(&c), "written");
     t.signals--;
     c = exh_bytes_reader(bytes, c.at);
-    exh_trace_bytes(&c, &t);
+    exh_trace_serialize(&c, &t);
     CHECK(exh_bytes_ok(&c) && t.what.index[0] == 0, "%" PRIu32, t.what.index[0]);
 }
 

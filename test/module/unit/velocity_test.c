@@ -48,12 +48,12 @@ static int any_setup(struct any *e, enum kind kind, uint32_t arg, struct exh_vel
 static int32_t any_step(struct any *e, int32_t cnt)
 {
     switch (e->kind) {
-    case WINDOW: return exh_velocity_window_mps_q27(&e->window, &e->window_cfg, cnt);
-    case POLE: return exh_velocity_pole_mps_q27(&e->pole, &e->pole_cfg, cnt);
-    case FOAW: return exh_velocity_foaw_mps_q27(&e->foaw, &e->foaw_cfg, cnt);
+    case WINDOW: return exh_velocity_window_step(&e->window, &e->window_cfg, cnt);
+    case POLE: return exh_velocity_pole_step(&e->pole, &e->pole_cfg, cnt);
+    case FOAW: return exh_velocity_foaw_step(&e->foaw, &e->foaw_cfg, cnt);
     case TRACK: break;
     }
-    return exh_velocity_track_mps_q27(&e->track, &e->track_cfg, cnt);
+    return exh_velocity_track_step(&e->track, &e->track_cfg, cnt);
 }
 
 static const struct {
@@ -267,10 +267,10 @@ TEST(setup_refuses)
 static void any_bytes(struct exh_bytes *c, struct any *e)
 {
     switch (e->kind) {
-    case WINDOW: exh_velocity_window_bytes(c, &e->window); break;
-    case POLE: exh_velocity_pole_bytes(c, &e->pole); break;
-    case FOAW: exh_velocity_foaw_bytes(c, &e->foaw); break;
-    case TRACK: exh_velocity_track_bytes(c, &e->track); break;
+    case WINDOW: exh_velocity_window_serialize(c, &e->window); break;
+    case POLE: exh_velocity_pole_serialize(c, &e->pole); break;
+    case FOAW: exh_velocity_foaw_serialize(c, &e->foaw); break;
+    case TRACK: exh_velocity_track_serialize(c, &e->track); break;
     }
 }
 
@@ -347,7 +347,7 @@ TEST(ends_to_the_bit)
             struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
             exh_bytes_i64(&c, &s.v_mps_q55);
             c = exh_bytes_reader(buf, sizeof buf);
-            exh_velocity_pole_bytes(&c, &s);
+            exh_velocity_pole_serialize(&c, &s);
             CHECK_EQ_I64(s.v_mps_q55, sign * (most + (more < 0 ? more : 0)));
         }
     }
@@ -356,7 +356,7 @@ TEST(ends_to_the_bit)
         uint8_t buf[4 * (EXH_VELOCITY_N + 1) + 2] = {0};
         struct exh_bytes c = exh_bytes_reader(buf, sizeof buf);
         buf[sizeof buf - 2] = (uint8_t)at;
-        exh_velocity_foaw_bytes(&c, &s);
+        exh_velocity_foaw_serialize(&c, &s);
         CHECK(s.at == (at < EXH_VELOCITY_N ? at : EXH_VELOCITY_N), "%u: %u", at, (unsigned)s.at);
     }
 }

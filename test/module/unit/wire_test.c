@@ -47,7 +47,7 @@ static struct exh_wire_packet sample(uint8_t type)
         break;
     case EXH_WIRE_PARAM: p.u.param = (struct exh_wire_param){0x0401, 3, -9}; break;
     case EXH_WIRE_TRACE_ASK:
-        p.u.trace_ask = (struct exh_wire_trace_ask){20, {1, 0xFFFF, 3, 0x0102}};
+        p.u.trace_ask = (struct exh_wire_trace_request){20, {1, 0xFFFF, 3, 0x0102}};
         break;
     case EXH_WIRE_TRACE:
         p.u.trace.request_seq = 6;
@@ -69,7 +69,7 @@ static uint32_t write_as(uint8_t type, uint32_t session, uint32_t seq)
 {
     struct exh_wire_tx tx = {session, seq};
     struct exh_wire_packet p = sample(type);
-    const int32_t n = exh_wire_write(&tx, &p, 1000, buf, sizeof buf);
+    const int32_t n = exh_wire_encode(&tx, &p, 1000, buf, sizeof buf);
     CHECK(n > 0 && tx.seq == seq + 1, "type %d", type);
     return (uint32_t)n;
 }
@@ -85,7 +85,7 @@ static void seal(uint32_t n)
 static int take(struct exh_wire_rx *rx, uint32_t n)
 {
     struct exh_wire_packet p;
-    return exh_wire_take(rx, &p, buf, n);
+    return exh_wire_decode(rx, &p, buf, n);
 }
 
 static struct exh_wire_rx met(uint32_t session, uint32_t seq)
@@ -114,12 +114,12 @@ TEST(there_and_back)
         struct exh_wire_tx tx = {9, 1};
         struct exh_wire_packet p = sample(t), back = {.type = 0};
         uint8_t again[EXH_WIRE_MAX_B];
-        const int32_t n = exh_wire_write(&tx, &p, 0x12345678, buf, sizeof buf);
-        CHECK_EQ_I64(exh_wire_take(&rx, &back, buf, (size_t)n), t);
+        const int32_t n = exh_wire_encode(&tx, &p, 0x12345678, buf, sizeof buf);
+        CHECK_EQ_I64(exh_wire_decode(&rx, &back, buf, (size_t)n), t);
         CHECK(back.type == t && back.seq == 1 && back.stamp_us == 0x12345678 && rx.accepted == 2,
               "type %d", t);
         tx.seq = 1;
-        CHECK_EQ_I64(exh_wire_write(&tx, &back, 0x12345678, again, sizeof again), n);
+        CHECK_EQ_I64(exh_wire_encode(&tx, &back, 0x12345678, again, sizeof again), n);
         CHECK(memcmp(buf, again, (size_t)n) == 0, "type %d", t);
     }
 }
@@ -134,7 +134,7 @@ TEST(every_bit_flipped_and_every_byte_cut_off)
             struct exh_wire_rx rx = start;
             struct exh_wire_packet p = before;
             buf[bit / 8] = (uint8_t)(buf[bit / 8] ^ 1u << bit % 8);
-            CHECK(exh_wire_take(&rx, &p, buf, n) < 0 && rx.corrupt == 1, "bit %" PRIu32, bit);
+            CHECK(exh_wire_decode(&rx, &p, buf, n) < 0 && rx.corrupt == 1, "bit %" PRIu32, bit);
             rx.corrupt = 0;
             CHECK(memcmp(&rx, &start, sizeof rx) == 0 && memcmp(&p, &before, sizeof p) == 0,
                   "bit %" PRIu32 " changed a state", bit);
@@ -198,20 +198,20 @@ TEST(a_trace_fits_a_packet_whole_and_no_frame_is_missed_unseen)
     uint32_t next = p.u.trace.first;
     for (uint8_t n = 0; n <= EXH_WIRE_FRAMES; n++) {
         p.u.trace.frames = n;
-        CHECK_EQ_I64(exh_wire_write(&tx, &p, 0, buf, sizeof buf), 33 + 20 * n);
+        CHECK_EQ_I64(exh_wire_encode(&tx, &p, 0, buf, sizeof buf), 33 + 20 * n);
         CHECK_EQ_I64(take(&rx, 33 + 20u * n), EXH_WIRE_TRACE);
     }
     p.u.trace.frames = EXH_WIRE_FRAMES + 1;
-    CHECK_EQ_I64(exh_wire_write(&tx, &p, 0, buf, sizeof buf), -EXH_E_RANGE);
+    CHECK_EQ_I64(exh_wire_encode(&tx, &p, 0, buf, sizeof buf), -EXH_E_RANGE);
     p.u.trace.frames = 1;
     p.u.trace.result = -EXH_E_RANGE;
-    CHECK_EQ_I64(exh_wire_write(&tx, &p, 0, buf, sizeof buf), -EXH_E_RANGE);
+    CHECK_EQ_I64(exh_wire_encode(&tx, &p, 0, buf, sizeof buf), -EXH_E_RANGE);
     p = sample(EXH_WIRE_TRACE);
     for (int k = 0; k < 5; k++) { /* the third does not come: numbers wrap in it */
-        const int32_t n = exh_wire_write(&tx, &p, 0, buf, sizeof buf);
+        const int32_t n = exh_wire_encode(&tx, &p, 0, buf, sizeof buf);
         p.u.trace.first += 3;
         if (k == 2) { continue; }
-        CHECK_EQ_I64(exh_wire_take(&rx, &back, buf, (size_t)n), EXH_WIRE_TRACE);
+        CHECK_EQ_I64(exh_wire_decode(&rx, &back, buf, (size_t)n), EXH_WIRE_TRACE);
         CHECK_EQ_I64(exh_wire_trace_missed(next, &back.u.trace), k == 3 ? 3 : 0);
         next = back.u.trace.first + back.u.trace.frames;
     }
@@ -236,7 +236,7 @@ TEST(only_what_is_newer)
         struct exh_wire_packet p = sample(EXH_WIRE_STATE);
         const struct exh_wire_packet was = p;
         const uint32_t n = write_as(EXH_WIRE_PARAM, 9, step[i].seq);
-        const int r = exh_wire_take(&rx, &p, buf, n);
+        const int r = exh_wire_decode(&rx, &p, buf, n);
         CHECK(step[i].ok || memcmp(&p, &was, sizeof p) == 0, "step %d: written", (int)i);
         CHECK(r == (step[i].ok ? EXH_WIRE_PARAM : -EXH_E_STALE), "step %d", (int)i);
         CHECK(rx.missing == step[i].missing && rx.duplicate == step[i].duplicate &&
@@ -285,10 +285,10 @@ static void recovers(struct exh_wire_rx *rx)
     const struct exh_wire_rx was = *rx;
     CHECK(take(rx, write_as(EXH_WIRE_PLANES, 9, seq++)) < 0, "not deaf");
     CHECK(take(rx, write_as(EXH_WIRE_HELLO, 9, seq++)) < 0, "not deaf");
-    CHECK_EQ_I64(exh_wire_pass(rx, LIMIT_US - 1, LIMIT_US), 0);
+    CHECK_EQ_I64(exh_wire_poll(rx, LIMIT_US - 1, LIMIT_US), 0);
     CHECK(take(rx, write_as(EXH_WIRE_HELLO, 9, seq++)) < 0, "too early");
-    CHECK_EQ_I64(exh_wire_pass(rx, 1, LIMIT_US), 1);
-    CHECK_EQ_I64(exh_wire_pass(rx, 1, LIMIT_US), 0);
+    CHECK_EQ_I64(exh_wire_poll(rx, 1, LIMIT_US), 1);
+    CHECK_EQ_I64(exh_wire_poll(rx, 1, LIMIT_US), 0);
     CHECK(rx->silences == was.silences + 1 && rx->open == 1, "a silence is counted once");
     CHECK(take(rx, write_as(EXH_WIRE_PLANES, 9, seq++)) < 0, "a HELLO is what begins");
     CHECK_EQ_I64(take(rx, write_as(EXH_WIRE_HELLO, 9, seq++)), EXH_WIRE_HELLO);
@@ -312,7 +312,7 @@ TEST(no_packet_makes_it_deaf_for_good)
     rx = met(9, 100);
     CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PLANES, 9, 60000)), EXH_WIRE_PLANES);
     CHECK(take(&rx, write_as(EXH_WIRE_HELLO, 9, 0)) < 0, "started anew, and of the same session");
-    CHECK_EQ_I64(exh_wire_pass(&rx, LIMIT_US, LIMIT_US), 1);
+    CHECK_EQ_I64(exh_wire_poll(&rx, LIMIT_US, LIMIT_US), 1);
     CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_HELLO, 9, 1)), EXH_WIRE_HELLO);
     CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PLANES, 9, 2)), EXH_WIRE_PLANES);
 }
@@ -320,19 +320,19 @@ TEST(no_packet_makes_it_deaf_for_good)
 TEST(silence_is_only_what_is_heard_of_nobody)
 {
     struct exh_wire_rx rx = {0};
-    CHECK(exh_wire_pass(&rx, UINT32_MAX, 1) == 0 && rx.silences == 0, "nobody was there");
+    CHECK(exh_wire_poll(&rx, UINT32_MAX, 1) == 0 && rx.silences == 0, "nobody was there");
     rx = met(9, 100);
     for (uint32_t k = 1; k < 50; k++) {
-        CHECK_EQ_I64(exh_wire_pass(&rx, LIMIT_US - 1, LIMIT_US), 0);
+        CHECK_EQ_I64(exh_wire_poll(&rx, LIMIT_US - 1, LIMIT_US), 0);
         CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PLANES, 9, 100 + k)), EXH_WIRE_PLANES);
     }
-    (void)exh_wire_pass(&rx, UINT32_MAX - 1, LIMIT_US);
-    (void)exh_wire_pass(&rx, 7, LIMIT_US); /* no wrap */
+    (void)exh_wire_poll(&rx, UINT32_MAX - 1, LIMIT_US);
+    (void)exh_wire_poll(&rx, 7, LIMIT_US); /* no wrap */
     CHECK(rx.open && rx.quiet_us == UINT32_MAX && rx.silences == 1, "%" PRIu32, rx.quiet_us);
     /* What went on meanwhile is next, and taken at once; the newest once more is not. */
     CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PLANES, 9, 9000)), EXH_WIRE_PLANES);
     CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_HELLO, 9, 9001)), EXH_WIRE_HELLO);
-    (void)exh_wire_pass(&rx, LIMIT_US, LIMIT_US);
+    (void)exh_wire_poll(&rx, LIMIT_US, LIMIT_US);
     CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_HELLO, 9, 9001)), -EXH_E_STALE);
     CHECK_EQ_I64(rx.duplicate, 1);
 }
@@ -350,11 +350,11 @@ TEST(what_differs_is_said_by_name)
              {{EXH_WIRE_WORLD, 0x100, 0xABCE}, EXH_WIRE_TABLE},
              {{EXH_WIRE_CONTROLLER, 0, 1}, EXH_WIRE_ROLE | EXH_WIRE_LIB | EXH_WIRE_TABLE}};
     for (size_t i = 0; i < LEN(c); i++) {
-        CHECK_EQ_I64(exh_wire_differs(&ours, &c[i].theirs), c[i].want);
+        CHECK_EQ_I64(exh_wire_compare(&ours, &c[i].theirs), c[i].want);
     }
     for (uint32_t crc = 0; crc < 2; crc++) { /* 0 alone is no table of ours */
         const struct exh_wire_hello few = {EXH_WIRE_CONTROLLER, 0x100, crc};
-        CHECK_EQ_I64(exh_wire_differs(&few, &c[0].theirs), crc ? EXH_WIRE_TABLE : 0);
+        CHECK_EQ_I64(exh_wire_compare(&few, &c[0].theirs), crc ? EXH_WIRE_TABLE : 0);
     }
 }
 
@@ -397,18 +397,18 @@ TEST(writing_refuses)
 {
     struct exh_wire_tx tx = {9, 4};
     struct exh_wire_packet p = sample(EXH_WIRE_STATE);
-    CHECK_EQ_I64(exh_wire_write(&tx, &p, 0, buf, 235), -EXH_E_SHORT);
-    CHECK_EQ_I64(exh_wire_write(&tx, &p, 0, buf, 236), 236);
+    CHECK_EQ_I64(exh_wire_encode(&tx, &p, 0, buf, 235), -EXH_E_SHORT);
+    CHECK_EQ_I64(exh_wire_encode(&tx, &p, 0, buf, 236), 236);
     p.u.state.touching = 32;
-    CHECK_EQ_I64(exh_wire_write(&tx, &p, 0, buf, sizeof buf), -EXH_E_RANGE);
+    CHECK_EQ_I64(exh_wire_encode(&tx, &p, 0, buf, sizeof buf), -EXH_E_RANGE);
     p = sample(EXH_WIRE_PLANES);
     p.u.planes.plane[4].kind = EXH_PLANE_HIT;
-    CHECK_EQ_I64(exh_wire_write(&tx, &p, 0, buf, sizeof buf), -EXH_E_RANGE);
+    CHECK_EQ_I64(exh_wire_encode(&tx, &p, 0, buf, sizeof buf), -EXH_E_RANGE);
     p.type = 0;
-    CHECK_EQ_I64(exh_wire_write(&tx, &p, 0, buf, sizeof buf), -EXH_E_UNKNOWN);
+    CHECK_EQ_I64(exh_wire_encode(&tx, &p, 0, buf, sizeof buf), -EXH_E_UNKNOWN);
     tx.session = 0;
     p = sample(EXH_WIRE_HELLO);
-    CHECK_EQ_I64(exh_wire_write(&tx, &p, 0, buf, sizeof buf), -EXH_E_RANGE);
+    CHECK_EQ_I64(exh_wire_encode(&tx, &p, 0, buf, sizeof buf), -EXH_E_RANGE);
     CHECK_EQ_I64(tx.seq, 5);
 }
 
@@ -421,7 +421,7 @@ TEST(planes_and_round_trip)
     CHECK(hit.kind == EXH_PLANE_HIT && hit.material == 4 && hit.object == 0x1234 &&
               hit.normal_q30.z == 1 << 30 && hit.point_m_q30.z == 100 && hit.point_m_q30.x == 0,
           "hit");
-    CHECK_EQ_I64(exh_wire_trip_us(0x10, &p.u.planes), 0x20);
+    CHECK_EQ_I64(exh_wire_round_trip_us(0x10, &p.u.planes), 0x20);
 }
 
 TEST(parameters_are_staged_and_answered)
@@ -439,7 +439,7 @@ TEST(parameters_are_staged_and_answered)
              {{0x0402, 0, 6}, -EXH_E_STATE}};
     int32_t active[4], staged[4];
     struct exh_params params;
-    exh_params_init(&params, &table, active, staged);
+    exh_params_setup(&params, &table, active, staged);
     params.locked = 1;
     for (size_t i = 0; i < LEN(c); i++) {
         struct exh_wire_packet p = {.type = EXH_WIRE_PARAM, .seq = 40 + (uint32_t)i};
@@ -462,13 +462,13 @@ TEST(state_round_trip)
     struct exh_bytes c = exh_bytes_writer(b, sizeof b);
     (void)take(&rx, write_as(EXH_WIRE_PARAM, 9, 12));
     (void)take(&rx, write_as(EXH_WIRE_PARAM, 8, 12));
-    (void)exh_wire_pass(&rx, 123, 100);
-    exh_wire_rx_bytes(&c, &rx);
-    exh_wire_tx_bytes(&c, &tx);
+    (void)exh_wire_poll(&rx, 123, 100);
+    exh_wire_rx_serialize(&c, &rx);
+    exh_wire_tx_serialize(&c, &tx);
     CHECK_EQ_I64(c.at, 72 + 8);
     c = exh_bytes_reader(b, c.at);
-    exh_wire_rx_bytes(&c, &back);
-    exh_wire_tx_bytes(&c, &tx_back);
+    exh_wire_rx_serialize(&c, &back);
+    exh_wire_tx_serialize(&c, &tx_back);
     CHECK(exh_bytes_ok(&c) && memcmp(&rx, &back, sizeof rx) == 0 &&
               memcmp(&tx, &tx_back, sizeof tx) == 0,
           "the same");

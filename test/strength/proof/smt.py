@@ -110,7 +110,7 @@ def unit_has_components_of_one():
 
 
 def toward_stays_between():
-    """exh_params_toward() of any two values and any shift stays between them and arrives."""
+    """exh_params_slew_step() of any two values and any shift stays between them and arrives."""
     now, goal = z3.BitVecs("now goal", 32)
 
     def stays(shift):

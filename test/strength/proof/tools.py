@@ -28,10 +28,10 @@ GONE_THROUGH = ["-std=c99", "-O2", "-fsanitize=undefined", "-fno-sanitize-recove
 WP = {
     "fix": ("lib/src/num/fix.c", ["exh_sat32", "exh_clamp"]),
     "gate": ("lib/src/act/gate.c", ["any_gate", "code_of"]),
-    "safety": ("lib/src/safe/safety_open.c", ["exh_safety_open"]),
+    "safety": ("lib/src/safe/safety_open.c", ["exh_safety_is_open"]),
     "drive": ("lib/src/act/drive.c",
-              ["no_force", "release", "exh_drive_force", "i2t_limit", "exh_drive_current"]),
-    "track": ("lib/src/act/track.c", ["exh_track_step", "exh_track_coded"]),
+              ["no_force", "release", "exh_drive_force_step", "i2t_limit", "exh_drive_current_step"]),
+    "tracking": ("lib/src/act/tracking.c", ["exh_tracking_step", "exh_tracking_update"]),
 }
 
 # Contracts of other units that a unit is judged by, beside those of fix.
@@ -48,11 +48,11 @@ WP_PLANTS = [
     ("gate", "any_gate@falls", "lib/src/act/gate.c", "falls ? s->off_raw[k] : UINT16_MAX", "UINT16_MAX"),
     ("gate", "any_gate@shut", "lib/src/act/gate.c", "= open ? exh_sat32(asked) : 0;", "= exh_sat32(asked);"),
     ("gate", "any_gate@@invariant", "lib/src/act/gate.c", "cfg[k < n ? k : 0].par->dac_zero_raw", "out->dac_raw[k]"),
-    ("drive", "exh_drive_force", "lib/src/act/drive.c", "exh_clamp(asked, 0, most)", "exh_clamp(asked, -most, most)"),
-    ("drive", "exh_drive_force", "lib/src/act/drive.c", "exh_clamp(asked, 0, most)", "exh_clamp(asked, 0, INT32_MAX)"),
+    ("drive", "exh_drive_force_step", "lib/src/act/drive.c", "exh_clamp(asked, 0, most)", "exh_clamp(asked, -most, most)"),
+    ("drive", "exh_drive_force_step", "lib/src/act/drive.c", "exh_clamp(asked, 0, most)", "exh_clamp(asked, 0, INT32_MAX)"),
     ("drive", "release", "lib/src/act/drive.c", "rest > 0 ? (int32_t)rest : 0", "(int32_t)rest"),
-    ("drive", "exh_drive_current", "lib/src/act/drive.c", "exh_clamp32(peak, -hot, hot)", "exh_clamp(2 * (int64_t)peak, -2 * hot, 2 * hot)"),
-    ("track", "exh_track_step", "lib/src/act/track.c", "s->off_ticks >= cfg->ticks", "s->off_ticks > cfg->ticks"),
+    ("drive", "exh_drive_current_step", "lib/src/act/drive.c", "exh_clamp32(peak, -hot, hot)", "exh_clamp(2 * (int64_t)peak, -2 * hot, 2 * hot)"),
+    ("tracking", "exh_tracking_step", "lib/src/act/tracking.c", "s->off_ticks >= cfg->ticks", "s->off_ticks > cfg->ticks"),
 ]
 
 
@@ -341,7 +341,7 @@ class Proof:
         functions, _, named = (functions or "").partition("@")
         for spec in wp_specs(unit.name):
             annotate(os.path.join(HERE, "wp", spec + ".acsl"), tree)
-        inline = ["-inline-calls", "exh_gate", "-remove-inlined", "exh_gate"] if unit.name == "gate" else []
+        inline = ["-inline-calls", "exh_gate_step", "-remove-inlined", "exh_gate_step"] if unit.name == "gate" else []
         code, said, s = run(["frama-c", "-cpp-extra-args=-I%s/lib/include -I%s/lib/src" % (tree, tree),
                              "-machdep", MACHDEP["64"]] + inline +
                             ["-wp", "-wp-prover", "cvc4,z3", "-wp-timeout", str(seconds), "-wp-par", "1",

@@ -29,15 +29,15 @@ struct exh_log_tap {
 };
 void exh_log_tap(const struct exh_log_tap *tap, int alone);
 /* The header's payload with the parameters as they are now. */
-void exh_log_header_bytes(struct exh_bytes *c);
+void exh_log_header_serialize(struct exh_bytes *c);
 /* How many of its bytes, the last, are calibrations of fingers. */
 uint32_t exh_log_images_B(void);
 
 /* Payloads, shared with the replay: what is written is what is read. A keyframe that
  * is read goes through the parameters' own checks; one that fails them is not ok.
  * A scene without signals, state or glove logs none. */
-void exh_log_frame_bytes(struct exh_bytes *c, const struct exh_scene *sc, struct exh_scene_in *in,
-                         struct exh_drive_out *out, int32_t *signal);
-void exh_log_keyframe_bytes(struct exh_bytes *c, const struct exh_scene *sc);
+void exh_log_frame_serialize(struct exh_bytes *c, const struct exh_scene *sc,
+                             struct exh_scene_in *in, struct exh_drive_out *out, int32_t *signal);
+void exh_log_keyframe_serialize(struct exh_bytes *c, const struct exh_scene *sc);
 
 #endif

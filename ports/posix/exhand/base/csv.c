@@ -29,7 +29,7 @@ static void take_mark(struct walk *w, const struct exh_record *r)
 {
     struct exh_bytes c = exh_bytes_reader(r->payload, r->len_B);
     struct exh_event e;
-    exh_event_bytes(&c, &e);
+    exh_event_serialize(&c, &e);
     if (!exh_bytes_ok(&c) || c.at != r->len_B) {
         w->malformed++;
     } else if (e.type == EXH_EVENT_MARK) {
@@ -48,7 +48,7 @@ static int next_row(struct walk *w)
         if (r.type != EXH_RECORD_FRAME) { continue; }
         if ((w->what & CSV_FALLS) && w->fall == 0) { continue; }
         memset(&w->in, 0, sizeof w->in);
-        exh_log_frame_bytes(&c, w->log->scene, &w->in, &out, w->log->scene->signal);
+        exh_log_frame_serialize(&c, w->log->scene, &w->in, &out, w->log->scene->signal);
         if (!exh_bytes_ok(&c) || c.at != r.len_B) {
             w->malformed++;
         } else if (w->rows > 0 && w->log->tick <= w->tick) {

@@ -27,8 +27,8 @@ static int one_count(const struct drop *s, const struct drop_cfg *cfg)
 
 static int followed(const struct drop *s, const struct drop_cfg *cfg, int16_t mon_raw)
 {
-    struct exh_track track = s->track;
-    exh_track_step(&track, &cfg->track, exh_drive_monitor_A_q26(&cfg->drive, mon_raw));
+    struct exh_tracking track = s->track;
+    exh_tracking_step(&track, &cfg->track, exh_drive_monitor_A_q26(&cfg->drive, mon_raw));
     return track.off_ticks == 0;
 }
 

@@ -55,7 +55,7 @@ static int read_header(struct logfile *l)
 {
     struct exh_record r;
     struct exh_bytes c;
-    if (exh_record_read(l->bytes, l->len, &r) == -EXH_E_VERSION) {
+    if (exh_record_decode(l->bytes, l->len, &r) == -EXH_E_VERSION) {
         cli_complain("%s: a log of record version %u, this program's is %d: read it with the "
                      "program that made it",
                      l->path, r.version, EXH_RECORD_VERSION);
@@ -66,7 +66,7 @@ static int read_header(struct logfile *l)
                            "`exhand drop --out DIR` or `exhand glove --record FILE`");
     }
     c = exh_bytes_reader(r.payload, r.len_B);
-    exh_record_header_bytes(&c, &l->header);
+    exh_record_header_serialize(&c, &l->header);
     if (!exh_bytes_ok(&c)) { return complain(l, "its header is too short"); }
     l->params = r.payload + c.at;
     l->params_len = r.len_B - c.at;
@@ -155,7 +155,7 @@ static void follow_tick(struct logfile *l, const struct exh_record *r)
 int logfile_next(struct logfile *l, struct exh_record *r)
 {
     while (l->at < l->len && !l->ended) { /* what comes behind the end is not the log's, either */
-        const int32_t n = exh_record_read(l->bytes + l->at, l->len - l->at, r);
+        const int32_t n = exh_record_decode(l->bytes + l->at, l->len - l->at, r);
         if (n < 0) {
             l->damaged++;
             l->at++;

@@ -151,13 +151,13 @@ static void print_params(void)
 
 /* --- files --- */
 
-static int complain(const char *what, int err, const struct exh_calib_bad *bad)
+static int complain(const char *what, int err, const struct exh_calib_error *bad)
 {
     char point[24] = "";
     if (bad->what == EXH_CALIB_FORCE_TABLE || bad->what == EXH_CALIB_MONITOR_TABLE) {
         snprintf(point, sizeof point, ", point %d", bad->at + 1);
     }
-    cli_complain("%s: %s%s: %s: calibrate again", what, exh_calib_what_text(bad->what), point,
+    cli_complain("%s: %s%s: %s: calibrate again", what, exh_calib_error_text(bad->what), point,
                  exh_error_text(err));
     return 1;
 }
@@ -212,7 +212,7 @@ static int write_files(const char *dir, const struct exh_calib *c,
                 {"table.csv", write_table},
                 {"pictures.gp", write_pictures}};
     struct results r = {.c = c, .l = l};
-    struct exh_calib_bad bad = {0, 0};
+    struct exh_calib_error bad = {0, 0};
     const int32_t len = exh_calib_save(c, r.image, sizeof r.image, &bad);
     if (len < 0) { return complain("calibration.bin", len, &bad); }
     r.image_B = (size_t)len;
@@ -226,11 +226,11 @@ static int write_files(const char *dir, const struct exh_calib *c,
 
 /* Whose, when, and the scales of the device as they are now. The monitor's zero is for
  * who uses the image to copy, so here it is the image's. */
-static struct exh_calib_here here_and_now(const struct calibrate_options *o,
-                                          const struct exh_calib *c)
+static struct exh_calib_target here_and_now(const struct calibrate_options *o,
+                                            const struct exh_calib *c)
 {
-    struct exh_calib_here here = {(uint32_t)o->id, (uint32_t)o->finger, (uint32_t)o->day, 0, 0, 0,
-                                  c->mon_zero_raw};
+    struct exh_calib_target here = {(uint32_t)o->id, (uint32_t)o->finger, (uint32_t)o->day, 0, 0, 0,
+                                    c->mon_zero_raw};
     struct exh_params *p = exh_scene_calibrate.params;
     uint32_t at;
     exh_scene_calibrate.defaults();
@@ -245,7 +245,7 @@ static struct exh_calib_here here_and_now(const struct calibrate_options *o,
 
 /* A sound image that may not be used: what it was made for, and what is here. */
 static int not_here(const struct calibrate_options *o, const struct exh_calib *c, int err,
-                    const struct exh_calib_bad *bad)
+                    const struct exh_calib_error *bad)
 {
     if (bad->what == EXH_CALIB_DEVICE) {
         cli_complain("%s: made for device %lu, this is %" PRId64
@@ -274,9 +274,9 @@ static int check_image(const struct calibrate_options *o)
 {
     struct exh_calib_point point[EXH_CALIB_POINTS_MAX];
     struct exh_calib c = {.point = point, .cap = EXH_CALIB_POINTS_MAX};
-    struct exh_calib_here here;
+    struct exh_calib_target here;
     struct calibration_lines l;
-    struct exh_calib_bad bad = {0, 0};
+    struct exh_calib_error bad = {0, 0};
     uint8_t image[EXH_CALIB_IMAGE_B];
     const long len =
         outfile_read("check", o->check, "calibration.bin that `exhand calibrate --out` wrote",
@@ -314,13 +314,13 @@ static void interrupted(int sig)
 static int judge(const struct calibrate_options *o, struct calibration *r)
 {
     struct calibration_lines l;
-    struct exh_calib_bad bad;
+    struct exh_calib_error bad;
     int err;
     if (r->c.points != o->masses) {
         cli_complain("%d of %d masses were weighed: calibrate again", r->c.points, o->masses);
         return 1;
     }
-    err = exh_calib_valid(&r->c, &bad);
+    err = exh_calib_validate(&r->c, &bad);
     if (err < 0) { return complain("calibrate", err, &bad); }
     if (calibration_lines(&r->c, &l) < 0) {
         cli_complain("no line through these points: calibrate again");

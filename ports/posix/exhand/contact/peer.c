@@ -78,7 +78,7 @@ static void take_trace(struct peer *p, const struct exh_wire_trace *t)
 static void take(struct peer *p, const void *buf, size_t len_B)
 {
     struct exh_wire_packet in;
-    const int type = exh_wire_take(&p->rx, &in, buf, len_B);
+    const int type = exh_wire_decode(&p->rx, &in, buf, len_B);
     if (type == EXH_WIRE_HELLO) { p->hello_s = -1; } /* it is new here: answer at once */
     if (type == EXH_WIRE_TRACE) { take_trace(p, &in.u.trace); }
     if (type == EXH_WIRE_STATE) {
@@ -119,7 +119,8 @@ static void put_spoiled(struct peer *p, struct sim_link *link, const uint8_t *go
 static void put(struct peer *p, struct sim_link *link, struct exh_wire_packet *out, double t_s)
 {
     uint8_t buf[EXH_WIRE_MAX_B];
-    const int32_t n = exh_wire_write(&p->tx, out, (uint32_t)(uint64_t)(t_s * 1e6), buf, sizeof buf);
+    const int32_t n =
+        exh_wire_encode(&p->tx, out, (uint32_t)(uint64_t)(t_s * 1e6), buf, sizeof buf);
     if (n <= 0) { return; }
     put_spoiled(p, link, buf, (size_t)n, t_s);
     (void)sim_link_send(&link->way[SIM_LINK_IN], t_s, buf, (size_t)n);
@@ -180,7 +181,7 @@ void peer_frame(void *ctx, struct sim_link *link, double t_s)
     int n, there;
     if (p->cfg.again_s > 0 && t_s >= p->cfg.again_s && !p->born_again) { start_anew(p); }
     there = t_s >= p->cfg.from_s && t_s < p->cfg.until_s;
-    (void)exh_wire_pass(&p->rx, (uint32_t)fmin(1e6 * (t_s - p->heard_s), 4e9), QUIET_US);
+    (void)exh_wire_poll(&p->rx, (uint32_t)fmin(1e6 * (t_s - p->heard_s), 4e9), QUIET_US);
     p->heard_s = t_s;
     while ((n = sim_link_recv(&link->way[SIM_LINK_OUT], t_s, buf, sizeof buf)) > 0) {
         if (there) { take(p, buf, (size_t)n); }

@@ -38,7 +38,8 @@ struct peer_cfg {
     int hostile;         /* each packet comes again so often: a bit flipped, cut short, too long */
     struct exh_wire_param param[PEER_PARAMS];
     int params;
-    struct exh_wire_trace_ask trace; /* it asks for this until it is answered; every 0: for none */
+    struct exh_wire_trace_request
+        trace; /* it asks for this until it is answered; every 0: for none */
 };
 
 /* Of a trace, as it came. */

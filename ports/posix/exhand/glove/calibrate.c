@@ -101,7 +101,7 @@ static double zero_code(const struct exh_glove_sensor *s)
 
 static const char *verdict(unsigned what)
 {
-    return what == EXH_GLOVE_WHATS ? "ok" : exh_glove_what_text(what);
+    return what == EXH_GLOVE_ERRORS ? "ok" : exh_glove_error_text(what);
 }
 
 static int32_t noise_of(const struct glove_result *r, unsigned sensor)
@@ -186,9 +186,9 @@ static void write_poses(FILE *f, const void *ctx)
 /* All of them or the first that fails. 0, or 1 after a line on stderr. */
 static int write_files(const char *dir, struct glove_result *r)
 {
-    struct exh_glove_bad bad;
+    struct exh_glove_error bad;
     if (exh_glove_cal_save(&r->cal, r->image, sizeof r->image, &bad) < 0) {
-        cli_complain("%s of %s: nothing was saved: calibrate again", exh_glove_what_text(bad.what),
+        cli_complain("%s of %s: nothing was saved: calibrate again", exh_glove_error_text(bad.what),
                      exh_glove_sensor_text(bad.at));
         return 1;
     }
@@ -199,10 +199,10 @@ static int write_files(const char *dir, struct glove_result *r)
 
 /* --- an image that is there --- */
 
-static int refused(const char *path, int err, const struct exh_glove_bad *bad)
+static int refused(const char *path, int err, const struct exh_glove_error *bad)
 {
     const int of_sensor = bad->what >= EXH_GLOVE_GAIN;
-    cli_complain("%s: %s%s%s: %s: calibrate again", path, exh_glove_what_text(bad->what),
+    cli_complain("%s: %s%s%s: %s: calibrate again", path, exh_glove_error_text(bad->what),
                  of_sensor ? " of " : "", of_sensor ? exh_glove_sensor_text(bad->at) : "",
                  exh_error_text(err));
     return 1;
@@ -210,7 +210,7 @@ static int refused(const char *path, int err, const struct exh_glove_bad *bad)
 
 /* A sound image that may not be used: whose it is, and who is here. */
 static int not_here(const struct glove_options *o, const struct exh_glove_cal *c, int err,
-                    const struct exh_glove_bad *bad)
+                    const struct exh_glove_error *bad)
 {
     if (bad->what == EXH_GLOVE_USER) {
         cli_complain("%s: made for user %" PRIu32 ", this is %" PRId64
@@ -238,7 +238,7 @@ static int not_here(const struct glove_options *o, const struct exh_glove_cal *c
 static int check_image(const struct glove_options *o)
 {
     struct exh_glove_cal c;
-    struct exh_glove_bad bad = {0, 0};
+    struct exh_glove_error bad = {0, 0};
     uint8_t image[EXH_GLOVE_CAL_IMAGE_B];
     const long len = outfile_read("check", o->check, IMAGE_WANTED, image, sizeof image);
     int err;
@@ -278,7 +278,7 @@ static void say_bad(const struct glove_options *o, const struct glove_result *r,
 {
     const struct exh_glove_fit *f = &r->fit[i];
     const char *name = exh_glove_sensor_text(i), *pose = glove_pose_name(r->which[f->pose]);
-    const char *what = exh_glove_what_text(f->what);
+    const char *what = exh_glove_error_text(f->what);
     if (at_rail(r, i)) {
         cli_complain("%s: at the end of the card in every pose: open or short: mend its wire, and "
                      "calibrate again",
@@ -341,7 +341,7 @@ static int calibrate(const struct glove_options *o)
     static struct glove_result r;
     const struct exh_glove_fit_par par = {(int32_t)o->move_raw, (int32_t)o->noise_raw,
                                           (int32_t)(o->residual_deg / DEG_OF_TURN_Q32)};
-    struct exh_glove_bad bad;
+    struct exh_glove_error bad;
     int err;
     memset(&r, 0, sizeof r);
     if (o->out != NULL && outfile_dir(o->out, "poses.csv") != 0) { return 2; }
@@ -366,7 +366,7 @@ static int calibrate(const struct glove_options *o)
     fflush(stdout);
     if (err < 0) {
         for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
-            if (r.fit[i].what != EXH_GLOVE_WHATS) { say_bad(o, &r, i); }
+            if (r.fit[i].what != EXH_GLOVE_ERRORS) { say_bad(o, &r, i); }
         }
         return 1;
     }

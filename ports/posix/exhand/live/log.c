@@ -61,7 +61,7 @@ FILE *live_log_file(void)
 static int is_last(const void *rec, size_t len_B)
 {
     struct exh_record r;
-    return exh_record_read(rec, (uint32_t)len_B, &r) > 0 && r.type == EXH_RECORD_END;
+    return exh_record_decode(rec, (uint32_t)len_B, &r) > 0 && r.type == EXH_RECORD_END;
 }
 
 /* In virtual time there is time to wait; behind Ctrl-C only while the file takes something. */

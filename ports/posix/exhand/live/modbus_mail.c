@@ -96,7 +96,7 @@ static int apply(void)
     memcpy(was, p->staged, 4 * (size_t)mail.regs.params_n);
     err = exh_regs_apply(&mail.regs, p);
     if (err == 0 && mail.sc->allowed) { err = mail.sc->allowed(); }
-    if (err < 0) { exh_params_unstage(p, was, pending); }
+    if (err < 0) { exh_params_rollback(p, was, pending); }
     return err;
 }
 
@@ -105,17 +105,17 @@ void mail_before(struct exh_scene_in *in)
     uint32_t asked;
     uint8_t command;
     if (pthread_mutex_trylock(&lock) != 0) { return; }
-    asked = exh_regs_take(&mail.regs);
+    asked = exh_regs_poll(&mail.regs);
     command = exh_regs_command(asked);
     if (asked & 1u << EXH_COIL_APPLY) {
         const int err = apply();
         copy_values();
-        exh_regs_did(&mail.regs, err);
+        exh_regs_complete(&mail.regs, err);
     }
     if (asked & 1u << EXH_COIL_SAVE) { mail.save = 1; }
     if (command != EXH_CMD_NONE) {
         if (command == EXH_CMD_OFF || in->command == EXH_CMD_NONE) { in->command = command; }
-        exh_regs_did(&mail.regs, 0);
+        exh_regs_complete(&mail.regs, 0);
     }
     mail_give();
 }
@@ -130,11 +130,11 @@ static void make_image(void)
 
 void mail_after(const struct exh_scene_in *in)
 {
-    exh_trace_tick(&mail.own, mail.sc->safety->tick, mail.sc->signal);
+    exh_trace_step(&mail.own, mail.sc->safety->tick, mail.sc->signal);
     if (pthread_mutex_trylock(&lock) != 0) { return; }
-    exh_trace_pass(&mail.own, &mail.shown);
+    exh_trace_copy(&mail.own, &mail.shown);
     copy_values();
-    exh_regs_see(&mail.regs, mail.sc->safety, in->drive.din);
+    exh_regs_update(&mail.regs, mail.sc->safety, in->drive.din);
     make_image();
     mail_give();
 }
@@ -152,7 +152,7 @@ void mail_save(void)
     why = len_B < 0 ? EFBIG : params_write(mail.cfg.save, image, (size_t)len_B);
     pthread_mutex_lock(&lock);
     mail.made_B = 0;
-    exh_regs_did(&mail.regs, why == 0 ? 0 : len_B < 0 ? (int)len_B : -EXH_E_IO);
+    exh_regs_complete(&mail.regs, why == 0 ? 0 : len_B < 0 ? (int)len_B : -EXH_E_IO);
     mail_give();
     if (why) { cli_complain("--save: %s: can't be written: %s", mail.cfg.save, strerror(why)); }
 }

@@ -47,7 +47,7 @@ static int on_header(struct watch_box *b, const struct exh_record *r)
     struct exh_bytes c = exh_bytes_reader(r->payload, r->len_B);
     struct exh_record_header h;
     memset(&h, 0, sizeof h);
-    exh_record_header_bytes(&c, &h);
+    exh_record_header_serialize(&c, &h);
     if (!exh_bytes_ok(&c) || !exh_period_ok(h.T)) { return 0; }
     h.scene[sizeof h.scene - 1] = '\0';
     b->T = h.T;
@@ -73,7 +73,7 @@ static int on_frame(struct watch_box *b, const struct exh_record *r, watch_fresh
     struct exh_drive_out out;
     if (b->scene == NULL) { return 0; } /* its header did not come */
     memset(&was, 0, sizeof was);
-    exh_log_frame_bytes(&c, b->scene, &was, &out, b->value);
+    exh_log_frame_serialize(&c, b->scene, &was, &out, b->value);
     if (!exh_bytes_ok(&c) || c.at != r->len_B) { return 0; }
     if (b->heard > 0 && r->tick - b->tick - 1 < UINT32_C(0x80000000)) {
         b->lost += r->tick - b->tick - 1;
@@ -95,7 +95,7 @@ static int records(struct watch_box *b, watch_fresh fresh)
     int err = 0;
     while (err == 0 && at < in.n) {
         struct exh_record r;
-        const int32_t len = exh_record_read(in.byte + at, in.n - at, &r);
+        const int32_t len = exh_record_decode(in.byte + at, in.n - at, &r);
         if (len == -EXH_E_SHORT && in.n - at < BUFFER_B - STREAM_DATA_B) { break; }
         at += len > 0 ? (uint32_t)len : 1;
         if (len <= 0) { continue; }

@@ -127,7 +127,7 @@ static int on_frame(struct replay *p, const struct exh_record *r)
                p->log.tick, p->log.tick - p->expect_tick);
         return 1;
     }
-    exh_log_frame_bytes(&c, sc, &p->in, &rec, p->recorded);
+    exh_log_frame_serialize(&c, sc, &p->in, &rec, p->recorded);
     if (!exh_bytes_ok(&c) || c.at != r->len_B) {
         return differs(p, "frame length", r->len_B, c.at);
     }
@@ -166,14 +166,14 @@ static int on_keyframe(struct replay *p, const struct exh_record *r)
 {
     if (p->running) {
         struct exh_bytes c = exh_bytes_writer(p->bytes, EXH_LOG_RECORD_B);
-        exh_log_keyframe_bytes(&c, p->log.scene);
+        exh_log_keyframe_serialize(&c, p->log.scene);
         p->keyframes++;
         if (c.at != r->len_B || memcmp(p->bytes, r->payload, r->len_B) != 0) {
             return differs(p, "state (bytes of a keyframe)", r->len_B, c.at);
         }
     } else if (p->log.tick == p->start) {
         struct exh_bytes c = exh_bytes_reader(r->payload, r->len_B);
-        exh_log_keyframe_bytes(&c, p->log.scene);
+        exh_log_keyframe_serialize(&c, p->log.scene);
         if (!exh_bytes_ok(&c) || c.at != r->len_B) {
             return differs(p, "keyframe length", r->len_B, c.at);
         }
@@ -187,7 +187,7 @@ static int on_event(struct replay *p, const struct exh_record *r)
     struct exh_bytes c = exh_bytes_reader(r->payload, r->len_B);
     struct exh_event e;
     int err = 0;
-    exh_event_bytes(&c, &e);
+    exh_event_serialize(&c, &e);
     if (!p->running) { return 0; }
     if (!exh_bytes_ok(&c) || c.at != r->len_B) {
         return differs(p, "event length", r->len_B, c.at);
@@ -209,7 +209,7 @@ static int foretell(struct replay *p, const struct exh_record *r)
 {
     struct exh_bytes c = exh_bytes_reader(r->payload, r->len_B);
     struct exh_event e;
-    exh_event_bytes(&c, &e);
+    exh_event_serialize(&c, &e);
     if (!exh_bytes_ok(&c) || e.type != EXH_EVENT_FROZE) { return 0; }
     if (e.value != 0 && e.instance < UINT16_MAX) {
         p->foretold = 1;

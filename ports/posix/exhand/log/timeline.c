@@ -236,7 +236,7 @@ static void on_frame(struct walk *w, const struct exh_record *r)
     int32_t *other = w->before;
     if (!w->frames) { w->first = tick; }
     memset(&w->in, 0, sizeof w->in);
-    exh_log_frame_bytes(&c, w->log->scene, &w->in, &w->out, w->now);
+    exh_log_frame_serialize(&c, w->log->scene, &w->in, &w->out, w->now);
     if (!exh_bytes_ok(&c) || c.at != r->len_B) {
         timeline_say(&w->notes, tick, "a frame of another length");
         return;
@@ -285,7 +285,7 @@ static void on_event(struct walk *w, const struct exh_record *r)
 {
     struct exh_bytes c = exh_bytes_reader(r->payload, r->len_B);
     struct exh_event e;
-    exh_event_bytes(&c, &e);
+    exh_event_serialize(&c, &e);
     if (!exh_bytes_ok(&c)) { return; }
     if (e.type == EXH_EVENT_COMMAND) {
         timeline_say(&w->notes, w->log->tick, "command: %s",

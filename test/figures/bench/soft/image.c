@@ -76,8 +76,8 @@ static void law_op(uint32_t i)
 {
     for (uint32_t f = 0; f < FINGERS; f++) {
         struct exh_force_ledger l;
-        (void)exh_contact_law(&contact[f], &wall,
-                              (struct exh_contact_in){x[i + f] >> 6, x[i + f + 1] >> 4, 0}, &l);
+        (void)exh_contact_step(&contact[f], &wall,
+                               (struct exh_contact_in){x[i + f] >> 6, x[i + f + 1] >> 4, 0}, &l);
         sink = l.spring_N_q20 + l.damper_N_q20;
     }
 }
@@ -111,7 +111,7 @@ static void table_start(void)
         table_float.y[k] = (float)(table_double.y[k] = knot[k].y);
         table_float.slope[k] = (float)(table_double.slope[k] = 0.5 + k * 0.03);
     }
-    EXH_ASSERT(exh_table_set(knot, 16) == 0);
+    EXH_ASSERT(exh_table_setup(knot, 16) == 0);
 }
 
 static void table_op(uint32_t i)
@@ -149,7 +149,7 @@ static void plane_start(void)
     EXH_ASSERT(exh_precontact_setup(&freeze_cfg, &freeze, &material, 1, EXH_Q(7, 1000, 30),
                                     (struct exh_period){1, 2000}) == 0);
     for (uint32_t f = 0; f < FINGERS; f++) {
-        EXH_ASSERT(exh_precontact_tell(&plane[f], &freeze_cfg, &p, 0) == 0);
+        EXH_ASSERT(exh_precontact_update(&plane[f], &freeze_cfg, &p, 0) == 0);
         plane_double[f] =
             (struct plain_freeze_double){{0.6, 0.1, 0.8}, 0.1, -0.005, 0.001, 0, 1, 0};
         plane_float[f] =

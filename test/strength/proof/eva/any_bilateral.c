@@ -2,7 +2,7 @@
 /* PROVES: scene bilateral
  * Scene bilateral: a tick and what goes out behind it, for every number of fingers in use (damaged ones too), anything as their
  * places, in any state that its bytes leave, with any frame, glove and command, any packets (none, one, as many as there is room
- * for), any traces (exh_trace_tick()'s own text), all other functions of the library keeping to contract.h and contract_box.h; what
+ * for), any traces (exh_trace_step()'s own text), all other functions of the library keeping to contract.h and contract_box.h; what
  * a tick leaves is a state that a tick takes. Any parameters in their rows.
  *
  * EVA: -eva-slevel 5 -kernel-warn-key annot:missing-spec=abort
@@ -22,8 +22,8 @@
 
 /* --- pre-contact --- */
 
-int exh_precontact_tell(struct exh_precontact *of, const struct exh_precontact_cfg *c,
-                        const struct exh_plane *p, uint32_t age_ticks)
+int exh_precontact_update(struct exh_precontact *of, const struct exh_precontact_cfg *c,
+                          const struct exh_plane *p, uint32_t age_ticks)
 {
     (void)age_ticks;
     /*@ assert precontact_tell: precontact(of) && precontact_cfg(c) && \initialized(p); */
@@ -31,7 +31,7 @@ int exh_precontact_tell(struct exh_precontact *of, const struct exh_precontact_c
     return REFUSED() ? -EXH_E_RANGE : 0;
 }
 
-void exh_precontact_skip(struct exh_precontact *of, uint32_t missed)
+void exh_precontact_advance(struct exh_precontact *of, uint32_t missed)
 {
     (void)missed;
     of->left_ticks = any_u32();
@@ -46,7 +46,7 @@ uint32_t exh_precontact_step(struct exh_precontact *of, const struct exh_precont
     return Frama_C_unsigned_int_interval(0, (1u << 10) - 1);
 }
 
-void exh_precontact_bytes(struct exh_bytes *c, struct exh_precontact *of)
+void exh_precontact_serialize(struct exh_bytes *c, struct exh_precontact *of)
 {
     (void)c;
     *of = any_precontact();
@@ -54,7 +54,7 @@ void exh_precontact_bytes(struct exh_bytes *c, struct exh_precontact *of)
 
 /* --- link --- */
 
-int exh_wire_pass(struct exh_wire_rx *rx, uint32_t passed_us, uint32_t limit_us)
+int exh_wire_poll(struct exh_wire_rx *rx, uint32_t passed_us, uint32_t limit_us)
 {
     (void)passed_us;
     (void)limit_us;
@@ -64,7 +64,8 @@ int exh_wire_pass(struct exh_wire_rx *rx, uint32_t passed_us, uint32_t limit_us)
     return any8() & 1;
 }
 
-int exh_wire_take(struct exh_wire_rx *rx, struct exh_wire_packet *p, const void *buf, size_t len_B)
+int exh_wire_decode(struct exh_wire_rx *rx, struct exh_wire_packet *p, const void *buf,
+                    size_t len_B)
 {
     /*@ assert wire_take: \valid_read((char *)buf + (0 .. len_B - 1)); */
     ANY(*rx);
@@ -73,7 +74,7 @@ int exh_wire_take(struct exh_wire_rx *rx, struct exh_wire_packet *p, const void 
     return Frama_C_interval(-64, EXH_WIRE_TRACE);
 }
 
-uint32_t exh_wire_differs(const struct exh_wire_hello *ours, const struct exh_wire_hello *theirs)
+uint32_t exh_wire_compare(const struct exh_wire_hello *ours, const struct exh_wire_hello *theirs)
 {
     /*@ assert wire_differs: \valid_read(ours) && \valid_read(theirs); */
     return any8() & (EXH_WIRE_ROLE | EXH_WIRE_LIB | EXH_WIRE_TABLE);
@@ -96,8 +97,8 @@ struct exh_wire_ack exh_wire_stage(struct exh_params *to, const struct exh_wire_
     return ack;
 }
 
-int32_t exh_wire_write(struct exh_wire_tx *tx, struct exh_wire_packet *p, uint32_t stamp_us,
-                       void *buf, size_t cap_B)
+int32_t exh_wire_encode(struct exh_wire_tx *tx, struct exh_wire_packet *p, uint32_t stamp_us,
+                        void *buf, size_t cap_B)
 {
     (void)stamp_us;
     /*@ assert wire_write: \valid((char *)buf + (0 .. cap_B - 1)) && cap_B <= 256 && \initialized(p); */
@@ -106,13 +107,13 @@ int32_t exh_wire_write(struct exh_wire_tx *tx, struct exh_wire_packet *p, uint32
     return Frama_C_interval(-64, 256);
 }
 
-void exh_wire_tx_bytes(struct exh_bytes *c, struct exh_wire_tx *tx)
+void exh_wire_tx_serialize(struct exh_bytes *c, struct exh_wire_tx *tx)
 {
     (void)c;
     ANY(*tx);
 }
 
-void exh_wire_rx_bytes(struct exh_bytes *c, struct exh_wire_rx *rx)
+void exh_wire_rx_serialize(struct exh_bytes *c, struct exh_wire_rx *rx)
 {
     (void)c;
     ANY(*rx);
@@ -168,7 +169,7 @@ static void any_cfg(void)
     cfg.vouches = any8();
     for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
         struct exh_drive_par *const drive = &active.drive[f];
-        struct exh_watch_par *const watch = &active.watch[f];
+        struct exh_motion_par *const watch = &active.watch[f];
         struct exh_contact_par *const contact = &active.contact[f];
         struct exh_precontact_par *const precontact = &active.precontact[f];
         /*@ admit taken: drive_par(drive) && watch_par(watch) && contact_par(contact) && precontact_par(precontact); */
@@ -203,7 +204,7 @@ static void one_tick(uint8_t least, uint8_t most, uint8_t packets)
     any_cfg();
     cfg.n = (uint8_t)Frama_C_unsigned_int_interval(least, most);
     exh_scene_bilateral.state(&c);
-    exh_guard_seal(&guard, &cfg, sizeof cfg, &params);
+    exh_integrity_seal(&guard, &cfg, sizeof cfg, &params);
     ANY(in);
     ANY(signals);
     ANY(mail_in);

@@ -8,7 +8,7 @@
  * PLANT: lib/src/bench/calibrate.c: if (h.points > c->cap) { return -EXH_E_SHORT; } -> (void)0;
  * PLANT: lib/src/bench/calibrate.c: if (cap < last + 2u) { return refuse(bad, EXH_CALIB_FORCE_TABLE, last, -EXH_E_SHORT); } -> (void)0;
  * PLANT: lib/src/bench/calibrate.c: if (cap < 2u * last + 3u) { return refuse(bad, EXH_CALIB_MONITOR_TABLE, last, -EXH_E_SHORT); } -> (void)0;
- * PLANT: lib/src/bench/calibrate.c: what < EXH_CALIB_WHATS -> what <= EXH_CALIB_WHATS
+ * PLANT: lib/src/bench/calibrate.c: what < EXH_CALIB_ERRORS -> what <= EXH_CALIB_ERRORS
  * PLANT: lib/src/bench/calibrate.c: if (n < 1 || n > EXH_CALIB_POINTS_MAX) { return -EXH_E_RANGE; } -> (void)0;
  */
 #include "num/bytes.c"
@@ -23,8 +23,8 @@
 
 static struct exh_calib c;
 static struct exh_calib_point point[EXH_CALIB_POINTS_MAX];
-static struct exh_calib_here here;
-static struct exh_calib_bad bad;
+static struct exh_calib_target here;
+static struct exh_calib_error bad;
 static uint8_t image_B[EXH_CALIB_IMAGE_B];
 
 /* Of points in range it is below 32 (smt.py: line_is_below_32). */
@@ -37,7 +37,7 @@ int any_gain(struct exh_gain *g, uint64_t num, uint64_t den)
     return Frama_C_interval(-1, 0);
 }
 
-int exh_table_set(struct exh_knot *knot, unsigned n)
+int exh_table_setup(struct exh_knot *knot, unsigned n)
 {
     int32_t last = 0;
     for (unsigned i = 0; i < n; i++) { last = knot[i].x; }
@@ -75,7 +75,7 @@ static void tables(uint8_t points)
 {
     static struct exh_knot knot[2 * EXH_CALIB_POINTS_MAX + 3];
     in_range(points);
-    (void)exh_calib_valid(&c, &bad);
+    (void)exh_calib_validate(&c, &bad);
     (void)exh_calib_force_table(&c, knot + 1, 2 * EXH_CALIB_POINTS_MAX + 2, NULL);
     for (unsigned cap = 0; cap < 2u * points + 3; cap++) {
         struct exh_knot *k = knot + (2 * EXH_CALIB_POINTS_MAX + 3 - cap);
@@ -94,7 +94,7 @@ static void others(void)
     (void)exh_calib_residual_N_q20(&fit, point, EXH_CALIB_MONITOR);
     (void)exh_calib_fit(&fit, point, POINTS, EXH_CALIB_CURRENT);
     (void)exh_calib_fit(&fit, point, any_u32(), EXH_CALIB_MONITOR);
-    (void)exh_calib_what_text(any_u32());
+    (void)exh_calib_error_text(any_u32());
 }
 
 static void loaded(uint8_t cap, size_t len_B)

@@ -7,7 +7,7 @@
  * PLANT: lib/src/safe/safety.c: (int64_t)s->share_q30 + cfg->ramp_q30, 0, FULL_Q30) -> (int64_t)s->share_q30 + cfg->ramp_q30, 0, INT32_MAX)
  * PLANT: lib/src/sense/quad.c: if (jump >= INT64_C(1) << (bits - 2)) { return -EXH_E_RANGE; } -> (void)0;
  * PLANT: lib/src/law/passivity.c: any ? exh_clamp(held, 0, INT32_MAX) : 0; -> any ? exh_clamp(held, INT32_MIN, INT32_MAX) : 0;
- * PLANT: lib/src/safe/watch.c: exh_clamp(*vel_mps_q27, -most, most) -> exh_clamp(*vel_mps_q27, -most, INT32_MAX)
+ * PLANT: lib/src/safe/motion.c: exh_clamp(*vel_mps_q27, -most, most) -> exh_clamp(*vel_mps_q27, -most, INT32_MAX)
  * PLANT: lib/src/act/drive.c: s->fall_N_q20 = (int32_t)exh_gain_floor(permit->fall, s->force_N_q20) + 1; -> s->fall_N_q20 = s->force_N_q20 + 2;
  * PLANT: lib/src/law/contact.c: par->f0_N_q20 & -(int32_t)s->inward -> par->f0_N_q20 * 2
  * PLANT: lib/src/law/contact.c: EXH_WHEN_SLEWED, 0, EXH_Q(20, 1, EXH_Q_FORCE) -> EXH_WHEN_SLEWED, 0, EXH_Q(40, 1, EXH_Q_FORCE)
@@ -28,9 +28,9 @@
 #include "act/gate.c" /* its proof is any_gate.c: what it writes beside what it is given, its WP */
 #include "safe/safety.c"
 #include "safe/safety_open.c"
-#include "act/track.c"
+#include "act/tracking.c"
 #undef CUR_MIN_A_Q26
-#include "safe/watch.c"
+#include "safe/motion.c"
 
 #include "contract.h"
 
@@ -54,7 +54,7 @@ static void position(void)
     ANY(cfg);
     ANY(s);
     /*@ admit quad_cfg(&cfg); */
-    (void)exh_quad_extend(&s, &cfg, any_u32());
+    (void)exh_quad_step(&s, &cfg, any_u32());
     (void)exh_quad_pos_m_q30(&par, any32());
     if (exh_velocity_window_setup(&velocity_cfg, scale, &velocity_par) == 0) {
         /*@ assert velocity_setup: velocity_cfg(&velocity_cfg); */
@@ -62,7 +62,7 @@ static void position(void)
     ANY(velocity_cfg);
     /*@ admit velocity_cfg(&velocity_cfg); */
     velocity = any_velocity();
-    (void)exh_velocity_window_mps_q27(&velocity, &velocity_cfg, any32());
+    (void)exh_velocity_window_step(&velocity, &velocity_cfg, any32());
     /*@ assert velocity_tick: velocity(&velocity); */
 }
 
@@ -76,9 +76,9 @@ static void law(void)
     ANY(par);
     /*@ admit contact_par(&par); */
     ANY(in);
-    touching = exh_contact_law(&s, &par, in, &f);
+    touching = exh_contact_step(&s, &par, in, &f);
     /*@ assert law: contact(&s) && law_ledger(&f) && bit(touching); */
-    exh_contact_free(&s, &par, in.pos_m_q30, &f);
+    exh_contact_step_free(&s, &par, in.pos_m_q30, &f);
     /*@ assert law_free: contact(&s) && law_ledger(&f); */
 }
 
@@ -94,7 +94,7 @@ static void rows(void)
     /*@ assert rows: contact_par(&par); */
 }
 
-/* As exh_table_set() lets them; these rise. */
+/* As exh_table_setup() lets them; these rise. */
 static void any_table(void)
 {
     for (unsigned k = 0; k < KNOTS; k++) {
@@ -129,9 +129,9 @@ static void drives(void)
     uint32_t bits;
     const int16_t mon_raw = (int16_t)Frama_C_interval(INT16_MIN, INT16_MAX);
     ANY(f);
-    bits = exh_drive_force(&s, &drive_cfg, &permit, &f);
+    bits = exh_drive_force_step(&s, &drive_cfg, &permit, &f);
     /*@ assert drive_force: drive(&s) && force(&f) && limits(bits); */
-    bits = exh_drive_current(&s, &drive_cfg, &f, &i);
+    bits = exh_drive_current_step(&s, &drive_cfg, &f, &i);
     /*@ assert drive_current: drive(&s) && limits(bits) && asked_current(&i); */
     (void)exh_drive_monitor_A_q26(&drive_cfg, mon_raw);
     (void)exh_drive_monitor_N_q20(&drive_cfg, any32());
@@ -153,35 +153,35 @@ static void passive(void)
     bits = exh_passivity_step(&s, &cfg, any32(), any32(), &f);
     /*@ assert passivity_step: passivity(&s) && limits(bits) && f.passivity_N_q20 <= 0; */
     f.force_N_q20 = any32();
-    exh_passivity_held(&s, &cfg, &f, any32());
+    exh_passivity_update(&s, &cfg, &f, any32());
     /*@ assert passivity_held: passivity(&s); */
     (void)exh_passivity_J_q24(&s, &cfg);
 }
 
 static void watched(void)
 {
-    static struct exh_track track;
-    static struct exh_track_cfg track_cfg;
-    static struct exh_watch watch;
-    static struct exh_watch_par watch_par;
-    static struct exh_watch_cfg watch_cfg;
+    static struct exh_tracking track;
+    static struct exh_tracking_cfg track_cfg;
+    static struct exh_motion watch;
+    static struct exh_motion_par watch_par;
+    static struct exh_motion_cfg watch_cfg;
     int32_t vel_mps_q27 = any32();
     uint32_t limits = Frama_C_unsigned_int_interval(0, (1u << EXH_LIMITS) - 1), bits;
     int off;
     ANY(track_cfg);
     ANY(track);
     /*@ admit track_cfg(&track_cfg); */
-    off = exh_track_step(&track, &track_cfg, any32());
+    off = exh_tracking_step(&track, &track_cfg, any32());
     /*@ assert track_step: bit(off); */
-    exh_track_coded(&track, any32());
+    exh_tracking_update(&track, any32());
     ANY(watch_cfg);
     ANY(watch_par);
     ANY(watch);
     /*@ admit watch_par(&watch_par); */
     watch_cfg.par = &watch_par;
-    bits = exh_watch_step(&watch, &watch_cfg, &vel_mps_q27, &limits);
+    bits = exh_motion_step(&watch, &watch_cfg, &vel_mps_q27, &limits);
     /*@ assert watch_step: speed(&vel_mps_q27) && limits(limits) && bits <= 192; */
-    exh_watch_coded(&watch, &watch_cfg, any32(), any32());
+    exh_motion_update(&watch, &watch_cfg, any32(), any32());
 }
 
 static struct exh_safety_cfg safety_cfg;
@@ -197,7 +197,7 @@ static void box(uint8_t fingers, uint8_t from, uint8_t to)
     s.state = (uint8_t)Frama_C_unsigned_int_interval(from, to);
     p = exh_safety_step(&s, &safety_cfg, in);
     /*@ assert safety_step: safety_after(&s) && s.fingers == fingers && permit(&p); */
-    (void)exh_safety_arm(&s);
+    (void)exh_safety_arm_step(&s);
 }
 
 static void boxes(void)

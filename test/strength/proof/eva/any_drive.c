@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: force and current
  * Force and current of a finger: any ledger, any permit of exh_safety_step(), any state that
- * exh_drive_bytes() lets pass; a table of three knots with any values that exh_table_set() lets.
+ * exh_drive_serialize() lets pass; a table of three knots with any values that exh_table_setup() lets.
  *
  * WP: closed: force 0. Open: no force rises above `f_max` or the end of the table. Release: falls in every tick until 0, by no
  * more than `fall` a tick. |current asked| <= `i_peak` for every state and force.
@@ -74,11 +74,11 @@ int main(void)
 {
     any_cfg();
     any_state();
-    (void)exh_drive_force(&s, &cfg, &permit, &f);
+    (void)exh_drive_force_step(&s, &cfg, &permit, &f);
     /*@ assert force_range: 0 <= f.force_N_q20 <= 104857600; */
     /*@ assert state_range: 0 <= s.force_N_q20 <= 104857600; */
     f.force_N_q20 = any32(); /* and of a force out of range none is made either */
-    (void)exh_drive_current(&s, &cfg, &f, &i);
+    (void)exh_drive_current_step(&s, &cfg, &f, &i);
     /*@ assert heat_range: s.i2t_q32 >= 0; */
     (void)exh_drive_monitor_A_q26(&cfg, (int16_t)Frama_C_interval(INT16_MIN, INT16_MAX));
     END();

@@ -35,12 +35,12 @@ static void each(enum exh_filter_kind kind, unsigned n, int32_t k)
     cfg.a = Frama_C_interval(k * eighth, k * eighth + (eighth - 1));
     cfg.kind = (uint8_t)kind;
     any_input();
-    for (unsigned i = 0; i < CHANNELS; i++) { FROM_BYTES(s[i], exh_filter_bytes); }
+    for (unsigned i = 0; i < CHANNELS; i++) { FROM_BYTES(s[i], exh_filter_serialize); }
     exh_filter_step(s, &cfg, x, y, n);
     any_input();
     exh_filter_step(s, &cfg, x, x, n); /* in place, from what the tick left */
     ANY(other);
-    exh_filter_retune(s, n, &cfg, &other);
+    exh_filter_retune(s, &cfg, &other, n);
 }
 
 int main(void)

@@ -32,9 +32,9 @@ static void step(void)
     /*@ assert foaw_n: 1 <= cfg.n <= 16; */
     ANY(cfg);
     for (unsigned i = 0; i < EXH_VELOCITY_N; i++) { ANY_GAIN(cfg.gain[i]); }
-    FROM_BYTES(s, exh_velocity_foaw_bytes);
+    FROM_BYTES(s, exh_velocity_foaw_serialize);
     /*@ assert foaw_read: s.at <= 16; */
-    (void)exh_velocity_foaw_mps_q27(&s, &cfg, any32());
+    (void)exh_velocity_foaw_step(&s, &cfg, any32());
     /*@ assert foaw_at: s.at <= 16; */
 }
 

@@ -40,12 +40,12 @@ int main(void)
         cfg[k].dac_A_q26.mant = Frama_C_interval(0, INT32_MAX);
         cfg[k].dac_A_q26.shift = (uint8_t)Frama_C_unsigned_int_interval(0, 62);
     }
-    exh_gate(&s, cfg, n, i, limits, &out);
+    exh_gate_step(&s, cfg, n, i, limits, &out);
     /*@ assert no_other_drive: out.enable == 0 || out.enable == (1 << n) - 1; */
     for (unsigned k = 0; k < EXH_FINGERS; k++) {
         limits[k] = Frama_C_unsigned_int_interval(0, (1u << EXH_LIMITS) - 1);
     }
-    exh_gate(&s, cfg, 1, i, limits, &out);
+    exh_gate_step(&s, cfg, 1, i, limits, &out);
     /*@ assert bits_of_limits: limits[0] < 1 << 11; */
     END();
     return 0;

@@ -26,7 +26,7 @@ static int filter_set_up(struct exh_filter_cfg *cfg);
 #include "any.h"
 
 /* Both prove elsewhere: eva/any_glove_cal.c and, for the coefficients that a set-up can make, test/module/prop. */
-int exh_glove_cal_valid(const struct exh_glove_cal *cal, struct exh_glove_bad *bad)
+int exh_glove_cal_validate(const struct exh_glove_cal *cal, struct exh_glove_error *bad)
 {
     (void)cal;
     (void)bad;
@@ -68,7 +68,7 @@ static void one_frame(uint8_t kind)
 {
     uint32_t faulty;
     any_cfg(kind);
-    FROM_BYTES(s, exh_glove_bytes);
+    FROM_BYTES(s, exh_glove_serialize);
     ANY(in);
     faulty = exh_glove_step(&s, &cfg, &in, angle_turn_q32);
     /*@ assert sensors: faulty < 4194304; */

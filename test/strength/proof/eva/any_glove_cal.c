@@ -16,13 +16,13 @@
 #define IMAGE_B EXH_GLOVE_CAL_IMAGE_B
 
 static struct exh_glove_cal cal;
-static struct exh_glove_bad bad;
+static struct exh_glove_error bad;
 static uint8_t image_B[IMAGE_B + 1], small_B[20];
 
 static void judged(void)
 {
     ANY(cal);
-    (void)exh_glove_cal_valid(&cal, &bad);
+    (void)exh_glove_cal_validate(&cal, &bad);
     (void)exh_glove_cal_check(&cal, any_u32(), any_u32(), any_u32(), &bad);
 }
 

@@ -20,10 +20,10 @@ static struct exh_hand_map map;
 
 static void checked(void)
 {
-    int ok = exh_hand_map_check(&exh_hit2_map);
+    int ok = exh_hand_map_validate(&exh_hit2_map);
     /*@ assert hit2_passes: ok == 0; */
     ANY(map);
-    ok = exh_hand_map_check(&map);
+    ok = exh_hand_map_validate(&map);
     (void)ok;
 }
 
@@ -53,7 +53,7 @@ static void finger(const struct exh_hand_map *of, unsigned at)
     /*@ assert three: limited <= 7; */
     f.pull_radpm_q20[0] = Frama_C_interval(-PULL_MAX_RADPM_Q20, PULL_MAX_RADPM_Q20);
     f.pull_radpm_q20[1] = Frama_C_interval(-PULL_MAX_RADPM_Q20, PULL_MAX_RADPM_Q20);
-    (void)exh_hand_follow(&f, of, at);
+    (void)exh_hand_couple(&f, of, at);
     /*@ assert pulls: -262144000 <= f.pull_radpm_q20[0] <= 262144000 && -262144000 <= f.pull_radpm_q20[1] <= 262144000; */
 }
 

@@ -21,9 +21,9 @@ static void laws(struct exh_force_ledger *f)
     par.f0_N_q20 = Frama_C_interval(0, 20 << 20);
     par.f0_band_m_q30 = Frama_C_interval(0, 10737418);
     par.hyst_m_q30 = Frama_C_interval(0, 10737418);
-    (void)exh_contact_law(&s, &par, in, f);
+    (void)exh_contact_step(&s, &par, in, f);
     /*@ assert law_is_finite: -(1 << 52) * 256 <= f->spring_N_q20 <= (1 << 52) * 256; */
-    exh_contact_free(&s, &par, in.pos_m_q30, f);
+    exh_contact_step_free(&s, &par, in.pos_m_q30, f);
     /*@ assert free_of_contact: f->spring_N_q20 == 0 && f->damper_N_q20 == 0 && s.touching == 0; */
 }
 

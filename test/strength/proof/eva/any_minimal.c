@@ -5,9 +5,9 @@
  *
  * EVA: -eva-slevel 40 -eva-split-return-function setup:0 -kernel-warn-key annot:missing-spec=abort
  * PLANT: examples/minimal/minimal.c: &now, 1, box); -> &now, 0, box);
- * PLANT: lib/include/exhand/axis.h: exh_gate(s, a->drive_cfg, 1, -> exh_gate(s, a->drive_cfg, 2,
+ * PLANT: lib/include/exhand/axis.h: exh_gate_step(s, a->drive_cfg, 1, -> exh_gate_step(s, a->drive_cfg, 2,
  * PLANT: examples/minimal/minimal.c: exh_axis_sense(&axis, &in->drive, 0); -> exh_axis_sense(&axis, &in->drive, 5);
- * PLANT: examples/minimal/minimal.c: exh_contact_law(&s.contact, &contact_par, q, &f); -> (void)q;
+ * PLANT: examples/minimal/minimal.c: exh_contact_step(&s.contact, &contact_par, q, &f); -> (void)q;
  * PLANT: examples/minimal/minimal.c: = {knot, 2}, no_table -> = {knot, 3}, no_table
  */
 #include "minimal/minimal.c"

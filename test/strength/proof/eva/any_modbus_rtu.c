@@ -42,13 +42,13 @@ int main(void)
 {
     (void)exh_modbus_rtu_setup(&u, any_u32(), any_u32());
     any_line(0, 0);
-    exh_modbus_rtu_byte(&u, any8());
+    exh_modbus_rtu_receive(&u, any8());
     /*@ assert length: u.len_B <= 257; */
-    (void)exh_modbus_rtu_pass(&u, any_u32());
+    (void)exh_modbus_rtu_poll(&u, any_u32());
     any_line(0, 0);
-    exh_modbus_rtu_bad(&u);
+    exh_modbus_rtu_discard(&u);
     /*@ assert length_of_bad: u.len_B <= 257; */
-    (void)exh_modbus_rtu_pass(&u, any_u32());
+    (void)exh_modbus_rtu_poll(&u, any_u32());
     any_line(0, 0);
     (void)exh_modbus_rtu_answer(&u, (struct exh_regs *)0, resp, sizeof resp);
     any_line(1, LEAST_B);

@@ -40,8 +40,8 @@ int main(void)
     text(exh_error_text(any32()));
     text(exh_glove_cause_text(any_u32()));
     text(exh_glove_sensor_text(any_u32()));
-    text(exh_glove_what_text(any_u32()));
-    text(exh_calib_what_text(any_u32()));
+    text(exh_glove_error_text(any_u32()));
+    text(exh_calib_error_text(any_u32()));
     END();
     return 0;
 }

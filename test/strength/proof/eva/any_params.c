@@ -41,7 +41,7 @@ uint32_t table_crc(const struct exh_signal_table *t)
 static void any_params(void)
 {
     any_rows();
-    exh_params_init(&p, &table, active, staged);
+    exh_params_setup(&p, &table, active, staged);
     /*@ assert counted: p.count == 8; */
     ANY(active);
     ANY(staged);
@@ -60,21 +60,21 @@ static void changes(void)
     const struct exh_tune_par tune = {any32()};
     const struct exh_period T = {any_u32(), any_u32()};
     any_params();
-    (void)exh_params_look(&p);
+    (void)exh_params_verify(&p);
     /*@ assert next: p.at < 8; */
     (void)exh_params_stage(&p, (uint16_t)any_u32(), (uint16_t)any_u32(), any32());
     (void)exh_params_stage_at(&p, Frama_C_unsigned_int_interval(TABLE_VALUES, UINT32_MAX), any32());
     for (uint32_t i = 0; i < TABLE_VALUES; i++) { (void)exh_params_stage_at(&p, i, any32()); }
-    exh_params_put(&p, Frama_C_unsigned_int_interval(0, TABLE_VALUES - 1), any32());
+    exh_params_set_active(&p, Frama_C_unsigned_int_interval(0, TABLE_VALUES - 1), any32());
     (void)exh_params_apply(&p);
-    exh_params_drop(&p);
+    exh_params_discard(&p);
     ANY(was);
-    exh_params_unstage(&p, was, any8());
-    exh_params_slew(&p, &tune, T);
+    exh_params_rollback(&p, was, any8());
+    exh_params_slew_setup(&p, &tune, T);
     /*@ assert shift: p.shift <= 15; */
     (void)exh_params_apply(&p);
     exh_params_seal(&p);
-    (void)exh_params_toward(any32(), any32(), Frama_C_unsigned_int_interval(0, 31));
+    (void)exh_params_slew_step(any32(), any32(), Frama_C_unsigned_int_interval(0, 31));
 }
 
 static void load(size_t len_B)
@@ -97,21 +97,21 @@ static void keyframe(void)
     static uint8_t frame_B[8 * TABLE_VALUES];
     struct exh_bytes c;
     any_params();
-    FROM_BYTES(p, exh_params_bytes);
+    FROM_BYTES(p, exh_params_serialize);
     c = exh_bytes_writer(frame_B, sizeof frame_B);
-    exh_params_bytes(&c, &p);
+    exh_params_serialize(&c, &p);
     c = exh_bytes_writer(frame_B, 7);
-    exh_params_bytes(&c, &p);
+    exh_params_serialize(&c, &p);
     ANY(frame_B);
     c = exh_bytes_reader(frame_B, 7);
-    exh_params_bytes(&c, &p);
+    exh_params_serialize(&c, &p);
 }
 
 int main(void)
 {
     static const struct exh_params zero;
     p = zero;
-    (void)exh_params_look(&p);
+    (void)exh_params_verify(&p);
     changes();
     load(IMAGE_B);
     load(IMAGE_B - 1);

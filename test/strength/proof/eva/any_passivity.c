@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: energy
- * Passivity of a finger: any state that exh_passivity_bytes() lets pass, any count, any ledger of a law, any
- * current; a table of three knots with any values that exh_table_set() lets.
+ * Passivity of a finger: any state that exh_passivity_serialize() lets pass, any count, any ledger of a law, any
+ * current; a table of three knots with any values that exh_table_setup() lets.
  *
  * PLANT: lib/src/law/passivity.c: = exh_clamp64(e, ENERGY_MAX_NCNT_Q20); -> = e;
  */
@@ -71,7 +71,7 @@ int main(void)
     /*@ assert only_takes: f.passivity_N_q20 <= 0; */
     /*@ assert energy_range: -1152921504606846976 <= s.energy_Ncnt_q20 <= 1152921504606846976; */
     f.force_N_q20 = any32();
-    exh_passivity_held(&s, &cfg, &f, any32());
+    exh_passivity_update(&s, &cfg, &f, any32());
     /*@ assert held_range: 0 <= s.held_N_q20; */
     /*@ assert late_range: 0 <= s.late_N_q20; */
     (void)exh_passivity_J_q24(&s, &cfg);

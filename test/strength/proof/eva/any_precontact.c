@@ -73,13 +73,13 @@ static void ticks(unsigned materials)
     /*@ assert rows: precontact_par(&par) && material(&material[2]); */
     ANY(par);
     /*@ admit precontact_par(&par); */
-    FROM_BYTES(s, exh_precontact_bytes);
+    FROM_BYTES(s, exh_precontact_serialize);
     /*@ assert read: precontact(&s); */
     s = any_precontact();
     ANY(plane);
-    (void)exh_precontact_tell(&s, &cfg, &plane, any_u32());
+    (void)exh_precontact_update(&s, &cfg, &plane, any_u32());
     /*@ assert told: precontact(&s); */
-    exh_precontact_skip(&s, any_u32());
+    exh_precontact_advance(&s, any_u32());
     /*@ assert skipped: precontact(&s); */
     ANY(in);
     bits = exh_precontact_step(&s, &cfg, &in);

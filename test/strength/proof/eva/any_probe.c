@@ -111,7 +111,7 @@ static void weighs(uint8_t phase)
     result = exh_weigh_step(&weigh, &weigh_cfg, any32(), any32(), any32());
     /*@ assert weighs: result < 7 && 0 <= weigh.cur_A_q26 <= 221459251 && weigh.phase <= 3; */
     (void)exh_weigh_point(&weigh, any32());
-    (void)exh_probe_text(any_u32());
+    (void)exh_probe_result_text(any_u32());
 }
 
 int main(void)

@@ -25,7 +25,7 @@ static uint8_t ab[SAMPLES];
 static void run(size_t n)
 {
     static struct exh_quad_ab s;
-    FROM_BYTES(s, exh_quad_ab_bytes);
+    FROM_BYTES(s, exh_quad_ab_serialize);
     exh_quad_ab_run(&s, &mode, ab, n);
     /*@ assert place_after_run: s.ab <= 3; */
 }
@@ -35,7 +35,7 @@ static void lines(void)
     static struct exh_quad_ab s;
     ANY(mode);
     ANY(ab);
-    FROM_BYTES(s, exh_quad_ab_bytes);
+    FROM_BYTES(s, exh_quad_ab_serialize);
     exh_quad_ab_step(&s, &mode, any_u32());
     /*@ assert place_after_step: s.ab <= 3; */
     exh_quad_ab_word(&s, any_u64(), any_u64());
@@ -48,7 +48,7 @@ static void lines(void)
 static void mark(void)
 {
     static struct exh_quad_index s;
-    FROM_BYTES(s, exh_quad_index_bytes);
+    FROM_BYTES(s, exh_quad_index_serialize);
     exh_quad_index_step(&s, any32(), any_u32());
     /*@ assert level: s.level <= 1; */
 }
@@ -63,8 +63,8 @@ static void counter(void)
     if (exh_quad_setup(&cfg, &par, T, any_u32()) < 0) { return; }
     /*@ assert no_more_than_a_quarter: cfg.jump_cnt < 1 << 30; */
     /*@ assert width: cfg.unused <= 16; */
-    FROM_BYTES(s, exh_quad_bytes);
-    (void)exh_quad_extend(&s, &cfg, any_u32());
+    FROM_BYTES(s, exh_quad_serialize);
+    (void)exh_quad_step(&s, &cfg, any_u32());
     par.step_m_q42 = any32();
     (void)exh_quad_pos_m_q30(&par, any32());
 }

@@ -20,7 +20,7 @@ int main(void)
     if (exh_quantizer_setup(&cfg, &par) == 0) {
         /*@ assert half_a_code: 128 / 2 <= cfg.half <= 1 << 30; */
         /*@ assert kept: cfg.keep <= 1 << 31; */
-        FROM_BYTES(s, exh_quantizer_bytes);
+        FROM_BYTES(s, exh_quantizer_serialize);
         (void)exh_quantizer_step(&s, &cfg, any32());
         END();
     }

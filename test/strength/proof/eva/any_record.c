@@ -26,7 +26,7 @@ static void read(uint32_t len_B)
     static struct exh_record r;
     int32_t n;
     ANY(bytes_B);
-    n = exh_record_read(bytes_B + (MAX_B - len_B), len_B, &r);
+    n = exh_record_decode(bytes_B + (MAX_B - len_B), len_B, &r);
     if (n >= 0) {
         /*@ assert all_there: 18 <= n <= len_B; */
         if (r.len_B > 0) {
@@ -40,8 +40,8 @@ static void through(struct exh_bytes c)
 {
     uint32_t n;
     c.at = any_u32();
-    exh_record_header_bytes(&c, &header);
-    exh_event_bytes(&c, &event);
+    exh_record_header_serialize(&c, &header);
+    exh_event_serialize(&c, &event);
     exh_record_begin(&c, any8(), any_u32(), any_u32());
     c.at = any_u32();
     n = exh_record_end(&c);

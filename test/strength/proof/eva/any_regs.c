@@ -16,11 +16,11 @@
  */
 #include "num/bytes.c"
 #include "num/fix.c"
-#define exh_signal_crc table_crc /* its proof is any_signal.c */
-#define exh_float_of   any_float /* below */
+#define exh_signal_crc     table_crc /* its proof is any_signal.c */
+#define exh_float_from_raw any_float /* below */
 #include "talk/regs.c"
 #undef exh_signal_crc
-#undef exh_float_of
+#undef exh_float_from_raw
 #include "talk/regs_float.c"
 #define head_of head_of_trace
 #include "talk/regs_trace.c"
@@ -128,8 +128,8 @@ static void bits(enum exh_regs_kind kind, uint16_t n)
 static void floats(void)
 {
     int32_t raw;
-    (void)exh_float_of(any32(), Frama_C_unsigned_int_interval(0, 126));
-    (void)exh_float_raw(any_u32(), Frama_C_unsigned_int_interval(0, 126), &raw);
+    (void)exh_float_from_raw(any32(), Frama_C_unsigned_int_interval(0, 126));
+    (void)exh_float_to_raw(any_u32(), Frama_C_unsigned_int_interval(0, 126), &raw);
 }
 
 int main(void)
@@ -144,7 +144,7 @@ int main(void)
     }
     floats();
     ANY(box);
-    exh_regs_see(&r, &box, any_u32());
+    exh_regs_update(&r, &box, any_u32());
     END();
     return 0;
 }

@@ -4,7 +4,7 @@
  * two frames with anything in them, staged or commanded: one register, two, all, and one more, of any bytes. Any coils; what
  * is staged handed on, forgotten, taken; commands of anything. A value never leaves the table's own range.
  *
- * EVA: -eva-slevel 100 -eva-slevel-function block:1000 -eva-slevel-merge-after-loop exh_regs_judge,exh_regs_write -eva-split-return-function judge:0,written:0,from_float:0
+ * EVA: -eva-slevel 100 -eva-slevel-function block:1000 -eva-slevel-merge-after-loop exh_regs_validate,exh_regs_write -eva-split-return-function judge:0,written:0,from_float:0
  * PLANT: lib/src/talk/regs_stage.c: if ((uint32_t)at + n > EXH_COILS) { return EXH_MODBUS_ADDRESS; } -> (void)0;
  * PLANT: lib/src/talk/regs_stage.c: r->touched[i >> 5] &= ~bit; -> r->touched[i >> 2] &= ~bit;
  * PLANT: lib/src/talk/regs_stage.c: const int high = 2 * i >= s->from, low = 2 * i + 1 < s->end; -> const int high = 2 * i >= s->from, low = 1;
@@ -14,12 +14,12 @@
  */
 #include "num/bytes.c"
 #include "num/fix.c"
-#define exh_float_of  any_float /* any_regs.c has them */
-#define exh_float_raw any_raw
+#define exh_float_from_raw any_float /* any_regs.c has them */
+#define exh_float_to_raw   any_raw
 #include "talk/regs.c"
 #include "talk/regs_stage.c"
-#undef exh_float_of
-#undef exh_float_raw
+#undef exh_float_from_raw
+#undef exh_float_to_raw
 #define head_of head_of_trace
 #include "talk/regs_trace.c"
 #undef head_of
@@ -52,7 +52,7 @@ int any_raw(uint32_t bits, unsigned frac, int32_t *raw)
     return 0;
 }
 
-int exh_params_may(const struct exh_params *of, uint32_t i, int32_t raw)
+int exh_params_validate(const struct exh_params *of, uint32_t i, int32_t raw)
 {
     /*@ assert a_value: i < 8; */
     /*@ assert in_range: -1000 <= raw <= 2000; */
@@ -62,7 +62,7 @@ int exh_params_may(const struct exh_params *of, uint32_t i, int32_t raw)
 
 int exh_params_stage_at(struct exh_params *of, uint32_t i, int32_t raw)
 {
-    return exh_params_may(of, i, raw);
+    return exh_params_validate(of, i, raw);
 }
 
 static void any_staged(void)
@@ -112,8 +112,8 @@ int main(void)
     block(EXH_REGS_PARAM_FLOAT_AT, REGISTERS);
     for (uint16_t n = 0; n <= EXH_COILS + 1; n++) { coils(n); }
     any_staged();
-    (void)exh_regs_command(exh_regs_take(&r));
-    exh_regs_forget(&r);
+    (void)exh_regs_command(exh_regs_poll(&r));
+    exh_regs_discard(&r);
     END();
     return 0;
 }

@@ -27,9 +27,9 @@
 #include "act/gate.c"
 #include "safe/safety.c"
 #include "safe/safety_open.c"
-#include "act/track.c"
+#include "act/tracking.c"
 #undef CUR_MIN_A_Q26
-#include "safe/watch.c"
+#include "safe/motion.c"
 
 #include "contract.h"
 
@@ -42,7 +42,7 @@ static struct exh_drive_cfg cfg;
 static void tables(unsigned n)
 {
     ANY(knot);
-    (void)exh_table_set(knot, n);
+    (void)exh_table_setup(knot, n);
     if (n > KNOTS) { return; } /* these are all there */
     ANY(knot);
     (void)exh_table_invert(inverse, knot, n);
@@ -93,11 +93,11 @@ static void passivity(struct exh_period T)
 static void rest(struct exh_period T)
 {
     static struct exh_safety_cfg safety;
-    static struct exh_track_cfg track;
+    static struct exh_tracking_cfg track;
     struct exh_safety_par safety_par;
-    struct exh_track_par track_par;
-    struct exh_watch_par watch_par;
-    struct exh_watch_cfg watch;
+    struct exh_tracking_par track_par;
+    struct exh_motion_par watch_par;
+    struct exh_motion_cfg watch;
     ANY(safety_par);
     ANY(track_par);
     ANY(watch_par);
@@ -110,11 +110,11 @@ static void rest(struct exh_period T)
     }
     /*@ assert release: 3 <= safety.release_ticks <= 1023 && 2 <= safety.arm_ticks <= 65536; */
     /*@ assert ramp: 1 <= safety.ramp_q30 <= 1 << 30; */
-    if (exh_track_setup(&track, &track_par, T) == 0) {
+    if (exh_tracking_setup(&track, &track_par, T) == 0) {
         /*@ assert track_taken: track_cfg(&track); */
     }
     /*@ assert track: 5 <= track.ticks <= 4100; */
-    if (exh_watch_setup(&watch, &watch_par, T) == 0) {
+    if (exh_motion_setup(&watch, &watch_par, T) == 0) {
         /*@ assert watch_taken: watch_cfg(&watch); */
     }
 }
@@ -125,19 +125,19 @@ static void states(void)
     static struct exh_drive drives;
     static struct exh_passivity passive;
     static struct exh_safety safety;
-    static struct exh_track track;
-    static struct exh_watch watch;
-    FROM_BYTES(contact, exh_contact_bytes);
+    static struct exh_tracking track;
+    static struct exh_motion watch;
+    FROM_BYTES(contact, exh_contact_serialize);
     /*@ assert factors: contact(&contact); */
-    FROM_BYTES(drives, exh_drive_bytes);
+    FROM_BYTES(drives, exh_drive_serialize);
     /*@ assert force: drive(&drives); */
-    FROM_BYTES(passive, exh_passivity_bytes);
+    FROM_BYTES(passive, exh_passivity_serialize);
     /*@ assert energy: passivity(&passive); */
-    FROM_BYTES(safety, exh_safety_bytes);
+    FROM_BYTES(safety, exh_safety_serialize);
     /*@ assert share: safety(&safety); */
-    (void)exh_safety_arm(&safety);
-    FROM_BYTES(track, exh_track_bytes);
-    FROM_BYTES(watch, exh_watch_bytes);
+    (void)exh_safety_arm_step(&safety);
+    FROM_BYTES(track, exh_tracking_serialize);
+    FROM_BYTES(watch, exh_motion_serialize);
 }
 
 static void frames(void)
@@ -151,8 +151,8 @@ static void frames(void)
         c = exh_bytes_reader(frame_B, Frama_C_unsigned_int_interval(0, sizeof frame_B));
         ANY(in);
         ANY(out);
-        exh_drive_in_bytes(&c, &in, n);
-        exh_drive_out_bytes(&c, &out, n);
+        exh_drive_in_serialize(&c, &in, n);
+        exh_drive_out_serialize(&c, &out, n);
     }
 }
 

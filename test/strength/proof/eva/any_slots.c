@@ -25,11 +25,11 @@ static void read(size_t slot_B)
     struct exh_slot is;
     ANY(first);
     ANY(second);
-    if (exh_slot_read(&is, first + (SLOT_MAX_B - slot_B), slot_B) == 0 && is.len_B > 0) {
+    if (exh_slot_decode(&is, first + (SLOT_MAX_B - slot_B), slot_B) == 0 && is.len_B > 0) {
         const uint8_t last = is.image[is.len_B - 1];
         (void)last;
     }
-    if (exh_slots_pick(&is, first + (SLOT_MAX_B - slot_B), second + (SLOT_MAX_B - slot_B),
+    if (exh_slots_find(&is, first + (SLOT_MAX_B - slot_B), second + (SLOT_MAX_B - slot_B),
                        slot_B) >= 0) {
         /*@ assert sequence: 1 <= is.sequence <= 0xFFFFFFFE; */
     }
@@ -42,8 +42,8 @@ static void image_next(size_t slot_B, size_t cap_B, size_t image_B)
     ANY(first);
     ANY(second);
     ANY(buf);
-    n = exh_slots_next(&to, first + (SLOT_MAX_B - slot_B), second + (SLOT_MAX_B - slot_B), slot_B,
-                       buf + (SLOT_MAX_B - cap_B), cap_B, image_B);
+    n = exh_slots_encode(&to, first + (SLOT_MAX_B - slot_B), second + (SLOT_MAX_B - slot_B), slot_B,
+                         buf + (SLOT_MAX_B - cap_B), cap_B, image_B);
     /*@ assert what_fits: n <= 40; */
     /*@ assert a_slot: to <= 1; */
 }

@@ -24,7 +24,7 @@ static struct exh_gains_par rule;
 static void any_params(void)
 {
     any_rows();
-    exh_params_init(&p, &table, active, staged);
+    exh_params_setup(&p, &table, active, staged);
     ANY(active);
     ANY(staged);
     p.locked = any8();
@@ -62,12 +62,12 @@ int main(void)
     any_rule();
     any_params();
     (void)exh_gains_stage(&p, &rule, (uint16_t)any_u32(), (uint16_t)any_u32(), any32());
-    (void)exh_gains_staged(&p, &rule, &instance);
-    (void)exh_gains_staged(&p, &rule, NULL);
-    exh_gains_lead(&p, any32());
+    (void)exh_gains_validate(&p, &rule, &instance);
+    (void)exh_gains_validate(&p, &rule, NULL);
+    exh_gains_enable(&p, any32());
     any_pairs();
     exh_gains_step(&p, &rule);
-    exh_params_drop(&p);
+    exh_params_discard(&p);
     END();
     return 0;
 }

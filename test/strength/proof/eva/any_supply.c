@@ -29,7 +29,7 @@ int main(void)
     set_up(0, 0);
     set_up(1, UINT32_MAX);
     ANY(cfg);
-    FROM_BYTES(s, exh_supply_bytes);
+    FROM_BYTES(s, exh_supply_serialize);
     off = exh_supply_step(&s, &cfg, (int16_t)Frama_C_interval(INT16_MIN, INT16_MAX), any_u32());
     /*@ assert says: off == 0 || off == 1; */
     END();

@@ -29,27 +29,27 @@ static struct exh_trace_frame *of(struct exh_trace_frame *all, uint32_t frames)
 static void any_trace(struct exh_trace *t, struct exh_trace_frame *frame, uint32_t frames)
 {
     (void)exh_trace_setup(t, of(frame, frames), frames, SIGNALS);
-    FROM_BYTES(*t, exh_trace_bytes);
+    FROM_BYTES(*t, exh_trace_serialize);
     /*@ assert signals: t->what.index[0] < 5 && t->what.index[1] < 5 && t->what.index[2] < 5 && t->what.index[3] < 5; */
 }
 
 static void traced(uint32_t frames)
 {
-    struct exh_trace_what what;
+    struct exh_trace_request what;
     int32_t signal[SIGNALS];
     static uint8_t image_B[64];
     struct exh_bytes c = exh_bytes_writer(image_B, sizeof image_B);
     any_trace(&own, own_frame, frames);
     ANY(signal);
-    exh_trace_tick(&own, any_u32(), signal);
-    exh_trace_bytes(&c, &own);
+    exh_trace_step(&own, any_u32(), signal);
+    exh_trace_serialize(&c, &own);
     ANY(what);
     (void)exh_trace_start(&own, &what);
-    exh_trace_tick(&own, any_u32(), signal);
+    exh_trace_step(&own, any_u32(), signal);
     any_trace(&own, own_frame, frames);
     any_trace(&shown, shown_frame, frames);
-    exh_trace_pass(&own, &shown);
-    exh_trace_tick(&own, any_u32(), signal);
+    exh_trace_copy(&own, &shown);
+    exh_trace_step(&own, any_u32(), signal);
 }
 
 int main(void)

@@ -31,8 +31,8 @@ static void window(void)
     const struct exh_velocity_par par = {any32()};
     if (exh_velocity_window_setup(&cfg, any_scale(), &par) < 0) { return; }
     cfg.n = any8(); /* damaged: no index leaves the window */
-    FROM_BYTES(s, exh_velocity_window_bytes);
-    (void)exh_velocity_window_mps_q27(&s, &cfg, any32());
+    FROM_BYTES(s, exh_velocity_window_serialize);
+    (void)exh_velocity_window_step(&s, &cfg, any32());
     /*@ assert window_at: s.at < 16; */
 }
 
@@ -42,11 +42,11 @@ static void pole(void)
     static struct exh_velocity_pole_cfg cfg;
     if (exh_velocity_pole_setup(&cfg, any_scale(), any_u32()) < 0) { return; }
     /*@ assert pole_share: 1 <= cfg.a_q31; */
-    FROM_BYTES(s, exh_velocity_pole_bytes);
+    FROM_BYTES(s, exh_velocity_pole_serialize);
     /*@ assert pole_read: -(16 << 27) * (1 << 28) <= s.v_mps_q55 <= (16 << 27) * (1 << 28); */
-    (void)exh_velocity_pole_mps_q27(&s, &cfg, any32());
+    (void)exh_velocity_pole_step(&s, &cfg, any32());
     s.v_mps_q55 = any64();
-    (void)exh_velocity_pole_mps_q27(&s, &cfg, any32());
+    (void)exh_velocity_pole_step(&s, &cfg, any32());
 }
 
 static void track(void)
@@ -55,11 +55,11 @@ static void track(void)
     static struct exh_velocity_track_cfg cfg;
     if (exh_velocity_track_setup(&cfg, any_scale(), any_u32()) < 0) { return; }
     /*@ assert track_shares: 0 <= cfg.beta_q31 && 1 <= cfg.alpha_q31; */
-    FROM_BYTES(s, exh_velocity_track_bytes);
-    (void)exh_velocity_track_mps_q27(&s, &cfg, any32());
+    FROM_BYTES(s, exh_velocity_track_serialize);
+    (void)exh_velocity_track_step(&s, &cfg, any32());
     /* And from four times as far off as bytes leave, which a tick does not leave again. */
     s.err_cnt_q32 = Frama_C_long_long_interval(-4 * TRACK_MAX_CNT_Q32, 4 * TRACK_MAX_CNT_Q32);
-    (void)exh_velocity_track_mps_q27(&s, &cfg, any32());
+    (void)exh_velocity_track_step(&s, &cfg, any32());
     /*@ assert track_err: -(1 << 60) * 4 <= s.err_cnt_q32 <= (1 << 60) * 4; */
     /*@ assert track_vel: -(1 << 60) <= s.vel_cnt_q32 <= 1 << 60; */
 }

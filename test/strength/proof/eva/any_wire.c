@@ -28,11 +28,11 @@ static uint8_t buf[EXH_WIRE_MAX_B];
 static void receive(uint32_t least_B, uint32_t most_B)
 {
     const uint32_t len_B = Frama_C_unsigned_int_interval(least_B, most_B);
-    FROM_BYTES(rx, exh_wire_rx_bytes);
+    FROM_BYTES(rx, exh_wire_rx_serialize);
     /*@ assert open: rx.open <= 1; */
     ANY(buf);
-    (void)exh_wire_take(&rx, &p, buf + (sizeof buf - most_B), len_B);
-    (void)exh_wire_pass(&rx, any_u32(), any_u32());
+    (void)exh_wire_decode(&rx, &p, buf + (sizeof buf - most_B), len_B);
+    (void)exh_wire_poll(&rx, any_u32(), any_u32());
     /*@ assert open_after: rx.open <= 1; */
 }
 
@@ -40,10 +40,10 @@ static void send(uint8_t type, uint32_t least_B, uint32_t most_B)
 {
     const uint32_t cap_B = Frama_C_unsigned_int_interval(least_B, most_B);
     int32_t n;
-    FROM_BYTES(tx, exh_wire_tx_bytes);
+    FROM_BYTES(tx, exh_wire_tx_serialize);
     ANY(p);
     p.type = type;
-    n = exh_wire_write(&tx, &p, any_u32(), buf + (sizeof buf - most_B), cap_B);
+    n = exh_wire_encode(&tx, &p, any_u32(), buf + (sizeof buf - most_B), cap_B);
     /*@ assert no_more_than_fits: n <= 256; */
 }
 
@@ -53,14 +53,14 @@ static void use(void)
     static int32_t active[TABLE_VALUES], staged[TABLE_VALUES];
     struct exh_wire_hello ours, theirs;
     any_rows();
-    exh_params_init(&params, &table, active, staged);
+    exh_params_setup(&params, &table, active, staged);
     ANY(p);
     (void)exh_wire_stage(&params, &p);
     (void)exh_wire_plane_of(&p.u.planes, Frama_C_unsigned_int_interval(0, EXH_FINGERS - 1));
     ANY(ours);
     ANY(theirs);
-    (void)exh_wire_differs(&ours, &theirs);
-    (void)exh_wire_trip_us(any_u32(), &p.u.planes);
+    (void)exh_wire_compare(&ours, &theirs);
+    (void)exh_wire_round_trip_us(any_u32(), &p.u.planes);
     (void)exh_wire_trace_missed(any_u32(), &p.u.trace);
 }
 

@@ -40,7 +40,7 @@ int exh_quad_setup(struct exh_quad_cfg *cfg, const struct exh_quad_par *par, str
     return 0;
 }
 
-int32_t exh_quad_extend(struct exh_quad *s, const struct exh_quad_cfg *cfg, uint32_t raw)
+int32_t exh_quad_step(struct exh_quad *s, const struct exh_quad_cfg *cfg, uint32_t raw)
 {
     (void)raw;
     /*@ assert quad_extend: quad_cfg(cfg); */
@@ -55,7 +55,7 @@ int32_t exh_quad_pos_m_q30(const struct exh_quad_par *par, int32_t cnt)
     return any32();
 }
 
-void exh_quad_bytes(struct exh_bytes *c, struct exh_quad *s)
+void exh_quad_serialize(struct exh_bytes *c, struct exh_quad *s)
 {
     (void)c;
     ANY(*s);
@@ -74,8 +74,8 @@ int exh_velocity_window_setup(struct exh_velocity_window_cfg *cfg, struct exh_ve
     return 0;
 }
 
-int32_t exh_velocity_window_mps_q27(struct exh_velocity_window *s,
-                                    const struct exh_velocity_window_cfg *cfg, int32_t cnt)
+int32_t exh_velocity_window_step(struct exh_velocity_window *s,
+                                 const struct exh_velocity_window_cfg *cfg, int32_t cnt)
 {
     (void)cnt;
     /*@ assert velocity_tick: velocity(s) && velocity_cfg(cfg); */
@@ -83,7 +83,7 @@ int32_t exh_velocity_window_mps_q27(struct exh_velocity_window *s,
     return any32();
 }
 
-void exh_velocity_window_bytes(struct exh_bytes *c, struct exh_velocity_window *s)
+void exh_velocity_window_serialize(struct exh_bytes *c, struct exh_velocity_window *s)
 {
     (void)c;
     *s = any_velocity();
@@ -91,8 +91,8 @@ void exh_velocity_window_bytes(struct exh_bytes *c, struct exh_velocity_window *
 
 /* --- law and force --- */
 
-int exh_contact_law(struct exh_contact *s, const struct exh_contact_par *par,
-                    struct exh_contact_in in, struct exh_force_ledger *f)
+int exh_contact_step(struct exh_contact *s, const struct exh_contact_par *par,
+                     struct exh_contact_in in, struct exh_force_ledger *f)
 {
     (void)in;
     /*@ assert law: contact(s) && contact_par(par); */
@@ -101,8 +101,8 @@ int exh_contact_law(struct exh_contact *s, const struct exh_contact_par *par,
     return any8() & 1;
 }
 
-void exh_contact_free(struct exh_contact *s, const struct exh_contact_par *par, int32_t pos_m_q30,
-                      struct exh_force_ledger *f)
+void exh_contact_step_free(struct exh_contact *s, const struct exh_contact_par *par,
+                           int32_t pos_m_q30, struct exh_force_ledger *f)
 {
     (void)pos_m_q30;
     /*@ assert law_free: contact(s) && contact_par(par); */
@@ -110,13 +110,13 @@ void exh_contact_free(struct exh_contact *s, const struct exh_contact_par *par, 
     *f = any_law_ledger();
 }
 
-void exh_contact_bytes(struct exh_bytes *c, struct exh_contact *s)
+void exh_contact_serialize(struct exh_bytes *c, struct exh_contact *s)
 {
     (void)c;
     *s = any_contact();
 }
 
-int exh_table_set(struct exh_knot *knot, unsigned n)
+int exh_table_setup(struct exh_knot *knot, unsigned n)
 {
     /*@ assert table_set: \valid(knot + (0 .. n - 1)); */
     for (unsigned k = 0; k < n; k++) { knot[k].slope = any_gain(); }
@@ -140,8 +140,8 @@ int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par, 
     return 0;
 }
 
-uint32_t exh_drive_force(struct exh_drive *s, const struct exh_drive_cfg *cfg,
-                         const struct exh_permit *p, struct exh_force_ledger *f)
+uint32_t exh_drive_force_step(struct exh_drive *s, const struct exh_drive_cfg *cfg,
+                              const struct exh_permit *p, struct exh_force_ledger *f)
 {
     struct exh_force_ledger out = *f;
     /*@ assert drive_force: drive(s) && drive_cfg(cfg) && permit(p) && asked(f); */
@@ -154,8 +154,8 @@ uint32_t exh_drive_force(struct exh_drive *s, const struct exh_drive_cfg *cfg,
     return any_limits();
 }
 
-uint32_t exh_drive_current(struct exh_drive *s, const struct exh_drive_cfg *cfg,
-                           const struct exh_force_ledger *f, struct exh_current_ledger *i)
+uint32_t exh_drive_current_step(struct exh_drive *s, const struct exh_drive_cfg *cfg,
+                                const struct exh_force_ledger *f, struct exh_current_ledger *i)
 {
     /*@ assert drive_current: drive(s) && drive_cfg(cfg) && force(f); */
     *s = any_drive();
@@ -177,7 +177,7 @@ int32_t exh_drive_monitor_N_q20(const struct exh_drive_cfg *cfg, int32_t mon_A_q
     return any32();
 }
 
-void exh_drive_bytes(struct exh_bytes *c, struct exh_drive *s)
+void exh_drive_serialize(struct exh_bytes *c, struct exh_drive *s)
 {
     (void)c;
     *s = any_drive();
@@ -221,8 +221,8 @@ uint32_t exh_passivity_step(struct exh_passivity *s, const struct exh_passivity_
     return any_limits();
 }
 
-void exh_passivity_held(struct exh_passivity *s, const struct exh_passivity_cfg *cfg,
-                        const struct exh_force_ledger *f, int32_t coded_A_q26)
+void exh_passivity_update(struct exh_passivity *s, const struct exh_passivity_cfg *cfg,
+                          const struct exh_force_ledger *f, int32_t coded_A_q26)
 {
     (void)coded_A_q26;
     /*@ assert passivity_held: passivity(s) && passivity_cfg(cfg) && pullback(f) && \initialized(&f->force_N_q20); */
@@ -235,7 +235,7 @@ int32_t exh_passivity_J_q24(const struct exh_passivity *s, const struct exh_pass
     return any32();
 }
 
-void exh_passivity_bytes(struct exh_bytes *c, struct exh_passivity *s)
+void exh_passivity_serialize(struct exh_bytes *c, struct exh_passivity *s)
 {
     (void)c;
     *s = any_passivity();
@@ -243,9 +243,10 @@ void exh_passivity_bytes(struct exh_bytes *c, struct exh_passivity *s)
 
 /* --- what watches --- */
 
-int exh_watch_setup(struct exh_watch_cfg *cfg, const struct exh_watch_par *par, struct exh_period T)
+int exh_motion_setup(struct exh_motion_cfg *cfg, const struct exh_motion_par *par,
+                     struct exh_period T)
 {
-    struct exh_watch_cfg made;
+    struct exh_motion_cfg made;
     (void)T;
     /*@ assert watch_setup: \valid_read(par); */
     if (REFUSED()) { return -EXH_E_RANGE; }
@@ -256,8 +257,8 @@ int exh_watch_setup(struct exh_watch_cfg *cfg, const struct exh_watch_par *par, 
     return 0;
 }
 
-uint32_t exh_watch_step(struct exh_watch *s, const struct exh_watch_cfg *cfg, int32_t *vel_mps_q27,
-                        uint32_t *limits)
+uint32_t exh_motion_step(struct exh_motion *s, const struct exh_motion_cfg *cfg,
+                         int32_t *vel_mps_q27, uint32_t *limits)
 {
     /*@ assert watch_step: watch_cfg(cfg) && limits(*limits) && \initialized(vel_mps_q27); */
     ANY(*s);
@@ -266,8 +267,8 @@ uint32_t exh_watch_step(struct exh_watch *s, const struct exh_watch_cfg *cfg, in
     return Frama_C_unsigned_int_interval(0, EXH_FAULT_SPEED | EXH_FAULT_STUCK);
 }
 
-void exh_watch_coded(struct exh_watch *s, const struct exh_watch_cfg *cfg, int32_t cnt,
-                     int32_t coded_A_q26)
+void exh_motion_update(struct exh_motion *s, const struct exh_motion_cfg *cfg, int32_t cnt,
+                       int32_t coded_A_q26)
 {
     (void)cnt;
     (void)coded_A_q26;
@@ -275,7 +276,7 @@ void exh_watch_coded(struct exh_watch *s, const struct exh_watch_cfg *cfg, int32
     ANY(*s);
 }
 
-void exh_watch_bytes(struct exh_bytes *c, struct exh_watch *s)
+void exh_motion_serialize(struct exh_bytes *c, struct exh_motion *s)
 {
     (void)c;
     ANY(*s);
@@ -300,15 +301,16 @@ int exh_supply_step(struct exh_supply *s, const struct exh_supply_cfg *cfg, int1
     return any8() & 1;
 }
 
-void exh_supply_bytes(struct exh_bytes *c, struct exh_supply *s)
+void exh_supply_serialize(struct exh_bytes *c, struct exh_supply *s)
 {
     (void)c;
     ANY(*s);
 }
 
-int exh_track_setup(struct exh_track_cfg *cfg, const struct exh_track_par *par, struct exh_period T)
+int exh_tracking_setup(struct exh_tracking_cfg *cfg, const struct exh_tracking_par *par,
+                       struct exh_period T)
 {
-    struct exh_track_cfg made;
+    struct exh_tracking_cfg made;
     (void)T;
     /*@ assert track_setup: \valid_read(par); */
     if (REFUSED()) { return -EXH_E_RANGE; }
@@ -318,7 +320,7 @@ int exh_track_setup(struct exh_track_cfg *cfg, const struct exh_track_par *par, 
     return 0;
 }
 
-int exh_track_step(struct exh_track *s, const struct exh_track_cfg *cfg, int32_t mon_A_q26)
+int exh_tracking_step(struct exh_tracking *s, const struct exh_tracking_cfg *cfg, int32_t mon_A_q26)
 {
     (void)mon_A_q26;
     /*@ assert track_step: track_cfg(cfg); */
@@ -326,13 +328,13 @@ int exh_track_step(struct exh_track *s, const struct exh_track_cfg *cfg, int32_t
     return any8() & 1;
 }
 
-void exh_track_coded(struct exh_track *s, int32_t coded_A_q26)
+void exh_tracking_update(struct exh_tracking *s, int32_t coded_A_q26)
 {
     (void)coded_A_q26;
     ANY(*s);
 }
 
-void exh_track_bytes(struct exh_bytes *c, struct exh_track *s)
+void exh_tracking_serialize(struct exh_bytes *c, struct exh_tracking *s)
 {
     (void)c;
     ANY(*s);
@@ -362,14 +364,14 @@ struct exh_permit exh_safety_step(struct exh_safety *s, const struct exh_safety_
     return any_permit();
 }
 
-uint8_t exh_safety_arm(const struct exh_safety *s)
+uint8_t exh_safety_arm_step(const struct exh_safety *s)
 {
     /*@ assert safety_arm: \valid_read(s); */
     return any8();
 }
 
-void exh_gate(struct exh_safety *s, const struct exh_drive_cfg *cfg, unsigned n,
-              struct exh_current_ledger *i, uint32_t *limits, struct exh_drive_out *out)
+void exh_gate_step(struct exh_safety *s, const struct exh_drive_cfg *cfg, unsigned n,
+                   struct exh_current_ledger *i, uint32_t *limits, struct exh_drive_out *out)
 {
     /*@ assert gate_fingers: 1 <= n <= 5 && n <= s->fingers; */
     for (unsigned k = 0; k < n; k++) {
@@ -384,7 +386,7 @@ void exh_gate(struct exh_safety *s, const struct exh_drive_cfg *cfg, unsigned n,
     ANY(s->off_raw);
 }
 
-void exh_safety_bytes(struct exh_bytes *c, struct exh_safety *s)
+void exh_safety_serialize(struct exh_bytes *c, struct exh_safety *s)
 {
     (void)c;
     *s = any_safety();

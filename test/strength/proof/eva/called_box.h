@@ -46,7 +46,7 @@ uint32_t exh_glove_step(struct exh_glove *s, const struct exh_glove_cfg *cfg,
     return any_sensors();
 }
 
-void exh_glove_bytes(struct exh_bytes *c, struct exh_glove *s)
+void exh_glove_serialize(struct exh_bytes *c, struct exh_glove *s)
 {
     (void)c;
     *s = any_glove();
@@ -64,7 +64,7 @@ int exh_hand_setup(struct exh_hand_finger *f, const struct exh_hand_bones *bones
     return 0;
 }
 
-int exh_hand_follow(struct exh_hand_finger *f, const struct exh_hand_map *map, unsigned finger)
+int exh_hand_couple(struct exh_hand_finger *f, const struct exh_hand_map *map, unsigned finger)
 {
     /*@ assert hand_follow: hand(f) && \valid_read(map) && finger < 5; */
     f->pull_radpm_q20[0] = Frama_C_interval(-262144000, 262144000);

@@ -9,8 +9,8 @@
 
 #include "exhand/run/calib_set.h"
 
-void exh_params_init(struct exh_params *p, const struct exh_signal_table *t, int32_t *active,
-                     int32_t *staged)
+void exh_params_setup(struct exh_params *p, const struct exh_signal_table *t, int32_t *active,
+                      int32_t *staged)
 {
     static const struct exh_params none;
     *p = none;
@@ -23,7 +23,8 @@ void exh_params_init(struct exh_params *p, const struct exh_signal_table *t, int
     Frama_C_make_unknown((char *)staged, p->count * sizeof *staged);
 }
 
-void exh_params_slew(struct exh_params *p, const struct exh_tune_par *par, struct exh_period T)
+void exh_params_slew_setup(struct exh_params *p, const struct exh_tune_par *par,
+                           struct exh_period T)
 {
     (void)T;
     /*@ assert params_slew: params(p) && \valid_read(par); */
@@ -67,13 +68,14 @@ int exh_gains_stage(struct exh_params *p, const struct exh_gains_par *r, uint16_
     return exh_params_stage(p, id, instance, raw);
 }
 
-int exh_gains_staged(const struct exh_params *p, const struct exh_gains_par *r, uint16_t *instance)
+int exh_gains_validate(const struct exh_params *p, const struct exh_gains_par *r,
+                       uint16_t *instance)
 {
     /*@ assert gains_staged: params(p) && rule(r) && (instance == \null || \valid(instance)); */
     return REFUSED() ? -EXH_E_GAINS : 0;
 }
 
-void exh_gains_lead(struct exh_params *p, int on)
+void exh_gains_enable(struct exh_params *p, int on)
 {
     (void)on;
     /*@ assert gains_lead: params(p); */
@@ -88,14 +90,15 @@ void exh_gains_step(struct exh_params *p, const struct exh_gains_par *r)
 
 /* --- guard, self-test, calibrations --- */
 
-void exh_guard_seal(struct exh_guard *g, const void *area, size_t len_B, struct exh_params *p)
+void exh_integrity_seal(struct exh_integrity *g, const void *area, size_t len_B,
+                        struct exh_params *p)
 {
-    const struct exh_guard sealed = {area, (uint32_t)len_B, 0, any_u32(), 0, p, 0};
+    const struct exh_integrity sealed = {area, (uint32_t)len_B, 0, any_u32(), 0, p, 0};
     *g = sealed;
     /*@ assert guard_seal: guard(g); */
 }
 
-int exh_guard_step(struct exh_guard *g)
+int exh_integrity_step(struct exh_integrity *g)
 {
     /*@ assert guard_step: guard(g); */
     g->at = g->len_B > 0 ? Frama_C_unsigned_int_interval(0, g->len_B - 1) : 0;

@@ -41,9 +41,9 @@
       \initialized(&i->i2t_A_q26);
     predicate force(struct exh_force_ledger *f) = 0 <= f->force_N_q20 <= 104857600; */
 
-/*@ predicate track_cfg(struct exh_track_cfg *c) = 6710886 <= c->tol_A_q26 <= 67108864 && 5 <= c->ticks;
-    predicate watch_par(struct exh_watch_par *p) = 13421772 <= p->speed_mps_q27 <= 1342177280;
-    predicate watch_cfg(struct exh_watch_cfg *c) = \valid_read(c->par) && watch_par(c->par);
+/*@ predicate track_cfg(struct exh_tracking_cfg *c) = 6710886 <= c->tol_A_q26 <= 67108864 && 5 <= c->ticks;
+    predicate watch_par(struct exh_motion_par *p) = 13421772 <= p->speed_mps_q27 <= 1342177280;
+    predicate watch_cfg(struct exh_motion_cfg *c) = \valid_read(c->par) && watch_par(c->par);
     predicate speed(int32_t *vel_mps_q27) = -1342177280 <= *vel_mps_q27 <= 1342177280; */
 
 /*@ predicate safety_cfg(struct exh_safety_cfg *c) = 1 <= c->ramp_q30 <= 1 << 30 && 3 <= c->release_ticks <= 1023 && fall(&c->fall);
@@ -62,7 +62,7 @@
 
 /*@ predicate params(struct exh_params *p) = \valid_read(p->table) && \valid(p->active + (0 .. p->count - 1)) &&
       \valid(p->staged + (0 .. p->count - 1)) && p->shift <= 15;
-    predicate guard(struct exh_guard *g) = (g->len_B == 0 || (\valid_read(g->area + (0 .. g->len_B - 1)) && g->at < g->len_B)) &&
+    predicate guard(struct exh_integrity *g) = (g->len_B == 0 || (\valid_read(g->area + (0 .. g->len_B - 1)) && g->at < g->len_B)) &&
       (g->params == \null || params(g->params)); */
 
 /* Any value within its predicate. Returned, not written: at a place that is one of several it joins what is there. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Track: does the motor current follow the code that was sent?
+/* Tracking: does the motor current follow the code that was sent?
  *
  * A D/A that says it has updated and has not leaves its last current on the finger; no
  * card reads back its outputs, the current monitor can tell. Whoever is to follow with an
@@ -13,8 +13,8 @@
  * A scene that moves a motor calls both functions for each finger; one whose port has no
  * monitor names EXH_UNTRACKED instead (safety.h).
  */
-#ifndef EXHAND_TRACK_H
-#define EXHAND_TRACK_H
+#ifndef EXHAND_TRACKING_H
+#define EXHAND_TRACKING_H
 
 #include "exhand/bytes.h"
 #include "exhand/signal.h"
@@ -26,42 +26,43 @@
 extern "C" {
 #endif
 
-/* Parameters of one axis's tracking; rows in exh_track_rows[]. */
-struct exh_track_par {
+/* Parameters of one axis's tracking; rows in exh_tracking_rows[]. */
+struct exh_tracking_par {
     int32_t tol_A_q26; /* monitor off by no more, A, 0.1 .. 1 */
     int32_t time_ms;   /* for no longer, ms, 1 .. 100, and 4 ticks */
 };
-#define EXH_TRACK_ROWS 2
-extern const struct exh_signal exh_track_rows[EXH_TRACK_ROWS];
+#define EXH_TRACKING_ROWS 2
+extern const struct exh_signal exh_tracking_rows[EXH_TRACKING_ROWS];
 
 /* One axis's tracking as it is set up. */
-struct exh_track_cfg {
+struct exh_tracking_cfg {
     int32_t tol_A_q26; /* the parameter */
     uint32_t ticks;    /* time + 4 ticks, rounded up */
 };
 
 /* One axis's tracking from tick to tick. */
-struct exh_track {
+struct exh_tracking {
     int32_t lo_A_q26, hi_A_q26; /* least and most that was coded since the monitor met it */
     uint32_t off_ticks;         /* since when it does not, 0 .. ticks */
 };
 
 /* Set-up (divides). -EXH_E_RANGE: a parameter outside its range above; -EXH_E_RATE: T. */
-int exh_track_setup(struct exh_track_cfg *cfg, const struct exh_track_par *par,
-                    struct exh_period T);
+int exh_tracking_setup(struct exh_tracking_cfg *cfg, const struct exh_tracking_par *par,
+                       struct exh_period T);
 
 /* First thing of a tick, with the current monitored (exh_drive_monitor_A_q26). 1 while the
  * current has not followed for cfg->ticks ticks, this one among them: to be raised as
  * EXH_FAULT_TRACKING, in every state; else 0. */
-int exh_track_step(struct exh_track *s, const struct exh_track_cfg *cfg, int32_t mon_A_q26);
+int exh_tracking_step(struct exh_tracking *s, const struct exh_tracking_cfg *cfg,
+                      int32_t mon_A_q26);
 
 /* Behind the gate, with the current that the code stands for (coded of the ledger). Who forgets
  * it gets the fault with the first current. */
-void exh_track_coded(struct exh_track *s, int32_t coded_A_q26);
+void exh_tracking_update(struct exh_tracking *s, int32_t coded_A_q26);
 
 /* State through a cursor. A state of zeros is a drive at rest. Damaged bytes at worst raise
  * the fault until the monitor is met. */
-void exh_track_bytes(struct exh_bytes *c, struct exh_track *s);
+void exh_tracking_serialize(struct exh_bytes *c, struct exh_tracking *s);
 
 #ifdef __cplusplus
 }

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-#include "exhand/guard.h"
+#include "exhand/integrity.h"
 
 #include "exhand/bytes.h"
 
-void exh_guard_seal(struct exh_guard *g, const void *area, size_t len_B, struct exh_params *params)
+void exh_integrity_seal(struct exh_integrity *g, const void *area, size_t len_B,
+                        struct exh_params *params)
 {
     g->area = area;
     g->len_B = (uint32_t)len_B;
@@ -16,26 +17,26 @@ void exh_guard_seal(struct exh_guard *g, const void *area, size_t len_B, struct 
 
 /* The last part of a round may be shorter; what it lacks is spent on nothing, so all ticks cost the
  * same. */
-static void look_at_area(struct exh_guard *g)
+static void look_at_area(struct exh_integrity *g)
 {
-    static const uint8_t nothing[EXH_GUARD_B];
-    const uint32_t left = g->len_B - g->at, n = left < EXH_GUARD_B ? left : EXH_GUARD_B;
+    static const uint8_t nothing[EXH_INTEGRITY_B];
+    const uint32_t left = g->len_B - g->at, n = left < EXH_INTEGRITY_B ? left : EXH_INTEGRITY_B;
     g->crc = exh_crc32(g->crc, g->area + g->at, n);
-    (void)exh_crc32(0, nothing, EXH_GUARD_B - n);
+    (void)exh_crc32(0, nothing, EXH_INTEGRITY_B - n);
     g->at += n;
     if (g->at < g->len_B) { return; }
     if (g->crc != g->want) { g->broken = 1; }
     g->at = g->crc = 0;
 }
 
-static void look_at_params(struct exh_guard *g)
+static void look_at_params(struct exh_integrity *g)
 {
-    for (unsigned k = 0; k < EXH_GUARD_WORDS; k++) {
-        if (exh_params_look(g->params)) { g->broken = 1; }
+    for (unsigned k = 0; k < EXH_INTEGRITY_WORDS; k++) {
+        if (exh_params_verify(g->params)) { g->broken = 1; }
     }
 }
 
-int exh_guard_step(struct exh_guard *g)
+int exh_integrity_step(struct exh_integrity *g)
 {
     if (g->len_B > 0) { look_at_area(g); }
     if (g->params) { look_at_params(g); }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* drive.h, does the current follow the code: ranges, when it is told, when not. */
-#include "exhand/track.h"
+#include "exhand/tracking.h"
 
 #include "exhand/error.h"
 
@@ -10,20 +10,21 @@
 #define TOL    EXH_Q(1, 4, EXH_Q_CUR)
 #define AMPERE EXH_Q(1, 1, EXH_Q_CUR)
 
-static const struct exh_track_par par = {TOL, 20};
+static const struct exh_tracking_par par = {TOL, 20};
 
-static struct exh_track_cfg config(uint32_t rate_Hz)
+static struct exh_tracking_cfg config(uint32_t rate_Hz)
 {
-    struct exh_track_cfg cfg = {0, 0};
-    CHECK_EQ_I64(exh_track_setup(&cfg, &par, (struct exh_period){1, rate_Hz}), 0);
+    struct exh_tracking_cfg cfg = {0, 0};
+    CHECK_EQ_I64(exh_tracking_setup(&cfg, &par, (struct exh_period){1, rate_Hz}), 0);
     return cfg;
 }
 
 /* A tick: what is monitored, then what is coded. */
-static int tick(struct exh_track *s, const struct exh_track_cfg *cfg, int32_t mon, int32_t coded)
+static int tick(struct exh_tracking *s, const struct exh_tracking_cfg *cfg, int32_t mon,
+                int32_t coded)
 {
-    const int astray = exh_track_step(s, cfg, mon);
-    exh_track_coded(s, coded);
+    const int astray = exh_tracking_step(s, cfg, mon);
+    exh_tracking_update(s, coded);
     return astray;
 }
 
@@ -37,9 +38,9 @@ TEST(ticks_are_the_time_and_four_more)
                {{1, 1000}, 20, 25},     {{1, 2000}, 20, 45},      {{1, 20000}, 20, 405},
                {{1, 20000}, 100, 2005}, {{597, 1193182}, 20, 44}, {{1, 1000}, 1, 6}};
     for (size_t i = 0; i < LEN(row); i++) {
-        const struct exh_track_par p = {TOL, row[i].ms};
-        struct exh_track_cfg cfg = {0, 0};
-        CHECK_EQ_I64(exh_track_setup(&cfg, &p, row[i].T), 0);
+        const struct exh_tracking_par p = {TOL, row[i].ms};
+        struct exh_tracking_cfg cfg = {0, 0};
+        CHECK_EQ_I64(exh_tracking_setup(&cfg, &p, row[i].T), 0);
         CHECK(cfg.ticks == row[i].ticks && cfg.tol_A_q26 == TOL, "row %zu: %" PRIu32, i, cfg.ticks);
     }
 }
@@ -47,27 +48,28 @@ TEST(ticks_are_the_time_and_four_more)
 /* Neither can be set so that it is off. */
 TEST(what_is_outside_its_range_is_refused)
 {
-    static const struct exh_track_par bad[] = {{0, 20},          {EXH_Q(1, 10, EXH_Q_CUR) - 1, 20},
-                                               {AMPERE + 1, 20}, {INT32_MAX, 20},
-                                               {-1, 20},         {TOL, 0},
-                                               {TOL, 101},       {TOL, INT32_MAX},
-                                               {TOL, INT32_MIN}};
-    static const struct exh_track_par good[] = {
+    static const struct exh_tracking_par bad[] = {
+        {0, 20},          {EXH_Q(1, 10, EXH_Q_CUR) - 1, 20},
+        {AMPERE + 1, 20}, {INT32_MAX, 20},
+        {-1, 20},         {TOL, 0},
+        {TOL, 101},       {TOL, INT32_MAX},
+        {TOL, INT32_MIN}};
+    static const struct exh_tracking_par good[] = {
         {EXH_Q(1, 10, EXH_Q_CUR), 1}, {AMPERE, 100}, {TOL, 20}};
-    struct exh_track_cfg cfg;
+    struct exh_tracking_cfg cfg;
     for (size_t i = 0; i < LEN(bad); i++) {
-        CHECK(exh_track_setup(&cfg, &bad[i], (struct exh_period){1, 1000}) == -EXH_E_RANGE, "%zu",
-              i);
-    }
-    for (size_t i = 0; i < LEN(good); i++) {
-        CHECK(exh_track_setup(&cfg, &good[i], (struct exh_period){1, 1000}) == 0, "%zu", i);
-        CHECK(exh_track_setup(&cfg, &good[i], (struct exh_period){0, 1}) == -EXH_E_RATE &&
-                  exh_track_setup(&cfg, &good[i], (struct exh_period){1, 30000}) == -EXH_E_RATE,
+        CHECK(exh_tracking_setup(&cfg, &bad[i], (struct exh_period){1, 1000}) == -EXH_E_RANGE,
               "%zu", i);
     }
-    CHECK(exh_track_rows[0].min == good[0].tol_A_q26 && exh_track_rows[0].max == AMPERE &&
-              exh_track_rows[0].dflt == TOL && exh_track_rows[1].min == 1 &&
-              exh_track_rows[1].max == 100 && exh_track_rows[1].dflt == 20,
+    for (size_t i = 0; i < LEN(good); i++) {
+        CHECK(exh_tracking_setup(&cfg, &good[i], (struct exh_period){1, 1000}) == 0, "%zu", i);
+        CHECK(exh_tracking_setup(&cfg, &good[i], (struct exh_period){0, 1}) == -EXH_E_RATE &&
+                  exh_tracking_setup(&cfg, &good[i], (struct exh_period){1, 30000}) == -EXH_E_RATE,
+              "%zu", i);
+    }
+    CHECK(exh_tracking_rows[0].min == good[0].tol_A_q26 && exh_tracking_rows[0].max == AMPERE &&
+              exh_tracking_rows[0].dflt == TOL && exh_tracking_rows[1].min == 1 &&
+              exh_tracking_rows[1].max == 100 && exh_tracking_rows[1].dflt == 20,
           "the rows are not the ranges");
 }
 
@@ -76,8 +78,8 @@ TEST(a_current_that_stands_is_told_in_time)
 {
     static const uint32_t rate[] = {1, 90, 1000, 2000, 20000};
     for (size_t i = 0; i < LEN(rate); i++) {
-        const struct exh_track_cfg cfg = config(rate[i]);
-        struct exh_track s = {0, 0, 0};
+        const struct exh_tracking_cfg cfg = config(rate[i]);
+        struct exh_tracking s = {0, 0, 0};
         CHECK_EQ_I64(tick(&s, &cfg, 0, AMPERE), 0);
         CHECK_EQ_I64(tick(&s, &cfg, AMPERE, 2 * AMPERE), 0);
         for (uint32_t n = 1; n <= cfg.ticks + 5; n++) {
@@ -94,9 +96,9 @@ TEST(a_current_that_stands_is_told_in_time)
 TEST(both_ways_and_at_rest)
 {
     static const int32_t mon[] = {AMPERE, -AMPERE, TOL + 1, -TOL - 1, INT32_MAX, INT32_MIN};
-    const struct exh_track_cfg cfg = config(1000);
+    const struct exh_tracking_cfg cfg = config(1000);
     for (size_t i = 0; i < LEN(mon); i++) {
-        struct exh_track s = {0, 0, 0};
+        struct exh_tracking s = {0, 0, 0};
         for (uint32_t n = 1; n <= cfg.ticks; n++) {
             CHECK(tick(&s, &cfg, mon[i], 0) == (n == cfg.ticks), "%zu, tick %" PRIu32, i, n);
         }
@@ -105,21 +107,21 @@ TEST(both_ways_and_at_rest)
 
 TEST(the_tolerance_is_met_to_the_last_bit)
 {
-    const struct exh_track_cfg cfg = config(1000);
+    const struct exh_tracking_cfg cfg = config(1000);
     for (int32_t base = -AMPERE; base <= AMPERE; base += AMPERE) {
-        struct exh_track s = {base, base, 0};
-        CHECK(exh_track_step(&s, &cfg, base + TOL) == 0 && s.off_ticks == 0, "above");
-        CHECK(exh_track_step(&s, &cfg, base - TOL) == 0 && s.off_ticks == 0, "below");
-        (void)exh_track_step(&s, &cfg, base + TOL + 1);
-        (void)exh_track_step(&s, &cfg, base - TOL - 1);
+        struct exh_tracking s = {base, base, 0};
+        CHECK(exh_tracking_step(&s, &cfg, base + TOL) == 0 && s.off_ticks == 0, "above");
+        CHECK(exh_tracking_step(&s, &cfg, base - TOL) == 0 && s.off_ticks == 0, "below");
+        (void)exh_tracking_step(&s, &cfg, base + TOL + 1);
+        (void)exh_tracking_step(&s, &cfg, base - TOL - 1);
         CHECK_EQ_I64(s.off_ticks, 2);
     }
     for (int end = 0; end < 2; end++) { /* no overflow */
         const int32_t at = end ? INT32_MAX : INT32_MIN;
-        struct exh_track s = {at, at, 0};
-        (void)exh_track_step(&s, &cfg, at);
+        struct exh_tracking s = {at, at, 0};
+        (void)exh_tracking_step(&s, &cfg, at);
         CHECK_EQ_I64(s.off_ticks, 0);
-        (void)exh_track_step(&s, &cfg, end ? INT32_MIN : INT32_MAX);
+        (void)exh_tracking_step(&s, &cfg, end ? INT32_MIN : INT32_MAX);
         CHECK_EQ_I64(s.off_ticks, 1);
     }
 }
@@ -127,9 +129,9 @@ TEST(the_tolerance_is_met_to_the_last_bit)
 /* Full steps to and fro, seen d ticks late: told just when d is more than the ticks. */
 TEST(late_by_so_many_ticks_follows)
 {
-    const struct exh_track_cfg cfg = config(1000);
+    const struct exh_tracking_cfg cfg = config(1000);
     for (uint32_t d = 1; d <= cfg.ticks + 3; d++) {
-        struct exh_track s = {0, 0, 0};
+        struct exh_tracking s = {0, 0, 0};
         int32_t coded[400];
         int told = 0;
         for (uint32_t n = 0; n < LEN(coded); n++) {
@@ -143,34 +145,34 @@ TEST(late_by_so_many_ticks_follows)
 /* Who does not tell what is coded has no current that follows. */
 TEST(forgetting_the_code_is_a_fault)
 {
-    const struct exh_track_cfg cfg = config(1000);
-    struct exh_track s = {0, 0, 0};
+    const struct exh_tracking_cfg cfg = config(1000);
+    struct exh_tracking s = {0, 0, 0};
     int told = 0;
-    for (uint32_t n = 0; n < cfg.ticks; n++) { told = exh_track_step(&s, &cfg, AMPERE); }
+    for (uint32_t n = 0; n < cfg.ticks; n++) { told = exh_tracking_step(&s, &cfg, AMPERE); }
     CHECK_EQ_I64(told, 1);
 }
 
 TEST(state_through_bytes)
 {
-    const struct exh_track_cfg cfg = config(1000);
-    const struct exh_track was = {-5, 0x01020304, 7};
-    struct exh_track s = was, back = {0, 0, 0};
+    const struct exh_tracking_cfg cfg = config(1000);
+    const struct exh_tracking was = {-5, 0x01020304, 7};
+    struct exh_tracking s = was, back = {0, 0, 0};
     uint8_t b[12];
     struct exh_bytes c = exh_bytes_writer(b, sizeof b);
-    exh_track_bytes(&c, &s);
+    exh_tracking_serialize(&c, &s);
     CHECK(c.at == sizeof b && b[0] == 0xFB && b[4] == 4 && b[8] == 7, "%" PRIu32 " bytes",
           (uint32_t)c.at);
     c = exh_bytes_reader(b, sizeof b);
-    exh_track_bytes(&c, &back);
+    exh_tracking_serialize(&c, &back);
     CHECK(back.lo_A_q26 == was.lo_A_q26 && back.hi_A_q26 == was.hi_A_q26 &&
               back.off_ticks == was.off_ticks,
           "not the same");
-    back = (struct exh_track){AMPERE, -AMPERE, UINT32_MAX}; /* damaged: told, until it is met */
+    back = (struct exh_tracking){AMPERE, -AMPERE, UINT32_MAX}; /* damaged: told, until it is met */
     CHECK_EQ_I64(tick(&back, &cfg, 2 * AMPERE, AMPERE), 1);
     CHECK_EQ_I64(tick(&back, &cfg, AMPERE, AMPERE), 0);
 }
 
-TEST_MAIN("unit/track", ticks_are_the_time_and_four_more, what_is_outside_its_range_is_refused,
+TEST_MAIN("unit/tracking", ticks_are_the_time_and_four_more, what_is_outside_its_range_is_refused,
           a_current_that_stands_is_told_in_time, both_ways_and_at_rest,
           the_tolerance_is_met_to_the_last_bit, late_by_so_many_ticks_follows,
           forgetting_the_code_is_a_fault, state_through_bytes);

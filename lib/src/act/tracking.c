@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "exhand/track.h"
+#include "exhand/tracking.h"
 
 #include "exhand/error.h"
 #include "exhand/fix.h"
@@ -16,14 +16,15 @@
  * 0.5 mA each, 3 % of difference in scale 0.2 A at the peak. Default time: an output 10 ms late,
  * 0.25 ms to the drive's next 4 kHz sample, 2.5 ms of current loop and monitor (0.11 and 0.57 ms)
  * until 0.2 A are left of 13.2 A; rounded up to 20 ms for slower ones. */
-const struct exh_signal exh_track_rows[EXH_TRACK_ROWS] = {
+const struct exh_signal exh_tracking_rows[EXH_TRACKING_ROWS] = {
     {0x0D01, EXH_Q_CUR, EXH_WHEN_SETUP, TOL_MIN_A_Q26, TOL_MAX_A_Q26, EXH_Q(1, 4, EXH_Q_CUR),
      "track_tol", "a", "current monitored differs from what is coded by no more"},
     {0x0D02, 0, EXH_WHEN_SETUP, 1, TIME_MAX_MS, 20, "track_time", "ms",
      "for no longer than this and 4 ticks"},
 };
 
-int exh_track_setup(struct exh_track_cfg *cfg, const struct exh_track_par *par, struct exh_period T)
+int exh_tracking_setup(struct exh_tracking_cfg *cfg, const struct exh_tracking_par *par,
+                       struct exh_period T)
 {
     if (par->tol_A_q26 < TOL_MIN_A_Q26 || par->tol_A_q26 > TOL_MAX_A_Q26 || par->time_ms < 1 ||
         par->time_ms > TIME_MAX_MS) {
@@ -35,7 +36,7 @@ int exh_track_setup(struct exh_track_cfg *cfg, const struct exh_track_par *par, 
     return 0;
 }
 
-int exh_track_step(struct exh_track *s, const struct exh_track_cfg *cfg, int32_t mon_A_q26)
+int exh_tracking_step(struct exh_tracking *s, const struct exh_tracking_cfg *cfg, int32_t mon_A_q26)
 {
     const int64_t lowest = (int64_t)s->lo_A_q26 - cfg->tol_A_q26;
     const int64_t highest = (int64_t)s->hi_A_q26 + cfg->tol_A_q26;
@@ -47,14 +48,14 @@ int exh_track_step(struct exh_track *s, const struct exh_track_cfg *cfg, int32_t
     return s->off_ticks >= cfg->ticks;
 }
 
-void exh_track_coded(struct exh_track *s, int32_t coded_A_q26)
+void exh_tracking_update(struct exh_tracking *s, int32_t coded_A_q26)
 {
     const int anew = s->off_ticks == 0;
     if (anew || coded_A_q26 < s->lo_A_q26) { s->lo_A_q26 = coded_A_q26; }
     if (anew || coded_A_q26 > s->hi_A_q26) { s->hi_A_q26 = coded_A_q26; }
 }
 
-void exh_track_bytes(struct exh_bytes *c, struct exh_track *s)
+void exh_tracking_serialize(struct exh_bytes *c, struct exh_tracking *s)
 {
     exh_bytes_i32(c, &s->lo_A_q26);
     exh_bytes_i32(c, &s->hi_A_q26);

@@ -4,31 +4,31 @@
  * leaves a place in the area; with parameters and without, anything in these (any_params.c).
  *
  * EVA: -eva-slevel 200
- * PLANT: lib/src/safe/guard.c: left < EXH_GUARD_B ? left : EXH_GUARD_B -> EXH_GUARD_B
- * PLANT: lib/src/safe/guard.c: if (g->at < g->len_B) { return; } -> if (g->at <= g->len_B) { return; }
- * PLANT: lib/src/safe/guard.c: EXH_GUARD_B - n) -> EXH_GUARD_B - n + 2)
- * PLANT: lib/src/safe/guard.c: if (g->params) { look_at_params(g); } -> look_at_params(g);
+ * PLANT: lib/src/safe/integrity.c: left < EXH_INTEGRITY_B ? left : EXH_INTEGRITY_B -> EXH_INTEGRITY_B
+ * PLANT: lib/src/safe/integrity.c: if (g->at < g->len_B) { return; } -> if (g->at <= g->len_B) { return; }
+ * PLANT: lib/src/safe/integrity.c: EXH_INTEGRITY_B - n) -> EXH_INTEGRITY_B - n + 2)
+ * PLANT: lib/src/safe/integrity.c: if (g->params) { look_at_params(g); } -> look_at_params(g);
  */
 #include "num/bytes.c"
 #include "num/fix.c"
-#include "safe/guard.c"
+#include "safe/integrity.c"
 #include "num/params.c"
 #include "num/signal.c" /* not that of Frama-C */
 
 #include "table.h"
 
-static struct exh_guard g;
+static struct exh_integrity g;
 static struct exh_params p;
 static int32_t active[TABLE_VALUES], staged[TABLE_VALUES];
 
 static void rounds(const uint8_t *area, uint32_t len_B, struct exh_params *params)
 {
-    exh_guard_seal(&g, area, len_B, params);
+    exh_integrity_seal(&g, area, len_B, params);
     for (uint32_t at = 0; at < len_B || at == 0; at++) {
         g.at = at;
         g.want = any_u32();
         g.crc = any_u32();
-        (void)exh_guard_step(&g);
+        (void)exh_integrity_step(&g);
         /*@ assert place: g.at < len_B || g.at == 0; */
     }
 }
@@ -43,11 +43,11 @@ static void area_of(uint32_t len_B)
 
 int main(void)
 {
-    static const struct exh_guard zero;
+    static const struct exh_integrity zero;
     g = zero;
-    (void)exh_guard_step(&g);
+    (void)exh_integrity_step(&g);
     any_rows();
-    exh_params_init(&p, &table, active, staged);
+    exh_params_setup(&p, &table, active, staged);
     ANY(active);
     ANY(staged);
     p.pending = any8();

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* drive.h, does the current follow the code: what follows, however it is commanded, is never
  * told; what stands always is, in time; and both by a history that is looked through. */
-#include "exhand/track.h"
+#include "exhand/tracking.h"
 
 #include "exhand/fix.h"
 
@@ -10,13 +10,13 @@
 #define TICKS 400
 #define PEAK  EXH_Q(66, 10, EXH_Q_CUR)
 
-static struct exh_track_cfg any_config(void)
+static struct exh_tracking_cfg any_config(void)
 {
-    const struct exh_track_par par = {check_i32_in(exh_track_rows[0].min, exh_track_rows[0].max),
-                                      check_i32_in(1, 100)};
+    const struct exh_tracking_par par = {
+        check_i32_in(exh_tracking_rows[0].min, exh_tracking_rows[0].max), check_i32_in(1, 100)};
     const struct exh_period T = {1, (uint32_t)check_i32_in(1, 20000) >> check_i32_in(0, 12) | 1u};
-    struct exh_track_cfg cfg = {0, 0};
-    CHECK_EQ_I64(exh_track_setup(&cfg, &par, T), 0);
+    struct exh_tracking_cfg cfg = {0, 0};
+    CHECK_EQ_I64(exh_tracking_setup(&cfg, &par, T), 0);
     return cfg;
 }
 
@@ -47,21 +47,21 @@ TEST(what_follows_is_never_told)
 {
     static int32_t coded[TICKS];
     while (check_case(2000)) {
-        const struct exh_track_cfg cfg = any_config();
+        const struct exh_tracking_cfg cfg = any_config();
         const uint32_t late = 1 + (uint32_t)(check_u64() % (cfg.ticks < 300 ? cfg.ticks : 300));
         const uint32_t a = 1 + (uint32_t)(check_u64() % 65536);
         const int64_t noise = cfg.tol_A_q26 - left_of(a, cfg.ticks - late + 1) - 65536 / a - 4;
-        struct exh_track s = {0, 0, 0};
+        struct exh_tracking s = {0, 0, 0};
         int64_t y = 0;
         if (noise < 0) { continue; }
         for (uint32_t n = 0; n < TICKS; n++) {
             const int64_t x = n < late ? 0 : coded[n - late];
             const int32_t by = check_i32_in(-(int32_t)noise, (int32_t)noise);
             y += (x - y) * a >> 16;
-            CHECK(exh_track_step(&s, &cfg, (int32_t)(y + by)) == 0,
+            CHECK(exh_tracking_step(&s, &cfg, (int32_t)(y + by)) == 0,
                   "tick %" PRIu32 ", %" PRIu32 " late of %" PRIu32, n, late, cfg.ticks);
             coded[n] = next(n ? coded[n - 1] : 0);
-            exh_track_coded(&s, coded[n]);
+            exh_tracking_update(&s, coded[n]);
         }
     }
 }
@@ -71,8 +71,8 @@ TEST(as_the_history_says)
 {
     static int32_t coded[TICKS];
     while (check_case(2000)) {
-        const struct exh_track_cfg cfg = any_config();
-        struct exh_track s = {0, 0, 0};
+        const struct exh_tracking_cfg cfg = any_config();
+        struct exh_tracking s = {0, 0, 0};
         uint32_t met = 0, off = 0; /* coded[met] and later count; what is before the first is 0 */
         int none = 1;
         for (uint32_t n = 0; n < TICKS; n++) {
@@ -93,9 +93,9 @@ TEST(as_the_history_says)
                 met = n;
                 none = 0;
             }
-            CHECK(exh_track_step(&s, &cfg, mon) == (off >= cfg.ticks), "tick %" PRIu32, n);
+            CHECK(exh_tracking_step(&s, &cfg, mon) == (off >= cfg.ticks), "tick %" PRIu32, n);
             coded[n] = check_u64() % 4 ? last : check_i32();
-            exh_track_coded(&s, coded[n]);
+            exh_tracking_update(&s, coded[n]);
         }
     }
 }
@@ -104,18 +104,18 @@ TEST(as_the_history_says)
 TEST(what_stands_is_told_in_time)
 {
     while (check_case(2000)) {
-        const struct exh_track_cfg cfg = any_config();
+        const struct exh_tracking_cfg cfg = any_config();
         const int32_t stands = check_i32_in(-PEAK, PEAK);
         const int up = check_u64() % 2 != 0;
-        struct exh_track s = {stands, stands, 0};
+        struct exh_tracking s = {stands, stands, 0};
         for (uint32_t n = 1; n <= cfg.ticks; n++) {
             const int64_t off = cfg.tol_A_q26 + (int64_t)1 + check_i32_in(0, PEAK);
-            if (n == 1) { exh_track_coded(&s, exh_sat32(stands + (up ? off : -off))); }
-            CHECK(exh_track_step(&s, &cfg, stands) == (n == cfg.ticks), "tick %" PRIu32, n);
-            exh_track_coded(&s, exh_sat32(stands + (up ? off : -off)));
+            if (n == 1) { exh_tracking_update(&s, exh_sat32(stands + (up ? off : -off))); }
+            CHECK(exh_tracking_step(&s, &cfg, stands) == (n == cfg.ticks), "tick %" PRIu32, n);
+            exh_tracking_update(&s, exh_sat32(stands + (up ? off : -off)));
         }
     }
 }
 
-TEST_MAIN("prop/track", what_follows_is_never_told, as_the_history_says,
+TEST_MAIN("prop/tracking", what_follows_is_never_told, as_the_history_says,
           what_stands_is_told_in_time);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "exhand/watch.h"
+#include "exhand/motion.h"
 
 #include "exhand/error.h"
 #include "exhand/fix.h"
@@ -15,7 +15,7 @@
 #define CUR_MIN_A_Q26     EXH_Q(1, 20, EXH_Q_CUR)
 #define CUR_MAX_A_Q26     EXH_Q(66, 10, EXH_Q_CUR)
 
-const struct exh_signal exh_watch_rows[EXH_WATCH_ROWS] = {
+const struct exh_signal exh_motion_rows[EXH_MOTION_ROWS] = {
     {0x0E01, EXH_Q_VEL, EXH_WHEN_SETUP, SPEED_MIN_MPS_Q27, SPEED_MAX_MPS_Q27,
      EXH_Q(3, 1, EXH_Q_VEL), "speed_limit", "m_per_s", "velocity into the law is no more"},
     {0x0E02, 0, EXH_WHEN_SETUP, 1, SPEED_MAX_MS, 20, "speed_time", "ms",
@@ -31,7 +31,8 @@ static uint32_t ticks_of(int32_t ms, struct exh_period T)
     return exh_ticks_in(ms, T) + 1;
 }
 
-int exh_watch_setup(struct exh_watch_cfg *cfg, const struct exh_watch_par *par, struct exh_period T)
+int exh_motion_setup(struct exh_motion_cfg *cfg, const struct exh_motion_par *par,
+                     struct exh_period T)
 {
     if (!exh_inside(par->speed_mps_q27, SPEED_MIN_MPS_Q27, SPEED_MAX_MPS_Q27) ||
         !exh_inside(par->speed_ms, 1, SPEED_MAX_MS) ||
@@ -52,8 +53,8 @@ static uint32_t run_of(uint32_t ticks, int on, uint32_t most)
     return !on ? 0 : ticks < most ? ticks + 1 : most;
 }
 
-uint32_t exh_watch_step(struct exh_watch *s, const struct exh_watch_cfg *cfg, int32_t *vel_mps_q27,
-                        uint32_t *limits)
+uint32_t exh_motion_step(struct exh_motion *s, const struct exh_motion_cfg *cfg,
+                         int32_t *vel_mps_q27, uint32_t *limits)
 {
     const int32_t most = cfg->par->speed_mps_q27;
     const int32_t held = exh_clamp(*vel_mps_q27, -most, most);
@@ -65,15 +66,15 @@ uint32_t exh_watch_step(struct exh_watch *s, const struct exh_watch_cfg *cfg, in
            (cfg->stuck_ticks && s->stuck_ticks >= cfg->stuck_ticks ? EXH_FAULT_STUCK : 0u);
 }
 
-void exh_watch_coded(struct exh_watch *s, const struct exh_watch_cfg *cfg, int32_t cnt,
-                     int32_t coded_A_q26)
+void exh_motion_update(struct exh_motion *s, const struct exh_motion_cfg *cfg, int32_t cnt,
+                       int32_t coded_A_q26)
 {
     const int pulled = coded_A_q26 > cfg->par->stuck_cur_A_q26;
     s->stuck_ticks = run_of(s->stuck_ticks, pulled && cnt == s->cnt, cfg->stuck_ticks);
     s->cnt = cnt;
 }
 
-void exh_watch_bytes(struct exh_bytes *c, struct exh_watch *s)
+void exh_motion_serialize(struct exh_bytes *c, struct exh_motion *s)
 {
     exh_bytes_u32(c, &s->fast_ticks);
     exh_bytes_u32(c, &s->stuck_ticks);

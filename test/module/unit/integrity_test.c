@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* guard.h: a change of any one byte or parameter is told in time; the self-test passes. */
-#include "exhand/guard.h"
+#include "exhand/integrity.h"
 
 #include "check.h"
 
@@ -16,9 +16,9 @@ static const struct exh_signal_table table = {groups, 1};
 
 TEST(unsealed_is_quiet)
 {
-    struct exh_guard g;
+    struct exh_integrity g;
     memset(&g, 0, sizeof g);
-    for (int k = 0; k < 100; k++) { CHECK_EQ_I64(exh_guard_step(&g), 0); }
+    for (int k = 0; k < 100; k++) { CHECK_EQ_I64(exh_integrity_step(&g), 0); }
 }
 
 /* Areas of any length, every bit of them, at every place that the round may have come to. */
@@ -26,25 +26,25 @@ TEST(every_bit_of_the_area)
 {
     uint8_t area[37];
     for (unsigned len = 1; len <= LEN(area); len++) {
-        const unsigned round = (len + EXH_GUARD_B - 1) / EXH_GUARD_B;
+        const unsigned round = (len + EXH_INTEGRITY_B - 1) / EXH_INTEGRITY_B;
         for (unsigned bit = 0; bit < 8 * len; bit++) {
             for (unsigned done = 0; done < round; done++) {
-                struct exh_guard g;
+                struct exh_integrity g;
                 unsigned n = 0;
                 memset(area, 0x5A, sizeof area);
-                exh_guard_seal(&g, area, len, NULL);
+                exh_integrity_seal(&g, area, len, NULL);
                 for (unsigned k = 0; k < 3 * round + done; k++) {
-                    CHECK_EQ_I64(exh_guard_step(&g), 0);
+                    CHECK_EQ_I64(exh_integrity_step(&g), 0);
                 }
                 area[bit / 8] ^= (uint8_t)(1u << bit % 8);
-                while (!exh_guard_step(&g) && n < 1000) { n++; }
+                while (!exh_integrity_step(&g) && n < 1000) { n++; }
                 CHECK(n < 2 * round, "%u bytes, bit %u: %u ticks", len, bit, n);
                 area[bit / 8] ^= (uint8_t)(1u << bit % 8);
                 for (unsigned k = 0; k < 3 * round; k++) {
-                    CHECK(exh_guard_step(&g), "forgiven"); /* not by itself */
+                    CHECK(exh_integrity_step(&g), "forgiven"); /* not by itself */
                 }
-                exh_guard_seal(&g, area, len, NULL);
-                CHECK_EQ_I64(exh_guard_step(&g), 0);
+                exh_integrity_seal(&g, area, len, NULL);
+                CHECK_EQ_I64(exh_integrity_step(&g), 0);
             }
         }
     }
@@ -55,23 +55,23 @@ TEST(parameters)
 {
     int32_t active[3], staged[3];
     struct exh_params p;
-    struct exh_guard g;
+    struct exh_integrity g;
     uint8_t area[4] = {0};
-    exh_params_init(&p, &table, active, staged);
-    exh_guard_seal(&g, area, sizeof area, &p);
+    exh_params_setup(&p, &table, active, staged);
+    exh_integrity_seal(&g, area, sizeof area, &p);
     for (int k = 0; k < 30; k++) {
         if (k % 5 == 0) { CHECK_EQ_I64(exh_params_stage(&p, 0x8001, 0, k), 0); }
-        CHECK_EQ_I64(exh_guard_step(&g), 0);
+        CHECK_EQ_I64(exh_integrity_step(&g), 0);
         if (k % 5 == 3) { (void)exh_params_apply(&p); }
     }
     for (unsigned i = 0; i < 6; i++) {
         int32_t *at = i < 3 ? &active[i] : &staged[i - 3];
         unsigned n = 0;
         *at ^= 1 << (5 * i);
-        while (!exh_guard_step(&g) && n < 100) { n++; }
+        while (!exh_integrity_step(&g) && n < 100) { n++; }
         CHECK(n < 2, "value %u: %u ticks", i, n);
         *at ^= 1 << (5 * i);
-        exh_guard_seal(&g, area, sizeof area, &p);
+        exh_integrity_seal(&g, area, sizeof area, &p);
     }
 }
 
@@ -81,4 +81,4 @@ TEST(selftest_passes)
     CHECK_EQ_I64(exh_selftest_glove(), EXH_SELFTEST_OK);
 }
 
-TEST_MAIN("unit/guard", unsealed_is_quiet, every_bit_of_the_area, parameters, selftest_passes);
+TEST_MAIN("unit/integrity", unsealed_is_quiet, every_bit_of_the_area, parameters, selftest_passes);
