@@ -48,5 +48,13 @@ faults: $(lab)
 	    /^<!-- end -->/ { skip = 0 } !skip { print } /^<!-- exhand faults -->/ { put(a) } /^<!-- exhand faults --times -->/ { put(b) }' \
 	    docs/FAULTS.md > $(B)/FAULTS.md.new && cp $(B)/FAULTS.md.new docs/FAULTS.md
 	@mkdir -p $(B)/faults && $(lab) faults --out $(B)/faults && if command -v gnuplot >/dev/null; then \
-	    (cd $(B)/faults && gnuplot -c faults.gp "$(CURDIR)/ports/posix/exhand/plot") && cp $(B)/faults/faults.png docs/faults.png; fi
+	    (cd $(B)/faults && gnuplot -c faults.gp "$(CURDIR)/ports/posix/exhand/plot") && cp $(B)/faults/faults.png docs/faults.png && \
+	    { $(MAKE) --no-print-directory -s pictures || true; }; fi
 	@tail -n 1 $(B)/faults.md; tail -n 1 $(B)/faults_20kHz.md; grep 'times:' $(B)/faults_times.md
+
+## Give the pictures of docs/ a palette of 256 colours, which takes a third of the bytes.
+.PHONY: pictures
+pictures:
+	@.ci/deps "small pictures" pngquant pngquant || exit 3
+	@for p in docs/*.png; do [ "$$(od -An -tu1 -j25 -N1 $$p)" -eq 3 ] || \
+	    pngquant --speed 1 --strip --nofs --force --ext .png 256 $$p || exit; done
