@@ -16,6 +16,7 @@ check:
 	@$(timed) all
 	@$(timed) matrix ARGS=--ci
 	@$(timed) golden ARGS="--check --every 40"
+	@$(timed) golden-traces
 	@$(timed) mutants ARGS="--some 4"
 	@$(timed) mcdc
 	@$(timed) proof-ci

@@ -16,9 +16,17 @@ struct golden_rates golden_rates(void);
 /* 1 if EXH_CELLS=1: say of each module which rates ran, and the CRC of their digests. */
 int golden_cells(void);
 
-/* The CRC of each hundred rates' digests beyond GOLDEN_RATES, from the generator's file; 0 if it is
- * not there. */
-int golden_hundreds(const char *name, uint32_t crc[GOLDEN_HUNDREDS]);
+/* The digest of each rate of the hundred that begins at `first`, from the table EXH_DIGESTS, if
+ * they have this CRC; else from the generator, if `ask`. 0 where neither has them. */
+int golden_singles(const char *name, uint32_t first, uint32_t crc, int ask,
+                   uint32_t digest[GOLDEN_HUNDRED]);
+
+/* 1 if there are files, so that nobody else compares. */
+int golden_files(void);
+
+/* A module's digests at 1..GOLDEN_RATES go to the end of the table EXH_WRITE, if one is asked for:
+ * in hundreds, the first of them with the name. */
+void golden_write(const char *name, uint32_t first, const uint32_t digest[GOLDEN_HUNDRED]);
 
 /* 1 if EXH_EXPLAIN=0: count, and tell nothing. */
 int golden_quiet(void);
@@ -27,7 +35,8 @@ int golden_quiet(void);
  * first tick that differs, expected and got. Never NULL; good until the next call. */
 const char *golden_explain(const char *name, golden_run *run, uint32_t rate_Hz);
 
-/* The same against the committed trace: "" where all is as it says. */
+/* The same against the trace in the folder EXH_TRACES: "" where all is as it says, and where no
+ * folder is asked for. */
 const char *golden_trace(const char *name, golden_run *run, uint32_t rate_Hz);
 
 #endif

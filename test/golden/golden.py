@@ -2,10 +2,13 @@
 # SPDX-License-Identifier: MIT
 """Golden vectors: what docs/NUMERICS.md says every module computes, tick by tick.
 
-    golden.py --all                      write digest/ and trace/ anew (make golden)
-    golden.py --check [--every N]        compare them instead, at every Nth rate; 1 if one differs
-    golden.py --beyond [--check]         the same of 2001..20000 Hz: beyond/, a CRC each hundred rates (an hour of one core)
+    golden.py --all                      write digests.inc anew (make golden), of 1..2000 Hz
+    golden.py --beyond                   the same of 2001..20000 Hz (an hour of one core)
+    golden.py --check [--beyond]         compare them instead; 1 if one differs
+    golden.py --check --every N          compare every Nth rate and those that have traces, by the host's table of single rates
+    golden.py --traces DIR               the traces of every module at the paper's six rates (make golden-traces)
     golden.py --module M --rate R        the trace of one module at one rate, with whole states
+    golden.py --module M --hundred R     the digests of one module from R Hz on
 
 Standard library only; README.md has the stimuli and the formats.
 """
@@ -18,15 +21,12 @@ import zlib
 from struct import pack
 
 sys.dont_write_bytecode = True
+from digests import BEYOND, HUNDRED, RATES, commit, committed, hundreds, singles, together  # noqa: E402
 from model import MODULES  # noqa: E402
 
-HERE = os.path.dirname(os.path.abspath(__file__))
-RATES = range(1, 2001)
 TRACED = (90, 100, 200, 500, 1000, 2000)
-PER_LINE = 8
 CHUNK = 40
-BEYOND = range(2001, 20001)
-HUNDRED = 100
+KEPT = len(RATES) // HUNDRED  # a line of digests.inc: these, then those beyond
 
 
 def digest(ticks):
@@ -59,43 +59,11 @@ def digests_of(job):
     return [digest(run(rate)) for rate in rates]
 
 
-def digest_file(module):
-    return os.path.join(HERE, "digest", module + ".inc")
-
-
-def trace_file(module, rate):
-    return os.path.join(HERE, "trace", "%s-%d.txt" % (module, rate))
-
-
-def digest_text(crcs):
-    word = ["0x%08x," % c for c in crcs]
-    return "".join(" ".join(word[i:i + PER_LINE]) + "\n" for i in range(0, len(word), PER_LINE))
-
-
-def read(path):
-    try:
-        with open(path) as f:
-            return f.read()
-    except OSError:
-        return ""
-
-
-def put(path, text):
-    """Writes text; 1 if the file was another."""
-    if read(path) == text:
-        return 0
-    os.makedirs(os.path.dirname(path), exist_ok=True)
-    with open(path, "w") as f:
-        f.write(text)
-    print("changed: " + os.path.relpath(path, HERE))
-    return 1
-
-
-def compare(path, want, got):
-    """want: the file's; 1 and a line if the model says otherwise."""
+def compare(what, want, got):
+    """1 and a line if the model says otherwise."""
     if want == got:
         return 0
-    print("%s: %s: the file has %s" % (os.path.relpath(path, HERE), got, want or "nothing"))
+    print("%s: %08x: kept is %s" % (what, got, "nothing" if want is None else "%08x" % want))
     return 1
 
 
@@ -111,55 +79,79 @@ def in_parallel(modules, rates):
     return crcs
 
 
+def hundred(job):
+    """The CRC-32 of the digests of a hundred rates."""
+    module, first = job
+    return together(digests_of((module, range(first, first + HUNDRED))))
+
+
+def put(module, crcs, at):
+    """The committed digests of a module from the hundred `at` on; 1 if they were others."""
+    kept = committed()
+    line = kept.get(module, [])
+    kept[module] = line[:at] + crcs + line[at + len(crcs):]
+    changed = commit(kept)
+    if changed:
+        print("changed: %s" % module)
+    return changed
+
+
 def write_all(modules):
-    changed = 0
-    for m, crcs in in_parallel(modules, RATES).items():
-        changed += put(digest_file(m), digest_text(crcs))
-        for rate in TRACED:
-            changed += put(trace_file(m, rate), "\n".join(trace(m, rate, False)) + "\n")
-    print("%d modules, %d rates: %d files changed" % (len(modules), len(RATES), changed))
+    changed = sum(put(m, hundreds(crcs), 0) for m, crcs in in_parallel(modules, RATES).items())
+    print("%d modules, %d rates: %d changed" % (len(modules), len(RATES), changed))
     return 0
 
 
-def check(modules, every):
-    rates = [r for r in RATES if r % every == 0 or r in TRACED]
+def check(modules):
+    kept = committed()
     differ = 0
-    for m, crcs in in_parallel(modules, rates).items():
-        word = read(digest_file(m)).split()
-        for rate, crc in zip(rates, crcs):
-            kept = word[rate - 1] if len(word) == len(RATES) else ""
-            differ += compare("%s at %d Hz" % (digest_file(m), rate), kept, "0x%08x," % crc)
-        for rate in TRACED:
-            if read(trace_file(m, rate)) != "\n".join(trace(m, rate, False)) + "\n":
-                print("%s differs" % os.path.relpath(trace_file(m, rate), HERE))
-                differ += 1
-    print("%d modules, %d rates: %d digests and traces differ" % (len(modules), len(rates), differ))
+    for m, crcs in in_parallel(modules, RATES).items():
+        for i, crc in enumerate(hundreds(crcs)):
+            differ += compare("%s from %d Hz" % (m, RATES[i * HUNDRED]), kept[m][i] if m in kept else None, crc)
+    print("%d modules, %d rates: %d hundreds differ" % (len(modules), len(RATES), differ))
     return 1 if differ else 0
 
 
-def hundred(job):
-    """The CRC-32 of the digests of a hundred rates, each as 32 bits, little-endian."""
-    module, first = job
-    run = MODULES[module][1]
-    return zlib.crc32(b"".join(pack("<I", digest(run(rate))) for rate in range(first, first + HUNDRED)))
+def check_some(modules, every):
+    kept = singles()
+    rates = [r for r in RATES if r % every == 0 or r in TRACED]
+    differ = 0
+    for m, crcs in in_parallel(modules, rates).items():
+        for rate, crc in zip(rates, crcs):
+            differ += compare("%s at %d Hz" % (m, rate), kept[m][rate - 1] if m in kept else None, crc)
+    print("%d modules, %d rates: %d digests differ" % (len(modules), len(rates), differ))
+    return 1 if differ else 0
 
 
 def beyond(modules, check, every):
-    """2001..20000 Hz, the work dealt to all cores; a module's file is written when it is done."""
+    """2001..20000 Hz, the work dealt to all cores; a module's digests are written when it is done."""
     firsts = BEYOND[::HUNDRED]
     differ = 0
     with multiprocessing.Pool() as pool:
         for m in modules:
-            path = os.path.join(HERE, "beyond", m + ".inc")
-            kept = read(path).split()
             if not check:
-                differ += put(path, digest_text(pool.map(hundred, [(m, r) for r in firsts], chunksize=1)))
+                differ += put(m, pool.map(hundred, [(m, r) for r in firsts], chunksize=1), KEPT)
                 continue
+            kept = committed().get(m, [])[KEPT:]
             some = [i for i in range(len(firsts)) if i % every == every - 1]
             for i, crc in zip(some, pool.map(hundred, [(m, firsts[i]) for i in some], chunksize=1)):
-                differ += compare("%s from %d Hz" % (path, firsts[i]), kept[i] if i < len(kept) else "", "0x%08x," % crc)
-    print("%d modules, %d..%d Hz: %d %s" % (len(modules), BEYOND[0], BEYOND[-1], differ, "differ" if check else "files changed"))
+                differ += compare("%s from %d Hz" % (m, firsts[i]), kept[i] if i < len(kept) else None, crc)
+    print("%d modules, %d..%d Hz: %d %s" % (len(modules), BEYOND[0], BEYOND[-1], differ, "differ" if check else "changed"))
     return 1 if check and differ else 0
+
+
+def write_trace(job):
+    where, module, rate = job
+    with open(os.path.join(where, "%s-%d.txt" % (module, rate)), "w") as f:
+        f.write("\n".join(trace(module, rate, False)) + "\n")
+
+
+def write_traces(modules, where):
+    os.makedirs(where, exist_ok=True)
+    with multiprocessing.Pool() as pool:
+        pool.map(write_trace, [(where, m, rate) for m in modules for rate in TRACED], chunksize=1)
+    print("%d traces of %d modules" % (len(modules) * len(TRACED), len(modules)))
+    return 0
 
 
 def main():
@@ -168,8 +160,10 @@ def main():
     p.add_argument("--check", action="store_true")
     p.add_argument("--beyond", action="store_true")
     p.add_argument("--every", type=int, default=1, metavar="N")
+    p.add_argument("--traces", metavar="DIR")
     p.add_argument("--module", choices=sorted(MODULES))
     p.add_argument("--rate", type=int, choices=range(1, BEYOND[-1] + 1), metavar="1..20000")
+    p.add_argument("--hundred", type=int, choices=range(1, BEYOND[-1] + 1, HUNDRED), metavar="1,101..19901")
     a = p.parse_args()
     modules = [a.module] if a.module else sorted(MODULES)
     if a.beyond:
@@ -177,9 +171,14 @@ def main():
     if a.all:
         return write_all(modules)
     if a.check:
-        return check(modules, a.every)
-    if a.module is None or a.rate is None:
-        p.error("--all, --check, or --module and --rate")
+        return check(modules) if a.every == 1 else check_some(modules, a.every)
+    if a.traces:
+        return write_traces(modules, a.traces)
+    if a.module is None or not (a.rate or a.hundred):
+        p.error("--all, --check, --traces, or --module and --rate or --hundred")
+    if a.hundred:
+        print(" ".join("%08x" % crc for crc in digests_of((a.module, range(a.hundred, a.hundred + HUNDRED)))))
+        return 0
     for line in trace(a.module, a.rate, True):
         print(line)
     return 0

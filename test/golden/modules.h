@@ -8,7 +8,7 @@
 
 #define GOLDEN_MODULE(name) \
     void golden_##name(struct golden *g, uint32_t rate_Hz); \
-    extern const uint32_t digest_##name[GOLDEN_RATES]
+    extern const uint32_t digest_##name[GOLDEN_HUNDREDS]
 
 GOLDEN_MODULE(fix);
 GOLDEN_MODULE(bytes);

@@ -46,7 +46,7 @@ $(B)/suite/audit/test/matrix/suite.o: tflags += -I$(B)/suite
 # has 63 KiB of memory for avr_large.
 avr_not    := $(patsubst %,test/golden/%.c,digests golden_test explain $(SUITE_WITHOUT))
 avr_src    := $(filter-out $(avr_not),$(golden_src) test/support.c $(lib_src))
-avr_module := $(filter-out $(SUITE_WITHOUT),$(patsubst test/golden/digest/%.inc,%,$(sort $(wildcard test/golden/digest/*.inc))))
+avr_module := $(filter-out $(SUITE_WITHOUT),$(shell sed -n 's/.* digest_\(\w*\)\[.*/\1/p' test/golden/digests.inc))
 avr_large  := bilateral precontact
 avr_link   := -Wl,--gc-sections -Wl,--defsym=__DATA_REGION_LENGTH__=0xFF00
 $(avr_module:%=$(B)/suite/avr/%.elf): $(B)/suite/avr/%.elf: test/matrix/avr.c $(patsubst %.c,$(B)/suite/plain/%.o,$(avr_src))

@@ -24,8 +24,8 @@ import sys
 import time
 
 sys.dont_write_bytecode = True
-from table import (DIGESTS, ROOT, clang_of, document, expected, kept, put, section, stale, targets, together, variants,  # noqa: E402
-                   without, words)
+from table import (ROOT, clang_of, document, expected, kept, put, section, stale, targets, together, variants, without,  # noqa: E402
+                   words)
 
 WHOLE = "gcc-O2"  # by this, every rate
 EVERY = 20        # else every twentieth, from the variant's number on

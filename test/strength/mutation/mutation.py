@@ -37,7 +37,7 @@ LEAST = 0.95
 CC = os.environ.get("CC", "cc").split()
 FLAGS = "-std=c99 -w -fPIC -DEXH_FIX_AUDIT -Ilib/include".split()
 TRAP = "-fsanitize=undefined,bounds-strict -fsanitize-undefined-trap-on-error".split()
-RATES = {"EXH_RATES": "91..1900:603", "EXH_EXPLAIN": "0"}
+RATES = {"EXH_RATES": "91..1900:603", "EXH_EXPLAIN": "0", "EXH_DIGESTS": os.environ.get("EXH_DIGESTS", "build/golden/rates.txt")}
 CASES = "1000"
 SLOW_S = 5  # of a core, of one test, which takes a tenth of a second otherwise: an endless loop, however busy the machine
 STUCK_S = 300  # by the clock: waits
