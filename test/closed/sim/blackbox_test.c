@@ -5,7 +5,7 @@
 
 #include "base/logfile.h"
 #include "base/param.h"
-#include "base/run.h"
+#include "box/run.h"
 #include "posix.h"
 
 #include "exhand/run/blackbox.h"

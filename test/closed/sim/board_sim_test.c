@@ -3,7 +3,7 @@
  * bounded on both sides where there is chance. */
 #include "check.h"
 
-#include "base/run.h"
+#include "box/run.h"
 #include "posix.h"
 #include "sim/plant.h"
 

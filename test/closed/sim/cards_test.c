@@ -4,7 +4,7 @@
 #include "said.h"
 #include "lab/lab.h"
 
-#include "base/run.h"
+#include "box/run.h"
 #include "posix.h"
 
 #include "exhand/error.h"

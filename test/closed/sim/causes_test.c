@@ -4,7 +4,7 @@
  * changed. */
 #include "check.h"
 
-#include "contact/run.h"
+#include "box/hand.h"
 
 #include "guarded/guarded.h"
 

@@ -7,7 +7,7 @@
 #include "base/jobs.h"
 #include "base/logfile.h"
 #include "base/param.h"
-#include "base/table2.h"
+#include "box/table2.h"
 #include "drop/print.h"
 #include "lab/drop/spread.h"
 

@@ -7,7 +7,7 @@
  * nearly all of the time and decides nothing. */
 #include "check.h"
 
-#include "base/analysis.h"
+#include "falls/analysis.h"
 #include "sim/random.h"
 
 #include <stdlib.h>

@@ -3,9 +3,9 @@
  * damaged passes unsaid, and Table II can be made again from the CSVs alone. */
 #include "said.h"
 
-#include "base/analysis.h"
+#include "falls/analysis.h"
 #include "base/logfile.h"
-#include "base/table2.h"
+#include "box/table2.h"
 
 #include "exhand/run/log.h"
 

@@ -2,7 +2,7 @@
 /* Diagrams: every name in them is a row of a table, and docs/ holds what is drawn now. */
 #include "check.h"
 
-#include "diagram.h"
+#include "lab/diagram/diagram.h"
 
 #include <stdio.h>
 #include <stdlib.h>

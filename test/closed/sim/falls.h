@@ -5,7 +5,7 @@
 
 #include "check.h"
 
-#include "base/analysis.h"
+#include "falls/analysis.h"
 
 #include <math.h>
 #include <stdint.h>

@@ -5,7 +5,7 @@
 
 #include "check.h"
 
-#include "contact/run.h"
+#include "box/hand.h"
 
 #include <string.h>
 

@@ -3,7 +3,7 @@
  * rays for it. */
 #include "check.h"
 
-#include "contact/run.h"
+#include "box/hand.h"
 
 #include "world/world.h"
 

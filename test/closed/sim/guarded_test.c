@@ -3,7 +3,7 @@
  * far beyond the stable border; what is taken away at gains that are stable; its log replays. */
 #include "logs.h"
 
-#include "base/table2.h"
+#include "box/table2.h"
 #include "posix.h"
 
 #include "guarded/guarded.h"

@@ -4,7 +4,7 @@
  * something would still happen behind a mass that stands, it is run. */
 #include "check.h"
 
-#include "base/table2.h"
+#include "box/table2.h"
 #include "lab/drop/spread.h"
 #include "drop/drop.h"
 #include "posix.h"

@@ -3,7 +3,7 @@
 #include "logs.h"
 
 #include "base/logfile.h"
-#include "base/run.h"
+#include "box/run.h"
 #include "posix.h"
 
 #include "drop/drop.h"

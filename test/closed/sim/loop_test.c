@@ -3,7 +3,7 @@
  * at its tick, and comes out of the replay bit for bit. */
 #include "logs.h"
 
-#include "base/arming.h"
+#include "box/arming.h"
 #include "base/logfile.h"
 #include "posix.h"
 

@@ -4,8 +4,8 @@
 #include "falls.h"
 
 #include "lab/drop/reading.h"
-#include "base/run.h"
-#include "base/table2.h"
+#include "box/run.h"
+#include "box/table2.h"
 
 #define STEP_M 1e-3
 

@@ -3,7 +3,7 @@
  * and not where the encoder's counter stands. */
 #include "check.h"
 
-#include "base/run.h"
+#include "box/run.h"
 #include "posix.h"
 
 #include "drop/drop.h"

@@ -5,7 +5,7 @@
 #include "check.h"
 
 #include "base/jobs.h"
-#include "base/table2.h"
+#include "box/table2.h"
 #include "lab/drop/spread.h"
 
 #include <string.h>

@@ -4,7 +4,7 @@
  * of it. */
 #include "logs.h"
 
-#include "base/run.h"
+#include "box/run.h"
 #include "posix.h"
 
 #include "drop/drop.h"

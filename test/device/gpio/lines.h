@@ -13,7 +13,7 @@
 #include "gpio.h"
 #include "posix.h"
 
-#include "base/images.h"
+#include "box/images.h"
 #include "live/live.h"
 #include "base/messages.h"
 #include "drop/drop.h"

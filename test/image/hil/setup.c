@@ -4,7 +4,7 @@
 #include "bilateral/bilateral.h"
 #include "drop/drop.h"
 
-#include "contact/run.h"
+#include "box/hand.h"
 
 #include <string.h>
 

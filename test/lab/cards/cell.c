@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "lab/cards/cards.h"
 
-#include "contact/run.h"
+#include "box/hand.h"
 
 #include "../../../ports/cards/box.h"
 

@@ -5,7 +5,7 @@
 #include "base/option.h"
 #include "lab/drop/preset.h"
 #include "lab/drop/quantile.h"
-#include "base/table2.h"
+#include "box/table2.h"
 
 #include <stdlib.h>
 #include <string.h>

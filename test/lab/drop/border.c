@@ -3,7 +3,7 @@
 
 #include "base/jobs.h"
 #include "base/option.h"
-#include "base/table2.h"
+#include "box/table2.h"
 
 #include "sim/linear.h"
 #include "sim/plant.h"

@@ -5,7 +5,7 @@
 
 #include "lab/drop/preset.h"
 #include "base/outfile.h"
-#include "base/table2.h"
+#include "box/table2.h"
 
 #include <stdio.h>
 #include <string.h>

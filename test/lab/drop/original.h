@@ -3,7 +3,7 @@
 #ifndef CLI_DROP_ORIGINAL_H
 #define CLI_DROP_ORIGINAL_H
 
-#include "base/run.h"
+#include "box/run.h"
 
 /* original: a run at 90 Hz; box: at 2 kHz. The exit status. */
 int drop_original(const struct run_cfg *original, const struct run_cfg *box, const char *dir);

@@ -2,7 +2,7 @@
 #include "lab/drop/plane.h"
 
 #include "base/option.h"
-#include "base/table2.h"
+#include "box/table2.h"
 
 #include "sim/linear.h"
 

@@ -8,7 +8,7 @@
 #ifndef CLI_ORIGINAL_H
 #define CLI_ORIGINAL_H
 
-#include "base/analysis.h"
+#include "falls/analysis.h"
 
 #include <stddef.h>
 

@@ -9,7 +9,7 @@
 #ifndef CLI_READING_H
 #define CLI_READING_H
 
-#include "base/analysis.h"
+#include "falls/analysis.h"
 
 struct reading {
     const char *name; /* direction-pairs-scope */

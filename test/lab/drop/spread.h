@@ -3,7 +3,7 @@
 #ifndef LAB_DROP_SPREAD_H
 #define LAB_DROP_SPREAD_H
 
-#include "base/table2.h"
+#include "box/table2.h"
 
 #include <stdio.h>
 

@@ -5,7 +5,7 @@
 #include "base/option.h"
 #include "base/param.h"
 #include "lab/drop/plane.h"
-#include "base/table2.h"
+#include "box/table2.h"
 
 #include "sim/linear.h"
 

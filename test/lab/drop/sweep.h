@@ -10,7 +10,7 @@
 #define CLI_SWEEP_H
 
 #include "lab/drop/cells.h"
-#include "base/run.h"
+#include "box/run.h"
 
 struct sweep_opt {
     const double *rate_Hz;

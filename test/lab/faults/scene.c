@@ -3,8 +3,8 @@
  * that falls onto one. */
 #include "lab/faults/faults.h"
 
-#include "contact/run.h"
-#include "base/run.h"
+#include "box/hand.h"
+#include "box/run.h"
 
 #include "bilateral/bilateral.h"
 #include "drop/drop.h"

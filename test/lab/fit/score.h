@@ -7,7 +7,7 @@
 #include "lab/fit/space.h"
 
 #include "lab/drop/reading.h"
-#include "base/table2.h"
+#include "box/table2.h"
 
 struct score_plan {
     int runs;                         /* of ten falls a row, at the gains */

@@ -3,7 +3,7 @@
 #ifndef FIT_SPACE_H
 #define FIT_SPACE_H
 
-#include "base/run.h"
+#include "box/run.h"
 
 enum space_kind {
     SPACE_DEVICE, /* a value of the device, by its name */

@@ -2,7 +2,7 @@
 #include "lab/gains/gains.h"
 
 #include "base/option.h"
-#include "base/table2.h"
+#include "box/table2.h"
 
 #include <errno.h>
 #include <string.h>

@@ -6,7 +6,7 @@
 
 #include "closed/sim/logs.h"
 
-#include "base/table2.h"
+#include "box/table2.h"
 #include "posix.h"
 
 #include "custom/custom.h"

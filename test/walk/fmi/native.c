@@ -5,7 +5,7 @@
  *   param NAME RAW FRAC      each parameter as set-up took it
  *   columns NAME:FRAC ...    what a tick's line has
  *   NUMBER ...               a tick, raw: what it read, what it wrote, its signals */
-#include "base/table2.h"
+#include "box/table2.h"
 #include "posix.h"
 
 #include "drop/drop.h"

@@ -17,7 +17,6 @@ int cli_run(int argc, char **argv);
 int cli_regs(int argc, char **argv);
 int cli_watch(int argc, char **argv);
 int cli_replay(int argc, char **argv);
-int cli_diagram(int argc, char **argv);
 int cli_quad(int argc, char **argv);
 
 #endif

@@ -4,7 +4,7 @@
 
 #include "base/names.h"
 #include "base/option.h"
-#include "base/table2.h"
+#include "box/table2.h"
 
 #include <errno.h>
 #include <stdlib.h>

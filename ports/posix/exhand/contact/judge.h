@@ -3,7 +3,7 @@
 #ifndef CLI_BILATERAL_JUDGE_H
 #define CLI_BILATERAL_JUDGE_H
 
-#include "contact/run.h"
+#include "box/hand.h"
 
 #define PAPER_SETTLING_S    0.025
 #define PAPER_STIFFNESS_NPM 41250.0

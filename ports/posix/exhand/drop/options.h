@@ -3,11 +3,11 @@
 #ifndef DROP_OPTIONS_H
 #define DROP_OPTIONS_H
 
-#include "base/contacts.h"
-#include "base/images.h"
+#include "box/contacts.h"
+#include "box/images.h"
 #include "base/option.h"
 #include "base/params_file.h"
-#include "base/table2.h"
+#include "box/table2.h"
 
 #define DROP_RATES_MAX    64
 #define DROP_SETTINGS_MAX 64

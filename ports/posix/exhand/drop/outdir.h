@@ -3,7 +3,7 @@
 #ifndef DROP_OUTDIR_H
 #define DROP_OUTDIR_H
 
-#include "base/table2.h"
+#include "box/table2.h"
 
 #include <stdio.h>
 

@@ -3,7 +3,7 @@
 #include "base/cli.h"
 
 #include "base/assign.h"
-#include "glove/image.h"
+#include "box/glove_image.h"
 #include "glove/poses.h"
 #include "base/option.h"
 #include "base/outfile.h"

@@ -2,7 +2,7 @@
 /* exhand glove: what its modes share. */
 #include "glove/modes.h"
 
-#include "glove/image.h"
+#include "box/glove_image.h"
 
 #include <signal.h>
 

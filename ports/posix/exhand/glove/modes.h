@@ -6,9 +6,9 @@
 #include "base/option.h"
 #include "base/recording.h"
 
-#include "glove/serial.h"
+#include "box/glove_line.h"
 #include "posix.h"
-#include "base/run.h"
+#include "box/run.h"
 
 #include "glove/glove.h"
 

@@ -2,7 +2,7 @@
 /* exhand glove --serial: the sensing scene on a stock glove at a serial line. */
 #include "glove/modes.h"
 
-#include "glove/image.h"
+#include "box/glove_image.h"
 #include "glove/poses.h"
 #include "glove_tty.h"
 #include "base/option.h"

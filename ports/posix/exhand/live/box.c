@@ -2,9 +2,9 @@
 /* exhand run: the two kinds of box, and who is told what happens in them. */
 #include "live/live.h"
 
-#include "base/dumpfile.h"
+#include "box/dumpfile.h"
 #include "live/modbus.h"
-#include "base/table2.h"
+#include "box/table2.h"
 
 #include "exhand/error.h"
 

@@ -3,8 +3,8 @@
 #include "base/cli.h"
 
 #include "base/assign.h"
-#include "glove/image.h"
-#include "glove/serial.h"
+#include "box/glove_image.h"
+#include "box/glove_line.h"
 #include "live/live.h"
 #include "live/modbus.h"
 #include "base/option.h"

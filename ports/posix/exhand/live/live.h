@@ -4,9 +4,9 @@
 #define CLI_LIVE_H
 
 #include "contact/bilateral.h"
-#include "base/contacts.h"
+#include "box/contacts.h"
 #include "exhand/run/loop.h"
-#include "base/run.h"
+#include "box/run.h"
 
 #include "exhand/frame.h"
 

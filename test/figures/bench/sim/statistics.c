@@ -17,8 +17,8 @@
 #include "method.h"
 
 #include "base/jobs.h"
-#include "base/run.h"
-#include "base/table2.h"
+#include "box/run.h"
+#include "box/table2.h"
 
 #include <stdio.h>
 #include <stdlib.h>

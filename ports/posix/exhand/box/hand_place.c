@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: MIT */
+/* Where things are: the glove's calibration, a finger by its string, walls, first touch. */
+#include "box/hand.h"
+
+#include <math.h>
+#include <string.h>
+
+#define TWO_PI  6.283185307179586
+#define DEG     (TWO_PI / 360)
+#define STEP_M  1e-4
+#define TOP_M   0.08
+#define SENSORS EXH_GLOVE_SENSORS
+
+/* Nearest. */
+static int32_t fixed(double v, int frac)
+{
+    return (int32_t)floor(ldexp(v, frac) + 0.5);
+}
+
+/* --- the glove --- */
+
+void bilateral_cal_of(struct exh_glove_cal *cal, const struct sim_glove_par *p)
+{
+    *cal = exh_glove_cal_default;
+    cal->present = (1u << SENSORS) - 1;
+    for (unsigned i = 0; i < SENSORS; i++) {
+        const struct sim_glove_sensor *n = &sim_glove_sensor[i];
+        struct exh_glove_sensor *s = &cal->sensor[i];
+        const double per_rad = (n->hi - n->lo) / ((n->hi_deg - n->lo_deg) * DEG);
+        const double raw_per_share = p->gain * p->excite_V * (1 - 2 * p->dead) * 32768 / p->span_V;
+        const double raw_at_0 =
+            (p->gain * p->excite_V * (p->dead + (1 - 2 * p->dead) * n->lo) + p->offset_V) * 32768 /
+                p->span_V -
+            n->lo_deg * DEG * per_rad * raw_per_share;
+        const double raw_per_turn = per_rad * raw_per_share * TWO_PI;
+        const double lo = raw_at_0 + n->lo_deg * DEG * per_rad * raw_per_share;
+        const double hi = raw_at_0 + n->hi_deg * DEG * per_rad * raw_per_share;
+        s->zero_raw_q15 = fixed(raw_at_0, 15);
+        s->gain_turnpraw_q38 = fixed(1 / raw_per_turn, 38);
+        s->low_raw = (int16_t)floor(lo < hi ? lo : hi);
+        s->high_raw = (int16_t)ceil(lo < hi ? hi : lo);
+        for (int k = 0; k < 2; k++) {
+            const int bent = n->bend[k] >= 0 && p->couple != 0;
+            s->of[k] = bent ? (uint8_t)n->bend[k] : EXH_GLOVE_NONE;
+            s->cross_q30[k] = bent ? fixed(-p->couple / 2, 30) : 0;
+        }
+    }
+}
+
+/* --- a finger --- */
+
+/* Flexion sensors, as sim/exo.c bends them: knuckle, and what is beyond it. */
+static const signed char bends[BILATERAL_FINGERS][3] = {
+    {1, 2, -1}, {4, 5, 6}, {7, 8, 9}, {11, 12, 13}, {15, 16, 17}};
+
+/* Joints and tip when it has drawn so much string out. */
+static void finger_at(const struct bilateral_finger_is *w, double x_m,
+                      int32_t joint_turn_q32[EXH_HAND_JOINTS], struct exh_vec3 *tip_m_q30)
+{
+    const double rest = w->arm_m[1] + w->arm_m[2], square = w->arm_m[0] * w->arm_m[0] + rest * rest;
+    int32_t turn_q32[SENSORS];
+    const struct exh_hand_par par = {exh_hand_rows[0].dflt, exh_hand_rows[1].dflt,
+                                     exh_hand_rows[2].dflt, exh_hand_rows[3].dflt};
+    struct exh_hand_finger hand;
+    for (int i = 0; i < SENSORS; i++) { turn_q32[i] = fixed(sim_pose[w->pose].deg[i] / 360, 32); }
+    for (int j = 0; j < 3; j++) {
+        const double rad = x_m * (j ? rest : w->arm_m[0]) / square;
+        if (bends[w->f][j] >= 0) { turn_q32[bends[w->f][j]] = fixed(rad / TWO_PI, 32); }
+    }
+    exh_hand_joints(&exh_hit2_map, w->f, turn_q32, joint_turn_q32);
+    (void)exh_hand_setup(&hand, &exh_hit2_bones[w->f], &par); /* the defaults are good */
+    exh_hand_tip(&hand, joint_turn_q32, tip_m_q30);
+}
+
+void bilateral_wall(struct exh_wire_plane *to, const struct bilateral_finger_is *w, double x_m)
+{
+    int32_t joint[EXH_HAND_JOINTS];
+    struct exh_vec3 a, b;
+    double n[3], length, offset;
+    finger_at(w, x_m - STEP_M, joint, &a);
+    finger_at(w, x_m + STEP_M, joint, &b);
+    n[0] = (double)a.x - b.x;
+    n[1] = (double)a.y - b.y;
+    n[2] = (double)a.z - b.z;
+    length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    finger_at(w, x_m, joint, &a);
+    offset = (n[0] * a.x + n[1] * a.y + n[2] * a.z) / length - exh_hand_rows[3].dflt;
+    memset(to, 0, sizeof *to);
+    to->kind = EXH_PLANE_HIT;
+    to->object = (uint16_t)w->f;
+    for (int i = 0; i < 3; i++) {
+        to->normal_q30[i] = fixed(n[i] / length, 30);
+        to->point_m_q30[i] = fixed(n[i] / length * offset, 0);
+        to->hit_m_q30[i] = to->point_m_q30[i];
+    }
+}
+
+double bilateral_gap_m(const struct peer_world *world, const struct bilateral_finger_is *w,
+                       double x_m, double t_s)
+{
+    struct exh_wire_state in = {.fingers = (uint8_t)(1u << w->f)};
+    struct exh_wire_planes out;
+    struct exh_vec3 tip;
+    finger_at(w, x_m, in.joint_turn_q32[w->f], &tip);
+    in.tip_m_q30[w->f][0] = tip.x;
+    in.tip_m_q30[w->f][1] = tip.y;
+    in.tip_m_q30[w->f][2] = tip.z;
+    peer_look(world, &in, t_s, &out);
+    return peer_gap_m(&out.plane[w->f], in.tip_m_q30[w->f]);
+}
+
+double bilateral_string_m(const struct peer_world *world, const struct bilateral_finger_is *w,
+                          double t_s, double d_m)
+{
+    double lo, hi, x = 0;
+    while (x <= TOP_M && bilateral_gap_m(world, w, x, t_s) < d_m) { x += STEP_M; }
+    if (x > TOP_M) { return -1; }
+    lo = x - STEP_M;
+    hi = x;
+    for (int i = 0; i < 30; i++) {
+        const double mid = 0.5 * (lo + hi);
+        if (bilateral_gap_m(world, w, mid, t_s) < d_m) {
+            lo = mid;
+        } else {
+            hi = mid;
+        }
+    }
+    return hi;
+}

@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: MIT */
+/* How sure the line is: one fall left out after the other. */
+#ifndef BASE_JACKKNIFE_H
+#define BASE_JACKKNIFE_H
+
+#include "falls/fall.h"
+
+/* 95 %, N/m. UNBOUNDED: hi is 0 and there is no upper end (lo is 0 where it has none
+ * either); any other status but OK: both are 0. */
+struct fall_interval {
+    enum fall_status status;
+    double lo_Npm, hi_Npm;
+    size_t falls; /* that have pairs in the band */
+};
+
+/* Leaves out one fall after the other and repeats average and fit: the interval is the
+ * estimate +- t times the jackknife's standard error, t of one degree of freedom less
+ * than there are falls. `sorted` is the output of fall_band(). Falls, not pairs, are
+ * independent of each other. B's is made of its slope (m/N) and inverted then: a slope
+ * that scatters through zero would make B jump from +inf to -inf.
+ * It covers the mean of the estimator, which is not k: `make coverage` shows both, and
+ * that the percentiles of a bootstrap over ten falls, which this replaces, do not. */
+enum fall_status fall_jackknife(const struct fall_pairs *sorted, size_t falls,
+                                enum fall_force force, struct fall_interval *a,
+                                struct fall_interval *b);
+
+#endif
