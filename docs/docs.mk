@@ -25,8 +25,8 @@ fmt-check:
 
 ## Draw the block diagrams in docs/ from the signal and device tables.
 .PHONY: diagrams
-diagrams: all
-	$(Q)for d in overview setup identification principle geometry bilateral; do $(exhand) diagram $$d > docs/$$d.svg || exit 1; done
+diagrams: $(lab)
+	$(Q)for d in overview setup identification principle geometry bilateral; do $(lab) diagram $$d > docs/$$d.svg || exit 1; done
 
 ## Write the table of docs/CARDS.md: every misbehaviour of a card in every phase of its driver.
 .PHONY: cards

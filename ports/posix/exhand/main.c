@@ -4,6 +4,7 @@
 
 int main(int argc, char **argv)
 {
-    static const struct program exhand = {"exhand", {&exhand_commands}, "budget cards faults fit"};
+    static const struct program exhand = {
+        "exhand", {&exhand_commands}, "budget cards diagram faults fit"};
     return program_main(&exhand, argc, argv);
 }

@@ -23,7 +23,7 @@ static struct exh_glove_cal made_by(const char *dir, const char *miss_deg, const
     struct exh_glove_cal cal;
     struct exh_glove_error bad;
     FILE *f;
-    said(&s, dir, cli_calibrate,
+    said(&s, dir, cli_calibrate_glove,
          WORDS("calibrate", "--glove", "--out", dir, "--miss", miss_deg, "--device", couple,
                "--user", "5", "--id", "6", "--day", "20000", "--valid", "30"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
@@ -193,7 +193,7 @@ TEST(exit_status_says_what_happened)
                      w[0] == '@' ? w + 1 : w);
             word[2 + n] = with[n];
         }
-        said(&s, dir, cli_calibrate, word);
+        said(&s, dir, cli_calibrate_glove, word);
         CHECK(s.status == row[i].status, "row %zu: %d: %s", i, s.status, s.err);
         CHECK(row[i].says == NULL || strstr(s.err, row[i].says) != NULL, "row %zu: %s", i, s.err);
         CHECK((s.status != 0) == (s.err[0] != '\0'), "row %zu: %s", i, s.err);
@@ -206,7 +206,7 @@ TEST(all_that_is_wrong_is_told_at_once)
 {
     static struct said s;
     char *dir = said_dir();
-    said(&s, dir, cli_calibrate,
+    said(&s, dir, cli_calibrate_glove,
          WORDS("calibrate", "--glove", "--out", dir, "--wrong", "IndexMPJ=open", "--wrong",
                "ThumbIJ=stuck"));
     CHECK_EQ_I64(s.status, 1);
@@ -267,7 +267,7 @@ TEST(a_glove_of_18_sensors_lacks_the_last_joints)
                                        "\nPinkieDIJ        +0.6667 of PinkiePIJ (not measured)\n"};
     static struct said s;
     char *dir = said_dir();
-    said(&s, dir, cli_calibrate, WORDS("calibrate", "--glove", "--sensors", "18"));
+    said(&s, dir, cli_calibrate_glove, WORDS("calibrate", "--glove", "--sensors", "18"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     for (size_t i = 0; i < LEN(line); i++) {
         CHECK(strstr(s.out, line[i]) != NULL, "no %s: %s", line[i], s.out);
@@ -289,12 +289,12 @@ TEST(bad_lines_are_told_by_number)
         snprintf(text, sizeof text, "%sflat,%s%s%s\n", i % 2 ? "\n" : "\r\n", nine, nine,
                  row[i].tail);
         write_text(path, text);
-        said(&s, dir, cli_calibrate, WORDS("calibrate", "--glove", "--poses", path));
+        said(&s, dir, cli_calibrate_glove, WORDS("calibrate", "--glove", "--poses", path));
         CHECK(s.status == 2 && strstr(s.err, "line 2") && strstr(s.err, row[i].says),
               "row %zu: %d: %s", i, s.status, s.err);
     }
     write_text(path, "flat\n");
-    said(&s, dir, cli_calibrate, WORDS("calibrate", "--glove", "--poses", path));
+    said(&s, dir, cli_calibrate_glove, WORDS("calibrate", "--glove", "--poses", path));
     CHECK(s.status == 2 && strstr(s.err, "too few"), "%d: %s", s.status, s.err);
     said_clean(dir);
 }
@@ -308,9 +308,10 @@ TEST(recorded_poses_give_the_same)
     char *dir = said_dir(), again[100];
     struct exh_glove_error bad;
     snprintf(again, sizeof again, "%s/again", dir);
-    said(&s, dir, cli_calibrate, WORDS("calibrate", "--glove", "--out", dir, "--day", "20000"));
+    said(&s, dir, cli_calibrate_glove,
+         WORDS("calibrate", "--glove", "--out", dir, "--day", "20000"));
     CHECK_EQ_I64(s.status, 0);
-    said(&s, dir, cli_calibrate,
+    said(&s, dir, cli_calibrate_glove,
          WORDS("calibrate", "--glove", "--out", again, "--day", "20000", "--poses",
                said_path(dir, "poses.csv")));
     CHECK(s.status == 0, "%s", s.err);

@@ -537,7 +537,7 @@ TEST(a_user_calibrates_it_by_poses)
         p < 2 ? (void)fputs(s.out, f) : glove_poses_row(f, pose[p], raw);
         fclose(f);
     }
-    said(&s, dir, cli_calibrate, WORDS("calibrate", "--glove", "--poses", csv, "--out", dir));
+    said(&s, dir, cli_calibrate_glove, WORDS("calibrate", "--glove", "--poses", csv, "--out", dir));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     hand_in("knuckles");
     command(&s, dir,

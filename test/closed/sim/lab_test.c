@@ -49,13 +49,14 @@ TEST(an_option_says_where_it_went)
 
 static int as_exhand(int argc, char **argv)
 {
-    static const struct program exhand = {"exhand", {&exhand_commands}, "budget cards faults fit"};
+    static const struct program exhand = {
+        "exhand", {&exhand_commands}, "budget cards diagram faults fit"};
     return program_main(&exhand, argc, argv);
 }
 
 TEST(a_command_says_where_it_went)
 {
-    static const char *const gone[] = {"budget", "cards", "faults", "fit"};
+    static const char *const gone[] = {"budget", "cards", "diagram", "faults", "fit"};
     static struct said s;
     const char *dir = said_dir();
     for (size_t i = 0; i < LEN(gone); i++) {

@@ -7,7 +7,7 @@
 #include <string.h>
 
 static struct {
-    int64_t check;
+    int64_t check, jobs;
     int sweep, hands, crisp;
     const char *preset;
 } is;
@@ -37,6 +37,7 @@ static int refuse(struct bilateral_options *o, double rate_Hz)
 {
     const int err = take_preset(o, rate_Hz);
     o->study = studies() > 0;
+    o->jobs = is.jobs;
     if (err == 0 && studies() > 1) {
         cli_complain("--sweep, --check, --hands, --crisp: one at a time");
         return 2;
@@ -56,7 +57,6 @@ static int run(const struct bilateral_options *o)
 
 int lab_bilateral(int argc, char **argv)
 {
-    static struct bilateral_options o;
     const struct cli_option option[] = {
         {"preset", CLI_TEXT, &is.preset, 0, 0, "NAME",
          "original: the commercial system at 90 Hz, beside this box at 2 kHz"},
@@ -67,11 +67,12 @@ int lab_bilateral(int argc, char **argv)
         {"hands", CLI_FLAG, &is.hands, 0, 0, NULL,
          "80 fingers and hands: settling and stiffness of each"},
         {"crisp", CLI_FLAG, &is.crisp, 0, 0, NULL, "how fast force rises, over a grid of k and b"},
-        {"jobs", CLI_INT, &o.jobs, 1, 1024, "N",
+        {"jobs", CLI_INT, &is.jobs, 1, 1024, "N",
          "processes at a time, of all but the experiment (one a core)"},
     };
     const struct bilateral_study study = {
         {option, (int)(sizeof option / sizeof option[0]), NULL}, refuse, run};
     memset(&is, 0, sizeof is);
-    return bilateral_command(argc, argv, &o, &study);
+    is.jobs = jobs_cores();
+    return bilateral_command(argc, argv, &study);
 }

@@ -10,7 +10,7 @@
 #ifndef CLI_BORDER_H
 #define CLI_BORDER_H
 
-#include "lab/drop/sweep.h"
+#include "lab/drop/study.h"
 
 /* Both tables on stdout, and DIR/check.csv with --out. o->columns and o->rows are of the
  * check's own grid over each rate's linear border. 0, 1 when fewer than 99 % agree outside

@@ -7,7 +7,7 @@
 #ifndef CLI_FRICTION_H
 #define CLI_FRICTION_H
 
-#include "lab/drop/sweep.h"
+#include "lab/drop/study.h"
 
 #define FRICTION_POINTS_MAX 65
 

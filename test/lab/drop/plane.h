@@ -4,7 +4,7 @@
 #define CLI_PLANE_H
 
 #include "lab/drop/cells.h"
-#include "lab/drop/sweep.h"
+#include "lab/drop/study.h"
 
 struct plane_want {
     double rate_Hz, k_Npm, b_Nspm;

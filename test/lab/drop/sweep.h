@@ -9,31 +9,7 @@
 #ifndef CLI_SWEEP_H
 #define CLI_SWEEP_H
 
-#include "lab/drop/cells.h"
-#include "box/run.h"
-
-struct sweep_opt {
-    const double *rate_Hz;
-    int rates;
-    int columns, rows; /* of the grid: k and b */
-    int shard, shards; /* 1/1: all of it */
-    int jobs;
-    struct run_cfg base; /* device, settings of the scene, seed, falls */
-    const char *dir;
-};
-
-/* "2/3". 0, or 2 after a line on stderr. */
-int sweep_take_shard(const char *text, int *shard, int *shards);
-
-/* Falls at one cell, judged. *error: 0, 1 after a line on stderr, -1 interrupted. */
-struct cell sweep_cell(const struct run_cfg *base, double rate_Hz, double k_Npm, double b_Nspm,
-                       int *error);
-
-/* Ticks of the scene's velocity window under these settings. */
-int sweep_window(const struct run_cfg *base);
-
-/* Makes the directory if need be. 0, or 2 after a line on stderr that names the option. */
-int sweep_open_dir(const char *dir, const char *option);
+#include "lab/drop/study.h"
 
 /* Runs what DIR/stability.csv, and shards' files beside it, lack; writes the file,
  * border.csv and rho.csv for the picture, and says what it found on stdout. The exit

@@ -2,7 +2,7 @@
 /* exhand-lab advise gains: the advisor held against a simulated map, and what its picture needs. */
 #include "lab/gains/gains.h"
 
-#include "lab/drop/sweep.h"
+#include "lab/drop/study.h"
 #include "lab/lab.h"
 
 #include <stdlib.h>

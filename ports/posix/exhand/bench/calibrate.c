@@ -3,7 +3,7 @@
 #include "base/cli.h"
 
 #include "base/assign.h"
-#include "bench/calibration.h"
+#include "bench/calibrate.h"
 #include "base/option.h"
 #include "base/outfile.h"
 #include "base/param.h"
@@ -18,20 +18,7 @@
 #include <string.h>
 #include <time.h>
 
-#define SETTINGS_MAX 64
-#define DAY_S        86400
-
-struct calibrate_options {
-    int64_t rate_Hz, seed, id, finger, day, valid_days; /* as CLI_INT writes them */
-    double residual_N;
-    double mass_kg[CALIBRATE_MASSES], hung_kg[CALIBRATE_MASSES];
-    int masses, hung, pace, cards;
-    const char *out, *check;
-    struct calibration_setting setting[SETTINGS_MAX];
-    int settings;
-    struct sim_device device;
-    unsigned wrong;
-};
+#define DAY_S 86400
 
 static const struct {
     const char *name, *what;
@@ -94,8 +81,8 @@ static int take_setting(void *ctx, const char *text)
     char name[ASSIGN_NAME_B];
     double value;
     if (assign_split("set", text, name, &value)) { return 2; }
-    if (o->settings == SETTINGS_MAX) {
-        cli_complain("--set: at most %d", SETTINGS_MAX);
+    if (o->settings == CALIBRATE_SETTINGS_MAX) {
+        cli_complain("--set: at most %d", CALIBRATE_SETTINGS_MAX);
         return 2;
     }
     if (strcmp(name, "go") == 0) {
@@ -151,18 +138,6 @@ static void print_params(void)
 
 /* --- files --- */
 
-static int complain(const char *what, int err, const struct exh_calib_error *bad)
-{
-    char point[24] = "";
-    if (bad->what == EXH_CALIB_FORCE_TABLE || bad->what == EXH_CALIB_MONITOR_TABLE) {
-        snprintf(point, sizeof point, ", point %d", bad->at + 1);
-    }
-    cli_complain("%s: %s%s: %s: calibrate again", what, exh_calib_error_text(bad->what), point,
-                 exh_error_text(err));
-    return 1;
-}
-
-/* what is written into the files */
 struct results {
     const struct exh_calib *c;
     const struct calibration_lines *l;
@@ -214,90 +189,11 @@ static int write_files(const char *dir, const struct exh_calib *c,
     struct results r = {.c = c, .l = l};
     struct exh_calib_error bad = {0, 0};
     const int32_t len = exh_calib_save(c, r.image, sizeof r.image, &bad);
-    if (len < 0) { return complain("calibration.bin", len, &bad); }
+    if (len < 0) { return calibrate_complain("calibration.bin", len, &bad); }
     r.image_B = (size_t)len;
     for (size_t i = 0; i < sizeof file / sizeof file[0]; i++) {
         if (outfile_write(dir, file[i].name, file[i].write, &r) != 0) { return 1; }
     }
-    return 0;
-}
-
-/* --- an image that is there --- */
-
-/* Whose, when, and the scales of the device as they are now. The monitor's zero is for
- * who uses the image to copy, so here it is the image's. */
-static struct exh_calib_target here_and_now(const struct calibrate_options *o,
-                                            const struct exh_calib *c)
-{
-    struct exh_calib_target here = {(uint32_t)o->id, (uint32_t)o->finger, (uint32_t)o->day, 0, 0, 0,
-                                    c->mon_zero_raw};
-    struct exh_params *p = exh_scene_calibrate.params;
-    uint32_t at;
-    exh_scene_calibrate.defaults();
-    (void)cli_param_set(p, "dac_scale", o->device.dac_perA);
-    (void)cli_param_set(p, "dac_zero", o->device.dac_zero);
-    (void)cli_param_set(p, "mon_scale", o->device.mon_apc);
-    if (cli_signal_find(p->table, "dac_scale", &at)) { here.dac_rawpA_q16 = p->staged[at]; }
-    if (cli_signal_find(p->table, "dac_zero", &at)) { here.dac_zero_raw = p->staged[at]; }
-    if (cli_signal_find(p->table, "mon_scale", &at)) { here.mon_A_q40 = p->staged[at]; }
-    return here;
-}
-
-/* A sound image that may not be used: what it was made for, and what is here. */
-static int not_here(const struct calibrate_options *o, const struct exh_calib *c, int err,
-                    const struct exh_calib_error *bad)
-{
-    if (bad->what == EXH_CALIB_DEVICE) {
-        cli_complain("%s: made for device %lu, this is %" PRId64
-                     ": give its --id, or calibrate this one",
-                     o->check, (unsigned long)c->device_id, o->id);
-    } else if (bad->what == EXH_CALIB_FINGER) {
-        cli_complain("%s: made for finger %lu, this is %" PRId64
-                     ": give its --finger, or calibrate this one",
-                     o->check, (unsigned long)c->finger, o->finger);
-    } else if (bad->what == EXH_CALIB_AGE && (uint32_t)o->day < c->day) {
-        cli_complain("%s: from the future: made on day %lu, today is day %" PRId64
-                     ": set the clock right, or "
-                     "give --day",
-                     o->check, (unsigned long)c->day, o->day);
-    } else if (bad->what == EXH_CALIB_AGE) {
-        cli_complain("%s: stale: made on day %lu, good for %lu days, today is day %" PRId64
-                     ": calibrate again",
-                     o->check, (unsigned long)c->day, (unsigned long)c->valid_days, o->day);
-    } else {
-        return complain(o->check, err, bad);
-    }
-    return 1;
-}
-
-static int check_image(const struct calibrate_options *o)
-{
-    struct exh_calib_point point[EXH_CALIB_POINTS_MAX];
-    struct exh_calib c = {.point = point, .cap = EXH_CALIB_POINTS_MAX};
-    struct exh_calib_target here;
-    struct calibration_lines l;
-    struct exh_calib_error bad = {0, 0};
-    uint8_t image[EXH_CALIB_IMAGE_B];
-    const long len =
-        outfile_read("check", o->check, "calibration.bin that `exhand calibrate --out` wrote",
-                     image, sizeof image);
-    int err;
-    if (len < 0) { return (int)-len; }
-    err = exh_calib_load(&c, image, (size_t)len, &bad);
-    if (err < 0) { return complain(o->check, err, &bad); }
-    printf("%s: device %lu, finger %lu, made on day %lu, good for %lu days; today is day %" PRId64
-           "\n",
-           o->check, (unsigned long)c.device_id, (unsigned long)c.finger, (unsigned long)c.day,
-           (unsigned long)c.valid_days, o->day);
-    fflush(stdout);
-    here = here_and_now(o, &c);
-    err = exh_calib_check(&c, &here, &bad);
-    if (err < 0) { return not_here(o, &c, err, &bad); }
-    if (calibration_lines(&c, &l) < 0) {
-        cli_complain("%s: no line through its points: calibrate again", o->check);
-        return 1;
-    }
-    calibration_print(stdout, &c, &l);
     return 0;
 }
 
@@ -321,7 +217,7 @@ static int judge(const struct calibrate_options *o, struct calibration *r)
         return 1;
     }
     err = exh_calib_validate(&r->c, &bad);
-    if (err < 0) { return complain("calibrate", err, &bad); }
+    if (err < 0) { return calibrate_complain("calibrate", err, &bad); }
     if (calibration_lines(&r->c, &l) < 0) {
         cli_complain("no line through these points: calibrate again");
         return 1;
@@ -407,11 +303,24 @@ static int steps_too_long(struct calibrate_options *o)
     return err;
 }
 
+static void defaults(struct calibrate_options *o)
+{
+    static const double mass_kg[] = {0.1, 0.2, 0.3, 0.5, 0.7};
+    memset(o, 0, sizeof *o); /* a test calls more than once */
+    o->rate_Hz = 2000;
+    o->seed = o->id = 1;
+    o->valid_days = 90;
+    o->residual_N = 0.1;
+    o->day = (int64_t)(time(NULL) / DAY_S);
+    o->device = sim_device_default();
+    o->masses = (int)(sizeof mass_kg / sizeof mass_kg[0]);
+    memcpy(o->mass_kg, mass_kg, sizeof mass_kg);
+}
+
 int cli_calibrate(int argc, char **argv)
 {
     static struct calibrate_options o;
-    static const double mass_kg[] = {0.1, 0.2, 0.3, 0.5, 0.7};
-    int list = 0, glove = 0, err; /* --glove never gets as far as being set */
+    int list = 0, glove = 0, err; /* whoever has --glove goes to cli_calibrate_glove() */
     struct cli_call known = {take_masses, &o}, setting = {take_setting, &o};
     struct cli_call device = {take_device, &o}, fault = {take_wrong, &o};
     struct cli_call hung = {take_hung, &o};
@@ -448,18 +357,7 @@ int cli_calibrate(int argc, char **argv)
         (int)(sizeof option / sizeof option[0]),
         0};
 
-    for (int i = 1; i < argc; i++) {
-        if (strcmp(argv[i], "--glove") == 0) { return cli_calibrate_glove(argc, argv); }
-    }
-    memset(&o, 0, sizeof o); /* a test calls more than once */
-    o.rate_Hz = 2000;
-    o.seed = o.id = 1;
-    o.valid_days = 90;
-    o.residual_N = 0.1;
-    o.day = (int64_t)(time(NULL) / DAY_S);
-    o.device = sim_device_default();
-    o.masses = (int)(sizeof mass_kg / sizeof mass_kg[0]);
-    memcpy(o.mass_kg, mass_kg, sizeof mass_kg);
+    defaults(&o);
     err = cli_parse(&c, argc, argv, NULL);
     if (err) { return err == 1 ? 0 : err; }
     if (list) {
@@ -470,5 +368,5 @@ int cli_calibrate(int argc, char **argv)
         cli_complain("--hung: %d masses (as many as --mass: %d): give that many", o.hung, o.masses);
         return 2;
     }
-    return o.check ? check_image(&o) : steps_too_long(&o) ? 2 : calibrate(&o);
+    return o.check ? calibrate_check(&o) : steps_too_long(&o) ? 2 : calibrate(&o);
 }

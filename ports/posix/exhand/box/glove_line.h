@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* A stock glove on a serial line, for commands. */
-#ifndef CLI_GLOVE_SERIAL_H
-#define CLI_GLOVE_SERIAL_H
+#ifndef BOX_GLOVE_LINE_H
+#define BOX_GLOVE_LINE_H
 
 #include "exhand/run/scene.h"
 

@@ -1,14 +1,55 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand bilateral: options with a syntax of their own, and what --params lists. */
-#include "contact/bilateral.h"
+/* Options of fingers before a wall: defaults, those with a syntax of their own, what --params
+ * lists. */
+#include "box/hand_options.h"
 
 #include "base/assign.h"
 #include "base/option.h"
+#include "base/jobs.h"
 #include "base/param.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+const char *const bilateral_finger_name[BILATERAL_FINGERS] = {"thumb", "index", "middle", "ring",
+                                                              "little"};
+
+void bilateral_defaults(struct bilateral_options *o)
+{
+    static struct run_setting own = {"mat_f_max", 40};
+    memset(o, 0, sizeof *o);
+    o->seed = 1;
+    o->approaches = 5;
+    o->jobs = jobs_cores();
+    o->link = "none";
+    o->record_Hz = 100;
+    o->setting[o->settings++] = own; /* the paper has no limit but the drive's */
+    o->run.board = posix_config_default();
+    o->run.board.exo = sim_exo_default();
+    o->run.board.exo.fingers = 1u << EXH_INDEX;
+    o->run.k_Npm = o->run.b_Nspm = -1;
+    o->run.at_m = 0.03;
+    o->run.fps = 400;
+    o->run.until_s = 1e30;
+    o->run.images = &o->images;
+    (void)bilateral_take_speeds(o, "slow,natural,fast");
+}
+
+struct bilateral_run_cfg bilateral_at_speed(const struct bilateral_options *o, double mps)
+{
+    struct bilateral_run_cfg c = o->run;
+    c.setting = o->setting;
+    c.settings = o->settings;
+    c.board.seed = (uint64_t)o->seed;
+    c.board.cards.how = o->cards ? POSIX_CARDS_INSTANT : POSIX_CARDS_NONE;
+    c.fit_scale = !o->own_scale;
+    for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
+        c.board.exo.path[f].speed_mps = mps;
+        c.board.exo.path[f].approaches = (double)o->approaches;
+    }
+    return c;
+}
 
 static int bad_speeds(const char *text)
 {

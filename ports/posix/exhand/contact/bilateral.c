@@ -2,6 +2,8 @@
 /* exhand bilateral: the paper's second experiment. */
 #include "contact/bilateral.h"
 
+#include "contact/hand_record.h"
+
 #include "base/assign.h"
 #include "base/cli.h"
 #include "base/option.h"
@@ -15,6 +17,8 @@
 /* The device is simulated, so a tick that another program delayed is made up for: both ends are to
  * be tried, not this machine. */
 #define UDP_SLACK_S 1.0
+
+static struct hand_record recorded; /* of --record */
 
 static int load_scene(struct bilateral_options *o)
 {
@@ -32,27 +36,6 @@ static int load_scene(struct bilateral_options *o)
         return 2;
     }
     return 0;
-}
-
-void bilateral_defaults(struct bilateral_options *o)
-{
-    static struct run_setting own = {"mat_f_max", 40};
-    memset(o, 0, sizeof *o);
-    o->seed = 1;
-    o->approaches = 5;
-    o->jobs = jobs_cores();
-    o->link = "none";
-    o->record_Hz = 100;
-    o->setting[o->settings++] = own; /* the paper has no limit but the drive's */
-    o->run.board = posix_config_default();
-    o->run.board.exo = sim_exo_default();
-    o->run.board.exo.fingers = 1u << EXH_INDEX;
-    o->run.k_Npm = o->run.b_Nspm = -1;
-    o->run.at_m = 0.03;
-    o->run.fps = 400;
-    o->run.until_s = 1e30;
-    o->run.images = &o->images;
-    (void)bilateral_take_speeds(o, "slow,natural,fast");
 }
 
 /* Whether a run with these parameters begins at all: 0, or 2 after a line on stderr. */
@@ -125,9 +108,9 @@ static int load_record(struct bilateral_options *o)
                      "--hands, --crisp");
         return 2;
     }
-    err = hand_record_read(&o->hand, o->record, o->record_Hz, &o->run.board.exo);
+    err = hand_record_read(&recorded, o->record, o->record_Hz, &o->run.board.exo);
     if (err) { return err; }
-    hand_record_use(&o->hand, &o->run.board.exo);
+    hand_record_use(&recorded, &o->run.board.exo);
     o->speeds = 1;
     (void)snprintf(o->speed[0].name, BILATERAL_NAME_B, "recorded");
     return 0;
@@ -192,94 +175,98 @@ static int go(struct bilateral_options *o, double rate_Hz, const struct bilatera
     err = study->run ? study->run(o) : bilateral_experiment(o);
     world_free(o->run.scene);
     sim_trace_free(&o->trace);
-    hand_record_free(&o->hand);
+    hand_record_free(&recorded);
     return err;
 }
 
-int bilateral_command(int argc, char **argv, struct bilateral_options *o,
-                      const struct bilateral_study *study)
-{
-    int list = 0, err;
-    double rate_Hz = 2000;
-    struct cli_call speeds = {bilateral_take_speeds, o}, fingers = {bilateral_take_fingers, o};
-    struct cli_call link = {bilateral_take_link, o}, setting = {bilateral_take_setting, o};
-    struct cli_call device = {bilateral_take_device, o}, pose = {bilateral_take_pose, o};
-    struct cli_call calibration = {images_take, &o->images};
-    const struct cli_option option[] = {
-        {"speed", CLI_CALL, &speeds, 0, 0, "V[,V...]",
-         "slow, natural, fast or m/s of string (these three)"},
-        {"fingers", CLI_CALL, &fingers, 0, 0, "F[,F...]",
-         "thumb, index, middle, ring, little or all (index)"},
-        {"record", CLI_TEXT, &o->record, 0, 0, "FILE",
-         "the fingers do what a glove recorded, instead of approaches"},
-        {"record-rate", CLI_REAL, &o->record_Hz, 0.1, 10000, "HZ",
-         "of its rows, if they have no clock (100)"},
-        {"approaches", CLI_INT, &o->approaches, 1, BILATERAL_CONTACTS_MAX, "N",
-         "at each speed (5)"},
-        {"at", CLI_REAL, &o->run.at_m, 0.008, 0.06, "M",
-         "the wall stands where so much string is out (0.030)"},
-        {"pose", CLI_CALL, &pose, 0, 0, "NAME", "the hand, where no finger in use bends it (flat)"},
-        {"scene", CLI_TEXT, &o->scene, 0, 0, "FILE",
-         "a scene of the world simulator instead of walls"},
-        {"rate", CLI_REAL, &rate_Hz, 1, 20000, "HZ", "of the loop (2000)"},
-        {"k", CLI_REAL, &o->run.k_Npm, 0, 1e6, "N/M",
-         "stiffness (20000; with --scene its materials')"},
-        {"b", CLI_REAL, &o->run.b_Nspm, 0, 1e3, "NS/M",
-         "damping (60; with --scene its materials')"},
-        {"link", CLI_CALL, &link, 0, 0, "SPEC",
-         "none, trace=FILE (round trips), delay=S,jitter=S,loss=SHARE,... (none)"},
-        {"fps", CLI_REAL, &o->run.fps, 1, 2000, "N", "frames of the world a second (400)"},
-        {"trace", CLI_INT, &o->run.trace_every, 1, 1e6, "N",
-         "the world asks for a trace of every N-th tick, over the link (none)"},
-        {"ray", CLI_REAL, &o->run.ray_m, 0, 1, "M",
-         "a wall is not seen from farther off (no limit)"},
-        {"world-from", CLI_REAL, &o->run.from_s, 0, 1e9, "S", "the world is not there before (0)"},
-        {"world-until", CLI_REAL, &o->run.until_s, 0, 1e30, "S", "it dies then (never)"},
-        {"udp", CLI_TEXT, &o->udp, 0, 0, "HOST:PORT",
-         "the world is another process there; in real time"},
-        {"cards", CLI_FLAG, &o->cards, 0, 0, NULL,
-         "through the drivers and emulated cards: the same bits"},
-        {"seed", CLI_INT, &o->seed, 0, 1e9, "N", "of all chance in the simulation (1)"},
-        {"out", CLI_TEXT, &o->out, 0, 0, "DIR", "write logs, CSVs and what pictures need there"},
-        {"blackbox", CLI_TEXT, &o->run.blackbox, 0, 0, "FILE",
-         "the last seconds before a fault, a log (with --out beside the others)"},
-        {"let-go", CLI_REAL, &o->run.board.let_go_s, 0, 1e9, "S",
-         "the dead-man switch opens then: a fault (never)"},
-        {"set", CLI_CALL, &setting, 0, 0, "NAME=VALUE", "a parameter of the scene, of all fingers"},
-        {"device", CLI_CALL, &device, 0, 0, "NAME=VALUE",
-         "a value of the simulated hand, glove or motors"},
-        PARAMS_FILE_OPTIONS(o->params),
-        {"calibration", CLI_CALL, &calibration, 0, 0, "FILE[,FILE...]",
-         "of the fingers, or a directory of them (none: the simulated device as it is, "
-         "uncalibrated=1)"},
-        {"params", CLI_FLAG, &list, 0, 0, NULL, "list all values, with units and ranges"},
-    };
-    const struct cli_command c = {
-        "bilateral",
-        "[options]",
-        "The paper's second experiment: a hand in glove and exoskeleton approaches a virtual "
-        "object at\n"
-        "three speeds. A world simulator at the other end of a link says where its surface is; "
-        "the\n"
-        "contact is frozen before it is touched and rendered here alone, whatever the link does.",
-        option,
-        (int)(sizeof option / sizeof option[0]),
-        0};
+/* --- the command --- */
 
-    bilateral_defaults(o);
-    err = cli_parse_more(&c, &study->more, argc, argv, NULL);
+static struct bilateral_options is;
+static struct {
+    double rate_Hz;
+    int list;
+} asked;
+
+static struct cli_call speeds = {bilateral_take_speeds, &is},
+                       fingers = {bilateral_take_fingers, &is};
+static struct cli_call link = {bilateral_take_link, &is}, setting = {bilateral_take_setting, &is};
+static struct cli_call device = {bilateral_take_device, &is}, pose = {bilateral_take_pose, &is};
+static struct cli_call calibration = {images_take, &is.images};
+static const struct cli_option option[] = {
+    {"speed", CLI_CALL, &speeds, 0, 0, "V[,V...]",
+     "slow, natural, fast or m/s of string (these three)"},
+    {"fingers", CLI_CALL, &fingers, 0, 0, "F[,F...]",
+     "thumb, index, middle, ring, little or all (index)"},
+    {"record", CLI_TEXT, &is.record, 0, 0, "FILE",
+     "the fingers do what a glove recorded, instead of approaches"},
+    {"record-rate", CLI_REAL, &is.record_Hz, 0.1, 10000, "HZ",
+     "of its rows, if they have no clock (100)"},
+    {"approaches", CLI_INT, &is.approaches, 1, BILATERAL_CONTACTS_MAX, "N", "at each speed (5)"},
+    {"at", CLI_REAL, &is.run.at_m, 0.008, 0.06, "M",
+     "the wall stands where so much string is out (0.030)"},
+    {"pose", CLI_CALL, &pose, 0, 0, "NAME", "the hand, where no finger in use bends it (flat)"},
+    {"scene", CLI_TEXT, &is.scene, 0, 0, "FILE", "a scene of the world simulator instead of walls"},
+    {"rate", CLI_REAL, &asked.rate_Hz, 1, 20000, "HZ", "of the loop (2000)"},
+    {"k", CLI_REAL, &is.run.k_Npm, 0, 1e6, "N/M", "stiffness (20000; with --scene its materials')"},
+    {"b", CLI_REAL, &is.run.b_Nspm, 0, 1e3, "NS/M", "damping (60; with --scene its materials')"},
+    {"link", CLI_CALL, &link, 0, 0, "SPEC",
+     "none, trace=FILE (round trips), delay=S,jitter=S,loss=SHARE,... (none)"},
+    {"fps", CLI_REAL, &is.run.fps, 1, 2000, "N", "frames of the world a second (400)"},
+    {"trace", CLI_INT, &is.run.trace_every, 1, 1e6, "N",
+     "the world asks for a trace of every N-th tick, over the link (none)"},
+    {"ray", CLI_REAL, &is.run.ray_m, 0, 1, "M", "a wall is not seen from farther off (no limit)"},
+    {"world-from", CLI_REAL, &is.run.from_s, 0, 1e9, "S", "the world is not there before (0)"},
+    {"world-until", CLI_REAL, &is.run.until_s, 0, 1e30, "S", "it dies then (never)"},
+    {"udp", CLI_TEXT, &is.udp, 0, 0, "HOST:PORT",
+     "the world is another process there; in real time"},
+    {"cards", CLI_FLAG, &is.cards, 0, 0, NULL,
+     "through the drivers and emulated cards: the same bits"},
+    {"seed", CLI_INT, &is.seed, 0, 1e9, "N", "of all chance in the simulation (1)"},
+    {"out", CLI_TEXT, &is.out, 0, 0, "DIR", "write logs, CSVs and what pictures need there"},
+    {"blackbox", CLI_TEXT, &is.run.blackbox, 0, 0, "FILE",
+     "the last seconds before a fault, a log (with --out beside the others)"},
+    {"let-go", CLI_REAL, &is.run.board.let_go_s, 0, 1e9, "S",
+     "the dead-man switch opens then: a fault (never)"},
+    {"set", CLI_CALL, &setting, 0, 0, "NAME=VALUE", "a parameter of the scene, of all fingers"},
+    {"device", CLI_CALL, &device, 0, 0, "NAME=VALUE",
+     "a value of the simulated hand, glove or motors"},
+    PARAMS_FILE_OPTIONS(is.params),
+    {"calibration", CLI_CALL, &calibration, 0, 0, "FILE[,FILE...]",
+     "of the fingers, or a directory of them (none: the simulated device as it is, "
+     "uncalibrated=1)"},
+    {"params", CLI_FLAG, &asked.list, 0, 0, NULL, "list all values, with units and ranges"},
+};
+
+static const struct cli_command command = {
+    "bilateral",
+    "[options]",
+    "The paper's second experiment: a hand in glove and exoskeleton approaches a virtual "
+    "object at\n"
+    "three speeds. A world simulator at the other end of a link says where its surface is; "
+    "the\n"
+    "contact is frozen before it is touched and rendered here alone, whatever the link does.",
+    option,
+    (int)(sizeof option / sizeof option[0]),
+    0};
+
+int bilateral_command(int argc, char **argv, const struct bilateral_study *study)
+{
+    int err;
+    bilateral_defaults(&is);
+    asked.rate_Hz = 2000;
+    asked.list = 0;
+    err = cli_parse_more(&command, &study->more, argc, argv, NULL);
     if (err) { return err == 1 ? 0 : err; }
-    if (list) {
+    if (asked.list) {
         bilateral_print_params();
         return 0;
     }
-    return go(o, rate_Hz, study);
+    return go(&is, asked.rate_Hz, study);
 }
 
 int cli_bilateral(int argc, char **argv)
 {
-    static struct bilateral_options o;
     static const struct bilateral_study none = {
         {NULL, 0, "preset sweep check hands crisp jobs"}, NULL, NULL};
-    return bilateral_command(argc, argv, &o, &none);
+    return bilateral_command(argc, argv, &none);
 }

@@ -10,21 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct bilateral_run_cfg bilateral_at_speed(const struct bilateral_options *o, double mps)
-{
-    struct bilateral_run_cfg c = o->run;
-    c.setting = o->setting;
-    c.settings = o->settings;
-    c.board.seed = (uint64_t)o->seed;
-    c.board.cards.how = o->cards ? POSIX_CARDS_INSTANT : POSIX_CARDS_NONE;
-    c.fit_scale = !o->own_scale;
-    for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
-        c.board.exo.path[f].speed_mps = mps;
-        c.board.exo.path[f].approaches = (double)o->approaches;
-    }
-    return c;
-}
-
 static int by_size(const void *a, const void *b)
 {
     const double d = *(const double *)a - *(const double *)b;

@@ -10,9 +10,6 @@
 
 #define TWO_PI 6.283185307179586
 
-const char *const bilateral_finger_name[BILATERAL_FINGERS] = {"thumb", "index", "middle", "ring",
-                                                              "little"};
-
 /* --- contacts --- */
 
 static void number(FILE *f, int width, int digits, double v, int there)

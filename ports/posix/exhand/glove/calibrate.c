@@ -4,7 +4,7 @@
 
 #include "base/assign.h"
 #include "box/glove_image.h"
-#include "glove/poses.h"
+#include "glove/result.h"
 #include "base/option.h"
 #include "base/outfile.h"
 
@@ -15,12 +15,10 @@
 #include <string.h>
 #include <time.h>
 
-#define DAY_S           86400
-#define RAIL_RAW        32000 /* beyond: no code of a hand */
-#define DEG_OF_TURN_Q32 (360.0 / 4294967296.0)
-#define DEG_OF_GAIN_Q38 (360.0 / 274877906944.0)
+#define DAY_S    86400
+#define RAIL_RAW 32000 /* beyond: no code of a hand */
 
-struct glove_options {
+struct poses_options {
     int64_t user, id, day, valid_days, sensors, move_raw, noise_raw;
     double residual_deg;
     const char *poses, *out, *check;
@@ -28,17 +26,6 @@ struct glove_options {
 };
 
 /* What came out, as it is printed and written. */
-struct glove_result {
-    struct exh_glove_cal cal;
-    struct exh_glove_fit fit[EXH_GLOVE_SENSORS];
-    uint8_t which[GLOVE_POSES]; /* of the poses that were fitted */
-    struct exh_glove_pose pose[GLOVE_POSES];
-    unsigned poses;
-    struct glove_taken taken;
-    uint32_t present;
-    uint8_t image[EXH_GLOVE_CAL_IMAGE_B];
-};
-
 /* --- options with a syntax of their own --- */
 
 static int take_fault(void *ctx, const char *text)
@@ -47,7 +34,7 @@ static int take_fault(void *ctx, const char *text)
         const char *name;
         unsigned char fault;
     } kind[] = {{"open", SIM_GLOVE_OPEN}, {"short", SIM_GLOVE_SHORT}, {"stuck", SIM_GLOVE_STUCK}};
-    struct glove_options *o = ctx;
+    struct poses_options *o = ctx;
     const char *equals = strchr(text, '=');
     const size_t len = equals ? (size_t)(equals - text) : 0;
     for (unsigned i = 0; equals != NULL && i < EXH_GLOVE_SENSORS; i++) {
@@ -69,7 +56,7 @@ static int take_fault(void *ctx, const char *text)
 
 static int take_device(void *ctx, const char *text)
 {
-    struct glove_options *o = ctx;
+    struct poses_options *o = ctx;
     const struct sim_device_row *row;
     char name[ASSIGN_NAME_B];
     double value;
@@ -92,111 +79,6 @@ static void print_params(void)
     }
 }
 
-/* --- the table --- */
-
-static double zero_code(const struct exh_glove_sensor *s)
-{
-    return s->zero_raw_q15 / 32768.0;
-}
-
-static const char *verdict(unsigned what)
-{
-    return what == EXH_GLOVE_ERRORS ? "ok" : exh_glove_error_text(what);
-}
-
-static int32_t noise_of(const struct glove_result *r, unsigned sensor)
-{
-    int32_t most = 0;
-    for (unsigned p = 0; p < r->poses; p++) {
-        if (r->pose[p].noise_raw[sensor] > most) { most = r->pose[p].noise_raw[sensor]; }
-    }
-    return most;
-}
-
-static void print_sensor(unsigned i, const struct exh_glove_sensor *s)
-{
-    printf("%-13s %10.2f %11.6f %7d %7d", exh_glove_sensor_text(i), zero_code(s),
-           s->gain_turnpraw_q38 * DEG_OF_GAIN_Q38, s->low_raw, s->high_raw);
-}
-
-static void print_cross(const struct exh_glove_cal *cal, uint32_t present)
-{
-    for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
-        const struct exh_glove_sensor *s = &cal->sensor[i];
-        for (unsigned k = 0; k < 2; k++) {
-            if (s->of[k] == EXH_GLOVE_NONE) { continue; }
-            printf("%-13s %+10.4f of %s%s\n", exh_glove_sensor_text(i),
-                   s->cross_q30[k] / 1073741824.0, exh_glove_sensor_text(s->of[k]),
-                   present >> i & 1 ? "" : " (not measured)");
-        }
-    }
-}
-
-static void print_result(const struct glove_result *r)
-{
-    printf("\n%-13s %10s %11s %15s %5s %5s %12s %-9s %s\n", "sensor", "zero_code", "deg/code",
-           "span_codes", "noise", "poses", "residual_deg", "in_pose", "verdict");
-    for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
-        const struct exh_glove_fit *f = &r->fit[i];
-        if (!(r->present >> i & 1)) { continue; }
-        print_sensor(i, &r->cal.sensor[i]);
-        printf(" %5" PRId32 " %5d %12.3f %-9s %s\n", noise_of(r, i), f->poses,
-               f->residual_turn_q32 * DEG_OF_TURN_Q32, glove_pose_name(r->which[f->pose]),
-               verdict(f->what));
-    }
-    printf("\ncross-coupling, of the other sensor's own angle:\n");
-    print_cross(&r->cal, r->present);
-}
-
-/* --- files --- */
-
-static void write_image(FILE *f, const void *ctx)
-{
-    const struct glove_result *r = ctx;
-    (void)fwrite(r->image, 1, sizeof r->image, f);
-}
-
-static void write_sensors(FILE *f, const void *ctx)
-{
-    const struct glove_result *r = ctx;
-    fprintf(f, "sensor,present,zero_code,gain_deg_per_code,low_code,high_code,cross_0_of,cross_0,"
-               "cross_1_of,"
-               "cross_1,noise_codes,poses,residual_deg,residual_pose\n");
-    for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
-        const struct exh_glove_sensor *s = &r->cal.sensor[i];
-        fprintf(f, "%s,%d,%.5f,%.9g,%d,%d", exh_glove_sensor_text(i), (int)(r->present >> i & 1),
-                zero_code(s), s->gain_turnpraw_q38 * DEG_OF_GAIN_Q38, s->low_raw, s->high_raw);
-        for (unsigned k = 0; k < 2; k++) {
-            fprintf(f, ",%s,%.9g",
-                    s->of[k] == EXH_GLOVE_NONE ? "" : exh_glove_sensor_text(s->of[k]),
-                    s->cross_q30[k] / 1073741824.0);
-        }
-        fprintf(f, ",%" PRId32 ",%d,%.6f,%s\n", noise_of(r, i), r->fit[i].poses,
-                r->fit[i].residual_turn_q32 * DEG_OF_TURN_Q32,
-                glove_pose_name(r->which[r->fit[i].pose]));
-    }
-}
-
-static void write_poses(FILE *f, const void *ctx)
-{
-    const struct glove_result *r = ctx;
-    glove_poses_csv(f, &r->taken);
-}
-
-/* All of them or the first that fails. 0, or 1 after a line on stderr. */
-static int write_files(const char *dir, struct glove_result *r)
-{
-    struct exh_glove_error bad;
-    if (exh_glove_cal_save(&r->cal, r->image, sizeof r->image, &bad) < 0) {
-        cli_complain("%s of %s: nothing was saved: calibrate again", exh_glove_error_text(bad.what),
-                     exh_glove_sensor_text(bad.at));
-        return 1;
-    }
-    return outfile_write(dir, IMAGE_NAME, write_image, r) ||
-           outfile_write(dir, "glove.csv", write_sensors, r) ||
-           outfile_write(dir, "poses.csv", write_poses, r);
-}
-
 /* --- an image that is there --- */
 
 static int refused(const char *path, int err, const struct exh_glove_error *bad)
@@ -209,7 +91,7 @@ static int refused(const char *path, int err, const struct exh_glove_error *bad)
 }
 
 /* A sound image that may not be used: whose it is, and who is here. */
-static int not_here(const struct glove_options *o, const struct exh_glove_cal *c, int err,
+static int not_here(const struct poses_options *o, const struct exh_glove_cal *c, int err,
                     const struct exh_glove_error *bad)
 {
     if (bad->what == EXH_GLOVE_USER) {
@@ -235,7 +117,7 @@ static int not_here(const struct glove_options *o, const struct exh_glove_cal *c
     return 1;
 }
 
-static int check_image(const struct glove_options *o)
+static int check_image(const struct poses_options *o)
 {
     struct exh_glove_cal c;
     struct exh_glove_error bad = {0, 0};
@@ -251,14 +133,7 @@ static int check_image(const struct glove_options *o)
     fflush(stdout);
     err = exh_glove_cal_check(&c, (uint32_t)o->user, (uint32_t)o->id, (uint32_t)o->day, &bad);
     if (err < 0) { return not_here(o, &c, err, &bad); }
-    printf("\n%-13s %10s %11s %15s\n", "sensor", "zero_code", "deg/code", "span_codes");
-    for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
-        if (!(c.present >> i & 1)) { continue; }
-        print_sensor(i, &c.sensor[i]);
-        putchar('\n');
-    }
-    printf("\ncross-coupling, of the other sensor's own angle:\n");
-    print_cross(&c, c.present);
+    glove_cal_print(&c);
     return 0;
 }
 
@@ -274,7 +149,7 @@ static int at_rail(const struct glove_result *r, unsigned sensor)
 }
 
 /* One line for each sensor that did not come out. */
-static void say_bad(const struct glove_options *o, const struct glove_result *r, unsigned i)
+static void say_bad(const struct poses_options *o, const struct glove_result *r, unsigned i)
 {
     const struct exh_glove_fit *f = &r->fit[i];
     const char *name = exh_glove_sensor_text(i), *pose = glove_pose_name(r->which[f->pose]);
@@ -311,7 +186,7 @@ static void say_bad(const struct glove_options *o, const struct glove_result *r,
 
 /* An abduction between two fingers is bent by both knuckles, the thumb's by its rotation;
  * an 18-sensor glove lacks the last joints, which follow the middle ones by two thirds. */
-static void topology(struct glove_result *r, const struct glove_options *o)
+static void topology(struct glove_result *r, const struct poses_options *o)
 {
     static const struct {
         uint8_t sensor, of[2];
@@ -336,7 +211,7 @@ static void topology(struct glove_result *r, const struct glove_options *o)
     r->present = r->cal.present;
 }
 
-static int calibrate(const struct glove_options *o)
+static int calibrate(const struct poses_options *o)
 {
     static struct glove_result r;
     const struct exh_glove_fit_par par = {(int32_t)o->move_raw, (int32_t)o->noise_raw,
@@ -362,7 +237,7 @@ static int calibrate(const struct glove_options *o)
         return 1;
     }
     err = exh_glove_cal_fit(&r.cal, r.fit, r.pose, r.poses, &par, &bad);
-    print_result(&r);
+    glove_result_print(&r);
     fflush(stdout);
     if (err < 0) {
         for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
@@ -370,12 +245,28 @@ static int calibrate(const struct glove_options *o)
         }
         return 1;
     }
-    return o->out != NULL ? write_files(o->out, &r) : 0;
+    return o->out != NULL ? glove_result_write(o->out, &r) : 0;
+}
+
+static void defaults(struct poses_options *o)
+{
+    memset(o, 0, sizeof *o); /* a test calls more than once */
+    o->user = o->id = o->bench.seed = 1;
+    o->valid_days = 90;
+    o->sensors = 22;
+    o->move_raw = exh_glove_fit_default.move_min_raw;
+    o->noise_raw = exh_glove_fit_default.noise_max_raw;
+    o->residual_deg = exh_glove_fit_default.residual_max_turn_q32 * DEG_OF_TURN_Q32;
+    o->day = (int64_t)(time(NULL) / DAY_S);
+    o->bench.par = sim_glove_default();
+    o->bench.rate_Hz = 1000;
+    o->bench.frames = 200;
+    o->bench.miss_deg = 1;
 }
 
 int cli_calibrate_glove(int argc, char **argv)
 {
-    static struct glove_options o;
+    static struct poses_options o;
     struct cli_call fault = {take_fault, &o}, device = {take_device, &o};
     int glove, list = 0, params = 0, err;
     const struct cli_option option[] = {
@@ -415,18 +306,7 @@ int cli_calibrate_glove(int argc, char **argv)
                                   (int)(sizeof option / sizeof option[0]),
                                   0};
 
-    memset(&o, 0, sizeof o); /* a test calls more than once */
-    o.user = o.id = o.bench.seed = 1;
-    o.valid_days = 90;
-    o.sensors = 22;
-    o.move_raw = exh_glove_fit_default.move_min_raw;
-    o.noise_raw = exh_glove_fit_default.noise_max_raw;
-    o.residual_deg = exh_glove_fit_default.residual_max_turn_q32 * DEG_OF_TURN_Q32;
-    o.day = (int64_t)(time(NULL) / DAY_S);
-    o.bench.par = sim_glove_default();
-    o.bench.rate_Hz = 1000;
-    o.bench.frames = 200;
-    o.bench.miss_deg = 1;
+    defaults(&o);
     err = cli_parse(&c, argc, argv, NULL);
     if (err) { return err == 1 ? 0 : err; }
     if (o.sensors != 18 && o.sensors != 22) {

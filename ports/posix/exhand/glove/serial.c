@@ -8,7 +8,6 @@
 #include "base/option.h"
 #include "base/param.h"
 
-#include "bilateral/bilateral.h"
 #include "exhand/run/log.h"
 #include "exhand/run/loop.h"
 
@@ -31,39 +30,6 @@ static struct {
     int heard, silent, never;
 } run;
 
-/* --- set-up --- */
-
-/* Nobody knows how far this hand goes. */
-static void nobody(struct exh_glove_cal *cal)
-{
-    *cal = exh_glove_cal_default;
-    for (int i = 0; i < SENSORS; i++) {
-        cal->sensor[i].low_raw = cyberglove_raw(1);
-        cal->sensor[i].high_raw = cyberglove_raw(255);
-    }
-}
-
-int glove_serial_stage(const struct exh_scene *sc, const struct exh_glove_cal *cal, double rate_Hz,
-                       double glove_Hz)
-{
-    const double every = (double)(long)(rate_Hz / glove_Hz);
-    const struct run_setting own[] = {
-        {"every", every < 1      ? 1
-                  : every > 1000 ? 1000
-                                 : every},
-        {"glove_fc", glove_Hz > 66 ? 30 : glove_Hz / 4},
-    };
-    static struct exh_glove_cal none;
-    int err;
-    nobody(&none);
-    if (cal == NULL) { cal = &none; }
-    err = sc == &exh_scene_glove ? glove_stage_cal(cal, NULL) : bilateral_stage_cal(cal, NULL);
-    for (size_t i = 0; err == 0 && i < sizeof own / sizeof own[0]; i++) {
-        err = cli_param_set(sc->params, own[i].name, own[i].value);
-    }
-    return err;
-}
-
 /* What was asked for stands above it. */
 static int stage(const struct glove_options *o)
 {
@@ -76,21 +42,6 @@ static int stage(const struct glove_options *o)
         err = cli_param_set(exh_scene_glove.params, o->setting[i].name, o->setting[i].value);
     }
     return err < 0 ? 2 : 0;
-}
-
-int glove_serial_open(struct glove_tty *t, const char *option, const char *path, double glove_Hz)
-{
-    const int err = glove_tty_open(t, path, glove_Hz) < 0 ? errno : 0;
-    const char *what = err == ENOENT || err == ENXIO || err == ENODEV
-                           ? "is it plugged in? `ls /dev/tty*` lists what there is"
-                       : err == EACCES ? "join the group that owns it (`ls -l` says which)"
-                       : err == ENOTTY ? "give a serial line, e.g. /dev/ttyUSB0"
-                       : err == EBUSY  ? "another program has it"
-                                       : "give a serial line that can be opened";
-    if (err == 0) { return 0; }
-    cli_complain("--%s: %s: %s: %s", option, path,
-                 err == ENOTTY ? "is no serial line" : strerror(err), what);
-    return 3;
 }
 
 /* --- while it runs --- */

@@ -186,6 +186,26 @@ static int go(struct live_options *o)
     return err ? err : posix_interrupted() ? 130 : 0;
 }
 
+static void defaults(struct live_options *o)
+{
+    memset(o, 0, sizeof *o);
+    bilateral_defaults(&o->hand);
+    (void)bilateral_take_speeds(&o->hand, "natural");
+    o->scene = "drop";
+    o->rate_Hz = 2000;
+    o->seed = 1;
+    o->live.on = 1;
+}
+
+static int list(const struct live_options *o)
+{
+    const struct exh_scene *sc = scene_of(o);
+    if (sc == NULL) { return 2; }
+    sc->defaults();
+    cli_signal_print(stdout, sc->params->table);
+    return 0;
+}
+
 int cli_run(int argc, char **argv)
 {
     static struct live_options o;
@@ -237,21 +257,8 @@ int cli_run(int argc, char **argv)
         (int)(sizeof option / sizeof option[0]),
         0};
     int err;
-    memset(&o, 0, sizeof o);
-    bilateral_defaults(&o.hand);
-    (void)bilateral_take_speeds(&o.hand, "natural");
-    o.scene = "drop";
-    o.rate_Hz = 2000;
-    o.seed = 1;
-    o.live.on = 1;
+    defaults(&o);
     err = cli_parse(&c, argc, argv, NULL);
     if (err) { return err == 1 ? 0 : err; }
-    if (o.list) {
-        const struct exh_scene *sc = scene_of(&o);
-        if (sc == NULL) { return 2; }
-        sc->defaults();
-        cli_signal_print(stdout, sc->params->table);
-        return 0;
-    }
-    return go(&o);
+    return o.list ? list(&o) : go(&o);
 }

@@ -3,7 +3,7 @@
 #ifndef CLI_LIVE_H
 #define CLI_LIVE_H
 
-#include "contact/bilateral.h"
+#include "box/hand_options.h"
 #include "box/contacts.h"
 #include "exhand/run/loop.h"
 #include "box/run.h"

@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: MIT */
+/* What fingers before a wall are run with: options that several commands take. */
+#ifndef BOX_HAND_OPTIONS_H
+#define BOX_HAND_OPTIONS_H
+
+#include "base/params_file.h"
+#include "box/hand.h"
+
+#define BILATERAL_SPEEDS_MAX   8
+#define BILATERAL_SETTINGS_MAX 64
+#define BILATERAL_NAME_B       32
+
+struct bilateral_speed {
+    char name[BILATERAL_NAME_B];
+    double mps;
+};
+
+struct bilateral_options {
+    struct bilateral_run_cfg run; /* all but the speed */
+    struct bilateral_speed speed[BILATERAL_SPEEDS_MAX];
+    int speeds;
+    int64_t approaches, seed, jobs;
+    int study, cards, own_scale; /* own_scale: s was set, it is not fitted; study: the lab
+                                  * runs many */
+    const char *scene, *out, *udp, *link, *record;
+    double record_Hz;
+    struct run_setting setting[BILATERAL_SETTINGS_MAX];
+    int settings;
+    struct sim_trace trace;
+    struct images images;
+    struct params_file params;
+};
+
+extern const char *const bilateral_finger_name[BILATERAL_FINGERS];
+
+/* What holds without options. */
+void bilateral_defaults(struct bilateral_options *o);
+
+/* Options by cli_call, ctx the struct above. 0, or 2 after a line on stderr. */
+int bilateral_take_speeds(void *ctx, const char *text);
+int bilateral_take_fingers(void *ctx, const char *text);
+int bilateral_take_pose(void *ctx, const char *text);
+int bilateral_take_setting(void *ctx, const char *text);
+int bilateral_take_device(void *ctx, const char *text);
+void bilateral_print_params(void);
+
+/* The run of one speed. */
+struct bilateral_run_cfg bilateral_at_speed(const struct bilateral_options *o, double mps);
+
+#endif
