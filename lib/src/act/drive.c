@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Set-up of an axis; force limit, slew limit and current limits in the tick. */
 #include "exhand/drive.h"
 
 #include "exhand/error.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Frames through a cursor. */
+/* A frame of the device as bytes. */
 #include "exhand/frame.h"
 
 void exh_drive_in_serialize(struct exh_bytes *c, struct exh_drive_in *in, unsigned n)

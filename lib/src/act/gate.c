@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The gate: the last step of a tick makes a D/A code of each finger's current. */
 #include "exhand/safety.h"
 
 #include "exhand/error.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Monitor of the drives' supply voltage. */
 #include "exhand/supply.h"
 
 #include "exhand/error.h"

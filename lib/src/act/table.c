@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Conversion tables: set-up, inverse, and the value at a point. */
+/* Conversion tables: set-up, inverse and interpolation. */
 #include "exhand/table.h"
 
 #include "exhand/error.h"

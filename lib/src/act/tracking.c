@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Monitor that compares the measured current with the coded one. */
 #include "exhand/tracking.h"
 
 #include "exhand/error.h"

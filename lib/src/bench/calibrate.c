@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* A finger's calibration: fit of its points, the tables made of them, and its image. */
 #include "exhand/calibrate.h"
 
 #include "exhand/bytes.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Bench motions: the probe that shows a drive's polarity, and homing. */
 #include "exhand/probe.h"
 
 #include "exhand/error.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Bench motion that lifts and sinks a known weight: one point of a force table. */
 #include "exhand/probe.h"
 
 #include "exhand/error.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Contact law: spring, damper and pullback at one virtual wall. */
 #include "exhand/contact.h"
 
 #include "exhand/fix.h"

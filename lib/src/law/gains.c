@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Rule for stiffness and damping: staging checks it, and slewed steps keep it. */
 #include "exhand/gains.h"
 
 #include "exhand/contact.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Passivity observer and controller of one finger: energy given out and taken in. */
 #include "exhand/passivity.h"
 
 #include "exhand/error.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The virtual contact of a finger: it follows planes from the world and freezes at touch. */
 #include "exhand/precontact.h"
 
 #include "exhand/error.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Sine and cosine of a binary angle. */
 #include "exhand/angle.h"
 
 #include "sincos.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Cursor over a buffer that reads, writes or measures fields; CRC-32. */
 #include "exhand/bytes.h"
 
 #include "exhand/fix.h"

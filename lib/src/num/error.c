@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Text of each error code. */
 #include "exhand/error.h"
 
 const char *exh_error_text(int code)

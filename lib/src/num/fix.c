@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* 64-bit division, ticks of a time in milliseconds, and the set-up of a gain. */
 #include "exhand/fix.h"
 
 #include "exhand/error.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Staging, slewing and sealing of a scene's parameters, and their image. */
 #include "exhand/params.h"
 
 #include "exhand/error.h"

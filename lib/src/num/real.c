@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Positive real numbers for set-ups, computed in integers. */
 #include "real.h"
 
 #include "exhand/error.h"

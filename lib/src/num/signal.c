@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Search, count and CRC of a table of signals. */
 #include "exhand/signal.h"
 
 #include "exhand/bytes.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Black box: the newest records stay in memory and freeze at a fault. */
 #include "exhand/run/blackbox.h"
 
 #include "exhand/error.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Calibration images of a scene: check, choice and defaults at set-up. */
 #include "exhand/run/calib_set.h"
 
 #include "exhand/error.h"

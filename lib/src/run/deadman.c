@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Commands that the dead-man switch gives: run, clear, off. */
 #include "exhand/run/deadman.h"
 
 #include "exhand/fix.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Log of a run: header, frames, events and keyframes as records. */
 #include "exhand/run/log.h"
 
 #include "exhand/board.h"

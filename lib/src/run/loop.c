@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The loop: waits for a tick, reads, runs the scene, writes and logs. */
 #include "exhand/run/loop.h"
 
 #include "exhand/board.h"

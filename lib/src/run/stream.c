@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The log as datagrams. */
 #include "exhand/run/stream.h"
 
 #include <string.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Compares configuration and parameters with their checksums, a few bytes per tick. */
 #include "exhand/integrity.h"
 
 #include "exhand/bytes.h"

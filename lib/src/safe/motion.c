@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Speed limit of a finger, and detector of an encoder that is stuck. */
 #include "exhand/motion.h"
 
 #include "exhand/error.h"

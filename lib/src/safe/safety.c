@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* State machine of the box: causes, arming, release and faults. */
 #include "exhand/safety.h"
 
 #include "exhand/error.h"

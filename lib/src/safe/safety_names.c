@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Names of states, triggers, faults, limits and arming steps. */
 #include "exhand/safety.h"
 
 static const char *const states[EXH_STATES] = {"off", "arm", "run", "limit", "release", "fault"};

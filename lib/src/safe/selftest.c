@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Self-test at set-up: the arithmetic gives known answers. */
 #include "exhand/angle.h"
 #include "exhand/bytes.h"
 #include "exhand/filter.h"

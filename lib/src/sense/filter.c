@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Set-up, reset and step of the low-pass filters; filter_low.c and filter_high.c hold the kinds. */
 #include "exhand/filter.h"
 
 #include "exhand/error.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Glove frame to joint angles: quantize, filter, calibrate, detect faulty sensors. */
 #include "exhand/glove.h"
 
 #include "exhand/error.h"

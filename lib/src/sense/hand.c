@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Robot hand: joint angles from glove angles, and fingertip positions by forward kinematics. */
 #include "exhand/hand.h"
 
 #include "exhand/angle.h"

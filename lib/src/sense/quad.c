@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Quadrature decoding; board counts extended to 32 bits and scaled to metres. */
 #include "exhand/quad.h"
 
 #include "exhand/error.h"

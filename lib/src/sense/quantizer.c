@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Quantizer with hysteresis: a code that does not flicker with noise. */
 #include "exhand/quantizer.h"
 
 #include "exhand/error.h"

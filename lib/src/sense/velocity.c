@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Velocity of a counted position: window, pole, adaptive window and tracker. */
 #include "exhand/velocity.h"
 
 #include "exhand/error.h"

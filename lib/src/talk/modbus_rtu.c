@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Modbus on a serial line: frames by silence, CRC-16, address. */
 #include "exhand/modbus_rtu.h"
 
 #include "exhand/error.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Records of the log: framing, header and events as bytes. */
 #include "exhand/record.h"
 
 #include "exhand/error.h"

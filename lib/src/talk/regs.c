@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The register map, read only: locate an address, read values and bits. */
 #include "regs_parts.h"
 
 #include "exhand/error.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Ring of the newest records in the caller's memory, and records sent in pieces. */
 #include "exhand/ring.h"
 
 #include "exhand/error.h"

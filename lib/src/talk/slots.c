@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Two flash slots for one image: the newest valid one survives a power cut. */
 #include "exhand/slots.h"
 
 #include "exhand/bytes.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Trace: a few signals of every n-th tick, kept in a ring until they are read. */
 #include "exhand/trace.h"
 
 #include "exhand/error.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Packets between controller and world: encode, decode, sequence and clock. */
 #include "exhand/wire.h"
 
 #include "exhand/error.h"
