@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* drive.h against exact arithmetic: tables, both ledgers, the monitor. */
+/* table.h and drive.h against exact arithmetic: tables, both ledgers, the monitor. */
 #include "exhand/drive.h"
 #include "exhand/table.h"
 

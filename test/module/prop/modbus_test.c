@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* modbus.h: the binary32 mirror against exact arithmetic; every register there and back; whatever
+/* regs.h: the binary32 mirror against exact arithmetic; every register there and back; whatever
  * is asked, the map keeps its promises. */
 #include "exhand/regs.h"
 

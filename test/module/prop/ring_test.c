@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* record.h's ring against a plain list of everything that was ever put. */
+/* ring.h against a plain list of everything that was ever put. */
 #include "exhand/record.h"
 #include "exhand/ring.h"
 

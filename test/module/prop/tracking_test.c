@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* drive.h, does the current follow the code: what follows, however it is commanded, is never
+/* tracking.h: what follows, however it is commanded, is never
  * told; what stands always is, in time; and both by a history that is looked through. */
 #include "exhand/tracking.h"
 

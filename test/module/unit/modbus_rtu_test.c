@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* modbus.h: a serial line, byte by byte and silence by silence. */
+/* modbus_rtu.h: a serial line, byte by byte and silence by silence. */
 #include "exhand/modbus_rtu.h"
 #include "exhand/regs.h"
 

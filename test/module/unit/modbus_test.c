@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* modbus.h: the slave, request by request. The examples of the Modbus specification (V1.1b3,
- * chapter 6) with its addresses replaced by ours, each exception, and each edge of a count. */
+/* regs.h and modbus.h: the slave, request by request. The examples of the Modbus specification
+ * (V1.1b3, chapter 6) with its addresses replaced by ours, each exception, and each edge of a
+ * count. */
 #include "exhand/modbus.h"
 #include "exhand/regs.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Parameters that go little by little (signal.h): where they are in each tick, that they end where
+/* Parameters that go little by little (params.h): where they are in each tick, that they end where
  * they are wanted, in mid-way saved, restored and guarded. */
 #include "exhand/error.h"
 #include "exhand/fix.h"

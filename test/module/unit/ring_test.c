@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* record.h's ring and records in pieces: what is kept, what goes, what cannot be held. */
+/* ring.h, and records in pieces (record.h): what is kept, what goes, what cannot be held. */
 #include "exhand/record.h"
 #include "exhand/ring.h"
 

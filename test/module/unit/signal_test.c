@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* signal.h: tables, the one way to change a parameter, and its image. */
+/* signal.h and params.h: tables, the one way to change a parameter, and its image. */
 #include "exhand/params.h"
 #include "exhand/signal.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* drive.h, the drives' supply: which codes are within the limits, for how long others may come. */
+/* supply.h: which codes are within the limits, for how long others may come. */
 #include "exhand/supply.h"
 
 #include "exhand/error.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* drive.h, tables: at, between and outside knots, what is refused, and the way back, on numbers
+/* table.h: at, between and outside knots, what is refused, and the way back, on numbers
  * worked out by hand. */
 #include "exhand/table.h"
 

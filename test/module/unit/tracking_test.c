@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* drive.h, does the current follow the code: ranges, when it is told, when not. */
+/* tracking.h: ranges, when it is told, when not. */
 #include "exhand/tracking.h"
 
 #include "exhand/error.h"
