@@ -63,16 +63,16 @@ struct exh_axis_now {
 
 /* What set-up fills and reads. A NULL set-up is a part that the scene leaves out. */
 struct exh_axis_setup {
-    struct exh_quad_cfg *quad;
-    const struct exh_quad_par *quad_par; /* kept */
-    struct exh_velocity_window_cfg *velocity;
-    const struct exh_velocity_par *velocity_par;
-    struct exh_motion_cfg *watch;
-    const struct exh_motion_par *watch_par; /* kept */
-    struct exh_tracking_cfg *track;
-    const struct exh_tracking_par *track_par;
-    struct exh_drive_cfg *drive;
-    const struct exh_drive_par *drive_par; /* kept */
+    struct exh_quad_cfg *quad;                   /* filled */
+    const struct exh_quad_par *quad_par;         /* kept */
+    struct exh_velocity_window_cfg *velocity;    /* filled */
+    const struct exh_velocity_par *velocity_par; /* read */
+    struct exh_motion_cfg *watch;                /* filled */
+    const struct exh_motion_par *watch_par;      /* kept */
+    struct exh_tracking_cfg *track;              /* filled */
+    const struct exh_tracking_par *track_par;    /* read */
+    struct exh_drive_cfg *drive;                 /* filled */
+    const struct exh_drive_par *drive_par;       /* kept */
 };
 
 /* Sets up all parts, in the tick's order; divides. T: the board's period; enc_bits: the width of

@@ -37,10 +37,10 @@ enum exh_filter_kind {
 
 /* Coefficients; what each means depends on the kind. */
 struct exh_filter_cfg {
-    int32_t a, b, c,
-        d;         /* docs/NUMERICS.md, "low-pass" has what is rounded to them; 0 where unused */
-    uint8_t shift; /* 0 .. 31 */
-    uint8_t kind;  /* enum exh_filter_kind: low is fc up to 0.105 of the rate */
+    /* docs/NUMERICS.md, "low-pass", has what is rounded to them. */
+    int32_t a, b, c, d; /* 0 where unused */
+    uint8_t shift;      /* 0 .. 31 */
+    uint8_t kind;       /* enum exh_filter_kind: low is fc up to 0.105 of the rate */
 };
 
 /* One channel. */

@@ -30,29 +30,29 @@ extern "C" {
 /* The CyberGlove's sensors in the order of its wires. Flexion counts up from the flat hand,
  * abduction from fingers together; the three abductions of fingers are between two of them. */
 enum exh_glove_sensor_id {
-    EXH_GLOVE_THUMB_ROTATE,
-    EXH_GLOVE_THUMB_MPJ,
-    EXH_GLOVE_THUMB_IJ,
-    EXH_GLOVE_THUMB_AB, /* 0 .. 3: across, knuckle, tip's joint, aside */
-    EXH_GLOVE_INDEX_MPJ,
-    EXH_GLOVE_INDEX_PIJ,
-    EXH_GLOVE_INDEX_DIJ, /* 4 .. 6: knuckle, middle joint, tip's joint */
-    EXH_GLOVE_MIDDLE_MPJ,
-    EXH_GLOVE_MIDDLE_PIJ,
-    EXH_GLOVE_MIDDLE_DIJ,
-    EXH_GLOVE_MIDDLE_INDEX_AB, /* 7 .. 10 */
-    EXH_GLOVE_RING_MPJ,
-    EXH_GLOVE_RING_PIJ,
-    EXH_GLOVE_RING_DIJ,
-    EXH_GLOVE_RING_MIDDLE_AB, /* 11 .. 14 */
-    EXH_GLOVE_LITTLE_MPJ,
-    EXH_GLOVE_LITTLE_PIJ,
-    EXH_GLOVE_LITTLE_DIJ,
-    EXH_GLOVE_LITTLE_RING_AB, /* 15 .. 18 */
-    EXH_GLOVE_PALM_ARCH,
-    EXH_GLOVE_WRIST_PITCH,
-    EXH_GLOVE_WRIST_YAW, /* 19 .. 21: of the hand as a whole */
-    EXH_GLOVE_SENSORS    /* how many there are: 22 */
+    EXH_GLOVE_THUMB_ROTATE,    /* 0: across the palm */
+    EXH_GLOVE_THUMB_MPJ,       /* 1: knuckle */
+    EXH_GLOVE_THUMB_IJ,        /* 2: tip's joint */
+    EXH_GLOVE_THUMB_AB,        /* 3: aside */
+    EXH_GLOVE_INDEX_MPJ,       /* 4: knuckle */
+    EXH_GLOVE_INDEX_PIJ,       /* 5: middle joint */
+    EXH_GLOVE_INDEX_DIJ,       /* 6: tip's joint */
+    EXH_GLOVE_MIDDLE_MPJ,      /* 7: knuckle */
+    EXH_GLOVE_MIDDLE_PIJ,      /* 8: middle joint */
+    EXH_GLOVE_MIDDLE_DIJ,      /* 9: tip's joint */
+    EXH_GLOVE_MIDDLE_INDEX_AB, /* 10: between middle and index */
+    EXH_GLOVE_RING_MPJ,        /* 11: knuckle */
+    EXH_GLOVE_RING_PIJ,        /* 12: middle joint */
+    EXH_GLOVE_RING_DIJ,        /* 13: tip's joint */
+    EXH_GLOVE_RING_MIDDLE_AB,  /* 14: between ring and middle */
+    EXH_GLOVE_LITTLE_MPJ,      /* 15: knuckle */
+    EXH_GLOVE_LITTLE_PIJ,      /* 16: middle joint */
+    EXH_GLOVE_LITTLE_DIJ,      /* 17: tip's joint */
+    EXH_GLOVE_LITTLE_RING_AB,  /* 18: between little and ring finger */
+    EXH_GLOVE_PALM_ARCH,       /* 19: of the palm */
+    EXH_GLOVE_WRIST_PITCH,     /* 20: of the wrist, up and down */
+    EXH_GLOVE_WRIST_YAW,       /* 21: of the wrist, aside */
+    EXH_GLOVE_SENSORS          /* how many there are: 22 */
 };
 
 /* "ThumbRotate", ...; never NULL. */

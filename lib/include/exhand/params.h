@@ -29,8 +29,7 @@ struct exh_params {
     uint8_t pending;                      /* something was staged since the last apply */
     uint8_t moving;                       /* a slewed value is not yet where it is wanted */
     uint8_t shift;                        /* a slewed value goes by 2^-shift of what is left */
-    uint16_t
-        led[2]; /* ids of slewed rows that somebody else moves while locked (gains.h); 0: none */
+    uint16_t led[2];          /* ids of slewed rows that gains.h moves while locked; 0: none */
     uint32_t count;           /* exh_signal_count() */
     uint32_t sum, passed, at; /* exh_params_verify(): of all, of those looked at, the next */
 };

@@ -99,10 +99,11 @@ struct exh_precontact_cfg {
     const struct exh_precontact_par *par;    /* read at every tick */
     const struct exh_material_par *material; /* the caller's, materials of them */
     int64_t pad_m_q60;                       /* t with its sign */
-    uint32_t age_ticks, doubt_ticks,
-        tip_ticks;     /* age_max, doubt_ms, tip_age_max, rounded down, and one: a plane so old is
-                        * too old; more than so long in doubt, let go; a tip so old is unknown */
-    uint8_t materials; /* 1 .. 255 */
+    /* Times, rounded down, and one more. */
+    uint32_t age_ticks;   /* age_max: a plane so old is too old */
+    uint32_t doubt_ticks; /* doubt_ms: more than so long in doubt, and the contact is released */
+    uint32_t tip_ticks;   /* tip_age_max: a tip so old is unknown */
+    uint8_t materials;    /* 1 .. 255 */
 };
 
 /* --- one finger --- */

@@ -25,9 +25,8 @@ extern "C" {
 /* --- the map --- */
 
 #define EXH_REGS_MAGIC 0x45584831u /* "EXH1" */
-#define EXH_REGS_VERSION \
-    0x00010000u /* major << 16 | minor: a new major means something else, a new \
-                 * minor adds */
+/* major << 16 | minor: a new major means something else, a new minor adds */
+#define EXH_REGS_VERSION 0x00010000u
 
 /* the function that reads it */
 enum exh_regs_kind {
@@ -118,18 +117,18 @@ enum exh_regs_trace {
     EXH_TRACE_HEAD_SIGNAL_3, /* of the fourth */
     EXH_TRACE_HEADS          /* how many there are */
 };
-#define EXH_REGS_TRACE_SET \
-    (EXH_TRACE_HEADS - EXH_TRACE_HEAD_EVERY) /* values that can be written \
-                                              */
-/* Frame k is in the values FRAME_VALUES * (k modulo frames) and following: number, tick, four raw.
- */
+/* Values that can be written. */
+#define EXH_REGS_TRACE_SET (EXH_TRACE_HEADS - EXH_TRACE_HEAD_EVERY)
+
+/* Frame k is in the values FRAME_VALUES * (k modulo frames) and following: number, tick, four
+ * raw. */
 #define EXH_REGS_FRAME_VALUES (2 + EXH_TRACE_SIGNALS)
 
 /* One line of a table for people (regs_names.c): a value of the head, 32 bits, a coil, a block. */
 struct exh_regs_row {
-    const char *name, *format,
-        *help; /* [a-z0-9_.]+ or, of a coil, capitals; "u32", "i32", "f32", "text", of bits the
-                * enum, of a coil ""; one line, "": as the row before */
+    const char *name;   /* [a-z0-9_.]+; of a coil, capitals */
+    const char *format; /* "u32", "i32", "f32", "text"; of bits the enum; of a coil "" */
+    const char *help;   /* one line; "": as the row before */
 };
 extern const struct exh_regs_row exh_regs_head_row[EXH_HEADS];
 extern const struct exh_regs_row exh_regs_bits_row[EXH_BITS];
@@ -159,9 +158,11 @@ enum exh_modbus_exception {
 
 /* What changes from tick to tick aside from the tables. */
 struct exh_regs_status {
-    uint32_t tick, missed; /* since set-up: modulo 2^32; saturating */
-    uint32_t faults, first, first_tick,
-        present; /* enum exh_fault: latched; the first of them, and when; in the last tick */
+    uint32_t tick, missed;   /* since set-up: modulo 2^32; saturating */
+    uint32_t faults;         /* enum exh_fault: latched */
+    uint32_t first;          /* the first of them */
+    uint32_t first_tick;     /* and when */
+    uint32_t present;        /* enum exh_fault: in the last tick */
     uint32_t limits, din;    /* enum exh_limit, in the last tick; enum exh_din */
     uint8_t state, arm_step; /* enum exh_state; what exh_safety_arm_step() says */
 };
@@ -188,8 +189,8 @@ struct exh_regs {
     struct exh_regs_status box; /* by exh_regs_update() */
 
     /* Filled by exh_regs_setup() and what follows. */
-    uint32_t signals_n, params_n, signals_crc,
-        params_crc; /* values in the tables; exh_signal_crc() of them; 0: no table */
+    uint32_t signals_n, params_n;     /* values in the tables; 0: no table */
+    uint32_t signals_crc, params_crc; /* exh_signal_crc() of them; 0: no table */
     uint32_t asked; /* bit k: coil k was commanded, and exh_regs_poll() has not been called */
     uint32_t done;  /* commands carried out */
     int32_t result; /* of the last of them */

@@ -60,7 +60,13 @@ struct exh_vec3 {
 };
 
 /* The fingers of the device, in the order of all its arrays. */
-enum exh_finger { EXH_THUMB, EXH_INDEX, EXH_MIDDLE, EXH_RING, EXH_LITTLE };
+enum exh_finger {
+    EXH_THUMB,  /* 0 */
+    EXH_INDEX,  /* 1 */
+    EXH_MIDDLE, /* 2 */
+    EXH_RING,   /* 3 */
+    EXH_LITTLE  /* 4 */
+};
 #define EXH_FINGERS 5 /* how many there are */
 
 /* Ends of ranges that several modules share. */
