@@ -48,3 +48,12 @@ int pc104_fifo_wait(struct pc104_fifo *f, int32_t where)
     }
     return f->put == f->got;
 }
+
+uint32_t pc104_fifo_flush(struct pc104_fifo *f, int32_t where)
+{
+    uint32_t rest;
+    (void)pc104_fifo_wait(f, where);
+    rest = f->put - f->got;
+    f->put = f->got;
+    return rest;
+}

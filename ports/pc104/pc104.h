@@ -110,6 +110,8 @@ struct pc104_fifo {
 int pc104_fifo_put(struct pc104_fifo *f, const uint8_t *byte, uint32_t len_B); /* all or 0 */
 int pc104_fifo_out(struct pc104_fifo *f, int32_t where, int now); /* 1: more to do at once */
 int pc104_fifo_wait(struct pc104_fifo *f, int32_t where);         /* 1: all is out; 0: stuck */
+/* All out, or what is stuck is given up: so many bytes. */
+uint32_t pc104_fifo_flush(struct pc104_fifo *f, int32_t where);
 
 /* --- scene_full.c, or scene_rom.c for a scene of constants without log --- */
 int pc104_scene_option(const struct exh_scene *sc, const char *name,

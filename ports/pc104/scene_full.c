@@ -135,9 +135,7 @@ void pc104_scene_after(uint32_t tick, const struct exh_scene_in *in,
 
 void pc104_log_flush(void)
 {
-    (void)pc104_fifo_wait(&fifo, pc104_par.log);
-    unsent += fifo.put - fifo.got;
-    fifo.put = fifo.got;
+    unsent += pc104_fifo_flush(&fifo, pc104_par.log);
     pc104_dump_pause();
 }
 
