@@ -19,14 +19,14 @@ FINE = {
     "lib/src/num/a.c": '#include "exhand/a.h"\n\nint exh_a(int x)\n{\n    return x;\n}\n',
     "lib/src/law/b.c": '#include "exhand/a.h"\n#include "exhand/b.h"\n\n'
                        "int exh_b(int x)\n{\n    return exh_a(x);\n}\n",
-    "examples/scene.h": "struct exh_scene;\n",
+    "lib/include/exhand/run/scene.h": "struct exh_scene;\n",
     "examples/drop/drop.h": "struct drop;\n",
     "ports/posix/board.h": "int board(void);\n",
     "ports/posix/exhand/base/option.h": "int option(void);\n",
     "ports/posix/exhand/live/live.h":
-        '#include "base/option.h"\n#include "board.h"\n#include "scene.h"\n',
+        '#include "base/option.h"\n#include "board.h"\n#include "drop/drop.h"\n',
     "ports/posix/exhand/drop/fall.h": '#include "base/option.h"\n',
-    "ports/mine/board.c": '#include "scene.h"\n',
+    "ports/mine/board.c": '#include "exhand/run/scene.h"\n',
 }
 
 
@@ -107,12 +107,12 @@ class Structure(unittest.TestCase):
         self.told("arrow: examples/drop/drop.h includes ports/posix/board.h")
 
     def test_ports_include_the_descriptor_alone(self):
-        self.put("ports/mine/board.c", '#include "scene.h"\n#include "drop/drop.h"\n')
+        self.put("ports/mine/board.c", '#include "exhand/run/scene.h"\n#include "drop/drop.h"\n')
         self.told("arrow: ports/mine/board.c includes examples/drop/drop.h")
 
     def test_the_library_includes_itself_only(self):
-        self.put("lib/src/num/a.c", '#include "scene.h"\n')
-        self.told("arrow: lib/src/num/a.c includes examples/scene.h")
+        self.put("lib/src/num/a.c", '#include "drop/drop.h"\n')
+        self.told("arrow: lib/src/num/a.c includes examples/drop/drop.h")
 
     def test_a_room_includes_base_and_simulator(self):
         self.put("ports/posix/exhand/drop/fall.h", '#include "live/live.h"\n')
