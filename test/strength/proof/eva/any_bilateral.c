@@ -131,6 +131,7 @@ static void any_finger_cfg(struct bilateral_finger_cfg *c, unsigned f)
     ANY(c->watch);
     ANY(c->precontact);
     /*@ admit quad_cfg(&c->quad) && velocity_cfg(&c->velocity) && track_cfg(&c->track) && precontact_made(&c->precontact); */
+    c->quad.par = &active.quad[f];
     c->watch.par = &active.watch[f];
     c->hand = any_hand();
     c->precontact.par = &active.precontact[f];

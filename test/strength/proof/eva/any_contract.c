@@ -66,7 +66,7 @@ static void position(void)
     /*@ assert velocity_tick: velocity(&velocity); */
 }
 
-static void law(void)
+static void laws(void)
 {
     struct exh_contact s = any_contact();
     struct exh_contact_par par;
@@ -213,7 +213,7 @@ static void boxes(void)
 int main(void)
 {
     position();
-    law();
+    laws();
     rows();
     any_table();
     any_drive_cfg();

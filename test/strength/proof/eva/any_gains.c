@@ -20,8 +20,8 @@ static struct exh_gains_par rule;
 static struct pair any_pair(void)
 {
     struct pair p;
-    p.k = Frama_C_interval(0, K_MAX);
-    p.b = Frama_C_interval(0, B_MAX);
+    p.k = Frama_C_interval(0, EXH_K_MAX_NPM_Q10);
+    p.b = Frama_C_interval(0, EXH_B_MAX_NSPM_Q20);
     return p;
 }
 
@@ -38,10 +38,10 @@ static void ask(int32_t knots)
     int ok;
     ANY(rule);
     rule.knots = knots;
-    rule.k_min_Npm_q10 = Frama_C_interval(0, K_MAX);
+    rule.k_min_Npm_q10 = Frama_C_interval(0, EXH_K_MAX_NPM_Q10);
     for (int32_t i = 0; i < knots; i++) {
-        rule.b_Nspm_q20[i] = Frama_C_interval(0, B_MAX);
-        rule.k_Npm_q10[i] = Frama_C_interval(0, K_MAX);
+        rule.b_Nspm_q20[i] = Frama_C_interval(0, EXH_B_MAX_NSPM_Q20);
+        rule.k_Npm_q10[i] = Frama_C_interval(0, EXH_K_MAX_NPM_Q10);
     }
     ok = exh_gains_ok(&rule, any32(), any32());
     /*@ assert says: ok == 0 || ok == 1; */

@@ -83,6 +83,7 @@ static void ticks(unsigned materials)
     /*@ assert skipped: precontact(&s); */
     ANY(in);
     bits = exh_precontact_step(&s, &cfg, &in);
+    (void)exh_precontact_none(&s);
     /*@ assert next: precontact(&s) && precontact_bits(bits); */
 }
 
