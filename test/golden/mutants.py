@@ -103,7 +103,7 @@ MUTANTS = (
     ("velocity_track", VELOCITY, "2 * (int64_t)a_q31 - cfg->beta_q31", "2 * (int64_t)a_q31 - cfg->beta_q31 - 1"),
     ("velocity_track", VELOCITY, "s->err_cnt_q32 = off - exh_mul64_q31(off, cfg->alpha_q31);",
      "s->err_cnt_q32 = off - (off >> 31) * cfg->alpha_q31;"),
-    ("contact", L + "law/contact.c", "> (uint32_t)band", ">= (uint32_t)band"),
+    ("contact", L + "law/contact.c", ">\n               (uint32_t)band", ">=\n               (uint32_t)band"),
     ("contact", L + "law/contact.c", "pen >= 0 ||", "pen > 0 ||"),
     ("contact", L + "law/contact.c", "pen > ~par->hyst_m_q30", "pen > -par->hyst_m_q30"),
     ("contact", L + "law/contact.c", "exh_diff_sat32(in.pos_m_q30, in.lim_m_q30)", "exh_wrap_diff(in.pos_m_q30, in.lim_m_q30)"),
@@ -159,7 +159,7 @@ MUTANTS = (
     ("guard", L + "num/params.c", "!p->pending && !p->moving;", "!p->moving;"),
     ("guard", L + "num/params.c", "!p->pending && !p->moving;", "!p->pending;"),
     ("guard", L + "num/params.c", "bad |= p->passed != p->sum;", ""),
-    ("guard", H + "guard.h", "EXH_INTEGRITY_WORDS 2", "EXH_INTEGRITY_WORDS 1"),
+    ("guard", H + "integrity.h", "EXH_INTEGRITY_WORDS 2", "EXH_INTEGRITY_WORDS 1"),
     ("supply", L + "act/supply.c", "raw <= cfg->max_raw", "raw < cfg->max_raw"),
     ("supply", L + "act/supply.c", "raw >= cfg->min_raw", "raw > cfg->min_raw"),
     ("supply", L + "act/supply.c", "least += rest != 0;", ""),
@@ -211,7 +211,7 @@ MUTANTS = (
     ("hand", L + "sense/hand.c", "+ den / 2, den", ", den"),
     ("hand", L + "sense/hand.c", "sensor == bent[1] || sensor == bent[2]", "sensor == bent[1]"),
     ("hand", L + "sense/hand.c", "exh_clamp32(exh_limit32(want), j->lo_turn_q32, j->hi_turn_q32)", "exh_limit32(want)"),
-    ("precontact", L + "law/precontact.c", "+ HALF_Q60,\n", ",\n"),
+    ("precontact", L + "law/precontact.c", "+ HALF_Q60, cfg", ", cfg"),
     ("precontact", L + "law/precontact.c", "par->printed_sign ? -pad_m_q30 : pad_m_q30", "pad_m_q30"),
     ("precontact", L + "law/precontact.c", "<= 2 * tol_q60", "<= 4 * tol_q60"),
     ("precontact", L + "law/precontact.c", "left == 0 || now.object != s->newest.object", "left == 0"),
@@ -252,12 +252,12 @@ MUTANTS = (
     ("bilateral", Y + "trace.c", "!t->answer && n < EXH_WIRE_FRAMES", "!t->answer && n <= EXH_WIRE_FRAMES"),
     ("bilateral", Y + "wire.c", "bilateral_trace_stop(&w->trace);", ""),
     ("bilateral", L + "talk/trace.c", "t->left = t->what.every - 1;", "t->left = t->what.every;"),
-    ("bilateral", Y + "bilateral.c", "if (now->quad.lost) { raised |= EXH_FAULT_ENCODER; }", ""),
+    ("bilateral", H + "axis.h", "if (a->quad->lost) { raised |= EXH_FAULT_ENCODER; }", ""),
     ("bilateral", Y + "bilateral.c", "out->dac_raw[f] = placed->dac_raw[k];", "out->dac_raw[k] = placed->dac_raw[k];"),
     ("bilateral", Y + "finger.c", "if (p->phase == EXH_PRECONTACT_FROZEN &&", "if ("),
     ("bilateral", Y + "wire.c", "w->set += ack.result == 0;", "w->set++;"),
     ("bilateral", Y + "wire.c", "s->age_ticks = UINT32_MAX;", "s->age_ticks = 0;"),
-    ("bilateral", Y + "bilateral.c", "raised |= EXH_FAULT_TRACKING;", ""),
+    ("bilateral", H + "axis.h", "raised |= EXH_FAULT_TRACKING;", ""),
     ("bilateral", Y + "cause.c", "s->unsure_ticks >= cfg->glove_ticks", "s->unsure_ticks > cfg->glove_ticks"),
     ("bilateral", Y + "cause.c", "s->wire.age_ticks >= cfg->link_ticks", "s->wire.age_ticks == UINT32_MAX"),
     ("bilateral", "lib/src/act/supply.c", "raw <= cfg->max_raw", "raw < INT16_MAX"),
@@ -317,12 +317,12 @@ MUTANTS = (
     ("modbus_rtu", L + "talk/modbus_rtu.c", "function == 22;", "function == 22 || function == 23;"),
     ("guarded", "examples/guarded/guarded.c", "now.cnt, sig->drop.c, &now.f", "now.cnt, !sig->drop.c, &now.f"),
     ("guarded", "examples/guarded/guarded.c", "par->drop.watch.speed_mps_q27);", "EXH_Q(3, 1, EXH_Q_VEL));"),
-    ("drop", X + "drop.c", "s->quad.lost ? EXH_FAULT_ENCODER : 0u", "0u"),
+    ("drop", H + "axis.h", "if (a->quad->lost) { raised |= EXH_FAULT_ENCODER; }", ""),
     ("drop", X + "drop.c", "(starved ? EXH_FAULT_SUPPLY : 0u)", "0u"),
-    ("drop", X + "drop.c", "    exh_tracking_update(&s->track, now->i.coded_A_q26);", ""),
-    ("drop", X + "drop.c", "limits |= exh_drive_current_step", "limits = exh_drive_current_step"),
-    ("drop", X + "drop.c", "exh_velocity_window_step(&s->velocity, &cfg->velocity, cnt)",
-     "exh_velocity_window_step(&s->velocity, &cfg->velocity, cnt + 1)"),
+    ("drop", H + "axis.h", "exh_tracking_update(a->track, coded_A_q26);", "(void)coded_A_q26;"),
+    ("drop", H + "axis.h", "return limits | exh_drive_current_step", "return exh_drive_current_step"),
+    ("drop", H + "axis.h", "exh_velocity_window_step(a->velocity, a->velocity_cfg, cnt)",
+     "exh_velocity_window_step(a->velocity, a->velocity_cfg, cnt + 1)"),
 )
 # What 256 ticks show at fewer rates, as the fingers of one box hinder each other at arming: what it must be seen at all
 # the same, and what tells it besides. Open: stimuli that come to these at every rate.
@@ -351,7 +351,8 @@ THIN = {
 
 # Where the inline functions of a header are called for a module.
 CALLS = {"fix": "test/golden/basics.c", "velocity_window": VELOCITY, "table": TABLE, "angle": L + "num/angle.c",
-         "precontact": L + "law/precontact.c", "quantizer": L + "sense/quantizer.c", "guard": L + "safe/integrity.c"}
+         "precontact": L + "law/precontact.c", "quantizer": L + "sense/quantizer.c", "guard": L + "safe/integrity.c",
+         "drop": X + "drop.c", "bilateral": Y + "bilateral.c"}
 
 
 def objects_but(original):
