@@ -155,9 +155,14 @@ def put(path, f):
         o.write(s)
 
 
+def places(text, part):
+    """Where the part stands in the text; how the formatter broke it into lines does not matter."""
+    return re.findall(r"\s+".join(re.escape(word) for word in part.split()), text)
+
+
 def once(where, text, part):
-    """The part as it stands in the text, once; how the formatter broke it into lines does not matter."""
-    found = re.findall(r"\s+".join(re.escape(word) for word in part.split()), text)
+    """The part as it stands in the text, where it has to stand once."""
+    found = places(text, part)
     if len(found) != 1:
         raise SystemExit("%s: %d times, once is wanted: %s" % (where, len(found), part))
     return found[0]
