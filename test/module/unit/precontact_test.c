@@ -53,6 +53,7 @@ static void frozen_at_116(void)
     at(MM(116));
     at(MM(114));
     CHECK(s.phase == EXH_PRECONTACT_FROZEN, "d = -4 mm");
+    CHECK(!exh_precontact_none(&s), "a contact");
 }
 
 TEST(distance_has_the_sign_of_the_text)
@@ -97,6 +98,7 @@ TEST(no_plane_means_no_contact)
     at(MM(150));
     CHECK(s.lim_m_q30 == EXH_PRECONTACT_NO_LIM && s.d_m_q30 == INT32_MIN && bits == 0,
           "first tick");
+    CHECK(exh_precontact_none(&s), "no plane");
     tell((struct exh_plane){EXH_PLANE_UNTOLD, 9, 9, {1, 2, 3}, {4, 5, 6}});
     at(MM(150));
     CHECK(s.lim_m_q30 == EXH_PRECONTACT_NO_LIM && bits == 0, "untold");
