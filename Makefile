@@ -46,7 +46,8 @@ base := -std=c99 -O$(O) -g $(warn) -ffunction-sections -fdata-sections -Ilib/inc
         $(if $(UNCALIBRATED),-DUNCALIBRATED)
 
 # An assertion names its source without lib/src/: a layer's folder costs an image no bytes.
-base += -fmacro-prefix-map=lib/src/=
+# A compiler that is too old for it goes without.
+base += $(shell $(CC) -fmacro-prefix-map=a=b -E -xc /dev/null >/dev/null 2>&1 && echo -fmacro-prefix-map=lib/src/=)
 
 # What all objects are compiled with. Another text here compiles all anew.
 stamp      := $(out)/flags

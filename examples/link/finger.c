@@ -35,9 +35,13 @@ static int16_t board_monitor(void) /* 1.76 A/V at 3249 codes/V; 1936.5 codes/A *
 static uint32_t board_inputs(void)
 {
     const int estop_closed = 1, deadman_held = 1, watchdog_quiet = 1, cards_answer = 1, ready = 1;
-    return (estop_closed ? EXH_DIN_ESTOP : 0u) | (deadman_held ? EXH_DIN_DEADMAN : 0u) |
-           (watchdog_quiet ? EXH_DIN_WATCHDOG : 0u) | (cards_answer ? EXH_DIN_CARDS : 0u) |
-           (ready ? EXH_DIN_DRIVE0 : 0u);
+    uint32_t din = 0;
+    if (estop_closed) { din |= EXH_DIN_ESTOP; }
+    if (deadman_held) { din |= EXH_DIN_DEADMAN; }
+    if (watchdog_quiet) { din |= EXH_DIN_WATCHDOG; }
+    if (cards_answer) { din |= EXH_DIN_CARDS; }
+    if (ready) { din |= EXH_DIN_DRIVE0; }
+    return din;
 }
 
 static void board_read(int tick, struct exh_drive_in *in)
@@ -98,31 +102,21 @@ static struct exh_tracking track;
 static struct exh_safety safety;
 static uint8_t vouched = EXH_UNCALIBRATED | EXH_UNPOLARISED;
 
-static const struct exh_axis axis = {.quad = &quad,
-                                     .quad_cfg = &quad_cfg,
-                                     .velocity = &vel,
-                                     .velocity_cfg = &vel_cfg,
-                                     .track = &track,
-                                     .track_cfg = &track_cfg,
-                                     .drive = &drive,
-                                     .drive_cfg = &drive_cfg};
+/* Encoder, velocity, no motion monitor, tracking, drive. */
+static const struct exh_axis axis = {&quad, &quad_cfg, &vel,       &vel_cfg, NULL,
+                                     NULL,  &track,    &track_cfg, &drive,   &drive_cfg};
 
 static int setup(void)
 {
-    static const struct exh_axis_setup parts = {.quad = &quad_cfg,
-                                                .quad_par = &quad_par,
-                                                .velocity = &vel_cfg,
-                                                .velocity_par = &vel_par,
-                                                .track = &track_cfg,
-                                                .track_par = &track_par,
-                                                .drive = &drive_cfg,
-                                                .drive_par = &drive_par};
+    static const struct exh_axis_setup parts = {&quad_cfg,  &quad_par, &vel_cfg,   &vel_par,
+                                                NULL,       NULL,      &track_cfg, &track_par,
+                                                &drive_cfg, &drive_par};
     const struct exh_period T = {1, RATE_Hz};
     const struct exh_table force_to_cur = {knot, 2}, no_table = {0, 0};
     int err = exh_table_setup(knot, 2);
     if (err == 0) { err = exh_axis_setup(&parts, T, 24, force_to_cur, no_table); }
     if (err == 0) { err = exh_safety_setup(&safety_cfg, &safety_par, T); }
-    if (exh_selftest() == EXH_SELFTEST_OK) { vouched |= EXH_ARM_SELFTEST; }
+    if (exh_selftest() == EXH_SELFTEST_OK) { vouched = (uint8_t)(vouched | EXH_ARM_SELFTEST); }
     return err;
 }
 
@@ -151,7 +145,7 @@ int main(void)
         return 1;
     }
     for (int t = 0; t < TICKS; t++) {
-        struct exh_drive_in in = {0};
+        struct exh_drive_in in = {{0}, {0}, 0, 0};
         struct exh_drive_out out;
         uint8_t code[2];
         board_read(t, &in);

@@ -113,7 +113,10 @@ static inline struct exh_axis_now exh_axis_sense(const struct exh_axis *a,
         mon_A_q26 = exh_drive_monitor_A_q26(a->drive_cfg, in->mon_raw[f]);
         if (exh_tracking_step(a->track, a->track_cfg, mon_A_q26)) { raised |= EXH_FAULT_TRACKING; }
     }
-    return (struct exh_axis_now){cnt, pos_m_q30, vel_mps_q27, mon_A_q26, raised, limits};
+    {
+        const struct exh_axis_now now = {cnt, pos_m_q30, vel_mps_q27, mon_A_q26, raised, limits};
+        return now;
+    }
 }
 
 /* Arming's step ENCODER and the cause ENCODER are one bit, so that the tick needs no branch. */
