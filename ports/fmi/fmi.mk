@@ -5,7 +5,7 @@
 fmi_src        := ports/fmi/fmi3.c ports/fmi/absent.c
 fmi_controller := ports/fmi/controller.c examples/drop/drop.c lib/src/run/calib_set.c $(lib_src)
 fmi_device     := ports/fmi/device.c $(patsubst %,ports/posix/sim/%.c,mass plant device fall bench lag)
-fmi_folders    := lib/include/exhand=exhand $(foreach d,num sense law act safe bench talk,lib/src/$d=lib/$d) examples= examples/drop=drop ports/posix/sim=sim ports/fmi=fmi
+fmi_folders    := lib/include/exhand=exhand lib/include/exhand/run=exhand/run $(foreach d,num sense law act safe bench talk run,lib/src/$d=lib/$d) examples= examples/drop=drop ports/posix/sim=sim ports/fmi=fmi
 $(B)/fmi/describe-controller: $(patsubst %.c,$(B)/posix/%.o,ports/fmi/describe.c $(fmi_controller))
 $(B)/fmi/describe-device: $(patsubst %.c,$(B)/posix/%.o,ports/fmi/describe.c $(fmi_device)) $(B)/posix/libexhand.a
 $(B)/fmi/describe-%:
