@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* The minimal scene with its constants and state in sight. */
-#include "minimal/minimal.c"
-
 #include "scenes.h"
+
+#include "minimal/minimal.c"
 
 int32_t minimal_force_N_q20(void)
 {

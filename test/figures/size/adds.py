@@ -196,7 +196,7 @@ def goal_of(at, name):
     costs = Costs("minimal", "mps2", at, name)
     helpers = costs.image.bytes_of(costs.helpers())
     ours = [a + b + c for a, b, c in zip(costs.library_and_scene(False), costs.image.bytes_of(costs.kept.get("compiler", [])),
-                                         costs.image.bytes_of(n for m in ("lib/src/run/loop", "lib/src/run/deadman", "lib/src/run/image") for n in costs.kept[m]))]
+                                         costs.image.bytes_of(n for m in ("run/loop", "run/deadman", "run/image") for n in costs.kept[m]))]
     alone = [a + b for a, b in zip(costs.library_and_scene(True), helpers)]
     insn = on_mps2("%s/mps2/%s.elf" % (at, name))
     return [*alone, alone[1] + alone[2], ours[0], ours[1] + ours[2], worst_stack(at, name), "-" if insn is None else round(insn),

@@ -21,9 +21,9 @@ FEATURES = (("glove: 22 angles", ("lib/glove", "lib/glove_cal", "lib/glove_fit",
             ("contacts before they are touched", ("lib/precontact",)),
             ("link to a world", ("lib/wire", "bilateral/wire", "bilateral/trace")),
             ("passivity and rule of gains", ("lib/passivity", "lib/gains")),
-            ("log", ("lib/src/run/log", "lib/record")),
+            ("log", ("run/log", "lib/record")),
             ("registers (Modbus)", ("lib/modbus", "lib/modbus_rtu", "pc104/modbus")),
-            ("calibration of fingers", ("lib/calibrate", "lib/src/run/calib_set")),
+            ("calibration of fingers", ("lib/calibrate", "run/calib_set")),
             ("parameters at run time", ("lib/params", "lib/signal")),
             ("self-test", ("lib/selftest",)), ("guard of memory", ("lib/integrity",)), ("watch of speed and encoder", ("lib/motion",)),
             ("supply", ("lib/supply",)), ("state machine and gate", ("lib/safety", "lib/gate")),
@@ -66,9 +66,9 @@ def scenes():
 
 
 def module_of(place):
-    """'lib/filter', 'drop/drop', 'pc104/modbus', 'compiler', of an object's path."""
+    """'lib/filter', 'run/loop', 'drop/drop', 'pc104/modbus', 'compiler', of an object's path."""
     words = place[:-2].split("/")
-    if words[-4:-2] == ["lib", "src"]:
+    if words[-4:-2] == ["lib", "src"] and words[-2] != "run":
         return "lib/" + words[-1]
     return "/".join(words[-2:]) if place.startswith(AT) else "compiler"
 
@@ -90,7 +90,7 @@ class Costs:
 
     def lost(self):
         """What the linker kept of the library and the walk does not find: nothing, or the ways are not true."""
-        return [n for n in self.image.sizes if "/lib/src/" in n[0] and n not in self.of_main]
+        return [n for n in self.image.sizes if module_of(n[0]).startswith("lib/") and n not in self.of_main]
 
     def why(self, module):
         for came in (self.of_scene, self.of_main):
@@ -112,7 +112,7 @@ class Costs:
 
     def own(self):
         """Sections of the scene itself, without library, loop or port."""
-        ours = re.compile(r"^(%s|drop|glove)/|^lib/src/run/calib_set$" % self.scene)
+        ours = re.compile(r"^(%s|drop|glove)/|^run/calib_set$" % self.scene)
         return [n for n in self.image.sizes if ours.match(module_of(n[0]))]
 
     def library_and_scene(self, of_scene_alone):
@@ -148,7 +148,7 @@ def instructions(scene):
                 if m[3]:
                     names[m[2]] = m[3].rstrip()
                 if m[1] == "fl":
-                    here = re.sub(r"\.c$", "", "/".join(re.sub(r"lib/src/\w+/", "lib/", names[m[2]]).split("/")[-2:]))
+                    here = re.sub(r"\.c$", "", "/".join(re.sub(r"lib/src/(?!run/)\w+/", "lib/", names[m[2]]).split("/")[-2:]))
             elif line.startswith("calls="):
                 called = True  # the next line is the callee's
             elif re.match(r"[+\-*\d]", line):
