@@ -29,9 +29,17 @@ enum exh_signal_when {
     EXH_WHEN_LIMIT   /* likewise, a limit of force: it rises little by little and falls at once */
 };
 
+/* Register of ids, 0xMMNN: MM is the module, NN the row. test/module/unit/rows_test.c has each.
+ *
+ *   02 quad   03 velocity   04 contact   05 drive     06 safety       07 filter     08 quantizer
+ *   09 glove  0A hand       0B material  0C precontact
+ *   0D tracking (rows 01..10), supply (rows 11..)     0E motion       0F passivity
+ *   12 gains  13 tune       80..8F scenes; 89 calibrations of the runtime (exhand/run)
+ */
+
 /* One row: what a value is. Constant, in ROM. */
 struct exh_signal {
-    uint16_t id;      /* stable for ever, unique in the library; 0xMMNN: module, row */
+    uint16_t id;      /* stable for ever, unique in the library */
     uint8_t frac;     /* fraction bits: value = raw * 2^-frac */
     uint8_t when;     /* enum exh_signal_when */
     int32_t min, max; /* allowed raw values, both included */

@@ -70,7 +70,7 @@ int exh_regs_validate(const struct exh_regs *r, uint16_t at, uint16_t n, const u
     struct exh_regs_walk w;
     int err = exh_regs_locate(r, EXH_REGS_HOLDING, at, n, &s);
     if (err != 0 || n == 0) { return err; }
-    if (s.source == EXH_REGS_SET) { return exh_regs_trace_write(r, &s, from, 0); }
+    if (s.source == EXH_REGS_SET) { return exh_regs_trace_validate(r, &s, from); }
     if (r->asked >> EXH_COIL_APPLY & 1u) { return EXH_MODBUS_BUSY; }
     w = exh_regs_walk_to(r->params, s.from >> 1);
     for (uint32_t i = s.from >> 1; err == 0 && 2 * i < s.end; i++) {
@@ -88,7 +88,10 @@ int exh_regs_write(struct exh_regs *r, uint16_t at, uint16_t n, const uint8_t *f
     int err = exh_regs_validate(r, at, n, from);
     if (err == 0) { err = exh_regs_locate(r, EXH_REGS_HOLDING, at, n, &s); }
     if (err != 0 || n == 0) { return err; }
-    if (s.source == EXH_REGS_SET) { return exh_regs_trace_write(r, &s, from, 1); }
+    if (s.source == EXH_REGS_SET) {
+        exh_regs_trace_write(r, &s, from);
+        return 0;
+    }
     w = exh_regs_walk_to(r->params, s.from >> 1);
     for (uint32_t i = s.from >> 1; 2 * i < s.end; i++) {
         int32_t raw = 0;

@@ -51,9 +51,10 @@ uint32_t exh_regs_trace_value(const struct exh_regs *r, enum exh_regs_source sou
     return (uint32_t)t->frame[slot].raw[k - 2];
 }
 
-/* Each value as a whole, with its other half as it stands. */
-int exh_regs_trace_write(const struct exh_regs *r, const struct exh_regs_span *s,
-                         const uint8_t *from, int carry_out)
+/* What is asked for with these registers written: each value as a whole, with its other half as it
+ * stands. */
+static struct exh_trace_request asked_with(const struct exh_regs *r, const struct exh_regs_span *s,
+                                           const uint8_t *from)
 {
     struct exh_trace_request what = r->trace->what;
     for (uint32_t at = s->from; at < s->end; at++, from += 2) {
@@ -61,9 +62,21 @@ int exh_regs_trace_write(const struct exh_regs *r, const struct exh_regs_span *s
         const uint32_t word = (uint32_t)from[0] << 8 | from[1];
         *v = (at & 1u) ? (*v & 0xFFFF0000u) | word : (*v & 0xFFFFu) | word << 16;
     }
+    return what;
+}
+
+int exh_regs_trace_validate(const struct exh_regs *r, const struct exh_regs_span *s,
+                            const uint8_t *from)
+{
+    const struct exh_trace_request what = asked_with(r, s, from);
     for (unsigned i = 0; i < EXH_TRACE_SIGNALS; i++) {
         if (what.index[i] >= r->trace->signals) { return EXH_MODBUS_VALUE; }
     }
-    if (carry_out) { (void)exh_trace_start(r->trace, &what); }
     return 0;
+}
+
+void exh_regs_trace_write(struct exh_regs *r, const struct exh_regs_span *s, const uint8_t *from)
+{
+    const struct exh_trace_request what = asked_with(r, s, from);
+    (void)exh_trace_start(r->trace, &what);
 }
