@@ -317,6 +317,7 @@ const struct exh_scene exh_scene_bilateral = {
     .rate_Hz = 2000,
     .fingers = BILATERAL_FINGERS,
     .params = &params,
+    .apply = exh_params_apply,
     .safety = &state.safety,
     .signals = &bilateral_outputs,
     .signal = (int32_t *)&signals,

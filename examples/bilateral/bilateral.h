@@ -220,7 +220,8 @@ static inline unsigned bilateral_n(const struct bilateral_cfg *cfg)
 }
 static inline unsigned bilateral_at(const struct bilateral_cfg *cfg, unsigned k)
 {
-    return cfg->at[k] < BILATERAL_FINGERS ? cfg->at[k] : 0;
+    const unsigned f = cfg->at[k];
+    return f & (0u - (f < BILATERAL_FINGERS)); /* a branch would double whatever indexes by it */
 }
 
 /* The parts of the finger at a place. */

@@ -298,6 +298,7 @@ const struct exh_scene exh_scene_bringup = {
     .rate_Hz = 1000,
     .fingers = BRINGUP_FINGERS,
     .params = &params,
+    .apply = exh_params_apply,
     .safety = &state.safety,
     .signals = &signal_table,
     .signal = (int32_t *)&signal,

@@ -444,6 +444,7 @@ const struct exh_scene exh_scene_calibrate = {
     .rate_Hz = 2000,
     .fingers = 1,
     .params = &params,
+    .apply = exh_params_apply,
     .safety = &state.safety,
     .signals = &signal_table,
     .signal = (int32_t *)&signals,

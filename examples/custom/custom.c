@@ -165,6 +165,7 @@ const struct exh_scene exh_scene_custom = {
     .rate_Hz = 2000,
     .fingers = 1,
     .params = &params,
+    .apply = exh_params_apply,
     .safety = &state.drop.safety,
     .signals = &signal_table,
     .signal = (int32_t *)&signals,

@@ -145,8 +145,7 @@ static struct glove_cfg cfg;
 static struct glove state;
 
 /* Nothing to drive: the gate stays shut, and makes the frame, as it makes all. */
-static const struct exh_drive_par idle_par = {.dac_zero_raw = 32768};
-static const struct exh_drive_cfg idle_cfg = {.par = &idle_par};
+#define DAC_ZERO_RAW 32768
 static struct exh_safety shut;
 
 static void defaults(void)
@@ -178,13 +177,10 @@ static int setup(struct exh_scene_board board)
 
 static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
 {
-    struct exh_current_ledger none = {0};
-    uint32_t limits = 0;
     if (in->glove_new) { glove_frame(&state, &cfg, &in->glove); }
     state.sig.age_ticks = in->glove.age_ticks;
     signals = state.sig;
-    /* It never opens, so EXH_UNTRACKED. */
-    exh_gate_step(&shut, &idle_cfg, 1, &none, &limits, out);
+    exh_gate_shut(&shut, DAC_ZERO_RAW, out);
 }
 
 static void state_bytes(struct exh_bytes *c)
@@ -200,6 +196,7 @@ const struct exh_scene exh_scene_glove = {
     .rate_Hz = 2000,
     .fingers = 0,
     .params = &params,
+    .apply = exh_params_apply,
     .signals = &signal_table,
     .signal = (int32_t *)&signals,
     .read_glove = exh_board_read_glove,

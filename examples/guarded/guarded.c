@@ -133,6 +133,7 @@ const struct exh_scene exh_scene_guarded = {
     .fingers = 1,
     .safety = &state.drop.safety,
     .params = &params,
+    .apply = exh_params_apply,
     .signals = &signal_table,
     .signal = (int32_t *)&signals,
     .calib = &calib,

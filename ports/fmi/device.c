@@ -7,6 +7,7 @@
 #include "sim/mass.h"
 
 #include "exhand/error.h"
+#include "exhand/fix.h"
 #include "exhand/frame.h"
 #include "exhand/safety.h"
 

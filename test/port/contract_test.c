@@ -14,6 +14,7 @@
 
 #include "exhand/board.h"
 #include "exhand/error.h"
+#include "exhand/fix.h"
 
 #define DAC_ZERO   32768 /* raw codes are the Sensoray's on every port */
 #define DAC_HALF_A 923   /* 3249 codes/V over 1.76 A/V */

@@ -207,6 +207,10 @@ int exh_gain_set(struct exh_gain *g, uint64_t num, uint64_t den);
  * remainder goes to *rem unless NULL. Set-up only: 64 steps. */
 uint64_t exh_udiv64(uint64_t num, uint64_t den, uint64_t *rem);
 
+/* 1 if T is within 50 us .. 1 s, but for the 1000 ppm by which a timer may miss it, else 0: what
+ * every set-up, the loop and a replay ask before they start. */
+int exh_period_ok(struct exh_period T);
+
 /* Whole ticks in ms >= 0, of a period that exh_period_ok(). Set-up only; at 20 kHz a day fits. */
 uint32_t exh_ticks_in(int32_t ms, struct exh_period T);
 

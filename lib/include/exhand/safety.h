@@ -199,6 +199,9 @@ int exh_safety_is_open(const struct exh_safety *s);
 void exh_gate_step(struct exh_safety *s, const struct exh_drive_cfg *cfg, unsigned n,
                    struct exh_current_ledger *i, uint32_t *limits, struct exh_drive_out *out);
 
+/* The same of a scene that drives nothing: the gate is shut, every finger gets dac_zero_raw. */
+void exh_gate_shut(struct exh_safety *s, uint16_t dac_zero_raw, struct exh_drive_out *out);
+
 /* State through a cursor, with a CRC of it: bytes that do not agree are read as FAULT, LOGIC. */
 void exh_safety_serialize(struct exh_bytes *c, struct exh_safety *s);
 

@@ -78,12 +78,4 @@ enum exh_finger {
 /* Compile-time assertion in C99; name must be unique in its scope. */
 #define EXH_STATIC_ASSERT(name, cond) typedef char exh_static_##name[(cond) ? 1 : -1]
 
-/* 1 if T is within 50 us .. 1 s, but for the 1000 ppm by which a timer may miss it: what
- * the loop and a replay ask before they start. */
-static inline int exh_period_ok(struct exh_period T)
-{
-    return T.num > 0 && UINT64_C(1000) * T.num <= UINT64_C(1001) * T.den &&
-           UINT64_C(1000) * T.den <= UINT64_C(20020000) * T.num;
-}
-
 #endif

@@ -3,6 +3,7 @@
 #include "exhand/drive.h"
 
 #include "exhand/error.h"
+#include "exhand/fix.h"
 
 #include <stddef.h>
 

@@ -51,3 +51,10 @@ void exh_gate_step(struct exh_safety *s, const struct exh_drive_cfg *cfg, unsign
         s->limits |= limits[k];
     }
 }
+
+void exh_gate_shut(struct exh_safety *s, uint16_t dac_zero_raw, struct exh_drive_out *out)
+{
+    out->enable = 0;
+    out->alive = ++s->alive;
+    for (unsigned f = 0; f < EXH_FINGERS; f++) { out->dac_raw[f] = dac_zero_raw; }
+}

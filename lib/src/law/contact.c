@@ -20,7 +20,7 @@ const struct exh_signal exh_contact_rows[EXH_CONTACT_ROWS] = {
 
 /* Two states: the farthest point since the last reversal moves along; a return of more than the
  * band from it is the next reversal. Either way is one that 32 bits without a sign hold. */
-static void follow_reversals(struct exh_contact *s, int32_t pos, int32_t band)
+static inline void follow_reversals(struct exh_contact *s, int32_t pos, int32_t band)
 {
     const int32_t turn = s->turn_m_q30;
     if (!s->started) {
@@ -35,9 +35,8 @@ static void follow_reversals(struct exh_contact *s, int32_t pos, int32_t band)
     }
 }
 
-/* There is something to touch: `there` is -1, else 0. */
-static inline int law(struct exh_contact *s, const struct exh_contact_par *par,
-                      struct exh_contact_in in, int32_t there, struct exh_force_ledger *out)
+int exh_contact_step(struct exh_contact *s, const struct exh_contact_par *par,
+                     struct exh_contact_in in, struct exh_force_ledger *out)
 {
     const int32_t pen = exh_diff_sat32(in.pos_m_q30, in.lim_m_q30);
     int touching;
@@ -46,7 +45,6 @@ static inline int law(struct exh_contact *s, const struct exh_contact_par *par,
     follow_reversals(s, in.pos_m_q30, par->f0_band_m_q30);
     touching = pen >= 0 ||
                (s->touching && pen > ~par->hyst_m_q30); /* ~h is -h - 1, which fits for any h */
-    touching &= there;
     s->touching = (uint8_t)touching;
 
     /* Both products in every tick: the cost must not depend on contact. */
@@ -63,16 +61,13 @@ static inline int law(struct exh_contact *s, const struct exh_contact_par *par,
     return touching;
 }
 
-int exh_contact_step(struct exh_contact *s, const struct exh_contact_par *par,
-                     struct exh_contact_in in, struct exh_force_ledger *out)
-{
-    return law(s, par, in, -1, out);
-}
-
 void exh_contact_step_free(struct exh_contact *s, const struct exh_contact_par *par,
                            int32_t pos_m_q30, struct exh_force_ledger *out)
 {
-    (void)law(s, par, (struct exh_contact_in){pos_m_q30, 0, pos_m_q30}, 0, out);
+    const struct exh_contact_in far = {pos_m_q30, 0, INT32_MAX};
+    (void)exh_contact_step(s, par, far, out);
+    s->touching = 0; /* at the end of the format it met */
+    out->spring_N_q20 = 0;
 }
 
 void exh_contact_serialize(struct exh_bytes *c, struct exh_contact *s)

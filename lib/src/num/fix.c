@@ -23,6 +23,12 @@ uint64_t exh_udiv64(uint64_t num, uint64_t den, uint64_t *rem)
     return quot;
 }
 
+int exh_period_ok(struct exh_period T)
+{
+    return T.num > 0 && UINT64_C(1000) * T.num <= UINT64_C(1001) * T.den &&
+           T.den <= UINT64_C(20020) * T.num;
+}
+
 uint32_t exh_ticks_in(int32_t ms, struct exh_period T)
 {
     return (uint32_t)exh_udiv64((uint64_t)(uint32_t)ms * T.den, UINT64_C(1000) * T.num, NULL);

@@ -4,18 +4,20 @@
 
 #include "exhand/board.h"
 #include "exhand/error.h"
+#include "exhand/fix.h"
 #include "exhand/safety.h"
 
 /* Board up, parameters in, scene ready. */
 static int set_up(const struct exh_scene *sc, uint32_t rate_Hz, struct exh_scene_board *board)
 {
     int err;
+    EXH_ASSERT(!sc->params || sc->apply);
     if (exh_board_info.version != EXH_BOARD_VERSION) { return -EXH_E_VERSION; }
     if (exh_board_info.fingers < sc->fingers) { return -EXH_E_ABSENT; }
     board->enc_bits = exh_board_info.enc_bits;
     err = exh_board_init(rate_Hz ? rate_Hz : sc->rate_Hz, &board->T);
     if (err == 0 && !exh_period_ok(board->T)) { err = -EXH_E_RATE; }
-    if (sc->params) { exh_params_apply(sc->params); }
+    if (sc->params) { (void)sc->apply(sc->params); }
     if (err == 0) { err = sc->setup(*board); }
     if (err == 0 && sc->params) { sc->params->locked = 1; }
     return err;
@@ -88,7 +90,7 @@ static int one_tick(const struct exh_scene *sc, const struct exh_loop_hooks *h, 
     int err;
     if (sc->link) { read_link(sc->link); }
     if (h->before) { h->before(tick, in); }
-    if (sc->params) { exh_params_apply(sc->params); }
+    if (sc->params) { (void)sc->apply(sc->params); }
     sc->tick(in, &out);
     err = put ? exh_board_write_drive(&out) : 0;
     if (sc->link) { write_link(sc->link); }

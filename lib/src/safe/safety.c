@@ -76,11 +76,13 @@ static void count_missed(struct exh_safety *s, uint32_t missed)
     if (s->late > LATE_MOST) { s->late = LATE_MOST; }
 }
 
+/* Most ticks have no limit, or a low bit: it ends with the highest. */
 static void count_limits(struct exh_safety *s)
 {
-    for (unsigned k = 0; k < EXH_LIMITS; k++) {
-        const uint32_t sum = s->held[k] + (s->limits >> k & 1u);
-        s->held[k] = sum - (sum < s->held[k]);
+    uint32_t left = s->limits & ((1u << EXH_LIMITS) - 1u);
+    for (uint32_t *held = s->held; left != 0; held++, left >>= 1) {
+        const uint32_t sum = *held + (left & 1u);
+        *held = sum - (sum < *held);
     }
 }
 

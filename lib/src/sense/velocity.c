@@ -3,6 +3,7 @@
 #include "exhand/velocity.h"
 
 #include "exhand/error.h"
+#include "exhand/fix.h"
 
 const struct exh_signal exh_velocity_rows[EXH_VELOCITY_ROWS] = {
     {0x0301, 0, EXH_WHEN_SETUP, 0, 4, 1, "vel_p", "", "velocity window of 2^p ticks"},

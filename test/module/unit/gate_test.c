@@ -70,6 +70,20 @@ TEST(gate_in_every_state)
     }
 }
 
+TEST(a_shut_gate_makes_a_frame_that_drives_nothing)
+{
+    struct box b;
+    box_setup(&b);
+    b.s.state = EXH_STATE_RUN; /* it asks no state */
+    b.s.alive = 255;
+    b.out.enable = 0x1F;
+    exh_gate_shut(&b.s, 1234, &b.out);
+    CHECK_EQ_I64(b.out.enable, 0);
+    CHECK_EQ_I64(b.out.alive, 0);
+    CHECK_EQ_I64(b.s.alive, 0);
+    for (unsigned k = 0; k < EXH_FINGERS; k++) { CHECK_EQ_I64(b.out.dac_raw[k], 1234); }
+}
+
 /* A table, a scale, a limit that is damaged while a force is let go: the code stays where it was,
  * and once it was nearer to zero it is no further again. */
 TEST(a_release_never_rises)
@@ -161,6 +175,6 @@ TEST(alive_changes_at_every_tick_in_every_state)
     }
 }
 
-TEST_MAIN("unit/gate", gate_in_every_state, a_release_never_rises, span_is_never_exceeded,
-          converter_end_is_reported, fingers_not_in_use_get_zero,
-          alive_changes_at_every_tick_in_every_state);
+TEST_MAIN("unit/gate", gate_in_every_state, a_shut_gate_makes_a_frame_that_drives_nothing,
+          a_release_never_rises, span_is_never_exceeded, converter_end_is_reported,
+          fingers_not_in_use_get_zero, alive_changes_at_every_tick_in_every_state);

@@ -11,6 +11,7 @@
 #include "exhand/run/stream.h"
 
 #include "exhand/error.h"
+#include "exhand/fix.h"
 
 #include <errno.h>
 #include <poll.h>

@@ -8,6 +8,7 @@
  * nothing else is written.
  *
  * PLANT: lib/src/act/gate.c: (1u << n) - 1u : 0u -> (1u << n) : 0u
+ * PLANT: lib/src/act/gate.c: out->enable = 0; -> out->enable = 1;
  * PLANT: lib/src/act/gate.c: exh_wrap_diff64(passed, asked) -> passed - asked
  */
 #include "act/gate.c"
@@ -47,6 +48,8 @@ int main(void)
     }
     exh_gate_step(&s, cfg, 1, i, limits, &out);
     /*@ assert bits_of_limits: limits[0] < 1 << 11; */
+    exh_gate_shut(&s, (uint16_t)par[0].dac_zero_raw, &out);
+    /*@ assert drives_nothing: out.enable == 0; */
     END();
     return 0;
 }

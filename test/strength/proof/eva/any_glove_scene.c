@@ -7,8 +7,7 @@
  * WITH: examples/glove/cal.c lib/src/sense/glove_cal.c
  * PLANT: examples/glove/glove.c: exh_hand_tip(&cfg->finger[f], joint, -> exh_hand_tip(&cfg->finger[f + 1], joint,
  * PLANT: examples/glove/glove.c: << (EXH_HAND_JOINTS * f); -> << (7 * EXH_HAND_JOINTS * f);
- * PLANT: examples/glove/glove.c: uint32_t limits = 0; -> uint32_t limits;
- * PLANT: examples/glove/glove.c: {.par = &idle_par}; -> {.par = NULL};
+ * PLANT: examples/glove/glove.c: exh_gate_shut(&shut, -> exh_gate_shut(NULL,
  * PLANT: examples/glove/glove.c: const uint64_t num = (uint64_t)board.T.num * (uint32_t)active.own.every; -> const int32_t num = (int32_t)board.T.num * active.own.every;
  */
 #include "glove/glove.c"

@@ -18,6 +18,9 @@
 #define exh_assert_failed loop_assert_failed
 #include "run/loop.c"
 #undef exh_assert_failed
+#define exh_udiv64 udiv64_by_steps
+#include "num/fix.c"
+#undef exh_udiv64
 #include "quotient.h"
 #include "run/deadman.c"
 
@@ -159,6 +162,7 @@ int main(void)
     static const struct exh_scene rich = {.rate_Hz = 2000,
                                           .fingers = 1,
                                           .params = &params,
+                                          .apply = exh_params_apply,
                                           .safety = &state,
                                           .link = &link,
                                           .read_glove = read_glove_board,

@@ -370,6 +370,14 @@ uint8_t exh_safety_arm_step(const struct exh_safety *s)
     return any8();
 }
 
+void exh_gate_shut(struct exh_safety *s, uint16_t dac_zero_raw, struct exh_drive_out *out)
+{
+    (void)dac_zero_raw;
+    s->alive = any8();
+    ANY(*out);
+    out->enable = 0;
+}
+
 void exh_gate_step(struct exh_safety *s, const struct exh_drive_cfg *cfg, unsigned n,
                    struct exh_current_ledger *i, uint32_t *limits, struct exh_drive_out *out)
 {
