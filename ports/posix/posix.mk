@@ -2,14 +2,14 @@
 # The host program build/posix/exhand, and what it prints for the documents.
 
 # Every scene that has a subcommand, over the simulated device.
-cli_src := $(wildcard ports/posix/exhand/*.c ports/posix/exhand/*/*.c) \
+cli_src := $(wildcard ports/posix/exhand/*.c ports/posix/exhand/*/*.c $(addprefix ports/posix/,base/*.c box/*.c falls/*.c slave/*.c)) \
            $(addprefix lib/src/run/,log.c blackbox.c deadman.c calib_set.c) \
            $(addprefix examples/,drop/drop.c guarded/guarded.c calibrate/calibrate.c glove/glove.c \
              glove/cal.c) \
            $(wildcard examples/bilateral/*.c examples/bringup/*.c) lib/src/run/stream.c
 modbus   := $(if $(call gives,modbus/modbus.h,modbus,modbus_reply),libmodbus,none)
-cli_src  := $(filter-out ports/posix/exhand/live/modbus_%.c ports/posix/exhand/base/scene_custom.c,$(cli_src)) ports/posix/exhand/live/modbus_mail.c \
-            $(wildcard ports/posix/exhand/live/modbus_$(modbus)*.c)
+by_modbus := $(wildcard ports/posix/slave/libmodbus*.c ports/posix/slave/none.c ports/posix/exhand/live/watch_libmodbus.c ports/posix/exhand/live/watch_none.c)
+cli_src  := $(filter-out $(by_modbus) ports/posix/base/scene_custom.c,$(cli_src)) $(foreach f,$(by_modbus),$(if $(findstring $(modbus),$f),$f))
 # The world's core answers in the same process, without pictures.
 exh_obj  := $(cli_src:%.c=$(B)/posix/%.o) $(world_core:%.c=$(B)/posix/%.o) $(world_mesh)
 # What proves and studies is a program of its own, which has all commands of the other, too.
@@ -38,7 +38,7 @@ $(lab): $(filter-out %/exhand/main.o,$(cli_obj)) $(dev_obj) $(gpio_obj) $(B)/pos
 
 # The host program with a model in it.
 exhand_custom := $(B)/posix/exhand-$(MODEL_NAME)
-custom_obj    := $(patsubst %.c,$(B)/posix/%.o,ports/posix/exhand/base/scene_custom.c examples/custom/custom.c examples/custom/slot_real.c)
+custom_obj    := $(patsubst %.c,$(B)/posix/%.o,ports/posix/base/scene_custom.c examples/custom/custom.c examples/custom/slot_real.c)
 $(exhand_custom): $(filter-out %/scene_none.o,$(exh_obj)) $(custom_obj) $(model_obj) $(dev_obj) $(gpio_obj) $(B)/posix/libexhand.a
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(cli_libs) $(gpio_libs)
 
@@ -63,7 +63,7 @@ demo: all $(lab)
 	done
 	@s=0; if command -v gnuplot >/dev/null; then \
 	    for g in pictures sweep friction calibration/pictures bilateral/bilateral; do (cd $(B)/demo/$$(dirname $$g) && \
-	        gnuplot -c $$(basename $$g).gp "$(CURDIR)/ports/posix/exhand/plot") || s=1; done; fi; \
+	        gnuplot -c $$(basename $$g).gp "$(CURDIR)/ports/posix/plot") || s=1; done; fi; \
 	for p in $(demo_pictures:%=$(B)/demo/%.png); do \
 	    if [ -s $$p ]; then echo "picture: $$p"; else echo "picture missing: $$p" >&2; fi; done; \
 	cat $(demo_says:%=$(B)/demo/%.txt); exit $$s

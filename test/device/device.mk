@@ -29,7 +29,7 @@ modbus:
 	@B=$(B) test/device/modbus/modbus.sh
 
 # The host program for an emulated Linux, with either libgpiod in it.
-gpio_src := $(filter-out ports/posix/exhand/live/modbus_%.c,$(cli_src)) $(wildcard ports/posix/exhand/live/modbus_mail.c ports/posix/exhand/live/modbus_none*.c)
+gpio_src := $(sort $(filter-out $(by_modbus),$(cli_src)) ports/posix/slave/none.c ports/posix/exhand/live/watch_none.c)
 gpio_all := $(gpio_src:%.c=$(B)/posix/%.o) $(world_core:%.c=$(B)/posix/%.o) $(B)/posix/ports/posix/world/mesh_none.o $(dev_obj)
 $(B)/gpio/gpio_v%.o: ports/posix/gpio_v%.c $(stamp)
 	$(Q)$(CC) $(base) $(PORT_HOSTFLAGS) -isystem $(B)/gpio/v$* -c $< -o $@

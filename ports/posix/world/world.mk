@@ -16,7 +16,7 @@ world_part := main live alone bench solo link link_put link_param link_trace vie
               $(if $(world_gl),gl gl_program gl_form gl_batch gl_solid gl_layer gl_text,picture_none)
 world_core_obj := $(patsubst %.c,$(B)/posix/%.o,$(world_core) $(patsubst %,ports/posix/sim/%.c,lag plant device))
 world_obj  := $(world_core_obj) $(world_mesh) $(world_part:%=$(B)/posix/ports/posix/world/%.o) \
-              $(B)/posix/ports/posix/exhand/base/option.o $(B)/posix/examples/bilateral/tables.o $(B)/posix/examples/glove/cal.o \
+              $(B)/posix/ports/posix/base/option.o $(B)/posix/examples/bilateral/tables.o $(B)/posix/examples/glove/cal.o \
               $(B)/posix/lib/src/run/calib_set.o
 world_libs := $(if $(world_gl),-lSDL2 -lSDL2_ttf -lGL -lpng) $(if $(world_rays),-ldl) -lpthread -lm
 

@@ -5,7 +5,7 @@
 #include "file_of.h"
 #include "said.h"
 
-#include "contact/hand_record.h"
+#include "box/hand_record.h"
 
 #include <math.h>
 

@@ -15,7 +15,7 @@ TEST_MAIN("modbus_fuzz", nothing_without_the_package);
 
 #include "check.h"
 
-#include "live/modbus.h"
+#include "slave/slave.h"
 
 #include "guarded/guarded.h"
 

@@ -3,7 +3,7 @@
  * wanted. */
 #include "said.h"
 
-#include "live/modbus.h"
+#include "slave/slave.h"
 #include "base/params_file.h"
 
 #include "drop/drop.h"

@@ -168,7 +168,7 @@ static int write_csv(FILE *f, const struct sweep_opt *o, const struct limit *x, 
 static int write_picture(FILE *f, const struct sweep_opt *o)
 {
     fprintf(f, "# Made by exhand drop --friction. Inside this directory, PLOTS the way to "
-               "ports/posix/exhand/plot:\n#   gnuplot -c friction.gp PLOTS\nplots=ARG1\n"
+               "ports/posix/plot:\n#   gnuplot -c friction.gp PLOTS\nplots=ARG1\n"
                "out='friction.png'; data='friction.csv'; rates='");
     for (int i = 0; i < o->rates; i++) { fprintf(f, "%s%.6g", i ? " " : "", o->rate_Hz[i]); }
     fprintf(f, "'\nload plots.'/friction.gp'\n");

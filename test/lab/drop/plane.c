@@ -438,7 +438,7 @@ static void write_picture(FILE *f, const struct found *x, int n)
     fprintf(
         f,
         "# Made by exhand drop --sweep. Inside this directory, PLOTS the way to "
-        "ports/posix/exhand/plot:\n#   gnuplot -c sweep.gp PLOTS\nplots=ARG1\n"
+        "ports/posix/plot:\n#   gnuplot -c sweep.gp PLOTS\nplots=ARG1\n"
         "out='stability.png'; cells='stability.csv'; border='border.csv'; rho='rho.csv'\nrates='");
     for (int i = 0; i < n; i++) { fprintf(f, "%s%.6g", i ? " " : "", x[i].rate_Hz); }
     fprintf(f, "'; k_tops='");

@@ -72,7 +72,7 @@ static void script(FILE *f, const void *ctx)
 {
     (void)ctx;
     fprintf(f, "# Made by exhand faults. Inside this directory, PLOTS the way to "
-               "ports/posix/exhand/plot:\n"
+               "ports/posix/plot:\n"
                "#   gnuplot -c faults.gp PLOTS\nplots=ARG1\nrates='");
     for (size_t r = 0; r < RATES; r++) { fprintf(f, " %" PRIu32, rate_Hz[r]); }
     fprintf(f, "'\nload plots.'/faults.gp'\n");

@@ -91,7 +91,7 @@ static void picture(FILE *f, struct gains_rate *r, int n, const struct gains_map
 {
     fprintf(f,
             "# Made by exhand advise gains. Inside this directory, PLOTS the way to "
-            "ports/posix/exhand/plot:\n#   gnuplot -c gains.gp PLOTS\nplots=ARG1\n"
+            "ports/posix/plot:\n#   gnuplot -c gains.gp PLOTS\nplots=ARG1\n"
             "out='gains.png'; has_map=%d\nrates='",
             map != NULL);
     for (int i = 0; i < n; i++) { fprintf(f, "%s%.6g", i ? " " : "", r[i].rate_Hz); }

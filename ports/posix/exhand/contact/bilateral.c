@@ -2,7 +2,7 @@
 /* exhand bilateral: the paper's second experiment. */
 #include "contact/bilateral.h"
 
-#include "contact/hand_record.h"
+#include "box/hand_record.h"
 
 #include "base/assign.h"
 #include "base/cli.h"

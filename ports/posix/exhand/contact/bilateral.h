@@ -6,7 +6,7 @@
 #include "base/jobs.h"
 #include "base/option.h"
 #include "box/hand_options.h"
-#include "contact/judge.h"
+#include "box/hand_judge.h"
 
 #include <stdio.h>
 

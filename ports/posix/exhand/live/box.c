@@ -3,7 +3,7 @@
 #include "live/live.h"
 
 #include "box/dumpfile.h"
-#include "live/modbus.h"
+#include "slave/slave.h"
 #include "box/table2.h"
 
 #include "exhand/error.h"

@@ -6,7 +6,7 @@
 #include "box/glove_image.h"
 #include "box/glove_line.h"
 #include "live/live.h"
-#include "live/modbus.h"
+#include "slave/slave.h"
 #include "base/option.h"
 #include "base/outfile.h"
 #include "base/param.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "contact/hand_record.h"
+#include "box/hand_record.h"
 
 #include "base/option.h"
 #include "base/recording.h"

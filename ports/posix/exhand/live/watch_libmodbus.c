@@ -2,7 +2,7 @@
 /* The registers of a box, read as a Modbus client. */
 #include "live/watch.h"
 
-#include "live/modbus_libmodbus.h"
+#include "slave/libmodbus.h"
 #include "base/option.h"
 #include "base/until.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The mailbox between the loop and whoever answers Modbus requests. */
-#include "live/modbus.h"
+#include "slave/slave.h"
 
 #include "base/option.h"
 #include "base/params_file.h"

@@ -9,8 +9,8 @@
  * The loop never waits for the mailbox: is it in use, the copy stays that of a tick before, and
  * commands wait for the next. So a client can delay an answer, and no tick.
  */
-#ifndef CLI_MODBUS_H
-#define CLI_MODBUS_H
+#ifndef POSIX_SLAVE_H
+#define POSIX_SLAVE_H
 
 #include "exhand/run/scene.h"
 
@@ -21,7 +21,7 @@ struct mail_cfg {
     int remote;       /* RUN and CLEAR may be commanded */
 };
 
-/* modbus_mail.c. start, before and after: as hooks of the loop, before those that log. */
+/* mail.c. start, before and after: as hooks of the loop, before those that log. */
 void mail_open(const struct mail_cfg *cfg);
 int mail_start(const struct exh_scene *sc, struct exh_scene_board board); /* 0 or -EXH_E… */
 void mail_before(struct exh_scene_in *in);
@@ -38,7 +38,7 @@ void mail_save(void);
  * found no tick that did it, is. */
 void mail_end(void);
 
-/* modbus_libmodbus.c, or modbus_none.c without that package. where: "tcp:HOST:PORT",
+/* libmodbus.c, or none.c without that package. where: "tcp:HOST:PORT",
  * "rtu:DEVICE:BAUD". 0, or 2 or 3 after a line on stderr. */
 int live_modbus_open(const char *where);
 /* Answers from now on: behind mail_start(). 0, or 3 after a line on stderr. */

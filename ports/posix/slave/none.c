@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* In place of modbus_libmodbus.c where that package is not. */
-#include "live/modbus.h"
+/* in place of libmodbus.c where that package is not. */
+#include "slave/slave.h"
 
 #include "base/option.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* In place of modbus_libmodbus_watch.c where that package is not. */
+/* In place of watch_libmodbus.c where that package is not. */
 #include "live/watch.h"
 
 #include "base/option.h"

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* One request, from the bytes that libmodbus received to the answer that it sends. */
-#include "live/modbus_libmodbus.h"
+#include "slave/libmodbus.h"
 
-#include "live/modbus.h"
+#include "slave/slave.h"
 
 static modbus_mapping_t *map; /* of every address, filled as asked for */
 

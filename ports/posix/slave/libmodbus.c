@@ -7,9 +7,9 @@
  * lengths are looked at before, so that it neither waits for bytes that do not come, nor takes the
  * rest of one request for the next, nor throws requests away behind a bad one (docs/MODBUS.md).
  */
-#include "live/modbus_libmodbus.h"
+#include "slave/libmodbus.h"
 
-#include "live/modbus.h"
+#include "slave/slave.h"
 
 #include "base/option.h"
 #include "base/thread.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "contact/judge.h"
+#include "box/hand_judge.h"
 
 #include "exhand/units.h"
 
