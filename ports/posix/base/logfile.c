@@ -2,12 +2,7 @@
 #include "base/logfile.h"
 
 #include "base/option.h"
-#include "base/scene_more.h"
-
-#include "bilateral/bilateral.h"
-#include "drop/drop.h"
-#include "glove/glove.h"
-#include "guarded/guarded.h"
+#include "base/scenes.h"
 
 #include "exhand/calibrate.h"
 #include "exhand/error.h"
@@ -17,17 +12,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const struct exh_scene *const scenes[] = {&exh_scene_drop, &exh_scene_guarded,
-                                                 &exh_scene_glove, &exh_scene_bilateral};
-
-static const struct exh_scene *scene_by_name(const char *name)
-{
-    for (size_t i = 0; i < sizeof scenes / sizeof scenes[0]; i++) {
-        if (strncmp(scenes[i]->name, name, 16) == 0) { return scenes[i]; }
-    }
-    return cli_scene_more && strncmp(cli_scene_more->name, name, 16) == 0 ? cli_scene_more : NULL;
-}
 
 static int complain(const struct logfile *l, const char *what)
 {
@@ -70,7 +54,7 @@ static int read_header(struct logfile *l)
     if (!exh_bytes_ok(&c)) { return complain(l, "its header is too short"); }
     l->params = r.payload + c.at;
     l->params_len = r.len_B - c.at;
-    l->scene = scene_by_name(l->header.scene);
+    l->scene = cli_scene_find(l->header.scene);
     if (l->scene == NULL) { return complain(l, "made by a scene this program does not have"); }
     if (l->header.lib_version != EXH_VERSION_NUMBER) {
         cli_complain("%s: library version %lx, this program has %lx: results may differ", l->path,

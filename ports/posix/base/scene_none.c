@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "base/scene_more.h"
+#include "base/scenes.h"
 
 #include <stddef.h>
 

@@ -1,30 +1,24 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/until.h"
 
-#include <signal.h>
-#include <string.h>
-#include <time.h>
+#include "posix.h"
 
-static volatile sig_atomic_t stopped;
+#include <signal.h>
+#include <stddef.h>
+#include <time.h>
 
 static void stop(int sig)
 {
     (void)sig;
-    stopped = 1;
+    posix_interrupt();
 }
 
-void until_catch(void)
+void until_catch(enum until_wait wait)
 {
-    struct sigaction on;
-    memset(&on, 0, sizeof on);
-    on.sa_handler = stop; /* without SA_RESTART: poll() comes back */
+    struct sigaction on = {.sa_handler = stop};
+    on.sa_flags = wait == UNTIL_RESTARTS ? SA_RESTART : 0;
     (void)sigaction(SIGINT, &on, NULL);
     (void)sigaction(SIGTERM, &on, NULL);
-}
-
-int until_stopped(void)
-{
-    return stopped;
 }
 
 double until_now_s(void)

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* Until somebody stops it: Ctrl-C and the time, for commands that wait for what others send. */
+/* Until somebody stops it: Ctrl-C and the time. */
 #ifndef CLI_UNTIL_H
 #define CLI_UNTIL_H
 
-/* From now on SIGINT and SIGTERM set until_stopped(), and poll() comes back. */
-void until_catch(void);
-int until_stopped(void);
+/* From now on SIGINT and SIGTERM set posix_interrupted(). A call that waits then comes back, or
+ * waits on. */
+enum until_wait { UNTIL_COMES_BACK, UNTIL_RESTARTS };
+void until_catch(enum until_wait wait);
 
 /* Of the clock that never jumps, s. */
 double until_now_s(void);

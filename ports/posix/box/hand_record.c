@@ -2,7 +2,7 @@
 #include "box/hand_record.h"
 
 #include "base/option.h"
-#include "base/recording.h"
+#include "box/recording.h"
 
 #include <errno.h>
 #include <stdio.h>

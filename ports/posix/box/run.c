@@ -7,7 +7,7 @@
 #include "base/option.h"
 #include "base/param.h"
 #include "base/params_file.h"
-#include "base/scene_more.h"
+#include "base/scenes.h"
 
 #include "drop/drop.h"
 #include "exhand/run/log.h"

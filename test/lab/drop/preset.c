@@ -93,9 +93,8 @@ struct picture {
 static void write_gp(FILE *f, const void *ctx)
 {
     const struct picture *p = ctx;
-    fprintf(f,
-            "# Made by exhand. Inside this directory, PLOTS the way to ports/posix/plot:\n"
-            "#   gnuplot -c original.gp PLOTS\nplots=ARG1\nfiles='");
+    fprintf(f, "# Made by exhand. Inside this directory, PLOTS the way to ports/posix/plot:\n"
+               "#   gnuplot -c original.gp PLOTS\nplots=ARG1\nfiles='");
     for (int k = 0; k < p->n; k++) { fprintf(f, " original_%d.csv", k); }
     fprintf(f, "'\narray names[%d]\n", p->n);
     for (int k = 0; k < p->n; k++) { fprintf(f, "names[%d]='%s'\n", k + 1, p->trace[k]); }

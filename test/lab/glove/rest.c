@@ -3,6 +3,8 @@
 #include "lab/glove/glove.h"
 
 #include "base/logfile.h"
+
+#include "base/until.h"
 #include "base/option.h"
 #include "base/param.h"
 
@@ -86,7 +88,7 @@ int glove_rest_board(struct glove_rest *r, const struct glove_options *o)
     c.max_ticks = r->cap > 1 ? (uint32_t)r->cap - 1 : 1; /* 0 were no end */
     posix_configure(&c);
     taking = r;
-    glove_catch();
+    until_catch(UNTIL_RESTARTS);
     err = exh_loop(&exh_scene_glove, 0, &hooks);
     if (err < 0) {
         cli_setup_complain(exh_scene_glove.params, rate_Hz, err);

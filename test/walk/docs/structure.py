@@ -24,12 +24,12 @@ INCLUDES = ("lib/include", "lib/src", "examples", "ports/posix/exhand", "ports/p
             "test", "")
 SCOPES = ("lib", "ports/pc104", "ports/cards", "ports/posix")
 PROGRAM = "ports/posix/exhand"
-# What every room of the program may include: base, the analysis of falls, a box on the simulated
-# device, that device, and the world's core. What several rooms run or judge by is in these.
-COMMON = (PROGRAM, PROGRAM + "/base", PROGRAM + "/falls", PROGRAM + "/box", "ports/posix", "ports/posix/sim", "ports/posix/emu",
-          "ports/posix/world", "ports/cards")
+# What every room of the program may include: the rooms below it, which other programs share, too.
+COMMON = (PROGRAM, "ports/posix", "ports/cards",
+          *("ports/posix/" + r for r in ("base", "box", "falls", "slave", "sim", "emu", "world")))
 # Folders between which no circle may be.
-FOLDERS = (r"lib/src/[a-z]+", r"ports/posix/exhand/[a-z]+", r"ports/posix/(?:sim|emu|world)")
+FOLDERS = (r"lib/src/[a-z]+", r"ports/posix/exhand/[a-z]+",
+           r"ports/posix/(?:base|box|falls|slave|sim|emu|world)")
 
 # Circles that may be: (a source, another one): the reason.
 CIRCLES = {}
@@ -38,10 +38,18 @@ CIRCLES = {}
 CONTRACT = re.compile(r"exh_board_\w+|exh_assert_failed")
 # What the processor enters at reset and at an interrupt: no need of the source, so no arrow of it.
 ENTRIES = ("ports/pc104/crt0.S", "ports/pc104/vectors.S")
-# Headers of examples that ports may include: (who, which). The programs that run a scene with its
-# own parameters and results include it. All others know its descriptor, exhand/run/scene.h.
+# Headers of examples that ports may include: (who, which). These files set a scene's own parameters
+# or read its signals. All others know its descriptor, exhand/run/scene.h.
 ALLOWED = (
-    (r"ports/(posix/(exhand|world|cli)|fmi)/.*", r"examples/\w+/\w+\.h"),
+    (r"ports/fmi/controller\.c", r"examples/drop/drop\.h"),
+    (r"ports/posix/base/scene_custom\.c", r"examples/custom/custom\.h"),
+    (r"ports/posix/box/(idle\.h|run\.c)", r"examples/drop/drop\.h"),
+    (r"ports/posix/box/guard\.h", r"examples/guarded/guarded\.h"),
+    (r"ports/posix/box/(hand\.h|glove_line\.c)", r"examples/bilateral/bilateral\.h"),
+    (r"ports/posix/box/glove_line\.c", r"examples/glove/glove\.h"),
+    (r"ports/posix/world/live\.c", r"examples/bilateral/bilateral\.h"),
+    (r"ports/posix/exhand/glove/.*", r"examples/glove/glove\.h"),
+    (r"ports/posix/exhand/bench/.*", r"examples/(bringup|calibrate)/\w+\.h"),
 )
 
 

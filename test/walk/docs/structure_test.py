@@ -22,9 +22,10 @@ FINE = {
     "lib/include/exhand/run/scene.h": "struct exh_scene;\n",
     "examples/drop/drop.h": "struct drop;\n",
     "ports/posix/board.h": "int board(void);\n",
-    "ports/posix/exhand/base/option.h": "int option(void);\n",
+    "ports/posix/base/option.h": "int option(void);\n",
     "ports/posix/exhand/live/live.h":
-        '#include "base/option.h"\n#include "board.h"\n#include "drop/drop.h"\n',
+        '#include "base/option.h"\n#include "board.h"\n',
+    "ports/posix/box/idle.h": "#include \"drop/drop.h\"\n",
     "ports/posix/exhand/drop/fall.h": '#include "base/option.h"\n',
     "ports/mine/board.c": '#include "exhand/run/scene.h"\n',
 }

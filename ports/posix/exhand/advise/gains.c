@@ -7,10 +7,9 @@
 #include "base/jobs.h"
 #include "base/option.h"
 #include "base/param.h"
+#include "base/scenes.h"
 
 #include "sim/linear.h"
-
-#include "drop/drop.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -5,6 +5,7 @@
 #include "base/assign.h"
 #include "bench/calibrate.h"
 #include "base/option.h"
+#include "base/until.h"
 #include "base/outfile.h"
 #include "base/param.h"
 
@@ -13,7 +14,6 @@
 #include "exhand/error.h"
 
 #include <inttypes.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -199,12 +199,6 @@ static int write_files(const char *dir, const struct exh_calib *c,
 
 /* --- a calibration --- */
 
-static void interrupted(int sig)
-{
-    (void)sig;
-    posix_interrupt();
-}
-
 /* Three checks besides the steps: every mass is a point, all is a table, and its points
  * lie on a line. */
 static int judge(const struct calibrate_options *o, struct calibration *r)
@@ -256,7 +250,6 @@ static void say_failure(const struct calibrate_options *o, const struct calibrat
 static int calibrate(const struct calibrate_options *o)
 {
     static struct calibration r;
-    struct sigaction stop = {.sa_handler = interrupted, .sa_flags = SA_RESTART};
     struct calibration_cfg c;
     int err;
     memset(&c, 0, sizeof c);
@@ -274,8 +267,7 @@ static int calibrate(const struct calibrate_options *o)
     c.board.cards.how = o->cards ? POSIX_CARDS_INSTANT : POSIX_CARDS_NONE;
     c.board.wrong = o->wrong;
     if (o->out != NULL && outfile_dir(o->out, "calibration.bin") != 0) { return 2; }
-    (void)sigaction(SIGINT, &stop, NULL);
-    (void)sigaction(SIGTERM, &stop, NULL);
+    until_catch(UNTIL_RESTARTS);
     err = calibration_run(&c, &r);
     fflush(stdout); /* the steps before what is said of them */
     if (err < 0) { return err == -EXH_E_STATE ? 130 : 2; }

@@ -76,6 +76,74 @@ static void print_beside_perfect(const struct bilateral_run_cfg *given,
     bilateral_run_free(&perfect);
 }
 
+/* The files of a speed: its log, and a black box should it fault. */
+static int open_log(const struct bilateral_options *o, int i, struct bilateral_run_cfg *c,
+                    char *path, char *fault, size_t cap)
+{
+    if (o->out == NULL) { return 0; }
+    if (c->blackbox == NULL) {
+        bilateral_out_name(fault, cap, o->out, o->speed[i].name, -1, "_fault.exh");
+        (void)remove(fault); /* an earlier run's */
+        c->blackbox = fault;
+    }
+    bilateral_out_name(path, cap, o->out, o->speed[i].name, -1, ".exh");
+    c->board.log = fopen(path, "wb");
+    if (c->board.log == NULL) {
+        cli_complain("%s: %s", path, strerror(errno));
+        return 1;
+    }
+    return 0;
+}
+
+/* Each finger in use: judged, printed, its table written. */
+static int judge_fingers(const struct bilateral_options *o, int i, const struct bilateral_run *r,
+                         unsigned fingers, struct bilateral_result *result, int *n)
+{
+    char path[1024];
+    int err = 0;
+    for (unsigned f = 0; err == 0 && f < BILATERAL_FINGERS; f++) {
+        struct bilateral_result *to = &result[*n];
+        if (!(fingers >> f & 1)) { continue; }
+        bilateral_out_name(path, sizeof path, o->out, o->speed[i].name, (int)f, "");
+        to->speed = &o->speed[i];
+        to->contact = calloc(BILATERAL_CONTACTS_MAX, sizeof *to->contact);
+        if (to->contact == NULL) { return 1; }
+        judge(r, f, o->out ? path : NULL, to);
+        bilateral_print(stdout, to);
+        if (o->out) { err = bilateral_out_csv(o->out, r, f, o->speed[i].name); }
+        if (r->finger[f].unfrozen) {
+            cli_complain("%s, %s: %ld ticks of contact before its freeze", to->speed->name,
+                         bilateral_finger_name[f], r->finger[f].unfrozen);
+            err = 1;
+        }
+        ++*n;
+    }
+    return err;
+}
+
+/* What the run was like beside its contacts. */
+static void print_run(const struct bilateral_options *o, const struct bilateral_run_cfg *c,
+                      const struct bilateral_run *r)
+{
+    printf("  packets: %d came, %d missing, %d reordered, %d duplicate, %d too old, %d "
+           "refused; newest trip "
+           "%.1f ms\n",
+           r->box.accepted, r->box.missing, r->box.reordered, r->box.duplicate, r->box.old,
+           r->box.corrupt + r->box.version + r->box.unknown + r->box.stranger,
+           r->box.trip_us / 1e3);
+    if (c->trace_every) {
+        printf("  trace: %lu frames of every %d ticks, ticks %lu to %lu; %lu missed\n",
+               (unsigned long)r->trace.frames, c->trace_every, (unsigned long)r->trace.first_tick,
+               (unsigned long)r->trace.last_tick, (unsigned long)r->trace.missed);
+    }
+    if (o->scene || o->record || o->udp) {
+        bilateral_print_session(stdout, r, c->board.exo.fingers);
+    }
+    if (o->udp == NULL && (strcmp(o->link, "none") != 0 || c->from_s > 0 || c->until_s < 1e29)) {
+        print_beside_perfect(c, r);
+    }
+}
+
 /* One speed: its results of all fingers in use behind the others'. */
 static int one_speed(const struct bilateral_options *o, int i, struct bilateral_result *result,
                      int *n)
@@ -85,66 +153,20 @@ static int one_speed(const struct bilateral_options *o, int i, struct bilateral_
     char path[1024], fault[1024], what[NAMES_B];
     int err;
     c.keep = 1;
-    if (o->out && c.blackbox == NULL) {
-        bilateral_out_name(fault, sizeof fault, o->out, o->speed[i].name, -1, "_fault.exh");
-        (void)remove(fault); /* an earlier run's */
-        c.blackbox = fault;
-    }
-    if (o->out) {
-        bilateral_out_name(path, sizeof path, o->out, o->speed[i].name, -1, ".exh");
-        c.board.log = fopen(path, "wb");
-        if (c.board.log == NULL) {
-            cli_complain("%s: %s", path, strerror(errno));
-            return 1;
-        }
-    }
+    if (open_log(o, i, &c, path, fault, sizeof path) != 0) { return 1; }
     err = bilateral_run(&c, &r) < 0 ? 2 : 0;
     if (c.board.log && (fclose(c.board.log) != 0 || r.lost) && err == 0) {
         cli_complain("%s: can't be written: %lu records lost", path, (unsigned long)r.lost);
         err = 1;
     }
-    for (unsigned f = 0; err == 0 && f < BILATERAL_FINGERS; f++) {
-        struct bilateral_result *to = &result[*n];
-        if (!(c.board.exo.fingers >> f & 1)) { continue; }
-        bilateral_out_name(path, sizeof path, o->out, o->speed[i].name, (int)f, "");
-        to->speed = &o->speed[i];
-        to->contact = calloc(BILATERAL_CONTACTS_MAX, sizeof *to->contact);
-        if (to->contact == NULL) { return 1; }
-        judge(&r, f, o->out ? path : NULL, to);
-        bilateral_print(stdout, to);
-        if (o->out) { err = bilateral_out_csv(o->out, &r, f, o->speed[i].name); }
-        if (r.finger[f].unfrozen) {
-            cli_complain("%s, %s: %ld ticks of contact before its freeze", to->speed->name,
-                         bilateral_finger_name[f], r.finger[f].unfrozen);
-            err = 1;
-        }
-        ++*n;
-    }
+    if (err == 0) { err = judge_fingers(o, i, &r, c.board.exo.fingers, result, n); }
     if (err == 0 && r.faults) {
         names_faults(what, sizeof what, r.faults);
         cli_complain("%s: the box stopped with faults %#x: %s", o->speed[i].name,
                      (unsigned)r.faults, what);
         err = 1;
     }
-    if (err == 0) {
-        printf("  packets: %d came, %d missing, %d reordered, %d duplicate, %d too old, %d "
-               "refused; newest trip "
-               "%.1f ms\n",
-               r.box.accepted, r.box.missing, r.box.reordered, r.box.duplicate, r.box.old,
-               r.box.corrupt + r.box.version + r.box.unknown + r.box.stranger, r.box.trip_us / 1e3);
-    }
-    if (err == 0 && c.trace_every) {
-        printf("  trace: %lu frames of every %d ticks, ticks %lu to %lu; %lu missed\n",
-               (unsigned long)r.trace.frames, c.trace_every, (unsigned long)r.trace.first_tick,
-               (unsigned long)r.trace.last_tick, (unsigned long)r.trace.missed);
-    }
-    if (err == 0 && (o->scene || o->record || o->udp)) {
-        bilateral_print_session(stdout, &r, c.board.exo.fingers);
-    }
-    if (err == 0 && o->udp == NULL &&
-        (strcmp(o->link, "none") != 0 || c.from_s > 0 || c.until_s < 1e29)) {
-        print_beside_perfect(&c, &r);
-    }
+    if (err == 0) { print_run(o, &c, &r); }
     bilateral_run_free(&r);
     return err;
 }

@@ -7,7 +7,7 @@
 #include "base/jobs.h"
 #include "base/messages.h"
 #include "base/param.h"
-#include "base/scene_more.h"
+#include "base/scenes.h"
 #include "drop/outdir.h"
 
 #include <errno.h>

@@ -4,10 +4,7 @@
 
 #include "base/assign.h"
 #include "base/param.h"
-#include "base/scene_more.h"
-
-#include "drop/drop.h"
-#include "guarded/guarded.h"
+#include "base/scenes.h"
 
 #include <stdint.h>
 #include <stdio.h>

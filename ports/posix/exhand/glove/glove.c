@@ -7,6 +7,7 @@
 #include "glove_tty.h"
 #include "base/option.h"
 #include "base/param.h"
+#include "box/glove_image.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -124,11 +125,18 @@ static int check(const struct glove_options *o)
     return check_rest(o);
 }
 
+static int load_calibration(const char *path)
+{
+    static struct exh_glove_cal cal;
+    const int err = glove_image_read(&cal, "calibration", path);
+    return err ? err : glove_stage_cal(&cal, NULL) < 0 ? 2 : 0; /* one that was read is taken */
+}
+
 static int run(struct glove_options *o, const struct glove_study *study)
 {
     int err = study->check ? study->check(o) : 0;
     if (err == 0) { err = check(o); }
-    if (err == 0 && o->calibration && !o->serial) { err = glove_load_calibration(o->calibration); }
+    if (err == 0 && o->calibration && !o->serial) { err = load_calibration(o->calibration); }
     if (err) { return err; }
     if ((o->record || o->serial) && o->rate_Hz <= 0) { o->rate_Hz = exh_scene_glove.rate_Hz; }
     if (o->serial) {

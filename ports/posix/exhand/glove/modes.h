@@ -4,7 +4,7 @@
 #define CLI_GLOVE_H
 
 #include "base/option.h"
-#include "base/recording.h"
+#include "box/recording.h"
 
 #include "box/glove_line.h"
 #include "posix.h"
@@ -37,10 +37,6 @@ struct glove_frames {
     struct exh_period T;
 };
 
-/* catch.c: from here on Ctrl-C ends the board's run, not the program: what there is of a log gets
- * whole. */
-void glove_catch(void);
-
 /* 1 / rate as a ratio, to 1/1000 Hz. */
 struct exh_period glove_period(double rate_Hz);
 
@@ -57,10 +53,6 @@ int glove_frames_of(struct glove_frames *f, const struct glove_options *o, const
 /* Rows as --csv writes them. */
 void glove_header(const struct glove_options *o);
 void glove_line(const struct glove_options *o, double t_s, const struct glove_signals *s);
-
-/* The calibration of a file, staged. 0, or 2 after a line on stderr. */
-int glove_load_calibration(const char *path);
-
 /* Options that do not go together: 2 after a line on stderr. */
 int glove_bad(const char *what);
 

@@ -2,6 +2,8 @@
 /* exhand glove --record: the sensing scene on the simulated glove, logged. */
 #include "glove/modes.h"
 
+#include "base/until.h"
+
 #include "base/option.h"
 #include "base/param.h"
 
@@ -126,7 +128,7 @@ int glove_record(const struct glove_options *o)
         err = 2;
     }
     if (err == 0) {
-        glove_catch();
+        until_catch(UNTIL_RESTARTS);
         err = run_logged(o, &c);
         closed = fclose(c.log);
         if (err == 1 || closed != 0) {

@@ -2,6 +2,8 @@
 /* exhand glove --serial: the sensing scene on a stock glove at a serial line. */
 #include "glove/modes.h"
 
+#include "base/until.h"
+
 #include "box/glove_image.h"
 #include "glove/poses.h"
 #include "glove_tty.h"
@@ -147,7 +149,7 @@ static int go(const struct glove_options *o, FILE *log)
     c.max_ticks = o->seconds > 0 ? (uint32_t)(o->seconds * run.rate_Hz + 1) : 0;
     posix_configure(&c);
     setvbuf(stdout, NULL, _IOLBF, BUFSIZ); /* whoever reads it sees each row as it comes */
-    glove_catch();
+    until_catch(UNTIL_RESTARTS);
     err = exh_loop(&exh_scene_glove, 0, &hooks);
     if (err < 0) {
         cli_complain("%.6g Hz, the glove at %.6g Hz: %s: see --rate, --glove-rate and --set",

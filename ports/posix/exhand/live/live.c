@@ -10,33 +10,16 @@
 #include "base/option.h"
 #include "base/outfile.h"
 #include "base/param.h"
-#include "base/scene_more.h"
+#include "base/scenes.h"
+#include "base/until.h"
 #include "base/messages.h"
-
-#include "guarded/guarded.h"
 
 #include "exhand/error.h"
 
-#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 
 #define IMAGE_B 65536
-
-static void interrupted(int sig)
-{
-    (void)sig;
-    posix_interrupt();
-}
-
-static void catch_signals(void)
-{
-    struct sigaction on;
-    memset(&on, 0, sizeof on);
-    on.sa_handler = interrupted;
-    (void)sigaction(SIGINT, &on, NULL);
-    (void)sigaction(SIGTERM, &on, NULL);
-}
 
 /* --- options --- */
 
@@ -172,7 +155,7 @@ static int go(struct live_options *o)
     const struct exh_scene *sc = scene_of(o);
     int err = sc ? prepare(o, sc) : 2;
     if (err == 0) {
-        catch_signals();
+        until_catch(UNTIL_COMES_BACK);
         words_begin(o->pace);
         err = live_box(o, sc);
         err = err == -EXH_E_IO ? 1 : err < 0 ? 2 : 0; /* the board failed; it could not be set up */

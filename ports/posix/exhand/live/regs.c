@@ -4,13 +4,7 @@
 #include "base/names.h"
 #include "base/option.h"
 #include "base/param.h"
-
-#include "bilateral/bilateral.h"
-#include "bringup/bringup.h"
-#include "calibrate/calibrate.h"
-#include "drop/drop.h"
-#include "glove/glove.h"
-#include "guarded/guarded.h"
+#include "base/scenes.h"
 
 #include "exhand/regs.h"
 
@@ -20,10 +14,6 @@
 #define LEN(a)  (sizeof(a) / sizeof((a)[0]))
 #define CELL_B  32
 #define COLUMNS 12
-
-static const struct exh_scene *const scenes[] = {&exh_scene_drop,      &exh_scene_guarded,
-                                                 &exh_scene_bilateral, &exh_scene_glove,
-                                                 &exh_scene_calibrate, &exh_scene_bringup};
 
 enum style { TEXT, MARKDOWN, CSV };
 
@@ -301,11 +291,10 @@ static void put_csv(const struct exh_scene *sc)
 
 static const struct exh_scene *scene_named(const char *name)
 {
-    for (size_t i = 0; i < LEN(scenes); i++) {
-        if (strcmp(scenes[i]->name, name) == 0) { return scenes[i]; }
-    }
+    const struct exh_scene *sc = cli_scene_find(name);
+    if (sc != NULL) { return sc; }
     fprintf(stderr, "exhand regs: --scene %s: no such scene: one of", name);
-    for (size_t i = 0; i < LEN(scenes); i++) { fprintf(stderr, " %s", scenes[i]->name); }
+    for (size_t i = 0; i < CLI_SCENES; i++) { fprintf(stderr, " %s", cli_scenes[i]->name); }
     fputc('\n', stderr);
     return NULL;
 }

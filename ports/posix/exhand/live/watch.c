@@ -7,13 +7,7 @@
 #include "base/option.h"
 #include "base/param.h"
 #include "base/until.h"
-
-#include "bilateral/bilateral.h"
-#include "bringup/bringup.h"
-#include "calibrate/calibrate.h"
-#include "drop/drop.h"
-#include "glove/glove.h"
-#include "guarded/guarded.h"
+#include "posix.h"
 
 #include <errno.h>
 #include <signal.h>
@@ -152,7 +146,7 @@ static int go(void)
     double next_s = until_now_s();
     int err = 0;
     w.box.since_s = w.shown_s = next_s;
-    while (err == 0 && !until_stopped() && !w.box.ended && until_now_s() < end_s) {
+    while (err == 0 && !posix_interrupted() && !w.box.ended && until_now_s() < end_s) {
         const double now_s = until_now_s();
         const double wake_s = next_s < now_s + LATE_S ? next_s : now_s + LATE_S;
         if (w.listen) {
@@ -180,7 +174,7 @@ static int finish(int err)
     if (!w.taken) {
         cli_complain("%s: nothing was heard%s%s", w.modbus ? w.modbus : w.listen,
                      w.box.trouble ? ": " : "", w.box.trouble ? w.box.trouble : "");
-        return until_stopped() ? 130 : 1;
+        return posix_interrupted() ? 130 : 1;
     }
     if (w.box.breaks) {
         cli_complain("the link was lost %lu times: nothing is known of what was between",
@@ -195,11 +189,11 @@ static int finish(int err)
         cli_complain("%llu %s were lost on the way", (unsigned long long)w.box.lost,
                      w.trace ? "frames" : "ticks");
     }
-    if (!w.box.ended && !until_stopped() && watch_age_s(&w.box) > 1) {
+    if (!w.box.ended && !posix_interrupted() && watch_age_s(&w.box) > 1) {
         cli_complain("silent for %.1f s at the end", watch_age_s(&w.box));
         return 1;
     }
-    return until_stopped() ? 130 : 0;
+    return posix_interrupted() ? 130 : 0;
 }
 
 /* --- command --- */
@@ -269,7 +263,7 @@ int cli_watch(int argc, char **argv)
     if (w.hz == 0) { w.hz = 10; }
     err = prepare();
     if (err) { return err; }
-    until_catch();
+    until_catch(UNTIL_COMES_BACK);
     (void)signal(SIGPIPE, SIG_IGN);
     err = finish(go());
     if (w.modbus) {

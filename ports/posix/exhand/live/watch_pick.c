@@ -5,21 +5,11 @@
 #include "base/names.h"
 #include "base/option.h"
 #include "base/param.h"
+#include "base/scenes.h"
 #include "base/until.h"
-
-#include "bilateral/bilateral.h"
-#include "bringup/bringup.h"
-#include "calibrate/calibrate.h"
-#include "drop/drop.h"
-#include "glove/glove.h"
-#include "guarded/guarded.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-static const struct exh_scene *const scenes[] = {&exh_scene_drop,      &exh_scene_guarded,
-                                                 &exh_scene_bilateral, &exh_scene_glove,
-                                                 &exh_scene_calibrate, &exh_scene_bringup};
 
 double watch_age_s(const struct watch_box *b)
 {
@@ -28,10 +18,7 @@ double watch_age_s(const struct watch_box *b)
 
 int watch_scene(struct watch_box *b, const char *name, uint32_t crc, uint32_t count)
 {
-    const struct exh_scene *sc = NULL;
-    for (size_t i = 0; i < sizeof scenes / sizeof scenes[0]; i++) {
-        if (strcmp(scenes[i]->name, name) == 0) { sc = scenes[i]; }
-    }
+    const struct exh_scene *sc = cli_scene_find(name);
     if (sc == NULL) {
         cli_complain("the box runs the scene %s, which this program does not have", name);
         return 1;

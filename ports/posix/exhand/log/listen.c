@@ -5,6 +5,7 @@
 #include "base/option.h"
 #include "udp.h"
 #include "base/until.h"
+#include "posix.h"
 
 #include "exhand/run/stream.h"
 
@@ -102,7 +103,7 @@ static int go(struct listen *l, struct udp *u)
     uint8_t datagram[STREAM_PIECE_B];
     struct pollfd f = {u->fd, POLLIN, 0};
     int err = 0;
-    while (err == 0 && !until_stopped() && !(l->ended && l->missing == 0)) {
+    while (err == 0 && !posix_interrupted() && !(l->ended && l->missing == 0)) {
         const int ms = wait_ms(l);
         int n;
         if (ms == 0) { break; }
@@ -119,7 +120,7 @@ static int report(const struct listen *l)
     if (!l->begun) {
         cli_complain("--at: %s: nothing of a log came%s: is it the box's log_port=, and this "
                      "machine its peer=?",
-                     l->at, until_stopped() ? "" : " in time");
+                     l->at, posix_interrupted() ? "" : " in time");
         return 1;
     }
     printf("%s: %" PRIu64 " bytes in %" PRIu64 " pieces; missing %" PRIu64 ", late %" PRIu64
@@ -163,7 +164,7 @@ int cli_listen(int argc, char **argv)
     if (l.file == NULL) {
         err = complain(&l);
     } else {
-        until_catch();
+        until_catch(UNTIL_COMES_BACK);
         cli_complain("waits at %s for a log to begin (the box: log=udp or dump=udp)%s", l.at,
                      l.wait_s > 0 ? "" : "; Ctrl-C or --wait ends it");
         l.heard_s = until_now_s();
@@ -173,5 +174,5 @@ int cli_listen(int argc, char **argv)
     udp_close(&u);
     if (err) { return err; }
     err = report(&l);
-    return until_stopped() ? 130 : err;
+    return posix_interrupted() ? 130 : err;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "base/recording.h"
+#include "box/recording.h"
 
 #include "base/option.h"
 
