@@ -3,7 +3,7 @@
 # What a scene costs on a port: size.sh [--update] [SCENE...]
 # Refutes "a scene links only what it calls": prints bytes, worst-case stack, instructions per
 # tick and the library symbols of each scene x port, and compares the symbols with the committed
-# symbols-SCENE-PORT.txt. --update rewrites these.
+# symbols.tsv (symbols.py). --update writes the columns of these scenes anew.
 #
 #   posix  library and scene as this machine's compiler makes them, in an image linked against
 #          ports/template: the simulator around them would drown them. Instructions by callgrind,
@@ -85,19 +85,13 @@ library_symbols()
     "$3" -P "$b/$1/$2.elf" | awk '{ print $1 }' | sort -u | comm -12 - "$b/library.txt"
 }
 
-# compare_symbols PORT-as-named SCENE: $b/symbols.txt with the committed list
+# compare_symbols PORT-as-named SCENE: $b/symbols.txt with its column of the committed table
 compare_symbols()
 {
-    committed=$here/symbols-$2-$1.txt
-    if [ "$update" = yes ]; then
-        cp "$b/symbols.txt" "$committed"
-    elif [ ! -r "$committed" ]; then
-        note "$committed: missing: run $0 --update"
-        failed=yes
-    elif ! diff -u "$committed" "$b/symbols.txt" >&2; then
-        note "$2 on $1: other library symbols than committed: if intended, run $0 --update"
-        failed=yes
-    fi
+    [ "$update" = yes ] && { "$here/symbols.py" --update "$2-$1" "$b/symbols.txt"; return; }
+    "$here/symbols.py" "$2-$1" "$b/symbols.txt" && return
+    note "$2 on $1: other library symbols than committed: if intended, run $0 --update"
+    failed=yes
 }
 
 # stack PORT SCENE OBJDUMP: bytes, and the path to stderr
