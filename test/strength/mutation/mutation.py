@@ -6,7 +6,7 @@
 
 A mutant (mutate.py) is compiled, -O2, and left out when it does not compile, when its object is the original's bit for bit, or
 another mutant's. What is left is preloaded into the tests of its source (tests.txt), which stop at the first that fails: killed.
-What survives runs once more with undefined behaviour trapped, as `make test` has sanitizers. A survivor stands in survivors.txt
+What survives runs once more with undefined behaviour trapped, as `make test` has sanitizers. A survivor stands in survivors.tsv
 with its reason; one that does not stand there, one that stands there and is killed, or whose lines are no more: exit 1,
 and so does a source of which less than 95 of 100 are killed, those with a reason aside.
 
@@ -58,22 +58,13 @@ def read_tests():
 
 def read_survivors():
     """{source: {(function, now, new): reason}}"""
-    of, waiting, now = collections.defaultdict(dict), [], None
-    with open(os.path.join(HERE, "survivors.txt"), encoding="utf-8") as f:
-        for line in f.read().split("\n"):
-            if line.startswith("lib/"):
-                source, function = line.split()
-            elif line.startswith("- "):
-                now = line[2:]
-            elif line.startswith("+"):
-                waiting.append((source, (function, now, line[2:])))
-            elif line.startswith("  "):
-                for s, w in waiting:
-                    of[s][w] = "?"
-                last = waiting or last
-                waiting = []
-                for s, w in last:
-                    of[s][w] = (of[s][w] + " " + line.strip()).lstrip("? ")
+    of, reason = collections.defaultdict(dict), None
+    with open(os.path.join(HERE, "survivors.tsv"), encoding="utf-8") as f:
+        for line in f:
+            if not line.startswith("#"):
+                source, function, now, new, said = line.rstrip("\n").split("\t")
+                reason = reason if said == '"' else said
+                of[source][function, now, new] = reason
     return of
 
 
@@ -245,7 +236,8 @@ class Account:
 
 
 def show(source, item, reason=""):
-    return f"{source} {item[0]}\n- {item[1]}\n+ {item[2]}\n{reason}"
+    """As its row in survivors.tsv."""
+    return "\t".join((source, *item[:3], reason))
 
 
 def report(accounts):
@@ -299,7 +291,7 @@ def main():
         for item in account.open:
             print(show(s, item))
         for why, item in account.stale:
-            print("survivors.txt, %s: %s" % (why, show(s, item)))
+            print("survivors.tsv, %s: %s" % (why, show(s, item)))
     if a.report:
         report(accounts)
         return 0
