@@ -23,10 +23,16 @@ fmt-check:
 	@clang-format --version | grep -q 'version 14' || { echo "$@: left out: this clang-format is not 14"; exit 0; }; \
 	    clang-format --dry-run -Werror $(fmt_src)
 
-## Draw the block diagrams in docs/ from the signal and device tables.
+## Draw the block diagrams in docs/ by Graphviz from the signal and device tables.
 .PHONY: diagrams
+dot_look := -Nshape=box -Nstyle=rounded,filled -Nfillcolor=\#f4f7fb -Ncolor=\#1f5fbf -Nfontname="DejaVu Sans" \
+            -Ecolor=\#555555 -Efontcolor=\#b03020 -Efontname="DejaVu Sans" -Gfontname="DejaVu Sans" -Gbgcolor=white
 diagrams: $(lab)
-	$(Q)for d in overview setup identification principle geometry bilateral; do $(lab) diagram $$d > docs/$$d.svg || exit 1; done
+	@.ci/deps "the block diagrams" dot graphviz fonts-dejavu-core || exit 3
+	$(Q)for d in $(basename $(notdir $(wildcard test/lab/diagram/*.dot))); do \
+	    $(lab) diagram test/lab/diagram/$$d.dot > $(B)/$$d.dot && dot $(dot_look) -Tsvg -o $(B)/$$d.svg $(B)/$$d.dot || exit 1; \
+	    awk '/^<svg/ { on = 1 } !on || /^<!--/ { next } { printf "%s%s", $$0, /^<\/(g|svg)>$$/ ? "\n" : " " }' $(B)/$$d.svg > docs/$$d.svg; done
+	$(Q)$(lab) diagram test/lab/diagram/geometry.svg > docs/geometry.svg
 
 ## Write the table of docs/CARDS.md: every misbehaviour of a card in every phase of its driver.
 .PHONY: cards
