@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Compares the library functions of an image with symbols.tsv: symbols.py [--update] SCENE-PORT FILE
+"""Compares the library functions of an image with symbols.tsv: symbols.py [--update] SCENE-PORT
+FILE
 
 symbols.tsv has a row a function and a column a scene and port, x where that image has the function.
 FILE has the functions of one image, a line each. Each that differs is told by name.
