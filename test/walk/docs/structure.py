@@ -26,8 +26,8 @@ SCOPES = ("lib", "ports/pc104", "ports/cards", "ports/posix")
 PROGRAM = "ports/posix/exhand"
 # What every room of the program may include: base, the analysis of falls, a box on the simulated
 # device, that device, and the world's core. What several rooms run or judge by is in these.
-COMMON = (PROGRAM, PROGRAM + "/base", PROGRAM + "/falls", PROGRAM + "/box", "ports/posix", "ports/posix/sim", "ports/posix/emu",
-          "ports/posix/world", "ports/cards")
+COMMON = (PROGRAM, PROGRAM + "/base", PROGRAM + "/falls", PROGRAM + "/box", "ports/posix",
+          "ports/posix/sim", "ports/posix/emu", "ports/posix/world", "ports/cards")
 # Folders between which no circle may be.
 FOLDERS = (r"lib/src/[a-z]+", r"ports/posix/exhand/[a-z]+", r"ports/posix/(?:sim|emu|world)")
 
