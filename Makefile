@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-# exhand: haptic-glove controller library, its ports, its experiments. Each folder brings its own part, NAME.mk.
-# Variables for you: PORT SCENE FROZEN B O V CC CROSS CFLAGS LDFLAGS DEPS ARGS. `make help` lists the first targets.
+# exhand: haptic-glove controller library, its ports, its experiments. Each folder brings its own
+# part, NAME.mk. Variables for you: PORT SCENE FROZEN B O V CC CROSS CFLAGS LDFLAGS DEPS ARGS. `make
+# help` lists the first targets.
 
 PORT   ?= posix
 SCENE  ?= drop
@@ -23,7 +24,8 @@ ifeq ($(origin CC),default)
 CC := $(CROSS)$(if $(shell command -v $(CROSS)gcc),gcc,cc)
 endif
 OBJCOPY ?= $(CROSS)objcopy
-version := $(shell awk '/define EXH_VERSION_(MAJOR|MINOR|PATCH)/{v=v s $$3; s="."} END{print v}' lib/include/exhand/exhand.h)
+version := $(shell awk '/define EXH_VERSION_(MAJOR|MINOR|PATCH)/{v=v s $$3; s="."} END{print v}' \
+           lib/include/exhand/exhand.h)
 Q       := $(if $(V),,@)
 out     := $(B)/$(PORT)
 
@@ -32,7 +34,8 @@ cores     := $(or $(shell nproc 2>/dev/null),1)
 MAKEFLAGS += $(if $(filter 0,$(MAKELEVEL)),-j$(cores),$(if $(filter output-sync,$(.FEATURES)),-O))
 jobs       = $(or $(patsubst -j%,%,$(filter -j%,$(MAKEFLAGS))),1)
 
-# Of several goals one runs at a time, because two sub-makes would write the same files. Files and these may run together.
+# Of several goals one runs at a time, because two sub-makes would write the same files. Files and
+# these may run together.
 together := $(B)/% variant-% golden-% undef% %-run hil-short picture
 ifneq ($(and $(filter-out $(together),$(MAKECMDGOALS)),$(word 2,$(MAKECMDGOALS))),)
 .NOTPARALLEL:
@@ -42,16 +45,19 @@ endif
 warn := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wcast-align -Wcast-qual \
         -Wstrict-prototypes -Wmissing-prototypes -Wundef -Wwrite-strings -Wpointer-arith \
         -Wdouble-promotion -Wformat=2 -Wvla -Wswitch-enum $(if $(WERROR),-Werror)
-base := -std=c99 -O$(O) -g $(warn) -ffunction-sections -fdata-sections -Ilib/include -Iexamples -MMD -MP \
+base := -std=c99 -O$(O) -g $(warn) -ffunction-sections -fdata-sections -Ilib/include -Iexamples \
+        -MMD -MP \
         $(if $(UNCALIBRATED),-DUNCALIBRATED)
 
 # An assertion names its source without lib/src/: a layer's folder costs an image no bytes.
 # A compiler that is too old for it goes without.
-base += $(shell $(CC) -fmacro-prefix-map=a=b -E -xc /dev/null >/dev/null 2>&1 && echo -fmacro-prefix-map=lib/src/=)
+base += $(shell $(CC) -fmacro-prefix-map=a=b -E -xc /dev/null >/dev/null 2>&1 && echo \
+        -fmacro-prefix-map=lib/src/=)
 
 # What all objects are compiled with. Another text here compiles all anew.
 stamp      := $(out)/flags
-flags_text := $(CC) | $(base) | $(PORT_CFLAGS) | $(PORT_FLOAT) | $(PORT_HOSTFLAGS) | $(CFLAGS) | $(LDFLAGS)
+flags_text := $(CC) | $(base) | $(PORT_CFLAGS) | $(PORT_FLOAT) | $(PORT_HOSTFLAGS) | $(CFLAGS) | \
+              $(LDFLAGS)
 
 # lib/src/run needs a board and a scene: it is of images, not of the library.
 lib_src := $(sort $(filter-out lib/src/run/%,$(wildcard lib/src/*/*.c)))
@@ -66,18 +72,22 @@ parts = $(filter Makefile %.mk,$(MAKEFILE_LIST))
 help:
 	@awk -v few=1 -f .ci/help.awk $(parts) | sort | cut -c 2-
 	@echo "  PORT=$(PORT)   one of: $(notdir $(patsubst %/port.mk,%,$(wildcard ports/*/port.mk)))"
-	@echo "  SCENE=$(SCENE)   one of: $(notdir $(patsubst %/scene.mk,%,$(wildcard examples/*/scene.mk)))"
+	@echo "  SCENE=$(SCENE)   one of:" \
+	    "$(notdir $(patsubst %/scene.mk,%,$(wildcard examples/*/scene.mk)))"
 ##8 List all targets by subject.
 help-all:
 	@awk -f .ci/help.awk $(parts)
 
 # have: where header 1 is. sees: yes, if this compiler can include it, too.
 have  = $(firstword $(wildcard $(addsuffix /$(1),/usr/include /usr/local/include)))
-sees  = $(if $(call have,$(1)),$(shell $(CC) $(filter -m% --target%,$(CFLAGS)) -include $(1) -fsyntax-only -xc /dev/null \
+sees  = $(if $(call have,$(1)),$(shell $(CC) $(filter -m% --target%,$(CFLAGS)) -include $(1) \
+        -fsyntax-only -xc /dev/null \
           2>/dev/null && echo yes))
 # gives: yes, if this compiler and these flags link symbol 3 of library 2, which header 1 declares.
-gives = $(if $(call have,$(1)),$(shell t=$$(mktemp) && echo 'int main(void){return !$(3);}' | $(CC) \
-          $(filter -m% --target% -static,$(CFLAGS) $(LDFLAGS)) -include $(1) -xc - -o $$t -l$(2) 2>/dev/null && echo yes; rm -f $$t))
+gives = $(if $(call have,$(1)),$(shell t=$$(mktemp) && echo 'int main(void){return !$(3);}' | \
+        $(CC) \
+          $(filter -m% --target% -static,$(CFLAGS) $(LDFLAGS)) -include $(1) -xc - -o $$t -l$(2) \
+          2>/dev/null && echo yes; rm -f $$t))
 
 .PHONY: FORCE
 # 1: a file, 2: its text. The file is as old as its text.
@@ -104,38 +114,45 @@ include examples/custom/model.mk examples/frozen.mk
 
 # --- what is linked -----------------------------------------------------------
 
-image_of  := $(SCENE)$(if $(FROZEN),-frozen-$(subst /,_,$(FROZEN)))$(if $(filter custom,$(SCENE)),$(filter-out -wall,-$(MODEL_NAME)))
+image_of  := $(SCENE)$(if $(FROZEN),-frozen-$(subst /,_,$(FROZEN)))$(if $(filter \
+             custom,$(SCENE)),$(filter-out -wall,-$(MODEL_NAME)))
 image     := $(out)/$(image_of)$(PORT_SUFFIX).elf
 # The frozen scene and library come first, so that the other library gives them nothing.
 main_src  := $(or $(SCENE_MAIN),$(PORT_MAIN),lib/src/run/image.c lib/src/run/deadman.c)
-image_obj := $(if $(FROZEN),$(frozen_obj) $(frozen_lib)) $(patsubst %,$(out)/$(SCENE)/%.o,$(basename $(main_src) $(PORT_SRC))) \
-             $(if $(SCENE_MAIN),,$(out)/lib/src/run/loop.o) $(if $(FROZEN),,$(SCENE_SRC:%.c=$(out)/%.o)) \
+image_obj := $(if $(FROZEN),$(frozen_obj) $(frozen_lib)) \
+             $(patsubst %,$(out)/$(SCENE)/%.o,$(basename $(main_src) $(PORT_SRC))) \
+             $(if $(SCENE_MAIN),,$(out)/lib/src/run/loop.o) \
+             $(if $(FROZEN),,$(SCENE_SRC:%.c=$(out)/%.o)) \
              $(if $(filter custom,$(SCENE)),$(model_obj))
 
 # These are compiled for one scene: a set of objects per scene.
 $(out)/$(SCENE)/%.o: %.c $(stamp)
 	@mkdir -p $(@D)
-	$(Q)$(CC) $(base) $(PORT_CFLAGS) $(PORT_HOSTFLAGS) -DEXH_SCENE=exh_scene_$(SCENE) $(SCENE_CFLAGS) $(CFLAGS) -c $< -o $@
+	$(Q)$(CC) $(base) $(PORT_CFLAGS) $(PORT_HOSTFLAGS) -DEXH_SCENE=exh_scene_$(SCENE) $(SCENE_CFLAGS) \
+	    $(CFLAGS) -c $< -o $@
 $(out)/$(SCENE)/%.o: %.S $(stamp)
 	@mkdir -p $(@D)
 	$(Q)$(CC) -Ilib/include $(PORT_CFLAGS) -g -c $< -o $@
 
 $(image): $(image_obj) $(lib) $(PORT_LDSCRIPT) $(frozen_stamp)
-	$(Q)$(CC) $(if $(FROZEN),$(whole_flags)) $(PORT_LDFLAGS) $(LDFLAGS) -Wl,--gc-sections,-Map=$(@:.elf=.map) \
+	$(Q)$(CC) $(if $(FROZEN),$(whole_flags)) $(PORT_LDFLAGS) $(LDFLAGS) \
+	    -Wl,--gc-sections,-Map=$(@:.elf=.map) \
 	    $(PORT_LDSCRIPT:%=-T %) $(image_obj) $(lib) $(SCENE_LIBS) -o $@
 
 # What the machine boots from, if that is not the image itself.
 boot := $(if $(PORT_ISO),$(image:.elf=.iso))
 $(boot): $(image) $(PORT_ISO) FORCE
 	@.ci/deps "$@" \
-	    "command -v grub-mkrescue && command -v xorriso && command -v mformat && ls /usr/lib/grub/i386-pc/multiboot.mod" \
+	    "command -v grub-mkrescue && command -v xorriso && command -v mformat && \
+	ls /usr/lib/grub/i386-pc/multiboot.mod" \
 	    grub-pc-bin grub-common xorriso mtools || exit 3
 	$(Q)$(PORT_ISO) $(image) $@ $(ARGS)
 
 # --- the folders' own parts; a later one may use what an earlier one defines -----------------
 
 include ports/posix/world/world.mk ports/posix/posix.mk ports/fmi/fmi.mk
-include test/test.mk $(foreach d,closed golden matrix fuzz strength device image figures,test/$d/$d.mk)
+include test/test.mk $(foreach d,closed golden matrix fuzz strength device image \
+    figures,test/$d/$d.mk)
 include test/figures/bench/bench.mk test/check.mk test/walk/walk.mk
 include lib/lib.mk docs/docs.mk
 
@@ -158,13 +175,15 @@ run: all
 ifeq ($(PORT),posix)
 	$(Q)$(program) $(ARGS)
 else
-	$(Q)$(or $(PORT_RUN),$(error PORT=$(PORT) cannot run images: PORT_RUN in ports/$(PORT)/port.mk names what does)) $(image) $(ARGS)
+	$(Q)$(or $(PORT_RUN),$(error PORT=$(PORT) cannot run images: PORT_RUN in ports/$(PORT)/port.mk \
+	    names what does)) $(image) $(ARGS)
 endif
 
 ## Write compile_commands.json for editors and clang tools: library, host program, world, tests.
 .PHONY: compile_commands.json
 compile_commands.json: $(stamp)
-	@$(MAKE) --no-print-directory -nB V=1 $(lib) $(products) $(if $(filter posix,$(PORT)),$(world) $(test_bin)) | \
+	@$(MAKE) --no-print-directory \
+	    -nB V=1 $(lib) $(products) $(if $(filter posix,$(PORT)),$(world) $(test_bin)) | \
 	    awk -v dir="$(CURDIR)" -f .ci/compile_commands.awk > $@
 
 ##7 Remove everything that was built.
@@ -173,5 +192,6 @@ clean:
 	rm -rf $(B)
 
 # Headers of what was built here. Builds with a folder of their own below B read their own.
-built := $(wildcard $(sort $(out) $(B)/posix $(B)/bench $(B)/test $(B)/suite $(B)/mcdc $(B)/mutation))
+built := $(wildcard $(sort $(out) $(B)/posix $(B)/bench $(B)/test $(B)/suite $(B)/mcdc \
+         $(B)/mutation))
 -include $(if $(built),$(shell find $(built) -type f -name '*.d')) $(wildcard $(B)/gpio/*.d)

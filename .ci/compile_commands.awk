@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-# Makes compile_commands.json (dir: the tree) of what `make -n` prints: each command that compiles one source.
+# Makes compile_commands.json (dir: the tree) of what `make -n` prints: each command that compiles
+# one source.
 BEGIN { printf "[" }
 /\\$/ { sub(/\\$/, ""); sub(/^[ \t]+/, ""); line = line $0; next }
 {
@@ -12,6 +13,7 @@ match(command, / -c [^ ]+\.c /) {
     sub(/^mkdir -p [^ ]+ && /, "", command)
     gsub(/\\/, "\\\\", command)
     gsub(/"/, "\\\"", command)
-    printf "%s\n{\"directory\": \"%s\", \"file\": \"%s\", \"command\": \"%s\"}", n++ ? "," : "", dir, file, command
+    printf "%s\n{\"directory\": \"%s\", \"file\": \"%s\", \"command\": \"%s\"}", n++ ? "," : "",
+        dir, file, command
 }
 END { printf "\n]\n" }

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: MIT
-# Lists the targets of makefiles: "##@ GROUP", "## SENTENCE" or "##N SENTENCE" stands before a target.
+# Lists the targets of makefiles: "##@ GROUP", "## SENTENCE" or "##N SENTENCE" stands before
+# a target.
 # few: of those with a number alone, that number first.
 /^##@ / { group = substr($0, 5); next }
+text && /^## / { text = text substr($0, 3); next } # it goes on
 /^##[0-9]? / { number = substr($0, 3, 1); text = substr($0, 4 + (number != " ")); next }
 text && /^[a-z][^=]*:([^=]|$)/ {
     sub(/:.*/, "")

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
-# The headers' plain comments as Doxygen wants them, line for line. A comment at the margin is of all that follows it until an
-# empty line, and of nothing if that comes at once; one behind code is of that code, the first is the file's; those between
-# "---" begin a section; those in the body of a function are left alone.
+# The headers' plain comments as Doxygen wants them, line for line. A comment at the margin is of
+# all that follows it until an empty line, and of nothing if that comes at once; one behind code is
+# of that code, the first is the file's; those between "---" begin a section; those in the body of a
+# function are left alone.
 
 # The comment that begins in line i, as one line.
 function text(i,   t, s) {
@@ -14,7 +15,8 @@ function text(i,   t, s) {
 function end(i) { while (line[i] !~ /\*\//) i++; return i }
 # Doxygen takes the first sentence for the short text, and any dot before a blank for its end.
 function plain(s) { gsub(/\.\. /, "..\\&nbsp;", s); gsub(/\(eq\. /, "(equation ", s); return s }
-# Prints it, with what opens it and what stands behind it. Lines set far in are shown as they are, but for lists.
+# Prints it, with what opens it and what stands behind it. Lines set far in are shown as they are,
+# but for lists.
 function comment(open, behind,   s, last, list) {
     last = end(i); s = line[i]; sub(/\/\*/, open, s)
     while (i < last) {
@@ -29,7 +31,8 @@ function comment(open, behind,   s, last, list) {
 function apart(said,   code, type, of, n, k, stop) {
     code = line[i]; sub(/ *\/\*.*/, "", code); n = split(code, of, /, /); stop = ","
     if (n < 2 || code ~ /=/) return
-    if (sub(/;$/, "", of[n])) { stop = ";"; type = of[1]; sub(/[^ ]+$/, "", type); sub(/.* /, "", of[1]) }
+    if (sub(/;$/, "", of[n])) { stop = ";"; type = of[1]; sub(/[^ ]+$/, "", type);
+        sub(/.* /, "", of[1]) }
     for (k = 1; k < n; k++) printf "%s%s%s /**< %s */ ", type, of[k], stop, said
     line[i] = type of[n] (type ? ";" : "") " " substr(line[i], index(line[i], "/*"))
 }
@@ -42,14 +45,16 @@ END {
             if (s == "}") body = open = 0
             print s
         } else if (s == "" && !inside) {
-            print section && (line[i + 1] ~ /^\/\* ---/ || line[i + 1] ~ /^#if/ && line[i + 2] == "}") ? "/**@}*/" : ""
+            print section && (line[i + 1] ~ /^\/\* ---/ || line[i + 1] ~ /^#if/ &&
+                line[i + 2] == "}") ? "/**@}*/" : ""
             doc = ""
         } else if (i == 1) {
             if (FILENAME ~ /exhand\.h$/) printf "/** @mainpage exhand\n@copydoc exhand.h */ "
             sub(/ *\*\/$/, " @file */", line[end(1)])
             comment("/**", "")
         } else if (s ~ /^\/\* ---/) {
-            section = 1; sub(/ --- *\*\/$/, " */", line[i]); sub(/ ---$/, "", line[i]); sub(/ ---/, "", line[i])
+            section = 1; sub(/ --- *\*\/$/, " */", line[i]); sub(/ ---$/, "", line[i]);
+                sub(/ ---/, "", line[i])
             comment("/** @name", " /**@{*/")
         } else if (s ~ /^\/\*/) {
             if (line[end(i) + 1] == "") comment("/*", "")
@@ -61,7 +66,9 @@ END {
         } else if (inside) {
             if (s ~ /^\}/) inside = open = 0
             if (s !~ /\/\*/) {
-                if (s ~ /^ +EXH_[^(]*$/) print FILENAME ":" i ": warning: not documented:" s > "/dev/stderr"
+                if (s ~ /^ +EXH_[^(]*$/) {
+                    print FILENAME ":" i ": warning: not documented:" s > "/dev/stderr"
+                }
                 print s
             } else { apart(text(i)); comment("/**<", "") }
         } else {
@@ -70,7 +77,8 @@ END {
             open = code ~ /^#/ ? code ~ /\\$/ : code !~ /[;}]$/
             if (inside && s ~ /\/\*/) print "/** " text(i) " */ " code
             else if (s ~ /\/\*/) { if (s ~ /^extern/) apart(text(i)); comment("/**<", "") }
-            else if (starts && !fresh && doc != "") print code ~ /^#/ ? code " /**< " doc " */" : "/** " doc " */ " code
+            else if (starts && !fresh && doc != "")
+                print code ~ /^#/ ? code " /**< " doc " */" : "/** " doc " */ " code
             else print s
             fresh = 0
         }

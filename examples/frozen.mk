@@ -5,7 +5,8 @@
 FROZEN    ?=
 # Width of the board's counters, from its table. The image refuses any other.
 ENC_BITS  ?= $(shell sed -n 's/.*\.enc_bits = \([0-9]*\).*/\1/p' ports/$(PORT)/board.c)
-# Scene and library are one small program, so that the constants reach every branch. WHOLE= switches that off.
+# Scene and library are one small program, so that the constants reach every branch. WHOLE= switches
+# that off.
 WHOLE     ?= -Os -flto -ffat-lto-objects
 HOSTCC    ?= cc
 
@@ -19,16 +20,20 @@ $(call frozen_h,$(1)): $(B)/freeze-$(firstword $(subst :, ,$(1)))
 	$$(Q)$$< $(wordlist 2,3,$(subst :, ,$(1))) > $$@.new && mv $$@.new $$@
 endef
 $(foreach f,$(frozen_all),$(eval $(call freeze,$f)))
-freeze_deps := $(lib_src) $(wildcard lib/include/exhand/*.h lib/src/*/*.h examples/*.h examples/*/*.[ch])
+freeze_deps := $(lib_src) $(wildcard lib/include/exhand/*.h lib/src/*/*.h examples/*.h \
+               examples/*/*.[ch])
 $(B)/freeze-%: examples/freeze.c examples/%/freeze.c $(freeze_deps)
 	@mkdir -p $(@D)
-	$(Q)$(HOSTCC) -std=c99 $(warn) -Ilib/include -Iexamples -o $@ examples/freeze.c examples/$*/freeze.c $(lib_src)
+	$(Q)$(HOSTCC) -std=c99 $(warn) -Ilib/include -Iexamples \
+	    -o $@ examples/freeze.c examples/$*/freeze.c $(lib_src)
 # A frozen scene has no set-up, so constants of its set-up are unused.
 frozen_flags = -Wno-unused-const-variable -I$(B)/frozen
 
 ifneq ($(FROZEN),)
-$(if $(wildcard examples/$(SCENE)/freeze.c),,$(error FROZEN=$(FROZEN): no examples/$(SCENE)/freeze.c: examples/freeze.h says what is in it))
-$(if $(ENC_BITS),,$(error FROZEN=$(FROZEN): ports/$(PORT)/board.c has no .enc_bits: name a PORT that has, or ENC_BITS=24))
+$(if $(wildcard examples/$(SCENE)/freeze.c),,$(error FROZEN=$(FROZEN): no \
+    examples/$(SCENE)/freeze.c: examples/freeze.h says what is in it))
+$(if $(ENC_BITS),,$(error FROZEN=$(FROZEN): ports/$(PORT)/board.c has no .enc_bits: name a PORT \
+    that has, or ENC_BITS=24))
 frozen     := $(call frozen_h,$(SCENE):$(FROZEN):$(ENC_BITS))
 frozen_out := $(out)/frozen/$(if $(WHOLE),whole,parts)
 frozen_lib := $(frozen_out)/libexhand.a
@@ -49,7 +54,8 @@ $(frozen_obj): $(frozen_dir)/%.o: %.c $(frozen) $(stamp) $(frozen_stamp)
 endif
 
 ##@ Set-up at build time
-## Write the set-up of SCENE as constants to build/frozen, for FROZEN=HZ (or N/D s) and PORT's counters.
+## Write the set-up of SCENE as constants to build/frozen, for FROZEN=HZ (or N/D s) and PORT's
+## counters.
 .PHONY: frozen
 frozen: $(frozen)
 	$(if $(FROZEN),,$(error FROZEN= says no rate: FROZEN=1000, or a period N/D in seconds))

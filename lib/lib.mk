@@ -6,7 +6,8 @@ LIBDIR     ?= $(PREFIX)/lib
 INCLUDEDIR ?= $(PREFIX)/include
 DESTDIR    ?=
 
-# The shared library exports what lib/exhand.map names. Until 1.0 each minor version is an interface of its own.
+# The shared library exports what lib/exhand.map names. Until 1.0 each minor version is an interface
+# of its own.
 soname := libexhand.so.$(word 1,$(subst ., ,$(version))).$(word 2,$(subst ., ,$(version)))
 shared := $(out)/libexhand.so.$(version)
 pic    := $(lib_src:%.c=$(out)/pic/%.o)
@@ -14,24 +15,32 @@ $(out)/pic/%.o: %.c $(stamp)
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(base) $(PORT_CFLAGS) $(CFLAGS) -fPIC -c $< -o $@
 $(shared): $(pic) lib/exhand.map
-	$(Q)$(CC) $(PORT_CFLAGS) $(CFLAGS) -shared -Wl,-soname,$(soname) -Wl,--version-script=lib/exhand.map $(LDFLAGS) $(pic) -o $@
+	$(Q)$(CC) $(PORT_CFLAGS) $(CFLAGS) -shared -Wl,-soname,$(soname) \
+	    -Wl,--version-script=lib/exhand.map $(LDFLAGS) $(pic) -o $@
 
-packages := $(addprefix $(DESTDIR)$(LIBDIR)/,pkgconfig/exhand.pc $(patsubst %,cmake/exhand/exhand-%.cmake,config config-version))
+packages := $(addprefix $(DESTDIR)$(LIBDIR)/,pkgconfig/exhand.pc $(patsubst \
+            %,cmake/exhand/exhand-%.cmake,config config-version))
 fill_in  := sed 's|@prefix@|$(PREFIX)|; s|@version@|$(version)|; \
-            s|@libdir@|$(LIBDIR:$(PREFIX)/%=$${prefix}/%)|; s|@includedir@|$(INCLUDEDIR:$(PREFIX)/%=$${prefix}/%)|; \
-            s|@includedir_from_package@|'"$$(realpath -m --relative-to=$(LIBDIR)/cmake/exhand $(INCLUDEDIR))"'|'
+            s|@libdir@|$(LIBDIR:$(PREFIX)/%=$${prefix}/%)|; \
+            s|@includedir@|$(INCLUDEDIR:$(PREFIX)/%=$${prefix}/%)|; \
+            s|@includedir_from_package@|'"$$(realpath -m \
+                --relative-to=$(LIBDIR)/cmake/exhand $(INCLUDEDIR))"'|'
 
 ##@ Installation
 ##6 Install library, headers, pkg-config and CMake files, host program under DESTDIR/PREFIX.
 .PHONY: install install-lib
 install: all install-lib
-	$(if $(filter posix,$(PORT)),install -d $(DESTDIR)$(PREFIX)/bin && install -m 755 $(program) $(DESTDIR)$(PREFIX)/bin)
+	$(if $(filter posix,$(PORT)),install -d $(DESTDIR)$(PREFIX)/bin && \
+	    install -m 755 $(program) $(DESTDIR)$(PREFIX)/bin)
 
 ## Install the same without the host program.
 install-lib: $(lib) $(if $(filter posix,$(PORT)),$(shared))
-	install -d $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(LIBDIR)/cmake/exhand $(DESTDIR)$(INCLUDEDIR)/exhand
+	install -d $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(LIBDIR)/cmake/exhand \
+	    $(DESTDIR)$(INCLUDEDIR)/exhand
 	install -m 644 $(lib) $(DESTDIR)$(LIBDIR)
 	install -m 644 lib/include/exhand/*.h $(DESTDIR)$(INCLUDEDIR)/exhand
-	$(Q)for f in $(packages); do $(fill_in) lib/$$(basename $$f).in > $$f && chmod 644 $$f || exit 1; done
-	$(if $(filter posix,$(PORT)),install -m 755 $(shared) $(DESTDIR)$(LIBDIR) && cd $(DESTDIR)$(LIBDIR) && \
+	$(Q)for f in $(packages); do $(fill_in) lib/$$(basename $$f).in > $$f && chmod 644 $$f || \
+	    exit 1; done
+	$(if $(filter posix,$(PORT)),install -m 755 $(shared) $(DESTDIR)$(LIBDIR) && \
+	    cd $(DESTDIR)$(LIBDIR) && \
 	    ln -sf libexhand.so.$(version) $(soname) && ln -sf $(soname) libexhand.so)

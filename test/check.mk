@@ -2,13 +2,17 @@
 # What CI runs after `make test`.
 
 # A sub-make, and the time that it took.
-timed = +bash -c 'TIMEFORMAT="took: %0R s, %0U + %0S s of a core: $$*"; time "$$@"' make $(MAKE) --no-print-directory -s
+timed = +bash -c 'TIMEFORMAT="took: %0R s, %0U + %0S s of a core: $$*"; time "$$@"' make $(MAKE) \
+        --no-print-directory -s
 
-check_tools := clang i686-linux-gnu-gcc arm-none-eabi-gcc qemu-system-i386 qemu-system-arm valgrind python3
-check_pkgs  := clang $(pc104_pkgs) gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm valgrind python3
+check_tools := clang i686-linux-gnu-gcc arm-none-eabi-gcc qemu-system-i386 qemu-system-arm \
+               valgrind python3
+check_pkgs  := clang $(pc104_pkgs) gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm \
+               valgrind python3
 
 ##@ CI
-## Run what CI runs after `make test`: other compilers and CPUs, mutants, images, sizes, benches, documents.
+## Run what CI runs after `make test`: other compilers and CPUs, mutants, images, sizes, benches,
+## documents.
 .PHONY: check
 check: export WERROR = 1
 check:
@@ -46,10 +50,13 @@ check:
 check_runs := boot-run hil-short nic-run contract-run two-run fmi-run picture
 .PHONY: hil-short picture bits
 hil-short:
-	@$(MAKE) --no-print-directory hil-run HIL_TICKS=2000 HIL_FEW=500 HIL_QEMU=2000 > $(B)/hil.txt || { cat $(B)/hil.txt; exit 1; }
+	@$(MAKE) --no-print-directory hil-run HIL_TICKS=2000 HIL_FEW=500 HIL_QEMU=2000 > $(B)/hil.txt || \
+	    { cat $(B)/hil.txt; exit 1; }
 	@grep -cE '^  ok' $(B)/hil.txt | sed 's/^/hil, short: ok: /'
 picture:
-	@$(world) --headless --script --seconds 1 --scene ports/posix/world/scenes/collision.world --png $(B)/world.png || [ $$? = 3 ]
+	@$(world) --headless --script --seconds 1 --scene ports/posix/world/scenes/collision.world \
+	    --png $(B)/world.png || [ $$? = 3 ]
 bits:
 	@$(lab) faults --rate 100 > $(B)/faults_100Hz.txt
-	@JOBS=$(jobs) FAULTS=$(B)/faults_100Hz.txt test/closed/sim/bits.sh $(B)/bits $(B)/demo $(variants:%=$(B)/variant/%/posix/exhand-lab)
+	@JOBS=$(jobs) FAULTS=$(B)/faults_100Hz.txt test/closed/sim/bits.sh $(B)/bits $(B)/demo \
+	    $(variants:%=$(B)/variant/%/posix/exhand-lab)

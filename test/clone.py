@@ -13,6 +13,7 @@ def clone(where):
     shutil.rmtree(where, ignore_errors=True)
     to = os.path.join(where, "exhand")
     os.makedirs(to)
-    files = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, check=True, stdout=subprocess.PIPE).stdout
+    files = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, check=True,
+                           stdout=subprocess.PIPE).stdout
     subprocess.run(["xargs", "-0", "cp", "--parents", "-t", to], cwd=ROOT, input=files, check=True)
     return to

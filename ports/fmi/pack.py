@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Packs a source FMU: pack.py FMU DESCRIBE FOLDER=PREFIX... -- SOURCE... : what DESCRIBE prints, and the sources in their
-folders. Files of each FOLDER go to sources/PREFIX (headers all, of C files those named). The same bytes every time."""
+"""Packs a source FMU: pack.py FMU DESCRIBE FOLDER=PREFIX... -- SOURCE... : what DESCRIBE prints,
+and the sources in their folders. Files of each FOLDER go to sources/PREFIX (headers all, of C files
+those named). The same bytes every time."""
 import pathlib
 import subprocess
 import sys
@@ -19,7 +20,8 @@ def main(fmu, describe, *rest):
     folders = [f.split("=") for f in rest[:split]]
     sources = []
     with zipfile.ZipFile(fmu, "w") as archive:
-        add(archive, "modelDescription.xml", subprocess.run([describe], check=True, capture_output=True).stdout)
+        add(archive, "modelDescription.xml",
+            subprocess.run([describe], check=True, capture_output=True).stdout)
         for folder, prefix in folders:
             for path in sorted(pathlib.Path(folder).iterdir()):
                 name = f"{prefix}/{path.name}" if prefix else path.name

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-PORT_DESC      := bare-metal Cortex-M3 (Arm MPS2 with AN385), runs under qemu-system-arm; a loop-back for drives
+PORT_DESC      := bare-metal Cortex-M3 (Arm MPS2 with AN385), runs under qemu-system-arm; a \
+                  loop-back for drives
 CROSS          ?= arm-none-eabi-
 PORT_SRC       := $(addprefix ports/mps2/,start.c board.c box.c say.c mem.c)
 PORT_CFLAGS    := -mcpu=cortex-m3 -mthumb -ffreestanding

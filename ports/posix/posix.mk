@@ -2,23 +2,28 @@
 # The host program build/posix/exhand, and what it prints for the documents.
 
 # Every scene that has a subcommand, over the simulated device.
-cli_src := $(wildcard ports/posix/exhand/*.c ports/posix/exhand/*/*.c $(addprefix ports/posix/,base/*.c box/*.c falls/*.c slave/*.c)) \
+cli_src := $(wildcard ports/posix/exhand/*.c ports/posix/exhand/*/*.c) \
+           $(wildcard $(addprefix ports/posix/,base/*.c box/*.c falls/*.c slave/*.c)) \
            $(addprefix lib/src/run/,log.c blackbox.c deadman.c calib_set.c) \
            $(addprefix examples/,drop/drop.c guarded/guarded.c calibrate/calibrate.c glove/glove.c \
              glove/cal.c) \
            $(wildcard examples/bilateral/*.c examples/bringup/*.c) lib/src/run/stream.c
 modbus   := $(if $(call gives,modbus/modbus.h,modbus,modbus_reply),libmodbus,none)
-by_modbus := $(wildcard ports/posix/slave/libmodbus*.c ports/posix/slave/none.c ports/posix/exhand/live/watch_libmodbus.c ports/posix/exhand/live/watch_none.c)
-cli_src  := $(filter-out $(by_modbus) ports/posix/base/scene_custom.c,$(cli_src)) $(foreach f,$(by_modbus),$(if $(findstring $(modbus),$f),$f))
+by_modbus := $(wildcard ports/posix/slave/libmodbus*.c ports/posix/slave/none.c \
+             ports/posix/exhand/live/watch_libmodbus.c ports/posix/exhand/live/watch_none.c)
+cli_src  := $(filter-out $(by_modbus) ports/posix/base/scene_custom.c,$(cli_src)) \
+            $(foreach f,$(by_modbus),$(if $(findstring $(modbus),$f),$f))
 # The world's core answers in the same process, without pictures.
 exh_obj  := $(cli_src:%.c=$(B)/posix/%.o) $(world_core:%.c=$(B)/posix/%.o) $(world_mesh)
 # What proves and studies is a program of its own, which has all commands of the other, too.
 lab_obj  := $(patsubst %.c,$(B)/posix/%.o,$(wildcard test/lab/*.c test/lab/*/*.c))
 cli_obj  := $(exh_obj) $(lab_obj)
 cli_libs := $(if $(world_rays),-ldl) $(if $(filter libmodbus,$(modbus)),-lmodbus) -pthread -lm
-# Lines of a GPIO chip, by the version of libgpiod. Tests and benches link none, so that they are the same on every machine.
+# Lines of a GPIO chip, by the version of libgpiod. Tests and benches link none, so that they are
+# the same on every machine.
 gives_gpio = $(call gives,gpiod.h,gpiod,$(1))
-gpio     := $(if $(call gives_gpio,gpiod_line_request_bulk),v1,$(if $(call gives_gpio,gpiod_chip_request_lines),v2,none))
+gpio     := $(if $(call gives_gpio,gpiod_line_request_bulk),v1,$(if $(call \
+            gives_gpio,gpiod_chip_request_lines),v2,none))
 gpio_none := $(B)/posix/ports/posix/gpio_none.o
 gpio_obj := $(B)/posix/ports/posix/gpio_$(gpio).o
 gpio_libs := $(if $(filter none,$(gpio)),,-lgpiod)
@@ -38,17 +43,22 @@ $(lab): $(filter-out %/exhand/main.o,$(cli_obj)) $(dev_obj) $(gpio_obj) $(B)/pos
 
 # The host program with a model in it.
 exhand_custom := $(B)/posix/exhand-$(MODEL_NAME)
-custom_obj    := $(patsubst %.c,$(B)/posix/%.o,ports/posix/base/scene_custom.c examples/custom/custom.c examples/custom/slot_real.c)
-$(exhand_custom): $(filter-out %/scene_none.o,$(exh_obj)) $(custom_obj) $(model_obj) $(dev_obj) $(gpio_obj) $(B)/posix/libexhand.a
+custom_obj    := $(patsubst %.c,$(B)/posix/%.o,ports/posix/base/scene_custom.c \
+                 examples/custom/custom.c examples/custom/slot_real.c)
+$(exhand_custom): $(filter-out %/scene_none.o,$(exh_obj)) $(custom_obj) $(model_obj) $(dev_obj) \
+    $(gpio_obj) $(B)/posix/libexhand.a
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(cli_libs) $(gpio_libs)
 
-# Coarse where finer steps do not change the answer; `exhand-lab drop --sweep` and --friction have finer ones.
-demo_runs := calibration:"calibrate --out $(B)/demo/calibration" table2:"drop --out $(B)/demo --spread 20" \
+# Coarse where finer steps do not change the answer; `exhand-lab drop --sweep` and --friction have
+# finer ones.
+demo_runs := calibration:"calibrate --out $(B)/demo/calibration" \
+             table2:"drop --out $(B)/demo --spread 20" \
              stability:"drop --out $(B)/demo --sweep --grid 12x10 --falls 3" \
              friction:"drop --out $(B)/demo --friction 5 --falls 3" table1:"glove --selftest" \
              glove:"glove --record $(B)/demo/glove.exh --does poses --seconds 5" \
              bilateral:"bilateral --out $(B)/demo/bilateral"
-demo_pictures := force_position fall stability friction calibration/calibration bilateral/contact bilateral/force
+demo_pictures := force_position fall stability friction calibration/calibration bilateral/contact \
+                 bilateral/force
 demo_says     := bilateral calibration table1 stability friction table2
 
 ##@ The host program
@@ -59,10 +69,12 @@ demo: all $(lab)
 	@mkdir -p $(B)/demo && rm -f $(B)/demo/stability*.csv
 	@for r in $(demo_runs); do \
 	    $(if $(V),echo "$(lab) $${r#*:}";) \
-	    $(lab) $${r#*:} > $(B)/demo/$${r%%:*}.txt || { s=$$?; cat $(B)/demo/$${r%%:*}.txt; exit $$s; }; \
+	    $(lab) $${r#*:} > $(B)/demo/$${r%%:*}.txt || { s=$$?; cat $(B)/demo/$${r%%:*}.txt; exit $$s; \
+	    }; \
 	done
 	@s=0; if command -v gnuplot >/dev/null; then \
-	    for g in pictures sweep friction calibration/pictures bilateral/bilateral; do (cd $(B)/demo/$$(dirname $$g) && \
+	    for g in pictures sweep friction calibration/pictures bilateral/bilateral; \
+	    do (cd $(B)/demo/$$(dirname $$g) && \
 	        gnuplot -c $$(basename $$g).gp "$(CURDIR)/ports/posix/plot") || s=1; done; fi; \
 	for p in $(demo_pictures:%=$(B)/demo/%.png); do \
 	    if [ -s $$p ]; then echo "picture: $$p"; else echo "picture missing: $$p" >&2; fi; done; \
@@ -74,7 +86,8 @@ lab: $(lab)
 
 FIT_BUDGET ?= 6000
 
-## Search for the plant by every reading of the analysis, for hours (FIT_BUDGET=N plants); state is in build/fit.
+## Search for the plant by every reading of the analysis, for hours (FIT_BUDGET=N plants); state is
+## in build/fit.
 .PHONY: fit
 fit: $(lab)
 	$(Q)$(lab) fit --budget $(FIT_BUDGET) --out $(B)/fit $(ARGS) > $(B)/fit.txt.new

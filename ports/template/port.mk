@@ -10,7 +10,7 @@ PORT_SRC  := ports/template/board.c
 # PORT_MAIN     its main(), instead of lib/src/run/image.c lib/src/run/deadman.c
 # PORT_SAY      says a text, void f(const char *): what the contract test prints by
 # PORT_CYCLES_HZ frequency of exh_board_cycles(), where it is always the same: for the contract test
-# PORT_FLOAT    flags for a controller in floats (scene custom), where PORT_CFLAGS without -mgeneral-regs-only are not enough
-# PORT_FLOAT_LIBS  what is linked for it: -lgcc on a CPU without FPU
-# PORT_SUFFIX   in the name of the image, where one scene makes several
+# PORT_FLOAT    flags for a controller in floats (scene custom), where PORT_CFLAGS without
+# -mgeneral-regs-only are not enough PORT_FLOAT_LIBS  what is linked for it: -lgcc on a CPU without
+# FPU PORT_SUFFIX   in the name of the image, where one scene makes several
 # PORT_ISO      program that makes what the machine boots from: PORT_ISO IMAGE ISO [OPTION...]

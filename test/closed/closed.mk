@@ -10,13 +10,15 @@ coverage:
 
 # `make stress` builds these once more under sanitizers, in build/san.
 stress_obj := $(patsubst %.c,$(B)/posix/%.o,$(wildcard test/closed/stress/*.c))
-stress_model := $(call model_objects,examples/custom/wall_ert_rtw,$(call slot_built,examples/custom/wall_ert_rtw))
+stress_model := $(call model_objects,examples/custom/wall_ert_rtw,$(call \
+                slot_built,examples/custom/wall_ert_rtw))
 $(B)/test/stress: $(stress_obj) $(slot_obj) $(stress_model) $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(cli_libs)
 
 # The library's code against theory: the sampled wall, filters at rest, drift.
-stability_obj := $(patsubst %.c,$(B)/posix/%.o,$(wildcard test/figures/stability/*.c) ports/posix/sim/eigen.c ports/posix/sim/linear.c)
+stability_obj := $(patsubst %.c,$(B)/posix/%.o,$(wildcard test/figures/stability/*.c) \
+                 ports/posix/sim/eigen.c ports/posix/sim/linear.c)
 $(B)/test/stability: $(stability_obj) $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ -lm
@@ -24,7 +26,8 @@ $(B)/test/stability: $(stability_obj) $(B)/posix/libexhand.a
 .PHONY: stability-built
 stability-built: $(B)/test/stability
 
-## Compare stability with theory: maps, steps and friction, filters at rest, drift (ARGS="--full map"); CSV in build/stability.
+## Compare stability with theory: maps, steps and friction, filters at rest, drift (ARGS="--full
+## map"); CSV in build/stability.
 .PHONY: stability
 stability:
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(B)/test/stability
@@ -39,21 +42,27 @@ prop_bin     := $(filter $(B)/test/prop/%,$(test_bin))
 ## Run stiff and extreme cases under sanitizers, and each property test with 10^8 random cases.
 .PHONY: stress
 stress:
-	@$(MAKE) --no-print-directory B=$(B)/san CFLAGS="$(san)" LDFLAGS="$(san)" $(if $(V),,-s) $(B)/san/test/stress
+	@$(MAKE) --no-print-directory B=$(B)/san CFLAGS="$(san)" LDFLAGS="$(san)" $(if $(V),,-s) \
+	    $(B)/san/test/stress
 	@$(B)/san/test/stress $(STRESS_TICKS)
-	@$(MAKE) --no-print-directory B=$(B)/san CFLAGS="$(san)" LDFLAGS="$(san)" $(if $(V),,-s) $(B)/san/test/stability
+	@$(MAKE) --no-print-directory B=$(B)/san CFLAGS="$(san)" LDFLAGS="$(san)" $(if $(V),,-s) \
+	    $(B)/san/test/stability
 	@$(B)/san/test/stability --short
 	@$(MAKE) --no-print-directory stability ARGS=--full
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(prop_bin)
-	@echo "laws at $(STRESS_CASES) random cases each, under sanitizers, dealt to $(STRESS_PARTS) processes:"
+	@echo "laws at $(STRESS_CASES) random cases each, under sanitizers," \
+	    "dealt to $(STRESS_PARTS) processes:"
 	@LIMIT=86400 EXH_CASES=$(STRESS_CASES) PARTS=$(STRESS_PARTS) JOBS=$$(nproc) test/run.sh $(prop_bin)
 
-# The same cases with fewer ticks and without sanitizers, so that CI runs the judge of each case, too.
+# The same cases with fewer ticks and without sanitizers, so that CI runs the judge of each case,
+# too.
 .PHONY: stress-short
 stress-short:
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(B)/test/stress
-	@$(B)/test/stress 10000 > $(B)/stress.txt || { grep -A 1 FAIL $(B)/stress.txt; tail -n 1 $(B)/stress.txt; exit 1; }
-	@$(MAKE) --no-print-directory stability ARGS=--short >> $(B)/stress.txt || { grep FAIL $(B)/stress.txt; exit 1; }
+	@$(B)/test/stress 10000 > $(B)/stress.txt || { grep -A 1 FAIL $(B)/stress.txt; \
+	    tail -n 1 $(B)/stress.txt; exit 1; }
+	@$(MAKE) --no-print-directory stability ARGS=--short >> $(B)/stress.txt || \
+	    { grep FAIL $(B)/stress.txt; exit 1; }
 	@echo "stress, short: $$(grep -c '| ok$$' $(B)/stress.txt) cases ok"
 
 # Host programs by other compilers, optimisations and for 32 bits.
@@ -75,5 +84,6 @@ $(variants:%=variant-%): variant-%:
 # Golden vectors by the compilers that link CMocka, at a tenth of the rates.
 .PHONY: $(variants:%=golden-%)
 $(variants:%=golden-%): golden-%:
-	@$(MAKE) --no-print-directory -s B=$(B)/variant/$* $(v_$*) WERROR=1 $(B)/variant/$*/test/golden/golden_test
+	@$(MAKE) --no-print-directory -s B=$(B)/variant/$* $(v_$*) WERROR=1 \
+	    $(B)/variant/$*/test/golden/golden_test
 	@echo "$*:" && EXH_RATES=1..200 test/run.sh $(B)/variant/$*/test/golden/golden_test

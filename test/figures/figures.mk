@@ -2,7 +2,8 @@
 # Figures: bytes, symbols, instructions, costs, the report.
 
 ##@ Figures
-## Check what the library needs from outside: no float or divide instruction, no recursion, no memory of its own.
+## Check what the library needs from outside: no float or divide instruction, no recursion, no
+## memory of its own.
 .PHONY: undef
 undef: $(lib)
 	$(Q)test/figures/size/undef.sh $(lib) $(CROSS)nm $(PORT_HELPERS)
@@ -28,17 +29,20 @@ undef-emu: $(out)/libemu.a
 ## Print bytes, stack, instructions per tick and library symbols of each scene and port.
 .PHONY: size
 size:
-	@.ci/deps "sizes on a Cortex-M3" "echo '#include <string.h>' | arm-none-eabi-gcc -fsyntax-only -xc -" \
+	@.ci/deps "sizes on a Cortex-M3" \
+	    "echo '#include <string.h>' | arm-none-eabi-gcc -fsyntax-only -xc -" \
 	    gcc-arm-none-eabi libnewlib-arm-none-eabi || true
 	$(Q)MAKE="$(MAKE)" B=$(B) test/figures/size/size.sh
 
-## Show which modules a scene links and why, and what each feature adds: build/size/costs (ARGS=--update).
+## Show which modules a scene links and why, and what each feature adds: build/size/costs
+## (ARGS=--update).
 .PHONY: costs
 costs:
 	@.ci/deps "the costs" python3 python3 || exit 3
 	$(Q)B=$(B) test/figures/size/costs.py $(ARGS)
 
-## Write pictures and tables of error, run time, stability and costs to build/report (ARGS="--list", "--only NAME", "--short").
+## Write pictures and tables of error, run time, stability and costs to build/report (ARGS="--list",
+## "--only NAME", "--short").
 .PHONY: report
 report:
 	@.ci/deps "the report's pictures" gnuplot gnuplot-nox fonts-dejavu-core || true

@@ -11,7 +11,8 @@ $(B)/fuzz/plain: $(fuzz_src:%.c=$(B)/test/san/%.o) $(lib_src:%.c=$(B)/test/san/%
 	$(Q)$(CC) $(san) -o $@ $^
 $(B)/fuzz/libfuzzer: test/fuzz/wire_fuzz.c $(lib_src) $(wildcard lib/include/exhand/*.h) $(stamp)
 	@mkdir -p $(@D)
-	$(Q)clang $(filter-out -MMD -MP,$(base)) -D_POSIX_C_SOURCE=200809L $(san) -fsanitize=fuzzer -o $@ $(filter %.c,$^)
+	$(Q)clang $(filter-out -MMD -MP,$(base)) -D_POSIX_C_SOURCE=200809L $(san) -fsanitize=fuzzer \
+	    -o $@ $(filter %.c,$^)
 
 # Frames for the pc104 image's network card.
 $(B)/fuzz/net: $(B)/test/san/test/fuzz/net_fuzz.o $(pc104_net)
@@ -20,32 +21,41 @@ $(B)/fuzz/net: $(B)/test/san/test/fuzz/net_fuzz.o $(pc104_net)
 fuzz_net := test/fuzz/net_fuzz.c test/image/pc104/frames.c ports/pc104/net.c
 $(B)/fuzz/net-libfuzzer: $(fuzz_net) $(wildcard test/image/pc104/*.h ports/pc104/net.h) $(stamp)
 	@mkdir -p $(@D)
-	$(Q)clang $(filter-out -MMD -MP,$(base)) -Iports -Itest/image/pc104 -DFUZZ_NO_MAIN $(san) -fsanitize=fuzzer -o $@ $(filter %.c,$^)
+	$(Q)clang $(filter-out -MMD -MP,$(base)) -Iports -Itest/image/pc104 -DFUZZ_NO_MAIN $(san) \
+	    -fsanitize=fuzzer -o $@ $(filter %.c,$^)
 
 # Requests for the Modbus slave.
 $(B)/fuzz/modbus: $(B)/test/san/test/fuzz/modbus_fuzz.o $(lib_src:%.c=$(B)/test/san/%.o)
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(san) -o $@ $^
-$(B)/fuzz/modbus-libfuzzer: test/fuzz/modbus_fuzz.c $(lib_src) $(wildcard lib/include/exhand/*.h) $(stamp)
+$(B)/fuzz/modbus-libfuzzer: test/fuzz/modbus_fuzz.c $(lib_src) $(wildcard lib/include/exhand/*.h) \
+    $(stamp)
 	@mkdir -p $(@D)
-	$(Q)clang $(filter-out -MMD -MP,$(base)) -DFUZZ_NO_MAIN $(san) -fsanitize=fuzzer -o $@ $(filter %.c,$^)
+	$(Q)clang $(filter-out -MMD -MP,$(base)) -DFUZZ_NO_MAIN $(san) -fsanitize=fuzzer \
+	    -o $@ $(filter %.c,$^)
 
 ##@ Fuzzing
-## Feed hostile packets, frames and requests to every parser (FUZZ_SECONDS=30 FUZZ_SEED=1 FUZZER=plain or libfuzzer).
+## Feed hostile packets, frames and requests to every parser (FUZZ_SECONDS=30 FUZZ_SEED=1
+## FUZZER=plain or libfuzzer).
 .PHONY: fuzz
 fuzz:
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(B)/fuzz/plain $(B)/fuzz/$(FUZZER) \
 	    $(addsuffix $(if $(filter libfuzzer,$(FUZZER)),-libfuzzer),$(B)/fuzz/net $(B)/fuzz/modbus)
 	@$(B)/fuzz/plain --check test/fuzz/corpus
 ifeq ($(FUZZER),plain)
-	@cd $(B)/fuzz && { ./net $(FUZZ_SECONDS) $(FUZZ_SEED) & net=$$!; ./modbus $(FUZZ_SECONDS) $(FUZZ_SEED) & modbus=$$!; } && \
-	    ./plain $(FUZZ_SECONDS) $(FUZZ_SEED) $(CURDIR)/test/fuzz/corpus; packets=$$?; wait $$net && wait $$modbus && exit $$packets
+	@cd $(B)/fuzz && { ./net $(FUZZ_SECONDS) $(FUZZ_SEED) & net=$$!; \
+	    ./modbus $(FUZZ_SECONDS) $(FUZZ_SEED) & modbus=$$!; } && \
+	    ./plain $(FUZZ_SECONDS) $(FUZZ_SEED) $(CURDIR)/test/fuzz/corpus; packets=$$?; wait $$net && \
+	    wait $$modbus && exit $$packets
 else
-	@mkdir -p $(B)/fuzz/found && cd $(B)/fuzz && ./libfuzzer -max_total_time=$(FUZZ_SECONDS) -max_len=1024 \
+	@mkdir -p $(B)/fuzz/found && cd $(B)/fuzz && \
+	    ./libfuzzer -max_total_time=$(FUZZ_SECONDS) -max_len=1024 \
 	    -print_final_stats=1 found $(CURDIR)/test/fuzz/corpus
-	@mkdir -p $(B)/fuzz/net-found && cd $(B)/fuzz && ./net-libfuzzer -max_total_time=$(FUZZ_SECONDS) -max_len=6000 \
+	@mkdir -p $(B)/fuzz/net-found && cd $(B)/fuzz && \
+	    ./net-libfuzzer -max_total_time=$(FUZZ_SECONDS) -max_len=6000 \
 	    -print_final_stats=1 net-found
-	@mkdir -p $(B)/fuzz/modbus-found && cd $(B)/fuzz && ./modbus-libfuzzer -max_total_time=$(FUZZ_SECONDS) -max_len=2048 \
+	@mkdir -p $(B)/fuzz/modbus-found && cd $(B)/fuzz && \
+	    ./modbus-libfuzzer -max_total_time=$(FUZZ_SECONDS) -max_len=2048 \
 	    -print_final_stats=1 modbus-found
 endif
 

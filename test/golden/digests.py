@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Digests of the golden vectors: digests.inc, which is committed, and the table of single rates that the host makes."""
+"""Digests of the golden vectors: digests.inc, which is committed, and the table of single rates
+that the host makes."""
 
 import os
 import re
@@ -9,7 +10,8 @@ from struct import pack
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 COMMITTED = os.path.join(HERE, "digests.inc")
-TABLE = os.environ.get("EXH_DIGESTS") or os.path.join(HERE, "..", "..", "build", "golden", "rates.txt")
+TABLE = os.environ.get("EXH_DIGESTS") or os.path.join(HERE, "..", "..", "build", "golden",
+                                                      "rates.txt")
 HUNDRED = 100
 RATES = range(1, 2001)
 BEYOND = range(2001, 20001)
@@ -40,7 +42,8 @@ def committed():
 
 def commit(crcs):
     """Writes these; 1 if the file was another."""
-    text = LINES + "".join("const uint32_t digest_%s[GOLDEN_HUNDREDS] = {%s};\n" % (m, ", ".join("0x%08x" % c for c in crcs[m]))
+    text = LINES + "".join("const uint32_t digest_%s[GOLDEN_HUNDREDS] = {%s};\n" %
+                           (m, ", ".join("0x%08x" % c for c in crcs[m]))
                            for m in sorted(crcs))
     with open(COMMITTED, "a+") as f:
         f.seek(0)
@@ -53,14 +56,17 @@ def commit(crcs):
 
 
 def singles():
-    """{module: [digest of each rate]} from the host's table. A table that is not the committed hundreds' ends the program."""
+    """{module: [digest of each rate]} from the host's table. A table that is not the committed
+    hundreds' ends the program."""
     try:
         with open(TABLE) as f:
             table = {line.split()[0]: [int(w, 16) for w in line.split()[1:]] for line in f}
     except OSError as e:
         sys.exit("no digests of single rates (make golden-rates): %s" % e)
     wrong = [m for m, crcs in committed().items()
-             if len(table.get(m, [])) != len(RATES) or hundreds(table[m]) != crcs[:len(RATES) // HUNDRED]]
+             if len(table.get(m, [])) != len(RATES) or
+             hundreds(table[m]) != crcs[:len(RATES) // HUNDRED]]
     if wrong:
-        sys.exit("%s is not what digests.inc says (make golden-rates): %s" % (TABLE, " ".join(wrong)))
+        sys.exit("%s is not what digests.inc says (make golden-rates): %s" %
+                 (TABLE, " ".join(wrong)))
     return table

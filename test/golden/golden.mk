@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: MIT
 # The golden vectors: made by a model in Python, and checked against planted errors.
 
-# Digests of single rates, as the library here computes them; who reads them holds each hundred against digests.inc.
+# Digests of single rates, as the library here computes them; who reads them holds each hundred
+# against digests.inc.
 golden_rates := $(B)/golden/rates.txt
 $(golden_rates): $(B)/test/golden/golden_test
 	@mkdir -p $(@D)
-	@new=$@.$$$$ && env -u EXH_TEST -u EXH_RATES -u EXH_CELLS EXH_WRITE=$$new $< > $$new.log 2>&1 || { cat $$new.log; rm -f $$new*; exit 1; }; \
+	@new=$@.$$$$ && env -u EXH_TEST -u EXH_RATES -u EXH_CELLS EXH_WRITE=$$new $< > $$new.log 2>&1 || \
+	    { cat $$new.log; rm -f $$new*; exit 1; }; \
 	mv $$new $@ && rm $$new.log
-golden_thin := mutants golden-traces mcdc-built mutation-built matrix test-i686 $(if $(findstring --every,$(ARGS)),golden)
+golden_thin := mutants golden-traces mcdc-built mutation-built matrix test-i686 \
+               $(if $(findstring --every,$(ARGS)),golden)
 $(golden_thin): $(golden_rates)
 golden golden-traces mutants mcdc mutation matrix test-i686: export EXH_DIGESTS = $(golden_rates)
 

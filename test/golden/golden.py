@@ -5,10 +5,11 @@
     golden.py --all                      write digests.inc anew (make golden), of 1..2000 Hz
     golden.py --beyond                   the same of 2001..20000 Hz (an hour of one core)
     golden.py --check [--beyond]         compare them instead; 1 if one differs
-    golden.py --check --every N          compare every Nth rate and those that have traces, by the host's table of single rates
-    golden.py --traces DIR               the traces of every module at the paper's six rates (make golden-traces)
-    golden.py --module M --rate R        the trace of one module at one rate, with whole states
-    golden.py --module M --hundred R     the digests of one module from R Hz on
+    golden.py --check --every N          compare every Nth rate and those that have traces, by the
+    host's table of single rates golden.py --traces DIR               the traces of every module at
+    the paper's six rates (make golden-traces) golden.py --module M --rate R        the trace of one
+    module at one rate, with whole states golden.py --module M --hundred R     the digests of one
+    module from R Hz on
 
 Standard library only; README.md has the stimuli and the formats.
 """
@@ -21,7 +22,8 @@ import zlib
 from struct import pack
 
 sys.dont_write_bytecode = True
-from digests import BEYOND, HUNDRED, RATES, commit, committed, hundreds, singles, together  # noqa: E402
+# noqa: E402
+from digests import BEYOND, HUNDRED, RATES, commit, committed, hundreds, singles, together
 from model import MODULES  # noqa: E402
 
 TRACED = (90, 100, 200, 500, 1000, 2000)
@@ -37,8 +39,8 @@ def digest(ticks):
 
 
 def trace(module, rate, whole):
-    """Lines: a comment, the columns' names, then one tick each. Whole: with the inputs, and the states'
-    bytes; else a value as in the line before is a dot."""
+    """Lines: a comment, the columns' names, then one tick each. Whole: with the inputs, and the
+    states' bytes; else a value as in the line before is a dot."""
     names, run = MODULES[module]
     inputs, outputs = names.split(" | ") if " | " in names else ("", names)
     shown = inputs.split() + outputs.split() if whole else outputs.split()
@@ -47,9 +49,12 @@ def trace(module, rate, whole):
     yield " ".join(shown + ["state"])
     before = []
     for row, state in run(rate):
-        word = ["%d" % v for v in row[skip:]] + [state.hex() or "-" if whole else "%08x" % zlib.crc32(state)]
-        assert len(word) == len(shown) + 1, "%s: %d values in %d columns" % (module, len(word), len(shown) + 1)
-        yield " ".join(word if whole or not before else ["." if a == b else a for a, b in zip(word, before)])
+        word = ["%d" % v for v in row[skip:]] + [state.hex() or "-" if whole
+                                                 else "%08x" % zlib.crc32(state)]
+        assert len(word) == len(shown) + 1, (
+            "%s: %d values in %d columns" % (module, len(word), len(shown) + 1))
+        yield " ".join(word if whole or not before
+                       else ["." if a == b else a for a, b in zip(word, before)])
         before = word
 
 
@@ -107,7 +112,8 @@ def check(modules):
     differ = 0
     for m, crcs in in_parallel(modules, RATES).items():
         for i, crc in enumerate(hundreds(crcs)):
-            differ += compare("%s from %d Hz" % (m, RATES[i * HUNDRED]), kept[m][i] if m in kept else None, crc)
+            differ += compare("%s from %d Hz" % (m, RATES[i * HUNDRED]),
+                              kept[m][i] if m in kept else None, crc)
     print("%d modules, %d rates: %d hundreds differ" % (len(modules), len(RATES), differ))
     return 1 if differ else 0
 
@@ -118,13 +124,15 @@ def check_some(modules, every):
     differ = 0
     for m, crcs in in_parallel(modules, rates).items():
         for rate, crc in zip(rates, crcs):
-            differ += compare("%s at %d Hz" % (m, rate), kept[m][rate - 1] if m in kept else None, crc)
+            differ += compare("%s at %d Hz" % (m, rate), kept[m][rate - 1] if m in kept else None,
+                              crc)
     print("%d modules, %d rates: %d digests differ" % (len(modules), len(rates), differ))
     return 1 if differ else 0
 
 
 def beyond(modules, check, every):
-    """2001..20000 Hz, the work dealt to all cores; a module's digests are written when it is done."""
+    """2001..20000 Hz, the work dealt to all cores; a module's digests are written when it is
+    done."""
     firsts = BEYOND[::HUNDRED]
     differ = 0
     with multiprocessing.Pool() as pool:
@@ -135,8 +143,10 @@ def beyond(modules, check, every):
             kept = committed().get(m, [])[KEPT:]
             some = [i for i in range(len(firsts)) if i % every == every - 1]
             for i, crc in zip(some, pool.map(hundred, [(m, firsts[i]) for i in some], chunksize=1)):
-                differ += compare("%s from %d Hz" % (m, firsts[i]), kept[i] if i < len(kept) else None, crc)
-    print("%d modules, %d..%d Hz: %d %s" % (len(modules), BEYOND[0], BEYOND[-1], differ, "differ" if check else "changed"))
+                differ += compare("%s from %d Hz" % (m, firsts[i]), kept[i] if i < len(kept)
+                                  else None, crc)
+    print("%d modules, %d..%d Hz: %d %s" %
+          (len(modules), BEYOND[0], BEYOND[-1], differ, "differ" if check else "changed"))
     return 1 if check and differ else 0
 
 
@@ -155,7 +165,8 @@ def write_traces(modules, where):
 
 
 def main():
-    p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p = argparse.ArgumentParser(description=__doc__,
+                                formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("--all", action="store_true")
     p.add_argument("--check", action="store_true")
     p.add_argument("--beyond", action="store_true")
@@ -163,7 +174,8 @@ def main():
     p.add_argument("--traces", metavar="DIR")
     p.add_argument("--module", choices=sorted(MODULES))
     p.add_argument("--rate", type=int, choices=range(1, BEYOND[-1] + 1), metavar="1..20000")
-    p.add_argument("--hundred", type=int, choices=range(1, BEYOND[-1] + 1, HUNDRED), metavar="1,101..19901")
+    p.add_argument("--hundred", type=int, choices=range(1, BEYOND[-1] + 1, HUNDRED),
+                   metavar="1,101..19901")
     a = p.parse_args()
     modules = [a.module] if a.module else sorted(MODULES)
     if a.beyond:
@@ -177,7 +189,8 @@ def main():
     if a.module is None or not (a.rate or a.hundred):
         p.error("--all, --check, --traces, or --module and --rate or --hundred")
     if a.hundred:
-        print(" ".join("%08x" % crc for crc in digests_of((a.module, range(a.hundred, a.hundred + HUNDRED)))))
+        print(" ".join("%08x" % crc
+                       for crc in digests_of((a.module, range(a.hundred, a.hundred + HUNDRED)))))
         return 0
     for line in trace(a.module, a.rate, True):
         print(line)

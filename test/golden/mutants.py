@@ -4,11 +4,14 @@
 
 Each row names a module, a source and a text in it with another in its place. The changed source is
 compiled and linked with the test's objects, the module is run at every rate, and the share of rates
-whose digest differs is printed. Below 95 % (rows of THIN: what stands there), a text that is not there, or a build that fails: exit 1.
+whose digest differs is printed. Below 95 % (rows of THIN: what stands there), a text that is not
+there, or a build that fails: exit 1.
 
-    mutants.py [--some N] [--seed S] [MODULE...]     B, CC: where the test was built (build), the compiler (cc)
+    mutants.py [--some N] [--seed S] [MODULE...]
 
---some N: of each module every Nth, and one at least, as the seed deals them (that of the commits, if none is given).
+B, CC: where the test was built (build), the compiler (cc)
+--some N: of each module every Nth, and one at least, as the seed deals them (that of the commits,
+if none is given).
 """
 
 import argparse
@@ -31,12 +34,14 @@ LEAST = 0.95
 FLAGS = "-std=c99 -O1 -w -Ilib/include -Iexamples -Itest -D_POSIX_C_SOURCE=200809L".split()
 
 L, H, X, Y = "lib/src/", "lib/include/exhand/", "examples/drop/", "examples/bilateral/"
-VELOCITY, QUAD, DRIVE, SAFETY = L + "sense/velocity.c", L + "sense/quad.c", L + "act/drive.c", L + "safe/safety.c"
-TRACK, WATCH, GATE, TABLE = L + "act/tracking.c", L + "safe/motion.c", L + "act/gate.c", L + "act/table.c"
+VELOCITY, QUAD, DRIVE, SAFETY = (L + "sense/velocity.c", L + "sense/quad.c", L + "act/drive.c",
+                                 L + "safe/safety.c")
+TRACK, WATCH, GATE, TABLE = (L + "act/tracking.c", L + "safe/motion.c", L + "act/gate.c",
+                             L + "act/table.c")
 PASSIVITY, GAINS = L + "law/passivity.c", L + "law/gains.c"
 
-# module, source, text, what stands there instead. A changed header is compiled into the module's own
-# run, which is where its inline functions are.
+# module, source, text, what stands there instead. A changed header is compiled into the module's
+# own run, which is where its inline functions are.
 MUTANTS = (
     ("fix", L + "num/fix.c", "if (rem >= den - rem) { mant++; }", ""),
     ("fix", L + "num/fix.c", "if (r >= den) {\n            r", "if (r > den) {\n            r"),
@@ -45,7 +50,8 @@ MUTANTS = (
     ("fix", H + "fix.h", "return INT32_MIN;", "return -INT32_MAX;"),
     ("fix", L + "num/fix.c", "UINT64_C(1001) * T.den", "UINT64_C(1000) * T.den"),
     ("bytes", L + "num/bytes.c", "n <= c->cap - at", "n < c->cap - at"),
-    ("bytes", L + "num/bytes.c", "crc ^= *p;\n        crc = crc >> 4 ^ nibble[crc & 15];", "crc ^= *p;\n        crc = crc >> 4 ^ nibble[crc & 7];"),
+    ("bytes", L + "num/bytes.c", "crc ^= *p;\n        crc = crc >> 4 ^ nibble[crc & 15];",
+     "crc ^= *p;\n        crc = crc >> 4 ^ nibble[crc & 7];"),
     ("bytes", L + "num/bytes.c", "(int32_t)u - 0x10000", "(int32_t)u - 0xFFFF"),
     ("record", L + "talk/record.c", "len_B < end + 4", "len_B < end"),
     ("record", L + "talk/record.c", "if (crc != exh_crc32(0, p, end))", "if (0)"),
@@ -57,16 +63,20 @@ MUTANTS = (
     ("ring", L + "talk/ring.c", ">= r->cap_B / EXH_RING_PARTS;", "> r->cap_B / EXH_RING_PARTS;"),
     ("ring", L + "talk/ring.c", "    if (parts(r) == 0 && !begins) { return lose(r); } /*", "/*"),
     ("ring", L + "talk/ring.c", "r->lost += r->lost < UINT32_MAX;", ""),
-    ("ring", L + "talk/ring.c", "return at < r->cap_B ? at : at - r->cap_B;", "return at <= r->cap_B ? at : at - r->cap_B;"),
-    ("ring", L + "talk/ring.c", "payload.len_B > p->left_B - EXH_RING_HEAD_B", "payload.len_B >= p->left_B - EXH_RING_HEAD_B"),
+    ("ring", L + "talk/ring.c", "return at < r->cap_B ? at : at - r->cap_B;",
+     "return at <= r->cap_B ? at : at - r->cap_B;"),
+    ("ring", L + "talk/ring.c", "payload.len_B > p->left_B - EXH_RING_HEAD_B",
+     "payload.len_B >= p->left_B - EXH_RING_HEAD_B"),
     ("ring", L + "talk/ring.c", "o->crc >> 8 * (from + i)", "o->crc >> 8 * i"),
     ("ring", L + "talk/ring.c", "cap_B < EXH_RING_MIN_B ||", "cap_B <= EXH_RING_MIN_B ||"),
     ("slots", L + "talk/slots.c", "u32_at(p, end + 4) != sequence ||", ""),
     ("slots", L + "talk/slots.c", "sequence == 0 || ", ""),
     ("slots", L + "talk/slots.c", "- 1 < 0x7FFFFFFFu", "< 0x80000000u"),
-    ("slots", L + "talk/slots.c", "newest.sequence == SEQUENCE_LAST ? 1 : newest.sequence + 1", "newest.sequence + 1"),
+    ("slots", L + "talk/slots.c", "newest.sequence == SEQUENCE_LAST ? 1 : newest.sequence + 1",
+     "newest.sequence + 1"),
     ("slots", L + "talk/slots.c", "newest.len_B == len_B && ", ""),
-    ("slots", L + "talk/slots.c", "len_B > slot_B - EXH_SLOT_B(0)", "len_B >= slot_B - EXH_SLOT_B(0)"),
+    ("slots", L + "talk/slots.c", "len_B > slot_B - EXH_SLOT_B(0)",
+     "len_B >= slot_B - EXH_SLOT_B(0)"),
     ("signal", L + "num/signal.c", "exh_bytes_u8(&c, &row.when);", ""),
     ("signal", L + "num/params.c", "raw != p->staged[i]", "raw != p->active[i]"),
     ("signal", L + "num/params.c", "raw < row->min ||", "raw <= row->min ||"),
@@ -75,15 +85,18 @@ MUTANTS = (
     ("signal", L + "num/params.c", "if (p->locked && is_slewed(row)) {", "if (is_slewed(row)) {"),
     ("signal", L + "num/params.c", "falls ? 0 : p->shift & 31u", "p->shift & 31u"),
     ("signal", L + "num/params.c", "p->staged[i] < p->active[i];", "p->staged[i] > p->active[i];"),
-    ("signal", L + "num/params.c", "p->moving |= p->active[i] != p->staged[i];", "p->moving |= p->active[i] > p->staged[i];"),
-    ("signal", L + "num/params.c", "p->passed += i < p->at ? more : 0;", "p->passed += i <= p->at ? more : 0;"),
+    ("signal", L + "num/params.c", "p->moving |= p->active[i] != p->staged[i];",
+     "p->moving |= p->active[i] > p->staged[i];"),
+    ("signal", L + "num/params.c", "p->passed += i < p->at ? more : 0;",
+     "p->passed += i <= p->at ? more : 0;"),
     ("signal", L + "num/params.c", "    p->sum += more;", ""),
     ("signal", L + "num/params.c", "int32_t v = p->staged[i];", "int32_t v = p->active[i];"),
     ("quad", QUAD, "moved > cfg->jump_cnt ||", "moved >= cfg->jump_cnt ||"),
     ("quad", QUAD, "<< (cfg->unused & 31)) >> (cfg->unused & 31)", ")"),
     ("quad", QUAD, "exh_sat32(exh_mul_shr(cnt,", "(int32_t)(exh_mul_shr(cnt,"),
     ("quad", QUAD, "par->speed_max_mps_q27) + 1;", "par->speed_max_mps_q27);"),
-    ("quad_ab", QUAD, "{0, EDGE, EDGE, ILL, EDGE, 0, ILL, UP,", "{0, EDGE, EDGE, ILL, UP, 0, ILL, EDGE,"),
+    ("quad_ab", QUAD, "{0, EDGE, EDGE, ILL, EDGE, 0, ILL, UP,",
+     "{0, EDGE, EDGE, ILL, UP, 0, ILL, EDGE,"),
     ("quad_ab", QUAD, "{0, EDGE, DOWN, ILL,", "{0, EDGE, UP, ILL,"),
     ("quad_ab", QUAD, "(was_a ^ b)", "(a ^ b)"),
     ("quad_ab", QUAD, "now > s->level", "now >= s->level"),
@@ -92,28 +105,35 @@ MUTANTS = (
     ("velocity_window", VELOCITY, "(cfg->n - 1u)", "(EXH_VELOCITY_N - 1u)"),
     ("velocity_window", H + "fix.h", "(g.shift & 63u), 1) >> 1", "(g.shift & 63u), 0) >> 1"),
     ("velocity_pole", VELOCITY, "exh_shr_round(s->v_mps_q55, 28)", "(s->v_mps_q55 >> 28)"),
-    ("velocity_pole", VELOCITY, "s->started ? exh_wrap_diff(cnt, s->cnt) : 0;\n    const int64_t diff_q55",
+    ("velocity_pole", VELOCITY,
+     "s->started ? exh_wrap_diff(cnt, s->cnt) : 0;\n    const int64_t diff_q55",
      "exh_wrap_diff(cnt, s->cnt);\n    const int64_t diff_q55"),
     ("velocity_pole", VELOCITY, "(int64_t)exh_sat32(exh_gain_mul(cfg->gain, moved)) *",
      "exh_gain_mul(cfg->gain, moved) *"),
     ("velocity_foaw", VELOCITY, "6 * j * m", "6 * m"),
     ("velocity_foaw", VELOCITY, "n < s->have && fits", "n <= s->have && fits"),
     ("velocity_foaw", VELOCITY, "off <= tol * den &&", ""),
-    ("velocity_track", VELOCITY, "exh_clamp(moved, -(INT32_C(1) << 28), INT32_C(1) << 28)", "(int64_t)moved"),
-    ("velocity_track", VELOCITY, "2 * (int64_t)a_q31 - cfg->beta_q31", "2 * (int64_t)a_q31 - cfg->beta_q31 - 1"),
+    ("velocity_track", VELOCITY, "exh_clamp(moved, -(INT32_C(1) << 28), INT32_C(1) << 28)",
+     "(int64_t)moved"),
+    ("velocity_track", VELOCITY, "2 * (int64_t)a_q31 - cfg->beta_q31",
+     "2 * (int64_t)a_q31 - cfg->beta_q31 - 1"),
     ("velocity_track", VELOCITY, "s->err_cnt_q32 = off - exh_mul64_q31(off, cfg->alpha_q31);",
      "s->err_cnt_q32 = off - (off >> 31) * cfg->alpha_q31;"),
-    ("contact", L + "law/contact.c", ">\n               (uint32_t)band", ">=\n               (uint32_t)band"),
+    ("contact", L + "law/contact.c", ">\n               (uint32_t)band",
+     ">=\n               (uint32_t)band"),
     ("contact", L + "law/contact.c", "pen >= 0 ||", "pen > 0 ||"),
     ("contact", L + "law/contact.c", "pen > ~par->hyst_m_q30", "pen > -par->hyst_m_q30"),
-    ("contact", L + "law/contact.c", "exh_diff_sat32(in.pos_m_q30, in.lim_m_q30)", "exh_wrap_diff(in.pos_m_q30, in.lim_m_q30)"),
-    ("table", TABLE, "exh_clamp32(x, t.knot[0].x, t.knot[last].x);", "exh_clamp32(x, t.knot[0].x, t.knot[last].x - 1);"),
+    ("contact", L + "law/contact.c", "exh_diff_sat32(in.pos_m_q30, in.lim_m_q30)",
+     "exh_wrap_diff(in.pos_m_q30, in.lim_m_q30)"),
+    ("table", TABLE, "exh_clamp32(x, t.knot[0].x, t.knot[last].x);",
+     "exh_clamp32(x, t.knot[0].x, t.knot[last].x - 1);"),
     ("table", TABLE, "i += in >= t.knot[k].x;", "i += in > t.knot[k].x + 1;"),
     ("table", H + "fix.h", "(g.shift & 63u), 1) >> 1", "(g.shift & 63u), 0) >> 1"),
     ("drive", DRIVE, "(held > end) == rises ? end : held", "(held < end) == rises ? end : held"),
     ("drive", DRIVE, ">> cfg->i2t_shift >> 2;", ">> cfg->i2t_shift >> 1;"),
     ("drive", DRIVE, "heat < 0 ? 0 :", ""),
-    ("drive", DRIVE, "const int32_t hot = i2t_limit(s, cfg);", "const int32_t hot = cfg->par->i_peak_A_q26;"),
+    ("drive", DRIVE, "const int32_t hot = i2t_limit(s, cfg);",
+     "const int32_t hot = cfg->par->i_peak_A_q26;"),
     ("drive", DRIVE, "exh_wrap_diff64(held, asked);", "exh_wrap_diff64(asked, held);"),
     ("drive", DRIVE, "permit->fall, s->force_N_q20) + 1;", "permit->fall, s->force_N_q20);"),
     ("drive", DRIVE, "if (s->fall_N_q20 == 0) {", "{"),
@@ -125,7 +145,8 @@ MUTANTS = (
     ("drive", DRIVE, "most < top && asked > most", "most < top"),
     ("passivity", PASSIVITY, "cfg->share, x) + 1;", "cfg->share, x);"),
     ("passivity", PASSIVITY, "moved_cnt < 0 ? most : least", "held"),
-    ("passivity", PASSIVITY, "(!touching || !s->touching) && (e > 0 || late == 0)", "!touching && !s->touching"),
+    ("passivity", PASSIVITY, "(!touching || !s->touching) && (e > 0 || late == 0)",
+     "!touching && !s->touching"),
     ("passivity", PASSIVITY, "(e > 0 || late == 0)", "1"),
     ("passivity", PASSIVITY, "speed_mps_q27) + 1;", "speed_mps_q27) + 2;"),
     ("passivity", PASSIVITY, "f->force_N_q20 > f->pullback_N_q20;", "1;"),
@@ -136,7 +157,8 @@ MUTANTS = (
     ("gains", GAINS, "(off < 0 ? -off : off) * 100", "off * 100"),
     ("gains", GAINS, "    (void)exh_params_stage(p, id, instance, was);", ""),
     ("gains", GAINS, "    p->pending = pending;", ""),
-    ("gains", GAINS, "straight &= at.b < goal.b ? line <= knot : line >= knot", "straight &= at.b < goal.b ? line < knot : line > knot"),
+    ("gains", GAINS, "straight &= at.b < goal.b ? line <= knot : line >= knot",
+     "straight &= at.b < goal.b ? line < knot : line > knot"),
     ("gains", GAINS, "return straight ? goal.k : low", "return goal.k"),
     ("gains", GAINS, "    if (is_under(rule, next)) { return next; }", "    return next;"),
     ("gains", GAINS, "    if (next.k < at.k) {", "    if (next.k > at.k) {"),
@@ -165,41 +187,55 @@ MUTANTS = (
     ("supply", L + "act/supply.c", "least += rest != 0;", ""),
     ("supply", L + "act/supply.c", "most >= INT16_MAX ||", "most > UINT16_MAX ||"),
     ("supply", L + "act/supply.c", "missed < left ?", "1 ?"),
-    ("supply", L + "act/supply.c", "exh_ticks_in(par->time_ms, T) + 1", "exh_ticks_in(par->time_ms, T)"),
+    ("supply", L + "act/supply.c", "exh_ticks_in(par->time_ms, T) + 1",
+     "exh_ticks_in(par->time_ms, T)"),
     ("safety", SAFETY, "k <= MISSED_MAX", "k < MISSED_MAX"),
     ("safety", SAFETY, "s->faults |= now;", "s->faults = now;"),
     ("safety", SAFETY, "if (s->faults == 0 && now != 0) {", "if (now != 0) {"),
     ("safety", SAFETY, "s->present == EXH_FAULT_DEADMAN && !", "!"),
     ("safety", SAFETY, "s->steps >= cfg->arm_ticks", "s->steps > cfg->arm_ticks"),
     ("safety", SAFETY, "p.ticks = add_sat(missed, 1);", "p.ticks = 1;"),
-    ("safety", L + "safe/safety_open.c", "(s->state == EXH_STATE_ARM && s->share_q30 > 0)", "s->state == EXH_STATE_ARM"),
+    ("safety", L + "safe/safety_open.c", "(s->state == EXH_STATE_ARM && s->share_q30 > 0)",
+     "s->state == EXH_STATE_ARM"),
     ("safety", GATE, "asked, -span, span", "asked, 0, span"),
     ("safety", GATE, "    s->limits = 0;", ""),
     ("safety", GATE, "falls ? s->off_raw[k] : UINT16_MAX", "UINT16_MAX"),
     ("calibrate", L + "bench/calibrate.c", "rem >= m->n - rem", "rem > m->n - rem"),
     ("calibrate", L + "bench/calibrate.c", "(int32_t)more);", "(int32_t)more - 1);"),
-    ("calibrate", L + "bench/calibrate.c", "knot[half - 1 - i].y = -y;", "knot[half - 1 - i].y = 1 - y;"),
+    ("calibrate", L + "bench/calibrate.c", "knot[half - 1 - i].y = -y;",
+     "knot[half - 1 - i].y = 1 - y;"),
     ("probe", L + "bench/probe.c", "rises && s->settled &&", "rises &&"),
     ("probe", L + "bench/probe.c", "if (cfg->step_A_q26 < 0 || -out < cfg->move_cnt)", "if (1)"),
-    ("probe", L + "bench/probe.c", "s->cur_A_q26 = exh_clamp(next, 0,", "s->cur_A_q26 = exh_clamp(next + 1, 0,"),
+    ("probe", L + "bench/probe.c", "s->cur_A_q26 = exh_clamp(next, 0,",
+     "s->cur_A_q26 = exh_clamp(next + 1, 0,"),
     ("home", L + "bench/probe.c", "far < cfg->least_cnt ? EXH", "far < cfg->move_cnt ? EXH"),
     ("home", L + "bench/probe.c", "if (s->result != EXH_PROBE_BUSY) { s->cur_A_q26 = 0; }", ""),
-    ("home", L + "bench/probe.c", "s->home_cnt = cnt;\n        s->dwell_cnt = cnt;", "s->home_cnt = cnt;"),
+    ("home", L + "bench/probe.c", "s->home_cnt = cnt;\n        s->dwell_cnt = cnt;",
+     "s->home_cnt = cnt;"),
     ("weigh", L + "bench/weigh.c", "s->probe.start_cnt = start_cnt;", ""),
-    ("weigh", L + "bench/weigh.c", "(s->lift_A_q26 + at_A_q26) >> 1", "(s->lift_A_q26 + at_A_q26 + 2) >> 1"),
+    ("weigh", L + "bench/weigh.c", "(s->lift_A_q26 + at_A_q26) >> 1",
+     "(s->lift_A_q26 + at_A_q26 + 2) >> 1"),
     ("weigh", L + "bench/weigh.c", "s->coded = s->mon = (struct exh_mean){0, 0};", ""),
-    ("filter", L + "sense/filter_low.c", "(int64_t)high_word(p) * c", "(int64_t)high_word(s->vel) * c"),
+    ("filter", L + "sense/filter_low.c", "(int64_t)high_word(p) * c",
+     "(int64_t)high_word(s->vel) * c"),
     ("filter", L + "sense/filter_high.c", "+ HALF - pos;", "- pos;"),
-    ("filter", L + "sense/filter.c", "cfg->b = coefficient(b, n, 31);", "cfg->b = coefficient(b, n, 31) - 1;"),
+    ("filter", L + "sense/filter.c", "cfg->b = coefficient(b, n, 31);",
+     "cfg->b = coefficient(b, n, 31) - 1;"),
     ("filter", L + "sense/filter.c", "{ s[i].vel = 0; }", "{ }"),
     ("quantizer", L + "sense/quantizer_tick.h", "off > cfg->keep", "off >= cfg->keep"),
     ("quantizer", L + "sense/quantizer_tick.h", "(uint32_t)(x < most ? x : most)", "(uint32_t)x"),
-    ("quantizer", L + "sense/quantizer.c", "(uint32_t)par->hyst_raw_q16 / 2", "(uint32_t)par->hyst_raw_q16 / 4"),
-    ("glove", L + "sense/glove.c", "(int64_t)s->low_raw - margin, par->low_raw + 1", "(int64_t)s->low_raw, par->low_raw + 1"),
-    ("glove", L + "sense/glove.c", "s->run[i] + 1 < cfg->debounce_frames", "s->run[i] < cfg->debounce_frames"),
-    ("glove", L + "sense/glove.c", "exh_wrap_diff(code >> 1, cal->zero_raw_q15)", "code / 2 - cal->zero_raw_q15 + 1"),
-    ("glove", L + "sense/glove.c", "angle_turn_q32[i] = exh_sat32(sum);", "angle_turn_q32[i] = (int32_t)sum;"),
-    ("glove_cal", L + "sense/glove_cal.c", "day - cal->day > cal->valid_days", "day - cal->day > 2 * cal->valid_days"),
+    ("quantizer", L + "sense/quantizer.c", "(uint32_t)par->hyst_raw_q16 / 2",
+     "(uint32_t)par->hyst_raw_q16 / 4"),
+    ("glove", L + "sense/glove.c", "(int64_t)s->low_raw - margin, par->low_raw + 1",
+     "(int64_t)s->low_raw, par->low_raw + 1"),
+    ("glove", L + "sense/glove.c", "s->run[i] + 1 < cfg->debounce_frames",
+     "s->run[i] < cfg->debounce_frames"),
+    ("glove", L + "sense/glove.c", "exh_wrap_diff(code >> 1, cal->zero_raw_q15)",
+     "code / 2 - cal->zero_raw_q15 + 1"),
+    ("glove", L + "sense/glove.c", "angle_turn_q32[i] = exh_sat32(sum);",
+     "angle_turn_q32[i] = (int32_t)sum;"),
+    ("glove_cal", L + "sense/glove_cal.c", "day - cal->day > cal->valid_days",
+     "day - cal->day > 2 * cal->valid_days"),
     ("glove_cal", L + "sense/glove_cal.c", "size < GAIN_MIN_TURNPRAW_Q38 ||", "size == 0 ||"),
     ("glove_cal", L + "sense/glove_cal.c", "cal->sensor[of].of[0] != EXH_GLOVE_NONE ||", ""),
     ("glove_cal", L + "sense/glove_cal.c", "s->zero_raw_q15 >= ZERO_END_RAW_Q15", "0"),
@@ -210,26 +246,35 @@ MUTANTS = (
     ("hand", L + "sense/hand.c", "v_m_q34.z, 32) + 3)", "v_m_q34.z, 32) + 2)"),
     ("hand", L + "sense/hand.c", "+ den / 2, den", ", den"),
     ("hand", L + "sense/hand.c", "sensor == bent[1] || sensor == bent[2]", "sensor == bent[1]"),
-    ("hand", L + "sense/hand.c", "exh_clamp32(exh_limit32(want), j->lo_turn_q32, j->hi_turn_q32)", "exh_limit32(want)"),
+    ("hand", L + "sense/hand.c", "exh_clamp32(exh_limit32(want), j->lo_turn_q32, j->hi_turn_q32)",
+     "exh_limit32(want)"),
     ("precontact", L + "law/precontact.c", "+ HALF_Q60, cfg", ", cfg"),
-    ("precontact", L + "law/precontact.c", "par->printed_sign ? -pad_m_q30 : pad_m_q30", "pad_m_q30"),
+    ("precontact", L + "law/precontact.c", "par->printed_sign ? -pad_m_q30 : pad_m_q30",
+     "pad_m_q30"),
     ("precontact", L + "law/precontact.c", "<= 2 * tol_q60", "<= 4 * tol_q60"),
-    ("precontact", L + "law/precontact.c", "left == 0 || now.object != s->newest.object", "left == 0"),
-    ("precontact", L + "law/precontact.c", "!is_same(&now, &s->held)", "!is_same(&now, &s->newest)"),
+    ("precontact", L + "law/precontact.c", "left == 0 || now.object != s->newest.object",
+     "left == 0"),
+    ("precontact", L + "law/precontact.c", "!is_same(&now, &s->held)",
+     "!is_same(&now, &s->newest)"),
     ("precontact", L + "law/precontact.c", "if (in->touching || s->d", "if (s->d"),
     ("precontact", L + "law/precontact.c", "(int64_t)cfg->par->d_lim_m_q30 - cfg->par->hyst_m_q30",
      "(int64_t)cfg->par->d_lim_m_q30"),
     ("precontact", L + "law/precontact.c", "if (s->phase != EXH_PRECONTACT_TRACK ||", "if ("),
-    ("precontact", L + "law/precontact.c", "if (left == 0 || blind) {", "if (s->left_ticks == 0 || blind) {"),
+    ("precontact", L + "law/precontact.c", "if (left == 0 || blind) {",
+     "if (s->left_ticks == 0 || blind) {"),
     ("precontact", L + "law/precontact.c", "if (left == 0 || blind) {", "if (left == 0) {"),
     ("precontact", L + "law/precontact.c", "free_m_q30 - cfg->par->doubt_m_q30", "free_m_q30"),
-    ("precontact", L + "law/precontact.c", "s->doubt_ticks <= cfg->doubt_ticks", "s->doubt_ticks < cfg->doubt_ticks"),
-    ("precontact", L + "law/precontact.c", "in->tip_age_ticks >= cfg->tip_ticks", "in->tip_age_ticks > cfg->tip_ticks"),
-    ("precontact", L + "law/precontact.c", "missed < s->left_ticks ? missed : s->left_ticks;", "0;"),
+    ("precontact", L + "law/precontact.c", "s->doubt_ticks <= cfg->doubt_ticks",
+     "s->doubt_ticks < cfg->doubt_ticks"),
+    ("precontact", L + "law/precontact.c", "in->tip_age_ticks >= cfg->tip_ticks",
+     "in->tip_age_ticks > cfg->tip_ticks"),
+    ("precontact", L + "law/precontact.c", "missed < s->left_ticks ? missed : s->left_ticks;",
+     "0;"),
     ("precontact", H + "fix.h", "(12 - shift)) + 1) >> 1", "(12 - shift))) >> 1"),
     ("precontact", L + "law/advise.c", "return quot + (rem > 0);", "return quot;"),
     ("precontact", L + "law/advise.c", "age_ns + tick_ns", "age_ns"),
-    ("wire", L + "talk/wire.c", "h->seq - rx->seq - 1u < EXH_WIRE_AHEAD", "h->seq - rx->seq < EXH_WIRE_AHEAD"),
+    ("wire", L + "talk/wire.c", "h->seq - rx->seq - 1u < EXH_WIRE_AHEAD",
+     "h->seq - rx->seq < EXH_WIRE_AHEAD"),
     ("wire", L + "talk/wire.c", "late > UINT32_C(0x80000000)", "late >= UINT32_C(0x80000000)"),
     ("wire", L + "talk/wire.c", "rx->open && h->seq != rx->seq", "0"),
     ("wire", L + "talk/wire.c", "rx->open || h->session != rx->former", "h->session != rx->former"),
@@ -243,23 +288,28 @@ MUTANTS = (
     ("wire", L + "talk/wire.c", "h->version != EXH_WIRE_VERSION", "0"),
     ("wire", L + "talk/wire.c", "demand(c, p->kind <= EXH_PLANE_HIT);", ""),
     ("wire", L + "talk/wire.c", "s->fingers >> f & 1 ||", "1 ||"),
-    ("wire", L + "talk/wire.c", "len_B != HEAD_B + h->len_B + CRC_B", "len_B < HEAD_B + h->len_B + CRC_B"),
+    ("wire", L + "talk/wire.c", "len_B != HEAD_B + h->len_B + CRC_B",
+     "len_B < HEAD_B + h->len_B + CRC_B"),
     ("wire", L + "talk/wire.c", "(int16_t)result, p->seq", "(int16_t)result, p->stamp_us"),
     ("wire", L + "talk/wire.c", "t->frames <= EXH_WIRE_FRAMES && ", ""),
     ("wire", L + "talk/wire.c", "(t->result == 0 || t->frames == 0)", "1"),
     ("bilateral", Y + "trace.c", "if (t->result < 0 || !same(", "if (1 || !same("),
     ("bilateral", Y + "trace.c", "if (err < 0) { bilateral_trace_stop(t); }", ""),
-    ("bilateral", Y + "trace.c", "!t->answer && n < EXH_WIRE_FRAMES", "!t->answer && n <= EXH_WIRE_FRAMES"),
+    ("bilateral", Y + "trace.c", "!t->answer && n < EXH_WIRE_FRAMES",
+     "!t->answer && n <= EXH_WIRE_FRAMES"),
     ("bilateral", Y + "wire.c", "bilateral_trace_stop(&w->trace);", ""),
     ("bilateral", L + "talk/trace.c", "t->left = t->what.every - 1;", "t->left = t->what.every;"),
     ("bilateral", H + "axis.h", "if (a->quad->lost) { raised |= EXH_FAULT_ENCODER; }", ""),
-    ("bilateral", Y + "bilateral.c", "out->dac_raw[f] = placed->dac_raw[k];", "out->dac_raw[k] = placed->dac_raw[k];"),
+    ("bilateral", Y + "bilateral.c", "out->dac_raw[f] = placed->dac_raw[k];",
+     "out->dac_raw[k] = placed->dac_raw[k];"),
     ("bilateral", Y + "finger.c", "if (p->phase == EXH_PRECONTACT_FROZEN &&", "if ("),
     ("bilateral", Y + "wire.c", "w->set += ack.result == 0;", "w->set++;"),
     ("bilateral", Y + "wire.c", "s->age_ticks = UINT32_MAX;", "s->age_ticks = 0;"),
     ("bilateral", H + "axis.h", "raised |= EXH_FAULT_TRACKING;", ""),
-    ("bilateral", Y + "cause.c", "s->unsure_ticks >= cfg->glove_ticks", "s->unsure_ticks > cfg->glove_ticks"),
-    ("bilateral", Y + "cause.c", "s->wire.age_ticks >= cfg->link_ticks", "s->wire.age_ticks == UINT32_MAX"),
+    ("bilateral", Y + "cause.c", "s->unsure_ticks >= cfg->glove_ticks",
+     "s->unsure_ticks > cfg->glove_ticks"),
+    ("bilateral", Y + "cause.c", "s->wire.age_ticks >= cfg->link_ticks",
+     "s->wire.age_ticks == UINT32_MAX"),
     ("bilateral", "lib/src/act/supply.c", "raw <= cfg->max_raw", "raw < INT16_MAX"),
     ("mirror", L + "talk/regs_float.c", "rest > 0x80u ||", "rest >= 0x80u ||"),
     ("mirror", L + "talk/regs_float.c", "(rest == 0x80u && (keep & 1u))", "0"),
@@ -272,33 +322,46 @@ MUTANTS = (
     ("modbus", L + "talk/modbus.c", "be16(q, 3) != 0xFF00u", "(be16(q, 3) & 0xFF00u) == 0"),
     ("modbus", L + "talk/modbus.c", "q->p[5] != 2 * n ||", ""),
     ("modbus", L + "talk/modbus.c", "q->len_B != 10u + q->p[9]", "0"),
-    ("modbus", L + "talk/modbus.c", "(q->p[5 + i] & ~(uint32_t)q->p[3 + i] & 0xFFu)", "q->p[5 + i]"),
-    ("modbus", L + "talk/modbus.c", "if (err == 0) { err = exh_regs_read(r, EXH_REGS_HOLDING, be16(q, 1), (uint16_t)get, &resp[2]); }",
+    ("modbus", L + "talk/modbus.c", "(q->p[5 + i] & ~(uint32_t)q->p[3 + i] & 0xFFu)",
+     "q->p[5 + i]"),
+    ("modbus", L + "talk/modbus.c", "if (err == 0) { err = exh_regs_read(r, EXH_REGS_HOLDING, "
+                                    "be16(q, 1), (uint16_t)get, &resp[2]); }",
      ""),
-    ("modbus", L + "talk/modbus.c", "if (first >= OBJECTS) { first = 0; }", "if (first >= OBJECTS) { first = 1; }"),
+    ("modbus", L + "talk/modbus.c", "if (first >= OBJECTS) { first = 0; }",
+     "if (first >= OBJECTS) { first = 1; }"),
     ("modbus", L + "talk/modbus.c", "q->p[1] != 14", "0"),
     ("modbus", L + "talk/modbus.c", "case 22: return mask_reg(r, q, resp);", ""),
     ("modbus", L + "talk/modbus.c", "bytes = (n + 7) >> 3;", "bytes = (n + 8) >> 3;"),
     ("modbus", L + "talk/regs.c", "s->end <= 2 * values ?", "s->end < 2 * values ?"),
     ("modbus", L + "talk/regs.c", "if (2 * i >= s->from) {", "if (2 * i > s->from) {"),
-    ("modbus", L + "talk/regs.c", "n += (rest & 1u) && r->staged[i] != r->wanted[i];", "n += rest & 1u;"),
+    ("modbus", L + "talk/regs.c", "n += (rest & 1u) && r->staged[i] != r->wanted[i];",
+     "n += rest & 1u;"),
     ("modbus", L + "talk/regs.c", "r->box.state < 32 ?", "r->box.state < 64 ?"),
     ("modbus", L + "talk/regs.c", "? r->active[i]", "? r->wanted[i]"),
-    ("modbus", L + "talk/regs_stage.c", "if (raw != r->wanted[i]) { r->touched", "if (1) { r->touched"),
+    ("modbus", L + "talk/regs_stage.c", "if (raw != r->wanted[i]) { r->touched",
+     "if (1) { r->touched"),
     ("modbus", L + "talk/regs_stage.c", "r->touched[i >> 5] &= ~bit;", ""),
-    ("modbus", L + "talk/regs_stage.c", "if (bits == exh_float_from_raw(now, row->frac))", "if (0)"),
-    ("modbus", L + "talk/regs_stage.c", "} else if (bits == exh_float_from_raw(row->min, row->frac)) {", "} else if (0) {"),
-    ("modbus", L + "talk/regs_stage.c", "} else if (bits == exh_float_from_raw(row->max, row->frac)) {", "} else if (0) {"),
+    ("modbus", L + "talk/regs_stage.c", "if (bits == exh_float_from_raw(now, row->frac))",
+     "if (0)"),
+    ("modbus", L + "talk/regs_stage.c",
+     "} else if (bits == exh_float_from_raw(row->min, row->frac)) {", "} else if (0) {"),
+    ("modbus", L + "talk/regs_stage.c",
+     "} else if (bits == exh_float_from_raw(row->max, row->frac)) {", "} else if (0) {"),
     ("modbus", L + "talk/regs_stage.c", "raw < row->min || raw > row->max", "raw < row->min"),
     ("modbus", L + "talk/regs_stage.c", "fixed && raw != r->wanted[i]", "fixed"),
     ("modbus", L + "talk/regs_stage.c", "s->is_float && (!high || !low)", "s->is_float && !high"),
-    ("modbus", L + "talk/regs_stage.c", "if (r->asked >> EXH_COIL_APPLY & 1u) { return EXH_MODBUS_BUSY; }", ""),
+    ("modbus", L + "talk/regs_stage.c",
+     "if (r->asked >> EXH_COIL_APPLY & 1u) { return EXH_MODBUS_BUSY; }", ""),
     ("modbus", L + "talk/regs_stage.c", "(on & ~r->may) != 0 ||", ""),
-    ("modbus", L + "talk/regs_stage.c", "if ((on & discard) && (r->asked & apply)) { return EXH_MODBUS_BUSY; }", ""),
+    ("modbus", L + "talk/regs_stage.c",
+     "if ((on & discard) && (r->asked & apply)) { return EXH_MODBUS_BUSY; }", ""),
     ("modbus", L + "talk/regs_stage.c", "r->asked |= on & ~discard;", "r->asked |= on;"),
-    ("modbus", L + "talk/regs_stage.c", "if (asked >> EXH_COIL_CLEAR & 1u) { return EXH_CMD_CLEAR; }", ""),
-    ("modbus", L + "talk/regs_stage.c", "    exh_regs_discard(r);\n    return err;", "    return err;"),
-    ("modbus", L + "talk/regs_trace.c", "what.index[i] >= r->trace->signals", "what.index[i] > r->trace->signals"),
+    ("modbus", L + "talk/regs_stage.c",
+     "if (asked >> EXH_COIL_CLEAR & 1u) { return EXH_CMD_CLEAR; }", ""),
+    ("modbus", L + "talk/regs_stage.c", "    exh_regs_discard(r);\n    return err;",
+     "    return err;"),
+    ("modbus", L + "talk/regs_trace.c", "what.index[i] >= r->trace->signals",
+     "what.index[i] > r->trace->signals"),
     ("modbus", L + "talk/regs_trace.c", "return k == 0 ?", "return k != 0 ?"),
     ("modbus", L + "talk/regs_stage.c", "        exh_regs_trace_write(r, &s, from);\n", ""),
     ("modbus_rtu", L + "talk/modbus_rtu.c", "0xFFFFu;\n    for", "0;\n    for"),
@@ -308,34 +371,42 @@ MUTANTS = (
     ("modbus_rtu", L + "talk/modbus_rtu.c", "UINT64_C(38500000) + baud - 1", "UINT64_C(38500000)"),
     ("modbus_rtu", L + "talk/modbus_rtu.c", "n <= EXH_MODBUS_ADU_B &&", "n < EXH_MODBUS_ADU_B &&"),
     ("modbus_rtu", L + "talk/modbus_rtu.c", " && u->frame[0] != 0)", ")"),
-    ("modbus_rtu", L + "talk/modbus_rtu.c", "u->quiet_us >= u->silence_us", "u->quiet_us > u->silence_us"),
-    ("modbus_rtu", L + "talk/modbus_rtu.c", "us < UINT32_MAX - u->quiet_us ? u->quiet_us + us : UINT32_MAX",
-     "u->quiet_us + us"),
+    ("modbus_rtu", L + "talk/modbus_rtu.c", "u->quiet_us >= u->silence_us",
+     "u->quiet_us > u->silence_us"),
+    ("modbus_rtu", L + "talk/modbus_rtu.c",
+     "us < UINT32_MAX - u->quiet_us ? u->quiet_us + us : UINT32_MAX", "u->quiet_us + us"),
     ("modbus_rtu", L + "talk/modbus_rtu.c", "if (u->ready) { return; }", ""),
-    ("modbus_rtu", L + "talk/modbus_rtu.c", "if (!u->ready) { u->len_B = EXH_MODBUS_ADU_B + 1; }", ""),
+    ("modbus_rtu", L + "talk/modbus_rtu.c", "if (!u->ready) { u->len_B = EXH_MODBUS_ADU_B + 1; }",
+     ""),
     ("modbus_rtu", L + "talk/modbus_rtu.c", "function == 22;", "function == 22 || function == 23;"),
-    ("guarded", "examples/guarded/guarded.c", "now.cnt, sig->drop.c, &now.f", "now.cnt, !sig->drop.c, &now.f"),
-    ("guarded", "examples/guarded/guarded.c", "par->drop.watch.speed_mps_q27);", "EXH_Q(3, 1, EXH_Q_VEL));"),
+    ("guarded", "examples/guarded/guarded.c", "now.cnt, sig->drop.c, &now.f",
+     "now.cnt, !sig->drop.c, &now.f"),
+    ("guarded", "examples/guarded/guarded.c", "par->drop.watch.speed_mps_q27);",
+     "EXH_Q(3, 1, EXH_Q_VEL));"),
     ("drop", H + "axis.h", "if (a->quad->lost) { raised |= EXH_FAULT_ENCODER; }", ""),
     ("drop", X + "drop.c", "(starved ? EXH_FAULT_SUPPLY : 0u)", "0u"),
     ("drop", H + "axis.h", "exh_tracking_update(a->track, coded_A_q26);", "(void)coded_A_q26;"),
-    ("drop", H + "axis.h", "return limits | exh_drive_current_step", "return exh_drive_current_step"),
+    ("drop", H + "axis.h", "return limits | exh_drive_current_step",
+     "return exh_drive_current_step"),
     ("drop", H + "axis.h", "exh_velocity_window_step(a->velocity, a->velocity_cfg, cnt)",
      "exh_velocity_window_step(a->velocity, a->velocity_cfg, cnt + 1)"),
 )
-# What 256 ticks show at fewer rates, as the fingers of one box hinder each other at arming: what it must be seen at all
-# the same, and what tells it besides. Open: stimuli that come to these at every rate.
+# What 256 ticks show at fewer rates, as the fingers of one box hinder each other at arming: what it
+# must be seen at all the same, and what tells it besides. Open: stimuli that come to these at every
+# rate.
 THIN = {
     "if (p->phase == EXH_PRECONTACT_FROZEN &&": 0.90,  # sim/bilateral_tick
     "s->present == EXH_FAULT_DEADMAN && !": 0.93,      # unit/safety
-    "raw != p->staged[i]": 0.15,                       # a set-up value that is staged when it is locked
+    # a set-up value that is staged when it is locked
+    "raw != p->staged[i]": 0.15,
     "!p->pending && !p->moving;": 0.50,                # unit/params
     "late > UINT32_C(0x80000000)": 0.93,               # unit/wire
     "if (t->result < 0 || !same(": 0.80,               # sim/bilateral_tick, as of all below
     "if (err < 0) { bilateral_trace_stop(t); }": 0.50,
     "!t->answer && n < EXH_WIRE_FRAMES": 0.50,
     "falls ? s->off_raw[k] : UINT16_MAX": 0.84,        # unit/gate, proof
-    # Of 768 requests, 256 on the line, few come there; unit/modbus, unit/trace and unit/modbus_rtu tell them.
+    # Of 768 requests, 256 on the line, few come there; unit/modbus, unit/trace and unit/modbus_rtu
+    # tell them.
     "q->len_B != 10u + q->p[9]": 0.88,
     "? r->active[i]": 0.50,
     "r->touched[i >> 5] &= ~bit;": 0.78,
@@ -349,8 +420,9 @@ THIN = {
 }
 
 # Where the inline functions of a header are called for a module.
-CALLS = {"fix": "test/golden/basics.c", "velocity_window": VELOCITY, "table": TABLE, "angle": L + "num/angle.c",
-         "precontact": L + "law/precontact.c", "quantizer": L + "sense/quantizer.c", "guard": L + "safe/integrity.c",
+CALLS = {"fix": "test/golden/basics.c", "velocity_window": VELOCITY, "table": TABLE,
+         "angle": L + "num/angle.c", "precontact": L + "law/precontact.c",
+         "quantizer": L + "sense/quantizer.c", "guard": L + "safe/integrity.c",
          "drop": X + "drop.c", "bilateral": Y + "bilateral.c"}
 
 
@@ -358,7 +430,8 @@ def objects_but(original):
     """The test's objects without the one that is made of `original`."""
     sources = sorted(glob.glob(os.path.join(ROOT, "test/golden/*.c")) +
                      glob.glob(os.path.join(ROOT, "examples/bilateral/*.c")))
-    sources += ["test/support.c", "examples/drop/drop.c", "examples/guarded/guarded.c", "lib/src/run/calib_set.c", "examples/glove/cal.c"]
+    sources += ["test/support.c", "examples/drop/drop.c", "examples/guarded/guarded.c",
+                "lib/src/run/calib_set.c", "examples/glove/cal.c"]
     names = [os.path.relpath(os.path.join(ROOT, s), ROOT) for s in sources]
     return [os.path.join(B, "posix", s[:-2] + ".o") for s in names if s != original]
 
@@ -424,15 +497,18 @@ def commits():
 
 
 def main():
-    p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p = argparse.ArgumentParser(description=__doc__,
+                                formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("--some", type=int, default=1, metavar="N")
     p.add_argument("--seed", type=int, metavar="S")
     p.add_argument("module", nargs="*")
     a = p.parse_args()
     seed = commits() if a.seed is None else a.seed
-    wanted = [m for m in (dealt(a.some, seed) if a.some > 1 else MUTANTS) if not a.module or m[0] in a.module]
+    wanted = [m for m in (dealt(a.some, seed) if a.some > 1 else MUTANTS) if not a.module or
+              m[0] in a.module]
     if a.some > 1:
-        print("%d of %d mutants, dealt by --some %d --seed %d:" % (len(wanted), len(MUTANTS), a.some, seed))
+        print("%d of %d mutants, dealt by --some %d --seed %d:" %
+              (len(wanted), len(MUTANTS), a.some, seed))
     bad = 0
     singles()  # a share is of single rates: without their digests, this ends here
     with ThreadPoolExecutor(os.cpu_count()) as pool:
@@ -440,9 +516,11 @@ def main():
             ok = isinstance(got, float) and got >= THIN.get(old, LEAST)
             bad += not ok
             said = "%5.1f %%" % (100 * got) if isinstance(got, float) else got
-            print("%s %-16s %-12s %s  ->  %s" % ("  " if ok else "! ", module, said, old.replace("\n", " ")[:60],
-                                                 new.replace("\n", " ")[:50] or "nothing"))
-    print("%d mutants, %d of them seen at less than %d %% of the rates (THIN: than stands there) or not at all" %
+            print("%s %-16s %-12s %s  ->  %s" %
+                  ("  " if ok else "! ", module, said, old.replace("\n", " ")[:60],
+                   new.replace("\n", " ")[:50] or "nothing"))
+    print("%d mutants, %d of them seen at less than %d %% of the rates (THIN: than stands there) "
+          "or not at all" %
           (len(wanted), bad, 100 * LEAST))
     return 1 if bad or not wanted else 0
 

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""beyond.py DIR GOLDEN: 2001..20000 Hz of every module of test/golden/digests.inc by the program GOLDEN, as many at a time as
-JOBS says. Compares the CRC over each module's 180 hundreds with the generator's, writes DIR/beyond.tsv, ends with `N passed, N failed`.
-`make matrix-beyond`. Standard library only.
+"""beyond.py DIR GOLDEN: 2001..20000 Hz of every module of test/golden/digests.inc by the program
+GOLDEN, as many at a time as JOBS says. Compares the CRC over each module's 180 hundreds with the
+generator's, writes DIR/beyond.tsv, ends with `N passed, N failed`. `make matrix-beyond`. Standard
+library only.
 """
 
 import concurrent.futures
@@ -25,10 +26,12 @@ def expected(crcs):
 
 def ran(golden, module):
     """(rates, CRC) as the program says, and what else it said of what is wrong."""
-    done = subprocess.run([golden], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                          env=dict(os.environ, EXH_TEST=module, EXH_RATES="2001..20000", EXH_CELLS="1"))
+    done = subprocess.run([golden], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                          text=True, env=dict(os.environ, EXH_TEST=module, EXH_RATES="2001..20000",
+                                              EXH_CELLS="1"))
     said = re.search(r"^  \| hundreds: %s (\d+) ([0-9a-f]{8})$" % module, done.stdout, re.M)
-    return (int(said.group(1)) * digests.HUNDRED, said.group(2)) if said and done.returncode == 0 else (0, "-"), done.stdout
+    return ((int(said.group(1)) * digests.HUNDRED, said.group(2)) if said and done.returncode == 0
+            else (0, "-"), done.stdout)
 
 
 def main():

@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""box.py DIR [--only T,T]: the host program for every target of targets.tsv, by its gcc; test/closed/sim/bits.sh compares what each makes
-with the host's in DIR/host: Table II, logs of it and of the full box, a calibration, replays, faults. `make matrix-box`.
-Writes DIR/box.tsv, keeps the rows of targets that are not asked for, and writes docs/MATRIX.md's table anew. Standard library only.
+"""box.py DIR [--only T,T]: the host program for every target of targets.tsv, by its gcc;
+test/closed/sim/bits.sh compares what each makes with the host's in DIR/host: Table II, logs of it
+and of the full box, a calibration, replays, faults. `make matrix-box`. Writes DIR/box.tsv, keeps
+the rows of targets that are not asked for, and writes docs/MATRIX.md's table anew. Standard library
+only.
 """
 
 import argparse
@@ -19,10 +21,11 @@ from table import ROOT, commit, section, targets  # noqa: E402
 
 def built(t, where):
     """The host program in where, and what runs it; None if it does not build."""
-    make = [os.environ.get("MAKE", "make"), "--no-print-directory", "-s", "-j" + (os.environ.get("JOBS") or "1"), "B=" + where,
-            "WERROR=1", "PORT=posix"]
+    make = [os.environ.get("MAKE", "make"), "--no-print-directory", "-s",
+            "-j" + (os.environ.get("JOBS") or "1"), "B=" + where, "WERROR=1", "PORT=posix"]
     make += [c for c in commands(t, "gcc-O2") if not c.startswith("SUITE")]
-    if subprocess.run(make + [where + "/posix/exhand-lab"], cwd=ROOT, env=dict(os.environ, MAKEFLAGS="")).returncode != 0:
+    if subprocess.run(make + [where + "/posix/exhand-lab"], cwd=ROOT,
+                      env=dict(os.environ, MAKEFLAGS="")).returncode != 0:
         return None
     script = os.path.join(where, "exhand")
     with open(script, "w") as f:
@@ -54,16 +57,19 @@ def put(path, table):
 
 
 def main():
-    p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p = argparse.ArgumentParser(description=__doc__,
+                                formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("dir")
     p.add_argument("--only", default="")
     a = p.parse_args()
-    some = [t for n, t in targets().items() if not t["metal"] and (not a.only or n in a.only.split(","))]
+    some = [t for n, t in targets().items() if not t["metal"] and
+            (not a.only or n in a.only.split(","))]
     if not all([there(t) for t in some]):
         return 3
     script = {t["name"]: built(t, os.path.join(a.dir, t["name"])) for t in some}
     start = time.time()
-    run = subprocess.run(["test/closed/sim/bits.sh", a.dir + "/bits", a.dir + "/host"] + [s for s in script.values() if s], cwd=ROOT,
+    run = subprocess.run(["test/closed/sim/bits.sh", a.dir + "/bits", a.dir + "/host"] +
+                         [s for s in script.values() if s], cwd=ROOT,
                          stdout=subprocess.PIPE, text=True)
     print(run.stdout, end="")
     table = kept(os.path.join(a.dir, "box.tsv"))
@@ -72,7 +78,8 @@ def main():
         table[name] = (name,) + (said.groups() if said else ("0", "0")) + (commit(),)
     put(os.path.join(a.dir, "box.tsv"), table)
     bad = [n for n, s in script.items() if s is None]
-    print("%d targets in %.0f s, not built: %s" % (len(script), time.time() - start, " ".join(bad) or "none"))
+    print("%d targets in %.0f s, not built: %s" %
+          (len(script), time.time() - start, " ".join(bad) or "none"))
     return 1 if bad or run.returncode else 0
 
 

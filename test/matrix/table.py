@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Targets and variants of the matrix, digests expected of them, and what is kept of runs: matrix.tsv and the generated parts
-of docs/MATRIX.md.
+"""Targets and variants of the matrix, digests expected of them, and what is kept of runs:
+matrix.tsv and the generated parts of docs/MATRIX.md.
 """
 
 import functools
@@ -30,13 +30,16 @@ def targets():
 def variants(t):
     """Of this target, all or those that its row names: their numbers, and names."""
     every = ["%s-%s" % (c, o) for c in COMPILERS for o in OPTIONS]
-    return [(k, v) for k, v in enumerate(every) if not t["variants"] or v in t["variants"].split(",")]
+    return [(k, v) for k, v in enumerate(every) if not t["variants"] or
+            v in t["variants"].split(",")]
 
 
 def without(t, variant):
-    """The modules that this variant has not: those that a target's row names, as module or module@option."""
+    """The modules that this variant has not: those that a target's row names, as module or
+    module@option."""
     option = variant.split("-", 1)[1]
-    return " ".join(m for m, _, o in [w.partition("@") for w in t["without"].split()] if o in ("", option))
+    return " ".join(m for m, _, o in [w.partition("@") for w in t["without"].split()]
+                    if o in ("", option))
 
 
 def clang_of(t):
@@ -47,7 +50,8 @@ def clang_of(t):
 
 @functools.lru_cache(None)
 def expected(lo, hi, step, without=""):
-    """{module: CRC of its digests at these rates}, from the host's table, which is held against the generator's file."""
+    """{module: CRC of its digests at these rates}, from the host's table, which is held against the
+    generator's file."""
     return {m: digests.together([crcs[r - 1] for r in range(lo, hi + 1, step)])
             for m, crcs in singles().items() if m not in without.split()}
 
@@ -68,8 +72,8 @@ HEAD = "target variant rates cells digest tests groups seconds failed".split()
 
 
 def words(r):
-    return [r.target, r.variant, "%d..%d:%d" % r.rates, "%d" % r.cells, "%08x" % r.golden, "%d" % r.tests, "%d" % r.groups,
-            "%.0f" % r.seconds, "; ".join(r.failed)]
+    return [r.target, r.variant, "%d..%d:%d" % r.rates, "%d" % r.cells, "%08x" % r.golden,
+            "%d" % r.tests, "%d" % r.groups, "%.0f" % r.seconds, "; ".join(r.failed)]
 
 
 def kept(path):
@@ -85,7 +89,8 @@ def kept(path):
 def current(target, variant, rates, digest):
     """Is this what the generator's files say of these rates?"""
     t = targets().get(target, {"without": ""})
-    return "%08x" % together(expected(*[int(n) for n in re.split(r"\.\.|:", rates)], without(t, variant))) == digest
+    return "%08x" % together(expected(*[int(n) for n in re.split(r"\.\.|:", rates)],
+                                      without(t, variant))) == digest
 
 
 def put(path, table):
@@ -99,7 +104,8 @@ def put(path, table):
 
 
 def commit():
-    said = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True).stdout
+    said = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, stdout=subprocess.PIPE,
+                          stderr=subprocess.DEVNULL, text=True).stdout
     return said.strip() or "unknown"
 
 
@@ -107,10 +113,14 @@ def document(table):
     """The generated part of docs/MATRIX.md."""
     good = [w for w in table.values() if not w[8]]
     modules = len(singles())
-    yield "%d of %d variants ran, the last on top of commit %s; **%d cells** (module x rate x target x compiler x option) of %d modules" % (
-        len(table), sum(len(variants(t)) for t in targets().values()), commit(), sum(int(w[3]) for w in good), modules)
-    yield "agree with the generator, %d variants do not. Tests passed beside them: %d. All rates of all modules together: `%08x`." % (
-        len(table) - len(good), sum(int(w[5]) for w in good), together(expected(1, 2000, 1)))
+    yield ("%d of %d variants ran, the last on top of commit %s; **%d cells** (module x rate x "
+           "target x compiler x option) of %d modules" % (
+               len(table), sum(len(variants(t)) for t in targets().values()), commit(),
+               sum(int(w[3]) for w in good), modules))
+    yield ("agree with the generator, %d variants do not. Tests passed beside them: %d. All rates "
+           "of all modules together: `%08x`." % (
+               len(table) - len(good), sum(int(w[5]) for w in good),
+               together(expected(1, 2000, 1))))
     yield ""
     yield "| target | bits | compiler and option | rates, Hz | cells | digest | tests | s |"
     yield "|---|---|---|---|---|---|---|---|"
@@ -118,7 +128,8 @@ def document(table):
         for _, v in variants(t):
             w = table.get((name, v))
             if w:
-                yield "| %s | %s %s | %s | %s | %s | `%s` | %s | %s |" % (name, t["bits"], t["endian"], v, w[2], w[3], w[4], w[5], w[8] or w[7])
+                yield ("| %s | %s %s | %s | %s | %s | `%s` | %s | %s |" %
+                       (name, t["bits"], t["endian"], v, w[2], w[3], w[4], w[5], w[8] or w[7]))
 
 
 def section(name, lines):
@@ -134,5 +145,8 @@ def section(name, lines):
 def stale():
     """Rows of docs/MATRIX.md whose digest is not the generator's any more."""
     with open(DOC) as f:
-        row = re.findall(r"^\| (\w+) \| [^|]* \| ([\w-]+) \| (\d+\.\.\d+:\d+) \| \d+ \| `([0-9a-f]{8})` ", f.read(), re.M)
-    return ["%s-%s" % (t, v) for t, v, rates, digest in row if not current(t, v, rates, digest)], len(row)
+        row = re.findall(
+            r"^\| (\w+) \| [^|]* \| ([\w-]+) \| (\d+\.\.\d+:\d+) \| \d+ \| `([0-9a-f]{8})` ",
+            f.read(), re.M)
+    return (["%s-%s" % (t, v) for t, v, rates, digest in row if not current(t, v, rates, digest)],
+            len(row))

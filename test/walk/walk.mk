@@ -2,19 +2,22 @@
 # Walks: a script does what the documents tell a reader to type.
 
 ##@ Walks through the documents
-## Run the sweeps of examples/sweep by GNU parallel, ssh and Slurm on this machine, and compare with one process.
+## Run the sweeps of examples/sweep by GNU parallel, ssh and Slurm on this machine, and compare with
+## one process.
 .PHONY: scale
 scale: $(lab)
 	@.ci/deps "GNU parallel" "command -v parallel && command -v rsync" parallel rsync || :
 	@.ci/deps "ssh to this machine" "ls /usr/sbin/sshd" openssh-server openssh-client || :
-	@.ci/deps "Slurm" "command -v sbatch && command -v slurmctld && command -v slurmd && command -v munged" \
+	@.ci/deps "Slurm" "command -v sbatch && command -v slurmctld && command -v slurmd && \
+	command -v munged" \
 	    slurm-client slurmctld slurmd munge || :
 	@test/walk/sweep/scale.sh $(B)/sweep
 
 ## Type docs/PORTING.md anew: from the template to a port that passes the contract test.
 .PHONY: porting
 porting:
-	@.ci/deps "a walk of docs/PORTING.md" "command -v arm-none-eabi-gcc && command -v qemu-system-arm" \
+	@.ci/deps "a walk of docs/PORTING.md" \
+	    "command -v arm-none-eabi-gcc && command -v qemu-system-arm" \
 	    gcc-arm-none-eabi qemu-system-arm || exit 3
 	@test/walk/porting/walk.py $(B)/porting
 
@@ -22,31 +25,38 @@ porting:
 .PHONY: link
 link: $(lib)
 	@.ci/deps "the ways to link" \
-	    "for t in cmake pkg-config clang tcc g++; do command -v $$t || exit; done; python3 -c 'import ensurepip'" \
+	    "for t in cmake pkg-config clang tcc g++; do command -v $$t || exit; done; \
+	python3 -c 'import ensurepip'" \
 	    cmake pkg-config clang tcc g++ python3-venv || :
 	@test/walk/link/abi.py $(lib) gcc $(notdir $(shell command -v i686-linux-gnu-gcc))
 	@test/walk/link/package.sh $(B)/link/package
 	@test/walk/link/link.py $(B)/link $(ARGS)
 
-## Run both README commands in a fresh Debian with only git, make and a C compiler (root; RELEASE=bookworm).
+## Run both README commands in a fresh Debian with only git, make and a C compiler (root;
+## RELEASE=bookworm).
 .PHONY: fresh
 fresh:
 	test/walk/fresh/fresh.sh $(RELEASE)
 
-## Measure each way of examples/link/README.md on a bare Debian 12 (root; ARGS=--update writes its table).
+## Measure each way of examples/link/README.md on a bare Debian 12 (root; ARGS=--update writes its
+## table).
 .PHONY: fresh-ways
 fresh-ways:
 	test/walk/fresh/ways.py $(B)/fresh/ways $(ARGS)
 
-## Check that all names in the documents exist, and that the documents list every page, port, scene and test folder.
+## Check that all names in the documents exist, and that the documents list every page, port, scene
+## and test folder.
 .PHONY: doc-names
 doc-names: $(exhand) $(lab)
 	@PYTHONDONTWRITEBYTECODE=1 test/walk/docs/docs.py $(exhand) $(world)
 
-## Check that no two sources need each other, no room includes what it may not, none is above its budget.
+## Check that no two sources need each other, no room includes what it may not, none is above its
+## budget.
 .PHONY: structure
 structure: $(exhand) $(world)
-	@if .ci/deps "the symbols of the PC/104" i686-linux-gnu-gcc gcc-i686-linux-gnu; then for s in minimal bilateral; do \
+	@if .ci/deps "the symbols of the PC/104" i686-linux-gnu-gcc gcc-i686-linux-gnu; \
+	    then for s in minimal bilateral; do \
 	    $(MAKE) --no-print-directory $(if $(V),,-s) PORT=pc104 SCENE=$$s all || exit; done; fi
-	@PYTHONDONTWRITEBYTECODE=1 test/walk/docs/structure_test.py 2> $(B)/structure.txt || { cat $(B)/structure.txt; exit 1; }
+	@PYTHONDONTWRITEBYTECODE=1 test/walk/docs/structure_test.py 2> $(B)/structure.txt || \
+	    { cat $(B)/structure.txt; exit 1; }
 	@PYTHONDONTWRITEBYTECODE=1 test/walk/docs/structure.py $(B)

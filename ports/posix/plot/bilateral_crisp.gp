@@ -29,8 +29,10 @@ set lmargin at screen 0.115; set rmargin at screen 0.845
 set tmargin at screen 0.86; set bmargin at screen 0.115
 set xlabel 'stiffness k (kN/m)' textcolor rgb ink
 set ylabel 'damping b (Ns/m)' textcolor rgb ink
-set label 1 sprintf("{/:Bold Crispness}: how fast force rises in a contact at %s m/s", speed) at screen 0.47, screen 0.965 center textcolor rgb ink
-set key at screen 0.47, screen 0.925 center top horizontal Left reverse maxrows 1 samplen 0.6 width -2 font ',17' textcolor rgb ink
+set label 1 sprintf("{/:Bold Crispness}: how fast force rises in a contact at %s m/s", speed) \
+    at screen 0.47, screen 0.965 center textcolor rgb ink
+set key at screen 0.47, screen 0.925 center top horizontal Left \
+    reverse maxrows 1 samplen 0.6 width -2 font ',17' textcolor rgb ink
 stats data using (column('k_n_per_m')/1e3) name 'K' nooutput
 stats data using (column('b_ns_per_m')) name 'B' nooutput
 set xrange [K_min - 1.6 : K_max + 1.6]
@@ -41,7 +43,9 @@ plot data using (column('k_n_per_m')/1e3):(column('b_ns_per_m')): \
          (column('k_n_per_m')/1e3 - dk):(column('k_n_per_m')/1e3 + dk): \
          (column('b_ns_per_m') - db):(column('b_ns_per_m') + db):(column('rise_n_per_m')/1e3) \
          with boxxyerror fs solid noborder lc palette notitle, \
-     data using (column('k_n_per_m')/1e3):(column('rested') < column('contacts') ? column('b_ns_per_m') : NaN) \
+     data using (column('k_n_per_m')/1e3):(column('rested') < column('contacts') \
+     ? column('b_ns_per_m') : NaN) \
          with points pt 2 ps 1.6 lw 1.8 lc rgb '#d62728' title 'a contact did not come to rest', \
-     '+' using (paper_k/1e3):(paper_b) every ::0::0 with points pt 3 ps 3 lw 2.6 lc rgb '#1a8f2e' title "the paper's gains"
+     '+' using (paper_k/1e3):(paper_b) every ::0::0 with points pt 3 ps 3 lw 2.6 lc rgb '#1a8f2e' \
+     title "the paper's gains"
 unset output

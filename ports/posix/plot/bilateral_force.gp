@@ -36,14 +36,16 @@ set lmargin at screen 0; set rmargin at screen 1
 set tmargin at screen 1; set bmargin at screen 0
 unset border; unset tics; unset title; unset arrow
 set xrange [0:1]; set yrange [0:1]
-set key at screen 0.5, screen 0.985 center top horizontal Left reverse maxrows 1 samplen 1.4 width -2 \
+set key at screen 0.5, screen 0.985 center top horizontal Left \
+    reverse maxrows 1 samplen 1.4 width -2 \
     textcolor rgb ink
 plot NaN with points ls 1 ps 1.4 title sprintf('pairs, %g to %g N', band_lo, band_hi), \
      NaN with points ls 2 ps 1.4 title 'other pairs', \
      NaN with points ls 3 ps 1.4 title 'mean of ten positions', \
      NaN with lines ls 4 title 'linear fit, position over force'
 set key off
-set label 9 sprintf('k = %s N/m, b = %s Ns/m, link: %s', k, b, link) at screen 0.5, screen 0.895 center \
+set label 9 sprintf('k = %s N/m, b = %s Ns/m, link: %s', k, b, link) at screen 0.5, \
+    screen 0.895 center \
     noenhanced textcolor rgb ink font ',17'
 set border 3 lc rgb ink lw 0.8
 set tics nomirror out scale 0.6 textcolor rgb ink

@@ -2,7 +2,8 @@
 # A calibration: force over current as measured, the table made of it, the straight
 # line, and below how far each point lies from that line.
 #
-#   gnuplot -e "out='c.png'; points='calibration.csv'; table='table.csv'; kf=3.3; kf_mon=3.3" calibration.gp
+#   gnuplot -e "out='c.png'; points='calibration.csv'; table='table.csv'; kf=3.3; kf_mon=3.3"
+#   calibration.gp
 #
 #   points   CSV: force_n,current_a,monitored_a,friction_n,residual_current_n,residual_monitor_n
 #   table    CSV: current_a,force_n,monitored_a,force_monitored_n
@@ -44,8 +45,10 @@ plot points using (column('current_a')):(column('force_n')):(column('friction_n'
      kf * x with lines ls 4 title 'straight line through the origin', \
      table using (column('current_a')):(column('force_n')) with lines ls 3 \
          title 'table (beyond the last point: straight on)', \
-     points using (column('current_a')):(column('force_n')) with points ls 1 title 'points, coded current', \
-     points using (column('monitored_a')):(column('force_n')) with points ls 2 title 'points, monitored current'
+     points using (column('current_a')):(column('force_n')) with points ls 1 \
+     title 'points, coded current', \
+     points using (column('monitored_a')):(column('force_n')) with points ls 2 \
+     title 'points, monitored current'
 
 unset title; unset key
 set tmargin at screen 0.37; set bmargin at screen 0.09
@@ -55,7 +58,8 @@ set ylabel 'residual (mN)' textcolor rgb ink
 set yrange [*:*]
 set offsets 0, 0, 1, 1
 plot 0 with lines ls 4, \
-     points using (column('current_a')):(column('residual_current_n')*1e3) with impulses lc rgb '#1f5fbf' lw 1.2, \
+     points using (column('current_a')):(column('residual_current_n')*1e3) with impulses \
+     lc rgb '#1f5fbf' lw 1.2, \
      points using (column('current_a')):(column('residual_current_n')*1e3) with points ls 1, \
      points using (column('monitored_a')):(column('residual_monitor_n')*1e3) with points ls 2
 unset multiplot

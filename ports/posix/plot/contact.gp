@@ -51,14 +51,16 @@ set lmargin at screen 0; set rmargin at screen 1
 set tmargin at screen 1; set bmargin at screen 0
 unset border; unset tics; unset title
 set xrange [0:1]; set yrange [0:1]
-set key at screen 0.5, screen 0.985 center top horizontal Left reverse maxrows 1 samplen 1.6 width -3 \
+set key at screen 0.5, screen 0.985 center top horizontal Left \
+    reverse maxrows 1 samplen 1.6 width -3 \
     textcolor rgb ink
 plot NaN with points ls 1 ps 1.4 title 'force commanded F_{des}', \
      NaN with lines ls 2 title 'force by the current monitor F_{mon}', \
      NaN with lines ls 3 title 'velocity dq/dt', NaN with lines ls 4 title 'contact begins'
 set key off
 limit = f_top > 21.5 && f_top < 22.6 ? '; force ends at 22 N, the drive at its 6.6 A' : ''
-set label 9 sprintf('k = %s N/m, b = %s Ns/m, link: %s%s', k, b, link, limit) at screen 0.5, screen 0.93 center \
+set label 9 sprintf('k = %s N/m, b = %s Ns/m, link: %s%s', k, b, link, limit) at screen 0.5, \
+    screen 0.93 center \
     noenhanced textcolor rgb ink font ',17'
 set border 3 lc rgb ink lw 0.8
 set tics nomirror out scale 0.5 textcolor rgb ink
@@ -75,8 +77,10 @@ do for [i = 1:n] {
     set rmargin at screen (130.0 + 765*(i-1) + 660) / width
     S = real(word(settles, i))
     set title sprintf("{/:Bold %s}, %s: %s m/s at contact\n%s", word(names, i), word(fingers, i), \
-        word(speeds, i), T0 < 0 ? 'no contact' : S < 0 ? 'F_{mon} does not stay within 5 % of its end' : \
-        sprintf('F_{mon} stays within 5 %% of its end after %.0f ms', S)) textcolor rgb ink offset 0,-0.6
+        word(speeds, i), T0 < 0 ? 'no contact' : S < 0 \
+        ? 'F_{mon} does not stay within 5 % of its end' : \
+        sprintf('F_{mon} stays within 5 %% of its end after %.0f ms', S)) \
+        textcolor rgb ink offset 0,-0.6
     set arrow 1 from first 0, graph 0 to first 0, graph 1 nohead ls 4 front
     set tmargin at screen 0.83; set bmargin at screen 0.43
     set yrange [-0.04*f_top : 1.07*f_top]

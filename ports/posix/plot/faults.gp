@@ -29,13 +29,17 @@ set key top right Left reverse samplen 2 spacing 1.15 textcolor rgb ink
 fast = word(rates, n)
 
 set multiplot layout 1,2 margins screen 0.07,0.985,0.13,0.88 spacing screen 0.06
-set label 1 'A finger presses against a wall, and something fails' at screen 0.5,0.965 center textcolor rgb ink
+set label 1 'A finger presses against a wall, and something fails' at screen 0.5,0.965 center \
+    textcolor rgb ink
 
 set title '{/:Bold released}: the dead-man switch is let go' textcolor rgb ink offset 0,-0.3
 set ylabel 'force commanded (N)' textcolor rgb ink
-set object 1 rectangle from first 0, graph 0 to first 20, graph 1 fc rgb '#f4f7fb' fs solid noborder behind
-set label 2 "no force after 20 ms,\nor after 4 ticks\nbelow 500 Hz" at first 0.7, graph 0.955 left textcolor rgb '#6d7f96' font ',15'
-plot for [i = 1:n] 'faults_'.word(rates, i).'Hz_release.csv' using (1e3*column('t_s')):(column('force_n')) \
+set object 1 rectangle from first 0, graph 0 to first 20, \
+    graph 1 fc rgb '#f4f7fb' fs solid noborder behind
+set label 2 "no force after 20 ms,\nor after 4 ticks\nbelow 500 Hz" at first 0.7, \
+    graph 0.955 left textcolor rgb '#6d7f96' font ',15'
+plot for [i = 1:n] 'faults_'.word(rates, i).'Hz_release.csv' \
+    using (1e3*column('t_s')):(column('force_n')) \
      with steps lc rgb color(i) lw 1.8 title word(rates, i).' Hz'
 unset label 1; unset label 2; unset object 1
 

@@ -62,10 +62,12 @@ do for [c = 0:2] {
     here(i, v) = strcol('friction') eq KIND && column('rate_hz') == real(word(rates, i)) ? v : NaN
     set arrow 1 from -0.04,1 to 2.04,1 nohead lc rgb '#999999' lw 1
     plot for [i = 1:words(rates)] data \
-             using (here(i, column('times'))):(column('gain_linear') > low ? column('gain_linear') : NaN) \
+             using (here(i, column('times'))):(column('gain_linear') > low ? column('gain_linear') \
+             : NaN) \
              with lines lc rgb tint(i) lw 1.2 dt (7,5), \
          for [i = 1:words(rates)] data using (here(i, column('times'))): \
-             (column('gain_stable') > 0 && valid(5) ? sqrt(column('gain_stable')*column('gain_unstable')) : NaN) \
+             (column('gain_stable') > 0 && valid(5) \
+             ? sqrt(column('gain_stable')*column('gain_unstable')) : NaN) \
              with linespoints lc rgb tint(i) lw 2.2 pt 7 ps 1.2, \
          for [i = 1:words(rates)] data using (here(i, column('times')) + 0.012*(i - 3.5)): \
              (column('gain_stable') > 0 ? NaN : 0.092) with points lc rgb tint(i) pt 10 ps 1.6

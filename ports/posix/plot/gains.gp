@@ -6,7 +6,8 @@
 #   allowed.csv  rate_hz, b_low, b_high, k_low, k_high: boxes that are allowed
 #   rule.csv     rate_hz, knot, b, k, k_min
 #   map.csv      rate_hz, k, b, stable_falls, falls (with has_map=1)
-#   rates        Hz; k_tops, b_tops: ends of the axes; paper_ks, paper_bs: the paper's point, -1 for none
+#   rates        Hz; k_tops, b_tops: ends of the axes; paper_ks, paper_bs: the paper's point, -1 for
+#   none
 # Lists have spaces between their words. Optional:
 #   out          PNG to write                            (gains.png)
 
@@ -54,7 +55,8 @@ boxes = "'allowed.csv' using (mine((column('k_low_n_per_m')+column('k_high_n_per
         "(column('k_low_n_per_m')/1e3):(column('k_high_n_per_m')/1e3):". \
         "(column('b_low_ns_per_m')):(column('b_high_ns_per_m')) with boxxyerror ls 4, ". \
         "'rule.csv' using (mine(column('k_n_per_m')/1e3)):(column('b_ns_per_m')) with lines ls 5"
-dots(how, ls) = sprintf("'map.csv' using (column('k_n_per_m')/1e3):(%s(column('b_ns_per_m'))) with points ls %d", how, ls)
+dots(how, ls) = sprintf("'map.csv' using (column('k_n_per_m')/1e3):". \
+    "(%s(column('b_ns_per_m'))) with points ls %d", how, ls)
 cells = dots('none', 3).', '.dots('some', 2).', '.dots('all', 1)
 
 step(top) = (p = 10**floor(log10(top)), top/p > 5 ? 2*p : top/p > 2 ? p : p/2)
@@ -76,7 +78,8 @@ do for [i = 1:panels] {
     if (c == 0) { set ylabel 'damping b (Ns/m)' textcolor rgb ink } else { unset ylabel }
     mine(v) = column('rate_hz') == RATE ? v : NaN
     all(v) = mine(column('stable_falls') == column('falls') ? v : NaN)
-    some(v) = mine(column('stable_falls') < column('falls') && 10*column('stable_falls') >= 9*column('falls') ? v : NaN)
+    some(v) = mine(column('stable_falls') < column('falls') && 10*column('stable_falls') >= \
+        9*column('falls') ? v : NaN)
     none(v) = mine(10*column('stable_falls') < 9*column('falls') ? v : NaN)
     pk = real(word(paper_ks, i)); pb = real(word(paper_bs, i))
     set label 1 '' at (pk < 0 ? NaN : pk/1e3), pb point ls 6 front

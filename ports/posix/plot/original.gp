@@ -27,7 +27,8 @@ set multiplot layout 2,1
 set xrange [-0.01:zoom_s]
 set key top right textcolor rgb ink
 set ylabel 'past the wall (mm)' textcolor rgb ink
-plot for [i = 1:n] word(files, i) using 't_s':(column('past_m')*1e3) with steps ls i == n ? 3 : i title names[i]
+plot for [i = 1:n] word(files, i) using 't_s':(column('past_m')*1e3) with steps ls i == n ? 3 : i \
+    title names[i]
 set key off
 set ylabel 'monitored force (N)' textcolor rgb ink
 set xlabel 'time since contact (s)' textcolor rgb ink

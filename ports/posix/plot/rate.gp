@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# What a rate of the loop buys: the largest stable stiffness over the rate, simulated and linear, and
-# the paper's rows.
+# What a rate of the loop buys: the largest stable stiffness over the rate, simulated and linear,
+# and the paper's rows.
 #
 #   gnuplot -e "data='stiffness.csv'" rate.gp
 #
@@ -29,13 +29,20 @@ set arrow 1 from 2000, graph 0 to 2000, graph 1 nohead lc rgb '#1a8f2e' lw 1.4 d
 set label 1 'the paper ends' at 2000, graph 0.04 offset 0.8,0 textcolor rgb '#1a8f2e'
 k(n) = column(n) > 0 ? column(n)/1e3 : NaN
 if (exists("held")) {
-    plot data using 1:(k('linear_k_n_per_m')) with linespoints lc rgb '#d07800' lw 2.2 dt (9,4) pt 6 ps 1.2 title 'linear test, {/Symbol r} < 1', \
-         data using 1:(k('k_n_per_m')) with linespoints lc rgb '#1f5fbf' lw 2.4 pt 7 ps 1.4 title 'simulated, velocity over 2 ticks', \
-         held using 1:(k('k_n_per_m')) with points lc rgb '#7a1fa2' pt 9 ps 2.0 title 'simulated, velocity over 0.8 ms', \
-         data using 1:(k('paper_k_n_per_m')) with points lc rgb '#1a8f2e' pt 3 ps 2.4 lw 2.2 title 'paper, Table II: k'
+    plot data using 1:(k('linear_k_n_per_m')) with linespoints \
+        lc rgb '#d07800' lw 2.2 dt (9,4) pt 6 ps 1.2 title 'linear test, {/Symbol r} < 1', \
+         data using 1:(k('k_n_per_m')) with linespoints lc rgb '#1f5fbf' lw 2.4 pt 7 ps 1.4 \
+         title 'simulated, velocity over 2 ticks', \
+         held using 1:(k('k_n_per_m')) with points lc rgb '#7a1fa2' pt 9 ps 2.0 \
+         title 'simulated, velocity over 0.8 ms', \
+         data using 1:(k('paper_k_n_per_m')) with points lc rgb '#1a8f2e' pt 3 ps 2.4 lw 2.2 \
+         title 'paper, Table II: k'
 } else {
-    plot data using 1:(k('linear_k_n_per_m')) with linespoints lc rgb '#d07800' lw 2.2 dt (9,4) pt 6 ps 1.2 title 'linear test, {/Symbol r} < 1', \
-         data using 1:(k('k_n_per_m')) with linespoints lc rgb '#1f5fbf' lw 2.4 pt 7 ps 1.4 title 'simulated', \
-         data using 1:(k('paper_k_n_per_m')) with points lc rgb '#1a8f2e' pt 3 ps 2.4 lw 2.2 title 'paper, Table II: k'
+    plot data using 1:(k('linear_k_n_per_m')) with linespoints \
+        lc rgb '#d07800' lw 2.2 dt (9,4) pt 6 ps 1.2 title 'linear test, {/Symbol r} < 1', \
+         data using 1:(k('k_n_per_m')) with linespoints lc rgb '#1f5fbf' lw 2.4 pt 7 ps 1.4 \
+         title 'simulated', \
+         data using 1:(k('paper_k_n_per_m')) with points lc rgb '#1a8f2e' pt 3 ps 2.4 lw 2.2 \
+         title 'paper, Table II: k'
 }
 unset output

@@ -3,7 +3,8 @@
 # bits.sh DIR LOGS EXHAND...: every EXHAND (other compilers, optimisations, CPUs) must
 # make the same tables and logs as those in LOGS, and replay these bit for bit from
 # the start and from keyframes. Works in DIR; ends with `N passed, N failed`.
-# Environment: JOBS (1), of them at a time; FAULTS, what `exhand-lab faults --rate 100` says, when it is to be compared, too.
+# Environment: JOBS (1), of them at a time; FAULTS, what `exhand-lab faults --rate 100` says, when
+# it is to be compared, too.
 
 # one EXHAND: what it says, and its `N of N` at the end
 one()
@@ -25,7 +26,8 @@ one()
         verdict "bilateral: ${made##*/}" $?
     done
     if [ -n "${FAULTS:-}" ]; then
-        "$exe" faults --rate 100 --jobs 1 >"$work/faults.txt" 2>&1 && cmp "$FAULTS" "$work/faults.txt"
+        "$exe" faults --rate 100 --jobs 1 >"$work/faults.txt" 2>&1 &&
+            cmp "$FAULTS" "$work/faults.txt"
         verdict faults $?
     fi
     "$exe" glove --record "$out/glove.exh" --does poses --seconds 5 >"$work/glove.txt" 2>&1
@@ -44,7 +46,8 @@ one()
 }
 verdict() # NAME STATUS
 {
-    if [ "$2" = 0 ]; then passed=$((passed + 1)); else failed=$((failed + 1)) && echo "FAIL $exe: $1"; fi
+    if [ "$2" = 0 ]; then passed=$((passed + 1)); else failed=$((failed + 1)) &&
+        echo "FAIL $exe: $1"; fi
 }
 
 if [ "$1" = --one ]; then
@@ -58,7 +61,8 @@ dir=$1 logs=$2
 shift 2
 rm -rf "$dir"
 mkdir -p "$dir"
-for exe in "$@"; do echo "$exe"; done | xargs -n 1 -P "${JOBS:-1}" "$0" --one "$dir" "$logs" >"$dir/said"
+for exe in "$@"; do echo "$exe"; done | xargs -n 1 -P "${JOBS:-1}" "$0" --one "$dir" "$logs" \
+    >"$dir/said"
 cat "$dir/said"
 awk -v want=$# '
     / [0-9]+ of [0-9]+$/ { n++; passed += $(NF - 2); all += $NF }

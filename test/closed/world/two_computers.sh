@@ -1,9 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # two_computers.sh EXHAND WORLD: the whole command and the whole world program, with nothing between
-# them but UDP: as two processes on loopback, and in two network namespaces with a cable between where the
-# machine lets this (root, or user namespaces; it says so where not). The world's material is stiffer than
-# the controller's own and must be what is felt, also by a controller that was started anew.
+# them but UDP: as two processes on loopback, and in two network namespaces with a cable between
+# where the machine lets this (root, or user namespaces; it says so where not). The world's material
+# is stiffer than the controller's own and must be what is felt, also by a controller that was
+# started anew.
 exhand=$1 world=$2
 if [ ! -x "$exhand" ] || [ ! -x "$world" ]; then
     echo "usage: two_computers.sh EXHAND WORLD" >&2
@@ -13,7 +14,8 @@ fi
 # Without root: root in a user namespace, where there is one, with a /run of its own for ip.
 if [ "$(id -u)" != 0 ] && [ -z "$TWO_INSIDE" ] && unshare -Urnm true 2>/dev/null; then
     export TWO_INSIDE=1
-    exec unshare -Urnm sh -c 'mount -t tmpfs none /run && ip link set lo up && exec "$@"' sh "$0" "$@"
+    exec unshare -Urnm sh -c 'mount -t tmpfs none /run && ip link set lo up && exec "$@"' sh "$0" \
+        "$@"
 fi
 
 dir=$(mktemp -d) || exit 3
@@ -52,7 +54,8 @@ scene()
 # Force over depth, held at rest, N/m.
 stiffness() # DIRECTORY
 {
-    awk -F, 'NR > 1 && $6 == 1 && $3 < 0.002 && $3 > -0.002 && $2 - $9 > 1e-4 { n++; k += $4 / ($2 - $9) }
+    awk -F, 'NR > 1 && $6 == 1 && $3 < 0.002 && $3 > -0.002 && $2 - $9 > 1e-4 {
+            n++; k += $4 / ($2 - $9) }
              END { print (n > 100 ? int(k / n) : 0) }' "$1/bilateral_fast_index.csv"
 }
 
@@ -63,7 +66,8 @@ near() # VALUE WANTED: within 4 %, as 0.1 N pulls all the time
 
 start_world() # PREFIX... ; listens at $at
 {
-    "$@" "$world" --headless --listen "$at" --scene "$dir/scene.world" --seconds 60 --trace "$dir/trace.csv" >"$dir/world.out" 2>"$dir/world.err" &
+    "$@" "$world" --headless --listen "$at" --scene "$dir/scene.world" --seconds 60 \
+        --trace "$dir/trace.csv" >"$dir/world.out" 2>"$dir/world.err" &
     pid=$!
     sleep 0.3
 }
@@ -79,10 +83,12 @@ felt() # WHERE LIFE K PREFIX...
 {
     where=$1 life=$2 k=$3
     shift 3
-    "$@" timeout 60 "$exhand" bilateral --udp "$at" --speed fast --approaches 1 --set mat_f_max=40 --out "$dir/out" \
+    "$@" timeout 60 "$exhand" bilateral --udp "$at" --speed fast --approaches 1 --set mat_f_max=40 \
+        --out "$dir/out" \
         >"$dir/said" 2>&1
     status=$?
-    check "$where: controller $life ends with status $status: $(tail -n 1 "$dir/said")" [ $status = 0 ]
+    check "$where: controller $life ends with status $status: $(tail -n 1 "$dir/said")" \
+        [ $status = 0 ]
     got=$(stiffness "$dir/out")
     echo "  | $where, controller $life: $got N/m felt, the scene's $k, the controller's own 20000"
     check "$where, controller $life: $got N/m felt, the scene has $k" near "$got" "$k"
@@ -92,7 +98,8 @@ felt() # WHERE LIFE K PREFIX...
 # Every tick of each controller from its first frame on: "CONTROLLERS THOUSANDS-OF-FRAMES ODD-ONES".
 traced()
 {
-    awk -F, 'NR > 1 { if (n && $1 == 0) { lives++ } else if (n && ($1 != number + 1 || $2 != tick + 1)) { odd++ }
+    awk -F, 'NR > 1 { if (n && $1 == 0) { lives++ }
+                  else if (n && ($1 != number + 1 || $2 != tick + 1)) { odd++ }
                       n++; number = $1; tick = $2 }
              END { print lives + 1, int(n / 1000), odd + 0 }' "$dir/trace.csv"
 }
@@ -106,7 +113,8 @@ meet() # WHERE WORLD-PREFIX CONTROLLER-PREFIX
     felt "$where" 1 30000 $here
     felt "$where" 2 30000 $here
     end_world
-    check "$where: traces (controllers, thousands of frames, odd): $(traced)" [ "$(traced | sed 's/ [1-9][0-9]* / n /')" = "2 n 0" ]
+    check "$where: traces (controllers, thousands of frames, odd): $(traced)" \
+        [ "$(traced | sed 's/ [1-9][0-9]* / n /')" = "2 n 0" ]
     check "$where: nothing is said: $(cat "$dir/world.err")" [ ! -s "$dir/world.err" ]
     scene 25000
     start_world $there
@@ -117,7 +125,8 @@ meet() # WHERE WORLD-PREFIX CONTROLLER-PREFIX
 cable()
 {
     {
-        ip netns add "$c" && ip netns add "$w" && ip -n "$c" link add v0 type veth peer name v1 netns "$w" &&
+        ip netns add "$c" && ip netns add "$w" &&
+            ip -n "$c" link add v0 type veth peer name v1 netns "$w" &&
             ip -n "$c" addr add 10.77.1.1/24 dev v0 && ip -n "$w" addr add 10.77.1.2/24 dev v1 &&
             ip -n "$c" link set v0 up && ip -n "$w" link set v1 up
     } >/dev/null 2>&1

@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# window.sh WORLD DIR [KEY...]: opens the window of the world simulator on a screen of its own, presses keys as
-# somebody would, and leaves; in DIR the last draw list. Prints the program's exit status. Exit 77: no screen.
+# window.sh WORLD DIR [KEY...]: opens the window of the world simulator on a screen of its own,
+# presses keys as somebody would, and leaves; in DIR the last draw list. Prints the program's exit
+# status. Exit 77: no screen.
 world=$1 dir=$2
 shift 2
 command -v Xvfb >/dev/null && command -v xdotool >/dev/null || exit 77
@@ -13,7 +14,8 @@ for _ in $(seq 100); do [ -s "$dir/display" ] && break; sleep 0.1; done
 [ -s "$dir/display" ] || exit 77
 DISPLAY=:$(cat "$dir/display")
 export DISPLAY
-SDL_VIDEODRIVER=x11 "$world" --scene ports/posix/world/scenes/collision.world --seconds 60 --list "$dir/list" >"$dir/out" 2>&1 &
+SDL_VIDEODRIVER=x11 "$world" --scene ports/posix/world/scenes/collision.world --seconds 60 \
+    --list "$dir/list" >"$dir/out" 2>&1 &
 program=$!
 for _ in $(seq 100); do
     window=$(xdotool search --name '^Collision with simple bodies$' 2>/dev/null | head -n 1)
@@ -26,7 +28,8 @@ if [ "$window" ]; then
     sleep 0.5
     for key in "$@"; do xdotool key --delay 20 "$key"; sleep 0.05; done
     sleep 1.5
-    xwd -silent -root -out "$dir/screen.xwd" 2>/dev/null # to be looked at, where there is such a program
+    # to be looked at, where there is such a program
+    xwd -silent -root -out "$dir/screen.xwd" 2>/dev/null
     xdotool key q
     for _ in $(seq 50); do kill -0 $program 2>/dev/null || break; sleep 0.1; done
     kill -9 $program 2>/dev/null && echo "q does not end it"

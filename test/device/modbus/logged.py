@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """What was read of a box's ticks, in its log.
 
-logged.py READ MAP CSV RATE: READ by strangers.py, MAP is `exhand regs --csv`, CSV `exhand csv --all` of the
-log, RATE in Hz. Of each request all outputs and limits must be those of one tick, from the tick read
-before it to the one read behind it. CSV has nine digits, so that much is compared. Exit 1 if one is not.
+logged.py READ MAP CSV RATE: READ by strangers.py, MAP is `exhand regs --csv`, CSV `exhand csv
+--all` of the log, RATE in Hz. Of each request all outputs and limits must be those of one tick,
+from the tick read before it to the one read behind it. CSV has nine digits, so that much is
+compared. Exit 1 if one is not.
 """
 import csv
 import json
@@ -14,7 +15,8 @@ import sys
 LIMITS, TICK = 0x14, 0x08
 reads = json.load(open(sys.argv[1]))
 rate = float(sys.argv[4])
-rows = [r for r in csv.DictReader(open(sys.argv[2])) if r["table"] == "input" and int(r["address"], 16) >> 12 == 1]
+rows = [r for r in csv.DictReader(open(sys.argv[2])) if r["table"] == "input" and
+        int(r["address"], 16) >> 12 == 1]
 frac = [int(re.search(r"q(\d+)", r["format"]).group(1)) if "q" in r["format"] else 0 for r in rows]
 limits = [i for i, r in enumerate(rows) if r["name"].split("[")[0] == "limits"]
 
@@ -23,7 +25,8 @@ logged = {}
 with open(sys.argv[3]) as f:
     next(f)
     for line in f:
-        t = round(float(line[: line.index(",")]) * rate) + 1  # behind the first tick, of 0 s, the head counts 1
+        # behind the first tick, of 0 s, the head counts 1
+        t = round(float(line[: line.index(",")]) * rate) + 1
         if t in wanted:
             logged[t] = [float(v) for v in line.split(",")[1 : len(rows) + 1]]
 
@@ -39,7 +42,8 @@ def is_of(t, table, at, values):
     for i in limits:
         acting |= int(row[i])
     if table == "discrete":
-        return all(v == acting >> at + i - 0x80 & 1 for i, v in enumerate(values) if 0x80 <= at + i < 0xA0)
+        return all(v == acting >> at + i - 0x80 & 1 for i, v in enumerate(values)
+                   if 0x80 <= at + i < 0xA0)
     for i in range(0, len(values) - 1, 2):
         a, w = at + i, values[i] << 16 | values[i + 1]
         k = (a & 0xFFF) // 2

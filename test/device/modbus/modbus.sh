@@ -5,12 +5,17 @@ set -eu
 B=${B:-build}
 work=$B/modbus
 mkdir -p "$work"
-python3 -c 'import sys; sys.path.insert(0, "'"$B"'/pymodbus"); import pymodbus, serial' 2>/dev/null ||
+python3 -c 'import sys; sys.path.insert(0, "'"$B"'/pymodbus"); import pymodbus, serial' \
+    2>/dev/null ||
     python3 -m pip install -q --no-deps --upgrade --target "$B/pymodbus" pymodbus pyserial ||
-    { echo "modbus: missing: pymodbus, pyserial: pip install --target $B/pymodbus pymodbus pyserial" >&2; exit 3; }
+    {
+        echo "modbus: missing: pymodbus, pyserial:" \
+            "pip install --target $B/pymodbus pymodbus pyserial" >&2
+        exit 3
+    }
 
-# What stands behind "modbus: " once the box has told where it serves: a busy machine takes its time, a box that
-# has ended never will.
+# What stands behind "modbus: " once the box has told where it serves: a busy machine takes its
+# time, a box that has ended never will.
 told_by()
 {
     local from=$SECONDS place state="has ended"
@@ -21,7 +26,8 @@ told_by()
         sleep 0.1
     done
     ! kill -0 "$1" 2>/dev/null || state="runs"
-    { echo "modbus: no place told after $((SECONDS - from)) s; the box $state, and said:"; cat "$work/said"; } >&2
+    { echo "modbus: no place told after $((SECONDS - from)) s; the box $state, and said:"
+    cat "$work/said"; } >&2
     return 1
 }
 
@@ -37,12 +43,14 @@ strangers()
     rm -f "$work/saved" "$work/log"
     : > "$work/said"
     # gripped and let go at once: it stays OFF; what the device does goes on
-    "$B/posix/exhand" run --scene "$1" --pace --rate $rate --seconds 600 --let-go 0.001 --slack 1 --save "$work/saved" \
+    "$B/posix/exhand" run --scene "$1" --pace --rate $rate --seconds 600 --let-go 0.001 --slack 1 \
+        --save "$work/saved" \
         --log "$work/log" --modbus "$2" > "$work/said" 2>&1 & box=$!
     place=$(told_by $box)
     sleep 0.5
     echo "scene $1, ${2%%:*}"
-    PYTHONPATH=$B/pymodbus python3 test/device/modbus/strangers.py "${3:-${place##*:}}" "$work/map.csv" "$work/saved" "$work/read.json"
+    PYTHONPATH=$B/pymodbus python3 test/device/modbus/strangers.py "${3:-${place##*:}}" \
+        "$work/map.csv" "$work/saved" "$work/read.json"
     kill -INT $box
     wait $box || [ $? = 130 ]
     box=0
@@ -62,5 +70,6 @@ strangers drop "rtu:$ours:115200" "$theirs"
 kill $line
 line=0
 
-EXH_READS=${READS:-1000000} EXH_TEST=no_read_is_torn LIMIT=1200 test/run.sh "$B/test/sim/modbus_reads_test"
+EXH_READS=${READS:-1000000} EXH_TEST=no_read_is_torn LIMIT=1200 test/run.sh \
+    "$B/test/sim/modbus_reads_test"
 EXH_REQUESTS=${REQUESTS:-1000000} LIMIT=1200 test/run.sh "$B/test/sim/modbus_fuzz_test"

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""A serial line between two programs: pair.py says the two ends, and passes bytes between them until it is ended.
+"""A serial line between two programs: pair.py says the two ends, and passes bytes between them
+until it is ended.
 
 Two pseudo-terminals, crossed. It holds the ends open itself, so a program may come and go.
 """

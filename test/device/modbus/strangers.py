@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Two strangers at the registers of a running box: pymodbus, and mbpoll beside it.
 
-strangers.py WHERE MAP SAVED READ: WHERE is a port of 127.0.0.1 or the device of a serial line, MAP `exhand regs --csv`,
-SAVED where the box was told to save. The box is OFF: what one reads the other must, but for the outputs and limits of the tick, which move (the
-simulated finger goes on all the same). What was read of those goes to READ, with the ticks around;
-logged.py looks for it in the box's log. Exit 1 at the first thing that is wrong.
+strangers.py WHERE MAP SAVED READ: WHERE is a port of 127.0.0.1 or the device of a serial line, MAP
+`exhand regs --csv`, SAVED where the box was told to save. The box is OFF: what one reads the other
+must, but for the outputs and limits of the tick, which move (the simulated finger goes on all the
+same). What was read of those goes to READ, with the ticks around; logged.py looks for it in the
+box's log. Exit 1 at the first thing that is wrong.
 """
 import csv
 import json
@@ -20,7 +21,8 @@ where, saved, read_file = sys.argv[1], sys.argv[3], sys.argv[4]
 serial = not where.isdigit()
 rows = list(csv.DictReader(open(sys.argv[2])))
 if serial:
-    box = ModbusSerialClient(where, baudrate=115200)  # 8N1: a pseudo-terminal refuses it the parity it has not
+    # 8N1: a pseudo-terminal refuses it the parity it has not
+    box = ModbusSerialClient(where, baudrate=115200)
     PLACE, HOST = ("-m", "rtu", "-b", "115200", "-P", "none"), where
 else:
     box = ModbusTcpClient("127.0.0.1", port=int(where))
@@ -43,7 +45,8 @@ def words(answer, what):
 
 
 def exception(answer, code, what):
-    check(answer.isError() and getattr(answer, "exception_code", None) == code, f"{what}: {answer}, not {code}")
+    check(answer.isError() and getattr(answer, "exception_code", None) == code,
+          f"{what}: {answer}, not {code}")
 
 
 def u32(pair):
@@ -112,16 +115,19 @@ def check_values(seen):
         raw_row = row_of.get((table, at - 0x2000))
         if r["format"] != "f32" or raw_row is None:
             continue
-        for _ in range(3 if serial else 100):  # between two readings of the same raw value, which may have moved and come back
+        # between two readings of the same raw value, which may have moved and come back
+        for _ in range(3 if serial else 100):
             before = head()
-            raw, got, again = (words(read[table](a, count=2), r["name"]) for a in (at - 0x2000, at, at - 0x2000))
+            raw, got, again = (words(read[table](a, count=2), r["name"])
+                               for a in (at - 0x2000, at, at - 0x2000))
             behind = head()
             keep(before, behind, "pymodbus", table, at - 0x2000, raw)
             keep(before, behind, "pymodbus", table, at, got)
             same = raw == again and u32(got) == float_of(i32(raw), frac_of(raw_row))
             if same or (raw == again and not moves(table, at)):
                 break
-        # over a line three requests are of three ticks: what moves is looked for in the log, float and raw
+        # over a line three requests are of three ticks: what moves is looked for in the log, float
+        # and raw
         check(same or (serial and moves(table, at)), f"{r['name']}: float of {i32(raw)}")
         floats += 1
     check(seen["input", 0] == 0x4558 and seen["input", 1] == 0x4831, "magic")
@@ -137,7 +143,8 @@ def check_image(seen):
     image = open(saved, "rb").read()
     n = struct.unpack_from("<H", image, 6)[0]
     for i, v in enumerate(struct.unpack_from(f"<{n}i", image, 12)):
-        check(pair(v) == [seen["input", 0x5000 + 2 * i], seen["input", 0x5001 + 2 * i]], f"parameter {i} is {v}")
+        check(pair(v) == [seen["input", 0x5000 + 2 * i], seen["input", 0x5001 + 2 * i]],
+              f"parameter {i} is {v}")
     return n
 
 
@@ -176,7 +183,8 @@ def pymodbus_refused():
     exception(box.read_discrete_inputs(192, count=1), 2, "no discrete input")
     exception(box.write_coil(4, True), 3, "RUN, which was not allowed")
     exception(box.write_coils(0, [True, True]), 3, "APPLY with DISCARD")
-    if not serial:  # of a function with data libmodbus looks for the CRC in the wrong place: no answer
+    # of a function with data libmodbus looks for the CRC in the wrong place: no answer
+    if not serial:
         exception(box.read_fifo_queue(address=0), 1, "function 24")
     exception(box.read_exception_status(), 1, "function 7")
     exception(box.report_device_id(), 1, "function 17")
@@ -206,16 +214,19 @@ def mbpoll_reads(seen):
         status, said = mbpoll("-t", TYPE[table], "-r", str(at), "-c", str(n), HOST)
         behind = head()
         got = [(int(where), int(v, 0)) for where, v in re.findall(r"\[(\d+)\]:\s+(\S+)", said)]
-        check(status == 0 and [w for w, _ in got] == list(range(at, at + n)), f"mbpoll {table} {at:#x}: {said}")
+        check(status == 0 and [w for w, _ in got] == list(range(at, at + n)),
+              f"mbpoll {table} {at:#x}: {said}")
         value = dict(got)
         keep(before, behind, "mbpoll", table, at, [v for _, v in got])
         for a in (TICK, MISSED):
             if table == "input" and a in value:
                 v = u32([value.pop(a), value.pop(a + 1)])
-                check(before[a] <= v <= behind[a], f"mbpoll {a:#x}: {v}, not from {before[a]} to {behind[a]}")
+                check(before[a] <= v <= behind[a],
+                      f"mbpoll {a:#x}: {v}, not from {before[a]} to {behind[a]}")
         for where, v in value.items():
             if v != seen[table, where]:
-                check(moves(table, where), f"mbpoll {table} {where:#x}: {v:#x}, not {seen[table, where]:#x}")
+                check(moves(table, where),
+                      f"mbpoll {table} {where:#x}: {v:#x}, not {seen[table, where]:#x}")
                 moved += 1
     return len(seen), moved
 
@@ -232,7 +243,8 @@ def mbpoll_writes(seen):
         v = pair((low + high) // 2 + 1)
         status, said = mbpoll("-t", "4:hex", "-r", str(at), HOST, *[f"0x{w:04X}" for w in v])
         if fixed:
-            check(v == now or (status != 0 and "Illegal data value" in said), f"mbpoll {r['name']}: {said}")
+            check(v == now or (status != 0 and "Illegal data value" in said),
+                  f"mbpoll {r['name']}: {said}")
             continue
         check(status == 0, f"mbpoll {r['name']}: {said}")
         back = words(box.read_holding_registers(at, count=2), r["name"])
@@ -245,16 +257,20 @@ def mbpoll_writes(seen):
     check(mbpoll("-t", "0", "-r", "1", HOST, "1")[0] == 0, "mbpoll: DISCARD")
     for (table, at), v in seen.items():
         if table == "holding" and at < 0x7000:
-            check(words(box.read_holding_registers(at, count=1), "")[0] == v, f"{at:#x} was not discarded")
+            check(words(box.read_holding_registers(at, count=1), "")[0] == v,
+                  f"{at:#x} was not discarded")
     return live
 
 
 seen = pymodbus_reads()
-print(f"pymodbus: {len(seen)} registers and bits, {check_values(seen)} floats of raw values,", end=" ")
-print(f"{check_image(seen)} parameters as saved, {pymodbus_writes(seen)} written, refused as they should be")
+print(f"pymodbus: {len(seen)} registers and bits, {check_values(seen)} floats of raw values,",
+      end=" ")
+print(f"{check_image(seen)} parameters as saved, {pymodbus_writes(seen)} written, refused as they "
+      f"should be")
 pymodbus_refused()
 seen = pymodbus_reads()  # the box has counted a command
 same, moved = mbpoll_reads(seen)
-print(f"mbpoll:   {same} with the same values, but {moved} in motion; {mbpoll_writes(seen)} written, refused likewise")
+print(f"mbpoll:   {same} with the same values, but {moved} in motion; {mbpoll_writes(seen)} "
+      f"written, refused likewise")
 with open(read_file, "w") as f:
     json.dump(of_tick, f)

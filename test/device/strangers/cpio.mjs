@@ -13,6 +13,7 @@ function entry(inode, name, mode, data) {
 
 // files: {name: [mode, contents]}
 export function archive(files) {
-    const entries = Object.entries(files).map(([name, [mode, data]], i) => entry(i + 1, name, mode, data));
+    const entries = Object.entries(files).map(([name, [mode, data]], i) => entry(i + 1, name, mode,
+        data));
     return Buffer.concat([...entries, entry(0, "TRAILER!!!", 0, Buffer.alloc(0))]);
 }

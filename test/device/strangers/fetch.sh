@@ -14,8 +14,10 @@ missing()
     exit 3
 }
 
-command -v apt-get >/dev/null && command -v dpkg-deb >/dev/null || missing "apt-get (this needs a Debian 12)"
-command -v npm >/dev/null || missing "npm: install by: sudo apt-get install -y --no-install-recommends npm"
+command -v apt-get >/dev/null && command -v dpkg-deb >/dev/null ||
+    missing "apt-get (this needs a Debian 12)"
+command -v npm >/dev/null ||
+    missing "npm: install by: sudo apt-get install -y --no-install-recommends npm"
 
 private_apt()
 {
@@ -35,7 +37,8 @@ END
     export APT_CONFIG="$dir/apt/apt.conf"
 }
 
-# A mirror that is being renewed may lack one of several lists; what counts is whether the packages come.
+# A mirror that is being renewed may lack one of several lists; what counts is whether the packages
+# come.
 packages()
 {
     for list in /etc/apt/sources.list.d/debian.sources /etc/apt/sources.list; do
@@ -56,20 +59,23 @@ unpack()
 {
     rm -rf root module && mkdir root module
     dpkg-deb --fsys-tarfile deb/linux-image-*.deb |
-        tar -x -C root --wildcards './boot/vmlinuz*' '*/comedi.ko*' '*/comedi_8255.ko*' '*/s526.ko*' '*/dmm32at.ko*' ||
+        tar -x -C root --wildcards './boot/vmlinuz*' '*/comedi.ko*' '*/comedi_8255.ko*' \
+        '*/s526.ko*' '*/dmm32at.ko*' ||
         missing "the drivers in $kernel"
     for p in seabios lld-14; do dpkg-deb -x deb/"$p"_*.deb root || missing "$p"; done
     find root/lib/modules -name '*.ko.xz' -exec xz -d {} +
     find root/lib/modules -name '*.ko' -exec cp {} module \;
     cp root/boot/vmlinuz* vmlinuz
-    [ "$(ls module | wc -l)" = 4 ] || missing "one of the drivers comedi, comedi_8255, s526, dmm32at in $kernel"
+    [ "$(ls module | wc -l)" = 4 ] ||
+        missing "one of the drivers comedi, comedi_8255, s526, dmm32at in $kernel"
 }
 
 v86()
 {
     mkdir -p npm && cd npm || exit 3
     [ -f package.json ] || echo '{"private": true}' > package.json
-    npm install --silent --no-audit --no-fund v86 > log 2>&1 || { tail -n 5 log >&2; missing "v86 from npm"; }
+    npm install --silent --no-audit --no-fund v86 > log 2>&1 ||
+        { tail -n 5 log >&2; missing "v86 from npm"; }
     cd ..
 }
 

@@ -4,8 +4,8 @@
 // In s526_ai_insn_read the compiler has made of  (1 << (5 + (chan & 0x9))) | (chan & 0xf) << 1  :
 //     83 e2 09   and $0x9,%edx        83 c2 05   add $5,%edx
 //     83 e0 1e   and $0x1e,%eax       0f ab d0   bts %edx,%eax
-// The mask must be 0xf for ten channels. Debian signs its modules: a changed one is rejected as long
-// as the signature is at its end, and loaded, with the kernel's remark, without.
+// The mask must be 0xf for ten channels. Debian signs its modules: a changed one is rejected as
+// long as the signature is at its end, and loaded, with the kernel's remark, without.
 
 const BUG = Buffer.from([0x83, 0xe2, 0x09, 0x83, 0xe0, 0x1e, 0x83, 0xc2, 0x05, 0x0f, 0xab, 0xd0]);
 const MAGIC = Buffer.from("~Module signature appended~\n");

@@ -21,7 +21,8 @@ const file = (...name) => fs.readFileSync(path.join(dir, ...name));
 const CARDS = [[0x280, 0x80, 2], [0x300, 0x10, 1]]; // from, ports, bytes of an access
 const PIN = 0xe000, MARK = 0xe008, POWER = 0xe00c, FILE = 0xe010, EXIT = 0xf4;
 
-const { V86 } = await import(pathToFileURL(path.join(dir, "npm/node_modules/v86/build/libv86.mjs")));
+const { V86 } = await import(pathToFileURL(path.join(dir,
+    "npm/node_modules/v86/build/libv86.mjs")));
 const emu = (await WebAssembly.instantiate(file("box.wasm"), {})).instance.exports;
 emu.box_open(0, 0);
 
@@ -47,7 +48,8 @@ const machine = new V86({
     vga_bios: bios("vgabios-stdvga.bin"),
     bzimage: buffer(file("vmlinuz")),
     initrd: buffer(initrd),
-    cmdline: `console=ttyS0 quiet panic=-1 nokaslr mitigations=off random.trust_cpu=on mask=${bug ? 9 : 0}`,
+    cmdline: "console=ttyS0 quiet panic=-1 nokaslr mitigations=off random.trust_cpu=on " +
+        `mask=${bug ? 9 : 0}`,
     memory_size: 96 * 1024 * 1024,
     vga_memory_size: 2 * 1024 * 1024,
     autostart: false,
@@ -72,7 +74,8 @@ function interrupt() {
     const level = emu.box_interrupt();
     if (level !== up) {
         up = level;
-        if (up) { machine.v86.cpu.device_raise_irq(IRQ); } else { machine.v86.cpu.device_lower_irq(IRQ); }
+        if (up) { machine.v86.cpu.device_raise_irq(IRQ); } else {
+            machine.v86.cpu.device_lower_irq(IRQ); }
     }
 }
 

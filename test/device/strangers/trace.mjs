@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Trace: the port accesses of marked sequences, as text of a C table (test/device/emu/linux_trace.inc).
+// Trace: the port accesses of marked sequences, as text of a C table
+// (test/device/emu/linux_trace.inc).
 
 import fs from "node:fs";
 
@@ -32,13 +33,16 @@ export class Trace {
     }
 
     text() {
-        let s = "/* Port accesses of Debian's drivers s526 and dmm32at, as they were seen by test/device/strangers, which\n" +
-            " * writes this file (--update) and compares with it. Of readings in a row of one port, the last. */\n";
+        let s = "/* Port accesses of Debian's drivers s526 and dmm32at, as they were seen by\n" +
+            " * test/device/strangers, which writes this file (--update) and compares with it.\n" +
+            " * Of readings in a row of one port, the last. */\n";
         for (let n = 1; n < NAMES.length; n++) {
             s += `\n/* ${n}: ${NAMES[n]} */\n`;
-            for (const a of this.of[n]) {
-                s += `{${n}, '${a.kind}', ${a.width}, ${hex(a.port, 3)}, ${hex(a.value, 2 * a.width)}},\n`;
-            }
+            this.of[n].forEach((a, i, all) => {
+                s += `{${n}, '${a.kind}', ${a.width}, ` +
+                    `${hex(a.port, 3)}, ${hex(a.value, 2 * a.width)}},`;
+                s += i % 3 === 2 || i + 1 === all.length ? "\n" : " "; // three in a line
+            });
         }
         return s;
     }
@@ -49,12 +53,14 @@ export class Trace {
         if (update) { fs.writeFileSync(golden, text); }
         const want = fs.existsSync(golden) ? fs.readFileSync(golden, "utf8") : "";
         const a = want.split("\n"), b = text.split("\n");
-        const lines = b.filter((l) => l.startsWith("{")).length;
+        const accesses = text.split("{").length - 1;
         let differ = 0;
         for (let i = 0; i < Math.max(a.length, b.length); i++) {
-            if (a[i] !== b[i] && differ++ < 10) { console.log(`  golden ${a[i]}\n  seen   ${b[i]}`); }
+            if (a[i] !== b[i] && differ++ < 10) {
+                console.log(`  golden ${a[i]}\n  seen   ${b[i]}`); }
         }
-        console.log(`register traffic: ${lines} accesses in ${NAMES.length - 1} sequences, ${differ} lines differ from ${golden}`);
+        console.log(`register traffic: ${accesses} accesses in ${NAMES.length - 1} sequences, ` +
+            `${differ} lines differ from ${golden}`);
         return differ === 0;
     }
 }

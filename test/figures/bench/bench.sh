@@ -77,7 +77,8 @@ awk -F, '
              ($10 == "" ? "" : "(" $10 ")"), $11, $6, $7, $8, $3, $4, $5 }
 ' "$b/bench.csv"
 echo
-echo "instr/op, i686: inside bench_measure() by callgrind, an empty op subtracted; mean of 1024 ops."
+echo "instr/op, i686: inside bench_measure() by callgrind, an empty op subtracted;" \
+    "mean of 1024 ops."
 echo "Errors against long double or exact integers. Bounds and inputs:"
 awk -F, '!/^#/ { why = $9; for (i = 10; i <= NF; i++) why = why "," $i
                  printf "  %-20s %s\n", $1, why }' "$tmp/errors"

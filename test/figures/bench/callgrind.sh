@@ -32,7 +32,8 @@ counts()
     done <"$tmp/order"
 }
 
-# per_op BINARY: kernel,name,instructions of one op, the empty one subtracted; of programs whose ops have both
+# per_op BINARY: kernel,name,instructions of one op, the empty one subtracted; of programs whose ops
+# have both
 per_op()
 {
     rm -f "$tmp"/cg*
@@ -42,5 +43,6 @@ per_op()
         k=$((k + 1))
         echo "$kernel,$name,$ops,$(total "$tmp/cg.$k")"
     done <"$tmp/order" |
-        awk -F, -v OFS=, 'NR == 1 { empty = $4 / $3; next } { print $1, $2, sprintf("%.1f", $4 / $3 - empty) }'
+        awk -F, -v OFS=, \
+        'NR == 1 { empty = $4 / $3; next } { print $1, $2, sprintf("%.1f", $4 / $3 - empty) }'
 }

@@ -4,14 +4,16 @@
 #
 # fetch: CMSIS-DSP's C sources, as its package on PyPI holds them, into $B/peers, checked by
 # their sum; never committed. When that cannot be had it says why and the table does without.
-# fixmath: libfixmath's C sources, as Debian has them, by apt into $B/peers, checked likewise: the library in its
-# package is compiled without optimisation.
-# rust: builds the crate idsp, version and sums as peers_rust/Cargo.lock has them, into $B/peers/rust.
-# table: runs $B/bench/peers and, where built, peers-i686; prints both tables, what is not run
-# from peers.csv; both as CSV in $B/bench/filters.csv and sines.csv. Instructions above the requirement are shown as "over", never fatal.
+# fixmath: libfixmath's C sources, as Debian has them, by apt into $B/peers, checked likewise: the
+# library in its package is compiled without optimisation.
+# rust: builds the crate idsp, version and sums as peers_rust/Cargo.lock has them, into
+# $B/peers/rust. table: runs $B/bench/peers and, where built, peers-i686; prints both tables, what
+# is not run from peers.csv; both as CSV in $B/bench/filters.csv and sines.csv. Instructions above
+# the requirement are shown as "over", never fatal.
 #
 # Environment: B (build).
-# Exit status: 0 ok; table: 1 an error of ours above its bound; fetch, fixmath, rust: 1 not there; 2 bad
+# Exit status: 0 ok; table: 1 an error of ours above its bound; fetch, fixmath, rust: 1 not there; 2
+# bad
 # usage, 3 valgrind or a binary missing.
 set -eu
 
@@ -57,23 +59,28 @@ fixmath()
     [ ! -r "$b/peers/$name/.complete" ] || exit 0
     [ "${DEPS:-yes}" != no ] || missing "DEPS=no"
     command -v apt-get >/dev/null || missing "apt-get is missing"
-    from=$(apt-cache madison libfixmath-dev 2>/dev/null | awk '{ split($6, a, "/"); print $5, a[1], a[2]; exit }')
+    from=$(apt-cache madison libfixmath-dev 2>/dev/null |
+        awk '{ split($6, a, "/"); print $5, a[1], a[2]; exit }')
     [ -n "$from" ] || missing "apt knows no libfixmath-dev (apt-get update)"
     rm -rf "$b/peers/apt" "$b/peers/$name"
     mkdir -p "$b/peers/apt/lists/partial" "$b/peers/$name"
     apt=$(cd "$b/peers/apt" && pwd)
     echo "deb-src $from" >"$apt/sources.list"
-    { apt_get update && (cd "$apt" && apt_get source --tar-only --download-only libfixmath); } >"$b/peers/apt.log" 2>&1 ||
+    { apt_get update && (cd "$apt" && apt_get source --tar-only --download-only libfixmath); } \
+        >"$b/peers/apt.log" 2>&1 ||
         missing "apt-get failed ($b/peers/apt.log): $(tail -n 1 "$b/peers/apt.log")"
-    sum_is 38a93f38bcf2b6fbc00bfc4e10905f8f012cc72943ec5eed69a459c3bc0349e0 "$apt/libfixmath_0~20220222.orig.tar.xz"
-    tar -xJf "$apt/libfixmath_0~20220222.orig.tar.xz" -C "$b/peers/$name" ./libfixmath ./LICENSE || missing "the archive does not unpack"
+    sum_is 38a93f38bcf2b6fbc00bfc4e10905f8f012cc72943ec5eed69a459c3bc0349e0 \
+        "$apt/libfixmath_0~20220222.orig.tar.xz"
+    tar -xJf "$apt/libfixmath_0~20220222.orig.tar.xz" -C "$b/peers/$name" ./libfixmath ./LICENSE ||
+        missing "the archive does not unpack"
     rm -rf "$apt"
     touch "$b/peers/$name/.complete"
 }
 
 apt_get()
 {
-    timeout 120 apt-get -q -o "Dir::Etc::SourceList=$apt/sources.list" -o Dir::Etc::SourceParts=/dev/null \
+    timeout 120 apt-get -q -o "Dir::Etc::SourceList=$apt/sources.list" \
+        -o Dir::Etc::SourceParts=/dev/null \
         -o "Dir::State::Lists=$apt/lists" -o "Dir::Cache=$apt" "$@"
 }
 
@@ -81,12 +88,21 @@ apt_get()
 rust()
 {
     [ ! -r "$b/peers/rust/release/libpeers.a" ] || exit 0
-    [ "${DEPS:-yes}" != no ] || { echo "peers: idsp: not fetched: DEPS=no; its rows are those measured elsewhere" >&2; exit 1; }
-    command -v cargo >/dev/null || { echo "peers: idsp: not fetched: cargo is missing; its rows are those measured elsewhere" >&2; exit 1; }
+    [ "${DEPS:-yes}" != no ] ||
+        { echo "peers: idsp: not fetched: DEPS=no; its rows are those measured elsewhere" >&2
+        exit 1; }
+    command -v cargo >/dev/null ||
+        { echo "peers: idsp: not fetched: cargo is missing; its rows are those measured elsewhere" \
+        >&2; exit 1; }
     mkdir -p "$b/peers"
     target=$(cd "$b/peers" && pwd)/rust
-    (cd "$here/peers_rust" && CARGO_TARGET_DIR=$target timeout 600 cargo build -q --release --locked) >"$b/peers/cargo.log" 2>&1 ||
-        { echo "peers: idsp: not built ($b/peers/cargo.log): $(tail -n 1 "$b/peers/cargo.log"); its rows are those measured elsewhere" >&2; exit 1; }
+    (cd "$here/peers_rust" && CARGO_TARGET_DIR=$target timeout 600 cargo build \
+        -q --release --locked) >"$b/peers/cargo.log" 2>&1 ||
+        {
+            echo "peers: idsp: not built ($b/peers/cargo.log):" \
+                "$(tail -n 1 "$b/peers/cargo.log"); its rows are those measured elsewhere" >&2
+            exit 1
+        }
 }
 
 [ $# = 1 ] || { echo "usage: peers.sh fetch|fixmath|rust|table" >&2; exit 2; }
@@ -128,7 +144,8 @@ fi
 "$b/bench/peers" sines >"$tmp/sines"
 
 echo "low-pass, second order: 22 channels of one sample (x64, i686), and one channel of 64"
-echo "samples, each (b64); error in ppm of full scale, worst at rest; rms of a step; of a sine at fc."
+echo "samples, each (b64); error in ppm of full scale, worst at rest; rms of a step;" \
+    "of a sine at fc."
 awk -F, -v ram="$tmp/ram" -v csv="$b/bench/filters.csv" -v times="$tmp/ns" '
     function triple(k) { return sprintf("%s; %s; %s", $k, $(k + 1), $(k + 2)) }
     function line(a, b, c, d, e, f, g, h, i, j) {
@@ -143,9 +160,11 @@ awk -F, -v ram="$tmp/ram" -v csv="$b/bench/filters.csv" -v times="$tmp/ns" '
     FILENAME ~ /x64$/ { x64[$1] = $2; x64_b[$1] = $3; next }
     FILENAME ~ /i686$/ { i686[$1] = $2; i686_b[$1] = $3; next }
     !head++ { mem = "RAM B"
-              print "name,where,x64,x64_b64,i686,rest_1,step_1,sine_1,rest_2,step_2,sine_2,rest_3,step_3,sine_3," \
+              print "name,where,x64,x64_b64,i686,rest_1,step_1,sine_1,rest_2,step_2,sine_2," \
+                    "rest_3,step_3,sine_3," \
                     "rest_4,step_4,sine_4,latches,ram_B,ns" > csv
-              line("", "x64", "b64", "i686", "b64", "fc/fs = 0.1", "0.01", "0.001", "0.0001", "latch") }
+              line("", "x64", "b64", "i686", "b64", "fc/fs = 0.1", "0.01", "0.001", "0.0001",
+                   "latch") }
     FILENAME ~ /errors$/ {
         ran[$1] = 1
         mem = ram_B[$1]
@@ -158,7 +177,8 @@ awk -F, -v ram="$tmp/ram" -v csv="$b/bench/filters.csv" -v times="$tmp/ns" '
         if (FNR == 1) { ours = $1; stuck = $14 }
         next }
     /^#/ { next }
-    ($1 in ran) { if (!($1 in i686)) { mem = $17; field($1 " (in C)", "elsewhere", "-", "-", $3, 4, 16) }
+    ($1 in ran) {
+        if (!($1 in i686)) { mem = $17; field($1 " (in C)", "elsewhere", "-", "-", $3, 4, 16) }
                   next }
     { if (!elsewhere++) print "measured once elsewhere, NOT in this run:"
       mem = $17
@@ -169,8 +189,10 @@ awk -F, -v ram="$tmp/ram" -v csv="$b/bench/filters.csv" -v times="$tmp/ns" '
         b = !(ours in i686) ? "not counted" : i686[ours] > 1498 ? "over" : \
             i686[ours] > 1033 ? "ok" : "stretch"
         printf "required of %s: 760 instructions x86-64 (goal 708): %s; 1498 i686 (stretch 1033):" \
-               " %s; 28 B of RAM on 32-bit targets: %s\n", ours, a, b, (ram_B[ours] > 28 ? "over" : "ok")
-        if (wrong != "") { printf "FAIL %s: error in ppm above 1 LSB at rest or 0.002 rms:%s\n", ours, wrong
+               " %s; 28 B of RAM on 32-bit targets: %s\n", ours, a, b,
+               (ram_B[ours] > 28 ? "over" : "ok")
+        if (wrong != "") {
+            printf "FAIL %s: error in ppm above 1 LSB at rest or 0.002 rms:%s\n", ours, wrong
                            bad = 1 }
         if (stuck) { printf "FAIL %s: latches\n", ours; bad = 1 }
         exit bad }
@@ -184,7 +206,8 @@ awk -F, -v i686="$tmp/i686" -v csv="$b/bench/sines.csv" '
     FILENAME ~ /x64$/ { n64[$1] = $2; next }
     !head { print "name,x64,i686,worst_ppm,rms_ppm,table_B,ns" > csv }
     { print $1 "," n64[$1] "," ($1 in n32 ? n32[$1] : "-") "," $2 "," $3 "," $4 "," ns[$1] > csv }
-    !head++ { printf "%-29s %6s %6s | %10s %10s | %7s\n", "", "x64", "i686", "worst ppm", "rms ppm", "table B" }
-    { printf "%-29s %6s %6s | %10s %10s | %7s\n", $1, n64[$1], $1 in n32 ? n32[$1] : "-", $2, $3, $4 }
+    BEGIN { row = "%-29s %6s %6s | %10s %10s | %7s\n" }
+    !head++ { printf row, "", "x64", "i686", "worst ppm", "rms ppm", "table B" }
+    { printf row, $1, n64[$1], $1 in n32 ? n32[$1] : "-", $2, $3, $4 }
 ' "$tmp/i686" "$tmp/ns" "$tmp/x64" "$tmp/sines"
 exit ${status:-0}

@@ -18,16 +18,24 @@ unset key
 do for [row = 0:1] {
     do for [p = 0:3] {
         c = row == 0 ? 'ends_steps_string' : 'ends_all'
-        set title what[p + 1].(row == 0 ? ': steps, string' : ': friction too') font ',17' textcolor rgb ink offset 0,-0.7
+        set title what[p + 1].(row == 0 ? ': steps, string' : ': friction too') font ',17' \
+            textcolor rgb ink offset 0,-0.7
         set xlabel (row == 1 ? 'b, Ns/m' : '') textcolor rgb ink
         set ylabel (p == 0 ? 'k, N/m' : '') textcolor rgb ink offset 0.5,0
-        if (row == 1 && p == 3) { set key at screen 0.5,0.035 center center maxrows 2 samplen 2 Left reverse }
-        plot cells using (of(p, c, 'rest')):4 with points pt 5 ps size_of_point*0.75 lc rgb ours_colour notitle, \
-             '' using (of(p, c, 'buzz')):4 with points pt 5 ps size_of_point*0.75 lc rgb '#9bb8e3' notitle, \
-             '' using (of(p, c, 'swings')):4 with points pt 5 ps size_of_point*0.75 lc rgb '#f0c690' notitle, \
-             '' using (of(p, c, 'leaves')):4 with points pt 5 ps size_of_point*0.75 lc rgb bad_colour notitle, \
-             border_of using ($1 == p && $2 == 0 ? $3 : NaN):4 with lines lw 2.5 lc rgb ink title 'rho = 1, no friction', \
-             border_of using ($1 == p && $2 > 0 ? $3 : NaN):4 with lines lw 2.5 dt 2 lc rgb ink title 'rho = 1, viscous friction', \
+        if (row == 1 && p == 3) { set key at screen 0.5,0.035 center center maxrows 2 samplen 2 \
+            Left reverse }
+        plot cells using (of(p, c, 'rest')):4 with points pt 5 ps size_of_point*0.75 \
+            lc rgb ours_colour notitle, \
+             '' using (of(p, c, 'buzz')):4 with points pt 5 ps size_of_point*0.75 lc rgb '#9bb8e3' \
+             notitle, \
+             '' using (of(p, c, 'swings')):4 with points pt 5 ps size_of_point*0.75 \
+             lc rgb '#f0c690' notitle, \
+             '' using (of(p, c, 'leaves')):4 with points pt 5 ps size_of_point*0.75 \
+             lc rgb bad_colour notitle, \
+             border_of using ($1 == p && $2 == 0 ? $3 : NaN):4 with lines lw 2.5 lc rgb ink \
+             title 'rho = 1, no friction', \
+             border_of using ($1 == p && $2 > 0 ? $3 : NaN):4 with lines lw 2.5 dt 2 lc rgb ink \
+             title 'rho = 1, viscous friction', \
              NaN with points pt 5 ps 1.6 lc rgb ours_colour title 'at rest', \
              NaN with points pt 5 ps 1.6 lc rgb '#9bb8e3' title 'within three steps', \
              NaN with points pt 5 ps 1.6 lc rgb '#f0c690' title 'swings', \

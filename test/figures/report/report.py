@@ -2,19 +2,22 @@
 # SPDX-License-Identifier: MIT
 """Runs the sections of the report, draws their pictures and writes one page that explains each.
 
-    report.py [--build DIR] [--out DIR] [--short] [--only NAME[,NAME...]] [--jobs N] [--list] [--help]
+    report.py [--build DIR] [--out DIR] [--short] [--only NAME[,NAME...]] [--jobs N] [--list]
+              [--help]
 
-A section is a row of sections.tsv: its name, what make has to build (or -), a command, the seconds that it takes, a title, and what
-its picture says. The command runs at the top of the tree with B (build), OUT (where its CSV files go) and SHORT (1 with --short:
-few points) in its environment. NAME.plt then draws NAME.png from them, after style.gp; a section without NAME.plt has no picture.
-What the command writes into OUT/NAME.md is its table in the page; else NAME.csv is, if it is not long.
+A section is a row of sections.tsv: its name, what make has to build (or -), a command, the seconds
+that it takes, a title, and what its picture says. The command runs at the top of the tree with B
+(build), OUT (where its CSV files go) and SHORT (1 with --short:
+few points) in its environment. NAME.plt then draws NAME.png from them, after style.gp; a section
+without NAME.plt has no picture. What the command writes into OUT/NAME.md is its table in the page;
+else NAME.csv is, if it is not long.
 
-Exit status of a command: 0 ok; 3 a tool is missing, which skips the section and names it; else the section has failed. Lines of
-its output that begin with "skipped: " name what it went without, those with "note: " go into the page, the rest into OUT/NAME.log.
-One command in several rows runs once.
+Exit status of a command: 0 ok; 3 a tool is missing, which skips the section and names it; else the
+section has failed. Lines of its output that begin with "skipped: " name what it went without, those
+with "note: " go into the page, the rest into OUT/NAME.log. One command in several rows runs once.
 
---short: few points, for CI; --only: these sections; --jobs N: so many sections at a time (as many as there are cores)
-Exit status: 0 ok, 1 a section failed, 2 bad usage, 130 interrupted.
+--short: few points, for CI; --only: these sections; --jobs N: so many sections at a time (as many
+as there are cores) Exit status: 0 ok, 1 a section failed, 2 bad usage, 130 interrupted.
 """
 
 import argparse
@@ -51,7 +54,8 @@ class Section:
 
 def read_sections(path):
     with open(path, encoding="utf-8", newline="") as f:
-        rows = [r for r in csv.reader(f, delimiter="\t", quoting=csv.QUOTE_NONE) if r and not r[0].startswith("#")]
+        rows = [r for r in csv.reader(f, delimiter="\t", quoting=csv.QUOTE_NONE) if r and
+                not r[0].startswith("#")]
     for r in rows:
         if len(r) != 6:
             raise SystemExit("report: %s: %d columns of 6: %s" % (path, len(r), r[0]))
@@ -63,8 +67,8 @@ def read_sections(path):
 
 def run(command, env, limit_s):
     """Its exit status and all it said."""
-    p = subprocess.Popen(command, shell=True, cwd=ROOT, env=env, text=True, errors="replace", stdout=subprocess.PIPE,
-                         stderr=subprocess.STDOUT, start_new_session=True)
+    p = subprocess.Popen(command, shell=True, cwd=ROOT, env=env, text=True, errors="replace",
+                         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True)
     try:
         text = p.communicate(timeout=limit_s)[0]
         return p.returncode, text
@@ -79,8 +83,8 @@ class Report:
     def __init__(self, args, sections):
         self.args, self.sections = args, sections
         self.out = os.path.abspath(args.out or os.path.join(args.build, "report"))
-        self.env = dict(os.environ, B=args.build, OUT=self.out, LC_ALL="C", SHORT="1" if args.short else "",
-                        PYTHONDONTWRITEBYTECODE="1")
+        self.env = dict(os.environ, B=args.build, OUT=self.out, LC_ALL="C",
+                        SHORT="1" if args.short else "", PYTHONDONTWRITEBYTECODE="1")
         self.env.pop("MAKEFLAGS", None)
         self.env.pop("MFLAGS", None)
         self.gnuplot = shutil.which("gnuplot")
@@ -91,12 +95,14 @@ class Report:
         print("report: %5.0f s: %s" % (time.time() - self.began, text), flush=True)
 
     def build(self):
-        """What make has to, one target after the other: two at a time would write the same files."""
+        """What make has to, one target after the other: two at a time would write the same
+        files."""
         done = {}
         for s in self.sections:
             if s.make != "-" and s.make not in done:
                 self.say("make " + s.make)
-                status, text = run("make --no-print-directory -s B='%s' %s" % (self.args.build, s.make), self.env, 900)
+                status, text = run("make --no-print-directory -s B='%s' %s" %
+                                   (self.args.build, s.make), self.env, 900)
                 done[s.make] = made(s.make, status, text)
                 if status:
                     sys.stdout.write(text)
@@ -106,7 +112,8 @@ class Report:
     def measure(self, sections):
         """One command, for all sections that have it."""
         first, begin = sections[0], time.time()
-        self.say("%s: %s (%.0f s)" % (", ".join(s.name for s in sections), first.command, first.seconds))
+        self.say("%s: %s (%.0f s)" %
+                 (", ".join(s.name for s in sections), first.command, first.seconds))
         status, text = run(first.command, self.env, 4 * first.seconds + 120)
         with open(os.path.join(self.out, first.name + ".log"), "w", encoding="utf-8") as f:
             f.write(text)
@@ -124,9 +131,11 @@ class Report:
         if not self.gnuplot:
             s.lines.append("skipped: the picture: gnuplot is missing (gnuplot-nox)")
             return
-        p = subprocess.run([self.gnuplot, "-e", "data='%s.csv'; out='%s.png'; here='%s'" % (s.name, s.name, HERE),
-                            os.path.join(HERE, "style.gp"), plt], cwd=self.out, env=self.env, text=True, errors="replace",
-                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
+        p = subprocess.run([self.gnuplot, "-e",
+                            "data='%s.csv'; out='%s.png'; here='%s'" % (s.name, s.name, HERE),
+                            os.path.join(HERE, "style.gp"), plt], cwd=self.out, env=self.env,
+                           text=True, errors="replace", stdout=subprocess.PIPE,
+                           stderr=subprocess.STDOUT, check=False)
         s.lines += p.stdout.splitlines()
         if p.returncode or not os.path.exists(os.path.join(self.out, s.name + ".png")):
             s.state, s.why = "failed", "gnuplot: " + last_line(p.stdout)
@@ -158,16 +167,19 @@ class Report:
             rows = [r for r in csv.reader(f) if r and not r[0].startswith("#")]
         if len(rows) > TABLE_LINES or not rows:
             return "%d rows: [%s.csv](%s.csv)" % (max(0, len(rows) - 1), s.name, s.name)
-        return "\n".join("| %s |" % " | ".join(r) for r in [rows[0], ["--"] * len(rows[0])] + rows[1:])
+        return "\n".join("| %s |" % " | ".join(r)
+                         for r in [rows[0], ["--"] * len(rows[0])] + rows[1:])
 
     def part(self, s):
         text = ["## %s\n" % s.title]
         if s.state != "ok":
-            return "\n".join(text + ["**%s**: %s\n" % (s.state, s.why or "-"), "Command: `%s`\n" % s.command])
+            return "\n".join(text + ["**%s**: %s\n" % (s.state, s.why or "-"),
+                                     "Command: `%s`\n" % s.command])
         if os.path.exists(os.path.join(self.out, s.name + ".png")):
             text.append("![%s](%s.png)\n" % (s.title, s.name))
         text.append(s.says + "\n")
-        text += ["Without %s.\n" % w for w in s.said("skipped:")] + [n + "\n" for n in s.said("note:")]
+        text += (["Without %s.\n" % w for w in s.said("skipped:")] +
+                 [n + "\n" for n in s.said("note:")])
         made = "make %s, then " % s.make if s.make != "-" else ""
         text.append("Command: %s`%s` (%.0f s)\n" % (made, s.command, s.took_s))
         return "\n".join(text + [self.table(s) + "\n"])
@@ -196,7 +208,8 @@ def last_line(text):
 
 def first_of(command, default="unknown"):
     try:
-        p = subprocess.run(command, cwd=ROOT, text=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=False)
+        p = subprocess.run(command, cwd=ROOT, text=True, stdout=subprocess.PIPE,
+                           stderr=subprocess.DEVNULL, check=False)
     except OSError:
         return default
     return (p.stdout.splitlines() or [default])[0]
@@ -207,9 +220,11 @@ def machine(args):
     if os.path.exists("/proc/cpuinfo"):
         with open("/proc/cpuinfo", encoding="utf-8") as f:
             cpu = (re.findall(r"^model name\s*:\s*(.*)$", f.read(), re.M) or [cpu])[0]
-    return [datetime.date.today().isoformat(), "exhand " + first_of(["git", "describe", "--always", "--dirty"]),
-            "%d x %s" % (os.cpu_count() or 1, cpu), "%s %s" % (platform.system(), platform.machine()),
-            first_of([os.environ.get("CC", "gcc").split()[0], "--version"]), first_of(["valgrind", "--version"], "no valgrind"),
+    return [datetime.date.today().isoformat(),
+            "exhand " + first_of(["git", "describe", "--always", "--dirty"]), "%d x %s" %
+            (os.cpu_count() or 1, cpu), "%s %s" % (platform.system(), platform.machine()),
+            first_of([os.environ.get("CC", "gcc").split()[0], "--version"]),
+            first_of(["valgrind", "--version"], "no valgrind"),
             "short" if args.short else "all points"]
 
 
@@ -234,15 +249,18 @@ def page_of(md):
             out.append("</table>")
             table = False
         h = re.match(r"(#+) (.*)", line)
-        out.append("<h%d>%s</h%d>" % (len(h[1]), span(h[2]), len(h[1])) if h else "<p>%s</p>" % span(line) if line else "")
-    style = "body{font-family:sans-serif;max-width:70em;margin:auto}img{max-width:100%}table{border-collapse:collapse}" \
-            "td{border:1px solid #ddd;padding:.1em .5em}"
-    return "<!DOCTYPE html><meta charset=utf-8><title>exhand: the report</title><style>%s</style>\n%s\n" % (style, "\n".join(
-        out + (["</table>"] if table else [])))
+        out.append("<h%d>%s</h%d>" % (len(h[1]), span(h[2]), len(h[1])) if h
+                   else "<p>%s</p>" % span(line) if line else "")
+    style = ("body{font-family:sans-serif;max-width:70em;margin:auto}img{max-width:100%}"
+             "table{border-collapse:collapse}td{border:1px solid #ddd;padding:.1em .5em}")
+    return ("<!DOCTYPE html><meta charset=utf-8><title>exhand: the "
+            "report</title><style>%s</style>\n%s\n" % (style, "\n".join(
+                out + (["</table>"] if table else []))))
 
 
 def main():
-    p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p = argparse.ArgumentParser(description=__doc__,
+                                formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("--build", default=os.environ.get("B", "build"))
     p.add_argument("--out")
     p.add_argument("--sections", default=os.path.join(HERE, "sections.tsv"), help=argparse.SUPPRESS)
@@ -259,15 +277,18 @@ def main():
     only = [n for n in args.only.split(",") if n]
     unknown = set(only) - {s.name for s in sections}
     if unknown or args.jobs < 1:
-        print("report: %s; --list shows what there is" % (", ".join(sorted(unknown)) + ": no such section" if unknown else
-                                                        "--jobs: at least 1"), file=sys.stderr)
+        print("report: %s; --list shows what there is" %
+              (", ".join(sorted(unknown)) + ": no such section" if unknown else
+               "--jobs: at least 1"), file=sys.stderr)
         return 2
     r = Report(args, [s for s in sections if not only or s.name in only])
     r.run_all()
     r.write()
     bad = [s.name for s in r.sections if s.state == "failed"]
-    r.say("%s; %d sections%s%s" % (os.path.join(os.path.relpath(r.out, ROOT), "REPORT.md"), len(r.sections), "".join(
-        ", skipped: " + s.name for s in r.sections if s.state == "skipped"), ", FAILED: " + ", ".join(bad) if bad else ""))
+    r.say("%s; %d sections%s%s" %
+          (os.path.join(os.path.relpath(r.out, ROOT), "REPORT.md"), len(r.sections), "".join(
+              ", skipped: " + s.name for s in r.sections if s.state == "skipped"),
+           ", FAILED: " + ", ".join(bad) if bad else ""))
     return 1 if bad else 0
 
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Does report.py tell what it should: sections that end well, are skipped, fail, take too long or share a run; pages and statuses?
-Exit status: 0 ok, 1 not."""
+"""Does report.py tell what it should: sections that end well, are skipped, fail, take too long or
+share a run; pages and statuses? Exit status: 0 ok, 1 not."""
 
 import os
 import subprocess
@@ -13,8 +13,10 @@ import work
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 SECTIONS = """# name\tmake\tcommand\tseconds\ttitle\tsays
-good\t-\techo once >> "$OUT/runs"; printf 'a,b\\n1,2\\n' > "$OUT/good.csv"; echo "skipped: some peer"; echo "note: a < b"\t1\tGood\tFine.
-twin\t-\techo once >> "$OUT/runs"; printf 'a,b\\n1,2\\n' > "$OUT/good.csv"; echo "skipped: some peer"; echo "note: a < b"\t1\tTwin\tThe same run.
+good\t-\techo once >> "$OUT/runs"; printf 'a,b\\n1,2\\n' > "$OUT/good.csv"; \
+echo "skipped: some peer"; echo "note: a < b"\t1\tGood\tFine.
+twin\t-\techo once >> "$OUT/runs"; printf 'a,b\\n1,2\\n' > "$OUT/good.csv"; \
+echo "skipped: some peer"; echo "note: a < b"\t1\tTwin\tThe same run.
 lacks\t-\techo "no such tool" >&2; exit 3\t1\tLacks\tNever.
 bad\t-\techo broken; exit 1\t1\tBad\tNever.
 unmade\tno-such-target-of-ours\ttrue\t1\tUnmade\tNever.
@@ -29,8 +31,10 @@ def expect(what, got, want):
 
 
 def run(out, *args):
-    p = subprocess.run([sys.executable, os.path.join(HERE, "report.py"), "--sections", os.path.join(out, "s.tsv"), "--out", out] +
-                       list(args), text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
+    p = subprocess.run([sys.executable, os.path.join(HERE, "report.py"), "--sections",
+                        os.path.join(out, "s.tsv"), "--out", out] +
+                       list(args), text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                       check=False)
     return p.returncode, p.stdout
 
 
@@ -67,8 +71,9 @@ def sections():
 
 def diagrams():
     """Fronts and the place of labels."""
-    p = [work.Point("p", n, k, c, e) for n, k, c, e in (("us", "ours", 10, 1e-3), ("dear", "integer", 20, 1e-2), ("cheap", "integer", 5, 1),
-                                                        ("double", "float", 1, 1e-9))]
+    p = [work.Point("p", n, k, c, e)
+         for n, k, c, e in (("us", "ours", 10, 1e-3), ("dear", "integer", 20, 1e-2),
+                            ("cheap", "integer", 5, 1), ("double", "float", 1, 1e-9))]
     expect("the front", [q.name for q in work.front(p)], ["cheap", "us"])
     expect("ours is on it", work.on_front(p), {"p": True})
     p.append(work.Point("p", "better", "integer", 10, 1e-4))
@@ -77,14 +82,18 @@ def diagrams():
         q.label = str(k)
     at = work.place(p, (0.5, 40), (1e-10, 10), 400, 400, 18)
     expect("labels are inside", all(0 <= x <= 1 and 0 <= y <= 1 for x, y in at), True)
-    near = [(a, b) for i, a in enumerate(at) for b in at[:i] if abs(a[0] - b[0]) * 400 < 8 and abs(a[1] - b[1]) * 400 < 10]
+    near = [(a, b) for i, a in enumerate(at) for b in at[:i] if abs(a[0] - b[0]) * 400 < 8 and
+            abs(a[1] - b[1]) * 400 < 10]
     expect("labels that cover each other", near, [])
 
 
 def made():
-    lacks = "the benches: missing: valgrind: install by: apt\nmake[1]: *** [Makefile:1: bench] Error 3\n"
-    expect("a tool that make misses", report.made("bench", 2, lacks), ("skipped", "the benches: missing: valgrind: install by: apt"))
-    expect("what make cannot", report.made("bench", 2, "cc: broken\nmake: Error 1\n"), ("failed", "make bench: make: Error 1"))
+    lacks = ("the benches: missing: valgrind: install by: apt\nmake[1]: *** [Makefile:1: bench] "
+             "Error 3\n")
+    expect("a tool that make misses", report.made("bench", 2, lacks),
+           ("skipped", "the benches: missing: valgrind: install by: apt"))
+    expect("what make cannot", report.made("bench", 2, "cc: broken\nmake: Error 1\n"),
+           ("failed", "make bench: make: Error 1"))
     expect("what make can", report.made("bench", 0, lacks), ("ok", ""))
 
 

@@ -12,19 +12,25 @@ set key at screen 0.5, screen 0.99 center top vertical Left reverse samplen 2 te
 scenes = 'minimal drop guarded bilateral guarded glove glove bilateral'
 kinds = 'force force force force energy joints fingertips fingertips'
 units = 'N N N N J rad m m'
-mine(c, k) = (stringcolumn('scene') eq word(scenes, k) && stringcolumn('quantity') eq word(kinds, k)) ? column(c) : NaN
+mine(c, k) = (stringcolumn('scene') eq word(scenes, k) && stringcolumn('quantity') eq word(kinds, \
+    k)) ? column(c) : NaN
 do for [k = 1:8] {
     c = (k - 1) % 4; r = (k - 1)/4
     set lmargin at screen 0.055 + 0.242*c
     set rmargin at screen 0.055 + 0.242*c + 0.192
     set tmargin at screen 0.86 - 0.455*r
     set bmargin at screen 0.86 - 0.455*r - 0.32
-    set title sprintf('%s: %s (%s)', word(scenes, k), word(kinds, k), word(units, k)) font 'DejaVu Sans Bold,16' textcolor rgb ink offset 0,-0.6
+    set title sprintf('%s: %s (%s)', word(scenes, k), word(kinds, k), word(units, k)) \
+        font 'DejaVu Sans Bold,16' textcolor rgb ink offset 0,-0.6
     set xlabel (r == 1 ? 'rate of the loop (Hz)' : '') font ',16' textcolor rgb ink
-    if (k == 1) { set label 1 'largest error against long double' at screen 0.012, screen 0.47 center rotate textcolor rgb ink } else { unset label 1 }
-    plot data using 'rate_hz':(mine('float', k)) with linespoints lw 2 pt 6 ps 1.5 lc rgb float_colour title (k == 1 ? 'plain float' : ''), \
-         '' using 'rate_hz':(mine('double', k)) with linespoints lw 2 dt (6,4) pt 4 ps 1.4 lc rgb float_colour title (k == 1 ? 'plain double' : ''), \
-         '' using 'rate_hz':(mine('fixed', k)) with linespoints lw 2.4 pt 7 ps 1.5 lc rgb ours_colour title (k == 1 ? 'exhand, fixed point' : '')
+    if (k == 1) { set label 1 'largest error against long double' at screen 0.012, \
+        screen 0.47 center rotate textcolor rgb ink } else { unset label 1 }
+    plot data using 'rate_hz':(mine('float', k)) with linespoints lw 2 pt 6 ps 1.5 \
+        lc rgb float_colour title (k == 1 ? 'plain float' : ''), \
+         '' using 'rate_hz':(mine('double', k)) with linespoints lw 2 dt (6,4) pt 4 ps 1.4 \
+         lc rgb float_colour title (k == 1 ? 'plain double' : ''), \
+         '' using 'rate_hz':(mine('fixed', k)) with linespoints lw 2.4 pt 7 ps 1.5 \
+         lc rgb ours_colour title (k == 1 ? 'exhand, fixed point' : '')
     unset key
 }
 unset multiplot

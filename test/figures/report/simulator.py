@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Simulator: error over cost of ways to integrate its plant, from B/bench/sim_work; CSV into OUT."""
+"""Simulator: error over cost of ways to integrate its plant, from B/bench/sim_work; CSV into
+OUT."""
 
 import csv
 import glob
@@ -36,7 +37,8 @@ def key_of(row):
 
 
 def counted():
-    """Instructions of a second of each problem, method and step, by callgrind; short steps from the last counted."""
+    """Instructions of a second of each problem, method and step, by callgrind; short steps from the
+    last counted."""
     order, total = profile("work_run", "work_run", WORK, "count", *SHORT)
     out = {}
     for i, line in enumerate(order):
@@ -56,8 +58,9 @@ def cost_of(count, key):
 def profile(fn, dump, *command):
     """What the command prints, and the instructions inside fn of each call of dump."""
     with tempfile.TemporaryDirectory() as tmp:
-        said = lines("valgrind", "-q", "--tool=callgrind", "--callgrind-out-file=%s/cg" % tmp, "--collect-atstart=no",
-                     "--toggle-collect=" + fn, "--dump-after=" + dump, *command)
+        said = lines("valgrind", "-q", "--tool=callgrind", "--callgrind-out-file=%s/cg" % tmp,
+                     "--collect-atstart=no", "--toggle-collect=" + fn, "--dump-after=" + dump,
+                     *command)
         total = {}
         for path in glob.glob(tmp + "/cg.*"):
             with open(path, encoding="utf-8", errors="replace") as f:
@@ -67,14 +70,16 @@ def profile(fn, dump, *command):
 
 
 def apart(row, exact, what, error):
-    """How far from the exact flow's mean, as a share of it and in standard errors of the difference."""
+    """How far from the exact flow's mean, as a share of it and in standard errors of the
+    difference."""
     a, b = float(row[what]), float(exact[what])
     se = math.hypot(float(row[error]), float(exact[error]))
     return a / b - 1, (a - b) / se if se else 0.0
 
 
 def statistics():
-    """simulator_rest: what becomes of Table II and of the time until rest, over what the plant costs."""
+    """simulator_rest: what becomes of Table II and of the time until rest, over what the plant
+    costs."""
     program = os.path.join(B, "bench", "sim_statistics")
     said, total = profile("plant_advance", "one_fall", program, *SHORT, "count")
     cost = {}
@@ -89,8 +94,9 @@ def statistics():
         w.writerows(rows)
     with open(os.path.join(OUT, "simulator_rest.csv"), "w", encoding="utf-8", newline="") as f:
         w = csv.writer(f)
-        w.writerow(["method", "step_us", "plant_instructions_per_s", "rest_time_off_percent", "standard_errors", "at_Hz",
-                    "B_off_percent", "standard_errors", "at_Hz", "at_rest_percent_least", "oscillate_percent_least"])
+        w.writerow(["method", "step_us", "plant_instructions_per_s", "rest_time_off_percent",
+                    "standard_errors", "at_Hz", "B_off_percent", "standard_errors", "at_Hz",
+                    "at_rest_percent_least", "oscillate_percent_least"])
         for key in sorted(cost, key=lambda k: (k[0], -float(k[1]))):
             mine = [r for r in rows if (r["method"], r["step_s"]) == key]
             out = [key[0], "%g" % (1e6 * float(key[1])), "%.0f" % cost[key]]
@@ -98,7 +104,8 @@ def statistics():
                 off = [(apart(r, exact[r["rate_Hz"]], what, error), r["rate_Hz"]) for r in mine]
                 (share, sigma), rate = max(off, key=lambda o: abs(o[0][1]))
                 out += ["%.2f" % (100 * share), "%.1f" % sigma, rate]
-            w.writerow(out + ["%.0f" % (100 * min(float(r[k]) for r in mine)) for k in ("rest", "oscillates")])
+            w.writerow(out + ["%.0f" % (100 * min(float(r[k]) for r in mine))
+                              for k in ("rest", "oscillates")])
 
 
 def main():

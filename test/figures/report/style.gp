@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-# What all pictures of the report have in common. Given by report.py: data (NAME.csv), out (NAME.png), here (this directory).
+# What all pictures of the report have in common. Given by report.py: data (NAME.csv), out
+# (NAME.png), here (this directory).
 if (!exists("width")) width = 1500
 if (!exists("height")) height = 950
 set terminal pngcairo size width,height font 'DejaVu Sans,18' linewidth 1.6 background '#ffffff'

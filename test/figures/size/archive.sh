@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# How a check of an archive's object code begins: sourced, with the command line ARCHIVE OBJDUMP. Sets
-# archive and objdump, and listing: a file for what objdump says, gone at the end. As set -eu.
+# How a check of an archive's object code begins: sourced, with the command line ARCHIVE OBJDUMP.
+# Sets archive and objdump, and listing: a file for what objdump says, gone at the end. As set -eu.
 # shellcheck shell=sh
 
 set -eu

@@ -62,7 +62,8 @@ awk -v archive="$archive" '
         }
         if (!instructions) { print archive ": no instructions" > "/dev/stderr"; exit 1 }
         if (!bad) {
-            print archive ": no floating point and no division in " instructions " instructions of " functions \
+            print archive ": no floating point and no division in " instructions \
+                " instructions of " functions \
                   " functions"
         }
         exit bad

@@ -11,11 +11,19 @@ B = os.environ.get("B", "build")
 AT = B + "/size"
 # Not custom, which is drop and whatever is in its slot.
 SCENES = ("minimal", "drop", "guarded", "glove", "bilateral", "bringup", "calibrate")
-PORTS = {"posix": ("template", ""), "pc104": ("pc104", "i686-linux-gnu-"), "mps2": ("mps2", "arm-none-eabi-")}
-SOURCES = ("lib", "examples", "ports/cards", "ports/mps2", "ports/pc104", "ports/template", "ldscripts", "Makefile", "test/no_board.c") + tuple("test/figures/size/" + f for f in ("size.sh", "stack.py", "ticks.c", "world.c", "world.h"))
+PORTS = {"posix": ("template", ""), "pc104": ("pc104", "i686-linux-gnu-"),
+         "mps2": ("mps2", "arm-none-eabi-")}
+SOURCES = ("lib", "examples", "ports/cards", "ports/mps2", "ports/pc104", "ports/template",
+           "ldscripts", "Makefile",
+           "test/no_board.c") + tuple("test/figures/size/" + f
+                                      for f in ("size.sh", "stack.py", "ticks.c", "world.c",
+                                                "world.h"))
 OWN = "scene itself"
-WHOLE = re.compile(r"[.]ltrans[.]o$")  # of scene and library as one program (make FROZEN=...): what no other object needs is one section each
-HOOK = re.compile(r"^exh_(assert_failed|board_)")  # what the port does then is no need of the scene's
+# of scene and library as one program (make FROZEN=...): what no other object needs is one section
+# each
+WHOLE = re.compile(r"[.]ltrans[.]o$")
+# what the port does then is no need of the scene's
+HOOK = re.compile(r"^exh_(assert_failed|board_)")
 FEATURES = (("glove: 22 angles", ("lib/glove", "lib/glove_cal", "lib/glove_fit", "glove/cal")),
             ("fingertips of five fingers", ("lib/hand", "lib/hand_hit2")),
             ("contacts before they are touched", ("lib/precontact",)),
@@ -25,8 +33,9 @@ FEATURES = (("glove: 22 angles", ("lib/glove", "lib/glove_cal", "lib/glove_fit",
             ("registers (Modbus)", ("lib/modbus", "lib/modbus_rtu", "pc104/modbus")),
             ("calibration of fingers", ("lib/calibrate", "run/calib_set")),
             ("parameters at run time", ("lib/params", "lib/signal")),
-            ("self-test", ("lib/selftest",)), ("guard of memory", ("lib/integrity",)), ("watch of speed and encoder", ("lib/motion",)),
-            ("supply", ("lib/supply",)), ("state machine and gate", ("lib/safety", "lib/gate")),
+            ("self-test", ("lib/selftest",)), ("guard of memory", ("lib/integrity",)),
+            ("watch of speed and encoder", ("lib/motion",)), ("supply", ("lib/supply",)),
+            ("state machine and gate", ("lib/safety", "lib/gate")),
             ("current follows what was asked", ("lib/tracking",)))
 
 
@@ -35,8 +44,8 @@ def say(text):
 
 
 def run(command, check=True, **env):
-    p = subprocess.run(command, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=False,
-                       env=dict(os.environ, MAKEFLAGS="", **env))
+    p = subprocess.run(command, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                       check=False, env=dict(os.environ, MAKEFLAGS="", **env))
     if check and p.returncode:
         sys.stderr.write(p.stdout + p.stderr)
         raise SystemExit("costs: %s: exit status %d" % (" ".join(command)[:120], p.returncode))
@@ -46,7 +55,8 @@ def run(command, check=True, **env):
 def newest_source():
     files = [f for f in SOURCES if os.path.isfile(f)]
     for top in (d for d in SOURCES if os.path.isdir(d)):
-        files += [os.path.join(d, f) for d, _, names in os.walk(top) for f in names if f.endswith((".c", ".h", ".S", ".ld", ".mk"))]
+        files += [os.path.join(d, f) for d, _, names in os.walk(top)
+                  for f in names if f.endswith((".c", ".h", ".S", ".ld", ".mk"))]
     return max(os.path.getmtime(f) for f in files)
 
 
@@ -79,7 +89,8 @@ class Costs:
     def __init__(self, scene, port, at=AT, name=None):
         self.scene, self.port = scene, port
         directory, self.cross = PORTS[port]
-        self.image = linked.Image("%s/%s/%s.map" % (at, directory, name or scene), self.cross + "objdump")
+        self.image = linked.Image("%s/%s/%s.map" % (at, directory, name or scene),
+                                  self.cross + "objdump")
         hook = lambda node: HOOK.match(linked.word(node)) is not None
         self.root, self.main = self.image.node("exh_scene_" + scene), self.image.node("main")
         self.of_scene = self.image.walk([self.root], hook)
@@ -89,8 +100,10 @@ class Costs:
             self.kept.setdefault(module_of(node[0]), []).append(node)
 
     def lost(self):
-        """What the linker kept of the library and the walk does not find: nothing, or the ways are not true."""
-        return [n for n in self.image.sizes if module_of(n[0]).startswith("lib/") and n not in self.of_main]
+        """What the linker kept of the library and the walk does not find: nothing, or the ways are
+        not true."""
+        return [n for n in self.image.sizes
+                if module_of(n[0]).startswith("lib/") and n not in self.of_main]
 
     def why(self, module):
         for came in (self.of_scene, self.of_main):
@@ -116,19 +129,24 @@ class Costs:
         return [n for n in self.image.sizes if ours.match(module_of(n[0]))]
 
     def library_and_scene(self, of_scene_alone):
-        """[text, data, bss] of library and scene: all of them in the image, or what the scene leads to."""
+        """[text, data, bss] of library and scene: all of them in the image, or what the scene leads
+        to."""
         own = set(self.own())
-        return self.image.bytes_of(n for n in (self.of_scene if of_scene_alone else self.image.sizes)
-                                   if n in own or module_of(n[0]).startswith("lib/") or WHOLE.search(n[0]))
+        return self.image.bytes_of(n
+                                   for n in (self.of_scene if of_scene_alone else self.image.sizes)
+                                   if n in own or module_of(n[0]).startswith("lib/") or
+                                   WHOLE.search(n[0]))
 
     def helpers(self):
-        """Sections of the compiler's own functions that the scene leads to: not what the port divides with."""
+        """Sections of the compiler's own functions that the scene leads to: not what the port
+        divides with."""
         wanted, names, found = self.image.wants(self.of_scene), {}, []
         for node in self.kept.get("compiler", []):
             archive, _, member = node[0].rstrip(")").partition("(")
             if member and archive not in names:
                 names[archive] = run([self.cross + "nm", "-g", "-A", "--defined-only", archive])
-            if member and wanted & set(re.findall(r":%s:\S+ \S (\S+)" % re.escape(member), names[archive])):
+            if (member and
+                wanted & set(re.findall(r":%s:\S+ \S (\S+)" % re.escape(member), names[archive]))):
                 found.append(node)
         return found
 
@@ -148,7 +166,9 @@ def instructions(scene):
                 if m[3]:
                     names[m[2]] = m[3].rstrip()
                 if m[1] == "fl":
-                    here = re.sub(r"\.c$", "", "/".join(re.sub(r"lib/src/(?!run/)\w+/", "lib/", names[m[2]]).split("/")[-2:]))
+                    here = re.sub(r"\.c$", "",
+                                  "/".join(re.sub(r"lib/src/(?!run/)\w+/", "lib/",
+                                                  names[m[2]]).split("/")[-2:]))
             elif line.startswith("calls="):
                 called = True  # the next line is the callee's
             elif re.match(r"[+\-*\d]", line):

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""What a linked image consists of, and why: out of the linker's map, and of the relocations of the objects that it was linked from.
+"""What a linked image consists of, and why: out of the linker's map, and of the relocations of the
+objects that it was linked from.
 
-Every function and table of ours has a section of its own (-ffunction-sections), and the linker keeps what is referred to from what it
-keeps. The same walk is made here over the objects' relocations, so that the way to a module can be told, and what would go if some
-functions were never called.
+Every function and table of ours has a section of its own (-ffunction-sections), and the linker
+keeps what is referred to from what it keeps. The same walk is made here over the objects'
+relocations, so that the way to a module can be told, and what would go if some functions were never
+called.
 """
 import glob
 import re
@@ -16,11 +18,13 @@ SYMBOL = re.compile(r"^[0-9a-f]+ (.{7}) (\S+)\t[0-9a-f]+ (?:\.hidden |\.internal
 HEADER = re.compile(r"^ *\d+ (\S+) +([0-9a-f]{8}) ")
 RECORDS = re.compile(r"^RELOCATION RECORDS FOR \[(.*)\]:")
 RELOCATION = re.compile(r"^[0-9a-f]+ +R_\S+ +(\S+?)([+-]0x[0-9a-f]+)?$")
-KINDS = (("text", ("vectors", "text", "rodata", "data.rel.ro", "multiboot", "init")), ("data", ("data",)), ("bss", ("bss", "COMMON")))
+KINDS = (("text", ("vectors", "text", "rodata", "data.rel.ro", "multiboot", "init")),
+         ("data", ("data",)), ("bss", ("bss", "COMMON")))
 
 
 def kind_of(section):
-    """text (code and constants), data (initialised), bss, or None: nothing of the image's memory."""
+    """text (code and constants), data (initialised), bss, or None: nothing of the image's
+    memory."""
     name = section.lstrip(".")
     for kind, begins in KINDS:
         if any(name == b or name.startswith(b + ".") for b in begins):
@@ -29,7 +33,8 @@ def kind_of(section):
 
 
 def object_of(place):
-    """The object file that a map names, our archive's members beside their sources in the build directory."""
+    """The object file that a map names, our archive's members beside their sources in the build
+    directory."""
     member = MEMBER.match(place)
     if not member:
         return place
@@ -54,9 +59,11 @@ def kept(path):
             if m and m[2] is None:
                 name = m[1]
                 continue
-            at = m.groups() if m else (name,) + REST.match(line).groups() if name and REST.match(line) else None
+            at = (m.groups() if m else (name,) + REST.match(line).groups() if name and
+                  REST.match(line) else None)
             name = None
-            if at and kind_of(at[0]) and int(at[2], 16) and "size before" not in at[3] and not at[3].startswith("0x"):
+            if (at and kind_of(at[0]) and int(at[2], 16) and "size before" not in at[3] and
+                not at[3].startswith("0x")):
                 key = (object_of(at[3]), at[0])
                 sizes[key] = sizes.get(key, 0) + int(at[2], 16)
     return sizes
@@ -67,10 +74,12 @@ class Object:
 
     def __init__(self, path, objdump):
         self.symbols, self.is_global, self.refers, self.sizes = {}, set(), {}, {}
-        text = subprocess.run([objdump, "-h", "-t", "-r", path], check=True, capture_output=True, text=True).stdout
+        text = subprocess.run([objdump, "-h", "-t", "-r", path], check=True, capture_output=True,
+                              text=True).stdout
         section = None
         for line in text.splitlines():
-            records, symbol, relocation = RECORDS.match(line), SYMBOL.match(line), RELOCATION.match(line)
+            records, symbol, relocation = (RECORDS.match(line), SYMBOL.match(line),
+                                           RELOCATION.match(line))
             header = HEADER.match(line)
             if header and section is None:
                 self.sizes[header[1]] = int(header[2], 16)
@@ -98,11 +107,13 @@ class Image:
                 self.where.setdefault(name, (place, self.objects[place].symbols[name]))
 
     def wants(self, nodes):
-        """Names that these sections refer to and that no object of ours has: mem*, the compiler's helpers."""
+        """Names that these sections refer to and that no object of ours has: mem*, the compiler's
+        helpers."""
         found = set()
         for place, section in nodes:
             obj = self.objects.get(place)
-            found |= {n for n in obj.refers.get(section, ()) if n[0] != "." and n not in obj.symbols and n not in self.where} if obj else set()
+            found |= {n for n in obj.refers.get(section, ()) if n[0] != "." and
+                      n not in obj.symbols and n not in self.where} if obj else set()
         return found
 
     def next_of(self, node):
@@ -126,8 +137,10 @@ class Image:
         return self.where.get(symbol)
 
     def walk(self, roots, cut=lambda node: False):
-        """{node: the one it was reached from first} by the shortest ways from the roots that lead through nothing cut."""
-        came, todo = {r: None for r in roots if r and not cut(r)}, [r for r in roots if r and not cut(r)]
+        """{node: the one it was reached from first} by the shortest ways from the roots that lead
+        through nothing cut."""
+        came, todo = ({r: None for r in roots if r and not cut(r)},
+                      [r for r in roots if r and not cut(r)])
         for node in todo:
             for to in self.next_of(node):
                 if to not in came and not cut(to):
@@ -145,7 +158,9 @@ class Image:
 
 def word(node):
     """A section's function or table, as a person says it."""
-    name = re.sub(r"^\.(text|rodata|data|bss)(\.rel\.ro)?(\.local)?(\.(startup|unlikely|cst\d+|str\d+\.\d+))?\.?", "", node[1])
+    name = re.sub(
+        r"^\.(text|rodata|data|bss)(\.rel\.ro)?(\.local)?"
+        r"(\.(startup|unlikely|cst\d+|str\d+\.\d+))?\.?", "", node[1])
     name = re.sub(r"\.(isra|part|constprop|cold)\.\d+|\.\d+$", "", name)
     return name or node[0].rsplit("/", 1)[-1]
 

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Bytes of an image by where its code came from: parts.sh MAP... (build/pc104/SCENE.map). Alignment between
-# pieces is in none of them.
+# Bytes of an image by where its code came from: parts.sh MAP... (build/pc104/SCENE.map). Alignment
+# between pieces is in none of them.
 # Exit status: 0, 2 bad usage.
 [ $# -gt 0 ] && [ -r "$1" ] || { echo "usage: $0 MAP...: make PORT=pc104 SCENE=drop" >&2; exit 2; }
 for map in "$@"; do
@@ -9,7 +9,9 @@ for map in "$@"; do
     awk '
     function number(hex,    i, n) {
         n = 0
-        for (i = 3; i <= length(hex); i++) { n = 16 * n + index("0123456789abcdef", substr(hex, i, 1)) - 1 }
+        for (i = 3; i <= length(hex); i++) {
+            n = 16 * n + index("0123456789abcdef", substr(hex, i, 1)) - 1
+        }
         return n
     }
     function part(f) {
@@ -25,7 +27,8 @@ for map in "$@"; do
     /^ \.[a-z]/ && NF >= 4 { name = $1; at = $2; size = $3; file = $4 }
     /^  +0x/ && NF >= 3 && name != "" { at = $1; size = $2; file = $3 }
     size ~ /^0x/ && at !~ /^0x0+$/ {
-        kind = name ~ /^\.(text|rodata)/ ? 1 : name ~ /^\.data/ ? 2 : name ~ /^\.(bss|COMMON)/ ? 3 : 0
+        kind = name ~ /^\.(text|rodata)/ ? 1 : name ~ /^\.data/ ? 2 :
+               name ~ /^\.(bss|COMMON)/ ? 3 : 0
         n = number(size)
         if (kind && n) { sum[part(file), kind] += n; seen[part(file)] = 1; all[kind] += n }
     }

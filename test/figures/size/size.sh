@@ -3,7 +3,7 @@
 # What a scene costs on a port: size.sh [--update] [SCENE...]
 # Refutes "a scene links only what it calls": prints bytes, worst-case stack, instructions per
 # tick and the library symbols of each scene x port, and compares the symbols with the committed
-# symbols-SCENE-PORT.txt. --update rewrites these.
+# symbols.tsv (symbols.py). --update writes the columns of these scenes anew.
 #
 #   posix  library and scene as this machine's compiler makes them, in an image linked against
 #          ports/template: the simulator around them would drown them. Instructions by callgrind,
@@ -12,9 +12,11 @@
 #   pc104  the image with constants for cards (CARDS=none), which is what runs under QEMU.
 #          Instructions by its own count there (time stamp counter, one per instruction), the
 #          dearest tick of 2000, arming, ramp and running among them; with nothing moving.
-#   mps2   the image, a loop-back for drives. Instructions in virtual time under QEMU, to 1: 64 ns each,
+#   mps2   the image, a loop-back for drives. Instructions in virtual time under QEMU, to 1: 64 ns
+#          each,
 #          seen by a timer of 25 MHz (bilateral: 32 ns, to 2); the dearest tick, nothing moving.
-#          minimal once more as minimal-frozen-1000 (make FROZEN=1000): scene and library set up and linked as one program.
+#          minimal once more as minimal-frozen-1000 (make FROZEN=1000): scene and library set up and
+#          linked as one program.
 #
 # Environment: MAKE (make), B (build). A missing cross compiler, emulator or valgrind
 # leaves "-" in the table and says so.
@@ -29,7 +31,8 @@ ticks=2000
 sweep=3000
 update=no
 failed=no
-MAKEFLAGS=-j$(nproc 2>/dev/null || echo 1) # no more: what the caller's make was told (CC, O, ...) would change the figures
+# no more: what the caller's make was told (CC, O, ...) would change the figures
+MAKEFLAGS=-j$(nproc 2>/dev/null || echo 1)
 export MAKEFLAGS
 
 [ -r "$here/size.sh" ] || { echo "$0: run it at the top of the tree" >&2; exit 2; }
@@ -38,8 +41,8 @@ command -v "$cc" >/dev/null 2>&1 || { echo "$cc: not found: install gcc" >&2; ex
 
 note() { echo "size: $*" >&2; }
 
-# build PORT SCENE [VARIABLE...]: the image and the call graphs beside its objects. Of SCENE-frozen-RATE those are what
-# the linker made, which it leaves there.
+# build PORT SCENE [VARIABLE...]: the image and the call graphs beside its objects. Of
+# SCENE-frozen-RATE those are what the linker made, which it leaves there.
 build()
 {
     port=$1 scene=$2
@@ -66,13 +69,15 @@ model()
     case $2 in custom) echo "$b/$1/model/wall" ;; esac
 }
 
-# objects PORT SCENE: everything compiled from C for that image. What was linked as one comes last: names of it are the library's, too.
+# objects PORT SCENE: everything compiled from C for that image. What was linked as one comes last:
+# names of it are the library's, too.
 objects()
 {
     own=$b/$1/examples/$2
     case $2 in *-frozen-*) own= ;; esac
     # shellcheck disable=SC2046,SC2086 # the names of our objects have no blanks
-    find "$b/$1/lib" "$b/$1/lib/src/run/loop.ci" $own "$b/$1/${2%-frozen-*}" $(shared "$1" "$2" ci) $(model "$1" "$2") -name '*.ci' |
+    find "$b/$1/lib" "$b/$1/lib/src/run/loop.ci" $own "$b/$1/${2%-frozen-*}" \
+        $(shared "$1" "$2" ci) $(model "$1" "$2") -name '*.ci' |
         sed 's/\.ci$/.o/' | sort
     [ -n "$own" ] || echo "$b/$1/$2.elf.ltrans0.ltrans.o"
 }
@@ -85,19 +90,13 @@ library_symbols()
     "$3" -P "$b/$1/$2.elf" | awk '{ print $1 }' | sort -u | comm -12 - "$b/library.txt"
 }
 
-# compare_symbols PORT-as-named SCENE: $b/symbols.txt with the committed list
+# compare_symbols PORT-as-named SCENE: $b/symbols.txt with its column of the committed table
 compare_symbols()
 {
-    committed=$here/symbols-$2-$1.txt
-    if [ "$update" = yes ]; then
-        cp "$b/symbols.txt" "$committed"
-    elif [ ! -r "$committed" ]; then
-        note "$committed: missing: run $0 --update"
-        failed=yes
-    elif ! diff -u "$committed" "$b/symbols.txt" >&2; then
-        note "$2 on $1: other library symbols than committed: if intended, run $0 --update"
-        failed=yes
-    fi
+    [ "$update" = yes ] && { "$here/symbols.py" --update "$2-$1" "$b/symbols.txt"; return; }
+    "$here/symbols.py" "$2-$1" "$b/symbols.txt" && return
+    note "$2 on $1: other library symbols than committed: if intended, run $0 --update"
+    failed=yes
 }
 
 # stack PORT SCENE OBJDUMP: bytes, and the path to stderr
@@ -126,7 +125,8 @@ stack_fits()
 # of the linker's map. Long section names stand on a line of their own.
 linked_bytes()
 {
-    awk -v ours="libexhand[.]a[(]|/examples/$1/|/examples/glove/cal[.]o|/examples/drop/drop[.]o|/lib/src/run/calib_set[.]o" '
+    ours="libexhand[.]a[(]|/examples/$1/|/examples/glove/cal[.]o|/examples/drop/drop[.]o"
+    awk -v ours="$ours|/lib/src/run/calib_set[.]o" '
         function number(hex,  i, v) {
             for (i = 3; i <= length(hex); i++) {
                 v = v * 16 + index("0123456789abcdef", substr(hex, i, 1)) - 1
@@ -152,8 +152,10 @@ callgrind()
 {
     tool=$b/ticks-$1
     # shellcheck disable=SC2046 # the names of our objects have no blanks
-    "$cc" -std=c99 -O2 -g -Ilib/include -Iexamples "-DEXH_SCENE=exh_scene_$1" "$here/ticks.c" "$here/world.c" test/no_board.c \
-        $(find "$b/template/examples/$1" $(model template "$1") -name '*.o') $(shared template "$1" o) "$b/template/lib/src/run/log.o" \
+    "$cc" -std=c99 -O2 -g -Ilib/include -Iexamples "-DEXH_SCENE=exh_scene_$1" "$here/ticks.c" \
+        "$here/world.c" test/no_board.c \
+        $(find "$b/template/examples/$1" $(model template "$1") -name '*.o') \
+        $(shared template "$1" o) "$b/template/lib/src/run/log.o" \
         "$b/template/libexhand.a" -o "$tool"
     needs=
     [ "$1" = calibrate ] && needs=0x8220.0=524288 # one mass, 0.5 kg
@@ -170,7 +172,8 @@ callgrind()
         return
     fi
     # shellcheck disable=SC2086 # none or one word
-    valgrind --tool=callgrind --callgrind-out-file="$b/callgrind-$1.out" --toggle-collect=counted_tick "$tool" \
+    valgrind --tool=callgrind --callgrind-out-file="$b/callgrind-$1.out" \
+        --toggle-collect=counted_tick "$tool" \
         "$sweep" "$which" $needs 2>&1 |
         awk -v n="$n" '/Collected/ { per_tick = sprintf("%.1f", $NF / n) }
             END { print per_tick ? per_tick : "-" }'
@@ -187,7 +190,8 @@ counted()
 {
     [ "$1" = calibrate ] && { echo -; return; } # it wants to be told of a mass
     # shellcheck disable=SC2046 # none or one word
-    QEMU_FLAGS="-icount shift=0,sleep=off" ports/pc104/run.sh "$b/pc104/$1.elf" "ticks=$ticks" $(without "$1") \
+    QEMU_FLAGS="-icount shift=0,sleep=off" ports/pc104/run.sh "$b/pc104/$1.elf" "ticks=$ticks" \
+        $(without "$1") \
         >"$b/run.txt" || note "$1 on pc104: did not run"
     awk '/^cycles per tick/ { sub(/\r/, ""); n = $NF } END { print n ? n : "-" }' "$b/run.txt"
 }
@@ -200,7 +204,8 @@ counted_m()
     [ "$1" = bilateral ] && shift=5 # or it would not be over before the next tick
     QEMU_FLAGS="-icount shift=$shift,sleep=off" ports/mps2/run.sh "$b/mps2/$1.elf" >"$b/run.txt" ||
         note "$1 on mps2: did not run"
-    awk -v shift=$shift '/^cycles per tick/ { n = int($NF * 40 / 2 ^ shift + 0.5) } END { print n ? n : "-" }' "$b/run.txt"
+    awk -v shift=$shift '/^cycles per tick/ { n = int($NF * 40 / 2 ^ shift + 0.5) }
+        END { print n ? n : "-" }' "$b/run.txt"
 }
 
 # row SCENE PORT TEXT DATA BSS STACK INSTRUCTIONS

@@ -6,10 +6,11 @@ Each OBJECT was compiled by gcc with -fcallgraph-info=su: its call graph lies be
 ending .ci. The deepest path from the root is printed, the bytes first. Indirect calls: the few
 function pointers of this project stand in constant tables (struct exh_scene, struct
 exh_loop_hooks), so an indirect call is taken to reach any function whose address is in the data
-of any object; but one in the log (exh_log_*, lib/src/run/log.c) only what a scene's own table or a tap's
-(struct exh_log_tap tap) points to: it calls the scene's state() and the tap, while the loop's hooks
-call the log; one in scene custom only what its slot points to; and likewise one in pc104's modbus, which asks the scene what is allowed; and one in
-calibrate_tick() only what its own table of steps points to. A function whose address is taken only by code is not seen: give it a table.
+of any object; but one in the log (exh_log_*, lib/src/run/log.c) only what a scene's own table or a
+tap's (struct exh_log_tap tap) points to: it calls the scene's state() and the tap, while the loop's
+hooks call the log; one in scene custom only what its slot points to; and likewise one in pc104's
+modbus, which asks the scene what is allowed; and one in calibrate_tick() only what its own table of
+steps points to. A function whose address is taken only by code is not seen: give it a table.
 Functions without a graph (assembler, the C library) count as nothing and are named.
 
 Exit status: 0 bounded, 1 not (recursion, a frame of unknown size), 2 bad usage, 3 no objdump.
@@ -26,8 +27,11 @@ SECTION = re.compile(r'RELOCATION RECORDS FOR \[([^]]*)\]')
 RELOCATION = re.compile(r'^[0-9a-f]+ +R_\S+ +(\S+)')
 INDIRECT = '__indirect_call'
 LOG = re.compile(r'(^|:)(exh_log_|pc104_modbus_)|(^|/)(log|pc104/modbus)\.c:')
-# Callers that call by some tables only: (caller, the tables' sections). The first that fits is taken.
-ONLY = ((re.compile(r'(^|/)custom\.c:'), re.compile(r'\.slot$')), (LOG, re.compile(r'exh_scene_|\.tap(\.\d+)?$')), (re.compile(r'(^|:)calibrate_tick$'), re.compile(r'\.steps$')))
+# Callers that call by some tables only: (caller, the tables' sections). The first that fits is
+# taken.
+ONLY = ((re.compile(r'(^|/)custom\.c:'), re.compile(r'\.slot$')),
+        (LOG, re.compile(r'exh_scene_|\.tap(\.\d+)?$')),
+        (re.compile(r'(^|:)calibrate_tick$'), re.compile(r'\.steps$')))
 
 
 class Unbounded(Exception):
@@ -68,7 +72,8 @@ def addresses_in_data(obj, objdump):
 def reached(caller, tables):
     """Titles that an indirect call of this caller may reach."""
     only = next((where for who, where in ONLY if who.search(caller)), re.compile(''))
-    return sorted(title for title, sections in tables.items() if any(only.search(at) for at in sections))
+    return sorted(title for title, sections in tables.items()
+                  if any(only.search(at) for at in sections))
 
 
 def deepest(title, graph, done, path):

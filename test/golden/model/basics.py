@@ -34,13 +34,13 @@ def fix(rate):
         except Refused as e:
             err = -e.args[0]
         T = any_period(r)
-        yield (v, a, b, *T, sat32(v), clamp(v, lo, hi), shr(v, n), shr(a * b, n), shr(v * (b & MAX32), 31),
-               wrap(b), wrap(a - b), wrap(a + b), err, g[0], g[1], times(g, a),
-               wrap64(num // den), wrap64(num % den), period_ok(*T)), b""
+        yield (v, a, b, *T, sat32(v), clamp(v, lo, hi), shr(v, n), shr(a * b, n),
+               shr(v * (b & MAX32), 31), wrap(b), wrap(a - b), wrap(a + b), err, g[0], g[1],
+               times(g, a), wrap64(num // den), wrap64(num % den), period_ok(*T)), b""
 
 
 FIX = ("v a b T_num T_den | sat32 clamp shr_round mul_shr mul64_q31 from_u32 wrap_diff wrap_add "
-            "err mant shift gain_mul quotient remainder period_ok")
+       "err mant shift gain_mul quotient remainder period_ok")
 
 FIELDS = (("<B", 8, 0), ("<H", 16, 0), ("<h", 16, 1), ("<I", 32, 0), ("<i", 32, 1), ("<q", 64, 1))
 
@@ -64,7 +64,8 @@ def bytes_(rate):
         got, at2 = [], 0
         for form, bits, signed in FIELDS:
             n = bits // 8
-            got.append(low(int.from_bytes(buf[at2:at2 + n], "little"), bits, signed) if at2 + n <= cap else 0)
+            got.append(low(int.from_bytes(buf[at2:at2 + n], "little"), bits, signed)
+                       if at2 + n <= cap else 0)
             at2 += n
         yield (cap, at, 1 if at <= cap else 0, crc, *got), b""
 
@@ -112,7 +113,8 @@ def record(rate):
             buf[at >> 3] ^= 1 << (at & 7)
         if how & 2:
             del buf[where >> 3:]
-        yield (size, zlib.crc32(whole[:-1]) if size else 0, how, len(buf), *read_record(bytes(buf))), b""
+        yield (size, zlib.crc32(whole[:-1]) if size else 0, how, len(buf),
+               *read_record(bytes(buf))), b""
 
 
 RECORD = "size crc how len read type version length seq tick"

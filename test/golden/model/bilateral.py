@@ -12,8 +12,8 @@ from .glove import NONE as NO_SENSOR, SENSORS, Glove, any_par as any_glove
 from .guard import Rail, Supply, any_supply
 from .hand import any_turn, joints
 from .hit2 import BENT, MAP, bones, sensors_of
-from .num import (AGAIN, M32, M64, MAX32, RANGE, STATE, TICKS, UNKNOWN, Rng, clamp, div, period, sat32, shr,
-                  wave, wrap)
+from .num import (AGAIN, M32, M64, MAX32, RANGE, STATE, TICKS, UNKNOWN, Rng, clamp, div, period,
+                  sat32, shr, wave, wrap)
 from .quad import Quad, narrowest, position
 from .safety import ENCODER, FAULT, GLOVE, HEALTHY, LINK, SUPPLY, TRACKING, Safety, any_safety
 from .trace import Trace
@@ -24,7 +24,8 @@ from .wire import ACK, HELLO, PARAM, PLANES, TELL, TRACE, TRACE_ASK, Receiver, S
 
 FINGERS, MATERIALS, ROOM, LATE = 5, 8, 8, 4
 SIGNALS = FINGERS * (8 + 15) + 22
-VERSION, TABLE = 0x00010203, 0x89ABCDEF  # of the library, and of the parameters: not these, which may change
+# of the library, and of the parameters: not these, which may change
+VERSION, TABLE = 0x00010203, 0x89ABCDEF
 
 
 def any_size(rng, most):
@@ -42,7 +43,8 @@ class FingerPar:
     def __init__(self, rng, rate):
         self.step, self.speed, self.p = scale(rng), rng.draw(13421773, MAX32), rng.draw(0, 4)
         self.f0 = any_size(rng, 20971520), any_size(rng, 10737418), any_size(rng, 10737418)
-        self.drive, self.track, self.watch = any_drive(rng, rate), any_track(rng, rate), any_watch(rng, rate)
+        self.drive, self.track, self.watch = (any_drive(rng, rate), any_track(rng, rate),
+                                              any_watch(rng, rate))
         self.kf = rng.draw(104858, 104857600)
         self.arms = rng.draw(4294968, 53687091), rng.draw(0, 53687091), rng.draw(0, 53687091)
         self.pad, self.materials = rng.draw(0, 26843545), MATERIALS
@@ -59,7 +61,8 @@ def any_sensor(rng, i):
     zero, gain = rng.draw(-(8000 << 15), 8000 << 15), rng.draw(1500000, 4000000)
     gain = gain if rng.draw(0, 7) else -gain
     if i in (3, 10, 14, 18):
-        return zero, gain, [rng.draw(-(1 << 28), 1 << 28) for _ in range(2)], low, high, [i - 1, i + 1]
+        return (zero, gain, [rng.draw(-(1 << 28), 1 << 28) for _ in range(2)], low, high,
+                [i - 1, i + 1])
     return zero, gain, [0, 0], low, high, [NO_SENSOR, NO_SENSOR]
 
 
@@ -72,7 +75,8 @@ class Par:
         self.link_time = any_ms(rng, 10, 14, rate) if rng.draw(0, 15) else 0
         self.every = rng.draw(1, 4)
         self.finger = [FingerPar(rng, rate) for _ in range(FINGERS)]
-        self.material = [[any_size(rng, m) for m in (1024000000, 1048576000, 104857600)] for _ in range(MATERIALS)]
+        self.material = [[any_size(rng, m) for m in (1024000000, 1048576000, 104857600)]
+                         for _ in range(MATERIALS)]
         self.safety = any_safety(rng, rate)
         if rng.draw(0, 3):  # most arm
             self.safety = (self.safety[0], 10485760, *self.safety[2:])
@@ -84,7 +88,8 @@ class Par:
 # --- parameters over the link: materials are the world's, and nothing else ---
 
 MOST = {0x0B01: 1024000000, 0x0B02: 1048576000, 0x0B03: 104857600}
-OWN = {0x0C01: FINGERS, 0x0C02: FINGERS, 0x0C03: FINGERS, 0x0C04: FINGERS, 0x8611: 1, 0x8612: 1, 0x0401: FINGERS,
+OWN = {0x0C01: FINGERS, 0x0C02: FINGERS, 0x0C03: FINGERS, 0x0C04: FINGERS, 0x8611: 1, 0x8612: 1,
+       0x0401: FINGERS,
        0x0501: FINGERS}  # how many of each
 
 
@@ -125,7 +130,8 @@ class Finger:
         self.pre.setup(par, T)
         peak = par.drive[3]
         top = sat32(shr(par.kf * peak, 26))
-        self.drive = Drive(par.drive, T, Table([(0, 0), (top, peak)]), Table([(-peak, -top), (peak, top)]))
+        self.drive = Drive(par.drive, T, Table([(0, 0), (top, peak)]),
+                           Table([(-peak, -top), (peak, top)]))
         self.track, self.last, self.monitor = Track(par.track, T), 0, Monitor()
         self.joint, self.tip, self.slope, self.clamped = [0] * 3, [0] * 3, [0] * 3, 0
         self.watch, self.cnt = Watch(par.watch, T), 0
@@ -186,7 +192,8 @@ class Wire:
     def state(self):
         now = self.now - (1 << 64) if self.now >> 63 else self.now
         return (pack("<II", self.tx.session, self.tx.seq) + self.rx.state() +
-                self.pack(now, self.age, self.trip, self.exchanges, self.set, self.wait, self.differs, self.odd) +
+                self.pack(now, self.age, self.trip, self.exchanges, self.set, self.wait,
+                          self.differs, self.odd) +
                 self.trace.state())
 
 
@@ -196,7 +203,8 @@ class Bilateral:
         self.at = [f for f in range(FINGERS) if par.fingers >> f & 1]
         self.n = len(self.at)
         bits = max(narrowest(par.finger[f].step, par.finger[f].speed, T)[1] for f in self.at)
-        self.finger = [Finger(f, par.finger[f], T, bits if f in self.at else 0) for f in range(FINGERS)]
+        self.finger = [Finger(f, par.finger[f], T, bits if f in self.at else 0)
+                       for f in range(FINGERS)]
         self.safety = Safety(par.safety, T)
         self.glove = Glove(par.glove, par.sensor, (1 << SENSORS) - 1, (T[0] * par.every, T[1]))
         for i in range(SENSORS):
@@ -263,7 +271,8 @@ class Bilateral:
         self.unsure = max(min(M32, self.unsure + missed + 1) if M32 in ages else 0, *known, 0)
         lost = t and self.unsure >= t
         cut = self.link_ticks and self.wire.age >= self.link_ticks
-        return (GLOVE if lost else 0) | (LINK if cut else 0) | (SUPPLY if self.supply.step(code, missed) else 0)
+        return ((GLOVE if lost else 0) | (LINK if cut else 0) |
+                (SUPPLY if self.supply.step(code, missed) else 0))
 
     def tick(self, enc, mon, supply, din, missed, command, raw, glove_age, mail):
         """Signals by finger, the box's, and what goes to the D/A."""
@@ -275,7 +284,8 @@ class Bilateral:
             s.cnt = cnt = s.quad.tick(enc[f])
             fast, v, early[f] = s.watch.step(s.velocity.tick(cnt))
             moved[f] = position(cnt, s.par.step), v
-            raised |= fast | (ENCODER if s.quad.lost else 0) | (TRACKING if s.track.step(seen[f][0]) else 0)
+            raised |= (fast | (ENCODER if s.quad.lost else 0) |
+                       (TRACKING if s.track.step(seen[f][0]) else 0))
         placed = din & 255 | sum(1 << 8 + k for k, f in enumerate(at) if din >> 8 + f & 1)
         age = glove_age if glove_age < 65535 else M32
         self.seen = age if self.worn else M32
@@ -285,9 +295,12 @@ class Bilateral:
         if raw:
             self.see(raw, age)
         ready = 7 | (0 if raised & ENCODER else 8)
-        permit = self.safety.step(placed, raised | self.causes(supply, missed), missed, command, self.n, ready)
-        felt = {f: self.finger[f].feel(self.age(f), permit, par.material, self.rest_ticks, *moved[f]) for f in at}
-        gated, enable = self.safety.gate([par.finger[f].drive for f in at], [felt[f][6] for f in at],
+        permit = self.safety.step(placed, raised | self.causes(supply, missed), missed, command,
+                                  self.n, ready)
+        felt = {f: self.finger[f].feel(self.age(f), permit, par.material, self.rest_ticks,
+                                       *moved[f]) for f in at}
+        gated, enable = self.safety.gate([par.finger[f].drive for f in at],
+                                         [felt[f][6] for f in at],
                                          [felt[f][4] | early[f] for f in at])
         paper, more = [[0] * 8 for _ in range(FINGERS)], [[0] * 15 for _ in range(FINGERS)]
         dac, enabled = [par.finger[at[0]].drive[6]] * FINGERS, 0
@@ -303,9 +316,11 @@ class Bilateral:
             more[f] = [bits, limits, *s.joint, s.clamped, *s.tip,
                        *map(wrap, (p.frozen, p.born, p.refused, p.ignored, p.stale, p.let_go))]
         w, sf = self.wire, self.safety
-        box = [sf.state_, sf.faults, sf.present, self.faulty, glove_age, min(w.age, MAX32), min(w.trip, MAX32),
-               wrap(w.set), *map(wrap, (w.rx.count[c] for c in ("accepted missing duplicate reordered old stranger "
-                                                                 "corrupt version unknown far silences").split())),
+        box = [sf.state_, sf.faults, sf.present, self.faulty, glove_age, min(w.age, MAX32),
+               min(w.trip, MAX32), wrap(w.set),
+               *map(wrap,
+                    (w.rx.count[c] for c in ("accepted missing duplicate reordered old stranger "
+                                             "corrupt version unknown far silences").split())),
                w.differs, wrap(w.odd), sf.arm_step()]
         return paper, more, box, (dac, enabled, self.safety.alive)
 
@@ -342,12 +357,14 @@ class Bilateral:
             touching |= c << f
             rows += pack("<10i", *s.joint, *s.tip, force, d, q, lim)
         ms = min(65535, w.age * w.ms_per_tick >> 20)
-        return pack("<IBBBBHI", self.safety.tick, self.par.fingers, self.safety.state_, frozen, touching, ms,
-                    self.safety.faults) + rows
+        return pack("<IBBBBHI", self.safety.tick, self.par.fingers, self.safety.state_, frozen,
+                    touching, ms, self.safety.faults) + rows
 
     def state(self):
-        return (b"".join(s.state() for s in self.finger) + self.safety.state() + self.glove.state() +
-                self.wire.state() + pack("<BIII", self.worn, self.faulty, self.supply.off, self.unsure))
+        return (b"".join(s.state() for s in self.finger) + self.safety.state() +
+                self.glove.state() +
+                self.wire.state() + pack("<BIII", self.worn, self.faulty, self.supply.off,
+                                         self.unsure))
 
 
 # --- stimuli ---
@@ -355,8 +372,8 @@ class Bilateral:
 ASK = ((0x0B01, MATERIALS, 0, 1024000000, 1024000001), (0x0B02, MATERIALS, 0, 1048576000, -1),
        (0x0B03, MATERIALS, 0, 104857600, 104857601), (0x0C01, FINGERS, -(1 << 25), -(1 << 22), 0),
        (0x0C02, FINGERS, 0, 1 << 22, -1), (0x0C03, FINGERS, 1 << 21, 1 << 27, (1 << 27) + 1),
-       (0x0C04, FINGERS, 0, 1, 2), (0x8611, 1, 1, 12, 10001), (0x8612, 1, 1, 1000, -1), (0x0401, FINGERS, 0, 1000, -1),
-       (0x0501, FINGERS, 0, 1000, -1), (0x7FFF, 1, 0, 1, 2))
+       (0x0C04, FINGERS, 0, 1, 2), (0x8611, 1, 1, 12, 10001), (0x8612, 1, 1, 1000, -1),
+       (0x0401, FINGERS, 0, 1000, -1), (0x0501, FINGERS, 0, 1000, -1), (0x7FFF, 1, 0, 1, 2))
 
 
 def away(k):
@@ -458,7 +475,8 @@ class World:
             self.tx, self.begun = Sender(rng.u64() & M32 | 1, self.tx.seq), 0
         if not self.begun and rng.draw(0, 1):
             self.begun = 1
-            self.send(rng, HELLO, pack("<BII", rng.draw(0, 1), VERSION + rng.draw(0, 1), TABLE * rng.draw(0, 2) & M32))
+            self.send(rng, HELLO, pack("<BII", rng.draw(0, 1), VERSION + rng.draw(0, 1),
+                                       TABLE * rng.draw(0, 2) & M32))
         if rng.draw(0, 1) and not away(k):
             self.planes(rng, rate)
         if rng.draw(0, 7) == 0:
@@ -494,7 +512,8 @@ class Hand:
             return None
         self.age = 0
         return [(-32768 if i & 1 else 32767) if self.wrong >> i & 1 else
-                s[3] + ((self.codes[i & 3][k] + 32768) * (s[4] - s[3]) >> 16) for i, s in enumerate(self.par.sensor)]
+                s[3] + ((self.codes[i & 3][k] + 32768) * (s[4] - s[3]) >> 16)
+                for i, s in enumerate(self.par.sensor)]
 
 
 def bilateral(rate):
@@ -530,20 +549,23 @@ def bilateral(rate):
         command = 1 if k % 4 == 2 or k % AGAIN == 0 else 3 if k % 4 == 1 else 0
         for f in s.finger:
             f.pre.resumed = k == pre.RESTORED
-        paper, more, box, (dac, enable, alive) = s.tick(raw, mon, supply, din, missed, command, glove, hand.age,
-                                                          mail)
+        paper, more, box, (dac, enable, alive) = s.tick(raw, mon, supply, din, missed, command,
+                                                        glove, hand.age,
+                                                        mail)
         flat = [v for row in paper + more for v in row] + box
         out = s.write(paper, flat)
         if k % 8 == 7:
             s.params.apply()
         yield ((len(mail), mail_crc(mail), int(glove is not None), din, missed, command,
                 *(v for p, m in zip(paper, more) for v in (m[0], p[6], p[7], p[2])),
-                box[0], box[1], box[3], box[5], box[7], box[8], zlib.crc32(pack("<%di" % len(flat), *flat)),
+                box[0], box[1], box[3], box[5], box[7], box[8],
+                zlib.crc32(pack("<%di" % len(flat), *flat)),
                 zlib.crc32(pack("<5HBB", *dac, enable, alive)), len(out), mail_crc(out)), s.state())
 
 
 COLUMNS = ("packets mail_crc glove_new din missed command | " + " ".join(
-    "%s%d" % (n, f) for f in range(FINGERS) for n in ("bits", "d_m_q30_", "q_lim_m_q30_", "f_des_N_q20_")) +
+    "%s%d" % (n, f) for f in range(FINGERS)
+    for n in ("bits", "d_m_q30_", "q_lim_m_q30_", "f_des_N_q20_")) +
     " state faults glove_faults age set accepted signals_crc out_crc written written_crc")
 
 MODULES = {"bilateral": (COLUMNS, bilateral)}

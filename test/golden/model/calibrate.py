@@ -66,9 +66,9 @@ def calibrate(rate):
     rng = Rng("calibrate", rate, 0)
     for k in range(TICKS):
         middle, points = mean(rng), any_points(rng)
-        values = [rng.u64() & M32, rng.draw(0, 4), rng.draw(1, 30000), rng.draw(0, 400), rng.draw(65536, MAX32),
-                  rng.draw(0, 65535), rng.draw(1, MAX32), rng.draw(-32768, 32767), rng.draw(0, 442918502),
-                  rng.draw(0, 442918502)]
+        values = [rng.u64() & M32, rng.draw(0, 4), rng.draw(1, 30000), rng.draw(0, 400),
+                  rng.draw(65536, MAX32), rng.draw(0, 65535), rng.draw(1, MAX32),
+                  rng.draw(-32768, 32767), rng.draw(0, 442918502), rng.draw(0, 442918502)]
         (g1, kf1), (g2, kf2) = fit(points, 1), fit(points, 2)
         p, which = points[rng.draw(0, len(points) - 1)], 1 + rng.draw(0, 1)
         rest = sat32(p[0] - times((g1, g2)[which - 1], p[which]))
@@ -91,15 +91,17 @@ def calibrate(rate):
         elif 4 <= other <= 7:
             wrong, what = -STALE, SCALE
         force, monitor = force_table(points, values[9]), monitor_table(points, values[9])
-        at, which2, err, bad_what, bad_at = rng.draw(0, len(points) - 1), 1 + rng.draw(0, 1), 0, 0, 0
+        at, which2, err, bad_what, bad_at = (rng.draw(0, len(points) - 1), 1 + rng.draw(0, 1), 0, 0,
+                                             0)
         if at > 0:  # spoil one
             points[at][which2] = points[at - 1][which2] - rng.draw(0, 1)
             err, bad_what, bad_at = -MONOTONE, (FORCE_TABLE, MONITOR_TABLE)[which2 - 1], at
-        yield ((middle, len(points), kf1, *g1, kf2, *g2, rest, size, crc, load, wrong, what, err, bad_what,
-                bad_at), knots_bytes(force) + knots_bytes(monitor))
+        yield ((middle, len(points), kf1, *g1, kf2, *g2, rest, size, crc, load, wrong, what, err,
+                bad_what, bad_at), knots_bytes(force) + knots_bytes(monitor))
 
 
-COLUMNS = ("mean points kf_NpA_q20 mant shift kf_mon_NpA_q20 mant_mon shift_mon residual_N_q20 image_B crc "
-                "load check check_what valid valid_what valid_at")
+COLUMNS = ("mean points kf_NpA_q20 mant shift kf_mon_NpA_q20 mant_mon shift_mon residual_N_q20 "
+           "image_B crc "
+           "load check check_what valid valid_what valid_at")
 
 MODULES = {"calibrate": (COLUMNS, calibrate)}

@@ -51,7 +51,8 @@ def contact(rate):
             s = Contact()
         if k % 32 == 0:
             par = (rng.draw(0, 1024000000), rng.draw(0, 1048576000), rng.draw(0, 20971520),
-                   rng.draw(0, 10737418) >> rng.draw(0, 23), rng.draw(0, 10737418) >> rng.draw(0, 23))
+                   rng.draw(0, 10737418) >> rng.draw(0, 23),
+                   rng.draw(0, 10737418) >> rng.draw(0, 23))
             if k:  # a band that the next movement may just reach
                 par = par[:3] + (min(10737418, abs(q[k] - q[k - 1])), par[4])
         where = rng.draw(0, 7)
@@ -59,7 +60,8 @@ def contact(rate):
             off = rng.draw(-(1 << 24), 1 << 24)
         elif where < 4:  # at the edges of contact
             off = (0, 1, par[4], par[4] + 1)[where]
-        lim = rng.draw(*rails) if 176 <= k < AGAIN else rails[0] if 24 <= k < 28 else sat32(q[k] + off)
+        lim = (rng.draw(*rails) if 176 <= k < AGAIN else rails[0] if 24 <= k < 28
+               else sat32(q[k] + off))
         row = s.tick(par, q[k], v[k], lim)
         yield (q[k], v[k], lim, *row), s.state()
 

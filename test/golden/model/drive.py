@@ -164,12 +164,13 @@ def drive(rate):
         more, i_table, i_peak, i_i2t = d.current()
         raw = rng.draw(-32768, 32767)
         i_mon, f_mon = d.monitor(raw)
-        yield (s, damper[k], p, mode, share, small, ticks, raw, clamp_, slew, release, force, i_table, i_peak, i_i2t, limits | more,
-               i_mon, f_mon), d.state()
+        yield (s, damper[k], p, mode, share, small, ticks, raw, clamp_, slew, release, force,
+               i_table, i_peak, i_i2t, limits | more, i_mon, f_mon), d.state()
 
 
-DRIVE = ("spring_N_q20 damper_N_q20 pullback_N_q20 mode share_q30 small_N_q20 ticks mon_raw | clamp_N_q20 slew_N_q20 "
+DRIVE = ("spring_N_q20 damper_N_q20 pullback_N_q20 mode share_q30 small_N_q20 ticks mon_raw | "
+         "clamp_N_q20 slew_N_q20 "
          "release_N_q20 force_N_q20 "
-              "table_A_q26 peak_A_q26 i2t_A_q26 limits mon_A_q26 mon_N_q20")
+         "table_A_q26 peak_A_q26 i2t_A_q26 limits mon_A_q26 mon_N_q20")
 
 MODULES = {"table": (TABLE, table), "drive": (DRIVE, drive)}

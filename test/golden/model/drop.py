@@ -22,7 +22,8 @@ class Drop:
         self.track, self.watch, self.last = Track(track, T), Watch(watch, T), 0
         peak = drive[3]
         top = sat32(shr(kf * peak, 26))
-        self.drive = Drive(drive, T, Table([(0, 0), (top, peak)]), Table([(-peak, -top), (peak, top)]))
+        self.drive = Drive(drive, T, Table([(0, 0), (top, peak)]),
+                           Table([(-peak, -top), (peak, top)]))
 
     def tick(self, raw, mon, din, supply, missed, command):
         cnt = self.quad.tick(raw)
@@ -44,7 +45,8 @@ class Drop:
         self.last = coded
         more = self.after(force, pull, coded, term)
         return (q, v, force, coded, c, f_mon, limits, self.safety.state_,
-                self.safety.faults, self.safety.present, self.safety.arm_step(), *more, code, enable, self.safety.alive)
+                self.safety.faults, self.safety.present, self.safety.arm_step(), *more, code,
+                enable, self.safety.alive)
 
     def behind(self, cnt, c, asked):
         """(bit, term) of what acts behind the law."""
@@ -55,7 +57,8 @@ class Drop:
         return ()
 
     def state(self):
-        return (self.quad.state() + self.velocity.state() + self.contact.state() + self.drive.state() +
+        return (self.quad.state() + self.velocity.state() + self.contact.state() +
+                self.drive.state() +
                 self.track.state() + self.watch.state() + self.safety.state() + self.supply.state())
 
 
@@ -81,15 +84,18 @@ def drop(rate, name="drop", kind=Drop):
     for k in range(TICKS):
         if k in (0, AGAIN):
             step, speed, p = scale(rng), rng.draw(13421773, (1 << 31) - 1), rng.draw(0, 4)
-            law = (rng.draw(0, 1024000000) >> rng.draw(0, 12), rng.draw(0, 1048576000) >> rng.draw(0, 12),
-                   rng.draw(0, 20971520), rng.draw(0, 10737418) >> rng.draw(0, 12),
+            law = (rng.draw(0, 1024000000) >> rng.draw(0, 12),
+                   rng.draw(0, 1048576000) >> rng.draw(0, 12), rng.draw(0, 20971520),
+                   rng.draw(0, 10737418) >> rng.draw(0, 12),
                    rng.draw(0, 10737418) >> rng.draw(0, 12))
             drive, track = any_par(rng, rate), any_track(rng, rate)
-            watch, safety, supply = any_watch(rng, rate), any_safety(rng, rate), any_supply(rng, rate, 31)
+            watch, safety, supply = (any_watch(rng, rate), any_safety(rng, rate),
+                                     any_supply(rng, rate, 31))
             lim, kf = rng.draw(-(1 << 26), 1 << 26), rng.draw(104858, 104857600)
             # Quiet enough to run, not touching at first, and to and fro through the wall.
             drive, lim = drive[:2] + (10000000,) + drive[3:], abs(lim >> 8)
-            s = kind(step, speed, p, law, drive, track, watch, safety, supply, lim, kf, period(rate, k))
+            s = kind(step, speed, p, law, drive, track, watch, safety, supply, lim, kf,
+                     period(rate, k))
             if kind is Guarded:
                 s.guard(rng.draw(0, 2), period(rate, k))
             jump = s.quad.jump if kind is Drop else s.passivity.way
@@ -113,10 +119,12 @@ def drop(rate, name="drop", kind=Drop):
             command = 2
         fed = rail.draw(rng, k)
         mon = monitor.draw(rng, drive, s.last)
-        yield (raw & M32, mon, din, fed, missed, command, *s.tick(raw & M32, mon, din, fed, missed, command)), s.state()
+        yield (raw & M32, mon, din, fed, missed, command,
+               *s.tick(raw & M32, mon, din, fed, missed, command)), s.state()
 
 
-COLUMNS = ("raw mon_raw din supply_raw missed command | q_m_q30 qd_mps_q27 f_des_N_q20 i_des_A_q26 c f_mon_N_q20 "
+COLUMNS = ("raw mon_raw din supply_raw missed command | q_m_q30 qd_mps_q27 f_des_N_q20 i_des_A_q26 "
+           "c f_mon_N_q20 "
            "limits state faults present arm_step dac_raw enable alive")
 
 
@@ -126,4 +134,5 @@ def guarded(rate):
 
 
 MODULES = {"drop": (COLUMNS, drop),
-           "guarded": (COLUMNS.replace("arm_step", "arm_step energy_J_q24 passivity_N_q20"), guarded)}
+           "guarded": (COLUMNS.replace("arm_step", "arm_step energy_J_q24 passivity_N_q20"),
+                       guarded)}

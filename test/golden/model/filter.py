@@ -3,7 +3,8 @@
 
 from struct import Struct
 
-from .num import AGAIN, CUTOFF, MAX32, MIN32, RANGE, TICKS, Refused, Rng, clamp, period, sat32, shr, wave
+from .num import (AGAIN, CUTOFF, MAX32, MIN32, RANGE, TICKS, Refused, Rng, clamp, period, sat32,
+                  shr, wave)
 
 P = 256  # fraction bits of what the document calls real numbers
 ONE = 1 << P
@@ -150,7 +151,8 @@ def any_config(rng, T):
     """(error of some cut-off, a configuration that is one)."""
     most = ((T[1] << 15) - 1) // T[0]
     least = (T[1] >> 5) // T[0] + 1
-    order, fc = rng.draw(1, 2), rng.draw(0, 2 * most) >> rng.draw(0, 26 if rng.draw(0, 2) == 0 else 1)
+    order, fc = (rng.draw(1, 2),
+                 rng.draw(0, 2 * most) >> rng.draw(0, 26 if rng.draw(0, 2) == 0 else 1))
     try:
         return 0, Config(order, fc, T)
     except Refused as e:

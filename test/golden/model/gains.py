@@ -9,8 +9,8 @@ RATE, GAINS = 8, 13
 K_MAX, B_MAX, K, B = 1024000000, 1048576000, 0x0401, 0x0402
 
 # id, largest value, default of the contact's rows; the smallest is 0.
-CONTACT = ((0x0401, K_MAX, 1536000), (0x0402, B_MAX, 0), (0x0403, 20971520, 112197), (0x0404, 10737418, 214748),
-           (0x0405, 10737418, 0))
+CONTACT = ((0x0401, K_MAX, 1536000), (0x0402, B_MAX, 0), (0x0403, 20971520, 112197),
+           (0x0404, 10737418, 214748), (0x0405, 10737418, 0))
 
 
 def toward(now, goal, shift):
@@ -81,9 +81,11 @@ class Rule:
             for b0, b1, k0, k1 in zip(self.b, self.b[1:self.n], self.k, self.k[1:]))
 
     def aim(self, at, goal):
-        """The goal's k if the straight line there is above no knot on its way, else the lowest of all."""
+        """The goal's k if the straight line there is above no knot on its way, else the lowest of
+        all."""
         (k, b), (gk, gb) = at, goal
-        between = [(kn, bn) for kn, bn in zip(self.k[:self.n], self.b) if min(b, gb) < bn < max(b, gb)]
+        between = [(kn, bn) for kn, bn in zip(self.k[:self.n], self.b)
+                   if min(b, gb) < bn < max(b, gb)]
         if all(k + Fraction(gk - k, gb - b) * (bn - b) <= kn for kn, bn in between):
             return gk
         return min([k] + [kn for kn, _ in between])
@@ -112,7 +114,8 @@ class Rule:
         if how == 2:
             b = b0
         if how >= 2:
-            k = k0 + (k1 - k0) * (b - b0) // (b1 - b0) if k1 >= k0 else k1 + (k0 - k1) * (b1 - b) // (b1 - b0)
+            k = (k0 + (k1 - k0) * (b - b0) // (b1 - b0) if k1 >= k0
+                 else k1 + (k0 - k1) * (b1 - b) // (b1 - b0))
             k += rng.draw(-2, 2)
         return k, b
 
@@ -235,12 +238,14 @@ def gains(rate):
         if rng.draw(0, 3):
             done = params.apply(shift)
             params.step(rule, shift)
-        yield (err, k, b, inside, put, ident, instance, raw, bad, at, done, params.pending, params.moving,
+        yield (err, k, b, inside, put, ident, instance, raw, bad, at, done, params.pending,
+               params.moving,
                *(v for s, a in zip(params.staged, params.active) for v in (s[K], s[B], a[K], a[B])),
                *walk(rng, period(rate, tick))), b""
 
 
-COLUMNS = "setup k_Npm_q10 b_Nspm_q20 | inside stage id instance raw staged at apply pending moving k0 b0 k0_is b0_is k1 b1 k1_is b1_is " \
-          "way0_k way0_b way1_k way1_b then0_k then0_b then1_k then1_b"
+COLUMNS = ("setup k_Npm_q10 b_Nspm_q20 | inside stage id instance raw staged at apply pending "
+           "moving k0 b0 k0_is b0_is k1 b1 k1_is b1_is " \
+           "way0_k way0_b way1_k way1_b then0_k then0_b then1_k then1_b")
 
 MODULES = {"gains": (COLUMNS, gains)}

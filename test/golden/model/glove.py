@@ -34,12 +34,14 @@ class Glove:
     sensor = Struct("<qqBiBhHBB").pack
 
     def __init__(self, par, sensors, present, T):
-        self.order, fc, self.bits, self.hyst, self.low, self.high, self.open_high, self.debounce, margin = par
+        (self.order, fc, self.bits, self.hyst, self.low, self.high, self.open_high, self.debounce,
+         margin) = par
         self.filter = Config(self.order, fc, T) if self.order else None
         self.sensors, self.span = sensors, []
         for i, s in enumerate(sensors):
             m = shr((s[4] - s[3]) * margin, 16)
-            self.span.append((max(s[3] - m, self.low + 1), min(s[4] + m, self.high - 1)) if present >> i & 1
+            self.span.append((max(s[3] - m, self.low + 1), min(s[4] + m, self.high - 1))
+                             if present >> i & 1
                              else (-32768, 32767))
         self.started = 0
         self.good, self.faults, self.run, self.cause = ([0] * SENSORS for _ in range(4))
@@ -91,7 +93,8 @@ class Glove:
         out = own[:]
         for i in CROSSED:
             s = self.sensors[i]
-            out[i] = sat32(own[i] + sum(shr(own[a] * c, 30) for c, a in zip(s[2], s[5]) if a != NONE))
+            out[i] = sat32(own[i] +
+                           sum(shr(own[a] * c, 30) for c, a in zip(s[2], s[5]) if a != NONE))
         return sum((c != GOOD) << i for i, c in enumerate(self.cause)), out
 
     def state(self):
@@ -106,7 +109,8 @@ def any_par(rng, T):
     order, fc = rng.draw(0, 2), max(6553, least, rng.draw(1, most) >> rng.draw(0, 10))
     bits = rng.draw(4, 16)
     return (order, fc, bits, rng.draw(0, 1 << min(28, 32 - bits)), rng.draw(-32768, -31000),
-            rng.draw(31000, 32767), rng.draw(0, 1), rng.draw(1, 6), rng.draw(0, 65536) >> rng.draw(0, 4))
+            rng.draw(31000, 32767), rng.draw(0, 1), rng.draw(1, 6),
+            rng.draw(0, 65536) >> rng.draw(0, 4))
 
 
 def frame_period(rate, k, every):

@@ -68,7 +68,8 @@ def guard(rate):
             params.pending ^= 1
         if how in (6, 7):
             params.moving ^= 1
-        yield (len(g.area), flip, off, params.pending, params.moving, g.step(), g.at, g.crc, params.at), b""
+        yield (len(g.area), flip, off, params.pending, params.moving, g.step(), g.at, g.crc,
+               params.at), b""
 
 
 # --- supply ---
@@ -78,7 +79,8 @@ def any_supply(rng, rate, seldom=3):
     scale_, low = rng.draw(100000, 1500000), rng.draw(1, 20000)
     high = rng.draw(low + 1, 32000)
     least = low * scale_ >> 10 if rng.draw(0, seldom) else 0
-    return least, high * scale_ >> 10, scale_, clamp(rng.draw(1, 12) * 1000 // rate, 1, 1000), low + high >> 1
+    return (least, high * scale_ >> 10, scale_, clamp(rng.draw(1, 12) * 1000 // rate, 1, 1000),
+            low + high >> 1)
 
 
 class Supply:
@@ -130,7 +132,8 @@ def any_limits(rng, rate, k):
             return 0, Supply((least, most, scale_, ms, good), period(rate, k)), good
         except Refused as e:
             if rng.draw(0, 3) == 0:
-                # Nothing is judged; the time is known already where it is the limits that are refused.
+                # Nothing is judged; the time is known already where it is the limits that are
+                # refused.
                 return -e.args[0], Supply((0, 100 << 20, scale_, ms, good), period(rate, k)), good
 
 

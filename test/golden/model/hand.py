@@ -50,7 +50,8 @@ class Finger:
         def rate(sensor):
             return self.pull[0] if sensor == bent[0] else self.pull[1] if sensor in bent[1:] else 0
 
-        pull = [shr(sum(g * rate(s) for g, s in zip(gain, term)), 24) for _, gain, term, _, _ in of_finger[1:]]
+        pull = [shr(sum(g * rate(s) for g, s in zip(gain, term)), 24)
+                for _, gain, term, _, _ in of_finger[1:]]
         if max(map(abs, pull)) <= 250 << 20:
             self.pull = pull
 

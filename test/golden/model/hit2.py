@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The DLR/HIT Hand II as docs/NUMERICS.md and hand_hit2.c have it: bones, and the map of a glove's sensors."""
+"""The DLR/HIT Hand II as docs/NUMERICS.md and hand_hit2.c have it: bones, and the map of a glove's
+sensors."""
 
 from .hand import Finger
 
@@ -15,13 +16,15 @@ def nm(n):
 
 
 LENGTH = [toward0(mm << 34, 1000) for mm in (55, 25, 25)]
-ROT = (((460690812, -613157138, -751481074), (200973197, 874240148, -590114771), (948838898, 112534406, 489859427)),
+ROT = (((460690812, -613157138, -751481074), (200973197, 874240148, -590114771),
+        (948838898, 112534406, 489859427)),
        ((0, -SIN_5, COS_5), (0, -COS_5, -SIN_5), (ONE, 0, 0)),
        ((0, 0, ONE), (0, -ONE, 0), (ONE, 0, 0)),
        ((0, SIN_5, COS_5), (0, -COS_5, SIN_5), (ONE, 0, 0)),
        ((0, SIN_10, COS_10), (0, -COS_10, SIN_10), (ONE, 0, 0)))
-BASE_NM = ((62175930, 44372912, 78734808), (-2529881, 36800130, 107783545), (-3700000, 10000000, 117783545),
-           (0, -16800130, 112583540), (971571, -43396300, 93583545))
+BASE_NM = ((62175930, 44372912, 78734808), (-2529881, 36800130, 107783545),
+           (-3700000, 10000000, 117783545), (0, -16800130, 112583540),
+           (971571, -43396300, 93583545))
 
 
 def bones(f, arms):
@@ -57,12 +60,12 @@ def side(g, term):
     return 0, g, term, *SIDE
 
 
-# Sensors: thumb rotation 0, its two joints 1 2, abduction 3; index 4 5 6; middle 7 8 9, from index 10;
-# ring 11 12 13, from middle 14; little 15 16 17, from ring 18.
+# Sensors: thumb rotation 0, its two joints 1 2, abduction 3; index 4 5 6; middle 7 8 9, from index
+# 10; ring 11 12 13, from middle 14; little 15 16 17, from ring 18.
 _g = gain(-15, 15, -60, 130)
 _h = gain(0, 85, -85, 45)
-MAP = (((-bias(-15, 15, -60, 130), (-_g, 0), (0, 0), *SIDE), (bias(0, 85, -85, 45), (_h, -_h), (1, 3), *KNUCKLE),
-        curl(1, 2, -30, 120)),
+MAP = (((-bias(-15, 15, -60, 130), (-_g, 0), (0, 0), *SIDE),
+        (bias(0, 85, -85, 45), (_h, -_h), (1, 3), *KNUCKLE), curl(1, 2, -30, 120)),
        (side((-QUARTER, 0), (10, 0)), knuckle(4), curl(5, 6, -40, 225)),
        (side((0, 0), (0, 0)), knuckle(7), curl(8, 9, -40, 225)),
        (side((QUARTER, 0), (14, 0)), knuckle(11), curl(12, 13, -40, 225)),

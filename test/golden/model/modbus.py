@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""mirror, modbus and modbus_rtu: binary32 by integers, requests and their answers, and a serial line; from docs/MODBUS.md."""
+"""mirror, modbus and modbus_rtu: binary32 by integers, requests and their answers, and a serial
+line; from docs/MODBUS.md."""
 
 import zlib
 from struct import pack
@@ -42,7 +43,8 @@ def float_raw(bits, frac):
 
 
 def any_bits(rng, frac):
-    how, bits, near, small = rng.draw(0, 7), rng.draw(0, M32), rng.draw(-2, 2), rng.draw(-4096, 4096)
+    how, bits, near, small = (rng.draw(0, 7), rng.draw(0, M32), rng.draw(-2, 2),
+                              rng.draw(-4096, 4096))
     if how == 0:
         return bits
     if how == 1:
@@ -65,17 +67,20 @@ def mirror(rate):
             v >>= rng.draw(0, 31)
             bits = any_bits(rng, frac)
             raw = float_raw(bits, frac)
-            row += [frac, v, bits, float_of(v, frac), 0 if raw is not None else -RANGE, 99 if raw is None else raw]
+            row += [frac, v, bits, float_of(v, frac), 0 if raw is not None else -RANGE,
+                    99 if raw is None else raw]
         yield row, b""
 
 
 # --- the box ---
 
 # (id, fraction, when, min, max, default) of each row, and how many instances of them.
-OUT = ((((0x7011, 0, 0, MIN32, MAX32, 0), (0x7012, 26, 0, MIN32, MAX32, 0), (0x7013, 42, 0, MIN32, MAX32, 0)), 20),
+OUT = ((((0x7011, 0, 0, MIN32, MAX32, 0), (0x7012, 26, 0, MIN32, MAX32, 0),
+         (0x7013, 42, 0, MIN32, MAX32, 0)), 20),
        (((0x7021, 126, 0, MIN32, MAX32, 0),), 4))
-PAR = ((((0x7201, 10, ANY, 0, 1024000000, 1536000), (0x7202, 0, SETUP, -5, 5, 0), (0x7203, 30, SLEWED, MIN32, MAX32, 0),
-         (0x7204, 42, LIMIT, -70000, 70000, 1), (0x7205, 0, ANY, 0, 1, 0), (0x7206, 24, ANY, 16777217, MAX32, 16777219)), 11),
+PAR = ((((0x7201, 10, ANY, 0, 1024000000, 1536000), (0x7202, 0, SETUP, -5, 5, 0),
+         (0x7203, 30, SLEWED, MIN32, MAX32, 0), (0x7204, 42, LIMIT, -70000, 70000, 1),
+         (0x7205, 0, ANY, 0, 1, 0), (0x7206, 24, ANY, 16777217, MAX32, 16777219)), 11),
        (((0x7301, 126, SETUP, MIN32, MAX32, -1),), 2))
 
 
@@ -84,7 +89,8 @@ def rows_of(groups):
 
 
 def table_crc(groups):
-    return zlib.crc32(b"".join(pack("<H", len(rows)) + b"".join(pack("<HBBiiH", *row[:5], n) for row in rows)
+    return zlib.crc32(b"".join(pack("<H", len(rows)) +
+                               b"".join(pack("<HBBiiH", *row[:5], n) for row in rows)
                                for rows, n in groups))
 
 
@@ -140,10 +146,12 @@ class Box:
         u, v = rng.u64(), rng.u64()
         self.now, state = u & M32, v >> 56 & 0x27
         missed, first_tick = u >> 32, u >> 16 & M32
-        faults, present, self.limits, first = v & 0x7FFF, v >> 15 & 0x7FFF, v >> 30 & 0x7FF, v >> 41 & 0x7FFF
+        faults, present, self.limits, first = (v & 0x7FFF, v >> 15 & 0x7FFF, v >> 30 & 0x7FF,
+                                               v >> 41 & 0x7FFF)
         arm = u & 0x7F if state != 1 else 64 if u >> 40 & 1 else 32
         din = u >> 8 & 0x1FFF
-        self.seen = (self.now, state, faults, first, first_tick, present, self.limits, arm, din, missed)
+        self.seen = (self.now, state, faults, first, first_tick, present, self.limits, arm, din,
+                     missed)
         self.bits = (faults, present, din, 1 << state if state < 32 else 0, self.limits, arm)
         for _ in range(2):
             i, raw = rng.draw(0, SIGNALS - 1), rng.draw(MIN32, MAX32)
@@ -172,21 +180,24 @@ class Box:
     def head(self):
         name = (self.name + bytes(16))[:16]
         n = len(self.signals)
-        return [0x45584831, 0x00010000, 0x12345678, 0x3F800000, *self.seen, n, PARAMS, OUT_CRC if n else 0, PAR_CRC,
-                *self.T, VERSION[0] << 16 | VERSION[1] << 8 | VERSION[2], self.fingers,
-                self.differ(), self.asked, self.done, self.result,
+        return [0x45584831, 0x00010000, 0x12345678, 0x3F800000, *self.seen, n, PARAMS,
+                OUT_CRC if n else 0, PAR_CRC, *self.T,
+                VERSION[0] << 16 | VERSION[1] << 8 | VERSION[2], self.fingers, self.differ(),
+                self.asked, self.done, self.result,
                 *(int.from_bytes(name[i:i + 4], "big") for i in range(0, 16, 4))]
 
     # --- registers ---
 
     def block(self, kind, at, n):
-        """(the block's first register, the values from that of `at` to that of the last register)."""
+        """(the block's first register, the values from that of `at` to that of the last
+        register)."""
         if kind == INPUT and at < 0x400:
             base, count, values = 0, 30, self.head
         elif kind == INPUT and 0x400 <= at < 0x440:
             base, count, values = 0x400, 9 if self.trace else 0, self.own.values
         elif kind == INPUT and 0x440 <= at < 0x1000:
-            base, count, values = 0x440, 6 * FRAMES if self.trace else 0, lambda: [v for f in self.own.frame for v in f]
+            base, count, values = (0x440, 6 * FRAMES if self.trace else 0,
+                                   lambda: [v for f in self.own.frame for v in f])
         elif kind == HOLDING and 0x400 <= at < 0x1000:
             base, count, values = 0x400, 5 if self.trace else 0, lambda: self.own.set
         elif kind == INPUT and 0x1000 <= at < 0x5000:
@@ -235,7 +246,8 @@ class Box:
         for i, w in enumerate(words, first):
             row = PAR_ROWS[i]
             raw = self.from_float(i, w) if floats else wrap(w)
-            if raw is None or not row[3] <= raw <= row[4] or row[2] == SETUP and self.locked and raw != self.wanted[i]:
+            if (raw is None or not row[3] <= raw <= row[4] or row[2] == SETUP and self.locked and
+                raw != self.wanted[i]):
                 raise Refuse(3)
             raws.append(raw)
         for i, raw in enumerate(raws, first):
@@ -303,7 +315,8 @@ class Box:
         touched = sum(1 << i for i in self.staged)
         b = touched.to_bytes(12, "little")
         held = [self.held(i) for i in range(PARAMS)]
-        b += pack("<%di" % (3 * PARAMS), *(v for vs in zip(self.active, self.wanted, held) for v in vs))
+        b += pack("<%di" % (3 * PARAMS),
+                  *(v for vs in zip(self.active, self.wanted, held) for v in vs))
         return b + pack("<II", self.own.run, self.own.set[0])
 
 
@@ -325,7 +338,8 @@ def identify(q):
         raise Refuse(2)
     first = q[3] if q[3] <= 2 else 0
     objects = range(first, first + 1 if q[2] == 4 else 3)
-    return bytes((14, q[2], 0x81, 0, 0, len(objects))) + b"".join(bytes((i, len(TEXT[i]))) + TEXT[i] for i in objects)
+    return (bytes((14, q[2], 0x81, 0, 0, len(objects))) +
+            b"".join(bytes((i, len(TEXT[i]))) + TEXT[i] for i in objects))
 
 
 def done(box, q):
@@ -350,7 +364,8 @@ def done(box, q):
         return q[1:5]
     if f in (15, 16):
         size = n + 7 >> 3 if f == 15 else 2 * n
-        if len(q) < 6 or not 1 <= n <= (1968 if f == 15 else 123) or q[5] != size or len(q) != 6 + size:
+        if (len(q) < 6 or not 1 <= n <= (1968 if f == 15 else 123) or q[5] != size or
+            len(q) != 6 + size):
             raise Refuse(3)
         (box.write_bits if f == 15 else box.write)(at, n, q[6:])
         return q[1:5]
@@ -363,7 +378,8 @@ def done(box, q):
         return q[1:7]
     if f == 23:
         put_at, put = be(q[5:7]), be(q[7:9])
-        if len(q) < 10 or not 1 <= n <= 125 or not 1 <= put <= 121 or q[9] != 2 * put or len(q) != 10 + 2 * put:
+        if (len(q) < 10 or not 1 <= n <= 125 or not 1 <= put <= 121 or q[9] != 2 * put or
+            len(q) != 10 + 2 * put):
             raise Refuse(3)
         box.block(HOLDING, at, n)
         box.write(put_at, put, q[10:])
@@ -387,9 +403,11 @@ def answer(box, q):
 
 COUNT = (0, 121, 122, 123, 124, 125, 126, 1968, 1969, 2000, 2001, 65535)
 HELD = ((0x400, 10),) * 3 + ((0x5000, 136),) * 5 + ((0x7000, 136),) * 7 + ((0, 65535),)
-SHOWN = (((0, 60),) * 2 + ((0x400, 18), (0x440, 96), (0x440, 96)) + ((0x1000, 128),) * 2 + ((0x3000, 128),) * 2 +
+SHOWN = (((0, 60),) * 2 + ((0x400, 18), (0x440, 96), (0x440, 96)) + ((0x1000, 128),) * 2 +
+         ((0x3000, 128),) * 2 +
          ((0x5000, 136),) * 3 + ((0x7000, 136),) * 3 + ((0, 65535),))
-FUNCTION = (1, 1, 2, 2, 2, 3, 3, 3, 3, 4, 4, 4, 4, 4, 5, 5, 5, 6, 6, 15, 15, 15, 16, 16, 16, 16, 16, 22, 22, 23, 23, 43)
+FUNCTION = (1, 1, 2, 2, 2, 3, 3, 3, 3, 4, 4, 4, 4, 4, 5, 5, 5, 6, 6, 15, 15, 15, 16, 16, 16, 16, 16,
+            22, 22, 23, 23, 43)
 
 
 EDGE = {16: (123, 124, 0, 124), 23: (121, 122, 125, 126)}
@@ -463,7 +481,8 @@ def whole(box, draw):
         return pack(">BHH", f, at, n)
     if f == 5:
         at, which, how, v = draw(0, 6), draw(0, 5), draw(0, 7), draw(0, 65535)
-        return pack(">BHH", f, (0, 0, 1)[which] if which < 3 else at, 0 if how == 0 else v if how == 1 else 0xFF00)
+        return pack(">BHH", f, (0, 0, 1)[which] if which < 3 else at,
+                    0 if how == 0 else v if how == 1 else 0xFF00)
     if f == 6:
         at, _ = registers(draw, f)
         return pack(">BH", f, at) + words(box, draw, at, 1)
@@ -555,7 +574,8 @@ CRC16 = [one_byte(i) for i in range(256)]
 
 class Line:
     def __init__(self, address, baud):
-        self.silence = 1750 if baud > 19200 else -(-38500000 // baud)  # 3.5 characters of 11 bits, us
+        # 3.5 characters of 11 bits, us
+        self.silence = 1750 if baud > 19200 else -(-38500000 // baud)
         self.address = address
         self.frame, self.spoiled, self.quiet, self.ready = b"", False, 0, 0
         self.taken = self.others = self.damaged = 0
@@ -642,18 +662,23 @@ def modbus_rtu(rate):
             err, line = any_line(draw)
         box.tick(rng, k)
         b = any_frame(line, box, draw)
-        row = (err, line.silence, *shown(b), crc16(b[:-1]), come(line, draw, b), line.passed(line.silence - 1))
+        row = (err, line.silence, *shown(b), crc16(b[:-1]), come(line, draw, b),
+               line.passed(line.silence - 1))
         last = draw(0, 7)
         row += (line.passed((0, M32)[last] if last < 2 else 1),)
         got = line.answer(box) if draw(0, 7) else b""
-        yield row + shown(got) + (line.taken, line.others, line.damaged) + box.between(rng), box.state()
+        yield (row + shown(got) + (line.taken, line.others, line.damaged) + box.between(rng),
+               box.state())
 
 
 # Inputs and outputs take turns within a tick, so all are shown.
 MODULES = {
-    "mirror": (" ".join("frac%d of%d bits%d float%d err%d raw%d" % ((i,) * 6) for i in range(4)), mirror),
-    "modbus": (" ".join("req%d_B req%d req%d_crc ans%d_B ans%d ans%d_crc" % ((i,) * 6) for i in range(3)) +
+    "mirror": (" ".join("frac%d of%d bits%d float%d err%d raw%d" % ((i,) * 6) for i in range(4)),
+               mirror),
+    "modbus": (" ".join("req%d_B req%d req%d_crc ans%d_B ans%d ans%d_crc" % ((i,) * 6)
+                        for i in range(3)) +
                " staged asked command done result", modbus),
-    "modbus_rtu": ("err silence_us frame_B frame frame_crc crc16 gap early ended ans_B ans ans_crc taken others damaged "
+    "modbus_rtu": ("err silence_us frame_B frame frame_crc crc16 gap early ended ans_B ans ans_crc "
+                   "taken others damaged "
                    "staged asked command done result", modbus_rtu),
 }

@@ -29,7 +29,8 @@ class Passivity:
     def tick(self, on, f_max, cnt, touching, asked):
         """(bit, term)"""
         moved = wrap(cnt - self.cnt) if self.started else 0
-        e = self.e + moved * (min(self.held, self.late) if moved >= 0 else max(self.held, self.late))
+        e = self.e + moved * (min(self.held, self.late) if moved >= 0
+                              else max(self.held, self.late))
         if self.held == 0 and not (touching and self.touching) and (e > 0 or self.late == 0):
             e = 0
         self.e, self.cnt, self.touching, self.started = clamp(e, -MAX60, MAX60), cnt, touching, 1
@@ -90,9 +91,11 @@ def passivity(rate):
         off = rng.draw(-20000, 20000)
         coded = 0 if rng.draw(0, 31) == 0 else sat32(to_cur.at(force) + off)
         p.hold(on, force, pull, coded)
-        yield (on, cnt, touching, spring, damper, pull, coded, bit, term, p.joule(), p.held, p.late), p.state()
+        yield (on, cnt, touching, spring, damper, pull, coded, bit, term, p.joule(), p.held,
+               p.late), p.state()
 
 
-COLUMNS = "on cnt touching spring damper pull coded_A_q26 | limits passivity_N_q20 J_q24 held_N_q20 late_N_q20"
+COLUMNS = ("on cnt touching spring damper pull coded_A_q26 | limits passivity_N_q20 J_q24 "
+           "held_N_q20 late_N_q20")
 
 MODULES = {"passivity": (COLUMNS, passivity)}

@@ -10,7 +10,8 @@ FINGERS = 4
 NEVER = MAX32
 UNTOLD, NONE, HIT = range(3)
 IDLE, INSIDE, TRACK, FROZEN = range(4)
-STANDS, TRACKS, AROUND, STALE, BENT, FREEZE, RELEASE, BLIND, DOUBT, LETGO = (1 << i for i in range(10))
+STANDS, TRACKS, AROUND, STALE, BENT, FREEZE, RELEASE, BLIND, DOUBT, LETGO = (1 << i
+                                                                             for i in range(10))
 RESTORED = 100  # the first tick after the state was read back
 NO_PLANE = 0, (0, 0, 0), 0, 0
 
@@ -71,7 +72,8 @@ class Finger:
     def tell(self, kind, material, number, n, point, age):
         if kind == UNTOLD:
             return 0
-        if kind > HIT or kind == HIT and (material >= self.materials or abs(dot(n, n) - (1 << 60)) > 1 << 44):
+        if (kind > HIT or kind == HIT and
+            (material >= self.materials or abs(dot(n, n) - (1 << 60)) > 1 << 44)):
             self.refused += 1
             return -RANGE
         before, self.newest, self.left = self.newest, NO_PLANE, 0
@@ -145,7 +147,8 @@ class Finger:
     def state(self):
         return (self.first(self.d, self.lim, *self.taken, self.phase) +
                 b"".join(self.plane(p[0], *p[1], p[2], p[3]) for p in (self.newest, self.held)) +
-                self.last(self.left, self.frozen, self.born, self.refused, self.ignored, self.stale, self.doubts, self.let_go))
+                self.last(self.left, self.frozen, self.born, self.refused, self.ignored, self.stale,
+                          self.doubts, self.let_go))
 
 
 # --- what is asked for at set-up ---
@@ -154,7 +157,8 @@ SPOILT = 20
 
 
 def refused(how):
-    """What set-up says of parameters of which one is changed: of 0 none, of 1 one that stays in range."""
+    """What set-up says of parameters of which one is changed: of 0 none, of 1 one that stays in
+    range."""
     return 0 if how < 2 else -RANGE
 
 
@@ -165,7 +169,8 @@ def ceil(num, den):
 def advise(T, v, lag, noise, age, v_object, slide, radius, d_lim):
     """(result, d_lim, ray, error, speed)"""
     bad = -RANGE, 0, 0, 0, 0
-    if min(v, lag, noise, age, v_object, slide, radius) < 0 or max(lag, age) > 2000000 or d_lim >= 0:
+    if (min(v, lag, noise, age, v_object, slide, radius) < 0 or max(lag, age) > 2000000 or
+        d_lim >= 0):
         return bad
     tick, lag, age = ceil(10 ** 9 * T[0], T[1]), 1000 * lag, 1000 * age
     way = lambda v, t: ceil(v * t, 125000000)
@@ -236,7 +241,8 @@ def any_told(rng, finger, objects, at, f):
         kind = rng.draw(3, 255)
     elif how == 31:
         number ^= 1
-    age = rng.draw(max(0, finger.age_ticks - 1), finger.age_ticks + 2) if how == 29 else rng.draw(0, 3)
+    age = (rng.draw(max(0, finger.age_ticks - 1), finger.age_ticks + 2) if how == 29
+           else rng.draw(0, 3))
     return kind, material, number, n, point, age
 
 
@@ -244,7 +250,8 @@ def any_in(rng, k, obj, finger, d):
     """(fingertip, slope, touching, age), about d before the object, now and then about d_lim."""
     n, point = obj[:2]
     if rng.draw(0, 1) == 0:
-        d = finger.par.d_lim - (finger.pad >> 30) - rng.draw(-(1 << 16), 2 * finger.par.hyst + 2 * finger.par.doubt)
+        d = (finger.par.d_lim - (finger.pad >> 30) -
+             rng.draw(-(1 << 16), 2 * finger.par.hyst + 2 * finger.par.doubt))
     tip = [sat32(p - (a * d >> 30)) for a, p in zip(n, point)]
     if (176 <= k < AGAIN or k >= 248) and rng.draw(0, 1):
         tip = [rng.draw(MIN32, MAX32) for _ in range(3)]
@@ -259,7 +266,8 @@ def any_in(rng, k, obj, finger, d):
 
 def precontact(rate):
     rng = Rng("precontact", rate, 0)
-    way = [wave("precontact", rate, 1 + f, -214748364, 1 << 25, 1 << rng.draw(16, 23)) for f in range(FINGERS)]
+    way = [wave("precontact", rate, 1 + f, -214748364, 1 << 25, 1 << rng.draw(16, 23))
+           for f in range(FINGERS)]
     pos = [wave("precontact", rate, 5 + f, MIN32, MAX32, 1 << 24) for f in range(FINGERS)]
     for k in range(TICKS):
         T = period(rate, k)

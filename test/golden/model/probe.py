@@ -61,7 +61,8 @@ class Probe:
         return BUSY
 
     def row(self):
-        return (self.cur, self.from_, self.dwell_from, self.dwell, self.tick_, self.settled, self.result)
+        return (self.cur, self.from_, self.dwell_from, self.dwell, self.tick_, self.settled,
+                self.result)
 
 
 def toy(rng, k, cnt, cur, lift, quick):
@@ -84,7 +85,8 @@ def probe(rate):
             few = 1000 * T[0] // T[1] + 1
             move = rng.draw(1, 1 << 22)
             dwell, time = min(10000, few * rng.draw(1, 3)), min(1000000, few * rng.draw(8, 64))
-            par = (-max(67, up) if falls else max(67, up), end, dwell, time, move, rng.draw(1 << 23, 1 << 26))
+            par = (-max(67, up) if falls else max(67, up), end, dwell, time, move,
+                   rng.draw(1 << 23, 1 << 26))
             p, cnt = Probe(par, step, T), wrap(rng.u64())
             cur = rng.draw(-1000, CUR_MAX + 1000)
             lift, quick = rng.draw(0, CUR_MAX), p.move // 2 + 1
@@ -99,7 +101,8 @@ class Home:
     def __init__(self, par, step, T):
         self.flows, dwell_ms, time_ms, move, least, most = par
         self.dwell_ticks, self.ticks = max(2, ticks(dwell_ms, T)), ticks(time_ms, T)
-        self.move, self.least, self.most = max(2, counts(move, step)), counts(least, step), counts(most, step)
+        self.move, self.least, self.most = (max(2, counts(move, step)), counts(least, step),
+                                            counts(most, step))
 
     def start(self, cnt):
         self.cur, self.from_, self.dwell_from, self.home = self.flows, cnt, cnt, 0
@@ -140,7 +143,8 @@ def home(rate):
             few = 1000 * T[0] // T[1] + 1
             flows = rng.draw(1, 33554432)
             dwell, time = min(10000, few * rng.draw(1, 3)), min(1000000, few * rng.draw(4, 32))
-            move, least, most = rng.draw(1, 1 << 21), rng.draw(0, 1 << 23) >> rng.draw(0, 3), rng.draw(1 << 23, 1 << 25)
+            move, least, most = (rng.draw(1, 1 << 21), rng.draw(0, 1 << 23) >> rng.draw(0, 3),
+                                 rng.draw(1 << 23, 1 << 25))
             h, cnt = Home((flows, dwell, time, move, least, most), step, T), wrap(rng.u64())
             quick, stops = max(1, h.move // rng.draw(1, 3)), k + rng.draw(0, 15)
             h.start(cnt)
@@ -153,13 +157,15 @@ HOME = "cnt | step_result cur_A_q26 start_cnt dwell_cnt home_cnt dwell tick resu
 class Weigh:
     def __init__(self, par, slack, hold_ms, step, T):
         by, _, dwell, time, move, travel = par
-        self.up, self.down = Probe(par, step, T), Probe((-by, 0, dwell, time, move, travel), step, T)
+        self.up, self.down = Probe(par, step, T), Probe((-by, 0, dwell, time, move, travel), step,
+                                                        T)
         self.slack, self.hold = slack, ticks(hold_ms, T)
 
     def start(self, cnt):
         self.probe = self.up
         self.probe.start(cnt, self.slack)
-        self.cur, self.lift, self.sink, self.tick_, self.phase, self.result = self.probe.cur, 0, 0, 0, 0, BUSY
+        self.cur, self.lift, self.sink, self.tick_, self.phase, self.result = (self.probe.cur, 0, 0,
+                                                                               0, 0, BUSY)
         self.from_, self.sums, self.n = cnt, [0, 0], 0
 
     def ends(self, result):
@@ -203,8 +209,8 @@ class Weigh:
         return self.ends(DONE) if self.n >= self.hold else BUSY
 
     def row(self):
-        return (self.cur, self.lift, self.sink, *self.sums, self.n, self.tick_, self.phase, self.result,
-                *self.probe.row())
+        return (self.cur, self.lift, self.sink, *self.sums, self.n, self.tick_, self.phase,
+                self.result, *self.probe.row())
 
     def point(self, force):
         a, b = (div(s, self.n) if self.n else 0 for s in self.sums)
@@ -228,14 +234,17 @@ def weigh(rate):
         way = -1 if w.cur > lift else 1 if w.cur < sink else 0
         odd = rng.draw(0, 15)  # noise, or a knock
         knock = odd == 0 or w.phase > 1
-        cnt = wrap(cnt + way * quick + (rng.draw(-1, 1) * (w.up.move if knock else 1) if odd < 4 else 0))
+        cnt = wrap(cnt + way * quick +
+                   (rng.draw(-1, 1) * (w.up.move if knock else 1) if odd < 4 else 0))
         coded, mon = rng.draw(-(1 << 20), 1 << 28), rng.draw(-(1 << 20), 1 << 28)
         r = w.tick(cnt, coded, mon)
         yield (cnt, coded, mon, r, *w.row(), *w.point(k)), b""
 
 
-WEIGH = ("cnt coded_A_q26 mon_A_q26 | step_result cur_A_q26 lift_A_q26 sink_A_q26 coded_sum mon_sum n tick phase "
-         "result probe_cur_A_q26 start_cnt dwell_cnt dwell probe_tick settled probe_result force_N_q20 "
+WEIGH = ("cnt coded_A_q26 mon_A_q26 | step_result cur_A_q26 lift_A_q26 sink_A_q26 coded_sum "
+         "mon_sum n tick phase "
+         "result probe_cur_A_q26 start_cnt dwell_cnt dwell probe_tick settled probe_result "
+         "force_N_q20 "
          "point_cur_A_q26 point_mon_A_q26 point_friction_A_q26")
 
 MODULES = {"probe": (PROBE, probe), "home": (HOME, home), "weigh": (WEIGH, weigh)}

@@ -58,9 +58,11 @@ def quad(rate):
         raw += moves[k]
         if 184 <= k < AGAIN:  # some of them too fast
             raw += rng.draw(-q.jump, q.jump)
-        shown = raw & (1 << bits) - 1 | rng.u64() << bits & M32  # above the counter's width is nothing
+        # above the counter's width is nothing
+        shown = raw & (1 << bits) - 1 | rng.u64() << bits & M32
         cnt = q.tick(shown)
-        yield (shown, bits, q.jump, cnt, position(cnt, step), position(wrap(shown), step)), q.state()
+        yield ((shown, bits, q.jump, cnt, position(cnt, step), position(wrap(shown), step)),
+               q.state())
 
 
 QUAD = "raw | bits jump_cnt cnt pos_m_q30 pos_of_raw_m_q30"
@@ -130,8 +132,9 @@ def quad_ab(rate):
             waiting = []
         level = rng.draw(0, 1)
         index.tick(x4.cnt, level)
-        yield (sum(ab << 2 * i for i, ab in enumerate(several)), level, x1.cnt, x2.cnt, x4.cnt, x4.edges,
-               x4.illegal, word.cnt, index.cnt), b"".join(s.state() for s in (x1, x2, x4, word, index))
+        yield ((sum(ab << 2 * i for i, ab in enumerate(several)), level, x1.cnt, x2.cnt, x4.cnt,
+                x4.edges, x4.illegal, word.cnt, index.cnt),
+               b"".join(s.state() for s in (x1, x2, x4, word, index)))
 
 
 QUAD_AB = "ab_of_16 index | x1 x2 x4 edges illegal x4_by_word latched"

@@ -59,16 +59,19 @@ class Ring:
 def any_put(rng, s):
     due, kind, key, how = s.due(), rng.draw(1, 7), rng.draw(0, 3), rng.draw(0, 23)
     some = rng.draw(0, s.cap >> rng.draw(2, 5))
-    near, half, far = s.cap - rng.draw(5, 9), rng.draw(s.cap >> 1, s.cap - 8), rng.draw(65530, 65540)
+    near, half, far = (s.cap - rng.draw(5, 9), rng.draw(s.cap >> 1, s.cap - 8),
+                       rng.draw(65530, 65540))
     left = s.cap - s.head % s.cap - HEAD
-    length = near if how == 0 else far if how == 1 else half if how == 2 else left if how < 6 and left >= 0 else some
+    length = (near if how == 0 else far if how == 1 else half if how == 2 else left if how < 6 and
+              left >= 0 else some)
     tick, at = rng.u64() & M32, rng.draw(0, 255)
     kind = KEYFRAME if due and key else kind
     return kind, length, due, s.put(kind, tick, TABLE[at:at + length], length), s.lost
 
 
 def any_read(rng, s):
-    damaged, bit, _, seq = rng.draw(0, 3) == 0, rng.draw(0, 8 * s.cap - 1), rng.draw(1, 40), rng.u64() & M32
+    damaged, bit, _, seq = (rng.draw(0, 3) == 0, rng.draw(0, 8 * s.cap - 1), rng.draw(1, 40),
+                            rng.u64() & M32)
     flip = damaged << (bit & 7)
     s.mem[bit >> 3] ^= flip
     crc, records = 0, list(s.read(seq))
@@ -90,7 +93,8 @@ def ring(rate):
                 err, cap = -RANGE, cap + 64
             s = Ring(cap)
         told = any_put(rng, s)
-        yield (err, cap, *told, *(any_read(rng, s) if rng.draw(0, 3) == 0 else (0,) * 5)), bytes(s.mem)
+        yield ((err, cap, *told, *(any_read(rng, s) if rng.draw(0, 3) == 0 else (0,) * 5)),
+               bytes(s.mem))
 
 
 COLUMNS = "err cap type len | due put lost left at records crc sum"

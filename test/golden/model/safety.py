@@ -8,8 +8,8 @@ from .drive import DAC, FORCE, FULL, GATE, PULL, any_par
 from .num import AGAIN, M32, TICKS, Rng, clamp, gain, period, shr, times, wave
 
 OFF, ARM, RUN, LIMIT, RELEASE, FAULT = range(6)
-(ESTOP, DRIVE, OVERRUN, ENCODER, DEADMAN, TRACKING, STUCK, SPEED, GLOVE, CARD, LINK, SUPPLY, WATCHDOG,
- CONFIG, LOGIC) = (1 << b for b in range(15))
+(ESTOP, DRIVE, OVERRUN, ENCODER, DEADMAN, TRACKING, STUCK, SPEED, GLOVE, CARD, LINK, SUPPLY,
+ WATCHDOG, CONFIG, LOGIC) = (1 << b for b in range(15))
 CUT = ESTOP | DRIVE | TRACKING | CARD | WATCHDOG | CONFIG | LOGIC
 ON = {name: i for i, name in enumerate(
     "refused cut latched released cause off armed limited run clear none".split())}
@@ -154,9 +154,10 @@ class Safety:
         return out, enable
 
     def state(self):
-        b = self.pack(self.present, self.faults, self.first, self.first_tick, self.tick, self.missed,
-                      self.late, self.limits, *self.held, self.refusals, self.steps, self.share,
-                      self.state_, self.alive, self.refused, self.opened, self.trigger, *self.off)
+        b = self.pack(self.present, self.faults, self.first, self.first_tick, self.tick,
+                      self.missed, self.late, self.limits, *self.held, self.refusals, self.steps,
+                      self.share, self.state_, self.alive, self.refused, self.opened, self.trigger,
+                      *self.off)
         return b + pack_once("<I", crc32(b) * 0x9E3779B1 & M32)
 
 
@@ -176,7 +177,8 @@ def safety(rate):
             din = HEALTHY
         if s.state_ == FAULT and rng.draw(0, 1) == 0:
             din ^= 2
-        raised = 1 << rng.draw(0, 14) if rng.draw(0, (63, 127, 15, 15, 15, 31)[s.state_]) == 0 else 0
+        raised = (1 << rng.draw(0, 14) if rng.draw(0, (63, 127, 15, 15, 15, 31)[s.state_]) == 0
+                  else 0)
         missed = rng.draw(0, 2) if rng.draw(0, 7 if s.state_ == RELEASE else 63) == 0 else 0
         if k in (188, 190):
             missed = rng.draw(0, M32)
@@ -199,7 +201,8 @@ def safety(rate):
         yield row, s.state()
 
 
-COLUMNS = ("din raised missed command ready | mode share_q30 small_N_q20 ticks fall fall_shift enable alive " +
+COLUMNS = ("din raised missed command ready | mode share_q30 small_N_q20 ticks fall fall_shift "
+           "enable alive " +
            " ".join("%s%d" % (name, i) for i in range(FINGERS)
                     for name in ("limits", "gate_A_q26_", "dac_A_q26_", "coded_A_q26_", "code")))
 

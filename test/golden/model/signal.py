@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""signal: a table's CRC, and parameters staged, applied at once or little by little, saved and loaded."""
+"""signal: a table's CRC, and parameters staged, applied at once or little by little, saved and
+loaded."""
 
 import zlib
 from struct import pack
@@ -69,14 +70,17 @@ class Params:
         return done
 
     def keyframe(self):
-        return b"".join(pack("<i", self.active[i]) + (pack("<i", self.staged[i]) if row[2] in (SLEWED, LIMIT) else b"")
+        return b"".join(pack("<i", self.active[i]) +
+                        (pack("<i", self.staged[i]) if row[2] in (SLEWED, LIMIT) else b"")
                         for i, (row, _) in enumerate(VALUES))
 
     def sum(self, n):
-        return sum((4 * i + 1) * self.active[i] + (4 * i + 3) * self.staged[i] for i in range(n)) & 0xFFFFFFFF
+        return sum((4 * i + 1) * self.active[i] + (4 * i + 3) * self.staged[i]
+                   for i in range(n)) & 0xFFFFFFFF
 
     def save(self):
-        b = b"EXHP" + pack("<HHI", 1, len(VALUES), TABLE_CRC) + pack("<%di" % len(VALUES), *self.staged)
+        b = b"EXHP" + pack("<HHI", 1, len(VALUES),
+                           TABLE_CRC) + pack("<%di" % len(VALUES), *self.staged)
         return b + pack("<I", zlib.crc32(b))
 
     def load(self, values):
@@ -113,11 +117,12 @@ def signal(rate):
             i = rng.draw(0, len(VALUES) - 1)
             values[i] = rng.draw(-2000, 2000)
             load, bad = p.load(values)
-        yield (p.shift, ident, instance, raw, err, done, zlib.crc32(saved[:-1]), load, bad, p.pending, p.moving,
-               zlib.crc32(p.keyframe()), 0, *p.active), b""
+        yield (p.shift, ident, instance, raw, err, done, zlib.crc32(saved[:-1]), load, bad,
+               p.pending, p.moving, zlib.crc32(p.keyframe()), 0, *p.active), b""
 
 
-COLUMNS = "shift id instance raw | stage apply image_crc load load_at pending moving keyframe_crc look " + " ".join(
-    "v%d" % i for i in range(len(VALUES)))
+COLUMNS = ("shift id instance raw | stage apply image_crc load load_at pending moving keyframe_crc "
+           "look " + " ".join(
+               "v%d" % i for i in range(len(VALUES))))
 
 MODULES = {"signal": (COLUMNS, signal)}

@@ -64,7 +64,8 @@ def any_slots(rng):
     s = [bytearray(b"\xff" * size) for _ in range(2)]
     for k in range(2):
         forged, length = rng.draw(0, 3), rng.draw(0, 31)
-        sequence = sequence + AHEAD[rng.draw(0, 3)] & M32 if k and rng.draw(0, 1) else any_sequence(rng)
+        sequence = (sequence + AHEAD[rng.draw(0, 3)] & M32 if k and rng.draw(0, 1)
+                    else any_sequence(rng))
         out = whole(sequence, bytes(37 * i & 255 for i in range(length)))
         if forged and len(out) <= size:
             s[k][:len(out)] = out
@@ -77,7 +78,8 @@ def slots(rate):
         if k % 4 == 0:
             s, image = any_slots(rng), b""
             size = len(s[0])
-        length, first, again, short = rng.draw(0, size), rng.draw(0, 255), rng.draw(0, 3) == 0, rng.draw(0, 7) == 0
+        length, first, again, short = (rng.draw(0, size), rng.draw(0, 255), rng.draw(0, 3) == 0,
+                                       rng.draw(0, 7) == 0)
         cap = rng.draw(0, size) if short else 96
         image = image if again else bytes(first + 37 * i & 255 for i in range(length))
         image = image if short else image[:cap - OVER]

@@ -44,7 +44,8 @@ class Trace:
             self.left -= 1
             return
         self.left = self.what[0] - 1
-        self.frame[self.head % FRAMES] = (self.head, tick, *(wrap(signals[i]) for i in self.what[1:]))
+        self.frame[self.head % FRAMES] = (self.head, tick,
+                                          *(wrap(signals[i]) for i in self.what[1:]))
         self.head = self.head + 1 & M32
 
     def tick(self, tick, signals, room):

@@ -14,8 +14,10 @@ def scale(rng):
 
 
 def counts(name, rate, step, small):
-    """Counts that move by small in ramps and walks, or else some 8 m/s; its rails are the counter's."""
-    return wave(name, rate, 1, -(1 << 31), (1 << 31) - 1, small or max(3, (1 << 45) // (step * rate)))
+    """Counts that move by small in ramps and walks, or else some 8 m/s; its rails are the
+    counter's."""
+    return wave(name, rate, 1, -(1 << 31), (1 << 31) - 1,
+                small or max(3, (1 << 45) // (step * rate)))
 
 
 class Window:

@@ -8,9 +8,11 @@ from .num import AGAIN, CRC, M32, RANGE, SHORT, STALE, STATE, TICKS, UNKNOWN, VE
 from .signal import VALUES, Params
 
 HELLO, TELL, PLANES, PARAM, ACK, TRACE_ASK, TRACE = range(1, 8)
-LENGTH = {HELLO: 9, TELL: 214, PLANES: 209, PARAM: 8, ACK: 14, TRACE_ASK: 12, TRACE: 231}  # of TRACE: the longest
+# of TRACE: the longest
+LENGTH = {HELLO: 9, TELL: 214, PLANES: 209, PARAM: 8, ACK: 14, TRACE_ASK: 12, TRACE: 231}
 MASKS = {TELL: (4, 6, 7), PLANES: (8,)}
-COUNTS = "accepted missing duplicate reordered old stranger corrupt version unknown far silences".split()
+COUNTS = ("accepted missing duplicate reordered old stranger corrupt version unknown far "
+          "silences").split()
 AHEAD, QUIET = 1 << 16, 1000000
 
 
@@ -20,12 +22,14 @@ def sealed(head):
 
 def length(kind, body):
     """A payload's, by what it says."""
-    return 11 + 20 * body[10] if kind == TRACE and len(body) > 10 else 11 if kind == TRACE else LENGTH[kind]
+    return (11 + 20 * body[10] if kind == TRACE and len(body) > 10 else 11 if kind == TRACE
+            else LENGTH[kind])
 
 
 def may_be(kind, body):
     """1 if the payload's values can be."""
-    if kind == HELLO and body[0] > 1 or kind == TELL and body[5] > 5 or any(body[i] > 31 for i in MASKS.get(kind, ())):
+    if (kind == HELLO and body[0] > 1 or kind == TELL and body[5] > 5 or
+        any(body[i] > 31 for i in MASKS.get(kind, ()))):
         return 0
     if kind == PLANES:
         told = [body[9 + 40 * f] for f in range(5)]
@@ -48,7 +52,8 @@ class Sender:
             return -RANGE
         if len(body) + 22 > cap:
             return -SHORT
-        p = sealed(pack("<HBBHIII", 0x5758, 2, kind, len(body), self.session, self.seq, stamp) + body)
+        p = sealed(pack("<HBBHIII", 0x5758, 2, kind, len(body), self.session, self.seq, stamp) +
+                   body)
         self.seq = self.seq + 1 & M32
         return p
 
@@ -82,7 +87,8 @@ class Receiver:
             self.seq, self.seen = seq, (self.seen << min(ahead, 64) | 1) & (1 << 64) - 1
             self.count["missing"] = self.count["missing"] + ahead - 1 & M32
             return self.accepted(kind)
-        if kind == HELLO and (self.open and not (same and ahead == 0) or session not in (self.session, self.former)):
+        if kind == HELLO and (self.open and not (same and ahead == 0) or
+                              session not in (self.session, self.former)):
             if not same:
                 self.former = self.session
             self.session, self.seq, self.seen = session, seq, (1 << 64) - 1
@@ -119,7 +125,8 @@ class Receiver:
         return self.wrong("reordered", STALE)
 
     def state(self):
-        return self.pack(self.seen, self.seq, self.session, self.former, self.quiet, self.open, *(self.count[c] for c in COUNTS))
+        return self.pack(self.seen, self.seq, self.session, self.former, self.quiet, self.open,
+                         *(self.count[c] for c in COUNTS))
 
 
 # --- stimuli ---
@@ -262,8 +269,10 @@ class World:
         return how, bytes(p)
 
     def numbered(self, rng, p):
-        """The packet with a number near an end of what is taken; the sender goes on from a newer one."""
-        on = (-64, 1 << 31, -64, 1 << 31, -64, 1 << 31, -64, 0, AHEAD)[rng.draw(0, 8)] + rng.draw(-1, 1)
+        """The packet with a number near an end of what is taken; the sender goes on from a newer
+        one."""
+        on = ((-64, 1 << 31, -64, 1 << 31, -64, 1 << 31, -64, 0, AHEAD)[rng.draw(0, 8)] +
+              rng.draw(-1, 1))
         seq = self.rx.seq + on & M32
         if 0 < on <= AHEAD:
             self.tx.seq = seq + 1 & M32
@@ -286,7 +295,8 @@ class World:
         return (got, seq, stamp, zlib.crc32(body), plane, trip) + ack[:1] + ack[2:]
 
     def values(self):
-        return zlib.crc32(pack("<%di" % (2 * len(VALUES)), *self.params.active, *self.params.staged))
+        return zlib.crc32(pack("<%di" % (2 * len(VALUES)), *self.params.active,
+                               *self.params.staged))
 
 
 def wire(rate):
@@ -296,7 +306,8 @@ def wire(rate):
             w = World(rng)
         if k == 128:
             w.params.locked = 1
-        quiet = w.rx.wait((1, 999999, 1000000, M32)[rng.draw(0, 3)] if rng.draw(0, 3) == 0 else rng.draw(0, 2))
+        quiet = w.rx.wait((1, 999999, 1000000, M32)[rng.draw(0, 3)] if rng.draw(0, 3) == 0
+                          else rng.draw(0, 2))
         sent = w.send(rng)
         how, p = w.arriving(rng)
         row = w.taken(p)
@@ -307,7 +318,8 @@ def wire(rate):
                pack("<II", w.tx.session, w.tx.seq) + w.rx.state())
 
 
-WIRE = ("quiet type cap how len | written crc taken seq stamp_us payload plane trip_us ack_id ack_value ack_result "
+WIRE = ("quiet type cap how len | written crc taken seq stamp_us payload plane trip_us ack_id "
+        "ack_value ack_result "
         "ack_seq twice values")
 
 MODULES = {"wire": (WIRE, wire)}

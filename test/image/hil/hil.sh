@@ -34,7 +34,8 @@ run()
     "$hil" --quiet "$@" "$image" || { failed=1; echo "  FAILED: $hil $* $image"; }
 }
 
-# The A/D of one channel without settling fits 50 us; monitors of the tick before fit with all that there is.
+# The A/D of one channel without settling fits 50 us; monitors of the tick before fit with all that
+# there is.
 fast="supply=0 ad_settle=0"
 # The glove's scan runs while the tick before computes.
 box="--loop --glove-age 1"
@@ -70,7 +71,8 @@ show_replay()
 {
     run "with records" drop --loop --ticks 5000 --options log=debug --records "$b/hil-drop.exh"
     # shellcheck disable=SC2086
-    run "with records" bilateral $box --rate 1000 --ticks 3000 --options log=debug --records "$b/hil-box.exh"
+    run "with records" bilateral $box --rate 1000 --ticks 3000 --options log=debug \
+        --records "$b/hil-box.exh"
     for f in drop box; do
         if said=$("$b/posix/exhand" replay "$b/hil-$f.exh"); then
             echo "  ok     replayed: $said"
@@ -91,8 +93,10 @@ show_rates()
 {
     for r in 90 100 200 500 1000; do run "$r Hz" drop --loop --rate "$r" --ticks "$few"; done
     run "20 kHz" drop --loop --rate 20000 --ticks 10000 --options "$fast"
-    run "20 kHz, monitors of the tick before" drop --loop --monitor-age 1 --rate 20000 --ticks 10000 --options "monitor=2"
-    run "20 kHz, monitors and supply in turn" drop --loop --turns --rate 20000 --ticks 10000 --options "$sparing"
+    run "20 kHz, monitors of the tick before" drop --loop --monitor-age 1 --rate 20000 \
+        --ticks 10000 --options "monitor=2"
+    run "20 kHz, monitors and supply in turn" drop --loop --turns --rate 20000 --ticks 10000 \
+        --options "$sparing"
     run "an HPET of 100 MHz" drop --loop --hpet 100 --ticks "$few"
     run "ticks from the 8254" drop --loop --ticks "$few" --options "timer=pit"
 }
@@ -103,11 +107,13 @@ show_box()
     # shellcheck disable=SC2086
     run "another seed" bilateral $box --seed 2 --ticks "$few"
     # shellcheck disable=SC2086
-    for r in 90 100 200; do run "the full box, $r Hz" bilateral $box --set glove_fc=20 --rate "$r" --ticks "$few"; done
+    for r in 90 100 200; do run "the full box, $r Hz" bilateral $box --set glove_fc=20 --rate "$r" \
+        --ticks "$few"; done
     # shellcheck disable=SC2086
     for r in 500 1000; do run "the full box, $r Hz" bilateral $box --rate "$r" --ticks "$few"; done
     # shellcheck disable=SC2086
-    run "the full box, 10 kHz" bilateral $parts --rate 10000 --ticks 10000 --options "$sparing scan_slice=4 headroom=15"
+    run "the full box, 10 kHz" bilateral $parts --rate 10000 --ticks 10000 \
+        --options "$sparing scan_slice=4 headroom=15"
 }
 show_wild()
 {
@@ -116,7 +122,8 @@ show_wild()
         for i in minimal drop; do
             run "random and extreme inputs, seed $seed" $i --wild $even --seed $seed --ticks "$few"
         done
-        run "random and extreme inputs, five fingers, seed $seed" bilateral --wild $box $even --seed $seed --ticks "$few"
+        run "random and extreme inputs, five fingers, seed $seed" bilateral --wild $box $even \
+            --seed $seed --ticks "$few"
     done
 }
 show_absent()
@@ -125,8 +132,9 @@ show_absent()
     run "no HPET: the 8254" drop --loop --hpet 0 --ticks 2000
 }
 
-# qemu IMAGE TICKS [OPTION...]: the timer interrupt of qemu, in virtual time, 8 ns an instruction. The
-# processor does not sleep: from HLT qemu goes to the next timer at once, and now and then to the one behind it.
+# qemu IMAGE TICKS [OPTION...]: the timer interrupt of qemu, in virtual time, 8 ns an instruction.
+# The processor does not sleep: from HLT qemu goes to the next timer at once, and now and then to
+# the one behind it.
 qemu()
 {
     image=$b/pc104/$1.elf n=$2
@@ -158,8 +166,11 @@ show_board()
 
 for what in ${*:-count spoil slow drop rates box replay wild absent board qemu}; do
     case $what in
-    count | spoil | slow | drop | rates | box | replay | wild | absent | board | qemu) show_"$what" ;;
-    *) echo "usage: hil.sh [count|spoil|slow|drop|rates|box|replay|wild|absent|board|qemu]..." >&2; exit 2 ;;
+    count | spoil | slow | drop | rates | box | replay | wild | absent | board | qemu)
+        show_"$what" ;;
+    *)
+        echo "usage: hil.sh [count|spoil|slow|drop|rates|box|replay|wild|absent|board|qemu]..." >&2
+        exit 2 ;;
     esac
 done
 exit $failed

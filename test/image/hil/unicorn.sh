@@ -31,7 +31,8 @@ mkdir -p "$b/unicorn"
 timeout 300 python3 -m pip download -q --disable-pip-version-check --no-deps --only-binary :all: \
     -d "$b/unicorn" "unicorn==$version" >"$b/unicorn/log" 2>&1 ||
     missing "pip download failed ($b/unicorn/log): $(tail -n 1 "$b/unicorn/log")"
-echo "$sum  $(echo "$b"/unicorn/*.whl)" | sha256sum -c --quiet >/dev/null 2>&1 || missing "its SHA-256 is not $sum"
+echo "$sum  $(echo "$b"/unicorn/*.whl)" | sha256sum -c --quiet >/dev/null 2>&1 ||
+    missing "its SHA-256 is not $sum"
 python3 -m zipfile -e "$b"/unicorn/*.whl "$b/unicorn/all" || missing "it does not unpack"
 mv "$b/unicorn/all/unicorn/include" "$b/unicorn/include"
 mkdir "$b/unicorn/lib"

@@ -3,8 +3,8 @@
 # Boots images under QEMU in every way that must end well, safe or refused: boot.sh DIR
 # DIR holds the images of all scenes, SCENE.elf and SCENE-none.elf (CARDS=none), and drop-none.iso.
 # Each case: exit status of ports/pc104/run.sh, what the image must have said, its options. Virtual
-# time; yet when the processor sleeps, QEMU may take it past the next tick, too (some in 10^5, more on a
-# loaded host): where none may be missed, it does not sleep (idle=spin).
+# time; yet when the processor sleeps, QEMU may take it past the next tick, too (some in 10^5, more
+# on a loaded host): where none may be missed, it does not sleep (idle=spin).
 # EXHAND names the host program, which replays the records.
 # Exit status: 0 all as told, 1 not, 2 bad usage, 3 no QEMU.
 set -u
@@ -48,12 +48,14 @@ says()
 safe()
 {
     boots "$@"
-    tr -d '\r' <"$out/said" | grep -a -A 1 '^budget measured' | tail -n 1 | grep -qx 'outputs safe' ||
+    tr -d '\r' <"$out/said" | grep -a -A 1 '^budget measured' | tail -n 1 |
+        grep -qx 'outputs safe' ||
         fail "said something before the outputs were safe"
 }
 
 # Well.
-boots 0 '^rate 2000 Hz asked, timer HPET of 100000000 Hz, period 1/2000 s, 0 ppm off$' ticks=4000 uncalibrated=1 idle=spin
+boots 0 '^rate 2000 Hz asked, timer HPET of 100000000 Hz, period 1/2000 s, 0 ppm off$' ticks=4000 \
+    uncalibrated=1 idle=spin
 says '^exhand [0-9.]+, wire [0-9]+, record [0-9]+, board pc104 version 1, scene drop$'
 says '^second clock local APIC$'
 says '^budget measured: scene [0-9.]+ us, cards and link [0-9.]+ us, with headroom [0-9.]+ us$'
@@ -64,26 +66,29 @@ says ', enable 0x00000001$' # the dead-man switch was taken: it ran
 says '^done$'
 boots 0 'period 1111111/100000000 s, 0.0' rate=90 ticks=300
 boots 0 '^ticks 2000 run, 0 missed$' rate=20000 ticks=2000 idle=spin
-boots 0 'timer 8254 of 1193182 Hz, period 1193/1193182 s, 152' timer=pit rate=1000 ticks=1000 idle=spin
+boots 0 'timer 8254 of 1193182 Hz, period 1193/1193182 s, 152' timer=pit rate=1000 ticks=1000 \
+    idle=spin
 says '^ticks 1000 run, 0 missed$'
 
 # Records of bare metal, replayed here bit for bit.
 if [ -x "$exhand" ]; then
     boots 0 '^records lost 0$' log=debug ticks=3000 uncalibrated=1 k=1234.5 q_lim=0.05 b=12
     "$exhand" replay "$out/records" >"$out/replay" 2>&1 || { fail "replay"; cat "$out/replay" >&2; }
-    grep -q '3000 ticks from tick 0 and 3 keyframes identical' "$out/replay" || { fail "replay"; cat "$out/replay" >&2; }
+    grep -q '3000 ticks from tick 0 and 3 keyframes identical' "$out/replay" ||
+        { fail "replay"; cat "$out/replay" >&2; }
     boots 0 '^records lost 0$' log=serial ticks=1000 rate=1000
 fi
 
-# Calibrations: none, and the box does not arm; a good one, and it does; one that is none, another box's, too old, of
-# another finger, made with other scales: refused by name.
+# Calibrations: none, and the box does not arm; a good one, and it does; one that is none, another
+# box's, too old, of another finger, made with other scales: refused by name.
 boots 0 '^arming refused at calibration$' ticks=1000
 says '^no calibration: arming will be refused at calibration '
 says ', enable 0x00000000$'
 if [ -x "$exhand" ]; then
     calibrated() # FINGER: made with the scales that the scene has
     {
-        "$exhand" calibrate --finger "$1" --day 20000 --device dac_scale=1846.02272034 --device mon_scale=0.000516399999469 \
+        "$exhand" calibrate --finger "$1" --day 20000 --device dac_scale=1846.02272034 \
+            --device mon_scale=0.000516399999469 \
             --out "$out/$1" >"$out/replay" || { fail "calibrate"; cat "$out/replay" >&2; }
     }
     calibrated 0
@@ -93,14 +98,16 @@ if [ -x "$exhand" ]; then
     boots 1 '^calibration 1: device: refused$' ticks=1000 day=20000
     boots 1 '^calibration 1: age: refused$' ticks=1000 device_id=1
     boots 1 '^calibration 1: age: refused$' ticks=1000 device_id=1 day=20091
-    boots 1 '^calibration 1: scale or zero of D/A or monitor: refused$' ticks=1000 device_id=1 day=20000 dac_zero=32700
+    boots 1 '^calibration 1: scale or zero of D/A or monitor: refused$' ticks=1000 device_id=1 \
+        day=20000 dac_zero=32700
     says '^calibration too old, or made before a change$'
     MODULES=$out/1.bin
     head -c 100 "$out/0/calibration.bin" >"$MODULES"
     boots 1 '^calibration 1: image: refused$' ticks=1000 device_id=1 day=20000 uncalibrated=1
     image=$1/bilateral-none.elf
     MODULES=$out/0/calibration.bin
-    boots 0 '^arming refused at calibration$' ticks=1000 device_id=1 day=20000 # of the index finger there is none
+    # of the index finger there is none
+    boots 0 '^arming refused at calibration$' ticks=1000 device_id=1 day=20000
     says ', enable 0x00000000$'
     calibrated 1
     MODULES=$out/1/calibration.bin,$out/0/calibration.bin
@@ -112,11 +119,13 @@ if [ -x "$exhand" ]; then
     unset MODULES
 fi
 
-# The black box: 0.8 N of a wall where the string begins, and a monitor that reads nothing: a fault, told by the
-# image and again by the host. In the loop, after a processor exception, and on the words' own line.
+# The black box: 0.8 N of a wall where the string begins, and a monitor that reads nothing: a fault,
+# told by the image and again by the host. In the loop, after a processor exception, and on the
+# words' own line.
 told() # FILE PATTERN
 {
-    "$exhand" replay --timeline "$1" >"$out/replay" 2>&1 || { fail "replay of a dump"; cat "$out/replay" >&2; }
+    "$exhand" replay --timeline "$1" >"$out/replay" 2>&1 ||
+        { fail "replay of a dump"; cat "$out/replay" >&2; }
     grep -qE "$2" "$out/replay" || { fail "a dump without '$2'"; cat "$out/replay" >&2; }
 }
 if [ -x "$exhand" ]; then
@@ -146,12 +155,15 @@ boots 2 '^option k: not name=value$' k
 # shellcheck disable=SC2046 # words
 boots 2 '^options longer than 1023 characters$' $(printf 'k=1000 %.0s' {1..150})
 boots 2 '^option rate=20001: allowed 0..20000 hz$' rate=20001
-boots 6 '^rate 20000 Hz \(the 8254 does not come within 1000 ppm of it\): take 19906$' timer=pit rate=20000
-boots 6 '^rate 2000 Hz: a tick costs more than its period: take at most 1333 Hz$' budget=600 rate=2000
+boots 6 '^rate 20000 Hz \(the 8254 does not come within 1000 ppm of it\): take 19906$' timer=pit \
+    rate=20000
+boots 6 '^rate 2000 Hz: a tick costs more than its period: take at most 1333 Hz$' budget=600 \
+    rate=2000
 boots 0 'done' budget=600 rate=1333 ticks=100
 
 # Safe. What is provoked shows that the outputs were made safe before it was told.
-safe 5 '^divide error, vector 0, error 0x00000000, eip 0x001[0-9a-f]+, tick 300$' provoke=divide provoke_at=300
+safe 5 '^divide error, vector 0, error 0x00000000, eip 0x001[0-9a-f]+, tick 300$' provoke=divide \
+    provoke_at=300
 safe 5 '^invalid opcode, vector 6, ' provoke=opcode
 safe 5 '^page fault, vector 14, error 0x00000000, .* address 0x00000010, tick 100$' provoke=null
 safe 5 '^page fault, vector 14, error 0x00000003, ' provoke=write
@@ -175,7 +187,8 @@ safe 8 '^timer: it counts, but its interrupts do not come$' provoke=mask idle=sp
 safe 1 '^ports/pc104/provoke.c:[0-9]+$' provoke=assert
 
 # A reset in the middle of a run: the next boot says so and runs nothing.
-REBOOT="-action reboot=reset" boots 0 '^restart: the run before did not end: ' provoke=reset ticks=500 idle=spin
+REBOOT="-action reboot=reset" boots 0 '^restart: the run before did not end: ' provoke=reset \
+    ticks=500 idle=spin
 says '^ticks 500 run, 0 missed$'
 says ', enable 0x00000000$'
 [ "$(tr -d '\r' <"$out/said" | grep -ac '^exhand ')" = 2 ] || fail "two boots"
@@ -215,23 +228,29 @@ boots 0 '^STOP in rest: the stage before was not shown' ticks=100 stage=2
 boots 2 '^option stage=6: allowed 1..5$' stage=6
 boots 2 '^option f_finger=2.5: allowed 0.5..2 n$' f_finger=2.5
 
-# A controller in floats: 2000 N/m times 0.4 mm in every tick, and its records replay. Another that is none: no number, and
-# one that does not come back.
+# A controller in floats: 2000 N/m times 0.4 mm in every tick, and its records replay. Another that
+# is none: no number, and one that does not come back.
 image=$1/custom-none.elf
-boots 0 '^ticks 3000 run, 0 missed$' ticks=3000 uncalibrated=1 q_lim=-0.0004 k=2000 track_tol=0.9 log=debug idle=spin
+boots 0 '^ticks 3000 run, 0 missed$' ticks=3000 uncalibrated=1 q_lim=-0.0004 k=2000 track_tol=0.9 \
+    log=debug idle=spin
 says ', enable 0x00000001$'
 custom=${exhand%/*}/exhand-wall
 if [ -x "$custom" ]; then
-    "$custom" csv "$out/records" --all --out "$out/csv" >"$out/replay" || { fail "csv"; cat "$out/replay" >&2; }
+    "$custom" csv "$out/records" --all --out "$out/csv" >"$out/replay" ||
+        { fail "csv"; cat "$out/replay" >&2; }
     awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "ask_n") at = i; next }
-             at { n++; off += ($at - 0.8) ^ 2 > 1e-11 } END { exit !(n == 3000 && !off) }' "$out/csv" || fail "ask is not 0.8 N"
+             at { n++; off += ($at - 0.8) ^ 2 > 1e-11 } END { exit !(n == 3000 && !off) }' \
+                 "$out/csv" || fail "ask is not 0.8 N"
     "$custom" replay "$out/records" >"$out/replay" 2>&1 || { fail "replay"; cat "$out/replay" >&2; }
 fi
 image=$1/custom-rude-none.elf
-boots 0 '^arming refused at deadman$' ticks=3000 uncalibrated=1 q_lim=-0.0004 k=1 idle=spin # a cause is present
+# a cause is present
+boots 0 '^arming refused at deadman$' ticks=3000 uncalibrated=1 q_lim=-0.0004 k=1 idle=spin
 says ', enable 0x00000000$'
-boots 0 '^arming refused at small_force$' ticks=3000 uncalibrated=1 q_lim=-0.0004 k=9 idle=spin # 5 N: a root, without libm
-safe 7 '^tick does not end, vector 32, error 0x00000015, ' ticks=6000 uncalibrated=1 q_lim=-0.0004 k=8 idle=spin
+# 5 N: a root, without libm
+boots 0 '^arming refused at small_force$' ticks=3000 uncalibrated=1 q_lim=-0.0004 k=9 idle=spin
+safe 7 '^tick does not end, vector 32, error 0x00000015, ' ticks=6000 uncalibrated=1 q_lim=-0.0004 \
+    k=8 idle=spin
 
 image=$1/drop-none.iso
 boots 0 '^ticks 500 run, 0 missed$'

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""A Modbus master on the image's COM2, which QEMU has as a TCP socket: modbus.py PORT READS|rule [remote].
+"""A Modbus master on the image's COM2, which QEMU has as a TCP socket: modbus.py PORT READS|rule
+[remote].
 
-Requests are at most 14 bytes, what QEMU's UART takes at once: how QEMU hands over more has no timing of a line.
-Prints what failed; exit status 0 all as told, 1 not, 3 no image.
+Requests are at most 14 bytes, what QEMU's UART takes at once: how QEMU hands over more has no
+timing of a line. Prints what failed; exit status 0 all as told, 1 not, 3 no image.
 """
 import socket
 import struct
@@ -99,12 +100,14 @@ def wait_for(line, wanted):
 
 
 def rule(line):
-    """Scene guarded with its rule of gains on: a pair outside is refused, and neither taken nor held for damage."""
+    """Scene guarded with its rule of gains on: a pair outside is refused, and neither taken nor
+    held for damage."""
     for _ in range(20):  # it boots
         if read(line, 4, 0, 2) is not None:
             break
     check("k", read(line, 4, K, 2), f32(5000))
-    check("k staged", line.ask(struct.pack(">BHHB", 16, K, 2, 4) + f32(1e6)), struct.pack(">BHH", 16, K, 2))
+    check("k staged", line.ask(struct.pack(">BHHB", 16, K, 2, 4) + f32(1e6)),
+          struct.pack(">BHH", 16, K, 2))
     check("APPLY", coil(line, APPLY), struct.pack(">BHH", 5, APPLY, 0xFF00))
     check("refused", read(line, 4, 48, 4), struct.pack(">Ii", 1, -13))
     time.sleep(0.5)  # a round of the guard
@@ -125,7 +128,8 @@ def main():
     check("head", read(line, 4, 0, 8), bytes.fromhex("4558483100010000123456783f800000"))
     check("name", read(line, 4, 52, 8), b"drop".ljust(16, b"\0"))
     check("k", read(line, 4, K, 2), f32(1500))
-    check("k staged", line.ask(struct.pack(">BHHB", 16, K, 2, 4) + f32(800.5)), struct.pack(">BHH", 16, K, 2))
+    check("k staged", line.ask(struct.pack(">BHHB", 16, K, 2, 4) + f32(800.5)),
+          struct.pack(">BHH", 16, K, 2))
     check("k in effect still", read(line, 4, K, 2), f32(1500))
     check("APPLY", coil(line, APPLY), struct.pack(">BHH", 5, APPLY, 0xFF00))
     for _ in range(300):  # it is slewed
@@ -135,7 +139,8 @@ def main():
     check("k raw", read(line, 3, 0x5006, 2), struct.pack(">i", int(800.5 * 1024)))
     check("commands done", read(line, 4, 48, 4), struct.pack(">Ii", 1, 0))
     check("outside", line.ask(struct.pack(">BHHB", 16, K, 2, 4) + f32(-1)), bytes([0x90, 3]))
-    check("no number", line.ask(struct.pack(">BHHB", 16, K, 2, 4) + b"\x7f\xc0\0\0"), bytes([0x90, 3]))
+    check("no number", line.ask(struct.pack(">BHHB", 16, K, 2, 4) + b"\x7f\xc0\0\0"),
+          bytes([0x90, 3]))
     check("of the set-up", line.ask(struct.pack(">BHHBi", 16, 0x5004, 2, 4, 3)), bytes([0x90, 3]))
     check("nothing there", read(line, 4, 0x9000, 2), bytes([0x84, 2]))
     check("no function", line.ask(b"\x08\0\0\0\0"), bytes([0x88, 1]))

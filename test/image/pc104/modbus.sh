@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: MIT
 # The image's Modbus slave under QEMU: modbus.sh [READS]
 #   ways       what is said where there is no UART, or an option that does not hold
-#   master     a client of its own (modbus.py) reads, writes and commands; no tick is missed, and the log replays bit for bit
-# B: where things are built (build). Virtual time, 8 ns an instruction (4 at two rates), the processor never sleeps: a request comes when the
-# host sends it, so every run is another. It says nothing of a real line's timing.
+#   master     a client of its own (modbus.py) reads, writes and commands; no tick is missed, and
+#              the log replays bit for bit
+# B: where things are built (build). Virtual time, 8 ns an instruction (4 at two rates), the
+# processor never sleeps: a request comes when the host sends it, so every run is another. It says
+# nothing of a real line's timing.
 # Exit status: 0 all as told, 1 not, 2 bad usage, 3 something is missing (it says what).
 set -u
 
@@ -42,14 +44,17 @@ boot() # STATUS LINE OPTION...
 
 form='com2,ADDRESS,BAUD\[,remote\]$'
 boot 0 '^modbus: no 16550 with a FIFO at COM2: goes on without$' ticks=100 modbus=com2,1,57600
-boot 2 '^option modbus: baud 115200: its FIFO overflows in a tick of this rate: take at most 57600, or a rate of at least 823 Hz$' \
+boot 2 '^option modbus: baud 115200: its FIFO overflows in a tick of this rate: '\
+'take at most 57600, or a rate of at least 823 Hz$' \
     ticks=100 rate=500 modbus=com2,1,115200
-boot 2 '^option modbus: baud 9600: .*: take at most 7200, or a rate of at least 69 Hz$' ticks=100 rate=60 modbus=com2,1,9600
+boot 2 '^option modbus: baud 9600: .*: take at most 7200, or a rate of at least 69 Hz$' ticks=100 \
+    rate=60 modbus=com2,1,9600
 boot 2 "^option modbus=com1,1,9600: $form" modbus=com1,1,9600
 boot 2 "^option modbus=com2,1: $form" modbus=com2,1
 boot 2 "^option modbus=com2,1,9600,far: $form" modbus=com2,1,9600,far
 boot 2 '^option modbus=com2,0,9600: address 1\.\.247$' modbus=com2,0,9600
-boot 2 '^option modbus=com2,1,9601: baud: 115200 and whole parts of it, down to 1200$' modbus=com2,1,9601
+boot 2 '^option modbus=com2,1,9601: baud: 115200 and whole parts of it, down to 1200$' \
+    modbus=com2,1,9601
 
 replays()
 {
@@ -61,13 +66,15 @@ priced()
     says '^budget measured: ' && ! says 'not in the budget$'
 }
 
-# master TICKS RATE BAUD [remote]: its client ends long before its ticks do. 4 ns an instruction: at 8 ns the dearest tick, with
-# a keyframe and the dearest request, would be more than 0.5 ms.
+# master TICKS RATE BAUD [remote]: its client ends long before its ticks do. 4 ns an instruction: at
+# 8 ns the dearest tick, with a keyframe and the dearest request, would be more than 0.5 ms.
 master()
 {
     local ticks=$1 rate=$2 baud=$3 remote=${4:-} status
-    QEMU_FLAGS="-icount shift=2,sleep=on -serial tcp:127.0.0.1:$port,server=on,wait=on" RECORDS=$dir/log TIMEOUT_s=300 \
-        $run "$image" "ticks=$ticks" "rate=$rate" idle=spin log=debug uncalibrated=1 "modbus=com2,1,$baud${remote:+,$remote}" \
+    QEMU_FLAGS="-icount shift=2,sleep=on -serial tcp:127.0.0.1:$port,server=on,wait=on" \
+        RECORDS=$dir/log TIMEOUT_s=300 \
+        $run "$image" "ticks=$ticks" "rate=$rate" idle=spin log=debug uncalibrated=1 \
+        "modbus=com2,1,$baud${remote:+,$remote}" \
         >"$dir/said" 2>"$dir/err" &
     pid=$!
     python3 test/image/pc104/modbus.py "$port" "$reads" $remote >"$dir/client" 2>&1
@@ -79,7 +86,8 @@ master()
     check "$rate Hz, $baud baud: the image ends with $status" [ $status = 0 ]
     check "$rate Hz, $baud baud: the dearest request is in the budget" priced
     check "$rate Hz, $baud baud: no tick missed" says "^ticks $ticks run, 0 missed$"
-    check "$rate Hz, $baud baud: one damaged, one for others" says '^modbus answers [0-9]+, damaged 1, for others 1$'
+    check "$rate Hz, $baud baud: one damaged, one for others" says \
+        '^modbus answers [0-9]+, damaged 1, for others 1$'
     check "$rate Hz, $baud baud: its log replays" replays
     tr -d '\r' <"$dir/said" | grep -a '^modbus answers' | sed "s/^/  | $rate Hz, $baud baud: /"
     port=$((port + 1))
@@ -92,7 +100,8 @@ master 50000 2000 115200 remote
 gains='rule_on=1 rule_rate=500 rule_b1=30 rule_k0=9000 rule_k1=2000 k=5000 b=15'
 # shellcheck disable=SC2086 # one option a word
 QEMU_FLAGS="-icount shift=3,sleep=on -serial tcp:127.0.0.1:$port,server=on,wait=on" TIMEOUT_s=120 \
-    $run "$b/pc104/guarded-none.elf" ticks=10000 rate=500 idle=spin uncalibrated=1 modbus=com2,1,57600 $gains \
+    $run "$b/pc104/guarded-none.elf" ticks=10000 rate=500 idle=spin uncalibrated=1 \
+    modbus=com2,1,57600 $gains \
     >"$dir/said" 2>"$dir/err" &
 pid=$!
 python3 test/image/pc104/modbus.py "$port" rule >"$dir/client" 2>&1

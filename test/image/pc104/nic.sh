@@ -2,16 +2,18 @@
 # SPDX-License-Identifier: MIT
 # The image's network card under QEMU: nic.sh PART... of
 #   ways       what is said where there is no card, another card, no peer, or an option that is none
-#   bilateral  the paper's second experiment over it: the unmodified world simulator at the other end
-#   flood      FRAMES bad frames
+#   bilateral  the paper's second experiment over it: the unmodified world simulator at the other
+#   end flood      FRAMES bad frames
 #   dump       the black box after a fault, over it
 # B: where things are built (build). SPEEDS (natural), APPROACHES (1), FRAMES (20000), SEED (1).
 #
-# bilateral (with a ramp of 200 ms, for arming may end a tick apart and the first contact is at 0.52 s): the host's experiment without the card leaves a log. Its inputs stand at the connectors of emulated
-# cards inside the image (tape.c), tick by tick; planes, materials and HELLOs come from build/posix/world over
-# UDP, the image's log goes out over UDP. From the first freeze on its nine signals must be the host's, in every
-# tick: so the host's strings would have moved as they did. It says nothing of a real machine's timing.
-# Virtual time, 2 ns an instruction: the budget of a tick with all the packets that it may bring must fit.
+# bilateral (with a ramp of 200 ms, for arming may end a tick apart and the first contact is at 0.52
+# s): the host's experiment without the card leaves a log. Its inputs stand at the connectors of
+# emulated cards inside the image (tape.c), tick by tick; planes, materials and HELLOs come from
+# build/posix/world over UDP, the image's log goes out over UDP. From the first freeze on its nine
+# signals must be the host's, in every tick: so the host's strings would have moved as they did. It
+# says nothing of a real machine's timing. Virtual time, 2 ns an instruction: the budget of a tick
+# with all the packets that it may bring must fit.
 # Exit status: 0 all as told, 1 not, 2 bad usage, 3 something is missing (it says what).
 set -u
 
@@ -38,7 +40,8 @@ command -v qemu-system-i386 >/dev/null || {
 }
 for device in e1000e e1000; do
     qemu-system-i386 -device help 2>/dev/null | grep -q "\"$device\"" || {
-        echo "nic: this qemu-system-i386 has no device $device: install the package qemu-system-x86 of Debian 12 or later" >&2
+        echo "nic: this qemu-system-i386 has no device $device:" \
+            "install the package qemu-system-x86 of Debian 12 or later" >&2
         exit 3
     }
 done
@@ -48,14 +51,16 @@ boot()
 {
     local want=$1 flags=$2 status
     shift 2
-    QEMU_FLAGS="-icount shift=${SHIFT:-1},sleep=off $flags" TIMEOUT_s=${TIMEOUT_s:-900} $run "$@" >"$dir/said" 2>"$dir/err"
+    QEMU_FLAGS="-icount shift=${SHIFT:-1},sleep=off $flags" TIMEOUT_s=${TIMEOUT_s:-900} $run "$@" \
+        >"$dir/said" 2>"$dir/err"
     status=$?
     check "options '${*:2}': status $status, want $want" [ "$status" = "$want" ]
 }
 
 said_number() # NAME: what stands behind it, or 0
 {
-    tr -d '\r' <"$dir/said" | awk -v name="$1" '$0 ~ "^" name " [0-9]+$" { n = $NF } END { print n + 0 }'
+    tr -d '\r' <"$dir/said" |
+        awk -v name="$1" '$0 ~ "^" name " [0-9]+$" { n = $NF } END { print n + 0 }'
 }
 
 # --- what is said -----------------------------------------------------------------
@@ -71,7 +76,8 @@ ways()
     check "no card: named" says '^nic: no Intel 82574L \(8086:10D3\)$'
     check "no card: the scene goes on" says '^ticks 300 run, '
     boot 0 "-device e1000,netdev=n -netdev user,id=n" "$image" ticks=300 "${ip[@]}"
-    check "another card: named" says '^nic: 0x8086100e at PCI 0:[0-9]+\.0: not one this port drives$'
+    check "another card: named" says \
+        '^nic: 0x8086100e at PCI 0:[0-9]+\.0: not one this port drives$'
     boot 0 "-M isapc -cpu pentium2" "$image" ticks=300 timer=pit rate=1000 budget=1 "${ip[@]}"
     check "no PCI: said" says '^nic: no PCI bus$'
     boot 0 "$card" "$image" ticks=300 ip=10.0.2.15 peer=10.0.2.77
@@ -122,7 +128,8 @@ start_world()
 
 start_listener()
 {
-    "$exhand" listen --at "127.0.0.1:$((port + 1))" --out "$dir/image.exh" --silence 30 >"$dir/listen" 2>&1 &
+    "$exhand" listen --at "127.0.0.1:$((port + 1))" --out "$dir/image.exh" --silence 30 \
+        >"$dir/listen" 2>&1 &
     listener=$!
     pids="$pids $listener"
     sleep 0.3
@@ -134,7 +141,8 @@ one_speed() # SPEED
     ticks=$(($("$exhand" csv "$log" | wc -l) - 1))
     start_world # another for each: the log's `session` is the same
     start_listener
-    SHIFT=0 boot 0 "-m 256 -initrd $log $card" "$b/pc104/bilateral-tape.elf" ip=10.0.2.15 peer=10.0.2.2 \
+    SHIFT=0 boot 0 "-m 256 -initrd $log $card" "$b/pc104/bilateral-tape.elf" ip=10.0.2.15 \
+        peer=10.0.2.2 \
         port="$port" log=udp log_port=$((port + 1)) budget=1 scan=1 idle=spin ticks="$ticks"
     wait "$listener"
     check "$speed: the log came whole: $(cat "$dir/listen")" [ $? = 0 ]
@@ -146,16 +154,20 @@ one_speed() # SPEED
     nine "$dir/image.exh" "$ticks" >"$dir/nine.image"
     rows=$(wc -l <"$dir/nine.host")
     check "$speed: contacts were felt" [ "$(awk -F, '$6 == 1' "$dir/nine.host" | wc -l)" -gt 100 ]
-    check "$speed: nine signals from the first freeze on are the host's" cmp "$dir/nine.host" "$dir/nine.image"
-    echo "  $speed: $ticks ticks, $(said_number tick_missed) missed; nine signals of $rows ticks from the first freeze on:" \
-        "without the card $(cksum <"$dir/nine.host" | cut -d' ' -f1), over it $(cksum <"$dir/nine.image" | cut -d' ' -f1);" \
+    check "$speed: nine signals from the first freeze on are the host's" cmp "$dir/nine.host" \
+        "$dir/nine.image"
+    echo "  $speed: $ticks ticks, $(said_number tick_missed) missed;" \
+        "nine signals of $rows ticks from the first freeze on:" \
+        "without the card $(cksum <"$dir/nine.host" | cut -d' ' -f1)," \
+        "over it $(cksum <"$dir/nine.image" | cut -d' ' -f1);" \
         "$(said_number "link datagrams") packets came, $(said_number "nic sent") frames went," \
         "$(said_number "log pieces") of the log"
 }
 
 bilateral()
 {
-    check "the host's experiment" "$exhand" bilateral --scene ports/posix/world/scenes/collision.world --speed "$speeds" \
+    check "the host's experiment" "$exhand" bilateral \
+        --scene ports/posix/world/scenes/collision.world --speed "$speeds" \
         --approaches "${APPROACHES:-1}" --out "$dir/host" >"$dir/said" 2>"$dir/err"
     for speed in ${speeds//,/ }; do one_speed "$speed"; done
 }
@@ -169,8 +181,10 @@ flood()
     end=$!
     pids="$pids $end"
     sleep 0.3
-    boot 0 "-device e1000e,netdev=n -netdev stream,id=n,server=off,addr.type=unix,addr.path=$dir/cable" \
-        "$b/pc104/bilateral-none.elf" ip=10.0.0.2 peer=10.0.0.1 uncalibrated=1 idle=spin ticks="$ticks"
+    cable="stream,id=n,server=off,addr.type=unix,addr.path=$dir/cable"
+    boot 0 "-device e1000e,netdev=n -netdev $cable" \
+        "$b/pc104/bilateral-none.elf" ip=10.0.0.2 peer=10.0.0.1 uncalibrated=1 idle=spin \
+        ticks="$ticks"
     wait "$end"
     check "all frames were sent before the image ended: $(cat "$dir/sent")" [ $? = 0 ]
     check "no tick missed" says "^ticks $ticks run, 0 missed$"
@@ -178,13 +192,16 @@ flood()
     check "nothing the card sent had to be left out" [ "$(said_number "link unsent")" = 0 ]
     check "every frame that a card lets through was counted: $(cat "$dir/sent")" \
         grep -q " $(said_number "link frames") to be seen" "$dir/sent"
-    for cause in long others type arp arp_others arp_conflict arp_unasked ip ip_options ip_sum ip_others fragment \
+    for cause in long others type arp arp_others arp_conflict arp_unasked ip ip_options ip_sum \
+        ip_others fragment \
         protocol stranger udp port empty too_long udp_sum; do
         check "frames dropped as $cause" [ "$(said_number "link drop_$cause")" -gt 0 ]
     done
     echo "  flood: $(cat "$dir/sent"); $ticks ticks, $(said_number tick_missed) missed," \
-        "$(said_number tick_late) late; dropped $(awk '/^link drop_/ { n += $NF } END { print n + 0 }' "$dir/said")," \
-        "longest tick $(awk '/^tick_max/ { print $2 / 1000 }' "$dir/said") us at 2 ns an instruction"
+        "$(said_number tick_late) late;" \
+        "dropped $(awk '/^link drop_/ { n += $NF } END { print n + 0 }' "$dir/said")," \
+        "longest tick $(awk '/^tick_max/ { print $2 / 1000 }' "$dir/said") us" \
+        "at 2 ns an instruction"
 }
 
 # --- the black box ----------------------------------------------------------------
@@ -193,7 +210,8 @@ flood()
 dump()
 {
     start_listener
-    boot 0 "$card" "$b/pc104/drop-none.elf" dump=udp ip=10.0.2.15 peer=10.0.2.2 log_port=$((port + 1)) idle=spin \
+    boot 0 "$card" "$b/pc104/drop-none.elf" dump=udp ip=10.0.2.15 peer=10.0.2.2 log_port=$((port + \
+        1)) idle=spin \
         ticks=8000 uncalibrated=1 q_lim=-0.0004 k=2000 track_tol=0.1
     wait "$listener"
     check "the dump came whole: $(cat "$dir/listen")" [ $? = 0 ]
@@ -202,7 +220,8 @@ dump()
     check "the dump is replayed" replays "$dir/image.exh"
     check "it has the fault: $(cat "$dir/replay")" grep -q 'fault tracking at tick' "$dir/replay"
     start_listener
-    boot 5 "$card" "$b/pc104/drop-none.elf" dump=udp ip=10.0.2.15 peer=10.0.2.2 log_port=$((port + 1)) \
+    boot 5 "$card" "$b/pc104/drop-none.elf" dump=udp ip=10.0.2.15 peer=10.0.2.2 log_port=$((port + \
+        1)) \
         ticks=1000 uncalibrated=1 provoke=divide provoke_at=800
     wait "$listener"
     check "the dump of a halt came whole: $(cat "$dir/listen")" [ $? = 0 ]

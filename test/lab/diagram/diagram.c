@@ -7,8 +7,11 @@
 
 #include "bilateral/bilateral.h"
 #include "drop/drop.h"
+#include "exhand/bytes.h"
 #include "sim/device.h"
 
+#include <errno.h>
+#include <inttypes.h>
 #include <string.h>
 
 /* Units as people write them. */
@@ -58,106 +61,64 @@ static int device(char *to, size_t cap, const char *name)
     return 1;
 }
 
-static int row_of(char *to, size_t cap, char kind, const char *name)
+/* What stands for {kind:name}; crc is of what has been printed. */
+static int row_of(char *to, size_t cap, char kind, const char *name, uint32_t crc)
 {
     switch (kind) {
     case 'p': return parameter(to, cap, &exh_scene_drop, name);
     case 's': return output(to, cap, &exh_scene_drop, name);
     case 'P': return parameter(to, cap, &exh_scene_bilateral, name);
     case 'S': return output(to, cap, &exh_scene_bilateral, name);
-    default: return device(to, cap, name);
+    case 'd': return device(to, cap, name);
+    case '#': snprintf(to, cap, "%08" PRIx32, crc); return strcmp(name, "crc") != 0;
+    default: return 1;
     }
 }
 
-/* The text with every {kind:name} replaced, in a buffer that the next call reuses. */
-static const char *expand(const char *text, int *failed)
+int diagram_expand(FILE *in, FILE *out)
 {
-    static char out[320];
-    size_t n = 0;
-    while (*text != '\0' && n + 64 < sizeof out) {
-        char name[32] = "", row[64];
-        char kind;
-        if (sscanf(text, "{%c:%31[a-z0-9_]}", &kind, name) != 2) {
-            out[n++] = *text++;
-            continue;
-        }
-        if (row_of(row, sizeof row, kind, name)) {
-            cli_complain("{%c:%s}: no such row: mend the diagram", kind, name);
-            *failed = 1;
-            row[0] = '\0';
-        }
-        n += (size_t)snprintf(out + n, sizeof out - n, "%s", row);
-        text = strchr(text, '}') + 1;
-    }
-    out[n] = '\0';
-    return out;
-}
-
-static void draw_box(FILE *f, const struct diagram_box *b, int *failed)
-{
-    const int mid = 10 * b->x + 5 * b->w;
-    fprintf(f, "<rect class='box' x='%d' y='%d' width='%d' height='%d' rx='6'/>\n", 10 * b->x,
-            10 * b->y, 10 * b->w, 10 * b->h);
-    fprintf(f, "<text class='title' x='%d' y='%d'>%s</text>\n", mid, 10 * b->y + 30, b->title);
-    for (int i = 0; i < 6 && b->line[i] != NULL; i++) {
-        fprintf(f, "<text x='%d' y='%d'>%s</text>\n", mid, 10 * b->y + 62 + 27 * i,
-                expand(b->line[i], failed));
-    }
-}
-
-static void draw_wire(FILE *f, const struct diagram_wire *w, int *failed)
-{
-    fprintf(f, "<polyline class='wire' points='");
-    for (int i = 0; i < w->n; i++) {
-        fprintf(f, "%s%d,%d", i ? " " : "", 10 * w->at[i][0], 10 * w->at[i][1]);
-    }
-    fprintf(f, "'/>\n<text class='label' x='%d' y='%d'>%s</text>\n", 10 * w->x, 10 * w->y,
-            expand(w->label, failed));
-}
-
-int diagram_draw(FILE *f, const struct diagram *d)
-{
-    int failed = 0;
+    char line[512];
+    uint32_t crc = 0;
     exh_scene_drop.defaults();
     exh_scene_bilateral.defaults();
-    fprintf(f,
-            "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 %d %d' font-family='DejaVu "
-            "Sans, sans-serif' font-size='18' text-anchor='middle'>\n"
-            "<title>%s</title>\n<style>.box{fill:#f4f7fb;stroke:#1f5fbf;stroke-width:2}"
-            ".wire{fill:none;stroke:#555555;stroke-width:2.5;marker-end:url(#tip)}"
-            ".title{font-weight:bold;font-size:21px}.label{fill:#b03020;font-size:17px}</style>\n"
-            "<defs><marker id='tip' viewBox='0 0 10 10' refX='9' refY='5' markerWidth='7' "
-            "markerHeight='7' orient='auto'><path d='M0,0 L10,5 L0,10 z' fill='#555555'/>"
-            "</marker></defs>\n<rect width='%d' height='%d' fill='#ffffff'/>\n",
-            10 * d->w, 10 * d->h, d->title, 10 * d->w, 10 * d->h);
-    fprintf(f, "<text class='title' x='%d' y='36'>%s</text>\n", 5 * d->w, d->title);
-    for (int i = 0; i < d->boxes; i++) { draw_box(f, &d->box[i], &failed); }
-    for (int i = 0; i < d->wires; i++) { draw_wire(f, &d->wire[i], &failed); }
-    for (int i = 0; d->svg != NULL && d->svg[i] != NULL; i++) {
-        fprintf(f, "%s\n", expand(d->svg[i], &failed));
+    while (fgets(line, sizeof line, in) != NULL) {
+        for (const char *text = line; *text != '\0';) {
+            char name[32] = "", row[64] = {*text, '\0'}, kind;
+            if (sscanf(text, "{%c:%31[a-z0-9_]}", &kind, name) != 2) {
+                text++;
+            } else if (row_of(row, sizeof row, kind, name, crc)) {
+                cli_complain("{%c:%s}: no such row: mend the diagram", kind, name);
+                return 1;
+            } else {
+                text = strchr(text, '}') + 1;
+            }
+            crc = exh_crc32(crc, row, (uint32_t)strlen(row));
+            fputs(row, out);
+        }
     }
-    fprintf(f, "</svg>\n");
-    return failed;
+    return 0;
 }
 
 int cli_diagram(int argc, char **argv)
 {
     const struct cli_command c = {
         "diagram",
-        "NAME",
-        "Draws a block diagram as SVG on standard output, from the signal "
-        "and device tables: overview, setup, identification, principle, geometry or bilateral.",
+        "FILE",
+        "Prints FILE with {p:k}, a row of the signal and device tables, as its name, value and "
+        "unit: the block diagrams, test/lab/diagram/*.dot, for Graphviz (make diagrams).",
         NULL,
         0,
         1};
     const char *name = NULL;
-    const int err = cli_parse(&c, argc, argv, &name);
+    int err = cli_parse(&c, argc, argv, &name);
+    FILE *f;
     if (err) { return err == 1 ? 0 : err; }
-    for (int i = 0; i < diagrams_n; i++) {
-        if (strcmp(name, diagrams[i].name) == 0) { return diagram_draw(stdout, &diagrams[i]); }
+    f = fopen(name, "r");
+    if (f == NULL) {
+        cli_complain("%s: %s", name, strerror(errno));
+        return 2;
     }
-    cli_complain(
-        "%s: no such diagram (overview, setup, identification, principle, geometry, bilateral)",
-        name);
-    return 2;
+    err = diagram_expand(f, stdout);
+    fclose(f);
+    return err;
 }

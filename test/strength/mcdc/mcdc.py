@@ -1,18 +1,22 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Runs the tests that `make mcdc-built` made, and says of lib/ and ports/cards which conditions they leave undecided.
+"""Runs the tests that `make mcdc-built` made, and says of lib/ and ports/cards which conditions
+they leave undecided.
 
-A condition of a decision of several (a && b) is covered when two runs of the decision differ in its value and in the
-decision's, and in no other condition that was looked at (MC/DC, unique cause with short circuits: clang's). A condition that
-is a decision by itself is covered when it was true and false, a case when it was gone to; a function when it was called.
+A condition of a decision of several (a && b) is covered when two runs of the decision differ in its
+value and in the decision's, and in no other condition that was looked at (MC/DC, unique cause with
+short circuits: clang's). A condition that is a decision by itself is covered when it was true and
+false, a case when it was gone to; a function when it was called.
 
-Each that is not covered must stand in missing.txt with its reason; one that stands there and is covered, or is no more,
-must go. Exit 1 on either, on a failing test, and on a reason that is none ("to do") with --strict.
+Each that is not covered must stand in missing.txt with its reason; one that stands there and is
+covered, or is no more, must go. Exit 1 on either, on a failing test, and on a reason that is none
+("to do") with --strict.
 
     mcdc.py [--build DIR] [--jobs N] [--update] [--strict] [--only FILE] [--tests TEXT]
 
 --update: missing.txt anew; reasons are kept, new ones get "to do"
---tests:  only binaries whose path has TEXT in it (for what a test covers by itself); nothing is compared
+--tests:  only binaries whose path has TEXT in it (for what a test covers by itself); nothing is
+compared
 """
 
 import argparse
@@ -38,7 +42,8 @@ Item = collections.namedtuple("Item", "file function text what")
 
 
 def run_tests(build, jobs, text):
-    """Every binary once; the counters go to prof/, one file a shared object or binary. The names of those that failed."""
+    """Every binary once; the counters go to prof/, one file a shared object or binary. The names of
+    those that failed."""
     prof = os.path.join(build, "prof")
     os.makedirs(prof, exist_ok=True)
     for f in glob.glob(prof + "/*"):
@@ -49,12 +54,13 @@ def run_tests(build, jobs, text):
 
     def run(b):
         name = os.path.relpath(b, build)
-        env = dict(os.environ, LLVM_PROFILE_FILE=prof + "/%m.profraw", EXH_RATES=RATES, EXH_SEED="1",
-                   EXH_CASES=str(CASES.get(name, CASES[""])))
+        env = dict(os.environ, LLVM_PROFILE_FILE=prof + "/%m.profraw", EXH_RATES=RATES,
+                   EXH_SEED="1", EXH_CASES=str(CASES.get(name, CASES[""])))
         for v in ("EXH_TEST", "EXH_CASE", "EXH_PART", "EXH_PARTS"):
             env.pop(v, None)
         arg = sorted(glob.glob(ROOT + "/test/fuzz/corpus/*")) if name.startswith("fuzz/") else []
-        p = subprocess.run([b] + arg, cwd=ROOT, env=env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        p = subprocess.run([b] + arg, cwd=ROOT, env=env, stdout=subprocess.PIPE,
+                           stderr=subprocess.STDOUT, text=True)
         return (name, p.returncode, p.stdout)
 
     with ThreadPoolExecutor(jobs) as pool:
@@ -68,12 +74,15 @@ def run_tests(build, jobs, text):
 def export(build, binary):
     """What clang says of each function of ours, in each object that has it."""
     data = build + "/all.profdata"
-    subprocess.run(["llvm-profdata-19", "merge", "-o", data] + glob.glob(build + "/prof/*.profraw"), check=True)
-    objects = [build + "/libexhand.so", build + "/libcards.so"] + [b for b in binary if "/golden/" not in b]
+    subprocess.run(["llvm-profdata-19", "merge", "-o", data] + glob.glob(build + "/prof/*.profraw"),
+                   check=True)
+    objects = ([build + "/libexhand.so", build + "/libcards.so"] +
+               [b for b in binary if "/golden/" not in b])
     args = ["llvm-cov-19", "export", "-format=text", "-instr-profile=" + data, objects[0]]
     for o in objects[1:]:
         args += ["-object", o]
-    p = subprocess.run(args + [os.path.join(ROOT, d) for d in PLACES], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    p = subprocess.run(args + [os.path.join(ROOT, d) for d in PLACES], stdout=subprocess.PIPE,
+                       stderr=subprocess.PIPE, text=True)
     if p.returncode:
         sys.exit(p.stderr)
     return json.loads(p.stdout)["data"][0]["functions"]
@@ -131,7 +140,8 @@ class Condition:
 
 
 def add_function(f, condition, called, name_of, source):
-    """Adds what this copy of a function has seen. A test that includes a source may name it otherwise: the library's name counts."""
+    """Adds what this copy of a function has seen. A test that includes a source may name it
+    otherwise: the library's name counts."""
     files, use = f["filenames"], {}
     for l0, c0, _, _, _, fid, sub, kind in f["regions"]:
         if kind == EXPANSION:
@@ -147,7 +157,8 @@ def add_function(f, condition, called, name_of, source):
     for l0, c0, l1, c1, true, false, fid, _, kind in f["branches"]:
         text, at = source.text(files[fid], l0, c0, l1, c1), (fid, l0, c0)
         if re.fullmatch(r".*\bU?INT64_C", text):  # a macro ends it
-            text += re.match(r"\([^)]*\)", "".join(source.lines(files[fid])[l1 - 1][c1 - 1:])).group()
+            text += re.match(r"\([^)]*\)",
+                             "".join(source.lines(files[fid])[l1 - 1][c1 - 1:])).group()
         while at[0] in use:  # of a macro: where it is used
             at = use[at[0]]
             text = source.use(files[at[0]], *at[1:])
@@ -173,7 +184,8 @@ def add_function(f, condition, called, name_of, source):
 
 
 def gaps(functions, source):
-    """What is missing, and of each file what there is: (conditions of several, of them covered; others, covered)."""
+    """What is missing, and of each file what there is: (conditions of several, of them covered;
+    others, covered)."""
     condition, called, name_of = collections.defaultdict(Condition), collections.Counter(), {}
     for f in functions:
         add_function(f, condition, called, name_of, source)
@@ -200,7 +212,8 @@ def gaps(functions, source):
 
 
 def read_missing():
-    """{Item: reason}. A reason goes for the lines above it that have none: FILE | FUNCTION | CONDITION | WHAT, then "  REASON"."""
+    """{Item: reason}. A reason goes for the lines above it that have none: FILE | FUNCTION |
+    CONDITION | WHAT, then "  REASON"."""
     reason, block = {}, []
     if not os.path.exists(MISSING):
         return reason
@@ -219,8 +232,9 @@ def read_missing():
     return reason
 
 
-HEAD = """# What the tests of `make mcdc` leave undecided, and why. FILE | FUNCTION | CONDITION | WHAT, then, two blanks before it,
-# the reason: of that line and those above it that have none. A new one fails, one that is covered or is no more fails.
+HEAD = """# What the tests of `make mcdc` leave undecided, and why. FILE | FUNCTION | CONDITION |
+# WHAT, then, two blanks before it, the reason: of that line and those above it that have none. A
+# new one fails, one that is covered or is no more fails.
 """
 
 
@@ -229,8 +243,10 @@ def write_missing(missing, reason):
         f.write(HEAD)
         for i, (item, _) in enumerate(missing):
             why = reason.get(item) or TODO
-            f.write(("\n" if i == 0 or item.file != missing[i - 1][0].file else "") + " | ".join(item) + "\n")
-            last = i + 1 == len(missing) or missing[i + 1][0].file != item.file or (reason.get(missing[i + 1][0]) or TODO) != why
+            f.write(("\n" if i == 0 or item.file != missing[i - 1][0].file else "") +
+                    " | ".join(item) + "\n")
+            last = (i + 1 == len(missing) or missing[i + 1][0].file != item.file or
+                    (reason.get(missing[i + 1][0]) or TODO) != why)
             if last:
                 words, line = why.split(), " "
                 for w in words:
@@ -264,7 +280,8 @@ def table(have, missing):
         if n_missing[path]:
             print(f"{path:34} {n[1]:8} of {n[0]:5} {n[3]:10} of {n[2]:5} {n_missing[path]:9}")
     for p, n in of_place.items():
-        print(f"{p + ', all':34} {n[1]:8} of {n[0]:5} {n[3]:10} of {n[2]:5} {n[4]:9}   {share(n[1], n[0])}, {share(n[3], n[2])}")
+        print(f"{p + ', all':34} {n[1]:8} of {n[0]:5} {n[3]:10} of {n[2]:5} {n[4]:9}   "
+              f"{share(n[1], n[0])}, {share(n[3], n[2])}")
 
 
 def share(a, b):
@@ -296,7 +313,8 @@ def main():
         reason = read_missing()
     bad = compare(missing, reason)
     todo = sum(reason.get(m) in (None, TODO) for m, _ in missing)
-    print(f"{len(binary)} tests, {len(failed)} failed; {len(missing)} missing, {len(missing) - todo} of them explained, {todo} to do; "
+    print(f"{len(binary)} tests, {len(failed)} failed; {len(missing)} missing, "
+          f"{len(missing) - todo} of them explained, {todo} to do; "
           f"{bad} not as in missing.txt")
     return 1 if failed or bad or (arg.strict and todo) else 0
 

@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Mutants of a C source: small changes, each at one place, of operators, numbers, conditions, returns and statements.
+"""Mutants of a C source: small changes, each at one place, of operators, numbers, conditions,
+returns and statements.
 
-What this file knows of C is its tokens and how brackets nest; the compiler says which changes are none of C. Not changed:
-arguments of EXH_ASSERT (a caller's mistake, which no test makes), names, texts, what stands at file level but numbers.
+What this file knows of C is its tokens and how brackets nest; the compiler says which changes are
+none of C. Not changed:
+arguments of EXH_ASSERT (a caller's mistake, which no test makes), names, texts, what stands at file
+level but numbers.
 """
 
 import bisect
@@ -16,17 +19,19 @@ TOKEN = re.compile(r"""(?P<blank>\s+|/\*.*?\*/|//[^\n]*|\\\n)
     | (?P<op><<=|>>=|\.\.\.|->|\+\+|--|<<|>>|<=|>=|==|!=|&&|\|\||[-+*/%&|^]=|.)""", re.S | re.X)
 
 SWAP = {
-    "<": ("<=", ">="), "<=": ("<", ">"), ">": (">=", "<="), ">=": (">", "<"), "==": ("!=",), "!=": ("==",),
-    "&&": ("||",), "||": ("&&",), "+": ("-",), "-": ("+",), "*": ("/",), "/": ("*",), "%": ("/",),
-    "<<": (">>",), ">>": ("<<",), "&": ("|",), "|": ("&",), "^": ("&",), "++": ("--",), "--": ("++",),
-    "+=": ("-=", "="), "-=": ("+=", "="), "*=": ("/=",), "/=": ("*=",), "&=": ("|=", "="), "|=": ("&=", "="),
-    "^=": ("&=",), "<<=": (">>=",), ">>=": ("<<=",),
+    "<": ("<=", ">="), "<=": ("<", ">"), ">": (">=", "<="), ">=": (">", "<"), "==": ("!=",),
+    "!=": ("==",), "&&": ("||",), "||": ("&&",), "+": ("-",), "-": ("+",), "*": ("/",), "/": ("*",),
+    "%": ("/",), "<<": (">>",), ">>": ("<<",), "&": ("|",), "|": ("&",), "^": ("&",), "++": ("--",),
+    "--": ("++",), "+=": ("-=", "="), "-=": ("+=", "="), "*=": ("/=",), "/=": ("*=",),
+    "&=": ("|=", "="), "|=": ("&=", "="), "^=": ("&=",), "<<=": (">>=",), ">>=": ("<<=",),
 }
 UNARY_GONE = {"!", "~", "-"}
-TYPES = {"const", "static", "struct", "enum", "union", "int", "unsigned", "char", "void", "typedef", "extern", "volatile"}
+TYPES = {"const", "static", "struct", "enum", "union", "int", "unsigned", "char", "void", "typedef",
+         "extern", "volatile"}
 ENDS_OPERAND = re.compile(r"[\w)\]]$")
-BEFORE_CONDITION = {"(", "[", "{", ",", ";", "?", ":", "=", "return"} | {o for o in SWAP if o[-1] == "=" and o not in
-                                                                         ("<=", ">=", "==", "!=")}
+BEFORE_CONDITION = ({"(", "[", "{", ",", ";", "?", ":", "=", "return"} |
+                    {o for o in SWAP if o[-1] == "=" and o not in
+                     ("<=", ">=", "==", "!=")})
 
 Token = collections.namedtuple("Token", "kind text at end")
 Mutant = collections.namedtuple("Mutant", "at end new")
@@ -39,7 +44,8 @@ def tokens(text):
         m = TOKEN.match(text, i)
         kind, i = m.lastgroup, m.end()
         if kind == "op" and m.group() == "#":
-            line = re.compile(r"#[ \t]*define[ \t]+\w+(\([^)]*\))?|(?:\\\n|/\*.*?\*/|[^\n])*", re.S).match(text, m.start())
+            line = re.compile(r"#[ \t]*define[ \t]+\w+(\([^)]*\))?|(?:\\\n|/\*.*?\*/|[^\n])*",
+                              re.S).match(text, m.start())
             out.append(Token("op", "#", m.start(), line.end()))  # an end of what came before
             i = line.end()
         elif kind != "blank":
@@ -61,10 +67,12 @@ def partners(ts):
 
 def numbers(t):
     digits = t.text.rstrip("uUlL")
-    n, tail = int(digits, 0) if digits[:2] in ("0x", "0X") or digits == "0" else int(digits), t.text[len(digits):]
+    n, tail = (int(digits, 0) if digits[:2] in ("0x", "0X") or digits == "0" else int(digits),
+               t.text[len(digits):])
     for v in (n + 1, n - 1):
         if v >= 0:
-            yield Mutant(t.at, t.end, ("0x%0*X" % (len(digits) - 2, v) if digits[:2] in ("0x", "0X") else str(v)) + tail)
+            yield Mutant(t.at, t.end, ("0x%0*X" % (len(digits) - 2, v) if digits[:2] in ("0x", "0X")
+                                       else str(v)) + tail)
 
 
 def operators(ts, i):
@@ -74,8 +82,9 @@ def operators(ts, i):
         yield Mutant(t.at, t.end, "")
     elif t.text in ("*", "&", "-", "+") and not binary:
         return
-    elif t.text == "*" and (before.endswith("_t") or before in TYPES or ts[i - 2].text in ("struct", "enum") or
-                            ts[i + 1].text in (")", ",", "const")):
+    elif (t.text == "*" and
+          (before.endswith("_t") or before in TYPES or ts[i - 2].text in ("struct", "enum") or
+           ts[i + 1].text in (")", ",", "const"))):
         return  # a pointer
     else:
         for new in SWAP.get(t.text, ()):
@@ -99,9 +108,11 @@ def conditions(ts, of, i):
 def statement(ts, of, i):
     """The statement that begins with token i, or after what it hangs on, goes, or returns 0."""
     while ts[i].text in ("if", "while", "for", "switch", "else", "do"):
-        i = of[i + 1] + 1 if ts[i].text in ("if", "while", "for", "switch") and i + 1 in of else i + 1
+        i = (of[i + 1] + 1 if ts[i].text in ("if", "while", "for", "switch") and i + 1 in of
+             else i + 1)
     t = ts[i]
-    if t.text in TYPES or t.text.endswith("_t") or t.text in ("{", "}", ";", "case", "default", "EXH_ASSERT", "#", ".", "["):
+    if (t.text in TYPES or t.text.endswith("_t") or
+        t.text in ("{", "}", ";", "case", "default", "EXH_ASSERT", "#", ".", "[")):
         return
     end = i
     while ts[end].text != ";":
@@ -140,7 +151,8 @@ def mutants(text):
             if t.kind == "op":
                 found.update(operators(ts, i))
             found.update(conditions(ts, of, i))
-            if round_ == 0 and (t.text in ("{", "}", ";") or t.text == ":" and is_label(ts, i)) and i + 1 < len(ts):
+            if (round_ == 0 and (t.text in ("{", "}", ";") or t.text == ":" and is_label(ts, i)) and
+                i + 1 < len(ts)):
                 found.update(statement(ts, of, i + 1))
         i += 1
     return sorted(m for m in found if text[m.at:m.end].strip() != m.new.strip())
@@ -150,15 +162,19 @@ class Source:
     def __init__(self, path, text):
         self.path, self.text = path, text
         self.starts = [0] + [m.end() for m in re.finditer("\n", text)]
-        self.functions = [(m.start(), m.group(1)) for m in re.finditer(r"^[A-Za-z_][^\n;={]*?\b(\w+)\((?:[^;{}]*)\)\n\{", text, re.M)]
+        self.functions = [(m.start(), m.group(1))
+                          for m in re.finditer(r"^[A-Za-z_][^\n;={]*?\b(\w+)\((?:[^;{}]*)\)\n\{",
+                                               text, re.M)]
 
     def changed(self, m):
         return self.text[:m.at] + m.new + self.text[m.end:]
 
     def shown(self, m):
-        """(function, lines as they are, lines as they become), blanks as one: a name that stands while these lines do."""
+        """(function, lines as they are, lines as they become), blanks as one: a name that stands
+        while these lines do."""
         lo = self.starts[bisect.bisect_right(self.starts, m.at) - 1]
         hi = self.text.find("\n", m.end)
         now, new = self.text[lo:hi], self.text[lo:m.at] + m.new + self.text[m.end:hi]
         k = bisect.bisect_right([at for at, _ in self.functions], m.at)
-        return (self.functions[k - 1][1] if k else "-", *(re.sub(r"\s+", " ", s).strip() for s in (now, new)))
+        return (self.functions[k - 1][1] if k else "-",
+                *(re.sub(r"\s+", " ", s).strip() for s in (now, new)))

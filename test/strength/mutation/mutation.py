@@ -1,18 +1,24 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Plants small errors all over lib/src, one at a time, and runs the tests of that source: do they tell it?
+"""Plants small errors all over lib/src, one at a time, and runs the tests of that source: do they
+tell it?
 
-    mutation.py [--build DIR] [--jobs N] [--sample N | --all] [--seed S] [--limit SECONDS] [--report] [--list] [SOURCE...]
+    mutation.py [--build DIR] [--jobs N] [--sample N | --all] [--seed S] [--limit SECONDS]
+                [--report] [--list] [SOURCE...]
 
-A mutant (mutate.py) is compiled, -O2, and left out when it does not compile, when its object is the original's bit for bit, or
-another mutant's. What is left is preloaded into the tests of its source (tests.txt), which stop at the first that fails: killed.
-What survives runs once more with undefined behaviour trapped, as `make test` has sanitizers. A survivor stands in survivors.txt
-with its reason; one that does not stand there, one that stands there and is killed, or whose lines are no more: exit 1,
-and so does a source of which less than 95 of 100 are killed, those with a reason aside.
+A mutant (mutate.py) is compiled, -O2, and left out when it does not compile, when its object is the
+original's bit for bit, or another mutant's. What is left is preloaded into the tests of its source
+(tests.txt), which stop at the first that fails: killed. What survives runs once more with undefined
+behaviour trapped, as `make test` has sanitizers. A survivor stands in survivors.tsv with its
+reason; one that does not stand there, one that stands there and is killed, or whose lines are no
+more: exit 1, and so does a source of which less than 95 of 100 are killed, those with a reason
+aside.
 
 --sample N (100): of each source so many, as the seed (1) deals them; --all: all
---limit SECONDS: begin no mutant after that; what ran is kept, and is not run again while its source stays as it is
---report: the table of all that ran so far, and nothing else; --list: the survivors without reason of what ran
+--limit SECONDS: begin no mutant after that; what ran is kept, and is not run again while its source
+stays as it is
+--report: the table of all that ran so far, and nothing else; --list: the survivors without reason
+of what ran
 """
 
 import argparse
@@ -37,9 +43,12 @@ LEAST = 0.95
 CC = os.environ.get("CC", "cc").split()
 FLAGS = "-std=c99 -w -fPIC -DEXH_FIX_AUDIT -Ilib/include".split()
 TRAP = "-fsanitize=undefined,bounds-strict -fsanitize-undefined-trap-on-error".split()
-RATES = {"EXH_RATES": "91..1900:603", "EXH_EXPLAIN": "0", "EXH_DIGESTS": os.environ.get("EXH_DIGESTS", "build/golden/rates.txt")}
+RATES = {"EXH_RATES": "91..1900:603", "EXH_EXPLAIN": "0",
+         "EXH_DIGESTS": os.environ.get("EXH_DIGESTS", "build/golden/rates.txt")}
 CASES = "1000"
-SLOW_S = 5  # of a core, of one test, which takes a tenth of a second otherwise: an endless loop, however busy the machine
+# of a core, of one test, which takes a tenth of a second otherwise: an endless loop, however busy
+# the machine
+SLOW_S = 5
 STUCK_S = 300  # by the clock: waits
 KILLED, SURVIVED = ("killed", "survived")
 
@@ -58,29 +67,21 @@ def read_tests():
 
 def read_survivors():
     """{source: {(function, now, new): reason}}"""
-    of, waiting, now = collections.defaultdict(dict), [], None
-    with open(os.path.join(HERE, "survivors.txt"), encoding="utf-8") as f:
-        for line in f.read().split("\n"):
-            if line.startswith("lib/"):
-                source, function = line.split()
-            elif line.startswith("- "):
-                now = line[2:]
-            elif line.startswith("+"):
-                waiting.append((source, (function, now, line[2:])))
-            elif line.startswith("  "):
-                for s, w in waiting:
-                    of[s][w] = "?"
-                last = waiting or last
-                waiting = []
-                for s, w in last:
-                    of[s][w] = (of[s][w] + " " + line.strip()).lstrip("? ")
+    of, reason = collections.defaultdict(dict), None
+    with open(os.path.join(HERE, "survivors.tsv"), encoding="utf-8") as f:
+        for line in f:
+            if not line.startswith("#"):
+                source, function, now, new, said = line.rstrip("\n").split("\t")
+                reason = reason if said == '"' else said
+                of[source][function, now, new] = reason
     return of
 
 
 def ends_well(exe, env, so=""):
     """Whether the test passes, with that object before all others."""
     try:
-        p = subprocess.run(["sh", "-c", f'ulimit -t {SLOW_S}; export LD_PRELOAD="$1"; exec "$0"', exe, so], cwd=ROOT, env=env, stdin=subprocess.DEVNULL,
+        p = subprocess.run(["sh", "-c", f'ulimit -t {SLOW_S}; export LD_PRELOAD="$1"; exec "$0"',
+                            exe, so], cwd=ROOT, env=env, stdin=subprocess.DEVNULL,
                            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=STUCK_S)
     except subprocess.TimeoutExpired:
         return False
@@ -108,9 +109,11 @@ class Tests:
     def run_with(self, name, where):
         """A test that has the source in itself: made of it anew."""
         own, exe = "test/module/unit/%s_test.c" % name, os.path.join(where, "own")
-        with open(os.path.join(ROOT, own), encoding="utf-8") as f, open(exe + ".c", "w", encoding="utf-8") as to:
+        with open(os.path.join(ROOT, own),
+                  encoding="utf-8") as f, open(exe + ".c", "w", encoding="utf-8") as to:
             to.write(re.sub(r'"[./]*lib/src/\w+/(\w+\.c)"', r'"\1"', f.read()))
-        p = subprocess.run(CC + FLAGS + ["-Itest", "-I" + where, exe + ".c", self.build + "/obj/test/support.o", "-L" + self.build, "-lexhand",
+        p = subprocess.run(CC + FLAGS + ["-Itest", "-I" + where, exe + ".c", self.build +
+                                         "/obj/test/support.o", "-L" + self.build, "-lexhand",
                                          "-lcmocka", "-Wl,-rpath," + self.build, "-o", exe],
                            cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         if p.returncode:
@@ -118,7 +121,8 @@ class Tests:
         return ends_well(exe, None)
 
     def killer(self, source, so):
-        return next((t for t in self.of[os.path.basename(source)[:-2]] if not self.run(t, so)), None)
+        return next((t for t in self.of[os.path.basename(source)[:-2]] if not self.run(t, so)),
+                    None)
 
 
 class Planted:
@@ -155,7 +159,8 @@ class Planted:
             f.write(text)
         flags = [f if not f.startswith("-I") else "-I" + os.path.join(ROOT, f[2:]) for f in FLAGS]
         flags.append("-I" + os.path.join(ROOT, os.path.dirname(self.source)))
-        p = subprocess.run(CC + flags + list(more or ("-O2",)) + ["-c", os.path.basename(c), "-o", "m.o"], cwd=where,
+        p = subprocess.run(CC + flags + list(more or ("-O2",)) +
+                           ["-c", os.path.basename(c), "-o", "m.o"], cwd=where,
                            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         return o if p.returncode == 0 else None
 
@@ -195,14 +200,16 @@ class Planted:
             start = time.time()
             by = self.tests.killer(self.source, self.load(o))
             took = time.time() - start
-            by = by or self.tests.killer(self.source, self.load(self.compile(where, self.c.text, "-O1", *TRAP)))
+            by = by or self.tests.killer(self.source,
+                                         self.load(self.compile(where, self.c.text, "-O1", *TRAP)))
         if by:
             sys.exit(f"{self.source}, unchanged: {by} fails")
         return took
 
     def run(self, n, jobs, until):
         took = self.begin()
-        again = [m for m in self.mutants if self.state.get(key(m), {}).get("what") == SURVIVED]  # tests may have come since
+        # tests may have come since
+        again = [m for m in self.mutants if self.state.get(key(m), {}).get("what") == SURVIVED]
         for m in again:
             self.objects.discard(self.state[key(m)]["object"])
         fresh = [m for m in self.dealt if key(m) not in self.state]
@@ -216,7 +223,8 @@ class Planted:
         return took
 
     def ran(self):
-        return [m for m in self.mutants if self.state.get(key(m), {}).get("what") in (KILLED, SURVIVED)]
+        return [m for m in self.mutants
+                if self.state.get(key(m), {}).get("what") in (KILLED, SURVIVED)]
 
 
 def key(m):
@@ -234,10 +242,12 @@ class Account:
         self.planted, self.ran, self.killed = planted, len(ran), len(ran) - len(lived)
         self.open = [shown[m] for m in lived if shown[m] not in reasons]
         self.explained = len(lived) - len(self.open)
-        self.by = collections.Counter(re.sub(r"/\S*", "", s["by"]) for s in of.values() if s.get("by"))
+        self.by = collections.Counter(re.sub(r"/\S*", "", s["by"])
+                                      for s in of.values() if s.get("by"))
         may = {planted.c.shown(m) for m in planted.mutants}
         dead = {shown[m] for m in ran} - {shown[m] for m in lived}
-        self.stale = [("killed", r) for r in reasons if r in dead] + [("no more", r) for r in reasons if r not in may]
+        self.stale = ([("killed", r) for r in reasons if r in dead] +
+                      [("no more", r) for r in reasons if r not in may])
 
     def score(self):
         judged = self.killed + len(self.open)
@@ -245,26 +255,32 @@ class Account:
 
 
 def show(source, item, reason=""):
-    return f"{source} {item[0]}\n- {item[1]}\n+ {item[2]}\n{reason}"
+    """As its row in survivors.tsv."""
+    return "\t".join((source, *item[:3], reason))
 
 
 def report(accounts):
     """Markdown: what ran of each source, and who told it."""
-    print("| source | mutants | ran | killed | by unit, golden, prop, trap | survive for a reason | survive | score |")
+    print("| source | mutants | ran | killed | by unit, golden, prop, trap | survive for a reason "
+          "| survive | score |")
     print("|---|---|---|---|---|---|---|---|")
     total = [0] * 5
     for a in accounts:
-        by = [a.by["unit"], a.by["golden"], a.by["prop"], sum(v for k, v in a.by.items() if "trap" in k)]
+        by = [a.by["unit"], a.by["golden"], a.by["prop"],
+              sum(v for k, v in a.by.items() if "trap" in k)]
         row = [len(a.planted.mutants), a.ran, a.killed, a.explained, len(a.open)]
         total = [t + r for t, r in zip(total, row)]
         score = "%.1f %%" % (100 * a.score()) if a.ran else "-"
         print("| `%s` | %d | %d | %d | %s | %d | %d | %s |" %
-              (os.path.basename(a.planted.source)[:-2], *row[:3], ", ".join(map(str, by)), *row[3:], score))
-    print("| all | %d | %d | %d | | %d | %d | %.1f %% |" % (*total, 100 * total[2] / max(1, total[2] + total[4])))
+              (os.path.basename(a.planted.source)[:-2], *row[:3], ", ".join(map(str, by)), *row[3:],
+               score))
+    print("| all | %d | %d | %d | | %d | %d | %.1f %% |" %
+          (*total, 100 * total[2] / max(1, total[2] + total[4])))
 
 
 def main():
-    p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p = argparse.ArgumentParser(description=__doc__,
+                                formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("--build", default="build/mutation")
     p.add_argument("--jobs", type=int, default=os.cpu_count())
     p.add_argument("--sample", type=int, default=100, metavar="N")
@@ -277,6 +293,8 @@ def main():
     a = p.parse_args()
     tests, reasons, until = Tests(a.build), read_survivors(), time.time() + a.limit
     sources = [os.path.relpath(s, ROOT) for s in sorted(glob.glob(ROOT + "/lib/src/*/*.c"))]
+    # which images have, not the library
+    sources = [s for s in sources if not s.startswith("lib/src/run/")]
     wanted = [s for s in sources if not a.source or os.path.basename(s)[:-2] in a.source]
     missing = [s for s in sources if os.path.basename(s)[:-2] not in tests.of]
     if missing or not wanted:
@@ -284,7 +302,8 @@ def main():
     accounts, bad = [], 0
     for s in wanted:
         planted = Planted(s, os.path.abspath(a.build), a.seed, tests)
-        took = None if a.report or a.list else planted.run(10**9 if a.all else a.sample, a.jobs, until)
+        took = None if a.report or a.list else planted.run(10**9 if a.all else a.sample, a.jobs,
+                                                           until)
         account = Account(planted, reasons.get(s, {}))
         accounts.append(account)
         low = account.score() < LEAST and account.ran > 0
@@ -292,13 +311,15 @@ def main():
         if a.report:
             continue
         if took is not None:
-            print("%s %-14s %3d of %3d ran, %3d killed, %d survive for a reason, %d without: %.1f %%; tests %.1f s" %
-                  ("! " if low else "  ", os.path.basename(s)[:-2], account.ran, len(planted.mutants), account.killed,
-                   account.explained, len(account.open), 100 * account.score(), took), flush=True)
+            print("%s %-14s %3d of %3d ran, %3d killed, %d survive for a reason, %d without: %.1f "
+                  "%%; tests %.1f s" %
+                  ("! " if low else "  ", os.path.basename(s)[:-2], account.ran,
+                   len(planted.mutants), account.killed, account.explained, len(account.open),
+                   100 * account.score(), took), flush=True)
         for item in account.open:
             print(show(s, item))
         for why, item in account.stale:
-            print("survivors.txt, %s: %s" % (why, show(s, item)))
+            print("survivors.tsv, %s: %s" % (why, show(s, item)))
     if a.report:
         report(accounts)
         return 0

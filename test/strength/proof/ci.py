@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""What CI runs. The record is whole and the document is of it; what is cheap is proved again, first what has another text now.
+"""What CI runs. The record is whole and the document is of it; what is cheap is proved again, first
+what has another text now.
 
-What is of another text and dear is told and does not fail: make proof ARGS=--update is due then. Frama-C is large (README.md): where
-it is not installed, z3 and what goes through every value run, if they are there.
+What is of another text and dear is told and does not fail: make proof ARGS=--update is due then.
+Frama-C is large (README.md): where it is not installed, z3 and what goes through every value run,
+if they are there.
 """
 import time
 from concurrent.futures import ThreadPoolExecutor
@@ -15,7 +17,8 @@ BUDGET_S = 35.0  # seconds of a core, as the record tells
 
 
 def on_record(p, was):
-    """Rows whose text is another than what was proved; what is wrong with the record; what is behind with it for that reason."""
+    """Rows whose text is another than what was proved; what is wrong with the record; what is
+    behind with it for that reason."""
     stale, wrong = [], []
     tree = p.tree("ci.tree")
     for row in record.rows_wanted():
@@ -34,7 +37,8 @@ def on_record(p, was):
                 stale.append(row)
             stated = len(set(tools.re.findall(r"/\*@ assert (\w+):", u.text)))
             if tool.startswith("eva") and was[row].proved < stated:
-                wrong.append("%s: %d proved, but the unit states %d" % (row, was[row].proved, stated))
+                wrong.append("%s: %d proved, but the unit states %d" %
+                             (row, was[row].proved, stated))
     for name, path, old in tools.planted():
         if len(tools.places(tools.read(p.root + "/" + path), old)) != 1:
             wrong.append("%s: an error cannot be planted any more: %s: %s" % (name, path, old))
@@ -42,16 +46,20 @@ def on_record(p, was):
         row = "smt." + n
         if row in was and was[row].key != p.lemma_key(n):
             stale.append(row)
-    wrong += [k + ": in counts.txt, but there is no such unit" for k in was if k not in record.rows_wanted()]
-    behind = record.unexplained(record.covered(record.reached(), record.sources()), record.not_proved())
+    wrong += [k + ": in counts.txt, but there is no such unit"
+              for k in was if k not in record.rows_wanted()]
+    behind = record.unexplained(record.covered(record.reached(), record.sources()),
+                                record.not_proved())
     if not table.is_current():
-        behind.append("docs/NUMERICS.md: its section of proofs is not of counts.txt: make proof ARGS=--table")
+        behind.append("docs/NUMERICS.md: its section of proofs is not of counts.txt: make proof "
+                      "ARGS=--table")
     return stale, wrong + ([] if stale else behind), behind if stale else []
 
 
 def chosen(was, stale, can):
     """Rows to prove here: those whose text has changed, then others, the cheapest first."""
-    rows = sorted((r for r in record.rows_wanted() if r in was), key=lambda r: (r not in stale, was[r].s))
+    rows = sorted((r for r in record.rows_wanted() if r in was),
+                  key=lambda r: (r not in stale, was[r].s))
     take, left = [], BUDGET_S
     for r in rows:
         if can[tool_of(r)] and was[r].s <= left:
@@ -67,7 +75,8 @@ def tool_of(row):
 def check(p, parallel):
     t, was = time.time(), record.counts()
     stale, wrong, behind = on_record(p, was)
-    can = {"eva": tools.shutil.which("frama-c") is not None, "wp": False, "smt": tools.has_z3(), "every": True}
+    can = {"eva": tools.shutil.which("frama-c") is not None, "wp": False, "smt": tools.has_z3(),
+           "every": True}
     take = chosen(was, stale, can)
     units, s = {u.name: u for u in tools.units()}, 0.0
 
@@ -85,11 +94,15 @@ def check(p, parallel):
     for line in behind:
         print("proof: behind: " + line)
     if stale:
-        print("proof: behind: %d rows are of another text, %d of them not proved here: make proof ARGS=\"--only %s --update\"" %
-              (len(stale), len(set(stale) - set(take)), ",".join(sorted({r.split(".")[0] for r in stale}))))
-    print("proof: %d rows on record, %d properties; proved again: %d rows (%s), %d of them since their text has "
+        print("proof: behind: %d rows are of another text, %d of them not proved here: make proof "
+              "ARGS=\"--only %s --update\"" %
+              (len(stale), len(set(stale) - set(take)),
+               ",".join(sorted({r.split(".")[0] for r in stale}))))
+    print("proof: %d rows on record, %d properties; proved again: %d rows (%s), %d of them since "
+          "their text has "
           "changed; %d wrong; %.0f s, %.0f s of a core" %
           (len(was), sum(r.proved for r in was.values()), len(take),
-           ", ".join("%s %d" % (k, n) for k, n in ((k, sum(tool_of(r) == k for r in take)) for k in can) if n) or "none",
+           ", ".join("%s %d" % (k, n) for k, n in ((k, sum(tool_of(r) == k for r in take))
+                                                   for k in can) if n) or "none",
            len([r for r in stale if r in take]), len(wrong), time.time() - t, s))
     return 1 if wrong else 0

@@ -16,12 +16,15 @@ to stop at undefined behaviour; it returns 0 if what it says holds of all.
 With eva/UNIT.acsl, annotations are put into the copy of the source for Eva, in the form that the
 files of wp/ have. Units that WP judges, too, stand in tools.py.
 
-  proof.py [--root DIR] [--out DIR] [--only UNIT,...] [--no-mutants] [--update [--shrink]] [--jobs N] [--fresh]
+  proof.py [--root DIR] [--out DIR] [--only UNIT,...] [--no-mutants] [--update [--shrink]]
+           [--jobs N] [--fresh]
   proof.py --table      writes its section of docs/NUMERICS.md, from counts.txt and the units
-  proof.py --ci         what CI runs: the record is complete and of these sources; what is cheap is proved again
+  proof.py --ci         what CI runs: the record is complete and of these sources; what is cheap is
+                        proved again
 
 Exit 0 when every unit proves what counts.txt says and every planted error is told, 1 when not,
-3 when a tool is missing. What was proved of the same text before is not proved again (--fresh: it is).
+3 when a tool is missing. What was proved of the same text before is not proved again (--fresh: it
+is).
 """
 import argparse
 import os
@@ -44,7 +47,8 @@ class Job:
         self.expected_s, self.f, self.args = expected_s, f, args
 
 
-TOOL = {"eva64": "Eva, 64-bit", "eva32": "Eva, 32-bit", "every": "every value", "wp": "WP", "smt": "z3"}
+TOOL = {"eva64": "Eva, 64-bit", "eva32": "Eva, 32-bit", "every": "every value", "wp": "WP",
+        "smt": "z3"}
 
 
 def jobs(p, only, was, mutants):
@@ -59,20 +63,22 @@ def jobs(p, only, was, mutants):
             found.append(Job(row, u.about, tool, expected(row), p.prove, tool, u, row))
         for k, plan in enumerate(u.plants if mutants else ()):
             tool = "every" if u.every else "eva64"
-            found.append(Job(u.name, u.about, tool, expected("%s.%s" % (u.name, tool)), p.prove, tool, u,
-                             "planted.%s%d" % (u.name, k), plan, planted=plan))
+            found.append(Job(u.name, u.about, tool, expected("%s.%s" % (u.name, tool)), p.prove,
+                             tool, u, "planted.%s%d" % (u.name, k), plan, planted=plan))
     for k, (name, function, *plan) in enumerate(tools.WP_PLANTS if mutants else ()):
         if not only or name in only:
             unit = tools.units([name])[0]
-            found.append(Job(name, unit.about, "wp", 20.0, p.prove, "wp", unit, "planted.wp%d" % k, plan, function,
-                             planted=plan))
+            found.append(Job(name, unit.about, "wp", 20.0, p.prove, "wp", unit, "planted.wp%d" % k,
+                             plan, function, planted=plan))
     if not only or "smt" in only:
-        found += [Job("smt." + n, n, "smt", expected("smt." + n), p.lemma, n) for n in record.lemmas()]
+        found += [Job("smt." + n, n, "smt", expected("smt." + n), p.lemma, n)
+                  for n in record.lemmas()]
     return found
 
 
 def run_all(todo, parallel):
-    """Longest first. row -> result of the proofs; how many planted errors were not told; seconds of a core."""
+    """Longest first. row -> result of the proofs; how many planted errors were not told; seconds of
+    a core."""
     got, untold, total_s = {}, [], 0.0
     print("%-44s %-12s %8s %6s %6s" % ("unit", "tool", "proved", "of", "s"))
     pool = ThreadPoolExecutor(parallel)
@@ -83,15 +89,17 @@ def run_all(todo, parallel):
             total_s += r["s"]
             if j.planted:
                 told = r["ran"] and r["proved"] < r["of"]
-                print("  %-8s %-10s %s, %.1f s: %s: %s -> %s" % (("told" if told else "NOT TOLD", j.row, TOOL[j.tool], r["s"]) +
-                                                               tuple(j.planted)))
+                print("  %-8s %-10s %s, %.1f s: %s: %s -> %s" %
+                      (("told" if told else "NOT TOLD", j.row, TOOL[j.tool], r["s"]) +
+                       tuple(j.planted)))
                 untold += [] if told else [j]
             else:
                 got[j.row] = r
                 name = j.row.split(".", 1)[int(j.tool == "smt")]
-                print("%-44s %-12s %8d %6d %6.1f%s" % (name if j.tool == "smt" else "%s: %s" % (name.split(".")[0], j.about),
-                                                      TOOL[j.tool], r["proved"], r["of"], r["s"],
-                                                      "" if r["proved"] == r["of"] else "  OPEN: build/proof/%s.txt" % j.row))
+                print("%-44s %-12s %8d %6d %6.1f%s" %
+                      (name if j.tool == "smt" else "%s: %s" % (name.split(".")[0], j.about),
+                       TOOL[j.tool], r["proved"], r["of"], r["s"],
+                       "" if r["proved"] == r["of"] else "  OPEN: build/proof/%s.txt" % j.row))
                 for n in r.get("names", ()):
                     print("         not proved: " + n)
             sys.stdout.flush()
@@ -103,8 +111,10 @@ def run_all(todo, parallel):
 def held(got, was):
     """Against the committed counts: none may be less, nor may more stay open. What is wrong."""
     rows = sorted(k for k in got if k in was)
-    less = ["%s: %d of %d, was %d of %d" % (k, got[k]["proved"], got[k]["of"], was[k].proved, was[k].of) for k in rows
-            if got[k]["proved"] < was[k].proved or got[k]["of"] - got[k]["proved"] > was[k].of - was[k].proved]
+    less = ["%s: %d of %d, was %d of %d" %
+            (k, got[k]["proved"], got[k]["of"], was[k].proved, was[k].of) for k in rows
+            if got[k]["proved"] < was[k].proved or
+            got[k]["of"] - got[k]["proved"] > was[k].of - was[k].proved]
     return less
 
 
@@ -115,7 +125,8 @@ def update(got, was, shrink, everything):
         if old and r["proved"] < old.proved and not shrink:
             print("counts: %s: %d, was %d: not written (--shrink)" % (k, r["proved"], old.proved))
             continue
-        was[k] = record.Row(r["proved"], r["of"], r["s"], r["key"], record.sealed(r["key"], r["proved"], r["of"]))
+        was[k] = record.Row(r["proved"], r["of"], r["s"], r["key"],
+                            record.sealed(r["key"], r["proved"], r["of"]))
     if everything:
         was = {k: r for k, r in was.items() if k in record.rows_wanted()}
     record.write_counts(was)
@@ -139,7 +150,8 @@ def arguments():
     a.add_argument("--no-mutants", action="store_true", help="no planted errors")
     a.add_argument("--update", action="store_true", help="write counts.txt and reached.txt anew")
     a.add_argument("--shrink", action="store_true", help="with --update: also where less is proved")
-    a.add_argument("--fresh", action="store_true", help="prove again what was proved of the same text")
+    a.add_argument("--fresh", action="store_true",
+                   help="prove again what was proved of the same text")
     a.add_argument("--table", action="store_true", help="write the section of docs/NUMERICS.md")
     a.add_argument("--ci", action="store_true", help="the record, and what is cheap")
     return a.parse_args()
@@ -163,12 +175,14 @@ def main():
     if a.update:
         was = update(got, was, a.shrink, not only)
     wrong += ["%s: not in counts.txt" % k for k in sorted(got) if k not in was]
-    wrong += [] if only else record.unexplained(record.covered(record.reached(), record.sources()), record.not_proved())
+    wrong += [] if only else record.unexplained(record.covered(record.reached(), record.sources()),
+                                                record.not_proved())
     for line in wrong:
         print("counts: " + line)
-    print("%d proved, %d not; %d planted errors not told; took %.0f s, provers %.0f s of a core (as measured when they ran)" %
-          (sum(r["proved"] for r in got.values()), sum(r["of"] - r["proved"] for r in got.values()), len(untold),
-           time.time() - t, core_s))
+    print("%d proved, %d not; %d planted errors not told; took %.0f s, provers %.0f s of a core "
+          "(as measured when they ran)" %
+          (sum(r["proved"] for r in got.values()), sum(r["of"] - r["proved"] for r in got.values()),
+           len(untold), time.time() - t, core_s))
     return 0 if not wrong and not untold else 1
 
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""What was proved: counts.txt (how much, of which text, how long it took) and reached.txt (which functions of lib)."""
+"""What was proved: counts.txt (how much, of which text, how long it took) and reached.txt (which
+functions of lib)."""
 import glob
 import hashlib
 import os
@@ -37,7 +38,8 @@ def sealed(key, proved, of):
 
 class Row:
     def __init__(self, proved, of, s=10.0, key="-", seal="-"):
-        self.proved, self.of, self.s, self.key, self.seal = int(proved), int(of), float(s), key, seal
+        self.proved, self.of, self.s, self.key, self.seal = (int(proved), int(of), float(s), key,
+                                                             seal)
 
     def is_whole(self):
         return self.seal == sealed(self.key, self.proved, self.of)
@@ -52,20 +54,25 @@ def counts():
 
 def write_counts(rows):
     with open(COUNTS, "w") as f:
-        f.write("# unit.tool, proved, of, seconds of a core, key of what was proved, seal: make proof ARGS=--update. A number may "
+        f.write("# unit.tool, proved, of, seconds of a core, key of what was proved, seal: make "
+                "proof ARGS=--update. A number may "
                 "not shrink.\n")
-        f.writelines("%s %d %d %.1f %s %s\n" % (k, r.proved, r.of, r.s, r.key, r.seal) for k, r in sorted(rows.items()))
+        f.writelines("%s %d %d %.1f %s %s\n" % (k, r.proved, r.of, r.s, r.key, r.seal)
+                     for k, r in sorted(rows.items()))
 
 
-# What runs in a tick: the library, the loop, and of the examples the scenes that run fingers and gloves.
-SOURCES = ("lib/src/[!r]*/*.[ch]", "lib/src/run/deadman.c", "lib/src/run/loop.c", "lib/include/exhand/*.h", "examples/minimal/*.[ch]", "examples/drop/*.[ch]",
+# What runs in a tick: the library, the loop, and of the examples the scenes that run fingers and
+# gloves.
+SOURCES = ("lib/src/[!r]*/*.[ch]", "lib/src/run/deadman.c", "lib/src/run/loop.c",
+           "lib/include/exhand/*.h", "examples/minimal/*.[ch]", "examples/drop/*.[ch]",
            "examples/guarded/*.[ch]", "examples/glove/*.[ch]", "examples/bilateral/*.[ch]")
 
 
 def sources(root=ROOT):
     """These files, as far as there is code in them, by their path."""
     found = sorted(f for part in SOURCES for f in glob.glob(os.path.join(root, part)))
-    return {f: text for f, text in ((os.path.relpath(f, root), read(f)) for f in found) if functions(text)}
+    return {f: text for f, text in ((os.path.relpath(f, root), read(f)) for f in found)
+            if functions(text)}
 
 
 def functions(text):
@@ -75,7 +82,8 @@ def functions(text):
 
 
 def renamed(unit, texts):
-    """What the unit calls the functions of the sources that it includes: name -> file and function."""
+    """What the unit calls the functions of the sources that it includes: name -> file and
+    function."""
     found = {n: (f, n) for f, text in texts.items() if f.endswith(".h") for n in functions(text)}
     for f in unit.beside:
         found.update({n: (f, n) for n in functions(texts.get(f, ""))})
@@ -113,12 +121,14 @@ def reached():
 
 def write_reached(found):
     with open(REACHED, "w") as f:
-        f.write("# unit, file, functions that Eva reached there, with their statements, or those reached of all:\n"
+        f.write("# unit, file, functions that Eva reached there, with their statements, or those "
+                "reached of all:\n"
                 "# make proof ARGS=--update\n")
         for unit in sorted(found):
             for at in sorted(found[unit]):
                 f.write("%s %s %s\n" % (unit, at, " ".join(
-                    "%s:%d" % (n, a) if a == b else "%s:%d/%d" % (n, a, b) for n, (a, b) in sorted(found[unit][at].items()))))
+                    "%s:%d" % (n, a) if a == b else "%s:%d/%d" % (n, a, b)
+                    for n, (a, b) in sorted(found[unit][at].items()))))
 
 
 def note_reached(found, unit, by_name, texts):
@@ -132,7 +142,8 @@ def note_reached(found, unit, by_name, texts):
 
 
 def covered(found, texts):
-    """file -> {function -> (statements reached, of, units)}: the most that one unit reaches; (0, 1, ()) where none does."""
+    """file -> {function -> (statements reached, of, units)}: the most that one unit reaches; (0, 1,
+    ()) where none does."""
     best = {f: {n: (0, 1, ()) for n in functions(text)} for f, text in texts.items()}
     for unit, files in sorted(found.items()):
         for f, names in files.items():
@@ -172,7 +183,8 @@ def drop_reasons(best):
         where, _, why = line.partition(": ")
         f, _, names = where.partition(" ")
         left = [n for n in names.split() if best.get(f, {}).get(n, (0,))[0] == 0]
-        if line[:1] in ("#", "") or names == "*" and not all(v[0] for v in best.get(f, {}).values()):
+        if (line[:1] in ("#", "") or names == "*" and
+            not all(v[0] for v in best.get(f, {}).values())):
             lines.append(line)
         elif names != "*" and left:
             lines.append("%s %s: %s" % (f, " ".join(left), why))
@@ -181,7 +193,8 @@ def drop_reasons(best):
 
 
 def unexplained(best, reasons):
-    """What is wrong: functions that no unit reaches and not_proved.txt does not name; reasons for what is proved or is not there."""
+    """What is wrong: functions that no unit reaches and not_proved.txt does not name; reasons for
+    what is proved or is not there."""
     wrong = []
     used = set()
     for f, names in sorted(best.items()):
@@ -192,5 +205,7 @@ def unexplained(best, reasons):
             if key in reasons:
                 used.add(key)
             else:
-                wrong.append("%s: %s(): no unit reaches it and not_proved.txt does not say why" % (f, n))
-    return wrong + ["not_proved.txt: %s %s: %s" % (f, n, "is reached, or is not there") for f, n in sorted(set(reasons) - used)]
+                wrong.append("%s: %s(): no unit reaches it and not_proved.txt does not say why" %
+                             (f, n))
+    return wrong + ["not_proved.txt: %s %s: %s" % (f, n, "is reached, or is not there")
+                    for f, n in sorted(set(reasons) - used)]

@@ -26,7 +26,8 @@ def shr_is_floor():
     v, n = z3.BitVecs("v n", 64)
     q = v >> n
     back = q << n
-    return holds(z3.Implies(z3.ULT(n, 64), z3.And(v - back >= 0, z3.ULT(v - back, z3.BitVecVal(1, 64) << n))))
+    return holds(z3.Implies(z3.ULT(n, 64),
+                            z3.And(v - back >= 0, z3.ULT(v - back, z3.BitVecVal(1, 64) << n))))
 
 
 def from_u64_keeps_bits():
@@ -119,7 +120,8 @@ def toward_stays_between():
         rest = left & ((1 << shift) - 1)
         part = z3.LShR(left, shift) + z3.If(rest != 0, z3.BitVecVal(1, 32), z3.BitVecVal(0, 32))
         to = now + z3.If(goal < now, -part, part)
-        return z3.And(z3.If(goal < now, z3.And(to >= goal, to < now), z3.And(to <= goal, to >= now)),
+        return z3.And(z3.If(goal < now, z3.And(to >= goal, to < now),
+                            z3.And(to <= goal, to >= now)),
                       z3.Implies(goal > now, to > now))
 
     return all(holds(stays(shift)) for shift in range(32))
@@ -135,25 +137,29 @@ def mean_is_within_32_bits():
 
 
 def excess_is_a_square_at_most():
-    """In setup_i2t(): of 0 <= i_cont <= i_peak <= 6.6 A, q16, the squares' difference is within 0 .. (6.6 A)^2."""
+    """In setup_i2t(): of 0 <= i_cont <= i_peak <= 6.6 A, q16, the squares' difference is within 0
+    .. (6.6 A)^2."""
     peak, cont, more = z3.Ints("peak cont more")
     most = 432537
     box = z3.And(cont >= 0, more >= 0, peak == cont + more, peak <= most)
-    at_least = holds(z3.Implies(z3.And(cont >= 0, more >= 0), (cont + more) * (cont + more) - cont * cont >= 0))
+    at_least = holds(z3.Implies(z3.And(cont >= 0, more >= 0),
+                                (cont + more) * (cont + more) - cont * cont >= 0))
     return at_least and holds(z3.Implies(box, peak * peak - cont * cont <= most * most))
 
 
 def line_is_below_32():
-    """exh_calib_fit() of points with force <= 2047 / 64 of current, raw: so is sum(c f) / sum(c^2), by induction."""
+    """exh_calib_fit() of points with force <= 2047 / 64 of current, raw: so is sum(c f) / sum(c^2),
+    by induction."""
     f, c, fi, ii = z3.Reals("f c fi ii")
     most = z3.RealVal(2047) / 64
     return holds(z3.Implies(z3.And(c > 0, f <= most * c, fi <= most * ii),
                             fi + c * f <= most * (ii + c * c)))
 
 
-LEMMAS = [shr_is_floor, from_u64_keeps_bits, wrapped_sum_is_the_sum, gain_floor_is_no_more, share_of_limit,
-          release_ends, release_step_is_bounded, unit_has_components_of_one, toward_stays_between,
-          mean_is_within_32_bits, excess_is_a_square_at_most, line_is_below_32] + smt_passivity.LEMMAS + smt_hand.LEMMAS
+LEMMAS = [shr_is_floor, from_u64_keeps_bits, wrapped_sum_is_the_sum, gain_floor_is_no_more,
+          share_of_limit, release_ends, release_step_is_bounded, unit_has_components_of_one,
+          toward_stays_between, mean_is_within_32_bits, excess_is_a_square_at_most,
+          line_is_below_32] + smt_passivity.LEMMAS + smt_hand.LEMMAS
 
 if __name__ == "__main__":
     sys.exit(0 if {f.__name__: f for f in LEMMAS}[sys.argv[1]]() else 1)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The section "Proofs" of docs/NUMERICS.md: what is proved, by unit and by file, and what not and why."""
+"""The section "Proofs" of docs/NUMERICS.md: what is proved, by unit and by file, and what not and
+why."""
 import os
 import re
 
@@ -31,7 +32,8 @@ def told(unit):
 
 def lemma_lines(counts):
     for f in record.LEMMA_FILES:
-        for name, text in re.findall(r'^def (\w+)\(\):\n    """(.*?)"""', read(os.path.join(HERE, f)), re.M | re.S):
+        for name, text in re.findall(r'^def (\w+)\(\):\n    """(.*?)"""',
+                                     read(os.path.join(HERE, f)), re.M | re.S):
             if "smt." + name in counts:
                 yield name, text.split("\n\n")[0].replace("\n    ", " ")
 
@@ -48,7 +50,8 @@ def unit_lines(counts):
         plants = len(u.plants) + sum(p[0] == u.name for p in WP_PLANTS)
         what = eva + (" WP: " + wp if wp else "")
         yield "| %s | %s | %s | %d |" % (u.name, what.replace("|", "\\|"),
-                                         ", ".join("%s: %s" % (tools[t], count(r)) for t, r in rows), plants)
+                                         ", ".join("%s: %s" % (tools[t], count(r))
+                                                   for t, r in rows), plants)
 
 
 def file_lines(best):
@@ -57,8 +60,9 @@ def file_lines(best):
         of = sum(v[1] for v in got.values())
         share = "%d of %d" % (sum(v[0] for v in got.values()), of) if of else "none"
         by = sorted({u for v in got.values() for u in v[2][:1]})
-        yield "| `%s` | %d of %d | %s | %s |" % (f.replace("lib/include/", "").replace("lib/", ""), len(got), len(names), share,
-                                               ", ".join(by) or "none")
+        yield "| `%s` | %d of %d | %s | %s |" % (f.replace("lib/include/", "").replace("lib/", ""),
+                                                 len(got), len(names), share,
+                                                 ", ".join(by) or "none")
 
 
 def text():
@@ -66,17 +70,23 @@ def text():
     best = record.covered(record.reached(), texts)
     rows = [r for k, r in counts.items() if k in record.rows_wanted()]
     functions = [v for names in best.values() for v in names.values()]
-    out = ["%d properties proved, %d open; %d of %d functions of the library and the scenes are reached by at least one unit without an alarm."
-           % (sum(r.proved for r in rows), sum(r.of - r.proved for r in rows), sum(v[0] > 0 for v in functions), len(functions)),
-           "Eva: no undefined behaviour, no overflow, no conversion that loses, in all that the unit gives, and the assertions and contracts counted;",
-           "64 and 32 are the width of `long` and of a pointer. Planted: errors put into a copy of the code, all told.", "",
-           "| unit | for all inputs and states that are named | proved | planted |", "|---|---|---|---|"]
+    out = ["%d properties proved, %d open; %d of %d functions of the library and the scenes are "
+           "reached by at least one unit without an alarm."
+           % (sum(r.proved for r in rows), sum(r.of - r.proved for r in rows),
+              sum(v[0] > 0 for v in functions), len(functions)),
+           "Eva: no undefined behaviour, no overflow, no conversion that loses, in all that the "
+           "unit gives, and the assertions and contracts counted;",
+           "64 and 32 are the width of `long` and of a pointer. Planted: errors put into a copy of "
+           "the code, all told.", "",
+           "| unit | for all inputs and states that are named | proved | planted |",
+           "|---|---|---|---|"]
     out += unit_lines(counts)
     out += ["", "By z3, of expressions, not of the source:", ""]
     out += ["* `%s`: %s" % line for line in lemma_lines(counts)]
-    out += ["", "By file: functions that a unit reaches, and statements of these that Eva reaches of all (a unit's best; others cannot be",
-            "reached, or the unit does not give what would); files with no functions are tables.", "",
-            "| file | functions | statements | units |", "|---|---|---|---|"]
+    out += ["", "By file: functions that a unit reaches, and statements of these that Eva reaches "
+                "of all (a unit's best; others cannot be",
+            "reached, or the unit does not give what would); files with no functions are tables.",
+            "", "| file | functions | statements | units |", "|---|---|---|---|"]
     out += file_lines(best)
     out += ["", "Not proved, and why:", ""]
     for line in read(record.NOT_PROVED).splitlines():

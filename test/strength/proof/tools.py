@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Runs the provers: Frama-C's Eva and WP on a copy of lib, a program of every value, a lemma by z3.
 
-A result is a dict, kept under OUT/cache by what went into it: sources without comments of the library, the unit as it
-is, options. `ok`, `proved`, `of`, `names` of what is open, `s` seconds of a core, `said` where it can be read.
+A result is a dict, kept under OUT/cache by what went into it: sources without comments of the
+library, the unit as it is, options. `ok`, `proved`, `of`, `names` of what is open, `s` seconds of a
+core, `said` where it can be read.
 """
 import glob
 import hashlib
@@ -20,8 +21,8 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 WIDTHS = ("64", "32")
 EVERY = os.path.join(HERE, "eva", "every.acsl")  # for every unit
 MACHDEP = {"64": "gcc_x86_64", "32": "gcc_x86_32"}
-EVA = ["-eva", "-eva-precision", "6", "-eva-split-return", "auto", "-warn-signed-downcast", "-eva-no-show-progress",
-       "-eva-msg-key=-initial-state,-final-states"]
+EVA = ["-eva", "-eva-precision", "6", "-eva-split-return", "auto", "-warn-signed-downcast",
+       "-eva-no-show-progress", "-eva-msg-key=-initial-state,-final-states"]
 GONE_THROUGH = ["-std=c99", "-O2", "-fsanitize=undefined", "-fno-sanitize-recover=all"]
 
 # Units with functions that WP judges: the source, and which.
@@ -30,14 +31,16 @@ WP = {
     "gate": ("lib/src/act/gate.c", ["any_gate", "code_of"]),
     "safety": ("lib/src/safe/safety_open.c", ["exh_safety_is_open"]),
     "drive": ("lib/src/act/drive.c",
-              ["no_force", "release", "exh_drive_force_step", "i2t_limit", "exh_drive_current_step"]),
+              ["no_force", "release", "exh_drive_force_step", "i2t_limit",
+               "exh_drive_current_step"]),
     "tracking": ("lib/src/act/tracking.c", ["exh_tracking_step", "exh_tracking_update"]),
 }
 
 # Contracts of other units that a unit is judged by, beside those of fix.
 WP_BESIDE = {"gate": ["safety"]}
 
-# Planted errors that WP must tell: unit, in which function and by which of its properties, file, text, what it becomes.
+# Planted errors that WP must tell: unit, in which function and by which of its properties, file,
+# text, what it becomes.
 WP_PLANTS = [
     ("gate", "code_of", "lib/src/act/gate.c", "exh_clamp32(asked, -span, span)",
      "exh_clamp(asked, INT32_MIN, INT32_MAX)"),
@@ -45,14 +48,21 @@ WP_PLANTS = [
      "exh_clamp(asked, -span - 1, span)"),
     ("gate", "code_of", "lib/src/act/gate.c", "dac_zero_raw + spanned, 0, UINT16_MAX)",
      "dac_zero_raw + spanned, 0, 2 * UINT16_MAX)"),
-    ("gate", "any_gate@falls", "lib/src/act/gate.c", "falls ? s->off_raw[k] : UINT16_MAX", "UINT16_MAX"),
-    ("gate", "any_gate@shut", "lib/src/act/gate.c", "= open ? exh_sat32(asked) : 0;", "= exh_sat32(asked);"),
-    ("gate", "any_gate@@invariant", "lib/src/act/gate.c", "cfg[k < n ? k : 0].par->dac_zero_raw", "out->dac_raw[k]"),
-    ("drive", "exh_drive_force_step", "lib/src/act/drive.c", "exh_clamp(asked, 0, most)", "exh_clamp(asked, -most, most)"),
-    ("drive", "exh_drive_force_step", "lib/src/act/drive.c", "exh_clamp(asked, 0, most)", "exh_clamp(asked, 0, INT32_MAX)"),
+    ("gate", "any_gate@falls", "lib/src/act/gate.c", "falls ? s->off_raw[k] : UINT16_MAX",
+     "UINT16_MAX"),
+    ("gate", "any_gate@shut", "lib/src/act/gate.c", "= open ? exh_sat32(asked) : 0;",
+     "= exh_sat32(asked);"),
+    ("gate", "any_gate@@invariant", "lib/src/act/gate.c", "cfg[k < n ? k : 0].par->dac_zero_raw",
+     "out->dac_raw[k]"),
+    ("drive", "exh_drive_force_step", "lib/src/act/drive.c", "exh_clamp(asked, 0, most)",
+     "exh_clamp(asked, -most, most)"),
+    ("drive", "exh_drive_force_step", "lib/src/act/drive.c", "exh_clamp(asked, 0, most)",
+     "exh_clamp(asked, 0, INT32_MAX)"),
     ("drive", "release", "lib/src/act/drive.c", "rest > 0 ? (int32_t)rest : 0", "(int32_t)rest"),
-    ("drive", "exh_drive_current_step", "lib/src/act/drive.c", "exh_clamp32(peak, -hot, hot)", "exh_clamp(2 * (int64_t)peak, -2 * hot, 2 * hot)"),
-    ("tracking", "exh_tracking_step", "lib/src/act/tracking.c", "s->off_ticks >= cfg->ticks", "s->off_ticks > cfg->ticks"),
+    ("drive", "exh_drive_current_step", "lib/src/act/drive.c", "exh_clamp32(peak, -hot, hot)",
+     "exh_clamp(2 * (int64_t)peak, -2 * hot, 2 * hot)"),
+    ("tracking", "exh_tracking_step", "lib/src/act/tracking.c", "s->off_ticks >= cfg->ticks",
+     "s->off_ticks > cfg->ticks"),
 ]
 
 
@@ -63,7 +73,8 @@ def wp_specs(unit):
 def run(cmd, limit, env=None):
     """Code (124: stopped), what it said, seconds of a core of it and of what it started."""
     reader, writer = os.pipe()
-    p = subprocess.Popen(cmd, stdout=writer, stderr=writer, stdin=subprocess.DEVNULL, env=env, start_new_session=True)
+    p = subprocess.Popen(cmd, stdout=writer, stderr=writer, stdin=subprocess.DEVNULL, env=env,
+                         start_new_session=True)
     os.close(writer)
     late = threading.Timer(limit, os.killpg, (p.pid, signal.SIGKILL))
     late.start()
@@ -87,7 +98,8 @@ def has_z3():
 
 
 def missing(tools=("eva", "wp", "smt")):
-    """What is not here of these, and the line that installs it. Nothing is installed by this program."""
+    """What is not here of these, and the line that installs it. Nothing is installed by this
+    program."""
     apt = []
     if "eva" in tools and shutil.which("frama-c") is None:
         apt.append("frama-c-base")
@@ -96,7 +108,8 @@ def missing(tools=("eva", "wp", "smt")):
         if not os.path.exists("/usr/bin/z3"):
             apt.append("z3")
     if apt:
-        print("make proof: missing: sudo apt-get install -y --no-install-recommends " + " ".join(apt))
+        print("make proof: missing: sudo apt-get install -y --no-install-recommends " +
+              " ".join(apt))
     lacks_z3 = "smt" in tools and not has_z3()
     if lacks_z3:
         print("make proof: missing: pip install z3-solver")
@@ -135,17 +148,20 @@ class Unit:
         """Its rows in counts.txt."""
         if self.every:
             return [self.name + ".every"]
-        return ["%s.eva%s" % (self.name, w) for w in WIDTHS] + ([self.name + ".wp"] if self.name in WP else [])
+        return ["%s.eva%s" % (self.name, w)
+                for w in WIDTHS] + ([self.name + ".wp"] if self.name in WP else [])
 
 
 def units(only=()):
-    found = [Unit(f) for d in ("eva/any_*.c", "every/*.c") for f in sorted(glob.glob(os.path.join(HERE, d)))]
+    found = [Unit(f) for d in ("eva/any_*.c", "every/*.c")
+             for f in sorted(glob.glob(os.path.join(HERE, d)))]
     return [u for u in found if not only or u.name in only]
 
 
 def planted():
     """Unit, file and text of every error that is planted."""
-    return [(u.name, path, old) for u in units() for path, old, _ in u.plants] + [(p[0], p[2], p[3]) for p in WP_PLANTS]
+    return ([(u.name, path, old) for u in units() for path, old, _ in u.plants] +
+            [(p[0], p[2], p[3]) for p in WP_PLANTS])
 
 
 def put(path, f):
@@ -169,7 +185,8 @@ def once(where, text, part):
 
 
 def annotate(spec, tree):
-    """Puts contracts before the lines they belong to. They are comments: the code stays what it is."""
+    """Puts contracts before the lines they belong to. They are comments: the code stays what it
+    is."""
     path = anchor = None
     block = []
 
@@ -209,11 +226,13 @@ def helpers(parts, listed):
     return [n for n in re.findall(r"^def (\w+)", "\n".join(parts), re.M) if n not in listed]
 
 
-ANNOTATED = ("any.h", "table.h", "contract.h", "contract_box.h", "called.h", "called_params.h", "called_box.h")
+ANNOTATED = ("any.h", "table.h", "contract.h", "contract_box.h", "called.h", "called_params.h",
+             "called_box.h")
 
 
 def annotated(text):
-    """Headers of eva/ whose annotations the preprocessor takes away: what a unit includes, and what stubs include."""
+    """Headers of eva/ whose annotations the preprocessor takes away: what a unit includes, and what
+    stubs include."""
     found = [h for h in ANNOTATED if '#include "%s"' % h in text]
     for h in [h for h in found if h.startswith("c")]:
         found += [g for g in annotated(read(os.path.join(HERE, "eva", h))) if g not in found + [h]]
@@ -226,7 +245,8 @@ class Proof:
         self.stubs = os.path.join(out, "stubs")
         for d in (out, os.path.join(out, "cache"), self.stubs):
             os.makedirs(d, exist_ok=True)
-        # Headers of the compiler, empty: what a proof is of should have the same text on every machine.
+        # Headers of the compiler, empty: what a proof is of should have the same text on every
+        # machine.
         for h in ("stdint.h", "stddef.h", "stdbool.h", "string.h", "limits.h", "__fc_builtin.h"):
             with open(os.path.join(self.stubs, h), "w"):
                 pass
@@ -258,9 +278,11 @@ class Proof:
         return at
 
     def key(self, source, tree, more):
-        """A hash of the source as the preprocessor leaves it, without comments and spaces, and of what is beside it."""
-        code, said, _ = run(["gcc", "-std=c99", "-E", "-P", "-nostdinc", "-I" + self.stubs, "-I%s/lib/src" % tree,
-                             "-I%s/lib/include" % tree, "-I%s/examples" % tree, "-I%s/eva" % HERE, source], 60)
+        """A hash of the source as the preprocessor leaves it, without comments and spaces, and of
+        what is beside it."""
+        code, said, _ = run(["gcc", "-std=c99", "-E", "-P", "-nostdinc", "-I" + self.stubs,
+                             "-I%s/lib/src" % tree, "-I%s/lib/include" % tree,
+                             "-I%s/examples" % tree, "-I%s/eva" % HERE, source], 60)
         if code != 0:
             raise SystemExit("%s: not preprocessed:\n%s" % (source, said))
         said = said.replace(tree, "").replace(HERE, "") # __FILE__ of an assertion
@@ -272,12 +294,14 @@ class Proof:
             beside = [read(os.path.join(HERE, "eva", h)) for h in annotated(unit.text)]
             beside += [read(spec) for spec in (EVERY, unit.spec) if spec]
             beside += [self.key(os.path.join(tree, f), tree, []) for f in unit.beside]
-            return self.key(unit.harness, tree, [MACHDEP[tool[3:]]] + EVA + unit.options + [unit.body] + beside)
+            return self.key(unit.harness, tree,
+                            [MACHDEP[tool[3:]]] + EVA + unit.options + [unit.body] + beside)
         if tool == "every":
             return self.key(unit.harness, tree, GONE_THROUGH + [unit.body])
         source, functions = WP[unit.name]
         return self.key(os.path.join(tree, source), tree,
-                        functions + [read(os.path.join(HERE, "wp", s + ".acsl")) for s in wp_specs(unit.name)])
+                        functions + [read(os.path.join(HERE, "wp", s + ".acsl"))
+                                     for s in wp_specs(unit.name)])
 
     def kept(self, key, f, *args):
         """The result of f, or what it was with the same key."""
@@ -311,10 +335,13 @@ class Proof:
             if spec:
                 annotate(spec, tree)
         flags = "-I%s/lib/src -I%s/lib/include -I%s/examples -I%s/eva" % (tree, tree, tree, HERE)
-        # One alarm tells an error that is planted; of a unit that is proved, what it reaches is wanted.
+        # One alarm tells an error that is planted; of a unit that is proved, what it reaches is
+        # wanted.
         more = ["-eva-stop-at-nth-alarm", "1"] if change else ["-metrics", "-metrics-eva-cover"]
-        code, said, s = run(["frama-c", "-cpp-extra-args=" + flags, "-machdep", MACHDEP[width]] + EVA + unit.options +
-                            more + [unit.harness] + [os.path.join(tree, f) for f in unit.beside], 600, self.env)
+        code, said, s = run(["frama-c", "-cpp-extra-args=" + flags, "-machdep", MACHDEP[width]] +
+                            EVA + unit.options +
+                            more + [unit.harness] + [os.path.join(tree, f) for f in unit.beside],
+                            600, self.env)
         self.log(name + ".txt", said)
         if change and "Stopping at nth alarm" in said:
             return dict(ran=True, proved=0, of=1, s=s, reached={})
@@ -325,15 +352,17 @@ class Proof:
         if code != 0 or "Frama_C_show_each_end" not in said or "ANALYSIS SUMMARY" not in said:
             return dict(ran="ANALYSIS SUMMARY" in said, proved=0, of=1, s=s, reached={})
         valid = sum(int(m.group(1)) for m in counted if m)
-        open_ = sum(int(m.group(2)) + int(m.group(3)) for m in counted if m) + (int(alarms.group(1)) if alarms else 0)
+        open_ = (sum(int(m.group(2)) + int(m.group(3)) for m in counted if m) +
+                 (int(alarms.group(1)) if alarms else 0))
         reached = {m.group(1): (int(m.group(2)), int(m.group(3)))
                    for m in re.finditer(r"^  (\w+): (\d+) stmts out of (\d+) ", said, re.M)}
         return dict(ran=True, proved=valid, of=valid + open_, s=s, reached=reached)
 
     def each(self, unit, tree, name):
         program = os.path.join(self.out, name + ".bin")
-        code, said, s = run(["gcc"] + GONE_THROUGH + ["-I%s/lib/src" % tree, "-I%s/lib/include" % tree, unit.harness,
-                                                      "-o", program], 60)
+        code, said, s = run(["gcc"] + GONE_THROUGH +
+                            ["-I%s/lib/src" % tree, "-I%s/lib/include" % tree, unit.harness,
+                             "-o", program], 60)
         built = code == 0
         if built:
             code, said, more = run([program], 600)
@@ -346,12 +375,15 @@ class Proof:
         functions, _, named = (functions or "").partition("@")
         for spec in wp_specs(unit.name):
             annotate(os.path.join(HERE, "wp", spec + ".acsl"), tree)
-        inline = ["-inline-calls", "exh_gate_step", "-remove-inlined", "exh_gate_step"] if unit.name == "gate" else []
-        code, said, s = run(["frama-c", "-cpp-extra-args=-I%s/lib/include -I%s/lib/src" % (tree, tree),
+        inline = (["-inline-calls", "exh_gate_step", "-remove-inlined", "exh_gate_step"]
+                  if unit.name == "gate" else [])
+        code, said, s = run(["frama-c", "-cpp-extra-args=-I%s/lib/include -I%s/lib/src" %
+                             (tree, tree),
                              "-machdep", MACHDEP["64"]] + inline +
-                            ["-wp", "-wp-prover", "cvc4,z3", "-wp-timeout", str(seconds), "-wp-par", "1",
-                             "-wp-fct", functions or ",".join(every)] +
-                            (["-wp-prop", named] if named else []) + [os.path.join(tree, source)], 900, self.env)
+                            ["-wp", "-wp-prover", "cvc4,z3", "-wp-timeout", str(seconds), "-wp-par",
+                             "1", "-wp-fct", functions or ",".join(every)] +
+                            (["-wp-prop", named] if named else []) + [os.path.join(tree, source)],
+                            900, self.env)
         self.log(name + ".txt", said)
         total = re.search(r"Proved goals: +(\d+) / (\d+)", said)
         if code != 0 or not total:
@@ -359,7 +391,8 @@ class Proof:
         bad = [m.group(1) for m in re.finditer(r"^\[wp\] \[[^]]*\] Goal typed_(\S+).*$", said, re.M)
                if " : Valid" not in m.group(0)]
         by = dict(re.findall(r"^  (Qed|CVC4 [\d.]+|Z3 [\d.]+): +(\d+)", said, re.M))
-        return dict(ran=bool(by), proved=int(total.group(1)), of=int(total.group(2)), s=s, names=bad, by=by)
+        return dict(ran=bool(by), proved=int(total.group(1)), of=int(total.group(2)), s=s,
+                    names=bad, by=by)
 
     def lemma_key(self, lemma):
         """Of itself and what its file has beside lemmas."""
@@ -368,7 +401,10 @@ class Proof:
             if "\ndef %s(" % lemma in text:
                 parts = re.split(r"\n(?=def |LEMMAS = )", text)
                 listed = re.findall(r"\w+", parts[-1].split("]")[0])
-                kept = [t for t in parts[:-1] if re.match(r"def (\w+)|", t).group(1) in [None, lemma] + helpers(parts, listed)]
+                kept = [t
+                        for t in parts[:-1]
+                        if re.match(r"def (\w+)|", t).group(1) in [None, lemma] +
+                        helpers(parts, listed)]
                 return hashlib.sha256("\n".join(kept).encode()).hexdigest()[:16]
         raise SystemExit(lemma + ": no such lemma")
 

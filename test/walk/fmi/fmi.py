@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The FMUs against the native run: fmi.py FMU-FOLDER NATIVE FALLS RATE...: FMPy validates and compiles them and runs them alone
-and together; fmuloader, another importer, runs them together, too. Every output of every step is the native one, bit for bit. A third, ecos, where
-it can be had."""
+"""The FMUs against the native run: fmi.py FMU-FOLDER NATIVE FALLS RATE...: FMPy validates and
+compiles them and runs them alone and together; fmuloader, another importer, runs them together,
+too. Every output of every step is the native one, bit for bit. A third, ecos, where it can be
+had."""
 import os
 import pathlib
 import shutil
@@ -36,7 +37,8 @@ class Native:
 
     def __init__(self, program, rate, falls):
         self.rate, self.falls, self.param, self.tick = rate, falls, {}, []
-        for line in subprocess.run([program, str(rate), str(falls), "1"], check=True, capture_output=True, text=True).stdout.splitlines():
+        for line in subprocess.run([program, str(rate), str(falls), "1"], check=True,
+                                   capture_output=True, text=True).stdout.splitlines():
             word = line.split()
             if word[0] == "param":
                 self.param[word[1]] = int(word[2]) / 2 ** int(word[3])
@@ -67,12 +69,14 @@ class ByFmpy(Described):
         super().__init__(folder)
         d = self.description
         self.said = []
-        self.fmu = FMU3Slave(guid=d.guid, unzipDirectory=str(folder), modelIdentifier=d.coSimulation.modelIdentifier, instanceName="a")
+        self.fmu = FMU3Slave(guid=d.guid, unzipDirectory=str(folder),
+                             modelIdentifier=d.coSimulation.modelIdentifier, instanceName="a")
         self.fmu.instantiate(loggingOn=True)
 
     def put(self, name, value):
         vr, kind = self.reference(name)
-        self.fmu.setInt32([vr], [int(value)]) if kind == "Int32" else self.fmu.setFloat64([vr], [value])
+        self.fmu.setInt32([vr],
+                          [int(value)]) if kind == "Int32" else self.fmu.setFloat64([vr], [value])
 
     def get(self, name):
         vr, kind = self.reference(name)
@@ -102,12 +106,14 @@ class ByFmuloader(Described):
     def __init__(self, folder):
         super().__init__(folder)
         d = self.description
-        self.fmu = fmuloader.fmi3.Fmi3Slave(str(folder), model_identifier=d.coSimulation.modelIdentifier)
+        self.fmu = fmuloader.fmi3.Fmi3Slave(str(folder),
+                                            model_identifier=d.coSimulation.modelIdentifier)
         self.fmu.instantiate_co_simulation("b", instantiation_token=d.guid)
 
     def put(self, name, value):
         vr, kind = self.reference(name)
-        self.fmu.set_int32([vr], [int(value)]) if kind == "Int32" else self.fmu.set_float64([vr], [value])
+        self.fmu.set_int32([vr],
+                           [int(value)]) if kind == "Int32" else self.fmu.set_float64([vr], [value])
 
     def get(self, name):
         vr, kind = self.reference(name)
@@ -185,8 +191,10 @@ def alone_device(importer, folder, native):
 
 
 def together(importer, folder, native):
-    """Controller first, then the device, a period at a time: as many steps as the native run had ticks."""
-    c, d, h, bad, n = controller(importer, folder, native), device(importer, folder, native), 1 / native.rate, False, 0
+    """Controller first, then the device, a period at a time: as many steps as the native run had
+    ticks."""
+    c, d, h, bad, n = (controller(importer, folder, native), device(importer, folder, native),
+                       1 / native.rate, False, 0)
     while not d.get("done") and not bad and n < len(native.tick):
         for name in ("enc_raw", "mon_raw", "supply_raw", "din"):
             c.put(name, d.get(name))
@@ -203,7 +211,8 @@ def together(importer, folder, native):
 
 
 def moved(folder, native, unit, inputs, outputs, late):
-    """In mid-fall into an instance that was told nothing, neither period nor parameters: what it still gives. late: outputs behind the step."""
+    """In mid-fall into an instance that was told nothing, neither period nor parameters: what it
+    still gives. late: outputs behind the step."""
     h, kept, bad = 1 / native.rate, [t["c"] for t in native.tick].index(1) - 3, False
     u = (controller if late else device)(ByFmpy, folder, native)
     for n, tick in enumerate(native.tick):
@@ -224,15 +233,20 @@ def moved(folder, native, unit, inputs, outputs, late):
 
 
 def simulated(folder, native, name, inputs, outputs, values, first):
-    """By FMPy's own simulate_fmu(), whose row n is the instant n: inputs of the native run in, its outputs `first` rows later."""
-    table = numpy.array([(n / native.rate, *(int(t[i]) for i in inputs)) for n, t in enumerate(native.tick)],
+    """By FMPy's own simulate_fmu(), whose row n is the instant n: inputs of the native run in, its
+    outputs `first` rows later."""
+    table = numpy.array([(n / native.rate, *(int(t[i]) for i in inputs))
+                         for n, t in enumerate(native.tick)],
                         dtype=[("time", float)] + [(i, numpy.int32) for i in inputs])
-    row = fmpy.simulate_fmu(str(folder[name]), input=table, output=outputs, start_values={**values, "period_den": native.rate},
-                            output_interval=1 / native.rate, stop_time=len(native.tick) / native.rate)
-    return len(row) == len(native.tick) + 1 and all(row[o][n + first] == t[o] for n, t in enumerate(native.tick) for o in outputs)
+    row = fmpy.simulate_fmu(str(folder[name]), input=table, output=outputs,
+                            start_values={**values, "period_den": native.rate}, output_interval=1 /
+                            native.rate, stop_time=len(native.tick) / native.rate)
+    return (len(row) == len(native.tick) + 1 and
+            all(row[o][n + first] == t[o] for n, t in enumerate(native.tick) for o in outputs))
 
 
-INTO_CONTROLLER, INTO_DEVICE = ("enc_raw", "mon_raw", "supply_raw", "din"), ("dac_raw", "enable", "state")
+INTO_CONTROLLER, INTO_DEVICE = (("enc_raw", "mon_raw", "supply_raw", "din"),
+                                ("dac_raw", "enable", "state"))
 WALL = {"uncalibrated": 1, "q_lim": 0.07, "k": 2000.0, "b": 15.0}
 
 
@@ -251,7 +265,8 @@ def parallel(folder, steps):
             d.put(name, value)
         c.step(n / 2000, 1 / 2000)
         d.step(n / 2000, 1 / 2000)
-        rows.append([c.get("dac_raw"), c.get("state"), d.get("enc_raw"), d.get("mon_raw"), c.get("f_des"), d.get("x")])
+        rows.append([c.get("dac_raw"), c.get("state"), d.get("enc_raw"), d.get("mon_raw"),
+                     c.get("f_des"), d.get("x")])
     c.end()
     d.end()
     return rows
@@ -272,7 +287,8 @@ def parallel_ecos(folder, steps):
     run.init(parameter_set="wall")
     for _ in range(steps):
         run.step(1)
-        rows.append([run.get_integer(i) for i in ("c::dac_raw", "c::state", "d::enc_raw", "d::mon_raw")] +
+        rows.append([run.get_integer(i)
+                     for i in ("c::dac_raw", "c::state", "d::enc_raw", "d::mon_raw")] +
                     [run.get_real(i) for i in ("c::f_des", "d::x")])
     return rows
 
@@ -287,12 +303,14 @@ def refused(call):
 
 def refusals(folder):
     c = ByFmpy(folder["ExhandController"])
-    say(refused(lambda: c.put("k", 1e9)) and refused(lambda: c.put("f_des", 1.0)), "a value out of range, and an output that is set, are refused")
+    say(refused(lambda: c.put("k", 1e9)) and refused(lambda: c.put("f_des", 1.0)),
+        "a value out of range, and an output that is set, are refused")
     c.start()
     say(refused(lambda: c.put("period_den", 1000)), "a fixed parameter is refused once it runs")
     say(refused(lambda: c.step(0, 0.0003)), "a step that is no period is refused")
     data = c.state()
-    say(refused(lambda: c.restore(bytes([255]) * len(data))) and refused(lambda: c.step(0, 0.0005)), "a state that is none is refused, then steps too")
+    say(refused(lambda: c.restore(bytes([255]) * len(data))) and refused(lambda: c.step(0, 0.0005)),
+        "a state that is none is refused, then steps too")
     c.restore(data)
     say(not refused(lambda: c.step(0, 0.0005)), "a state that is one brings it back")
     say(refused(lambda: c.fmu.setFloat32([1], [1.0])), "a variable of another type is refused")
@@ -304,7 +322,8 @@ def main(fmus, native_program, falls, *rates):
     for name in ("ExhandController", "ExhandDevice"):
         fmu = fmus / f"{name}.fmu"
         problems = validate_fmu(str(fmu))
-        say(not problems, f"FMPy {fmpy.__version__}: validate {name}: {len(problems)} problems" + "".join(f"\n    {p}" for p in problems))
+        say(not problems, f"FMPy {fmpy.__version__}: validate {name}: {len(problems)} problems" +
+            "".join(f"\n    {p}" for p in problems))
         folder[name] = fmus / name
         shutil.rmtree(folder[name], ignore_errors=True)
         with zipfile.ZipFile(fmu) as archive:
@@ -319,28 +338,39 @@ def main(fmus, native_program, falls, *rates):
                 build_platform_binary(folder[name], build_dir=build)
             finally:
                 os.dup2(out, 1)
-        say((folder[name] / "binaries" / fmpy.platform_tuple).is_dir(), f"FMPy compiled {name} from its sources")
-        result = fmpy.simulate_fmu(str(folder[name]), stop_time=1.0, step_size=0.0005, output_interval=0.0005)
-        say(len(result) == 2001, f"FMPy simulated {name} for 1 s: {len(result)} rows of {len(result.dtype.names)} variables")
+        say((folder[name] / "binaries" / fmpy.platform_tuple).is_dir(),
+            f"FMPy compiled {name} from its sources")
+        result = fmpy.simulate_fmu(str(folder[name]), stop_time=1.0, step_size=0.0005,
+                                   output_interval=0.0005)
+        say(len(result) == 2001, f"FMPy simulated {name} for 1 s: {len(result)} rows of "
+                                 f"{len(result.dtype.names)} variables")
     for rate in rates:
         native = Native(native_program, int(rate), int(falls))
-        say(len(native.tick) > int(rate) and any(t["c"] for t in native.tick), f"native at {rate} Hz: {len(native.tick)} ticks")
-        say(alone_controller(ByFmpy, folder, native), f"controller at {rate} Hz: the native outputs, bit for bit; its state goes out and in")
-        say(alone_device(ByFmpy, folder, native), f"device at {rate} Hz: the native codes, bit for bit")
+        say(len(native.tick) > int(rate) and any(t["c"] for t in native.tick),
+            f"native at {rate} Hz: {len(native.tick)} ticks")
+        say(alone_controller(ByFmpy, folder, native),
+            f"controller at {rate} Hz: the native outputs, bit for bit; its state goes out and in")
+        say(alone_device(ByFmpy, folder, native),
+            f"device at {rate} Hz: the native codes, bit for bit")
         say(moved(folder, native, "ExhandController", native.inputs, native.outputs, True),
-            f"controller at {rate} Hz: its state in another instance: the native outputs, bit for bit")
+            f"controller at {rate} Hz: its state in another instance: the native outputs, bit for "
+            f"bit")
         say(moved(folder, native, "ExhandDevice", INTO_DEVICE, native.inputs[:4], False),
             f"device at {rate} Hz: its state in another instance: the native codes, bit for bit")
-        say(simulated(folder, native, "ExhandController", native.inputs, native.outputs, native.param, 1),
+        say(simulated(folder, native, "ExhandController", native.inputs, native.outputs,
+                      native.param, 1),
             f"controller at {rate} Hz by simulate_fmu: the native outputs, bit for bit")
-        say(simulated(folder, native, "ExhandDevice", ["dac_raw", "enable", "state"], native.inputs[:4], {"falls": native.falls}, 0),
+        say(simulated(folder, native, "ExhandDevice", ["dac_raw", "enable", "state"],
+                      native.inputs[:4], {"falls": native.falls}, 0),
             f"device at {rate} Hz by simulate_fmu: the native codes, bit for bit")
         for importer in (ByFmpy, ByFmuloader):
-            say(together(importer, folder, native), f"both at {rate} Hz in {importer.name}: the native run, bit for bit")
+            say(together(importer, folder, native),
+                f"both at {rate} Hz in {importer.name}: the native run, bit for bit")
     refusals(folder)
     if ecospy:
         ours = parallel(folder, 5000)
-        say(ours == parallel_ecos(folder, 5000) and max(r[4] for r in ours) > 1, "both in parallel: ecos gives FMPy's 5000 steps, bit for bit")
+        say(ours == parallel_ecos(folder, 5000) and max(r[4] for r in ours) > 1,
+            "both in parallel: ecos gives FMPy's 5000 steps, bit for bit")
     else:
         print("  ecos, a third importer: not to be had here")
     print(f"fmi: {failed} failed" if failed else "fmi: all ok")

@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# fresh.sh [RELEASE [ROOT]]: both README commands in a new Debian (default bookworm, which is 12) that holds git, make and
-# a C compiler and nothing else, on a clone of what is committed. Needs to be root.
-# ROOT (default build/fresh/RELEASE) is kept afterwards to look into; else as root.sh says.
+# fresh.sh [RELEASE [ROOT]]: both README commands in a new Debian (default bookworm, which is 12)
+# that holds git, make and a C compiler and nothing else, on a clone of what is committed. Needs to
+# be root. ROOT (default build/fresh/RELEASE) is kept afterwards to look into; else as root.sh says.
 # Exit status: 0 both passed, 1 not, 2 ROOT is not ours to remove, 3 not root or no debootstrap.
 set -eu
 cd "$(dirname "$0")/../../.."

@@ -1,15 +1,18 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""ways.py DIR [--release NAME] [--only WORD] [--update]: each way of examples/link/README.md on a Debian that holds nothing, of which
-DIR gets one and then a copy a way: its lines as they stand, those that install packages too. Behind `git clone` stands a clone
-of what is committed here. Prints a table, a row a way, and with --update puts it into that file:
+"""ways.py DIR [--release NAME] [--only WORD] [--update]: each way of examples/link/README.md on a
+Debian that holds nothing, of which DIR gets one and then a copy a way: its lines as they stand,
+those that install packages too. Behind `git clone` stands a clone of what is committed here. Prints
+a table, a row a way, and with --update puts it into that file:
   commands  all of them, the three before any way counted
-  packages  of Debian and, behind a plus, of PyPI; with MB, of apt's lists, these packages, and the clone
-  minutes   by the clock, and of them those that did not fetch or install; then seconds of a core, user and system, which hang
+  packages  of Debian and, behind a plus, of PyPI; with MB, of apt's lists, these packages, and the
+  clone minutes   by the clock, and of them those that did not fetch or install; then seconds of a
+  core, user and system, which hang
             less on what else the machine does
   MB        by which the disk is fuller: also apt's lists and the archives that it keeps
-What PlatformIO's registry would have brought is put there in between (registry.py), which counts in the last two alone. Needs to be root.
-Exit status: 0 all programs said what that file says, 1 not, 2 DIR is not ours, 3 not root or no debootstrap. Standard library only.
+What PlatformIO's registry would have brought is put there in between (registry.py), which counts in
+the last two alone. Needs to be root. Exit status: 0 all programs said what that file says, 1 not, 2
+DIR is not ours, 3 not root or no debootstrap. Standard library only.
 """
 
 import argparse
@@ -26,7 +29,8 @@ sys.dont_write_bytecode = True
 import link  # noqa: E402
 
 ROOT_SH = os.path.join(HERE, "root.sh")
-HEAD = ("way", "commands", "packages", "MB fetched", "minutes", "of them building", "s of a core", "MB on disk")
+HEAD = ("way", "commands", "packages", "MB fetched", "minutes", "of them building", "s of a core",
+        "MB on disk")
 FETCHES = ("apt-get ", "git clone ", "python3 -m venv ", "pio/bin/pip ")
 UNIT = {"B": 1e-6, "kB": 1e-3, "MB": 1, "GB": 1e3}
 BEGIN, END = "<!-- make fresh-ways -->\n", "<!-- end -->\n"
@@ -39,7 +43,8 @@ def root(*args):
 
 
 def disk_MB(where):
-    return int(subprocess.run(["du", "-sx", "-B1", where], check=True, stdout=subprocess.PIPE, text=True).stdout.split()[0]) / 1e6
+    return int(subprocess.run(["du", "-sx", "-B1", where], check=True, stdout=subprocess.PIPE,
+                              text=True).stdout.split()[0]) / 1e6
 
 
 def core_s():
@@ -49,7 +54,8 @@ def core_s():
 
 
 def script(commands):
-    """The lines, and when each of them began and the last one ended; a line that is not the way's has no number."""
+    """The lines, and when each of them began and the last one ended; a line that is not the way's
+    has no number."""
     yield "mkdir /work && cd /work"
     for k, c in enumerate(commands):
         yield "echo @%d $(date +%%s.%%N)\n%s" % (k, c)
@@ -59,7 +65,8 @@ def script(commands):
 
 def times(said, commands):
     """Seconds of what fetches and of the rest."""
-    marks = [(m.group(1), float(m.group(2))) for m in re.finditer(r"^@(\S+) ([0-9.]+)$", said, re.M)]
+    marks = [(m.group(1), float(m.group(2)))
+             for m in re.finditer(r"^@(\S+) ([0-9.]+)$", said, re.M)]
     spent = [0.0, 0.0]
     for (k, begin), (_, end) in zip(marks, marks[1:]):
         if k != "-":
@@ -82,16 +89,18 @@ def take(name, commands, want, base, here):
     subprocess.run(["git", "clone", "-q", "--bare", link.ROOT, source], check=True)
     before, source_MB = disk_MB(here), disk_MB(os.path.join(source, "objects"))
     began_s = core_s()
-    done = subprocess.run([ROOT_SH, "run", here, "set -e\n" + "\n".join(script(commands))], stdin=subprocess.DEVNULL,
-                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace")
+    done = subprocess.run([ROOT_SH, "run", here, "set -e\n" + "\n".join(script(commands))],
+                          stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, text=True, errors="replace")
     ran_s = core_s() - began_s
     said = [line for line in done.stdout.splitlines() if not line.startswith("@")]
     warned = [line for line in said if re.search(r"\bwarning:", line)]
     good = done.returncode == 0 and said[-1:] == [want] and not warned
     apt, pypi, got_MB = fetched(done.stdout)
     fetch_s, build_s = times(done.stdout, commands)
-    row = (name, "%d" % len(commands), "%d" % apt + (" + %d" % pypi if pypi else ""), "%.0f" % (got_MB + source_MB),
-           "%.1f" % ((fetch_s + build_s) / 60), "%.1f" % (build_s / 60), "%.0f" % ran_s, "%.0f" % (disk_MB(here) - before))
+    row = (name, "%d" % len(commands), "%d" % apt + (" + %d" % pypi if pypi else ""),
+           "%.0f" % (got_MB + source_MB), "%.1f" % ((fetch_s + build_s) / 60),
+           "%.1f" % (build_s / 60), "%.0f" % ran_s, "%.0f" % (disk_MB(here) - before))
     return row, "" if good else "\n".join(warned or said[-30:])
 
 
@@ -107,16 +116,19 @@ def update(text):
 
 
 def main():
-    p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p = argparse.ArgumentParser(description=__doc__,
+                                formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("dir")
     p.add_argument("--release", default="bookworm")
     p.add_argument("--only", default="")
     p.add_argument("--update", action="store_true")
     a = p.parse_args()
     first, want, ways = link.ways()
-    ways = [(name, [c.replace("...", "file:///exhand.git") for c in first] + commands) for name, commands in ways if a.only in name]
+    ways = [(name, [c.replace("...", "file:///exhand.git") for c in first] + commands)
+            for name, commands in ways if a.only in name]
     if not ways or a.update and a.only:
-        p.error("--only %s: %s" % (a.only, "--update is for all ways" if ways else "no way of that name"))
+        p.error("--only %s: %s" %
+                (a.only, "--update is for all ways" if ways else "no way of that name"))
     base, here = os.path.join(a.dir, a.release), os.path.join(a.dir, "way")
     os.makedirs(a.dir, exist_ok=True)
     root("make", a.release, base)

@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""link.py DIR [--only WORD]: the ways of examples/link/README.md, each in a new directory under DIR beside a clone of what is
-there now, its lines as they stand but for what installs packages; the last line's output must be what the README says. Prints a
-row a way: commands, seconds, bytes of the program. What programs those packages have and are not here are named and the way
-skipped, PlatformIO without PyPI as well; EXH_ALL=1 makes that a failure. Exit status: 0 all said the same, 1 not. Standard library only.
+"""link.py DIR [--only WORD]: the ways of examples/link/README.md, each in a new directory under DIR
+beside a clone of what is there now, its lines as they stand but for what installs packages; the
+last line's output must be what the README says. Prints a row a way: commands, seconds, bytes of the
+program. What programs those packages have and are not here are named and the way skipped,
+PlatformIO without PyPI as well; EXH_ALL=1 makes that a failure. Exit status: 0 all said the same, 1
+not. Standard library only.
 """
 
 import argparse
@@ -29,7 +31,8 @@ def block(text):
 
 
 def ways():
-    """The lines before any way, what the program must say, and [(name, commands)], of which the first installs packages."""
+    """The lines before any way, what the program must say, and [(name, commands)], of which the
+    first installs packages."""
     with open(README) as f:
         head, *sections = re.split(r"^## ", f.read(), flags=re.M)
     *first, want = block(head)
@@ -37,27 +40,36 @@ def ways():
 
 
 def registry(line, tree):
-    """What comes behind this line, because PlatformIO's registry does not: nothing, or a command."""
-    return ["pio/bin/python %s/test/walk/link/registry.py" % tree] if line.startswith("pio/bin/pip ") else []
+    """What comes behind this line, because PlatformIO's registry does not: nothing, or a
+    command."""
+    return (["pio/bin/python %s/test/walk/link/registry.py" % tree]
+            if line.startswith("pio/bin/pip ") else [])
 
 
 def run(commands, where, want):
     """(said what it must without a warning, or None, seconds, bytes, the end of what was said)."""
     clone(where)
-    lines = [l for c in commands for l in [c + (" || exit %d" % NONE if "pip" in c or "venv" in c else "")] + registry(c, "exhand")]
-    env = {k: v for k, v in os.environ.items() if k not in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL", "CFLAGS", "WERROR")}
+    lines = [l for c in commands
+             for l in [c + (" || exit %d" % NONE if "pip" in c or "venv" in c else "")] +
+             registry(c, "exhand")]
+    env = {k: v for k, v in os.environ.items()
+           if k not in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL", "CFLAGS", "WERROR")}
     start = time.time()
-    done = subprocess.run(["sh", "-e", "-c", "\n".join(lines)], cwd=where, env=dict(env, LC_ALL="C.UTF-8", PLATFORMIO_CORE_DIR=where + "/core"),
+    done = subprocess.run(["sh", "-e", "-c", "\n".join(lines)], cwd=where,
+                          env=dict(env, LC_ALL="C.UTF-8", PLATFORMIO_CORE_DIR=where + "/core"),
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     took = time.time() - start
     program = os.path.join(where, commands[-1])
     warned = re.findall(r"^.*\bwarning:.*$", done.stdout, re.M)
-    good = None if done.returncode == NONE else done.returncode == 0 and done.stdout.rstrip().splitlines()[-1:] == [want] and not warned
-    return good, took, os.path.getsize(program) if os.path.exists(program) else 0, "\n".join(warned or done.stdout.splitlines()[-15:])
+    good = (None if done.returncode == NONE else done.returncode == 0 and
+            done.stdout.rstrip().splitlines()[-1:] == [want] and not warned)
+    return (good, took, os.path.getsize(program) if os.path.exists(program) else 0,
+            "\n".join(warned or done.stdout.splitlines()[-15:]))
 
 
 def main():
-    p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p = argparse.ArgumentParser(description=__doc__,
+                                formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("dir")
     p.add_argument("--only", default="")
     a = p.parse_args()
@@ -67,14 +79,19 @@ def main():
     for k, (name, (install, *commands)) in enumerate(of):
         if a.only not in name:
             continue
-        missing = [p for p in install.split()[2:] if not p.startswith(("-", "lib", "python3-")) and not shutil.which(p)]
-        good, took, size, end = (None, 0, 0, "") if missing else run(commands, os.path.join(os.path.abspath(a.dir), "way%d" % k), want)
+        missing = [p for p in install.split()[2:] if not p.startswith(("-", "lib", "python3-")) and
+                   not shutil.which(p)]
+        good, took, size, end = ((None, 0, 0, "") if missing
+                                 else run(commands,
+                                          os.path.join(os.path.abspath(a.dir), "way%d" % k), want))
         if good is None:
-            print("%-36s skipped: no %s" % (name, " ".join(missing) or "PyPI, or no python3-venv\n" + end))
+            print("%-36s skipped: no %s" %
+                  (name, " ".join(missing) or "PyPI, or no python3-venv\n" + end))
             failed += bool(os.environ.get("EXH_ALL"))
             continue
         passed, failed = passed + good, failed + (not good)
-        print("%-36s %9d %8.1f %9d%s" % (name, len(commands), took, size, "" if good else "  FAILED\n" + end), flush=True)
+        print("%-36s %9d %8.1f %9d%s" %
+              (name, len(commands), took, size, "" if good else "  FAILED\n" + end), flush=True)
     print("%d passed, %d failed" % (passed, failed))
     return 1 if failed or not passed else 0
 

@@ -1,14 +1,17 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# package.sh DIR: what CMake installs for others to find, with the folder of libraries given in full and not: the paths of
-# exhand.pc, and which versions find_package(exhand) takes. Exit status: 0, 1 not as it should be, 3 what is missing.
+# package.sh DIR: what CMake installs for others to find, with the folder of libraries given in full
+# and not: the paths of exhand.pc, and which versions find_package(exhand) takes. Exit status: 0, 1
+# not as it should be, 3 what is missing.
 set -eu
 unset MAKEFLAGS MFLAGS MAKELEVEL # of a make that is around
 for tool in cmake pkg-config; do
-    command -v $tool >/dev/null || { echo "package: skipped: no $tool"; [ -z "${EXH_ALL:-}" ] || exit 3; exit 0; }
+    command -v $tool >/dev/null || { echo "package: skipped: no $tool"; [ -z "${EXH_ALL:-}" ] ||
+        exit 3; exit 0; }
 done
 lib=$(cd "$(dirname "$0")/../../../lib" && pwd)
-version=$(awk '/define EXH_VERSION_(MAJOR|MINOR|PATCH) /{v = v s $3; s = "."} END{print v}' "$lib/include/exhand/exhand.h")
+version=$(awk '/define EXH_VERSION_(MAJOR|MINOR|PATCH) /{v = v s $3; s = "."} END{print v}' \
+    "$lib/include/exhand/exhand.h")
 minor=${version%.*}
 failed=0
 
@@ -37,12 +40,16 @@ mkdir -p "$1/ask"
 cd "$1"
 for where in lib "$PWD/usr/lib"; do
     rm -rf build usr
-    cmake -S "$lib" -B build -DCMAKE_INSTALL_PREFIX="$PWD/usr" -DCMAKE_INSTALL_LIBDIR="$where" >said 2>&1 &&
+    cmake -S "$lib" -B build -DCMAKE_INSTALL_PREFIX="$PWD/usr" -DCMAKE_INSTALL_LIBDIR="$where" \
+        >said 2>&1 &&
         cmake --build build --target install >>said 2>&1 || { cat said >&2; exit 1; }
     said=$(PKG_CONFIG_PATH=usr/lib/pkgconfig pkg-config --cflags --libs exhand | sed 's/ *$//')
-    [ "$said" = "-I$PWD/usr/include -L$PWD/usr/lib -lexhand" ] || { echo "package: libraries in $where: pkg-config: $said" >&2; failed=1; }
+    [ "$said" = "-I$PWD/usr/include -L$PWD/usr/lib -lexhand" ] ||
+        { echo "package: libraries in $where: pkg-config: $said" >&2; failed=1; }
     for ask in "" "$minor" "$version" "$version EXACT"; do asks "$ask" 1; done
     for ask in "$minor.999" "${minor%.*}.999" 999; do asks "$ask" 0; done
 done
-[ $failed = 0 ] && echo "package: found by CMake and pkg-config, libraries in lib or in full; $version as itself and $minor alone"
+[ $failed = 0 ] &&
+    echo "package: found by CMake and pkg-config, libraries in lib or in full;" \
+        "$version as itself and $minor alone"
 exit $failed

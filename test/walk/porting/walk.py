@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""walk.py DIR: types docs/PORTING.md in a new clone under DIR and compares what comes with what stands there. `...` in a line
-is any text, on a line of its own any lines. `<!-- file: PATH -->` writes the block that follows, `<!-- fill: NAME... -->`
-gives ports/mine/board.c those functions of ports/mps2, all others being the template's, as a user who got that far. Exit
-status: 0 all as told, 1 not. Standard library only.
+"""walk.py DIR: types docs/PORTING.md in a new clone under DIR and compares what comes with what
+stands there. `...` in a line is any text, on a line of its own any lines. `<!-- file: PATH -->`
+writes the block that follows, `<!-- fill: NAME... -->` gives ports/mine/board.c those functions of
+ports/mps2, all others being the template's, as a user who got that far. Exit status: 0 all as told,
+1 not. Standard library only.
 """
 
 import os
@@ -27,7 +28,8 @@ def functions(text):
 
 def filled(names):
     """ports/mps2/board.c, but what is not among these names as in the template."""
-    template, text = (open(os.path.join(ROOT, "ports", p, "board.c")).read() for p in ("template", "mps2"))
+    template, text = (open(os.path.join(ROOT, "ports", p, "board.c")).read()
+                      for p in ("template", "mps2"))
     empty = functions(template)
     for name, (lo, hi) in sorted(functions(text).items(), key=lambda f: -f[1][0]):
         if name not in names:
@@ -37,7 +39,8 @@ def filled(names):
 
 def matches(want, got):
     """`...` inside a line is any text, a line `...` any lines."""
-    pattern = "".join(r"(?:.*\n)*?" if w == "..." else re.escape(w).replace(r"\.\.\.", ".*") + "\n" for w in want)
+    pattern = "".join(r"(?:.*\n)*?" if w == "..." else re.escape(w).replace(r"\.\.\.", ".*") + "\n"
+                      for w in want)
     return re.fullmatch(pattern, "".join(line + "\n" for line in got)) is not None
 
 
@@ -65,7 +68,8 @@ def main():
         print(__doc__)
         return 0 if "--help" in sys.argv else 2
     where = clone(os.path.abspath(sys.argv[1]))
-    env = {k: v for k, v in os.environ.items() if k not in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL", "WERROR", "B")}
+    env = {k: v for k, v in os.environ.items()
+           if k not in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL", "WERROR", "B")}
     names, passed, failed = set(), 0, 0
     for kind, what, *rest in list(steps()):
         if kind == "fill":
@@ -76,12 +80,14 @@ def main():
             with open(os.path.join(where, what), "w") as f:
                 f.write("\n".join(rest[0]) + "\n")
         else:
-            done = subprocess.run(what, shell=True, cwd=where, env=dict(env, LC_ALL="C.UTF-8"), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            done = subprocess.run(what, shell=True, cwd=where, env=dict(env, LC_ALL="C.UTF-8"),
+                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
             got = done.stdout.replace("\r", "").splitlines()
             good = matches(rest[0], got)
             passed, failed = passed + good, failed + (not good)
             if not good:
-                print("$ %s\nwant:\n%s\ngot:\n%s\n%s" % (what, "\n".join(rest[0]), "\n".join(got), done.stderr[-2000:]))
+                print("$ %s\nwant:\n%s\ngot:\n%s\n%s" %
+                      (what, "\n".join(rest[0]), "\n".join(got), done.stderr[-2000:]))
     print("porting: %d passed, %d failed" % (passed, failed))
     return 1 if failed or not passed else 0
 

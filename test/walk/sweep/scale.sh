@@ -1,8 +1,9 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
-# scale.sh DIR: the sweeps of examples/sweep on this machine: by GNU parallel, by ssh to a server of its own, as a Slurm array on a
-# cluster of one. Each must leave the file of cells that one process leaves, byte for byte. Needs parallel; openssh-server; slurmctld,
-# slurmd, slurm-client, munge and root: what is not there is named and left out. Exit status: 0 all the same, 1 not, 2 wrong usage.
+# scale.sh DIR: the sweeps of examples/sweep on this machine: by GNU parallel, by ssh to a server of
+# its own, as a Slurm array on a cluster of one. Each must leave the file of cells that one process
+# leaves, byte for byte. Needs parallel; openssh-server; slurmctld, slurmd, slurm-client, munge and
+# root: what is not there is named and left out. Exit status: 0 all the same, 1 not, 2 wrong usage.
 set -u
 [ $# -eq 1 ] || { echo "usage: $0 DIR" >&2; exit 2; }
 cd "$(dirname "$0")/../../.." || exit 1
@@ -38,12 +39,16 @@ if command -v parallel >/dev/null && command -v rsync >/dev/null && [ -x /usr/sb
     ssh-keygen -q -t ed25519 -N '' -f "$key"
     cp "$key.pub" "$dir/authorized"
     mkdir -p /run/sshd 2>/dev/null
-    printf '%s\n' "Port 47522" "ListenAddress 127.0.0.1" "HostKey $key" "AuthorizedKeysFile $PWD/$dir/authorized" \
-        "StrictModes no" "PidFile $PWD/$dir/sshd.pid" "UsePAM no" "PermitRootLogin yes" >"$dir/sshd_config"
-    printf '%s\n' "Host loop" "HostName 127.0.0.1" "Port 47522" "IdentityFile $key" "StrictHostKeyChecking no" \
+    printf '%s\n' "Port 47522" "ListenAddress 127.0.0.1" "HostKey $key" \
+        "AuthorizedKeysFile $PWD/$dir/authorized" \
+        "StrictModes no" "PidFile $PWD/$dir/sshd.pid" "UsePAM no" "PermitRootLogin yes" \
+        >"$dir/sshd_config"
+    printf '%s\n' "Host loop" "HostName 127.0.0.1" "Port 47522" "IdentityFile $key" \
+        "StrictHostKeyChecking no" \
         "UserKnownHostsFile /dev/null" "LogLevel ERROR" >"$dir/ssh_config"
     /usr/sbin/sshd -f "$PWD/$dir/sshd_config" -E "$PWD/$dir/sshd.log"
-    PARALLEL_SSH="ssh -F $PWD/$dir/ssh_config" examples/sweep/parallel.sh "$dir/ssh" 3 2/loop $map >"$dir/ssh.txt" 2>&1
+    PARALLEL_SSH="ssh -F $PWD/$dir/ssh_config" examples/sweep/parallel.sh "$dir/ssh" 3 2/loop $map \
+        >"$dir/ssh.txt" 2>&1
     same "GNU parallel, ssh to this machine" ssh
     kill "$(cat "$dir/sshd.pid")"
 else
@@ -51,7 +56,8 @@ else
 fi
 
 if command -v sbatch >/dev/null && command -v slurmctld >/dev/null && [ "$(id -u)" = 0 ]; then
-    test/walk/sweep/slurm.sh "$dir/slurm.d" sbatch --wait --array=1-3 -o "$PWD/$dir/slurm-%a.txt" examples/sweep/sweep.sbatch "$dir/slurm" $map \
+    test/walk/sweep/slurm.sh "$dir/slurm.d" sbatch --wait --array=1-3 \
+        -o "$PWD/$dir/slurm-%a.txt" examples/sweep/sweep.sbatch "$dir/slurm" $map \
         >"$dir/slurm.txt" 2>&1
     build/posix/exhand-lab drop --sweep $map --out "$dir/slurm" >>"$dir/slurm.txt" 2>&1
     same "Slurm, an array of three tasks" slurm

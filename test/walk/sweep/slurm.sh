@@ -1,6 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
-# slurm.sh DIR COMMAND...: a Slurm cluster of this machine alone, its files in DIR, while COMMAND runs. Root. Exit status: COMMAND's.
+# slurm.sh DIR COMMAND...: a Slurm cluster of this machine alone, its files in DIR, while COMMAND
+# runs. Root. Exit status: COMMAND's.
 set -u
 [ $# -ge 2 ] || { echo "usage: $0 DIR COMMAND..." >&2; exit 2; }
 mkdir -p "$1/state" "$1/spool"
@@ -30,7 +31,8 @@ NodeName=$host NodeAddr=127.0.0.1 CPUs=$(nproc) State=UNKNOWN
 PartitionName=all Nodes=$host Default=YES State=UP
 CONF
 export SLURM_CONF=$dir/slurm.conf
-munged --foreground --force --socket="$dir/munge.socket" --key-file="$dir/munge.key" --pid-file="$dir/munge.pid" \
+munged --foreground --force --socket="$dir/munge.socket" --key-file="$dir/munge.key" \
+    --pid-file="$dir/munge.pid" \
     --log-file="$dir/munge.log" --seed-file="$dir/munge.seed" &
 sleep 1
 slurmctld -D >"$dir/slurmctld.log" 2>&1 &
