@@ -43,11 +43,9 @@ $(bench_i686): $(i686_src) \
     $(wildcard test/figures/bench/*.h lib/src/*/*.h lib/include/exhand/*.h test/wide.h) $(stamp)
 	@mkdir -p $(@D)
 	$(Q)i686-linux-gnu-gcc -static $(filter-out -MMD -MP -g,$(base)) $(PORT_HOSTFLAGS) $(CFLAGS) \
-	    -Itest \
-	    -o $@ $(filter %.c,$^) -lm
+	    -Itest -o $@ $(filter %.c,$^) -lm
 
-# Ours beside others' code: CMSIS-DSP if peers.sh could fetch it. Compiler and flags are the same,
-# without warnings.
+# Ours beside others' code: CMSIS-DSP if peers.sh could fetch it. Same compiler and flags.
 cmsis     := $(B)/peers/cmsisdsp-1.10.3
 biquad    := $(cmsis)/Source/FilteringFunctions/arm_biquad_cascade_
 cmsis_src := $(foreach f,df1_q31 df1_fast_q31 df1_init_q31 df1_32x64_q31 df1_32x64_init_q31 \
@@ -84,8 +82,8 @@ peers_deps := $(wildcard $(cmsis)/.complete $(fixmath)/.complete test/figures/be
 $(peers) $(peers)-i686: $(peers_src) $(peers_deps)
 	@mkdir -p $(@D)
 	$(Q)$(peers_cc) $(filter-out $(warn) -MMD -MP -g,$(base)) \
-	    -w $(PORT_HOSTFLAGS) $(CFLAGS) $(peers_def) -Itest \
-	    -Wl,--gc-sections -o $@ $(filter %.c,$^) $(peers_rust) -lm
+	    -w $(PORT_HOSTFLAGS) $(CFLAGS) $(peers_def) -Itest -Wl,--gc-sections \
+	    -o $@ $(filter %.c,$^) $(peers_rust) -lm
 
 # Kernels of ours, of others and in plain floating point, built alike, for the report.
 work     := $(B)/bench/work
@@ -112,8 +110,8 @@ $(work)-i686: $(lib_src)
 $(work) $(work)-i686: $(work_src) $(peers_deps)
 	@mkdir -p $(@D)
 	$(Q)$(work_cc) $(filter-out $(warn) -MMD -MP -g,$(base)) \
-	    -w $(PORT_HOSTFLAGS) $(CFLAGS) $(peers_def) -Itest \
-	    -Wl,--gc-sections -o $@ $(filter %.c,$^) $(filter %.a,$^) -lm
+	    -w $(PORT_HOSTFLAGS) $(CFLAGS) $(peers_def) -Itest -Wl,--gc-sections \
+	    -o $@ $(filter %.c,$^) $(filter %.a,$^) -lm
 
 # Whole ticks of the scenes, beside the same ticks in double and float.
 scenes     := $(B)/bench/scenes
@@ -130,15 +128,13 @@ scenes_hs := $(wildcard test/figures/bench/*.h examples/*/*.h examples/*.h lib/s
 $(scenes) $(scenes)-i686: $(scenes_src) $(scenes_hs) $(stamp)
 	@mkdir -p $(@D)
 	$(Q)$(scenes_cc) $(filter-out -MMD -MP -g -Wdouble-promotion,$(base)) $(PORT_HOSTFLAGS) $(CFLAGS) \
-	    -Itest \
-	    -Wl,--gc-sections -o $@ $(filter %.c,$^) $(filter %.a,$^) -lm
+	    -Itest -Wl,--gc-sections -o $@ $(filter %.c,$^) $(filter %.a,$^) -lm
 .PHONY: scenes-csv
 scenes-csv: $(scenes) $(if $(notdir $(shell command -v i686-linux-gnu-gcc)),$(scenes)-i686)
 	@B=$(B) test/figures/bench/scenes.sh
 
 ##@ Benches
-## Compare error and instructions of every kernel with test/figures/bench/baseline.csv
-## (ARGS=--update).
+## Compare error and instructions of every kernel with the baseline (ARGS=--update).
 .PHONY: bench
 bench:
 	@.ci/deps "the benches" valgrind valgrind || exit 3
@@ -153,8 +149,7 @@ bench:
 	@B=$(B) test/figures/bench/bench.sh $(ARGS)
 	@echo; B=$(B) test/figures/bench/peers.sh table
 
-# The report's part of the bench. With SHORT it takes the last bench's results if its programs are
-# no newer.
+# The report's part. With SHORT it takes the last bench's results if its programs are no newer.
 .PHONY: bench-csv
 bench-csv:
 	@[ -n "$$SHORT" ] && $(MAKE) --no-print-directory -s $(bench_bin) $(peers) && \
